@@ -1,0 +1,267 @@
+// core.cpp - names and shapes for Python, and nothing else.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <omp.h>
+
+#include "core/backend.hpp"
+#include "core/step.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace cdem {
+
+/// A model and its state: what one simulation holds.
+struct Core {
+  Model model;
+  State state;
+};
+
+namespace {
+
+template <class T>
+using Array = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
+
+template <class T>
+nb::object view(Column<T>& column, nb::handle owner) {
+  const std::size_t shape[1] = {column.size()};
+  return nb::cast(nb::ndarray<nb::numpy, T>(column.data(), 1, shape, owner));
+}
+
+/// Copy every array of the model from a dict of flat arrays; a missing one is our own mistake.
+void take_model(Core& core, const nb::dict& arrays) {
+  describe(core.model, [&]<class T>(const std::string& name, Column<T>& column) {
+    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
+    column.assign(array.data(), array.size());
+  });
+}
+
+/// Copy those arrays of the model that the dict holds: what a stage may change.
+void update_model(Core& core, const nb::dict& arrays) {
+  describe(core.model, [&]<class T>(const std::string& name, Column<T>& column) {
+    if (!arrays.contains(name.c_str())) return;
+    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
+    column.assign(array.data(), array.size());
+  });
+}
+
+void take_counts(Core& core, const nb::dict& c) {
+  const auto number = [&](const char* name) { return nb::cast<Index>(c[name]); };
+  Model& m = core.model;
+  m.node_count = number("nodes");
+  m.face_count = number("faces");
+  m.edge_count = number("edges");
+  m.group_count = number("groups");
+  m.corner_rows = number("corner_rows");
+  const auto elements = [&](const std::string& name, ElementSet& e) {
+    e.count = number((name + ".count").c_str());
+    e.stride = padded_stride(e.count);
+    e.corner_first = number((name + ".corner_first").c_str());
+  };
+  elements("tet4", m.tet4);
+  elements("pyramid5", m.pyramid5);
+  elements("wedge6", m.wedge6);
+  elements("hex8", m.hex8);
+  const auto pairs = [&](const std::string& name, PairSet& p, Index points, Index corners) {
+    p.count = number((name + ".count").c_str());
+    p.stride = padded_stride(p.count);
+    p.points = points;
+    p.corners = corners;
+    p.corner_first = number((name + ".corner_first").c_str());
+    p.point_stride = p.stride;
+  };
+  pairs("triangles", m.triangles, 3, 6);
+  pairs("quads", m.quads, 4, 8);
+  pairs("overlaps", m.overlaps, 1, 8);
+  m.overlaps.point_stride = padded_stride(number("overlaps.points"));
+}
+
+nb::object state_fields(nb::handle_t<Core> self) {
+  Core& core = nb::cast<Core&>(self);
+  nb::dict fields;
+  describe(core.state, [&]<class T>(const std::string& name, Column<T>& column, const char*) {
+    fields[name.c_str()] = view(column, self);
+  });
+  return fields;
+}
+
+/// Bring back every array and scalar of a checkpoint.
+void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
+  describe(core.state, [&]<class T>(const std::string& name, Column<T>& column, const char*) {
+    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
+    column.assign(array.data(), array.size());
+  });
+  State& s = core.state;
+  const auto real = [&](const char* name) { return nb::cast<Real>(scalars[name]); };
+  const auto whole = [&](const char* name) { return nb::cast<std::int64_t>(scalars[name]); };
+  s.time = real("time"), s.dt = real("dt"), s.dt_last = real("dt_last");
+  s.step = whole("step"), s.refreshes = whole("refreshes"), s.built_step = whole("built_step");
+  s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
+  s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
+  s.ledger_started = whole("ledger_started") != 0;
+  s.edges.slots = Index(whole("edge_slots"));
+}
+
+nb::dict scalars(const Core& core) {
+  const State& s = core.state;
+  nb::dict d;
+  d["time"] = s.time, d["dt"] = s.dt, d["dt_last"] = s.dt_last;
+  d["step"] = s.step, d["refreshes"] = s.refreshes, d["built_step"] = s.built_step;
+  d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
+  d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
+  d["ledger_started"] = std::int64_t(s.ledger_started);
+  d["edge_slots"] = std::int64_t(s.edges.slots);
+  return d;
+}
+
+void set_interfaces(Core& core, const std::vector<std::vector<Real>>& rows) {
+  Model& m = core.model;
+  m.interfaces.resize(rows.size());
+  for (Column<Real>* column : {&m.cohesion, &m.tensile_strength, &m.tan_friction})
+    column->resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::vector<Real>& r = rows[i];
+    m.interfaces[i] = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4), r.at(5), r.at(6)};
+    m.cohesion[i] = r[0], m.tensile_strength[i] = r[1], m.tan_friction[i] = r[2];
+  }
+}
+
+Formulation formulation(const std::string& name) {
+  if (name == "corotational") return Formulation::corotational;
+  if (name == "incremental") return Formulation::incremental;
+  if (name == "paper-incremental") return Formulation::paper_incremental;
+  if (name == "paper-total") return Formulation::paper_total;
+  throw nb::value_error("unknown element formulation");
+}
+
+void set_options(Core& core, const nb::dict& o) {
+  const auto real = [&](const char* name) { return nb::cast<Real>(o[name]); };
+  Model& m = core.model;
+  m.formulation = formulation(nb::cast<std::string>(o["formulation"]));
+  m.rules.indentation = real("indentation");
+  m.rules.action = real("action");
+  m.rules.tolerance = real("tolerance");
+  m.bond_indentation_triangle = real("bond_indentation_triangle");
+  m.bond_indentation_quad = real("bond_indentation_quad");
+  m.semi_edges = nb::cast<bool>(o["semi_edges"]);
+  m.refresh_interval = nb::cast<Index>(o["refresh_interval"]);
+  m.step_safety = real("step_safety");
+  m.step_given = real("step_given");
+  m.speed_limit = real("speed_limit");
+  const auto g = nb::cast<std::vector<Real>>(o["gravity"]);
+  m.gravity = {g.at(0), g.at(1), g.at(2)};
+}
+
+const char* name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::steps_done: return "steps_done";
+    case Outcome::time_reached: return "time_reached";
+    case Outcome::converged: return "converged";
+    case Outcome::not_finite: return "not_finite";
+    case Outcome::too_fast: return "too_fast";
+    case Outcome::lost_contact: return "lost_contact";
+  }
+  return "";
+}
+
+}  // namespace
+}  // namespace cdem
+
+NB_MODULE(CDEM_MODULE, module) {
+  using namespace cdem;
+  module.attr("lanes") = lanes;
+  module.def("padded_stride", &padded_stride, "count"_a);
+  module.def("device_name", &device_name);
+  module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
+  module.def("max_threads", [] { return omp_get_max_threads(); });
+
+  nb::class_<Core>(module, "Core")
+      .def(nb::init<>())
+      .def("take_counts", &take_counts, "counts"_a)
+      .def("take_model", &take_model, "arrays"_a)
+      .def("update_model", &update_model, "arrays"_a)
+      .def("set_options", &set_options, "options"_a)
+      .def("set_interfaces", &set_interfaces, "rows"_a)
+      .def("set_curves",
+           [](Core& c, const std::vector<std::vector<Real>>& times,
+              const std::vector<std::vector<Real>>& factors) {
+             c.model.curve_time = times;
+             c.model.curve_factor = factors;
+           })
+      .def("set_gravity",
+           [](Core& c, const std::vector<Real>& g) {
+             c.model.gravity = {g.at(0), g.at(1), g.at(2)};
+           })
+      .def("set_damping",
+           [](Core& c, Real local, Real mass, Real stiffness, Real contact) {
+             c.model.damping = {local, mass};
+             c.model.stiffness_damping = stiffness;
+             c.model.contact_damping = contact;
+           })
+      .def("start",
+           [](Core& c, Array<Real> position) { start(c.model, c.state, position.data()); })
+      .def("restore", &restore)
+      .def("prepare", [](Core& c) { prepare(c.model, c.state); })
+      .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
+      .def("fields", &state_fields)
+      .def("scalars", &scalars)
+      .def(
+          "run",
+          [](Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
+             std::int64_t check_interval, bool kinetic_relaxation) {
+            Report r;
+            {
+              nb::gil_scoped_release release;
+              r = run(c.model, c.state,
+                      {steps, end_time, unbalance_limit, check_interval, kinetic_relaxation});
+            }
+            return std::make_tuple(std::string(name_of(r.outcome)), r.culprit, r.value);
+          },
+          "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0, "check_interval"_a = 20,
+          "kinetic_relaxation"_a = false)
+      .def("energies",
+           [](Core& c) {
+             const Energies e = energies(c.model, c.state);
+             nb::dict d;
+             d["kinetic"] = e.kinetic, d["strain"] = e.strain, d["contact"] = e.contact;
+             d["friction"] = e.friction, d["damping"] = e.damping, d["fracture"] = e.fracture;
+             d["external"] = e.external, d["start"] = e.start, d["error"] = e.error;
+             return d;
+           })
+      .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
+      .def("step_limit",
+           [](const Core& c) {
+             const StepLimit l = step_limit(c.model, c.state);
+             return std::make_tuple(l.dt, l.node, l.element2, l.contact2);
+           })
+      .def("node_force",
+           [](nb::handle_t<Core> self) {
+             return view(nb::cast<Core&>(self).state.nodes.force, self);
+           })
+      .def("stress",
+           [](nb::handle_t<Core> self) {
+             Core& c = nb::cast<Core&>(self);
+             report_elements(c.model, c.state, {});
+             nb::dict d;
+             d["tet4"] = view(c.state.tet4.stress, self);
+             d["pyramid5"] = view(c.state.pyramid5.stress, self);
+             d["wedge6"] = view(c.state.wedge6.stress, self);
+             d["hex8"] = view(c.state.hex8.stress, self);
+             return d;
+           })
+      .def("stop_motion", [](Core& c) { stop_motion(c.model, c.state); })
+      .def("adopt_overlaps",
+           [](Core& c) {
+             Index count = 0, face = -1;
+             const Real deepest = adopt_overlaps(c.model, c.state, count, face);
+             return std::make_tuple(deepest, count, face);
+           })
+      .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); })
+      .def("refresh", [](Core& c) { refresh_contacts(c.model, c.state); })
+      .def("count_missed_contacts",
+           [](Core& c) { return count_missed_contacts(c.model, c.state); });
+}

@@ -1,0 +1,101 @@
+// backend.cpp - the list of launches. backend.cu is this file again, given to the CUDA compiler.
+#include "core/backend.hpp"
+
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+
+#include "core/contact/bond.hpp"
+#include "core/contact/force.hpp"
+#include "core/contact/target_edge.hpp"
+#include "core/contact/target_face.hpp"
+#include "core/elements/corotational.hpp"
+#include "core/elements/incremental.hpp"
+#include "core/nodes/motion.hpp"
+
+namespace cdem {
+
+#if defined(__CUDACC__)
+
+void* allocate(std::size_t bytes) {
+  void* memory = nullptr;
+  if (cudaMallocManaged(&memory, bytes) != cudaSuccess) throw std::bad_alloc();
+  std::memset(memory, 0, bytes);
+  return memory;
+}
+void release(void* memory) { cudaFree(memory); }
+void finish(Queue queue) {
+  const cudaError_t error = cudaStreamSynchronize(queue.stream);
+  if (error != cudaSuccess) throw std::runtime_error(cudaGetErrorString(error));
+}
+const char* device_name() {
+  static cudaDeviceProp properties;
+  if (cudaGetDeviceProperties(&properties, 0) != cudaSuccess)
+    throw std::runtime_error("no CUDA device that works was found");
+  return properties.name;
+}
+
+#else
+
+void* allocate(std::size_t bytes) {
+  const std::size_t whole = (bytes + 63) / 64 * 64;
+  void* memory = std::aligned_alloc(64, whole);
+  if (!memory) throw std::bad_alloc();
+  std::memset(memory, 0, whole);
+  return memory;
+}
+void release(void* memory) { std::free(memory); }
+void finish(Queue) {}
+const char* device_name() { return "cpu"; }
+
+#endif
+
+template <class Kernel>
+void launch(Queue queue, Index count, const Kernel& kernel) {
+  for_each(queue, count, kernel);
+}
+template <class Kernel>
+void launch_one(Queue queue, Index count, const Kernel& kernel) {
+  for_each_one(queue, count, kernel);
+}
+
+template void launch(Queue, Index, const CorotationalForce<Tet4, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalForce<Pyramid5, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalForce<Wedge6, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalForce<Hex8, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalForce<Tet4, IgnoreRotation>&);
+template void launch(Queue, Index, const CorotationalForce<Pyramid5, IgnoreRotation>&);
+template void launch(Queue, Index, const CorotationalForce<Wedge6, IgnoreRotation>&);
+template void launch(Queue, Index, const CorotationalForce<Hex8, IgnoreRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Tet4, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Pyramid5, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Wedge6, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Hex8, FollowRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Tet4, IgnoreRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Pyramid5, IgnoreRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Wedge6, IgnoreRotation>&);
+template void launch(Queue, Index, const CorotationalReport<Hex8, IgnoreRotation>&);
+template void launch(Queue, Index, const IncrementalForce<Tet4, TurnByHalves>&);
+template void launch(Queue, Index, const IncrementalForce<Pyramid5, TurnByHalves>&);
+template void launch(Queue, Index, const IncrementalForce<Wedge6, TurnByHalves>&);
+template void launch(Queue, Index, const IncrementalForce<Hex8, TurnByHalves>&);
+template void launch(Queue, Index, const IncrementalForce<Tet4, NeverTurn>&);
+template void launch(Queue, Index, const IncrementalForce<Pyramid5, NeverTurn>&);
+template void launch(Queue, Index, const IncrementalForce<Wedge6, NeverTurn>&);
+template void launch(Queue, Index, const IncrementalForce<Hex8, NeverTurn>&);
+template void launch(Queue, Index, const ConformingBonds<3>&);
+template void launch(Queue, Index, const ConformingBonds<4>&);
+
+template void launch_one(Queue, Index, const OverlapBonds&);
+template void launch_one(Queue, Index, const UpdateFaceGeometry&);
+template void launch_one(Queue, Index, const FindTargetFaces&);
+template void launch_one(Queue, Index, const FindTargetEdges&);
+template void launch_one(Queue, Index, const UpdateSpringForces&);
+template void launch_one(Queue, Index, const UpdateEdgeForces&);
+template void launch_one(Queue, Index, const GatherFaceForces&);
+template void launch_one(Queue, Index, const SumNodeForces&);
+template void launch_one(Queue, Index, const MoveNodes&);
+template void launch_one(Queue, Index, const NodeMomentum&);
+template void launch_one(Queue, Index, const SampleNodes&);
+
+}  // namespace cdem

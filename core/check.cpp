@@ -1,0 +1,214 @@
+// check.cpp - energy ledger, unbalance ratio, stable step, and what stops a run that went wrong.
+#include "core/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/backend.hpp"
+#include "core/columns.hpp"
+#include "core/elements/corotational.hpp"
+
+namespace cdem {
+
+namespace {
+
+Real column_sum(const Column<Real>& c) {
+  return ordered_sum(Index(c.size()), [&](Index i) { return c[i]; });
+}
+
+template <class Shape, class Rotation>
+void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
+  launch(q, e.count,
+         CorotationalReport<Shape, Rotation>{element_columns<Shape>(m, s, e),
+                                             {es.stress.data(), e.stride},
+                                             {es.energy.data(), e.stride}});
+}
+
+/// Mean over the Gauss points of the stress that the incremental forms keep.
+template <class Shape>
+void average_points(const ElementSet& e, ElementState& es) {
+  for (Index i = 0; i < e.count; ++i)
+    for (Index row = 0; row < 6; ++row) {
+      Real sum = 0, volume = 0;
+      for (Index q = 0; q < Shape::points; ++q) {
+        const Real w = e.volume[std::size_t(q) * e.stride + i];
+        sum += w * es.point_stress[std::size_t(6 * q + row) * e.stride + i];
+        volume += w;
+      }
+      es.stress[std::size_t(row) * e.stride + i] = sum / volume;
+    }
+}
+
+template <class Shape>
+void report_shape(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
+  switch (m.formulation) {
+    case Formulation::corotational:
+      return report_set<Shape, FollowRotation>(m, s, q, e, es);
+    case Formulation::paper_total:
+      return report_set<Shape, IgnoreRotation>(m, s, q, e, es);
+    default:
+      return average_points<Shape>(e, es);
+  }
+}
+
+}  // namespace
+
+void report_elements(const Model& m, State& s, Queue q) {
+  report_shape<Tet4>(m, s, q, m.tet4, s.tet4);
+  report_shape<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5);
+  report_shape<Wedge6>(m, s, q, m.wedge6, s.wedge6);
+  report_shape<Hex8>(m, s, q, m.hex8, s.hex8);
+  finish(q);
+}
+
+void sample_before(const Model& m, State& s, Queue q) {
+  report_elements(m, s, q);
+  launch_one(q, m.node_count,
+             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m), s.nodes.momentum.data()});
+}
+
+void sample_after(const Model& m, State& s, Queue q) {
+  launch_one(q, m.node_count,
+             SampleNodes{{s.nodes.motion.data()}, s.nodes.momentum.data(), load_columns(m, s),
+                         support_columns(m, s), s.nodes.reaction.data(),
+                         s.nodes.damping_force.data(), s.dt, s.nodes.sample.data()});
+  finish(q);
+  if (s.ledger_started) return;
+  s.ledger_started = true;
+  const Energies e = energies(m, s);
+  // the first sample may come later than the first step: count what has been lost and done by then
+  s.energy_start = e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture -
+                   e.external;
+}
+
+Real kinetic_energy(const Model& m, const State& s) {
+  return ordered_sum(m.node_count, [&](Index i) { return s.nodes.sample[4 * std::size_t(i)]; });
+}
+
+namespace {
+
+Real largest_term(const Energies& e) {
+  Real largest = 0;
+  for (const Real term : {e.kinetic, e.strain, e.contact, e.friction, e.damping, e.fracture,
+                          e.external, e.start})
+    largest = std::max(largest, std::abs(term));
+  return largest;
+}
+
+}  // namespace
+
+void keep_energy_scale(const Model& m, State& s) {
+  s.energy_scale = std::max(s.energy_scale, largest_term(energies(m, s)));
+}
+
+Energies energies(const Model& m, const State& s) {
+  const auto sample = [&](int k) {
+    return ordered_sum(m.node_count,
+                       [&](Index i) { return s.nodes.sample[4 * std::size_t(i) + k]; });
+  };
+  Energies e;
+  e.kinetic = sample(0);
+  e.external = column_sum(s.nodes.work_external) - sample(1);
+  e.damping = column_sum(s.nodes.work_damping) - sample(2) + s.stopped_energy +
+              column_sum(s.springs.dashpot) + column_sum(s.edges.dashpot);
+  for (const ElementState* es : {&s.tet4, &s.pyramid5, &s.wedge6, &s.hex8}) {
+    e.strain += column_sum(es->energy);
+    e.damping += column_sum(es->damping_work);
+  }
+  e.contact = column_sum(s.springs.energy);
+  const Index exposed = Index(s.search.exposed_face.size());
+  e.contact += ordered_sum(exposed, [&](Index i) {
+    Real sum = 0;
+    for (Index j = 0; j < s.edges.count[i]; ++j)
+      sum += s.edges.energy[std::size_t(s.edges.slots) * i + j];
+    return sum;
+  });
+  e.friction = column_sum(s.springs.friction) + column_sum(s.edges.friction);
+  for (const PairState* p : {&s.triangles, &s.quads, &s.overlaps}) {
+    e.contact += column_sum(p->stored);
+    e.friction += column_sum(p->friction);
+    e.fracture += column_sum(p->fracture);
+  }
+  e.start = s.energy_start;
+  const Real open = e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture -
+                    e.external - e.start;
+  const Real scale = std::max(s.energy_scale, largest_term(e));
+  e.error = scale > 0 ? open / scale : 0;
+  return e;
+}
+
+Real unbalance_ratio(const Model& m, const State& s) {
+  const Real unbalanced = column_sum(s.nodes.unbalance);
+  const LoadColumns loads = load_columns(m, s);
+  const auto size = [](const Vec3<Real>& f) {
+    return std::abs(f.x) + std::abs(f.y) + std::abs(f.z);
+  };
+  Real applied = ordered_sum(m.node_count, [&](Index i) { return size(loads.at(i)); });
+  if (applied == 0)  // moved by its supports alone: compare with what they carry
+    applied = ordered_sum(m.node_count, [&](Index i) {
+      const Real* r = s.nodes.reaction.data() + std::size_t(i) * 4;
+      return size({r[0], r[1], r[2]});
+    });
+  return applied > 0 ? unbalanced / applied : 0;
+}
+
+StepLimit step_limit(const Model& m, const State& s) {
+  StepLimit limit;
+  Real largest = -1;
+  for (Index i = 0; i < m.node_count; ++i) {
+    Real stiffness = 0;
+    const Index first = m.dense_first[i] < 0 ? i : m.block_first[i];
+    const Index last = m.dense_first[i] < 0 ? i + 1 : first + m.block_count[i];
+    if (m.dense_first[i] >= 0 && i != first) continue;
+    Real element2 = 0;
+    for (Index j = first; j < last; ++j) {
+      const Real contact = std::max(s.nodes.force[std::size_t(j) * 4 + 3], s.node_potential[j]);
+      stiffness = std::max(stiffness, contact + s.node_bonds[j]);
+      element2 = std::max(element2, m.frequency2[j]);
+    }
+    // Gershgorin: a spring between two points adds at most twice its stiffness to a row
+    const Real contact2 = 2 * stiffness * m.inverse_mass_bound[i];
+    if (element2 + contact2 > largest) {
+      largest = element2 + contact2;
+      limit.node = i;
+      limit.element2 = element2;
+      limit.contact2 = contact2;
+    }
+  }
+  const Real xi = m.stiffness_damping;
+  limit.dt = 2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) /
+             std::sqrt(1 + m.damping.local);
+  return limit;
+}
+
+void renew_step(const Model& m, State& s) {
+  s.dt = m.step_given > 0 ? m.step_given : m.step_safety * step_limit(m, s).dt;
+}
+
+Report check_health(const Model& m, const State& s) {
+  Real fastest = 0;
+  Index node = -1;
+  for (Index i = 0; i < m.node_count; ++i) {
+    const Real* r = s.nodes.motion.data() + std::size_t(i) * 8;
+    const Real v2 = r[4] * r[4] + r[5] * r[5] + r[6] * r[6];
+    if (!std::isfinite(v2) || !std::isfinite(r[0] + r[1] + r[2]))
+      return {Outcome::not_finite, i, v2};
+    if (v2 > fastest) fastest = v2, node = i;
+  }
+  if (m.speed_limit > 0 && std::sqrt(fastest) > m.speed_limit)
+    return {Outcome::too_fast, node, std::sqrt(fastest)};
+  for (std::size_t i = 0; i < s.search.exposed_face.size(); ++i) {
+    bool lost = s.edges.lost[i] != 0;
+    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) lost = lost || s.springs.lost[k];
+    if (lost) return {Outcome::lost_contact, Index(i), 0};
+  }
+  return {};
+}
+
+void stop_motion(const Model& m, State& s) {
+  s.stopped_energy += kinetic_energy(m, s);
+  for (Index i = 0; i < m.node_count; ++i)
+    for (int axis = 4; axis < 7; ++axis) s.nodes.motion[std::size_t(i) * 8 + axis] = 0;
+}
+
+}  // namespace cdem

@@ -1,0 +1,37 @@
+// check.hpp - is the run healthy? Energy ledger, unbalance ratio, stable step, finite numbers.
+#pragma once
+
+#include "core/step.hpp"
+
+namespace cdem {
+
+/// The stable step is found anew every so many steps, and after every refresh of the search.
+inline constexpr std::int64_t step_check_interval = 100;
+
+/// Sum in a fixed order whatever the number of threads: fixed chunks, then the chunks in turn.
+template <class Term>
+Real ordered_sum(Index count, Term&& term) {
+  constexpr Index chunk = 1024;
+  const Index chunks = (count + chunk - 1) / chunk;
+  std::vector<Real> part(chunks);
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < chunks; ++c) {
+    Real sum = 0;
+    const Index last = c + 1 == chunks ? count : (c + 1) * chunk;
+    for (Index i = c * chunk; i < last; ++i) sum += term(i);
+    part[c] = sum;
+  }
+  Real sum = 0;
+  for (const Real p : part) sum += p;
+  return sum;
+}
+
+void sample_before(const Model& model, State& state, Queue queue);
+void sample_after(const Model& model, State& state, Queue queue);
+Real kinetic_energy(const Model& model, const State& state);
+Report check_health(const Model& model, const State& state);
+void widen_edge_slots(State& state);
+/// Stiffness that bonds and possible contacts put on each node.
+void sum_stiffness(const Model& model, State& state);
+
+}  // namespace cdem

@@ -1,0 +1,98 @@
+// columns.hpp - the views of model and state that kernels take.
+#pragma once
+
+#include "core/contact/bond.hpp"
+#include "core/contact/force.hpp"
+#include "core/elements/shapes.hpp"
+#include "core/model.hpp"
+#include "core/nodes/motion.hpp"
+#include "core/state.hpp"
+
+namespace cdem {
+
+inline FaceColumns face_columns(const Model& m, const State& s) {
+  return {{s.nodes.motion.data()}, m.face_nodes.data(),     m.face_edges.data(),
+          m.face_group.data(),     m.face_length.data(),    m.face_area.data(),
+          m.face_stiffness.data(), m.edge_nodes.data(),     m.edge_faces.data(),
+          m.ring_first.data(),     m.ring.data(),           s.nodes.glue.data(),
+          s.search.face_exposed.data(), s.dt_last};
+}
+
+inline Candidates candidate_columns(const State& s) {
+  return {s.search.candidate_first.data(), s.search.candidate.data()};
+}
+
+inline SpringColumns spring_columns(State& s) {
+  SpringState& c = s.springs;
+  return {c.target.data(),   c.target_before.data(), c.force_n.data(), c.shear1.data(),
+          c.shear2.data(),   c.gap_free.data(),      c.energy.data(),  c.friction.data(),
+          c.dashpot.data(),  c.reaction.data(),      c.lost.data()};
+}
+
+inline EdgeColumns edge_columns(State& s) {
+  EdgeState& c = s.edges;
+  return {c.slots,          c.count.data(),   c.side.data(),     c.target_face.data(),
+          c.target_edge.data(), c.shear1.data(), c.shear2.data(), c.force_n.data(),
+          c.energy.data(),  c.reaction.data(), c.friction.data(), c.dashpot.data(),
+          c.lost.data(),    c.overflow.data()};
+}
+
+inline ContactLaws contact_laws(const Model& m) {
+  return {m.interface_of.data(), m.interfaces.data(), m.group_count, m.contact_damping,
+          m.mass.data()};
+}
+
+template <class Shape>
+ElementColumns<Shape> element_columns(const Model& m, const State& s, const ElementSet& e) {
+  return {{s.nodes.motion.data()},
+          {e.nodes.data(), e.stride},
+          {e.gradient.data(), e.stride},
+          {e.volume.data(), e.stride},
+          {e.material.data(), e.stride},
+          {{m.material_lambda.data()}, {m.material_mu.data()}}};
+}
+
+inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) {
+  const auto in = [&](const Column<Real>& c) { return InTable{c.data(), p.stride}; };
+  const auto inout = [&](Column<Real>& c) { return InOutTable{c.data(), p.stride}; };
+  const auto point = [&](Column<Real>& c) { return InOutTable{c.data(), p.point_stride}; };
+  return {{p.interface.data(), p.stride},
+          in(p.area),
+          in(s.live),
+          in(p.stiffness),
+          {m.cohesion.data()},
+          {m.tensile_strength.data()},
+          {m.tan_friction.data()},
+          point(s.bond),
+          point(s.slip1),
+          point(s.slip2),
+          inout(s.broken_tension),
+          inout(s.broken_shear),
+          inout(s.jump),
+          inout(s.stored),
+          inout(s.fracture),
+          inout(s.friction)};
+}
+
+inline MassColumns mass_columns(const Model& m) {
+  return {m.mass.data(),        m.dense_first.data(),  m.dense_step.data(), m.block_first.data(),
+          m.block_count.data(), m.mass_inverse.data(), m.mass_matrix.data()};
+}
+
+inline SupportColumns support_columns(const Model& m, const State& s) {
+  return {m.support.data(), m.support_component.data(), m.support_curve.data(),
+          m.support_velocity.data(), s.velocity_factor.data()};
+}
+
+inline LoadColumns load_columns(const Model& m, const State& s) {
+  return {m.gravity,           m.gravity_mass.data(), m.load_first.data(), m.load_curve.data(),
+          m.load_force.data(), s.load_factor.data()};
+}
+
+inline CornerLists corner_lists(const Model& m, const State& s) {
+  return {m.corner_first.data(),          m.corner.data(),
+          {s.corner_force.data()},        s.search.contact_first.data(),
+          s.search.contact_corner.data(), s.contact_force.data()};
+}
+
+}  // namespace cdem

@@ -1,0 +1,289 @@
+// bond.hpp - interfaces that start bonded: total-gap springs between two faces, until they break.
+#pragma once
+
+#include "core/contact/face.hpp"
+#include "core/interfaces/brittle_coulomb.hpp"
+
+namespace cdem {
+
+/// Stiffness and strength of one bond point: those of the interface times the point's share of the
+/// true overlap area, so that strength does not depend on which side is meshed finer.
+template <class T>
+struct BondLaw {
+  T stiffness_n, stiffness_s;      // K_n, K_s  [N/m]
+  T tension_limit, cohesion_limit;  // T A, c A  [N]
+  T tan_friction;
+};
+
+/// History of one bond point. While it is intact there is none: `slip` stays zero.
+template <class T>
+struct BondHistory {
+  T bond;          // 1 while intact, then 0
+  T slip1, slip2;  // plastic slip in the pair's frame  [m]
+};
+
+/// What one bond point does in a step.
+template <class T>
+struct BondForce {
+  Vec3<T> on_b;           // force on the second face  [N]
+  T stored;               // elastic energy  [J]
+  T fracture, friction;   // energy lost in this step  [J]
+  T tension, shear;       // 1 when the bond broke in this step, by that cause
+};
+
+template <class T>
+struct PairFrame {
+  Vec3<T> n, t1, t2;  // n points from the first face into the second
+};
+
+/// Force of one bond point from the jump of displacement x_b - x_a across it, Eq. 13-14.
+///
+/// The force is total, not incremental: F_n = -K_n n.jump, F_s = -K_s (t.jump - slip), so it cannot
+/// drift and needs no history until it slips. A point that broke but whose pair is not yet released
+/// to the search goes on as a frictional contact at the same place.
+/// `jump_old` is the jump one step ago; it serves only the energy ledger: what is lost is
+/// U_old - U_new + work done on the spring by the mean force.
+template <class T>
+CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>& jump,
+                                       const Vec3<T>& jump_old, const BondLaw<T>& law,
+                                       BondHistory<T>& h) {
+  const T zero(0.0), one(1.0), half(0.5);
+  const T opening = dot(frame.n, jump), along1 = dot(frame.t1, jump), along2 = dot(frame.t2, jump);
+  T force_n = -law.stiffness_n * opening;
+  T force_s1 = -law.stiffness_s * (along1 - h.slip1);
+  T force_s2 = -law.stiffness_s * (along2 - h.slip2);
+
+  const T before = h.bond;
+  const auto pulled = -force_n > before * law.tension_limit;
+  limit_force(law.tension_limit, law.cohesion_limit, law.tan_friction, h.bond, force_n, force_s1,
+              force_s2);
+
+  BondForce<T> out;
+  const auto broke = before > h.bond;
+  out.tension = select(broke & pulled, one, zero);
+  out.shear = select(broke, one, zero) - out.tension;
+
+  // the slip that makes the elastic law give the limited force
+  const T slip1 = select(h.bond > half, h.slip1, along1 + force_s1 / law.stiffness_s);
+  const T slip2 = select(h.bond > half, h.slip2, along2 + force_s2 / law.stiffness_s);
+
+  const T flex_n = half / law.stiffness_n, flex_s = half / law.stiffness_s;
+  const T stored_n = flex_n * force_n * force_n;
+  const T stored_s = flex_s * (force_s1 * force_s1 + force_s2 * force_s2);
+  out.stored = stored_n + stored_s;
+  out.fracture = zero;
+  out.friction = zero;
+  if (any_of(h.bond < half)) {
+    const T old_n = dot(frame.n, jump_old);
+    const T old1 = dot(frame.t1, jump_old), old2 = dot(frame.t2, jump_old);
+    const T was_n = select(before > half, -law.stiffness_n * old_n,
+                           max_of(-law.stiffness_n * old_n, zero));
+    const auto was_open = (!(was_n > zero)) & (before < half);
+    const T was_s1 = select(was_open, zero, -law.stiffness_s * (old1 - h.slip1));
+    const T was_s2 = select(was_open, zero, -law.stiffness_s * (old2 - h.slip2));
+    const T lost_s = flex_s * (was_s1 * was_s1 + was_s2 * was_s2) - stored_s -
+                     half * ((was_s1 + force_s1) * (along1 - old1) +
+                             (was_s2 + force_s2) * (along2 - old2));
+    const T lost_n =
+        flex_n * was_n * was_n - stored_n - half * (was_n + force_n) * (opening - old_n);
+    out.fracture = select(broke, lost_n + lost_s, zero);
+    out.friction = select((!broke) & (h.bond < half), lost_s, zero);
+  }
+  h.slip1 = slip1;
+  h.slip2 = slip2;
+  out.on_b = force_n * frame.n + force_s1 * frame.t1 + force_s2 * frame.t2;
+  return out;
+}
+
+/// Frame of a pair of faces from the mean of both sides' vertices.
+template <Index count, class T>
+CDEM_HD inline PairFrame<T> pair_frame(const Vec3<T>* mean) {
+  const Vec3<T> last = mean[count - 1];
+  const Vec3<T> n = unit(cross(mean[2] - mean[0], last - mean[1]));
+  const Vec3<T> side = mean[1] - mean[0];
+  const Vec3<T> t1 = unit(side - dot(n, side) * n);
+  return {n, t1, cross(n, t1)};
+}
+
+/// State and properties of bonded pairs that do not depend on their number of vertices.
+struct PairColumns {
+  InIndices interface;         // [1][pair]: index of the interface's properties
+  InTable area;                // [1][pair] true overlap area  [m2]
+  InTable live;                // [1][pair] 1 until the pair is released to the contact search
+  InTable stiffness;           // [2][pair] k_n, k_s  [Pa/m]
+  InLookup cohesion, tensile_strength, tan_friction;  // by interface
+  InOutTable bond, slip1, slip2;     // [point][pair]
+  InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
+  InOutTable jump;             // [1][pair] largest jump once all points are broken  [m]
+  InOutTable stored, fracture, friction;    // [1][pair]  [J]
+};
+
+/// Bonds of conforming pairs: `count` vertices on either side coincide at the start.
+///
+/// Point k sits at constant weights (1 - a) delta_kj + a / count on both faces and carries
+/// area / count. The six half springs of two triangles (Fig. 14) are three whole ones: the same.
+template <Index count>
+struct ConformingBonds {
+  InMotion nodes;
+  InIndices pair_nodes;  // [2 * count][pair]: vertices of the first face, then their mates
+  PairColumns pairs;
+  Real indentation;      // a: 0 at the vertices, 1/2 (3) or 1 - 1/sqrt(3) (4) as quadrature points
+  Real dt;
+  OutForces corner_force;
+
+  template <class I>
+  CDEM_HD void operator()(I p) const {
+    using T = Number<I>;
+    const auto live = pairs.live.at(0, p) > T(0.0);
+    if (!any_of(live)) return;
+    Vec3<T> mean[count], jump[count], rate[count];
+    gather(p, mean, jump, rate);
+    const PairFrame<T> frame = pair_frame<count>(mean);
+    const BondLaw<T> law = law_of(p);
+
+    const T zero(0.0);
+    const Vec3<T> none{zero, zero, zero};
+    Vec3<T> force[count], sum = none;
+    BondForce<T> total{none, zero, zero, zero, zero, zero};
+    T widest(0.0), intact(0.0);
+    for (Index k = 0; k < count; ++k) {
+      BondHistory<T> h{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
+      const BondForce<T> f = bond_force(frame, jump[k], jump[k] - T(dt) * rate[k], law, h);
+      pairs.bond.set(k, p, h.bond);
+      pairs.slip1.set(k, p, h.slip1);
+      pairs.slip2.set(k, p, h.slip2);
+      force[k] = f.on_b;
+      sum = sum + f.on_b;
+      widest = max_of(widest, dot(jump[k], jump[k]));
+      intact += h.bond;
+      total.stored += f.stored;
+      total.fracture += f.fracture;
+      total.friction += f.friction;
+      total.tension += f.tension;
+      total.shear += f.shear;
+    }
+    const T own(1.0 - indentation), shared(indentation / count);
+    for (Index k = 0; k < count; ++k) {
+      Vec3<T> fk = own * force[k] + shared * sum;
+      fk = {select(live, fk.x, zero), select(live, fk.y, zero), select(live, fk.z, zero)};
+      corner_force.set(p, 2 * count, k, -fk);
+      corner_force.set(p, 2 * count, count + k, fk);
+    }
+    pairs.jump.set(0, p, select(intact > zero, zero, sqrt_of(widest)));
+    pairs.stored.set(0, p, select(live, total.stored, zero));
+    add(pairs.fracture, p, select(live, total.fracture, zero));
+    add(pairs.friction, p, select(live, total.friction, zero));
+    add(pairs.broken_tension, p, total.tension);
+    add(pairs.broken_shear, p, total.shear);
+  }
+
+ private:
+  template <class I>
+  CDEM_HD static void add(InOutTable table, I p, Number<I> more) {
+    table.set(0, p, table.at(0, p) + more);
+  }
+  template <class I, class T>
+  CDEM_HD void gather(I p, Vec3<T>* mean, Vec3<T>* jump, Vec3<T>* rate) const {
+    Vec3<T> jump_sum{T(0.0), T(0.0), T(0.0)}, rate_sum = jump_sum;
+    for (Index k = 0; k < count; ++k) {
+      const auto a = pair_nodes.at(k, p);
+      const auto b = pair_nodes.at(count + k, p);
+      const Vec3<T> xa = nodes.position(a), xb = nodes.position(b);
+      mean[k] = T(0.5) * (xa + xb);
+      jump[k] = xb - xa;
+      rate[k] = nodes.velocity(b) - nodes.velocity(a);
+      jump_sum = jump_sum + jump[k];
+      rate_sum = rate_sum + rate[k];
+    }
+    const T own(1.0 - indentation), shared(indentation / count);
+    for (Index k = 0; k < count; ++k) {
+      jump[k] = own * jump[k] + shared * jump_sum;
+      rate[k] = own * rate[k] + shared * rate_sum;
+    }
+  }
+  template <class I>
+  CDEM_HD BondLaw<Number<I>> law_of(I p) const {
+    using T = Number<I>;
+    const auto interface = pairs.interface.at(0, p);
+    const T area = pairs.area.at(0, p) / T(Real(count));
+    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
+            area * pairs.tensile_strength.at(interface), area * pairs.cohesion.at(interface),
+            pairs.tan_friction.at(interface)};
+  }
+};
+
+/// Bonds of touching faces that do not conform: one point per vertex of their overlap polygon.
+struct OverlapBonds {
+  FaceColumns faces;
+  const Index* pair_faces;   // [pair][2]
+  const Index* point_first;  // [pair + 1]
+  const Real* weights_a;     // [point][4] on the first face's vertices
+  const Real* weights_b;     // [point][4] on the second's
+  const Real* point_area;    // [point]  [m2]
+  PairColumns pairs;         // bond, slip1, slip2 are [1][point] here
+  OutForces corner_force;    // [pair][8]: four vertices of either face
+
+  CDEM_HD void operator()(One p) const {
+    if (!(pairs.live.at(0, p) > 0)) return;
+    const Index a = pair_faces[2 * p.i], b = pair_faces[2 * p.i + 1];
+    const Vec3<Real> none{0.0, 0.0, 0.0};
+    Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};
+    const PairFrame<Real> frame = frame_of(a, b);
+    Real widest = 0, intact = 0, stored = 0, fracture = 0, friction = 0, tension = 0, shear = 0;
+    for (Index c = point_first[p.i]; c < point_first[p.i + 1]; ++c) {
+      const One point{c};
+      const Vec3<Real> jump = at(b, weights_b, c) - at(a, weights_a, c);
+      const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
+      BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
+                          pairs.slip2.at(0, point)};
+      const BondForce<Real> f =
+          bond_force(frame, jump, jump - faces.dt * rate, law_of(p, point_area[c]), h);
+      pairs.bond.set(0, point, h.bond);
+      pairs.slip1.set(0, point, h.slip1);
+      pairs.slip2.set(0, point, h.slip2);
+      for (Index k = 0; k < 4; ++k) {
+        force[k] = force[k] - weights_a[4 * c + k] * f.on_b;
+        force[4 + k] = force[4 + k] + weights_b[4 * c + k] * f.on_b;
+      }
+      widest = max_of(widest, norm(jump));
+      intact += h.bond;
+      stored += f.stored, fracture += f.fracture, friction += f.friction;
+      tension += f.tension, shear += f.shear;
+    }
+    for (Index k = 0; k < 8; ++k) corner_force.set(p, 8, k, force[k]);
+    pairs.jump.set(0, p, intact > 0 ? 0.0 : widest);
+    pairs.stored.set(0, p, stored);
+    pairs.fracture.set(0, p, pairs.fracture.at(0, p) + fracture);
+    pairs.friction.set(0, p, pairs.friction.at(0, p) + friction);
+    pairs.broken_tension.set(0, p, pairs.broken_tension.at(0, p) + tension);
+    pairs.broken_shear.set(0, p, pairs.broken_shear.at(0, p) + shear);
+  }
+
+ private:
+  CDEM_HD PairFrame<Real> frame_of(Index a, Index b) const {
+    const Frame f = faces.shape(a).frame();
+    const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
+    const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
+    return {n, t1, cross(n, t1)};
+  }
+  CDEM_HD Vec3<Real> at(Index face, const Real* weights, Index c) const {
+    Vec3<Real> sum{0.0, 0.0, 0.0};
+    for (Index k = 0; k < faces.vertex_count(face); ++k)
+      sum = sum + weights[4 * c + k] * faces.nodes.position(faces.vertex(face, k));
+    return sum;
+  }
+  CDEM_HD Vec3<Real> rate_at(Index face, const Real* weights, Index c) const {
+    Vec3<Real> sum{0.0, 0.0, 0.0};
+    for (Index k = 0; k < faces.vertex_count(face); ++k)
+      sum = sum + weights[4 * c + k] * faces.nodes.velocity(faces.vertex(face, k));
+    return sum;
+  }
+  CDEM_HD BondLaw<Real> law_of(One p, Real area) const {
+    const Index interface = pairs.interface.at(0, p);
+    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
+            area * pairs.tensile_strength.at(interface), area * pairs.cohesion.at(interface),
+            pairs.tan_friction.at(interface)};
+  }
+};
+
+}  // namespace cdem

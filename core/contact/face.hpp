@@ -1,0 +1,158 @@
+// face.hpp - exterior faces: their vertices, frame, inside test, and the projection of a point.
+#pragma once
+
+#include "core/field.hpp"
+
+namespace cdem {
+
+/// Orthonormal frame of a face: outward normal n, and t1, t2 in the plane.
+struct Frame {
+  Vec3<Real> n, t1, t2;
+};
+
+/// A face at one instant. A triangle has count = 3; its fourth vertex repeats the third, so that
+/// the normal is the cross product of the diagonals for both kinds.
+struct FaceShape {
+  Vec3<Real> x[4];
+  Index count;
+
+  CDEM_HD Vec3<Real> center() const {
+    Vec3<Real> sum = x[0] + x[1] + x[2];
+    if (count == 4) sum = sum + x[3];
+    return Real(1.0) / Real(count) * sum;
+  }
+  CDEM_HD Vec3<Real> normal() const { return unit(cross(x[2] - x[0], x[3] - x[1])); }
+  CDEM_HD Frame frame() const {
+    const Vec3<Real> n = normal();
+    const Vec3<Real> side = x[1] - x[0];
+    const Vec3<Real> t1 = unit(side - dot(n, side) * n);
+    return {n, t1, cross(n, t1)};
+  }
+  /// Smallest distance of a point's projection from the sides [m], positive inside. Eq. 7-8 with a
+  /// length instead of a sign, so that it can be compared with a tolerance.
+  CDEM_HD Real inside_distance(const Vec3<Real>& point, const Vec3<Real>& n) const {
+    Real smallest = 1e300;
+    for (Index k = 0; k < count; ++k) {
+      const Vec3<Real> a = x[k], side = x[k + 1 == count ? 0 : k + 1] - a;
+      const Real distance = dot(cross(n, side), point - a) / norm(side);
+      smallest = min_of(smallest, distance);
+    }
+    return smallest;
+  }
+};
+
+/// A point seen from a face: weights on the face's vertices and distance along the normal, so that
+/// point = sum_j weight_j x_j + gap n.
+struct Projection {
+  Real weight[4];
+  Real gap;
+};
+
+CDEM_HD inline Projection project_on_triangle(const FaceShape& f, const Vec3<Real>& point,
+                                              const Vec3<Real>& n) {
+  const Vec3<Real> a = f.x[1] - f.x[0], b = f.x[2] - f.x[0], p = point - f.x[0];
+  const Real twice_area = dot(cross(a, b), n);
+  const Real u = dot(cross(p, b), n) / twice_area;
+  const Real v = dot(cross(a, p), n) / twice_area;
+  return {{1.0 - u - v, u, v, 0.0}, dot(n, p)};
+}
+
+/// Newton on the bilinear surface. A plane quadrilateral that is a parallelogram takes one step;
+/// a warped one four or five. Stops when the update is round-off.
+CDEM_HD inline Projection project_on_quad(const FaceShape& f, const Vec3<Real>& point,
+                                          const Vec3<Real>& n) {
+  constexpr int most_steps = 20;
+  constexpr Real round_off = 1e-15;
+  Real u = 0.5, v = 0.5, gap = 0;
+  for (int step = 0; step < most_steps; ++step) {
+    const Vec3<Real> low = f.x[0] + u * (f.x[1] - f.x[0]);
+    const Vec3<Real> high = f.x[3] + u * (f.x[2] - f.x[3]);
+    const Vec3<Real> miss = point - (low + v * (high - low));
+    const Vec3<Real> along_u =
+        (1.0 - v) * (f.x[1] - f.x[0]) + v * (f.x[2] - f.x[3]);
+    const Vec3<Real> along_v = high - low;
+    const Real det = dot(cross(along_u, along_v), n);
+    const Real du = dot(cross(miss, along_v), n) / det;
+    const Real dv = dot(cross(along_u, miss), n) / det;
+    u = u + du;
+    v = v + dv;
+    gap = dot(n, miss);
+    if (abs_of(du) + abs_of(dv) < round_off) break;
+  }
+  return {{(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v}, gap};
+}
+
+CDEM_HD inline Projection project(const FaceShape& f, const Vec3<Real>& point,
+                                  const Vec3<Real>& n) {
+  return f.count == 4 ? project_on_quad(f, point, n) : project_on_triangle(f, point, n);
+}
+
+/// The exterior faces and edges of all blocks: what never changes, and the nodes' motion.
+struct FaceColumns {
+  InMotion nodes;
+  const Index* face_nodes;   // [face][4], the fourth is -1 for a triangle
+  const Index* face_edges;   // [face][4]: the edge from vertex k to k + 1
+  const Index* face_group;   // [face]
+  const Real* face_length;   // L: mean distance from the centre to the vertices, Eq. 3  [m]
+  const Real* face_area;     // [m2]
+  const Real* face_stiffness;  // modulus of the element behind over its height  [Pa/m]
+  const Index* edge_nodes;   // [edge][2]
+  const Index* edge_faces;   // [edge][2]: the two faces of the block that meet there, or -1
+  const Index* ring_first;   // [node + 1]
+  const Index* ring;         // other ends of the exterior edges at a node
+  const Index* node_glue;    // label shared by nodes that intact bonds hold together
+  const Index* face_exposed;  // [face]: place in the list of exposed faces, or -1
+  Real dt;                   // [s]
+
+  CDEM_HD Index vertex_count(Index face) const { return face_nodes[4 * face + 3] < 0 ? 3 : 4; }
+  CDEM_HD Index vertex(Index face, Index k) const { return face_nodes[4 * face + k]; }
+
+  CDEM_HD FaceShape shape(Index face) const {
+    FaceShape f;
+    f.count = vertex_count(face);
+    for (Index k = 0; k < f.count; ++k) f.x[k] = nodes.position(vertex(face, k));
+    if (f.count == 3) f.x[3] = f.x[2];
+    return f;
+  }
+  /// Where a node was one step ago.
+  CDEM_HD Vec3<Real> old_position(Index node) const {
+    return nodes.position(node) - dt * nodes.velocity(node);
+  }
+  CDEM_HD FaceShape old_shape(Index face) const {
+    FaceShape f;
+    f.count = vertex_count(face);
+    for (Index k = 0; k < f.count; ++k) f.x[k] = old_position(vertex(face, k));
+    if (f.count == 3) f.x[3] = f.x[2];
+    return f;
+  }
+};
+
+/// Centre and normal of exposed faces, one 64-byte row each: centre, pad, normal, pad.
+struct FaceGeometry {
+  const Real* rows;
+  CDEM_HD Vec3<Real> center(Index exposed) const {
+    const Real* r = rows + std::size_t(exposed) * 8;
+    return {r[0], r[1], r[2]};
+  }
+  CDEM_HD Vec3<Real> normal(Index exposed) const {
+    const Real* r = rows + std::size_t(exposed) * 8 + 4;
+    return {r[0], r[1], r[2]};
+  }
+};
+
+/// Renew centre and normal of every exposed face.
+struct UpdateFaceGeometry {
+  FaceColumns faces;
+  const Index* exposed_face;
+  Real* rows;
+
+  CDEM_HD void operator()(One i) const {
+    const FaceShape f = faces.shape(exposed_face[i.i]);
+    const Vec3<Real> c = f.center(), n = f.normal();
+    Real* r = rows + std::size_t(i.i) * 8;
+    r[0] = c.x, r[1] = c.y, r[2] = c.z;
+    r[4] = n.x, r[5] = n.y, r[6] = n.z;
+  }
+};
+
+}  // namespace cdem

@@ -1,0 +1,337 @@
+// force.hpp - forces of semi-springs and semi-edges in contact. Feng et al. (2014), Eq. 13-14.
+#pragma once
+
+#include "core/contact/target_edge.hpp"
+#include "core/interfaces/brittle_coulomb.hpp"
+
+namespace cdem {
+
+/// Interfaces by pair of groups, and the contact dashpot.
+struct ContactLaws {
+  const Index* interface_of;  // [group_m * group_count + group_t]
+  const Interface* interfaces;
+  Index group_count;
+  Real damping_ratio;       // of critical, on the effective mass of the two points
+  const Real* node_mass;    // [kg]
+
+  CDEM_HD const Interface& between(Index group_m, Index group_t) const {
+    return interfaces[interface_of[group_m * group_count + group_t]];
+  }
+};
+
+/// Elastic and frictional part of one contact's force.
+struct ContactForce {
+  Real force_n;          // compression > 0  [N]
+  Real shear1, shear2;   // on the mother  [N]
+  Real energy;           // stored  [J]
+  Real friction;         // lost in this step  [J]
+  Real dashpot;          // lost in this step  [J]
+};
+
+/// Normal force from the total gap, shear force from the step's slip, then Coulomb's limit.
+///
+/// `slip` is the relative tangential displacement of the step in the target's own frame: because
+/// the tangential part of (mother point - target point) is zero now, it is minus the tangential
+/// part that the same two material points had one step ago in the frame of one step ago. That makes
+/// it exactly objective: a rigid rotation of a loaded pair gives none.
+CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Real tan_friction,
+                                          Real gap, Real gap_rate, Real dashpot_constant,
+                                          Real slip1, Real slip2, Real old1, Real old2, Real dt) {
+  ContactForce f;
+  const Real elastic = max_of(-stiffness_n * gap, 0.0);
+  f.force_n = max_of(elastic - dashpot_constant * gap_rate, 0.0);
+  if (gap >= 0) f.force_n = 0;
+  const Real try1 = old1 - stiffness_s * slip1, try2 = old2 - stiffness_s * slip2;
+  const Real shear = sqrt_of(try1 * try1 + try2 * try2);
+  const Real limit = f.force_n * tan_friction;
+  const Real keep = shear > limit ? limit / shear : 1.0;
+  f.shear1 = keep * try1;
+  f.shear2 = keep * try2;
+  const Real flex_s = 0.5 / stiffness_s;
+  const Real stored_s = flex_s * (f.shear1 * f.shear1 + f.shear2 * f.shear2);
+  // work of the mean shear force that is not stored: exact for a force that is linear in the step
+  f.friction = flex_s * (old1 * old1 + old2 * old2) - stored_s -
+               0.5 * ((old1 + f.shear1) * slip1 + (old2 + f.shear2) * slip2);
+  f.energy = 0.5 / stiffness_n * elastic * elastic + stored_s;
+  f.dashpot = (elastic - f.force_n) * gap_rate * dt;
+  return f;
+}
+
+/// Force of every semi-spring in contact; slot = 4 * exposed face + vertex.
+struct UpdateSpringForces {
+  FaceColumns faces;
+  const Index* exposed_face;
+  SearchRules rules;
+  ContactLaws laws;
+  SpringColumns springs;
+
+  CDEM_HD void operator()(One slot) const {
+    const Index m = slot.i / 4, k = slot.i % 4, t = springs.target[slot.i];
+    const Index before = springs.target_before[slot.i];
+    if (t < 0) {
+      if (before >= 0) end(slot.i);
+      return;
+    }
+    const Index face_m = exposed_face[m], face_t = exposed_face[t];
+    if (before != t) begin(slot.i, before, face_t);
+
+    const FaceShape shape = faces.shape(face_t);
+    const Frame frame = shape.frame();
+    const Mother mother = mother_point(face_m, k);
+    const Projection foot = project(shape, mother.x, frame.n);
+
+    const FaceShape old_shape = faces.old_shape(face_t);
+    const Frame old = old_shape.frame();
+    Vec3<Real> apart = mother.x_old, rate = mother.v;
+    Real flex = mother.flex;
+    for (Index j = 0; j < shape.count; ++j) {
+      const Index node = faces.vertex(face_t, j);
+      apart = apart - foot.weight[j] * old_shape.x[j];
+      rate = rate - foot.weight[j] * faces.nodes.velocity(node);
+      flex += foot.weight[j] * foot.weight[j] / laws.node_mass[node];
+    }
+    const Interface& law = laws.between(faces.face_group[face_m], faces.face_group[face_t]);
+    const Real stiffer = max_of(faces.face_stiffness[face_m], faces.face_stiffness[face_t]);
+    const Real area = 0.5 * faces.face_area[face_m] / Real(faces.vertex_count(face_m));
+    const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
+    const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
+    const ContactForce f = contact_force(
+        kn, ks, law.tan_friction, foot.gap - springs.gap_free[slot.i], dot(frame.n, rate), dashpot,
+        -dot(old.t1, apart), -dot(old.t2, apart), springs.shear1[slot.i], springs.shear2[slot.i],
+        faces.dt);
+    keep(slot.i, f);
+
+    const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
+    // the target takes the force where its line of action meets the face: no couple is left over
+    const Projection meet =
+        f.force_n > 0 ? project(shape, mother.x - (foot.gap / f.force_n) * force, frame.n) : foot;
+    Real* row = springs.reaction + std::size_t(slot.i) * 8;
+    row[0] = force.x, row[1] = force.y, row[2] = force.z;
+    row[3] = f.force_n > 0 ? max_of(kn, ks) : 0.0;
+    for (Index j = 0; j < 4; ++j) row[4 + j] = meet.weight[j];
+  }
+
+ private:
+  struct Mother {
+    Vec3<Real> x, x_old, v;
+    Real flex;  // of the point under a force: sum w^2 / m  [1/kg]
+  };
+  /// The acting point: the vertex, moved towards the face's centre by the action coefficient.
+  CDEM_HD Mother mother_point(Index face, Index k) const {
+    const Index count = faces.vertex_count(face);
+    const Real shared = rules.action / Real(count);
+    Mother p{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0};
+    for (Index j = 0; j < count; ++j) {
+      const Real w = shared + (j == k ? 1.0 - rules.action : 0.0);
+      if (w == 0) continue;
+      const Index node = faces.vertex(face, j);
+      p.x = p.x + w * faces.nodes.position(node);
+      p.x_old = p.x_old + w * faces.old_position(node);
+      p.v = p.v + w * faces.nodes.velocity(node);
+      p.flex += w * w / laws.node_mass[node];
+    }
+    return p;
+  }
+  /// A contact that begins: without shear force, or with that of the face it comes from, turned into
+  /// the new plane with its length kept (hand-over).
+  CDEM_HD void begin(Index slot, Index before, Index face_t) const {
+    springs.gap_free[slot] = 0;
+    if (before < 0) {
+      springs.shear1[slot] = springs.shear2[slot] = 0;
+      springs.energy[slot] = 0;
+      return;
+    }
+    const Frame from = faces.shape(exposed_face[before]).frame();
+    const Frame to = faces.shape(face_t).frame();
+    const Real s1 = springs.shear1[slot], s2 = springs.shear2[slot];
+    const Vec3<Real> shear = s1 * from.t1 + s2 * from.t2;
+    const Real a = dot(shear, to.t1), b = dot(shear, to.t2);
+    const Real in_plane = sqrt_of(a * a + b * b);
+    const Real scale = in_plane > 0 ? sqrt_of(s1 * s1 + s2 * s2) / in_plane : 0.0;
+    springs.shear1[slot] = scale * a;
+    springs.shear2[slot] = scale * b;
+  }
+  /// A contact that opened forgets its shear force; what that spring held is lost to friction.
+  CDEM_HD void end(Index slot) const {
+    springs.friction[slot] += springs.energy[slot];
+    springs.energy[slot] = 0;
+    springs.force_n[slot] = springs.shear1[slot] = springs.shear2[slot] = 0;
+    Real* row = springs.reaction + std::size_t(slot) * 8;
+    row[0] = row[1] = row[2] = row[3] = 0;
+  }
+  CDEM_HD void keep(Index slot, const ContactForce& f) const {
+    springs.force_n[slot] = f.force_n;
+    springs.shear1[slot] = f.shear1;
+    springs.shear2[slot] = f.shear2;
+    springs.energy[slot] = f.energy;
+    springs.friction[slot] += f.friction;
+    springs.dashpot[slot] += f.dashpot;
+  }
+};
+
+/// Force of every semi-edge contact of one exposed face.
+struct UpdateEdgeForces {
+  FaceColumns faces;
+  const Index* exposed_face;
+  ContactLaws laws;
+  EdgeColumns edges;
+
+  CDEM_HD void operator()(One m) const {
+    for (Index j = 0; j < edges.count[m.i]; ++j) update(m.i, edges.slots * m.i + j);
+  }
+
+ private:
+  struct Side {
+    Index a, b;  // nodes at its ends
+  };
+  CDEM_HD Side side_of(Index face, Index k) const {
+    return {faces.vertex(face, k),
+            faces.vertex(face, k + 1 == faces.vertex_count(face) ? 0 : k + 1)};
+  }
+  CDEM_HD void update(Index m, Index place) const {
+    const Index face_m = exposed_face[m], face_t = exposed_face[edges.target_face[place]];
+    const Index edge = edges.target_edge[place];
+    const Side sm = side_of(face_m, edges.side[place]);
+    // the frame belongs to the edge, whichever of its faces is the right one just now
+    const Side st{faces.edge_nodes[2 * edge], faces.edge_nodes[2 * edge + 1]};
+
+    const Vec3<Real> xm = faces.nodes.position(sm.a), xt = faces.nodes.position(st.a);
+    const Vec3<Real> dm = faces.nodes.position(sm.b) - xm, dt = faces.nodes.position(st.b) - xt;
+    const Vec3<Real> normal_m = faces.shape(face_m).normal(),
+                     normal_t = faces.shape(face_t).normal();
+    const Frame frame = edge_frame(edge_normal(dm, dt, normal_m, normal_t), dt);
+    const Crossing c = cross_edges(xm, dm, xt, dt, frame.n);
+
+    const Vec3<Real> om = faces.old_position(sm.a), ot = faces.old_position(st.a);
+    const Vec3<Real> old_dm = faces.old_position(sm.b) - om, old_dt = faces.old_position(st.b) - ot;
+    const Frame old = old_frame(face_m, face_t, old_dm, old_dt, normal_m, normal_t);
+    const Vec3<Real> apart = (om + c.s * old_dm) - (ot + c.t * old_dt);
+
+    const Vec3<Real> vm = faces.nodes.velocity(sm.a), vt = faces.nodes.velocity(st.a);
+    const Vec3<Real> rate = (vm + c.s * (faces.nodes.velocity(sm.b) - vm)) -
+                            (vt + c.t * (faces.nodes.velocity(st.b) - vt));
+    const Real flex = flexibility(sm, c.s) + flexibility(st, c.t);
+
+    const Interface& law = laws.between(faces.face_group[face_m], faces.face_group[face_t]);
+    const Real stiffer = max_of(faces.face_stiffness[face_m], faces.face_stiffness[face_t]);
+    // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
+    const Real area = faces.face_area[face_m] / Real(faces.vertex_count(face_m));
+    const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
+    const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
+    const ContactForce f = contact_force(kn, ks, law.tan_friction, c.gap, dot(frame.n, rate),
+                                         dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
+                                         edges.shear1[place], edges.shear2[place], faces.dt);
+    edges.force_n[place] = f.force_n;
+    edges.shear1[place] = f.shear1;
+    edges.shear2[place] = f.shear2;
+    edges.energy[place] = f.energy;
+    edges.friction[m] += f.friction;
+    edges.dashpot[m] += f.dashpot;
+
+    const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
+    // both edges take the force on one line of action: no couple is left over
+    const Crossing line = f.force_n > 0 ? cross_edges(xm, dm, xt, dt, force) : c;
+    Real* row = edges.reaction + std::size_t(place) * 8;
+    row[0] = force.x, row[1] = force.y, row[2] = force.z;
+    row[3] = f.force_n > 0 ? max_of(kn, ks) : 0.0;
+    row[4] = line.s;
+    row[5] = faces.vertex(face_t, side_on(face_t, edge)) == st.a ? line.t : 1.0 - line.t;
+  }
+  /// Frame of one step ago, with the same choice of normal as today's.
+  CDEM_HD Frame old_frame(Index face_m, Index face_t, const Vec3<Real>& old_dm,
+                          const Vec3<Real>& old_dt, const Vec3<Real>& normal_m,
+                          const Vec3<Real>& normal_t) const {
+    constexpr Real flush = -0.985;  // as in edge_normal
+    if (dot(normal_m, normal_t) < flush) {
+      const Vec3<Real> was_m = faces.old_shape(face_m).normal();
+      const Vec3<Real> was_t = faces.old_shape(face_t).normal();
+      return edge_frame(unit(was_t - was_m), old_dt);
+    }
+    const Vec3<Real> c = unit(cross(old_dm, old_dt));
+    return edge_frame(dot(c, normal_t - normal_m) < 0 ? -c : c, old_dt);
+  }
+  CDEM_HD Real flexibility(const Side& side, Real s) const {
+    return (1.0 - s) * (1.0 - s) / laws.node_mass[side.a] + s * s / laws.node_mass[side.b];
+  }
+  CDEM_HD Index side_on(Index face, Index edge) const {
+    for (Index k = 0; k < 3; ++k)
+      if (faces.face_edges[4 * face + k] == edge) return k;
+    return 3;
+  }
+};
+
+/// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions of
+/// all others that have it as target. It looks through its candidates in their order instead of
+/// letting contacts add to nodes, so the sum has one order for any number of threads.
+struct GatherFaceForces {
+  FaceColumns faces;
+  const Index* exposed_face;
+  Candidates candidates;
+  SearchRules rules;
+  SpringColumns springs;
+  EdgeColumns edges;
+  Real* corner_force;  // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
+
+  CDEM_HD void operator()(One m) const {
+    const Index face = exposed_face[m.i], count = faces.vertex_count(face);
+    Real sum[4][4] = {};
+    own(m.i, count, sum);
+    for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c)
+      reactions(m.i, face, count, candidates.other[c], sum);
+    for (Index k = 0; k < count; ++k)
+      for (Index j = 0; j < 4; ++j) corner_force[(std::size_t(m.i) * 4 + k) * 4 + j] = sum[k][j];
+  }
+
+ private:
+  CDEM_HD static void add(Real* corner, Real weight, const Real* row) {
+    corner[0] += weight * row[0];
+    corner[1] += weight * row[1];
+    corner[2] += weight * row[2];
+    corner[3] += abs_of(weight) * row[3];
+  }
+  CDEM_HD static void take(Real* corner, Real weight, const Real* row) {
+    corner[0] -= weight * row[0];
+    corner[1] -= weight * row[1];
+    corner[2] -= weight * row[2];
+    corner[3] += abs_of(weight) * row[3];
+  }
+  CDEM_HD void own(Index m, Index count, Real sum[4][4]) const {
+    const Real shared = rules.action / Real(count);
+    for (Index k = 0; k < count; ++k) {
+      if (springs.target[4 * m + k] < 0) continue;
+      const Real* row = springs.reaction + (std::size_t(m) * 4 + k) * 8;
+      add(sum[k], 1.0 - rules.action, row);
+      if (shared > 0)
+        for (Index j = 0; j < count; ++j) add(sum[j], shared, row);
+    }
+    for (Index j = 0; j < edges.count[m]; ++j) {
+      const Index place = edges.slots * m + j;
+      const Real* row = edges.reaction + std::size_t(place) * 8;
+      const Index k = edges.side[place];
+      add(sum[k], 1.0 - row[4], row);
+      add(sum[k + 1 == count ? 0 : k + 1], row[4], row);
+    }
+  }
+  CDEM_HD void reactions(Index m, Index face, Index count, Index other, Real sum[4][4]) const {
+    for (Index k = 0; k < 4; ++k) {
+      if (springs.target[4 * other + k] != m) continue;
+      const Real* row = springs.reaction + (std::size_t(other) * 4 + k) * 8;
+      for (Index j = 0; j < count; ++j) take(sum[j], row[4 + j], row);
+    }
+    for (Index j = 0; j < edges.count[other]; ++j) {
+      const Index place = edges.slots * other + j;
+      if (edges.target_face[place] != m) continue;
+      const Real* row = edges.reaction + std::size_t(place) * 8;
+      const Index k = side_on(face, edges.target_edge[place]);
+      take(sum[k], 1.0 - row[5], row);
+      take(sum[k + 1 == count ? 0 : k + 1], row[5], row);
+    }
+  }
+  CDEM_HD Index side_on(Index face, Index edge) const {
+    for (Index k = 0; k < 3; ++k)
+      if (faces.face_edges[4 * face + k] == edge) return k;
+    return 3;
+  }
+};
+
+}  // namespace cdem

@@ -1,0 +1,274 @@
+// target_edge.hpp - which edges a semi-edge crosses. Feng et al. (2014), Eq. 10-12.
+#pragma once
+
+#include "core/contact/target_face.hpp"
+
+namespace cdem {
+
+/// State of the semi-edge contacts of exposed faces. A semi-edge may cross several target edges, so
+/// a face has `slots` places for those of all its sides; running out of them is reported, never
+/// silent. Place = slots * exposed face + j; the used ones come first.
+struct EdgeColumns {
+  Index slots;
+  Index* count;         // [exposed] places in use
+  Index* side;          // side of the mother face
+  Index* target_face;   // exposed face to which the target edge belongs
+  Index* target_edge;   // edge
+  Real* shear1;         // [N] in the frame of the edge pair
+  Real* shear2;
+  Real* force_n;        // [N], compression > 0
+  Real* energy;         // stored  [J]
+  Real* reaction;       // row of 8: force on the mother x y z, stiffness, place on the mother
+                        // side (0..1), place on the target's side (0..1)
+  Real* friction;       // [exposed] lost so far  [J]
+  Real* dashpot;        // [exposed] lost in the contact dashpot so far  [J]
+  Flag* lost;           // [exposed] 1: a loaded contact was lost because it sank too deep
+  Flag* overflow;       // [exposed] 1: more contacts than places
+};
+
+/// Two edges at one instant: start point and vector along either, and the contact normal.
+struct EdgePair {
+  Vec3<Real> start_m, along_m, start_t, along_t, n;
+};
+
+/// Where x_m + s d_m and x_t + t d_t are closest along a direction: x_m(s) - x_t(t) = gap * way.
+struct Crossing {
+  Real s, t, gap;
+};
+
+CDEM_HD inline Crossing cross_edges(const Vec3<Real>& start_m, const Vec3<Real>& along_m,
+                                    const Vec3<Real>& start_t, const Vec3<Real>& along_t,
+                                    const Vec3<Real>& way) {
+  const Vec3<Real> apart = start_t - start_m;
+  const Vec3<Real> c = cross(along_m, along_t);
+  const Real det = dot(c, way);
+  return {dot(cross(apart, along_t), way) / det, dot(cross(apart, along_m), way) / det,
+          -dot(c, apart) / det};
+}
+
+/// Normal of an edge pair, out of the target. Nearly flush faces give the normal of the faces
+/// (crossing their edges would divide by the small angle); else it is V_mm x V_tt, Eq. 12.
+CDEM_HD inline Vec3<Real> edge_normal(const Vec3<Real>& along_m, const Vec3<Real>& along_t,
+                                      const Vec3<Real>& normal_m, const Vec3<Real>& normal_t) {
+  constexpr Real flush = -0.985;  // cosine between the faces: 10 degrees
+  const Vec3<Real> out = normal_t - normal_m;
+  if (dot(normal_m, normal_t) < flush) return unit(out);
+  const Vec3<Real> c = unit(cross(along_m, along_t));
+  return dot(c, out) < 0 ? -c : c;
+}
+
+/// Tangents of an edge pair: along the target edge, and across.
+CDEM_HD inline Frame edge_frame(const Vec3<Real>& n, const Vec3<Real>& along_t) {
+  const Vec3<Real> t1 = unit(along_t - dot(n, along_t) * n);
+  return {n, t1, cross(n, t1)};
+}
+
+/// Find the target edges of every semi-edge of one exposed face.
+///
+/// The indented semi-edge decides which edges it crosses; the true edges give gap and force. Of the
+/// two faces at a target edge the one that opposes the mother face more is the right face (Eq. 10).
+/// Edges between nearly coplanar faces are no edges; the normal must lie in both edges' cones.
+struct FindTargetEdges {
+  FaceColumns faces;
+  FaceGeometry geometry;
+  const Index* exposed_face;
+  Candidates candidates;
+  SearchRules rules;
+  EdgeColumns edges;
+
+  /// More contacts than this on one face stop the run.
+  static constexpr Index most_slots = 64;
+
+  CDEM_HD void operator()(One m) const {
+    Held held(*this, m.i);
+    Found found[most_slots];
+    const Index used = find(m.i, held, found);
+    edges.overflow[m.i] = used > edges.slots ? 1 : 0;
+    if (used > edges.slots) return;  // nothing is written: the caller makes room and runs this again
+    for (Index j = 0; j < used; ++j) {
+      const Found& f = found[j];
+      const Index place = edges.slots * m.i + j;
+      edges.side[place] = f.side;
+      edges.target_face[place] = f.face;
+      edges.target_edge[place] = f.edge;
+      edges.shear1[place] = held.shear1(f.old);
+      edges.shear2[place] = held.shear2(f.old);
+      edges.force_n[place] = held.loaded(f.old) ? 1.0 : 0.0;
+      edges.energy[place] = held.take_energy(f.old);
+    }
+    edges.friction[m.i] += held.energy_left();  // springs of contacts that ended
+    edges.count[m.i] = used;
+  }
+
+  /// Does side k of exposed face m touch side j of exposed face t?
+  CDEM_HD bool touches(Index m, Index k, Index t, Index j, bool held, bool loaded,
+                       Flag* lost) const {
+    const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(t);
+    if (dot(nm, nt) >= -rules.opposing) return false;
+    const Index face_m = exposed_face[m], face_t = exposed_face[t];
+    const Index km = next(face_m, k), jt = next(face_t, j);
+    const Index m0 = faces.vertex(face_m, k), m1 = faces.vertex(face_m, km);
+    const Index t0 = faces.vertex(face_t, j), t1 = faces.vertex(face_t, jt);
+    if (glued(m0, t0) || glued(m0, t1) || glued(m1, t0) || glued(m1, t1)) return false;
+    const Vec3<Real> xm = faces.nodes.position(m0), xt = faces.nodes.position(t0);
+    const Vec3<Real> dm = faces.nodes.position(m1) - xm, dt = faces.nodes.position(t1) - xt;
+    const Vec3<Real> c = cross(dm, dt);
+    constexpr Real parallel = 0.02;  // sine of the angle between the edges
+    if (dot(c, c) < parallel * parallel * dot(dm, dm) * dot(dt, dt)) return false;
+    const Vec3<Real> n = edge_normal(dm, dt, nm, nt);
+
+    const Vec3<Real> center = geometry.center(m);
+    const Vec3<Real> p0 = xm + rules.indentation * (center - xm);
+    const Vec3<Real> along = (1.0 - rules.indentation) * dm;
+    const Real slack = held ? 0.5 * rules.indentation : 0.0;
+    const Crossing inner = cross_edges(p0, along, xt, dt, n);
+    if (inner.s < -slack || inner.s > 1.0 + slack) return false;
+    if (inner.t < -slack || inner.t > 1.0 + slack) return false;
+
+    const Crossing true_edges = cross_edges(xm, dm, xt, dt, n);
+    if (true_edges.gap > 0) return false;
+    // both ends at once is a vertex on a vertex: the semi-springs' business
+    if (near_end(true_edges.s) && near_end(true_edges.t)) return false;
+    const Real length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
+    const Real approach = rules.approach_steps * faces.dt *
+                          abs_of(dot(n, velocity_at(m0, m1, true_edges.s) -
+                                            velocity_at(t0, t1, true_edges.t)));
+    const Real limit = held ? rules.depth * length : rules.entry * length + approach;
+    const bool in_cones = cones_hold(m, k, t, j, dm, dt, n);
+    if (true_edges.gap < -limit) {
+      if (held && loaded && in_cones) *lost = 1;
+      return false;
+    }
+    return in_cones;
+  }
+
+  /// A contact found in this step; `old` is its place among those of the step before, or -1.
+  struct Found {
+    Index side, face, edge, old;
+  };
+  /// The contacts of the step before, so that shear force and hysteresis carry over.
+  struct Held {
+    const EdgeColumns& edges;
+    Index first, count;
+    Index side[most_slots], edge[most_slots];
+    Real s1[most_slots], s2[most_slots], energy[most_slots];
+    bool load[most_slots];
+
+    CDEM_HD Held(const FindTargetEdges& k, Index m)
+        : edges(k.edges), first(k.edges.slots * m), count(k.edges.count[m]) {
+      for (Index j = 0; j < count; ++j) {
+        side[j] = edges.side[first + j];
+        edge[j] = edges.target_edge[first + j];
+        s1[j] = edges.shear1[first + j];
+        s2[j] = edges.shear2[first + j];
+        energy[j] = edges.energy[first + j];
+        load[j] = edges.force_n[first + j] > 0;
+      }
+    }
+    CDEM_HD Index find(Index k, Index e) const {
+      for (Index j = 0; j < count; ++j)
+        if (side[j] == k && edge[j] == e) return j;
+      return -1;
+    }
+    CDEM_HD bool loaded(Index j) const { return j >= 0 && load[j]; }
+    CDEM_HD Real shear1(Index j) const { return j >= 0 ? s1[j] : 0.0; }
+    CDEM_HD Real shear2(Index j) const { return j >= 0 ? s2[j] : 0.0; }
+    CDEM_HD Real take_energy(Index j) {
+      if (j < 0) return 0.0;
+      const Real e = energy[j];
+      energy[j] = 0;
+      return e;
+    }
+    CDEM_HD Real energy_left() const {
+      Real sum = 0;
+      for (Index j = 0; j < count; ++j) sum += energy[j];
+      return sum;
+    }
+  };
+
+  /// All contacts of one exposed face in candidate order; returns their number.
+  CDEM_HD Index find(Index m, const Held& held, Found* found) const {
+    Index used = 0;
+    const Index count_m = faces.vertex_count(exposed_face[m]);
+    for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c) {
+      const Index t = candidates.other[c];
+      if (!near_enough(m, t)) continue;
+      const Index count_t = faces.vertex_count(exposed_face[t]);
+      for (Index k = 0; k < count_m; ++k) {
+        for (Index j = 0; j < count_t; ++j) {
+          const Index edge = faces.face_edges[4 * exposed_face[t] + j];
+          const Index old = held.find(k, edge);
+          if (!touches(m, k, t, j, old >= 0, held.loaded(old), edges.lost + m)) continue;
+          if (used < most_slots) found[used] = {k, t, edge, old};
+          ++used;
+        }
+      }
+    }
+    return used;
+  }
+
+ private:
+  CDEM_HD Index next(Index face, Index k) const {
+    return k + 1 == faces.vertex_count(face) ? 0 : k + 1;
+  }
+  CDEM_HD bool near_end(Real place) const {
+    const Real corner = 2 * rules.indentation;
+    return place < corner || place > 1 - corner;
+  }
+  CDEM_HD bool glued(Index a, Index b) const { return faces.node_glue[a] == faces.node_glue[b]; }
+  CDEM_HD Vec3<Real> velocity_at(Index a, Index b, Real s) const {
+    const Vec3<Real> va = faces.nodes.velocity(a);
+    return va + s * (faces.nodes.velocity(b) - va);
+  }
+  /// Some vertex of either face is near or behind the plane of the other: else no edge can touch.
+  CDEM_HD bool near_enough(Index m, Index t) const {
+    return lowest(m, t) <= 0 && lowest(t, m) <= 0;
+  }
+  CDEM_HD Real lowest(Index of, Index over) const {
+    const Vec3<Real> n = geometry.normal(over), c = geometry.center(over);
+    const Index face = exposed_face[of], count = faces.vertex_count(face);
+    Real smallest = 1e300;
+    for (Index k = 0; k < count; ++k)
+      smallest = min_of(smallest, dot(n, faces.nodes.position(faces.vertex(face, k)) - c));
+    // crossing edges may be inside both cones' slack: leave room for it
+    return smallest - (rules.cone + rules.entry) * faces.face_length[face];
+  }
+  /// The face on the other side of side k, or -1.
+  CDEM_HD Index across(Index face, Index k) const {
+    const Index edge = faces.face_edges[4 * face + k];
+    const Index a = faces.edge_faces[2 * edge], b = faces.edge_faces[2 * edge + 1];
+    return a == face ? b : a;
+  }
+  CDEM_HD Vec3<Real> normal_of(Index face) const {
+    const Index exposed = faces.face_exposed[face];
+    return exposed >= 0 ? geometry.normal(exposed) : faces.shape(face).normal();
+  }
+  /// True edges (not between coplanar faces), right face, and -n in the mother edge's normal cone,
+  /// n in the target edge's: the faces at an edge fall away from the contact plane.
+  CDEM_HD bool cones_hold(Index m, Index k, Index t, Index j, const Vec3<Real>& dm,
+                          const Vec3<Real>& dt, const Vec3<Real>& n) const {
+    constexpr Real coplanar = 0.999;
+    const Index face_m = exposed_face[m], face_t = exposed_face[t];
+    const Index across_m = across(face_m, k), across_t = across(face_t, j);
+    const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(t);
+    if (dot(n, unit(cross(nm, dm))) < -rules.cone) return false;
+    if (dot(n, unit(cross(nt, dt))) > rules.cone) return false;
+    if (across_m >= 0) {
+      const Vec3<Real> n2 = normal_of(across_m);
+      if (dot(nm, n2) > coplanar) return false;
+      if (dot(n, unit(cross(n2, -dm))) < -rules.cone) return false;
+    }
+    if (across_t >= 0) {
+      const Vec3<Real> n2 = normal_of(across_t);
+      if (dot(nt, n2) > coplanar) return false;
+      if (dot(n, unit(cross(n2, -dt))) > rules.cone) return false;
+      if (faces.face_exposed[across_t] >= 0) {
+        const Real here = dot(nm, nt), there = dot(nm, n2);
+        if (there < here || (there == here && across_t < face_t)) return false;
+      }
+    }
+    return true;
+  }
+};
+
+}  // namespace cdem

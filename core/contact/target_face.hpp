@@ -1,0 +1,151 @@
+// target_face.hpp - which face a semi-spring touches. Feng et al. (2014), Eq. 6-9.
+#pragma once
+
+#include "core/contact/face.hpp"
+
+namespace cdem {
+
+/// Tolerances of the search; every length is a multiple of L, the smaller of the two faces'.
+struct SearchRules {
+  Real indentation = 0.01;     // alpha, Eq. 3
+  Real action = 0;             // coefficient of the point where the force acts: 0 is the vertex
+  Real tolerance = 0.001;      // in-plane tolerance; must stay below the indentation
+  Real entry = 0.01;           // a new contact may be this deep, and 1.5 times the step's approach
+  Real depth = 0.3;            // a contact in place is kept down to here; deeper is an error
+  Real opposing = 0.02;        // faces touch only if n_m . n_t < -opposing
+  Real cone = 0.05;            // slack of the normal-cone tests (a sine)
+  Real approach_steps = 1.5;   // see entry
+};
+
+/// Pairs of exposed faces that may touch before the next refresh: ragged rows, in both directions.
+struct Candidates {
+  const Index* first;  // [exposed + 1]
+  const Index* other;  // exposed face, ascending in a row
+};
+
+/// State of the semi-springs of exposed faces: slot = 4 * exposed face + vertex.
+struct SpringColumns {
+  Index* target;         // exposed face in contact, or -1
+  Index* target_before;  // the same one step ago
+  Real* force_n;         // [N], compression > 0
+  Real* shear1;          // [N] in the target's frame
+  Real* shear2;
+  Real* gap_free;        // gap at which the contact is free of stress  [m]
+  Real* energy;          // stored  [J]
+  Real* friction;        // lost so far  [J]
+  Real* dashpot;         // lost in the contact dashpot so far  [J]
+  Real* reaction;        // row of 8: force on the mother x y z, stiffness, weights on the target
+  Flag* lost;            // 1: a loaded contact was lost because it sank too deep
+};
+
+/// Choose the target face of every semi-spring of one exposed face.
+///
+/// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
+/// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
+/// into it, v is behind its plane within the limit, and no exterior edge that leaves v goes deeper
+/// (v is the locally deepest point). The current target is kept while it qualifies.
+struct FindTargetFaces {
+  FaceColumns faces;
+  FaceGeometry geometry;
+  const Index* exposed_face;
+  Candidates candidates;
+  SearchRules rules;
+  SpringColumns springs;
+
+  CDEM_HD void operator()(One m) const {
+    const Index face = exposed_face[m.i];
+    for (Index k = 0; k < faces.vertex_count(face); ++k) {
+      const Index slot = 4 * m.i + k;
+      springs.target_before[slot] = springs.target[slot];
+      springs.target[slot] =
+          choose(m.i, k, candidates.other + candidates.first[m.i],
+                 candidates.first[m.i + 1] - candidates.first[m.i], springs.lost + slot);
+    }
+  }
+
+  /// The target of vertex k of an exposed face among `count` others, or -1.
+  CDEM_HD Index choose(Index m, Index k, const Index* others, Index count, Flag* lost) const {
+    const Index slot = 4 * m + k;
+    const Index current = springs.target_before[slot];
+    const bool loaded = springs.force_n[slot] > 0;
+    const Index node = faces.vertex(exposed_face[m], k);
+    const Vec3<Real> v = faces.nodes.position(node);
+    const Vec3<Real> p = v + rules.indentation * (geometry.center(m) - v);
+
+    Real hand_over = 0;  // a loaded spring may enter its next face as deep as it leaves the last
+    if (current >= 0) {
+      const Real length = smaller_length(m, current);
+      const Real gap = qualify(m, node, v, p, current, rules.depth * length);
+      if (gap <= 0) return current;
+      const Real old_gap = plane_gap(v, current);
+      if (loaded && old_gap < 0) hand_over = -1.5 * old_gap;
+      if (loaded && sank_below(p, current, old_gap, rules.depth * length)) *lost = 1;
+    }
+    Index best = -1;
+    Real best_gap = -1e300;
+    for (Index c = 0; c < count; ++c) {
+      const Index t = others[c];
+      if (dot(geometry.normal(m), geometry.normal(t)) >= -rules.opposing) continue;
+      const Real plane = plane_gap(v, t);
+      if (plane > near(t)) continue;
+      const Real entry = rules.entry * smaller_length(m, t) + approach(node, t);
+      const Real gap = qualify(m, node, v, p, t, max_of(entry, hand_over + entry));
+      if (gap <= 0 && gap > best_gap) {
+        best = t;
+        best_gap = gap;
+      }
+    }
+    return best;
+  }
+
+ private:
+  static constexpr Real none = 1.0;  // a positive gap: not in contact
+
+  CDEM_HD Real smaller_length(Index m, Index t) const {
+    return min_of(faces.face_length[exposed_face[m]], faces.face_length[exposed_face[t]]);
+  }
+  CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
+    return dot(geometry.normal(t), v - geometry.center(t));
+  }
+  /// A warped face may reach above its mean plane; a plane one does not.
+  CDEM_HD Real near(Index t) const {
+    return faces.vertex_count(exposed_face[t]) == 3 ? 0.0 : 0.5 * faces.face_length[exposed_face[t]];
+  }
+  CDEM_HD Real approach(Index node, Index t) const {
+    const Index face = exposed_face[t];
+    Vec3<Real> target_velocity{0.0, 0.0, 0.0};
+    const Index count = faces.vertex_count(face);
+    for (Index j = 0; j < count; ++j)
+      target_velocity = target_velocity + faces.nodes.velocity(faces.vertex(face, j));
+    const Vec3<Real> relative =
+        faces.nodes.velocity(node) - Real(1.0) / Real(count) * target_velocity;
+    return rules.approach_steps * faces.dt * abs_of(dot(geometry.normal(t), relative));
+  }
+  CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
+    return gap < -depth &&
+           faces.shape(exposed_face[t]).inside_distance(p, geometry.normal(t)) > 0;
+  }
+  /// Gap of the vertex to face t if it is in contact there within `limit`, else a positive number.
+  CDEM_HD Real qualify(Index m, Index node, const Vec3<Real>& v, const Vec3<Real>& p, Index t,
+                       Real limit) const {
+    const Vec3<Real> n = geometry.normal(t);
+    if (dot(geometry.normal(m), n) >= -rules.opposing) return none;
+    const FaceShape f = faces.shape(exposed_face[t]);
+    if (f.inside_distance(p, n) < -rules.tolerance * smaller_length(m, t)) return none;
+    const Real gap = project(f, v, n).gap;
+    if (gap > 0 || gap < -limit) return none;
+    for (Index j = 0; j < f.count; ++j)
+      if (faces.node_glue[faces.vertex(exposed_face[t], j)] == faces.node_glue[node]) return none;
+    return deepest(node, v, n) ? gap : none;
+  }
+  /// No exterior edge that leaves v goes below the plane through v.
+  CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {
+    for (Index r = faces.ring_first[node]; r < faces.ring_first[node + 1]; ++r) {
+      const Vec3<Real> d = faces.nodes.position(faces.ring[r]) - v;
+      if (dot(d, n) < -rules.cone * norm(d)) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace cdem

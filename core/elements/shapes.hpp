@@ -1,0 +1,131 @@
+// shapes.hpp - the four element shapes, and how an element reads its nodes and writes its forces.
+#pragma once
+
+#include "core/field.hpp"
+#include "core/materials/linear_elastic.hpp"
+
+namespace cdem {
+
+/// One Gauss point: the strain is constant.
+struct Tet4 {
+  static constexpr Index nodes = 4, points = 1;
+  static constexpr bool mean_dilatation = false;
+};
+/// Rational shape functions, five Gauss points.
+struct Pyramid5 {
+  static constexpr Index nodes = 5, points = 5;
+  static constexpr bool mean_dilatation = false;
+};
+/// Six Gauss points: three in the triangle times two.
+struct Wedge6 {
+  static constexpr Index nodes = 6, points = 6;
+  static constexpr bool mean_dilatation = false;
+};
+/// 2 x 2 x 2 Gauss points; the volumetric strain is the element's mean (B-bar), so that nearly
+/// incompressible rock does not lock.
+struct Hex8 {
+  static constexpr Index nodes = 8, points = 8;
+  static constexpr bool mean_dilatation = true;
+};
+
+/// What every element kernel reads: nodes, reference gradients, volumes, material.
+///
+/// The gradients dN/dX [1/m] are those of the stress-free mesh; node 0 is left out, because the
+/// gradients of an element sum to zero.
+template <class Shape>
+struct ElementColumns {
+  InMotion nodes;
+  InIndices element_nodes;    // [Shape::nodes][element]
+  InTable gradient;           // [point * (nodes-1)*3 + (node-1)*3 + axis][element]  [1/m]
+  InTable point_volume;       // w J: [point][element]  [m3]
+  InIndices element_material;  // [1][element]
+  MaterialTable materials;
+
+  template <class I>
+  CDEM_HD Vec3<Number<I>> gradient_at(I e, Index point, Index node) const {
+    const Index row = (point * (Shape::nodes - 1) + node - 1) * 3;
+    return {gradient.at(row, e), gradient.at(row + 1, e), gradient.at(row + 2, e)};
+  }
+  template <class I>
+  CDEM_HD auto material(I e) const {
+    return materials.at(element_material.at(0, e));
+  }
+};
+
+/// Positions (or velocities) of nodes 1.. of an element, relative to node 0.
+template <class Shape, class T>
+struct Arms {
+  Vec3<T> a[Shape::nodes];
+
+  CDEM_HD const Vec3<T>& operator[](Index node) const { return a[node]; }
+};
+
+template <class Shape, class I>
+CDEM_HD inline Arms<Shape, Number<I>> position_arms(const ElementColumns<Shape>& c, I e) {
+  Arms<Shape, Number<I>> arms;
+  const Vec3<Number<I>> x0 = c.nodes.position(c.element_nodes.at(0, e));
+  for (Index k = 1; k < Shape::nodes; ++k)
+    arms.a[k] = c.nodes.position(c.element_nodes.at(k, e)) - x0;
+  return arms;
+}
+template <class Shape, class I>
+CDEM_HD inline Arms<Shape, Number<I>> velocity_arms(const ElementColumns<Shape>& c, I e) {
+  Arms<Shape, Number<I>> arms;
+  const Vec3<Number<I>> v0 = c.nodes.velocity(c.element_nodes.at(0, e));
+  for (Index k = 1; k < Shape::nodes; ++k)
+    arms.a[k] = c.nodes.velocity(c.element_nodes.at(k, e)) - v0;
+  return arms;
+}
+
+/// sum_k a_k (dN_k/dX)^T: the deformation gradient for positions, its rate for velocities.
+template <class Shape, class I>
+CDEM_HD inline Mat3<Number<I>> gradient_of(const ElementColumns<Shape>& c, I e, Index point,
+                                           const Arms<Shape, Number<I>>& arms) {
+  const Number<I> zero(0.0);
+  const Vec3<Number<I>> none{zero, zero, zero};
+  Mat3<Number<I>> sum{none, none, none};
+  for (Index k = 1; k < Shape::nodes; ++k) add_outer(sum, arms[k], c.gradient_at(e, point, k));
+  return sum;
+}
+
+/// Forces that the element exerts on its nodes, summed over Gauss points.
+template <class Shape, class T>
+struct CornerForces {
+  Vec3<T> f[Shape::nodes];
+
+  CDEM_HD CornerForces() {
+    const T zero(0.0);
+    for (Index k = 0; k < Shape::nodes; ++k) f[k] = {zero, zero, zero};
+  }
+  /// Add -P dN_k/dX of one point; P is the first Piola-Kirchhoff stress times the point's volume.
+  template <class I>
+  CDEM_HD void add(const ElementColumns<Shape>& c, I e, Index point, const Mat3<T>& p) {
+    for (Index k = 1; k < Shape::nodes; ++k) {
+      const Vec3<T> fk = p * c.gradient_at(e, point, k);
+      f[k] = f[k] - fk;
+      f[0] = f[0] + fk;  // the gradients sum to zero, so the forces do too, exactly
+    }
+  }
+  template <class I>
+  CDEM_HD void store(OutForces out, I e) const {
+    for (Index k = 0; k < Shape::nodes; ++k) out.set(e, Shape::nodes, k, f[k]);
+  }
+};
+
+/// Replace the volumetric part of each point's strain by the element's mean (B-bar).
+template <class Shape, class I>
+CDEM_HD inline void use_mean_dilatation(const ElementColumns<Shape>& c, I e,
+                                        Sym3<Number<I>>* strain) {
+  if constexpr (Shape::mean_dilatation) {
+    Number<I> sum(0.0), volume(0.0);
+    for (Index q = 0; q < Shape::points; ++q) {
+      const Number<I> w = c.point_volume.at(q, e);
+      sum += w * trace(strain[q]);
+      volume += w;
+    }
+    const Number<I> mean = sum / volume;
+    for (Index q = 0; q < Shape::points; ++q) strain[q] = with_trace(strain[q], mean);
+  }
+}
+
+}  // namespace cdem

@@ -1,0 +1,202 @@
+// field.hpp - columns: owned, padded arrays, and the light views of them that kernels read and write.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "core/math.hpp"
+
+namespace cdem {
+
+/// Zeroed, 64-byte aligned memory that the backend's kernels can reach (managed memory on CUDA).
+void* allocate(std::size_t bytes);
+void release(void* memory);
+
+/// Owned array that grows without losing content. Padded, so a lane may read past the last item.
+template <class T>
+class Column {
+ public:
+  Column() = default;
+  Column(const Column&) = delete;
+  Column& operator=(const Column&) = delete;
+  Column(Column&& other) noexcept { swap(other); }
+  Column& operator=(Column&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Column() { release(data_); }
+
+  /// Set the length; items that are new are `fill`.
+  void resize(std::size_t size, T fill = T{}) {
+    if (size > capacity_) reserve(size > 2 * capacity_ ? size : 2 * capacity_);
+    for (std::size_t i = size_; i < size; ++i) data_[i] = fill;
+    size_ = size;
+  }
+  void assign(const T* from, std::size_t size) {
+    resize(size);
+    if (size) std::memcpy(data_, from, size * sizeof(T));
+  }
+  void fill(T value) {
+    for (std::size_t i = 0; i < size_; ++i) data_[i] = value;
+  }
+  void push(T value) {
+    resize(size_ + 1);
+    data_[size_ - 1] = value;
+  }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  void swap(Column& other) {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+ private:
+  void reserve(std::size_t capacity) {
+    T* memory = static_cast<T*>(allocate((capacity + 16) * sizeof(T)));
+    if (size_) std::memcpy(memory, data_, size_ * sizeof(T));
+    release(data_);
+    data_ = memory;
+    capacity_ = capacity;
+  }
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+/// Rows of several numbers per item, stored row after row: number r of item i is data[r*stride + i].
+/// The stride avoids multiples of 4096 bytes, at which all rows fall into one cache set.
+inline Index padded_stride(Index count) {
+  const Index whole = (count + 7) / 8 * 8;
+  return whole % 512 == 0 ? whole + 8 : whole;
+}
+
+/// Read view of a table.
+struct InTable {
+  const Real* data;
+  Index stride;
+  CDEM_HD Real at(Index row, One item) const {
+    return data[std::size_t(row) * stride + item.i];
+  }
+#if !defined(__CUDACC__)
+  Pack at(Index row, Lane item) const {
+    Pack p;
+    std::memcpy(&p.n, data + std::size_t(row) * stride + item.i, sizeof p.n);
+    return p;
+  }
+#endif
+};
+
+/// Read and write view of a table.
+struct InOutTable {
+  Real* data;
+  Index stride;
+  CDEM_HD Real at(Index row, One item) const {
+    return data[std::size_t(row) * stride + item.i];
+  }
+  CDEM_HD void set(Index row, One item, Real value) const {
+    data[std::size_t(row) * stride + item.i] = value;
+  }
+#if !defined(__CUDACC__)
+  Pack at(Index row, Lane item) const {
+    Pack p;
+    std::memcpy(&p.n, data + std::size_t(row) * stride + item.i, sizeof p.n);
+    return p;
+  }
+  void set(Index row, Lane item, Pack value) const {
+    std::memcpy(data + std::size_t(row) * stride + item.i, &value.n, sizeof value.n);
+  }
+#endif
+};
+
+/// Connectivity: index k of item i is data[k*stride + i].
+struct InIndices {
+  const Index* data;
+  Index stride;
+  CDEM_HD Index at(Index row, One item) const {
+    return data[std::size_t(row) * stride + item.i];
+  }
+#if !defined(__CUDACC__)
+  IndexPack at(Index row, Lane item) const {
+    IndexPack p;
+    std::memcpy(p.id, data + std::size_t(row) * stride + item.i, sizeof p.id);
+    return p;
+  }
+#endif
+};
+
+/// A small lookup table, read at the item's own key.
+struct InLookup {
+  const Real* data;
+  CDEM_HD Real at(Index key) const { return data[key]; }
+#if !defined(__CUDACC__)
+  Pack at(const IndexPack& key) const {
+    Pack p;
+    for (Index j = 0; j < lanes; ++j) p.n[j] = data[key.id[j]];
+    return p;
+  }
+#endif
+};
+
+/// Motion of the nodes, one 64-byte row each: position x y z, pad, velocity x y z, pad.
+struct InMotion {
+  const Real* rows;
+  CDEM_HD Vec3<Real> position(Index node) const {
+    const Real* r = rows + std::size_t(node) * 8;
+    return {r[0], r[1], r[2]};
+  }
+  CDEM_HD Vec3<Real> velocity(Index node) const {
+    const Real* r = rows + std::size_t(node) * 8 + 4;
+    return {r[0], r[1], r[2]};
+  }
+#if !defined(__CUDACC__)
+  Vec3<Pack> position(const IndexPack& node) const { return gather(node, 0); }
+  Vec3<Pack> velocity(const IndexPack& node) const { return gather(node, 4); }
+
+ private:
+  Vec3<Pack> gather(const IndexPack& node, int from) const {
+    Vec3<Pack> a;
+    for (Index j = 0; j < lanes; ++j) {
+      const Real* r = rows + std::size_t(node.id[j]) * 8 + from;
+      a.x.n[j] = r[0];
+      a.y.n[j] = r[1];
+      a.z.n[j] = r[2];
+    }
+    return a;
+  }
+#endif
+};
+
+/// Forces on corners, one 32-byte row each: x y z, pad. Gathered by nodes in a fixed order.
+struct OutForces {
+  Real* rows;
+  CDEM_HD void set(One item, Index corners_per_item, Index corner, const Vec3<Real>& f) const {
+    Real* r = rows + (std::size_t(item.i) * corners_per_item + corner) * 4;
+    r[0] = f.x;
+    r[1] = f.y;
+    r[2] = f.z;
+  }
+#if !defined(__CUDACC__)
+  void set(Lane item, Index corners_per_item, Index corner, const Vec3<Pack>& f) const {
+    for (Index j = 0; j < lanes; ++j) {
+      Real* r = rows + (std::size_t(item.i + j) * corners_per_item + corner) * 4;
+      r[0] = f.x.n[j];
+      r[1] = f.y.n[j];
+      r[2] = f.z.n[j];
+    }
+  }
+#endif
+};
+
+struct InForces {
+  const Real* rows;
+  CDEM_HD Vec3<Real> at(std::size_t row) const {
+    const Real* r = rows + row * 4;
+    return {r[0], r[1], r[2]};
+  }
+};
+
+}  // namespace cdem

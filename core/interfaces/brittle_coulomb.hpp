@@ -1,0 +1,52 @@
+// brittle_coulomb.hpp - the limit of an interface's force: tension cut-off and Mohr-Coulomb, brittle.
+#pragma once
+
+#include "core/field.hpp"
+
+namespace cdem {
+
+/// Properties of the interface between two groups.
+///
+/// A stiffness is `value` [Pa/m] when that is positive, else `factor` times the stiffer side's
+/// modulus over its element height [Pa/m].
+struct Interface {
+  Real cohesion;          // c         [Pa]
+  Real tensile_strength;  // T         [Pa]
+  Real tan_friction;      // tan(phi)  [-]
+  Real stiffness_n_value, stiffness_n_factor;
+  Real stiffness_s_value, stiffness_s_factor;
+
+  CDEM_HD Real stiffness_n(Real auto_stiffness) const {
+    return stiffness_n_value > 0 ? stiffness_n_value : stiffness_n_factor * auto_stiffness;
+  }
+  CDEM_HD Real stiffness_s(Real auto_stiffness) const {
+    return stiffness_s_value > 0 ? stiffness_s_value : stiffness_s_factor * auto_stiffness;
+  }
+};
+
+/// Bring the force of one contact back to its limit. Feng et al. (2014), Eq. 14.
+///
+///   opens  when  -Fn > T A                   then  Fn = Fs = 0
+///   slips  when  |Fs| > Fn tan(phi) + c A    then  |Fs| = Fn tan(phi) + c A
+///   and from the next step on  c = T = 0
+///
+/// Fn > 0 is compression; `bond` is 1 while intact, then 0. Returns the factor that was applied to
+/// the shear force. Departure from the paper: `>` for its `>=`, so that an unloaded contact with
+/// T = 0 (or c = 0) keeps its other strength.
+template <class T>
+CDEM_HD inline T limit_force(T tension_limit, T cohesion_limit, T tan_friction, T& bond, T& force_n,
+                             T& force_s1, T& force_s2) {
+  const T none(0.0), all(1.0);
+  const T shear_limit = max_of(force_n * tan_friction + bond * cohesion_limit, none);
+  const T shear = sqrt_of(force_s1 * force_s1 + force_s2 * force_s2);
+  const auto opens = -force_n > bond * tension_limit;
+  const auto slips = shear > shear_limit;
+  const T keep = select(opens, none, select(slips, shear_limit / shear, all));
+  force_n = select(opens, none, force_n);
+  force_s1 = keep * force_s1;
+  force_s2 = keep * force_s2;
+  bond = select(opens | slips, none, bond);
+  return keep;
+}
+
+}  // namespace cdem

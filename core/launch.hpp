@@ -1,0 +1,157 @@
+// launch.hpp - how a kernel meets the machine: items (One, Lane), number packs, for_each, ordered sums.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#if defined(__CUDACC__)
+#include <cuda_runtime.h>
+#define CDEM_HD __host__ __device__
+#else
+#define CDEM_HD
+#endif
+
+namespace cdem {
+
+using Real = double;
+using Index = std::int32_t;
+using Flag = std::int8_t;
+
+#if !defined(CDEM_LANES)
+#define CDEM_LANES 4
+#endif
+
+/// Items that one SIMD register holds. The build sets it to match the instruction set: 2, 4 or 8.
+inline constexpr Index lanes = CDEM_LANES;
+
+/// Item of a kernel that runs for one number at a time.
+struct One {
+  Index i;
+};
+
+CDEM_HD inline Real select(bool mask, Real yes, Real no) { return mask ? yes : no; }
+CDEM_HD inline Real max_of(Real a, Real b) { return a > b ? a : b; }
+CDEM_HD inline Real min_of(Real a, Real b) { return a < b ? a : b; }
+CDEM_HD inline Real abs_of(Real a) { return a < 0 ? -a : a; }
+CDEM_HD inline Real sqrt_of(Real a) { return std::sqrt(a); }
+CDEM_HD inline bool any_of(bool mask) { return mask; }
+
+#if !defined(__CUDACC__)
+
+/// Item of a kernel that runs for `lanes` consecutive numbers at once.
+struct Lane {
+  Index i;
+};
+
+/// Outcome of a comparison, lane by lane: all bits set for true.
+struct Mask {
+  using Bits = std::int64_t __attribute__((vector_size(8 * CDEM_LANES)));
+  Bits bits;
+  friend Mask operator&(Mask a, Mask b) { return {a.bits & b.bits}; }
+  friend Mask operator|(Mask a, Mask b) { return {a.bits | b.bits}; }
+  friend Mask operator!(Mask a) { return {~a.bits}; }
+};
+
+/// One number per lane. Arithmetic is that of Real, lane by lane, so results do not depend on it.
+struct Pack {
+  using Numbers = Real __attribute__((vector_size(8 * CDEM_LANES)));
+  Numbers n;
+
+  Pack() = default;
+  Pack(Numbers numbers) : n(numbers) {}
+  Pack(Real number) : n(number - Numbers{}) {}
+
+  friend Pack operator+(Pack a, Pack b) { return {a.n + b.n}; }
+  friend Pack operator-(Pack a, Pack b) { return {a.n - b.n}; }
+  friend Pack operator*(Pack a, Pack b) { return {a.n * b.n}; }
+  friend Pack operator/(Pack a, Pack b) { return {a.n / b.n}; }
+  friend Pack operator-(Pack a) { return {-a.n}; }
+  friend Mask operator<(Pack a, Pack b) { return {a.n < b.n}; }
+  friend Mask operator>(Pack a, Pack b) { return {a.n > b.n}; }
+  Pack& operator+=(Pack b) { return *this = *this + b; }
+  Pack& operator-=(Pack b) { return *this = *this - b; }
+};
+
+inline Pack select(Mask mask, Pack yes, Pack no) { return {mask.bits ? yes.n : no.n}; }
+inline Pack max_of(Pack a, Pack b) { return select(a > b, a, b); }
+inline Pack min_of(Pack a, Pack b) { return select(a < b, a, b); }
+inline Pack abs_of(Pack a) { return select(a < Pack(0.0), -a, a); }
+inline Pack sqrt_of(Pack a) {
+  Pack root;
+  for (Index j = 0; j < lanes; ++j) root.n[j] = std::sqrt(a.n[j]);
+  return root;
+}
+inline bool any_of(Mask mask) {
+  for (Index j = 0; j < lanes; ++j)
+    if (mask.bits[j]) return true;
+  return false;
+}
+
+/// One index per lane, as read from a connectivity table.
+struct IndexPack {
+  Index id[CDEM_LANES];
+};
+
+#endif
+
+/// The number type that a kernel computes with for an item type: Real for One, Pack for Lane.
+template <class Item>
+struct NumberOf;
+template <>
+struct NumberOf<One> {
+  using type = Real;
+};
+#if !defined(__CUDACC__)
+template <>
+struct NumberOf<Lane> {
+  using type = Pack;
+};
+#endif
+template <class Item>
+using Number = typename NumberOf<Item>::type;
+
+#if defined(__CUDACC__)
+
+struct Queue {
+  cudaStream_t stream = nullptr;
+};
+
+template <class Kernel>
+__global__ void run_on_gpu(Index count, Kernel kernel) {
+  const Index i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count) kernel(One{i});
+}
+
+/// Run a kernel for every item, one GPU thread each.
+template <class Kernel>
+void for_each(Queue queue, Index count, const Kernel& kernel) {
+  if (count > 0) run_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
+}
+template <class Kernel>
+void for_each_one(Queue queue, Index count, const Kernel& kernel) {
+  for_each(queue, count, kernel);
+}
+
+#else
+
+struct Queue {};
+
+/// Run a straight-line kernel for every item: whole lanes, then the remainder one by one.
+template <class Kernel>
+void for_each(Queue, Index count, const Kernel& kernel) {
+  const Index whole = count - count % lanes;
+#pragma omp parallel for schedule(static)
+  for (Index i = 0; i < whole; i += lanes) kernel(Lane{i});
+  for (Index i = whole; i < count; ++i) kernel(One{i});
+}
+
+/// Run a kernel whose items take different paths (searches, ragged sums): one number at a time.
+template <class Kernel>
+void for_each_one(Queue, Index count, const Kernel& kernel) {
+#pragma omp parallel for schedule(static)
+  for (Index i = 0; i < count; ++i) kernel(One{i});
+}
+
+#endif
+
+}  // namespace cdem

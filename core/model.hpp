@@ -1,0 +1,158 @@
+// model.hpp - what a step never changes: mesh, topology, properties, rules. And the list of it all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/contact/target_edge.hpp"
+#include "core/interfaces/brittle_coulomb.hpp"
+#include "core/nodes/motion.hpp"
+
+namespace cdem {
+
+enum class Formulation { corotational, incremental, paper_incremental, paper_total };
+
+/// Elements of one shape: tables with one row per corner, gradient component or Gauss point.
+struct ElementSet {
+  Index count = 0, stride = 0;
+  Index corner_first = 0;  // first of its rows among the corner forces
+  Column<Index> nodes, material;
+  Column<Real> gradient, volume;
+};
+
+/// Bonded pairs of one kind: conforming triangles, conforming quadrilaterals, or overlaps.
+struct PairSet {
+  Index count = 0, stride = 0;
+  Index points = 0, point_stride = 0;  // rows of point tables, and their stride
+  Index corner_first = 0, corners = 0;  // rows among the corner forces, and how many a pair has
+  Column<Index> faces;       // [pair][2]
+  Column<Index> nodes;       // conforming: [2 * vertices][pair]
+  Column<Index> interface;   // [pair]
+  Column<Real> area, stiffness;
+  Column<Index> point_first;  // overlaps: [pair + 1]
+  Column<Real> weights_a, weights_b, point_area;
+};
+
+struct Model {
+  // nodes
+  Index node_count = 0;
+  Column<Index> node_block;
+  Column<Real> mass, gravity_mass;
+  Column<Index> dense_first, dense_step, block_first, block_count;
+  Column<Real> mass_inverse, mass_matrix;
+  Column<Real> inverse_mass_bound;  // largest eigenvalue of the inverse mass matrix  [1/kg]
+  Column<Real> frequency2;          // largest of the node's elements, squared  [1/s2]
+
+  ElementSet tet4, pyramid5, wedge6, hex8;
+  Column<Real> material_lambda, material_mu;
+
+  // exterior faces and edges
+  Index face_count = 0, edge_count = 0;
+  Column<Index> face_nodes, face_edges, face_group, face_block;
+  Column<Real> face_length, face_area, face_stiffness;
+  Column<Index> edge_nodes, edge_faces, ring_first, ring;
+  Column<Flag> face_initially_exposed, face_movable;
+
+  // interfaces
+  PairSet triangles, quads, overlaps;
+  Index group_count = 0;
+  Column<Index> interface_of;
+  Column<Interface> interfaces;
+  Column<Real> cohesion, tensile_strength, tan_friction;
+
+  // which corner rows a node sums
+  Index corner_rows = 0;
+  Column<Index> corner_first, corner;
+
+  // loads and supports
+  Vec3<Real> gravity{0, 0, 0};
+  Column<Index> load_first, load_curve;
+  Column<Real> load_force;
+  Column<Index> support, support_curve;
+  Column<Flag> support_component;
+  Column<Real> support_velocity;
+  std::vector<std::vector<Real>> curve_time, curve_factor;
+
+  // rules
+  Formulation formulation = Formulation::corotational;
+  SearchRules rules;
+  Real bond_indentation_triangle = 0, bond_indentation_quad = 0;
+  bool semi_edges = true;
+  Index refresh_interval = 0;  // 0: by displacement; else the paper's every so many steps
+  Real skin_ratio = 0.1;       // of the face's L
+  NodeDamping damping{0, 0};
+  Real stiffness_damping = 0;  // Rayleigh, fraction of critical at the stability limit
+  Real contact_damping = 0;    // fraction of critical
+  Real step_safety = 0.8;
+  Real step_given = 0;         // 0: automatic
+  Real speed_limit = 0;        // faster than this the run has gone wrong  [m/s]
+};
+
+/// Visit every array that Python hands over, by name; the shapes are in cdem/build.py.
+template <class Visit>
+void describe(Model& m, Visit&& field) {
+  field("node.block", m.node_block);
+  field("node.mass", m.mass);
+  field("node.gravity_mass", m.gravity_mass);
+  field("node.dense_first", m.dense_first);
+  field("node.dense_step", m.dense_step);
+  field("node.block_first", m.block_first);
+  field("node.block_count", m.block_count);
+  field("node.inverse_mass_bound", m.inverse_mass_bound);
+  field("node.frequency2", m.frequency2);
+  field("mass.inverse", m.mass_inverse);
+  field("mass.matrix", m.mass_matrix);
+  field("material.lambda", m.material_lambda);
+  field("material.mu", m.material_mu);
+  const auto elements = [&](const char* shape, ElementSet& e) {
+    const std::string name = std::string(shape) + ".";
+    field(name + "nodes", e.nodes);
+    field(name + "material", e.material);
+    field(name + "gradient", e.gradient);
+    field(name + "volume", e.volume);
+  };
+  elements("tet4", m.tet4);
+  elements("pyramid5", m.pyramid5);
+  elements("wedge6", m.wedge6);
+  elements("hex8", m.hex8);
+  field("face.nodes", m.face_nodes);
+  field("face.edges", m.face_edges);
+  field("face.group", m.face_group);
+  field("face.block", m.face_block);
+  field("face.length", m.face_length);
+  field("face.area", m.face_area);
+  field("face.stiffness", m.face_stiffness);
+  field("face.initially_exposed", m.face_initially_exposed);
+  field("face.movable", m.face_movable);
+  field("edge.nodes", m.edge_nodes);
+  field("edge.faces", m.edge_faces);
+  field("ring.first", m.ring_first);
+  field("ring.node", m.ring);
+  const auto pairs = [&](const char* kind, PairSet& p) {
+    const std::string name = std::string(kind) + ".";
+    field(name + "faces", p.faces);
+    field(name + "nodes", p.nodes);
+    field(name + "interface", p.interface);
+    field(name + "area", p.area);
+    field(name + "stiffness", p.stiffness);
+    field(name + "point_first", p.point_first);
+    field(name + "weights_a", p.weights_a);
+    field(name + "weights_b", p.weights_b);
+    field(name + "point_area", p.point_area);
+  };
+  pairs("triangles", m.triangles);
+  pairs("quads", m.quads);
+  pairs("overlaps", m.overlaps);
+  field("interface.of", m.interface_of);
+  field("corner.first", m.corner_first);
+  field("corner.row", m.corner);
+  field("load.first", m.load_first);
+  field("load.curve", m.load_curve);
+  field("load.force", m.load_force);
+  field("support.row", m.support);
+  field("support.curve", m.support_curve);
+  field("support.component", m.support_component);
+  field("support.velocity", m.support_velocity);
+}
+
+}  // namespace cdem

@@ -1,0 +1,429 @@
+// refresh.cpp - now and then: release broken pairs, expose faces, renew the candidate lists.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "core/backend.hpp"
+#include "core/check.hpp"
+#include "core/columns.hpp"
+#include "core/contact/boxes.hpp"
+#include "core/contact/force.hpp"
+
+namespace cdem {
+
+namespace {
+
+using Pairs = std::vector<std::pair<Index, Index>>;
+
+Real pair_length(const Model& m, const PairSet& p, Index i) {
+  return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
+}
+
+/// A pair whose points are all broken has its faces released once they have moved apart or along
+/// each other by this part of the indentation; by the whole indentation, at once.
+constexpr Real release_part = 0.1;
+
+bool release_is_due(const Model& m, const PairSet& p, const PairState& s) {
+  bool due = false;
+#pragma omp parallel for schedule(static) reduction(|| : due)
+  for (Index i = 0; i < p.count; ++i)
+    due = due || s.jump[i] > m.rules.indentation * pair_length(m, p, i);
+  return due;
+}
+
+void expose(const Model& m, State& s, Index face) {
+  if (s.search.face_exposed[face] >= 0) return;
+  const Index place = Index(s.search.exposed_face.size());
+  s.search.face_exposed[face] = place;
+  s.search.exposed_face.push(face);
+  const std::size_t count = place + 1, slots = std::size_t(s.edges.slots);
+  SpringState& c = s.springs;
+  c.target.resize(4 * count, -1);
+  c.target_before.resize(4 * count, -1);
+  for (Column<Real>* column : {&c.force_n, &c.shear1, &c.shear2, &c.gap_free, &c.energy,
+                               &c.friction, &c.dashpot})
+    column->resize(4 * count);
+  c.reaction.resize(4 * 8 * count);
+  c.lost.resize(4 * count);
+  EdgeState& e = s.edges;
+  for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
+    column->resize(slots * count, -1);
+  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy})
+    column->resize(slots * count);
+  e.reaction.resize(8 * slots * count);
+  e.count.resize(count);
+  e.friction.resize(count);
+  e.dashpot.resize(count);
+  e.lost.resize(count);
+  e.overflow.resize(count);
+  s.face_geometry.resize(8 * count);
+  s.contact_force.resize(4 * 4 * count);
+  (void)m;
+}
+
+/// Give the springs of a released conforming pair the force that its bond points carried, half to
+/// either side, so that the change of bookkeeping is no jolt.
+void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
+  const FaceColumns faces = face_columns(m, s);
+  const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
+  const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
+  const Frame frame_a = faces.shape(a).frame(), frame_b = faces.shape(b).frame();
+  for (Index k = 0; k < p.points; ++k) {
+    const Index node_a = p.nodes[std::size_t(k) * p.stride + i];
+    const Index node_b = p.nodes[std::size_t(p.points + k) * p.stride + i];
+    const Vec3<Real> jump = faces.nodes.position(node_b) - faces.nodes.position(node_a);
+    if (dot(frame_a.n, jump) >= 0) continue;  // open: nothing to carry over
+    const std::size_t point = std::size_t(k) * p.point_stride + i;
+    const Real area = p.area[i] / p.points, ks = area * p.stiffness[std::size_t(p.stride) + i];
+    const Vec3<Real> slip = ps.slip1[point] * frame_a.t1 + ps.slip2[point] * frame_a.t2;
+    const Vec3<Real> along = jump - dot(frame_a.n, jump) * frame_a.n;
+    const Vec3<Real> on_b = (-0.5 * ks) * (along - slip);
+    const auto give = [&](Index place, Index face, Index node, Index target, const Frame& frame,
+                          const Vec3<Real>& force) {
+      for (Index v = 0; v < faces.vertex_count(face); ++v) {
+        if (faces.vertex(face, v) != node) continue;
+        const Index slot = 4 * place + v;
+        s.springs.target[slot] = s.springs.target_before[slot] = target;
+        s.springs.shear1[slot] = dot(force, frame.t1);
+        s.springs.shear2[slot] = dot(force, frame.t2);
+        s.springs.force_n[slot] = 1.0;  // loaded: may be kept as deep as it is
+      }
+    };
+    give(place_a, a, node_a, place_b, frame_b, -on_b);
+    give(place_b, b, node_b, place_a, frame_a, on_b);
+  }
+}
+
+void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
+  for (Index i = 0; i < p.count; ++i) {
+    if (!(ps.live[i] > 0)) continue;
+    if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
+    expose(m, s, p.faces[2 * i]);
+    expose(m, s, p.faces[2 * i + 1]);
+    if (p.point_first.size() == 0) hand_over(m, s, p, ps, i);
+    ps.live[i] = ps.jump[i] = ps.stored[i] = 0;
+    Real* rows = s.corner_force.data() + std::size_t(p.corner_first + i * p.corners) * 4;
+    std::fill(rows, rows + std::size_t(p.corners) * 4, 0.0);
+  }
+}
+
+/// Label nodes that intact bonds hold together: they are one point and cannot touch each other.
+void label_glue(const Model& m, State& s) {
+  Index* label = s.nodes.glue.data();
+  std::iota(label, label + m.node_count, 0);
+  const auto root = [&](Index i) {
+    while (label[i] != i) i = label[i] = label[label[i]];
+    return i;
+  };
+  const auto join = [&](const PairSet& p, const PairState& ps) {
+    for (Index i = 0; i < p.count; ++i) {
+      if (!(ps.live[i] > 0)) continue;
+      for (Index k = 0; k < p.points; ++k) {
+        if (!(ps.bond[std::size_t(k) * p.point_stride + i] > 0)) continue;
+        const Index a = root(p.nodes[std::size_t(k) * p.stride + i]);
+        const Index b = root(p.nodes[std::size_t(p.points + k) * p.stride + i]);
+        label[std::max(a, b)] = std::min(a, b);
+      }
+    }
+  };
+  join(m.triangles, s.triangles);
+  join(m.quads, s.quads);
+  for (Index i = 0; i < m.node_count; ++i) label[i] = root(i);
+}
+
+/// How much an exposed face may move before the lists are old  [m].
+Real skin_of(const Model& m, Index face) { return m.skin_ratio * m.face_length[face]; }
+
+/// Deepest contact of a face: its targets may lie this far outside its skin  [m].
+Real sunk(const State& s, Index place) {
+  Real deepest = 0;
+  const auto look = [&](Real force_n, const Real* row) {
+    if (force_n > 0 && row[3] > 0) deepest = std::max(deepest, force_n / row[3]);
+  };
+  for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
+    look(s.springs.force_n[k], s.springs.reaction.data() + 8 * k);
+  for (Index j = 0; j < s.edges.count[place]; ++j) {
+    const std::size_t c = std::size_t(s.edges.slots) * place + j;
+    look(s.edges.force_n[c], s.edges.reaction.data() + 8 * c);
+  }
+  return 2 * deepest;
+}
+
+/// Faces of the same live pair, as sorted keys: bonds look after them.
+std::vector<std::pair<Index, Index>> live_overlaps(const Model& m, const State& s) {
+  Pairs mates;
+  for (Index i = 0; i < m.overlaps.count; ++i) {
+    if (!(s.overlaps.live[i] > 0)) continue;
+    const Index a = s.search.face_exposed[m.overlaps.faces[2 * i]];
+    const Index b = s.search.face_exposed[m.overlaps.faces[2 * i + 1]];
+    mates.push_back({a, b});
+    mates.push_back({b, a});
+  }
+  std::sort(mates.begin(), mates.end());
+  return mates;
+}
+
+struct ExposedFaces {
+  std::vector<Box> box;
+  std::vector<Vec3<Real>> normal;
+  std::vector<Real> turn;   // how much the normal may turn before the lists are old
+  std::vector<Index> block;
+  std::vector<Flag> movable;
+};
+
+ExposedFaces exposed_faces(const Model& m, const State& s) {
+  const Index count = Index(s.search.exposed_face.size());
+  const FaceColumns faces = face_columns(m, s);
+  ExposedFaces e{std::vector<Box>(count), std::vector<Vec3<Real>>(count),
+                 std::vector<Real>(count), std::vector<Index>(count), std::vector<Flag>(count)};
+#pragma omp parallel for schedule(static)
+  for (Index x = 0; x < count; ++x) {
+    const Index face = s.search.exposed_face[x];
+    const FaceShape f = faces.shape(face);
+    Box box = Box::nothing();
+    Real longest = 0;
+    for (Index k = 0; k < f.count; ++k) {
+      box.include(f.x[k]);
+      longest = std::max(longest, norm(f.x[k + 1 == f.count ? 0 : k + 1] - f.x[k]));
+    }
+    box.inflate(skin_of(m, face) + sunk(s, x));
+    e.box[x] = box;
+    e.normal[x] = f.normal();
+    // vertices move by a skin at most: the plane turns by twice that over the smallest height
+    const Real height = (f.count == 3 ? 2 : 1) * m.face_area[face] / longest;
+    e.turn[x] = 2 * skin_of(m, face) / height;
+    e.block[x] = m.face_block[face];
+    e.movable[x] = m.face_movable[face];
+  }
+  return e;
+}
+
+void list_candidates(const Model& m, State& s) {
+  const Index count = Index(s.search.exposed_face.size());
+  const ExposedFaces e = exposed_faces(m, s);
+  const Pairs mates = live_overlaps(m, s);
+  const BoxTree tree(e.box);
+  std::vector<std::vector<Index>> rows(count);
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index x = 0; x < count; ++x) {
+    tree.query(e.box[x], [&](Index y) {
+      if (e.block[x] == e.block[y] || (!e.movable[x] && !e.movable[y])) return;
+      if (dot(e.normal[x], e.normal[y]) >= -m.rules.opposing + e.turn[x] + e.turn[y]) return;
+      if (!mates.empty() && std::binary_search(mates.begin(), mates.end(), std::pair(x, y)))
+        return;
+      rows[x].push_back(y);
+    });
+    std::sort(rows[x].begin(), rows[x].end());
+  }
+  Column<Index>&first = s.search.candidate_first, &other = s.search.candidate;
+  first.resize(count + 1);
+  first[0] = 0;
+  for (Index x = 0; x < count; ++x) first[x + 1] = first[x] + Index(rows[x].size());
+  other.resize(first[count]);
+  for (Index x = 0; x < count; ++x)
+    std::copy(rows[x].begin(), rows[x].end(), other.data() + first[x]);
+}
+
+/// Node -> contact rows of its exposed faces, and the motion at which each node's list is old.
+void list_contact_corners(const Model& m, State& s) {
+  Column<Index>&first = s.search.contact_first, &corner = s.search.contact_corner;
+  first.resize(m.node_count + 1);
+  first.fill(0);
+  s.search.node_skin.resize(m.node_count);
+  s.search.node_skin.fill(0);
+  const auto visit = [&](auto&& at) {
+    for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
+      const Index face = s.search.exposed_face[x];
+      for (Index k = 0; k < 4; ++k)
+        if (m.face_nodes[4 * face + k] >= 0) at(m.face_nodes[4 * face + k], Index(4 * x) + k, face);
+    }
+  };
+  visit([&](Index node, Index, Index face) {
+    ++first[node + 1];
+    Real& skin = s.search.node_skin[node];
+    skin = skin > 0 ? std::min(skin, skin_of(m, face)) : skin_of(m, face);
+  });
+  for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
+  corner.resize(first[m.node_count]);
+  std::vector<Index> next(first.data(), first.data() + m.node_count);
+  visit([&](Index node, Index row, Index) { corner[next[node]++] = row; });
+}
+
+}  // namespace
+
+/// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to.
+void sum_stiffness(const Model& m, State& s) {
+  s.node_bonds.resize(m.node_count);
+  s.node_bonds.fill(0);
+  const auto conforming = [&](const PairSet& p, const PairState& ps) {
+    for (Index i = 0; i < p.count; ++i) {
+      if (!(ps.live[i] > 0)) continue;
+      const Real k = std::max(p.stiffness[i], p.stiffness[std::size_t(p.stride) + i]);
+      for (Index c = 0; c < 2 * p.points; ++c)
+        s.node_bonds[p.nodes[std::size_t(c) * p.stride + i]] += k * p.area[i] / p.points;
+    }
+  };
+  conforming(m.triangles, s.triangles);
+  conforming(m.quads, s.quads);
+  const PairSet& p = m.overlaps;
+  for (Index i = 0; i < p.count; ++i) {
+    if (!(s.overlaps.live[i] > 0)) continue;
+    const Real k = std::max(p.stiffness[i], p.stiffness[std::size_t(p.stride) + i]);
+    for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
+      for (Index v = 0; v < 4; ++v) {
+        const Index a = m.face_nodes[4 * p.faces[2 * i] + v];
+        const Index b = m.face_nodes[4 * p.faces[2 * i + 1] + v];
+        if (a >= 0) s.node_bonds[a] += k * p.point_area[c] * std::abs(p.weights_a[4 * c + v]);
+        if (b >= 0) s.node_bonds[b] += k * p.point_area[c] * std::abs(p.weights_b[4 * c + v]);
+      }
+  }
+
+  s.node_potential.resize(m.node_count);
+  s.node_potential.fill(0);
+  for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
+    const Index face = s.search.exposed_face[x];
+    const Index count = m.face_nodes[4 * face + 3] < 0 ? 3 : 4;
+    const Index group = m.face_group[face];
+    const Interface& law = m.interfaces[m.interface_of[group * m.group_count + group]];
+    const Real k = std::max(law.stiffness_n(m.face_stiffness[face]),
+                            law.stiffness_s(m.face_stiffness[face]));
+    for (Index v = 0; v < count; ++v)
+      s.node_potential[m.face_nodes[4 * face + v]] += k * m.face_area[face] / count;
+  }
+}
+
+bool refresh_is_due(const Model& m, const State& s) {
+  if (s.built_step < 0) return true;
+  if (m.refresh_interval > 0) return s.step - s.built_step >= m.refresh_interval;
+  if (release_is_due(m, m.triangles, s.triangles) || release_is_due(m, m.quads, s.quads) ||
+      release_is_due(m, m.overlaps, s.overlaps))
+    return true;
+  bool due = false;
+#pragma omp parallel for schedule(static) reduction(|| : due)
+  for (Index i = 0; i < m.node_count; ++i) {
+    const Real skin = s.search.node_skin[i];
+    if (skin == 0) continue;
+    const Real* now = s.nodes.motion.data() + std::size_t(i) * 8;
+    const Real* then = s.nodes.built_position.data() + std::size_t(i) * 4;
+    const Real dx = now[0] - then[0], dy = now[1] - then[1], dz = now[2] - then[2];
+    due = due || dx * dx + dy * dy + dz * dz > skin * skin;
+  }
+  return due;
+}
+
+void refresh_contacts(const Model& m, State& s) {
+  if (s.built_step < 0) {
+    s.search.face_exposed.resize(m.face_count, -1);
+    for (Index f = 0; f < m.face_count; ++f)
+      if (m.face_initially_exposed[f]) expose(m, s, f);
+  }
+  release_pairs(m, s, m.triangles, s.triangles);
+  release_pairs(m, s, m.quads, s.quads);
+  release_pairs(m, s, m.overlaps, s.overlaps);
+  label_glue(m, s);
+  sum_stiffness(m, s);
+  list_candidates(m, s);
+  list_contact_corners(m, s);
+  for (Index i = 0; i < m.node_count; ++i)
+    std::copy_n(s.nodes.motion.data() + std::size_t(i) * 8, 3,
+                s.nodes.built_position.data() + std::size_t(i) * 4);
+  s.built_step = s.step;
+  ++s.refreshes;
+}
+
+void widen_edge_slots(State& s) {
+  EdgeState& e = s.edges;
+  const std::size_t count = s.search.exposed_face.size(), old = e.slots, wide = 2 * old;
+  if (wide > std::size_t(FindTargetEdges::most_slots))
+    throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
+  const auto widen = [&](auto& column, std::size_t row, auto fill) {
+    auto moved = std::move(column);
+    column = {};
+    column.resize(wide * row * count, fill);
+    for (std::size_t x = 0; x < count; ++x)
+      std::copy_n(moved.data() + x * old * row, old * row, column.data() + x * wide * row);
+  };
+  for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
+    widen(*column, 1, Index(-1));
+  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy})
+    widen(*column, 1, Real(0));
+  widen(e.reaction, 8, Real(0));
+  e.slots = Index(wide);
+}
+
+namespace {
+
+FindTargetFaces face_search(const Model& m, State& s, const SearchRules& rules) {
+  launch_one({}, Index(s.search.exposed_face.size()),
+             UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(),
+                                s.face_geometry.data()});
+  finish({});
+  return {face_columns(m, s), {s.face_geometry.data()}, s.search.exposed_face.data(),
+          candidate_columns(s), rules, spring_columns(s)};
+}
+
+}  // namespace
+
+Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
+  constexpr Real reported = 1e-6;  // of L: shallower overlaps are round-off of the mesh
+  SearchRules deep = m.rules;
+  deep.entry = deep.depth;
+  const FindTargetFaces search = face_search(m, s, deep);
+  const Index exposed = Index(s.search.exposed_face.size());
+  Real deepest = 0;
+  count = 0;
+  face = -1;
+  for (Index x = 0; x < exposed; ++x) {
+    search(One{x});
+    const Index mother = s.search.exposed_face[x];
+    for (Index k = 0; k < search.faces.vertex_count(mother); ++k) {
+      const Index t = s.springs.target[4 * x + k];
+      if (t < 0) continue;
+      const FaceShape shape = search.faces.shape(s.search.exposed_face[t]);
+      const Vec3<Real> v = search.faces.nodes.position(search.faces.vertex(mother, k));
+      const Real gap = project(shape, v, shape.normal()).gap;
+      s.springs.gap_free[4 * x + k] = gap;
+      s.springs.target_before[4 * x + k] = t;
+      if (gap > -reported * m.face_length[mother]) continue;
+      ++count;
+      if (-gap > deepest) deepest = -gap, face = mother;
+    }
+  }
+  return deepest;
+}
+
+Index count_missed_contacts(const Model& m, State& s) {
+  const FindTargetFaces springs = face_search(m, s, m.rules);
+  const FindTargetEdges edges{face_columns(m, s), {s.face_geometry.data()},
+                              s.search.exposed_face.data(), candidate_columns(s), m.rules,
+                              edge_columns(s)};
+  const Index count = Index(s.search.exposed_face.size());
+  const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };
+  const auto movable = [&](Index x) { return m.face_movable[s.search.exposed_face[x]] != 0; };
+  Index missed = 0;
+#pragma omp parallel for schedule(dynamic, 8) reduction(+ : missed)
+  for (Index x = 0; x < count; ++x) {
+    const Index first = s.search.candidate_first[x], last = s.search.candidate_first[x + 1];
+    const Index* listed = s.search.candidate.data();
+    std::vector<Index> all;
+    for (Index t = 0; t < count; ++t)
+      if (block(t) != block(x) && (movable(t) || movable(x))) all.push_back(t);
+    Flag ignored = 0;
+    for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
+      missed += springs.choose(x, k, listed + first, last - first, &ignored) !=
+                springs.choose(x, k, all.data(), Index(all.size()), &ignored);
+    for (const Index t : all) {
+      if (!m.semi_edges) break;
+      if (std::binary_search(listed + first, listed + last, t)) continue;
+      for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
+        for (Index j = 0; j < springs.faces.vertex_count(s.search.exposed_face[t]); ++j)
+          missed += edges.touches(x, k, t, j, false, false, &ignored);
+    }
+  }
+  return missed;
+}
+
+}  // namespace cdem

@@ -1,0 +1,72 @@
+// start.cpp - size a state for its model, and make it ready for the first step.
+#include "core/backend.hpp"
+#include "core/check.hpp"
+#include "core/elements/shapes.hpp"
+
+namespace cdem {
+
+namespace {
+
+template <class Shape>
+void size_elements(const Model& m, const ElementSet& e, ElementState& es) {
+  const std::size_t row = e.stride;
+  es.stress.resize(6 * row);
+  es.energy.resize(row);
+  es.damping_work.resize(row);
+  const bool keeps_stress = m.formulation == Formulation::incremental ||
+                            m.formulation == Formulation::paper_incremental;
+  if (keeps_stress) es.point_stress.resize(6 * Shape::points * row);
+}
+
+void size_pairs(const PairSet& p, PairState& s) {
+  const std::size_t row = p.stride, points = std::size_t(p.points) * p.point_stride;
+  for (Column<Real>* column :
+       {&s.broken_tension, &s.broken_shear, &s.jump, &s.stored, &s.fracture, &s.friction})
+    column->resize(row);
+  s.live.resize(row);
+  for (Index i = 0; i < p.count; ++i) s.live[i] = 1;
+  s.bond.resize(points, 1.0);
+  s.slip1.resize(points);
+  s.slip2.resize(points);
+}
+
+}  // namespace
+
+void start(const Model& m, State& s, const Real* position) {
+  const std::size_t count = m.node_count;
+  NodeState& n = s.nodes;
+  n.motion.resize(8 * count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) n.motion[8 * i + axis] = position[3 * i + axis];
+  for (Column<Real>* column : {&n.built_position, &n.force, &n.damping_force, &n.reaction,
+                               &n.momentum, &n.sample})
+    column->resize(4 * count);
+  for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
+    column->resize(count);
+  n.glue.resize(count);
+  size_elements<Tet4>(m, m.tet4, s.tet4);
+  size_elements<Pyramid5>(m, m.pyramid5, s.pyramid5);
+  size_elements<Wedge6>(m, m.wedge6, s.wedge6);
+  size_elements<Hex8>(m, m.hex8, s.hex8);
+  size_pairs(m.triangles, s.triangles);
+  size_pairs(m.quads, s.quads);
+  size_pairs(m.overlaps, s.overlaps);
+  s.corner_force.resize(4 * std::size_t(m.corner_rows));
+}
+
+void prepare(const Model& m, State& s) {
+  if (s.built_step < 0) {
+    refresh_contacts(m, s);
+    renew_step(m, s);
+    s.dt_last = s.dt;
+    return;
+  }
+  // restored: what is not kept because it follows from the rest
+  const std::size_t exposed = s.search.exposed_face.size();
+  s.face_geometry.resize(8 * exposed);
+  s.contact_force.resize(16 * exposed);
+  s.edges.overflow.resize(exposed);
+  sum_stiffness(m, s);
+}
+
+}  // namespace cdem

@@ -1,0 +1,141 @@
+// state.hpp - what a step changes, and the list that names every array of it.
+#pragma once
+
+#include <string>
+
+#include "core/field.hpp"
+
+namespace cdem {
+
+struct NodeState {
+  Column<Real> motion;                        // rows of 8: position, velocity
+  Column<Real> built_position;                // rows of 4: where the node was at the last refresh
+  Column<Real> work_external, work_damping;
+  Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
+  Column<Real> unbalance;
+  Column<Index> glue;
+};
+
+struct ElementState {
+  Column<Real> stress;        // mean, for output: [6][element]
+  Column<Real> point_stress;  // incremental formulations: [point * 6][element]
+  Column<Real> energy, damping_work;
+};
+
+struct PairState {
+  Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump;
+  Column<Real> stored, fracture, friction;
+};
+
+struct SpringState {
+  Column<Index> target, target_before;
+  Column<Real> force_n, shear1, shear2, gap_free, energy, friction, dashpot, reaction;
+  Column<Flag> lost;
+};
+
+struct EdgeState {
+  Index slots = 8;
+  Column<Index> count, side, target_face, target_edge;
+  Column<Real> shear1, shear2, force_n, energy, reaction, friction, dashpot;
+  Column<Flag> lost, overflow;
+};
+
+struct SearchState {
+  Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
+  Column<Index> candidate_first, candidate;
+  Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
+  Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
+};
+
+struct State {
+  Real time = 0;
+  Real dt = 0, dt_last = 0;  // of the coming and of the last step  [s]
+  std::int64_t step = 0, refreshes = 0, built_step = -1;
+  Real energy_start = 0, energy_scale = 0;  // of the ledger
+  Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]
+  Real kinetic_peak = 0;                    // since the motion was last stopped  [J]
+  bool ledger_started = false;
+  NodeState nodes;
+  ElementState tet4, pyramid5, wedge6, hex8;
+  PairState triangles, quads, overlaps;
+  SpringState springs;
+  EdgeState edges;
+  SearchState search;
+  Column<Real> face_geometry, corner_force, contact_force;  // rows of 8, 4, 4
+  Column<Real> node_potential, node_bonds;  // stiffness that contacts may have, bonds have  [N/m]
+  Column<Real> load_factor, velocity_factor;                // of the curves in this step
+};
+
+/// Visit every array that must survive a restart, by name: checkpoint and Python views come from it.
+template <class S, class Visit>
+void describe(S& s, Visit&& field) {
+  field("node.motion", s.nodes.motion, "position [m], pad, velocity [m/s], pad");
+  field("node.built_position", s.nodes.built_position, "position at the last refresh [m]");
+  field("node.work_external", s.nodes.work_external, "work of loads and supports [J]");
+  field("node.work_damping", s.nodes.work_damping, "work taken out by damping [J]");
+  field("node.reaction", s.nodes.reaction, "force of supports [N]");
+  field("node.glue", s.nodes.glue, "label shared by nodes that intact bonds hold together");
+
+  const auto elements = [&](const char* shape, auto& e) {
+    const std::string name = std::string(shape) + ".";
+    field(name + "point_stress", e.point_stress, "stress at Gauss points [Pa]");
+    field(name + "energy", e.energy, "stored energy [J]");
+    field(name + "damping_work", e.damping_work, "work of the stiffness dashpot [J]");
+  };
+  elements("tet4", s.tet4);
+  elements("pyramid5", s.pyramid5);
+  elements("wedge6", s.wedge6);
+  elements("hex8", s.hex8);
+
+  const auto pairs = [&](const char* kind, auto& p) {
+    const std::string name = std::string(kind) + ".";
+    field(name + "live", p.live, "1 until released to the contact search");
+    field(name + "bond", p.bond, "1 while intact, 0 once broken");
+    field(name + "slip1", p.slip1, "plastic slip [m]");
+    field(name + "slip2", p.slip2, "plastic slip [m]");
+    field(name + "broken_tension", p.broken_tension, "springs broken in tension");
+    field(name + "broken_shear", p.broken_shear, "springs broken in shear");
+    field(name + "jump", p.jump, "largest jump of a broken pair [m]");
+    field(name + "stored", p.stored, "elastic energy [J]");
+    field(name + "fracture", p.fracture, "energy of fracture [J]");
+    field(name + "friction", p.friction, "frictional work [J]");
+  };
+  pairs("triangles", s.triangles);
+  pairs("quads", s.quads);
+  pairs("overlaps", s.overlaps);
+
+  field("spring.target", s.springs.target, "exposed face in contact, or -1");
+  field("spring.target_before", s.springs.target_before, "the same, one step ago");
+  field("spring.force_n", s.springs.force_n, "normal force, compression > 0 [N]");
+  field("spring.shear1", s.springs.shear1, "first shear force [N]");
+  field("spring.shear2", s.springs.shear2, "second shear force [N]");
+  field("spring.gap_free", s.springs.gap_free, "gap without stress [m]");
+  field("spring.energy", s.springs.energy, "stored energy [J]");
+  field("spring.friction", s.springs.friction, "frictional work [J]");
+  field("spring.dashpot", s.springs.dashpot, "work of the contact dashpot [J]");
+  field("spring.reaction", s.springs.reaction, "force, stiffness, weights on the target");
+  field("spring.lost", s.springs.lost, "1: lost by depth");
+
+  field("edge.count", s.edges.count, "contacts of the face's semi-edges");
+  field("edge.side", s.edges.side, "side of the mother face");
+  field("edge.target_face", s.edges.target_face, "exposed face of the target edge");
+  field("edge.target_edge", s.edges.target_edge, "target edge");
+  field("edge.shear1", s.edges.shear1, "first shear force [N]");
+  field("edge.shear2", s.edges.shear2, "second shear force [N]");
+  field("edge.force_n", s.edges.force_n, "normal force, compression > 0 [N]");
+  field("edge.energy", s.edges.energy, "stored energy [J]");
+  field("edge.reaction", s.edges.reaction, "force, stiffness, places on the edges");
+  field("edge.friction", s.edges.friction, "frictional work [J]");
+  field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");
+  field("edge.lost", s.edges.lost, "1: lost by depth");
+
+  field("search.exposed_face", s.search.exposed_face, "faces that can be touched");
+  field("search.face_exposed", s.search.face_exposed, "place of a face among them, or -1");
+  field("search.candidate_first", s.search.candidate_first, "start of a face's candidates");
+  field("search.candidate", s.search.candidate, "exposed faces that it may touch");
+  field("search.contact_first", s.search.contact_first, "start of a node's contact rows");
+  field("search.contact_corner", s.search.contact_corner, "contact rows of a node");
+  field("search.node_skin", s.search.node_skin, "motion that calls for a refresh [m]");
+}
+
+}  // namespace cdem

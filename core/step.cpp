@@ -1,0 +1,192 @@
+// step.cpp - the method on one page. Each call is one file and one section of the theory manual.
+#include "core/step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/backend.hpp"
+#include "core/check.hpp"
+#include "core/columns.hpp"
+#include "core/contact/force.hpp"
+#include "core/elements/corotational.hpp"
+#include "core/elements/incremental.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Factors of all load and velocity curves at one time; piecewise linear, constant outside.
+void evaluate_curves(const Model& m, Real time, Column<Real>& values) {
+  values.resize(m.curve_time.size());
+  for (std::size_t c = 0; c < m.curve_time.size(); ++c) {
+    const auto& t = m.curve_time[c];
+    const auto& f = m.curve_factor[c];
+    const std::size_t after = std::upper_bound(t.begin(), t.end(), time) - t.begin();
+    if (after == 0) {
+      values[c] = f.front();
+    } else if (after == t.size()) {
+      values[c] = f.back();
+    } else {
+      const Real part = (time - t[after - 1]) / (t[after] - t[after - 1]);
+      values[c] = f[after - 1] + part * (f[after] - f[after - 1]);
+    }
+  }
+}
+
+void update_face_geometry(const Model& m, State& s, Queue q) {  // contact/face.hpp
+  launch_one(q, Index(s.search.exposed_face.size()),
+             UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(),
+                                s.face_geometry.data()});
+}
+
+template <Index count>
+void update_conforming(const Model& m, State& s, Queue q, const PairSet& p, PairState& ps,
+                       Real indentation) {
+  launch(q, p.count,
+         ConformingBonds<count>{{s.nodes.motion.data()},
+                                {p.nodes.data(), p.stride},
+                                pair_columns(m, p, ps),
+                                indentation,
+                                s.dt_last,
+                                {s.corner_force.data() + std::size_t(p.corner_first) * 4}});
+}
+
+void update_bonds(const Model& m, State& s, Queue q) {  // contact/bond.hpp
+  update_conforming<3>(m, s, q, m.triangles, s.triangles, m.bond_indentation_triangle);
+  update_conforming<4>(m, s, q, m.quads, s.quads, m.bond_indentation_quad);
+  const PairSet& p = m.overlaps;
+  launch_one(q, p.count,
+             OverlapBonds{face_columns(m, s), p.faces.data(), p.point_first.data(),
+                          p.weights_a.data(), p.weights_b.data(), p.point_area.data(),
+                          pair_columns(m, p, s.overlaps),
+                          {s.corner_force.data() + std::size_t(p.corner_first) * 4}});
+}
+
+void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact/target_face.hpp
+  launch_one(q, Index(s.search.exposed_face.size()),
+             FindTargetFaces{face_columns(m, s), {s.face_geometry.data()},
+                             s.search.exposed_face.data(), candidate_columns(s), m.rules,
+                             spring_columns(s)});
+}
+
+void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, contact/target_edge.hpp
+  if (!m.semi_edges) return;
+  const Index count = Index(s.search.exposed_face.size());
+  while (true) {
+    launch_one(q, count,
+               FindTargetEdges{face_columns(m, s), {s.face_geometry.data()},
+                               s.search.exposed_face.data(), candidate_columns(s), m.rules,
+                               edge_columns(s)});
+    finish(q);
+    const Flag* overflow = s.edges.overflow.data();
+    if (std::none_of(overflow, overflow + count, [](Flag f) { return f != 0; })) return;
+    widen_edge_slots(s);
+  }
+}
+
+void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, contact/force.hpp
+  const Index count = Index(s.search.exposed_face.size());
+  const Index* exposed = s.search.exposed_face.data();
+  launch_one(q, 4 * count,
+             UpdateSpringForces{face_columns(m, s), exposed, m.rules, contact_laws(m),
+                                spring_columns(s)});
+  launch_one(q, count,
+             UpdateEdgeForces{face_columns(m, s), exposed, contact_laws(m), edge_columns(s)});
+  launch_one(q, count,
+             GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s), m.rules,
+                              spring_columns(s), edge_columns(s), s.contact_force.data()});
+}
+
+template <class Shape>
+void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
+  const ElementColumns<Shape> columns = element_columns<Shape>(m, s, e);
+  const OutForces out{s.corner_force.data() + std::size_t(e.corner_first) * 4};
+  const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
+  const InOutTable stress{es.point_stress.data(), e.stride};
+  const Real damping_time = m.stiffness_damping * s.dt;
+  switch (m.formulation) {
+    case Formulation::corotational:
+      return launch(q, e.count, CorotationalForce<Shape, FollowRotation>{
+                                    columns, damping_time, s.dt, work, out});
+    case Formulation::paper_total:
+      return launch(q, e.count, CorotationalForce<Shape, IgnoreRotation>{
+                                    columns, damping_time, s.dt, work, out});
+    case Formulation::incremental:
+      return launch(q, e.count,
+                    IncrementalForce<Shape, TurnByHalves>{columns, s.dt_last, stress, energy, out});
+    case Formulation::paper_incremental:
+      return launch(q, e.count,
+                    IncrementalForce<Shape, NeverTurn>{columns, s.dt_last, stress, energy, out});
+  }
+}
+
+void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, elements/
+  update_elements<Tet4>(m, s, q, m.tet4, s.tet4);
+  update_elements<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5);
+  update_elements<Wedge6>(m, s, q, m.wedge6, s.wedge6);
+  update_elements<Hex8>(m, s, q, m.hex8, s.hex8);
+}
+
+void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
+  launch_one(q, m.node_count,
+             SumNodeForces{{s.nodes.motion.data()}, corner_lists(m, s), load_columns(m, s),
+                           support_columns(m, s), m.damping, m.mass.data(),
+                           s.nodes.force.data(), s.nodes.damping_force.data(),
+                           s.nodes.unbalance.data()});
+}
+
+void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
+  launch_one(q, m.node_count,
+             MoveNodes{mass_columns(m), load_columns(m, s), support_columns(m, s), s.nodes.force.data(),
+                       s.nodes.damping_force.data(), s.dt, s.nodes.motion.data(),
+                       s.nodes.reaction.data(), s.nodes.work_external.data(),
+                       s.nodes.work_damping.data()});
+  finish(q);
+}
+
+/// One step: contacts, elements, nodes. Everything before move_nodes belongs to the time `s.time`.
+void step(const Model& m, State& s, Queue q, bool sampled) {
+  evaluate_curves(m, s.time, s.load_factor);
+  evaluate_curves(m, s.time + 0.5 * s.dt, s.velocity_factor);
+  const bool refreshed = refresh_is_due(m, s);
+  if (refreshed) refresh_contacts(m, s);
+  update_face_geometry(m, s, q);
+  update_bonds(m, s, q);
+  find_target_faces(m, s, q);
+  find_target_edges(m, s, q);
+  update_contact_forces(m, s, q);
+  update_element_forces(m, s, q);
+  sum_node_forces(m, s, q);
+  if (sampled) sample_before(m, s, q);
+  move_nodes(m, s, q);
+  if (sampled) sample_after(m, s, q);
+  s.dt_last = s.dt;
+  s.time += s.dt;
+  s.step += 1;
+  if (refreshed || s.step % step_check_interval == 0) renew_step(m, s);
+}
+
+}  // namespace
+
+Report run(const Model& m, State& s, const Goal& goal) {
+  for (std::int64_t n = 1; n <= goal.steps; ++n) {
+    const bool last = n == goal.steps || s.time + s.dt >= goal.end_time;
+    const bool scheduled = s.step % goal.check_interval == 0;  // whatever the split into runs
+    const bool check = last || scheduled;
+    step(m, s, {}, check || goal.kinetic_relaxation);
+    if (goal.kinetic_relaxation) {
+      const Real kinetic = kinetic_energy(m, s);
+      if (kinetic < s.kinetic_peak) stop_motion(m, s);
+      s.kinetic_peak = kinetic < s.kinetic_peak ? 0 : kinetic;
+    }
+    if (!check) continue;
+    const Report report = check_health(m, s);
+    if (report.outcome != Outcome::steps_done) return report;
+    if (s.time >= goal.end_time) return {Outcome::time_reached, -1, s.time};
+    if (scheduled && goal.unbalance_limit > 0 && unbalance_ratio(m, s) < goal.unbalance_limit)
+      return {Outcome::converged, -1, s.time};
+  }
+  return {};
+}
+
+}  // namespace cdem

@@ -1,0 +1,235 @@
+"""What a model is, before the first step: counts, groups, interfaces, step, memory, warnings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cdem import shapes
+
+if TYPE_CHECKING:
+    from cdem.simulation import Simulation
+
+SLIVER = 0.02
+"""Height over longest edge below which an element is called a sliver."""
+SOFT = 20.0
+"""Compliance of the interfaces above which the audit warns [%]."""
+
+
+class Audit:
+    """Report on a model that is ready to run.
+
+    Attributes:
+        counts: Nodes, elements, blocks, faces, semi-springs, semi-edges, bonded pairs.
+        warnings: What a user should look at.
+    """
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        t = sim.build.topology
+        corners = (t.face_nodes >= 0).sum(axis=1)
+        counts = sim.build.assembly.counts
+        self.counts = {
+            "nodes": len(t.node_position),
+            "elements": sum(len(e) for e in t.element_nodes.values()),
+            "blocks": len(t.block_group),
+            "faces": len(t.face_nodes),
+            "semi_springs": int(corners.sum()),
+            "semi_edges": int(corners.sum()),
+            "bonded_pairs": sum(counts[f"{k}.count"] for k in ("triangles", "quads", "overlaps")),
+        }
+        self.groups = self._groups()
+        self.interfaces = self._interfaces()
+        self.step = self._step()
+        self.warnings = self._warnings()
+
+    # ------------------------------------------------------------------ parts
+
+    def _groups(self) -> dict[str, dict[str, Any]]:
+        b = self._sim.build
+        t = b.topology
+        out = {}
+        for index, name in enumerate(b.group_names):
+            nodes = b.nodes_of(name)
+            volume = mass = elements = 0.0
+            for shape in shapes.NODES:
+                some = t.element_group[shape] == index
+                volume += b.assembly.element_volume[shape][some].sum()
+                mass += b.assembly.element_mass[shape][some].sum()
+                elements += int(some.sum())
+            out[name] = {
+                "blocks": int((t.block_group == index).sum()),
+                "elements": int(elements),
+                "volume": float(volume),
+                "mass": float(mass),
+                "low": b.start_position[nodes].min(axis=0).tolist(),
+                "high": b.start_position[nodes].max(axis=0).tolist(),
+            }
+        return out
+
+    def _interfaces(self) -> list[dict[str, Any]]:
+        """One row per pair of groups that is bonded: pairs, area, stiffness, compliance."""
+        b = self._sim.build
+        t, a = b.topology, b.assembly
+        rows: dict[tuple[str, str], dict[str, Any]] = {}
+        for kind in ("triangles", "quads", "overlaps"):
+            count = a.counts[f"{kind}.count"]
+            if count == 0:
+                continue
+            faces = a.pair_faces[kind]
+            stride = len(a.arrays[f"{kind}.interface"])
+            stiffness = a.arrays[f"{kind}.stiffness"].reshape(2, stride)[0, :count]
+            area = a.arrays[f"{kind}.area"][:count]
+            # two half elements of height h in a row with the interface: E / (k_n h)
+            ratio = a.arrays["face.stiffness"][faces].mean(axis=1) / stiffness
+            group = np.sort(t.face_group[faces], axis=1)
+            for i, j in np.unique(group, axis=0):
+                some = (group == (i, j)).all(axis=1)
+                key = (b.group_names[i], b.group_names[j])
+                row = rows.setdefault(key, {"pairs": 0, "area": 0.0, "soft": 0.0, "k": []})
+                row["pairs"] += int(some.sum())
+                row["area"] += float(area[some].sum())
+                row["soft"] += float((ratio[some] * area[some]).sum())
+                row["k"] += [float(stiffness[some].min()), float(stiffness[some].max())]
+        return [
+            {
+                "between": list(key),
+                "bonded_pairs": row["pairs"],
+                "area": row["area"],
+                "stiffness_n": [min(row["k"]), max(row["k"])],
+                "compliance_percent": 100 * row["soft"] / row["area"],
+            }
+            for key, row in rows.items()
+        ]
+
+    def _step(self) -> dict[str, Any]:
+        sim = self._sim
+        limit, node, element2, contact2 = sim.core.step_limit()
+        t = sim.build.topology
+        group = sim.build.group_names[t.block_group[t.node_block[node]]]
+        return {
+            "dt": float(sim.core.scalars()["dt"]),
+            "limit": limit,
+            "node": int(node),
+            "group": group,
+            "rules": "element" if element2 > contact2 else "interface or contact stiffness",
+            "added_mass": sim.build.assembly.added_mass,
+        }
+
+    def _slivers(self) -> int:
+        t = self._sim.build.topology
+        tets = t.node_position[t.element_nodes["tet4"]]
+        if len(tets) == 0:
+            return 0
+        volume = self._sim.build.assembly.element_volume["tet4"]
+        sides = tets[:, [1, 2, 3, 2, 3, 3]] - tets[:, [0, 0, 0, 1, 1, 2]]
+        longest = np.linalg.norm(sides, axis=2).max(axis=1)
+        area = np.stack(
+            [
+                np.linalg.norm(np.cross(tets[:, j] - tets[:, i], tets[:, k] - tets[:, i]), axis=1)
+                for i, j, k in ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3))
+            ]
+        ).max(axis=0)
+        return int((6 * volume / area < SLIVER * longest).sum())
+
+    def _warnings(self) -> list[str]:
+        sim, b = self._sim, self._sim.build
+        out = list(b.mesh.notes)
+        depth, count, face = sim.overlap
+        if count:
+            block = int(b.topology.face_block[face])
+            group = b.group_names[b.topology.block_group[block]]
+            out.append(
+                f"blocks overlap at the start: {count} vertices, up to {depth:.3g} m (block {block} "
+                f"of group {group}); the overlap counts as free of stress. Mend the mesh if it "
+                "should not be there"
+            )
+        slivers = self._slivers()
+        if slivers:
+            out.append(
+                f"{slivers} sliver elements (height below {SLIVER:.0%} of the longest edge) shorten "
+                "the time step; remesh, or use time.mass_scaling"
+            )
+        soft = [i for i in self.interfaces if i["compliance_percent"] > SOFT]
+        for row in soft:
+            out.append(
+                f"the interface of {row['between'][0]} and {row['between'][1]} adds "
+                f"{row['compliance_percent']:.0f} % compliance; raise its stiffness_n"
+            )
+        if b.assembly.lumped_blocks:
+            out.append(
+                f"{b.assembly.lumped_blocks} large blocks one element thick keep lumped masses: "
+                "their rotational inertia is too large"
+            )
+        if b.assembly.added_mass:
+            total = sum(m.sum() for m in b.assembly.element_mass.values())
+            out.append(
+                f"mass scaling adds {b.assembly.added_mass:.3g} kg "
+                f"({100 * b.assembly.added_mass / total:.2g} % of the mass)"
+            )
+        return out
+
+    # ------------------------------------------------------------------ output
+
+    @property
+    def memory(self) -> int:
+        """Bytes that model and state take."""
+        state = sum(a.nbytes for a in self._sim.core.fields().values())
+        return state + sum(a.nbytes for a in self._sim.build.assembly.arrays.values())
+
+    def as_dict(self) -> dict[str, Any]:
+        """The whole report, ready for JSON."""
+        return {
+            "counts": self.counts,
+            "groups": self.groups,
+            "interfaces": self.interfaces,
+            "time_step": self.step,
+            "memory_bytes": self.memory,
+            "wall_time_estimate": self.wall_time(),
+            "warnings": self.warnings,
+        }
+
+    def wall_time(self) -> float | None:
+        """Rough wall time of the dynamic stages [s]; None when there are none."""
+        duration = sum(s.duration or 0.0 for s in self._sim.case.stages)
+        if duration == 0:
+            return None
+        # measured on one Zen 5 core: about 1.5 million elements and 0.6 million faces per second
+        work = self.counts["elements"] / 1.5e6 + self.counts["faces"] / 6e5
+        return duration / self.step["dt"] * work / max(1.0, 0.9 * self._sim.threads)
+
+    def text(self) -> str:
+        """The report as a page of text."""
+        lines = [self._sim.case.title or "untitled case", ""]
+        lines += [f"  {key.replace('_', ' '):<14}{value:>12,}" for key, value in self.counts.items()]
+        lines += ["", f"  {'group':<18}{'blocks':>9}{'elements':>10}{'volume [m3]':>14}{'mass [kg]':>14}"]
+        for name, g in self.groups.items():
+            lines.append(
+                f"  {name:<18}{g['blocks']:>9,}{g['elements']:>10,}{g['volume']:>14.6g}"
+                f"{g['mass']:>14.6g}"
+            )
+        low = np.min([g["low"] for g in self.groups.values()], axis=0)
+        high = np.max([g["high"] for g in self.groups.values()], axis=0)
+        spans = ", ".join(f"{a:.6g} .. {b:.6g}" for a, b in zip(low, high, strict=True))
+        lines += ["", f"  extent x, y, z [m]: {spans}"]
+        if self.interfaces:
+            lines += ["", "  bonded interfaces"]
+        for row in self.interfaces:
+            lines.append(
+                f"    {row['between'][0]} - {row['between'][1]}: {row['bonded_pairs']:,} pairs, "
+                f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
+                f"{row['stiffness_n'][1]:.3g} Pa/m, adds {row['compliance_percent']:.3g} % compliance"
+            )
+        s = self.step
+        lines += [
+            "",
+            f"  time step {s['dt']:.4g} s ({s['rules']} of group {s['group']} decides; stable below "
+            f"{s['limit']:.4g} s)",
+            f"  memory {self.memory / 1e6:,.0f} MB",
+        ]
+        wall = self.wall_time()
+        if wall is not None:
+            lines.append(f"  dynamic stages: about {wall:,.0f} s of wall time while little moves")
+        lines += [""] + [f"  warning: {w}" for w in self.warnings]
+        return "\n".join(lines).rstrip() + "\n"

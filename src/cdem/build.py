@@ -1,0 +1,420 @@
+"""From a case to a model that the core can run: meshes, blocks, interfaces, loads, supports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem import assemble, mesh
+from cdem._native import core as native
+from cdem.case import Case
+from cdem.errors import CaseError
+from cdem.mesh import Mesh
+from cdem.topology import Topology, build_topology, group_touching
+
+Floats = NDArray[np.float64]
+
+BOND_INDENTATION = {"vertex": (0.0, 0.0), "quadrature": (0.5, 1 - 1 / np.sqrt(3))}
+"""Where bond points sit, on triangles and on quadrilaterals: at the vertices, or where the points
+integrate a linear stress exactly (method of the theory page on bonds)."""
+
+
+@dataclass
+class Build:
+    """A model ready to run.
+
+    Attributes:
+        case: The case it was made from.
+        mesh: The mesh, all pieces merged.
+        topology: Blocks, faces and pairs.
+        assembly: Flat arrays that the core was given.
+        core: The compiled core, holding model and state.
+        curves: Times and factors of load and velocity histories; the first is constant.
+        start_position: Positions at the start [m], shape (nodes, 3).
+        bonded: Whether the interface of two groups was bonded at the start, shape (groups, groups).
+    """
+
+    case: Case
+    mesh: Mesh
+    topology: Topology
+    assembly: assemble.Assembly
+    core: native.Core
+    curves: list[tuple[list[float], list[float]]]
+    start_position: Floats
+    bonded: NDArray[np.bool_]
+
+    @property
+    def group_names(self) -> list[str]:
+        """Names of the groups, by index."""
+        return self.mesh.group_names
+
+    def node_groups(self) -> NDArray[np.int32]:
+        """Group of each node's block, shape (nodes,)."""
+        return self.topology.block_group[self.topology.node_block]
+
+    def nodes_of(self, group: str) -> NDArray[np.intp]:
+        """Nodes of a group, ascending."""
+        return np.flatnonzero(self.node_groups() == self.group_names.index(group))
+
+
+def read_model(case: Case) -> Mesh:
+    """Read and place the mesh file and the blocks of a case, all in one mesh."""
+    pieces = []
+    model = case.model
+    if model.mesh is not None:
+        pieces.append(mesh.read_mesh(case.path_of(model.mesh)))
+    for index, block in enumerate(model.blocks):
+        with case.blame(f"model.blocks.{index}"):
+            pieces.append(_block(block))
+    if not pieces:
+        raise CaseError(f"{case.where('model')}: model: has neither a mesh nor blocks; give one")
+    merged = mesh.merge(pieces)
+    return mesh.place(merged, model.rotate, model.translate)
+
+
+def _block(block) -> Mesh:
+    if block.box is not None:
+        piece = mesh.box(block.group, block.box.size, block.box.divisions, shape=block.box.shape)
+    else:
+        piece = mesh.polyhedron(block.group, block.polyhedron.vertices, block.polyhedron.faces)
+    return mesh.place(piece, block.rotate, block.translate)
+
+
+def build(case: Case) -> Build:
+    """Build the model of a case.
+
+    Raises:
+        CaseError: Something in the case file does not fit the model.
+        MeshError: A mesh cannot be used.
+    """
+    merged = read_model(case)
+    names = merged.group_names
+    _check_groups(case, names)
+    laws, interface_of = interfaces_of(case, names)
+    bonded = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws] + [False])
+    bonds = bonded[interface_of]
+    topology = build_topology(
+        merged, dict(case.model.split), lambda a, b: bool(bonds[names.index(a), names.index(b)])
+    )
+    _check_interfaces(case, topology, names, interface_of)
+    _snap_mates(topology)
+
+    core = native.Core()
+    curves: list[tuple[list[float], list[float]]] = [([0.0], [1.0])]
+    supports = _supports(case, topology, names, curves)
+    properties = _properties(case, names, laws, interface_of, bonds, supports)
+    parts = assemble.assemble(topology, properties, native.padded_stride)
+    parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
+    _drop_gravity(case, topology, names, parts)
+    parts.arrays |= _loads(case, topology, names, curves)
+    core.take_counts(parts.counts)
+    core.take_model(parts.arrays)
+    core.set_curves([c[0] for c in curves], [c[1] for c in curves])
+    core.set_interfaces([interface_row(law) for law in laws])
+    core.set_options(_options(case, [case.materials[case.groups[n].material] for n in names]))
+    position = topology.node_position
+    core.start(np.ascontiguousarray(position))
+    built = Build(case, merged, topology, parts, core, curves, position.copy(), bonds)
+    _initial_velocities(built)
+    return built
+
+
+def _properties(case: Case, names, laws, interface_of, bonds, supports) -> assemble.Properties:
+    materials = [case.materials[case.groups[name].material] for name in names]
+    scaling = case.time.mass_scaling
+    return assemble.Properties(
+        density=np.array([m.density for m in materials]),
+        young_modulus=np.array([m.young_modulus for m in materials]),
+        poisson_ratio=np.array([m.poisson_ratio for m in materials]),
+        interface_of=np.maximum(interface_of, 0),
+        bonded=bonds,
+        stiffness=np.array([stiffness_row(law) for law in laws]).reshape(-1, 4),
+        exact_mass=case.elements.mass == "exact",
+        supported=supports["component"][np.maximum(supports["row"], 0)].astype(bool)
+        & (supports["row"] >= 0)[:, None],
+        target_step=0.0 if scaling is None else scaling.step,
+    )
+
+
+def change(built: Build) -> dict[str, NDArray]:
+    """Arrays of the core that follow from the parts of a case that a stage may change.
+
+    Supports change the inverse mass matrices of small blocks, so those are made anew too.
+    """
+    case, names, topology = built.case, built.group_names, built.topology
+    laws, interface_of = interfaces_of(case, names)
+    del built.curves[1:]
+    supports = _supports(case, topology, names, built.curves)
+    properties = _properties(case, names, laws, interface_of, built.bonded, supports)
+    parts = assemble.assemble(topology, properties, native.padded_stride)
+    parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
+    _drop_gravity(case, topology, names, parts)
+    parts.arrays |= _loads(case, topology, names, built.curves)
+    kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s")
+    return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}
+
+
+def _check_groups(case: Case, names: list[str]) -> None:
+    listed = ", ".join(names)
+    for name in names:
+        if name not in case.groups:
+            raise CaseError(
+                f"{case.where('groups')}: groups: group {name!r} of the model is missing; "
+                f"give it a material (the model has: {listed})"
+            )
+    for name in case.groups:
+        if name not in names:
+            raise CaseError(
+                f"{case.where(f'groups.{name}')}: groups.{name}: no such group in the model; "
+                f"it has: {listed}"
+            )
+    for name in case.model.split:
+        if name not in names:
+            raise CaseError(
+                f"{case.where(f'model.split.{name}')}: model.split.{name}: no such group in the "
+                f"model; it has: {listed}"
+            )
+
+
+def interfaces_of(case: Case, names: list[str]):
+    """Interface laws in use, and the index of each pair of groups (-1 where none was given)."""
+    laws = list(case.interfaces.pairs)
+    table = np.full((len(names), len(names)), -1, np.int32)
+    if case.interfaces.default is not None:
+        laws.append(case.interfaces.default)
+        table[:] = len(laws) - 1
+    for index, pair in enumerate(case.interfaces.pairs):
+        for name in pair.between:
+            if name not in names:
+                raise CaseError(
+                    f"{case.where(f'interfaces.pairs.{index}.between')}: interfaces.pairs.{index}."
+                    f"between: no group {name!r} in the model; it has: {', '.join(names)}"
+                )
+        a, b = (names.index(name) for name in pair.between)
+        table[a, b] = table[b, a] = index
+    return laws, table
+
+
+def _check_interfaces(case: Case, topology: Topology, names: list[str], table) -> None:
+    for a, b in sorted(group_touching(topology)):
+        if table[names.index(a), names.index(b)] < 0:
+            raise CaseError(
+                f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} touch but have no "
+                f"interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
+            )
+    if (table < 0).any():
+        first = np.argwhere(table < 0)[0]
+        a, b = names[first[0]], names[first[1]]
+        raise CaseError(
+            f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} may come to touch but "
+            f"have no interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
+        )
+
+
+def interface_row(law) -> list[float]:
+    """The numbers of an interface that the core keeps."""
+    tangent = float(np.tan(np.radians(law.friction_angle)))
+    return [law.cohesion, law.tensile_strength, tangent, *stiffness_row(law)]
+
+
+def stiffness_row(law) -> list[float]:
+    """Value and factor of k_n, then of k_s; a value of 0 means factor times E / h."""
+    return [*law.stiffness_n.as_pair(), *law.stiffness_s.as_pair()]
+
+
+def _snap_mates(topology: Topology) -> None:
+    """Put the vertices of conforming faces at exactly the same place (they differ by round-off)."""
+    faces, shift = topology.pair_faces, topology.pair_shift
+    if len(faces) == 0:
+        return
+    for n in (3, 4):
+        some = (topology.face_nodes[faces[:, 0]] >= 0).sum(axis=1) == n
+        k = np.arange(n)
+        a = topology.face_nodes[faces[some, 0]][:, :n]
+        mates = (shift[some][:, None] - k) % n
+        b = np.take_along_axis(topology.face_nodes[faces[some, 1]], mates, axis=1)
+        topology.node_position[b] = topology.node_position[a]
+
+
+def _curve(history, curves: list) -> int:
+    """Index of a history's curve; without one, the constant."""
+    if history is None:
+        return 0
+    curves.append(([float(t) for t, _ in history], [float(f) for _, f in history]))
+    return len(curves) - 1
+
+
+def _select(case: Case, topology: Topology, names: list[str], item, path: str):
+    """Nodes that an entry of loads means: by group, surface, point or box."""
+    position = topology.node_position
+    groups = topology.block_group[topology.node_block]
+    among = np.ones(len(position), bool)
+    if getattr(item, "group", None) is not None:
+        if item.group not in names:
+            raise CaseError(
+                f"{case.where(path + '.group')}: {path}.group: no group {item.group!r} in the "
+                f"model; it has: {', '.join(names)}"
+            )
+        among = groups == names.index(item.group)
+    if getattr(item, "surface", None) is not None:
+        faces = _surface(case, topology, item.surface, path)
+        inside = np.zeros(len(position), bool)
+        nodes = topology.face_nodes[faces].ravel()
+        inside[nodes[nodes >= 0]] = True
+        among &= inside
+    if getattr(item, "box", None) is not None:
+        among &= ((position >= item.box.min) & (position <= item.box.max)).all(axis=1)
+    if getattr(item, "point", None) is not None:
+        candidates = np.flatnonzero(among)
+        distance = np.linalg.norm(position[candidates] - item.point, axis=1)
+        # every node at that point: blocks that touch there have one each
+        among = np.zeros(len(position), bool)
+        among[candidates[distance <= distance.min() * (1 + 1e-9) + 1e-12]] = True
+    if not among.any():
+        raise CaseError(f"{case.where(path)}: {path}: selects no nodes; check where it points")
+    return np.flatnonzero(among)
+
+
+def _surface(case: Case, topology: Topology, name: str, path: str):
+    if name not in topology.surfaces:
+        known = ", ".join(sorted(topology.surfaces)) or "none"
+        raise CaseError(
+            f"{case.where(path + '.surface')}: {path}.surface: no surface {name!r} in the model; "
+            f"it has: {known}"
+        )
+    return topology.surfaces[name]
+
+
+def _supports(case: Case, topology: Topology, names: list[str], curves: list) -> dict:
+    """Rows of supported nodes: which components, at which velocity, on which curve."""
+    count = len(topology.node_position)
+    component = np.zeros((count, 3), np.int8)
+    velocity = np.zeros((count, 3))
+    curve = np.zeros((count, 3), np.int32)
+
+    def hold(nodes, axes, speeds, index) -> None:
+        for axis, speed in zip(axes, speeds, strict=True):
+            component[nodes, axis] = 1
+            velocity[nodes, axis] = speed
+            curve[nodes, axis] = index
+
+    groups = topology.block_group[topology.node_block]
+    for name, group in case.groups.items():
+        axes = ["xyz".index(c) for c in group.fix]
+        hold(groups == names.index(name), axes, [0.0] * len(axes), 0)
+    for index, item in enumerate(case.loads.supports):
+        nodes = _select(case, topology, names, item, f"loads.supports.{index}")
+        axes = ["xyz".index(c) for c in item.fix]
+        hold(nodes, axes, [0.0] * len(axes), 0)
+    for index, item in enumerate(case.loads.velocities):
+        nodes = _select(case, topology, names, item, f"loads.velocities.{index}")
+        axes = ["xyz".index(c) for c in item.components]
+        hold(nodes, axes, [item.velocity[a] for a in axes], _curve(item.history, curves))
+
+    held = component.any(axis=1)
+    row = np.full(count, -1, np.int32)
+    row[held] = np.arange(held.sum())
+    if not held.any():  # the core looks rows up; an empty table still needs one
+        held[:1] = True
+    return {
+        "row": row,
+        "component": component[held],
+        "velocity": velocity[held],
+        "curve": curve[held],
+    }
+
+
+def _drop_gravity(case: Case, topology: Topology, names: list[str], parts) -> None:
+    groups = topology.block_group[topology.node_block]
+    for name, group in case.groups.items():
+        if not group.gravity:
+            parts.arrays["node.gravity_mass"][groups == names.index(name)] = 0
+
+
+def _loads(case: Case, topology: Topology, names: list[str], curves: list) -> dict:
+    """Nodal forces of tractions: the area of each vertex of the loaded faces times the traction."""
+    nodes, forces, of_curve = [], [], []
+    area = assemble.face_areas(topology.node_position, topology.face_nodes)
+    corners = (topology.face_nodes >= 0).sum(axis=1)
+    for index, item in enumerate(case.loads.tractions):
+        faces = _traction_faces(case, topology, names, item, f"loads.tractions.{index}")
+        vertex = topology.face_nodes[faces]
+        used = vertex >= 0
+        share = np.broadcast_to((area[faces] / corners[faces])[:, None], vertex.shape)[used]
+        nodes.append(vertex[used])
+        forces.append(share[:, None] * np.asarray(item.traction, float))
+        of_curve.append(np.full(used.sum(), _curve(item.history, curves), np.int32))
+    count = len(topology.node_position)
+    if not nodes:
+        empty = {"load.curve": np.zeros(0, np.int32), "load.force": np.zeros(0)}
+        return {"load.first": np.zeros(count + 1, np.int32), **empty}
+    owner, force = np.concatenate(nodes), np.concatenate(forces)
+    first, curve = assemble.ragged(owner, np.concatenate(of_curve), count)
+    _, force = assemble.ragged(owner, force, count)
+    rows = np.zeros((len(force), 4))
+    rows[:, :3] = force
+    return {"load.first": first, "load.curve": curve, "load.force": rows.ravel()}
+
+
+def _traction_faces(case: Case, topology: Topology, names: list[str], item, path: str):
+    """Exterior faces of a surface by name, or of a group that look along a normal."""
+    if item.surface is None or isinstance(item.surface, str):
+        faces = _surface(case, topology, item.surface, path)
+        return np.asarray(faces)
+    if item.surface.group not in names:
+        raise CaseError(
+            f"{case.where(path)}: {path}.surface.group: no group {item.surface.group!r} in the "
+            f"model; it has: {', '.join(names)}"
+        )
+    nodes = topology.face_nodes
+    x = topology.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    wanted = np.asarray(item.surface.normal, float)
+    along = normal @ (wanted / np.linalg.norm(wanted)) > 1 - 1e-6
+    faces = np.flatnonzero(along & (topology.face_group == names.index(item.surface.group)))
+    # faces glued to another block are inside the rock
+    inner = np.zeros(len(nodes), bool)
+    inner[topology.pair_faces.ravel()] = True
+    faces = faces[~inner[faces]]
+    if len(faces) == 0:
+        raise CaseError(f"{case.where(path)}: {path}.surface: no free face looks that way")
+    return faces
+
+
+def _options(case: Case, materials) -> dict:
+    contact = case.contact
+    nu = [m.poisson_ratio for m in materials]
+    wave = max(
+        np.sqrt(m.young_modulus * (1 - n) / (m.density * (1 + n) * (1 - 2 * n)))
+        for m, n in zip(materials, nu, strict=True)
+    )
+    triangle, quad = BOND_INDENTATION[contact.bond_points]
+    automatic = contact.tolerance == "auto"
+    return {
+        "formulation": case.elements.formulation,
+        "indentation": contact.indentation,
+        "action": 0.0 if contact.action == "vertex" else contact.indentation,
+        "tolerance": 0.1 * contact.indentation if automatic else contact.tolerance,
+        "bond_indentation_triangle": triangle,
+        "bond_indentation_quad": quad,
+        "semi_edges": contact.edges,
+        "refresh_interval": 0 if contact.refresh == "displacement" else int(contact.refresh),
+        "step_safety": case.time.safety,
+        "step_given": 0.0 if case.time.step == "auto" else case.time.step,
+        "speed_limit": float(wave),  # nothing in rock moves faster than its P wave
+        "gravity": [float(g) for g in case.loads.gravity],
+    }
+
+
+def _initial_velocities(built: Build) -> None:
+    motion = built.core.fields()["node.motion"].reshape(-1, 8)
+    mass = built.assembly.arrays["node.mass"]
+    for name, group in built.case.groups.items():
+        nodes = built.nodes_of(name)
+        x = built.start_position[nodes]
+        center = (mass[nodes, None] * x).sum(axis=0) / mass[nodes].sum()
+        spin = np.cross(np.asarray(group.angular_velocity, float), x - center)
+        motion[nodes, 4:7] = np.asarray(group.velocity, float) + spin

@@ -1,0 +1,35 @@
+"""Errors meant for the person at the keyboard: each message says where, what, and how to mend it."""
+
+from __future__ import annotations
+
+
+class CdemError(Exception):
+    """Base of every error that is shown as one message, without a traceback.
+
+    Attributes:
+        exit_code: Exit status of the program ``cdem`` when the error reaches its top.
+    """
+
+    exit_code = 1
+
+
+class CaseError(CdemError):
+    """The case file is wrong: an unknown key, a bad value, or parts that contradict one another."""
+
+
+class MeshError(CdemError):
+    """The mesh is wrong: it cannot be read, or has an inverted or empty element."""
+
+
+class ModelError(CdemError):
+    """Case and mesh are each sound but do not fit together."""
+
+
+class UnstableError(CdemError):
+    """The computation failed: a number is not finite, a runaway, or the time step collapsed."""
+
+    exit_code = 3
+
+
+class BackendError(CdemError):
+    """The machine cannot do what was asked: no compiled core, no such device, no such extra."""

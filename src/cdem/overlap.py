@@ -1,0 +1,168 @@
+"""Touching faces that do not conform: clip one against the other, share the overlap's area.
+
+The points of contact of two overlapping faces (vertices of either inside the other, and crossings of
+their edges) are exactly the vertices of the overlap polygon. Bond points there, with areas
+
+    w_i = (A_{i-1} + A_i) / 3 + A / (3 N),
+
+A_i the triangles between the vertices and their mean, carry the polygon's exact area and centroid, so
+neither strength nor stiffness depends on which side is meshed finer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from cdem.topology import Topology
+
+Floats = NDArray[np.float64]
+
+COPLANAR = 1e-6
+"""Faces touch if their planes are closer than this times their size, and as parallel (a sine)."""
+LEAST_AREA = 1e-9
+"""Overlaps smaller than this part of the smaller face are sides that merely touch."""
+
+
+@dataclass
+class Overlaps:
+    """Bonded overlaps; see `Topology` for the meaning and shapes of the arrays."""
+
+    faces: NDArray[np.int32]
+    first: NDArray[np.int32]
+    weights_a: Floats
+    weights_b: Floats
+    area: Floats
+
+
+def find_overlaps(t: Topology, bond: Callable[[str, str], bool]) -> Overlaps:
+    """Find all touching, coplanar, opposing, non-conforming faces of groups that are bonded."""
+    faces, first, weights_a, weights_b, areas = [], [0], [], [], []
+    for a, b in _candidates(t, bond):
+        polygon = clip(_corners(t, a), _corners(t, b))
+        if polygon is None:
+            continue
+        area = point_areas(polygon)
+        faces.append((a, b))
+        first.append(first[-1] + len(area))
+        weights_a.append(_weights(_corners(t, a), polygon))
+        weights_b.append(_weights(_corners(t, b), polygon))
+        areas.append(area)
+    return Overlaps(
+        np.array(faces, np.int32).reshape(-1, 2),
+        np.array(first, np.int32),
+        np.concatenate([np.zeros((0, 4)), *weights_a]),
+        np.concatenate([np.zeros((0, 4)), *weights_b]),
+        np.concatenate([np.zeros(0), *areas]),
+    )
+
+
+def _corners(t: Topology, face: int) -> Floats:
+    nodes = t.face_nodes[face]
+    return t.node_position[nodes[nodes >= 0]]
+
+
+def _candidates(t: Topology, bond: Callable[[str, str], bool]) -> list[tuple[int, int]]:
+    """Pairs of free faces of different blocks whose boxes meet and whose planes agree."""
+    groups = len(t.group_names)
+    wanted = np.array(
+        [[bond(a, b) for b in t.group_names] for a in t.group_names], bool
+    ).reshape(groups, groups)
+    free = np.ones(len(t.face_nodes), bool)
+    free[t.pair_faces.ravel()] = False
+    free &= wanted.any(axis=1)[t.face_group]
+    ids = np.flatnonzero(free)
+    if len(ids) < 2:
+        return []
+    nodes = t.face_nodes[ids]
+    x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    low, high = x.min(axis=1), x.max(axis=1)
+    size = np.linalg.norm(high - low, axis=1)
+    low, high = low - COPLANAR * size[:, None], high + COPLANAR * size[:, None]
+
+    # sweep along the longest axis: open boxes are those that began within the largest extent
+    axis = int(np.argmax(np.ptp(x.reshape(-1, 3), axis=0)))
+    order = np.argsort(low[:, axis], kind="stable")
+    low, high, normal, x, size, ids = (a[order] for a in (low, high, normal, x, size, ids))
+    end = np.searchsorted(low[:, axis], high[:, axis], side="right")
+    found = []
+    for i in range(len(ids)):
+        j = np.arange(i + 1, end[i])
+        j = j[((low[j] <= high[i]) & (high[j] >= low[i])).all(axis=1)]
+        j = j[normal[j] @ normal[i] < -1 + COPLANAR]
+        j = j[t.face_block[ids[j]] != t.face_block[ids[i]]]
+        j = j[wanted[t.face_group[ids[i]], t.face_group[ids[j]]]]
+        gap = np.abs((x[j].mean(axis=1) - x[i].mean(axis=0)) @ normal[i])
+        j = j[gap < COPLANAR * np.minimum(size[i], size[j])]
+        found += [tuple(sorted((int(ids[i]), int(k)))) for k in ids[j]]
+    return sorted(found)
+
+
+def clip(a: Floats, b: Floats) -> Floats | None:
+    """The overlap of two coplanar convex polygons that face each other, or None.
+
+    Args:
+        a: Vertices, counter-clockwise seen from outside its block, shape (n, 3) [m].
+        b: Vertices of the other, counter-clockwise seen from outside its own block.
+    """
+    normal = np.cross(a[2] - a[0], a[-1] - a[1])
+    least = 0.5 * LEAST_AREA * np.linalg.norm(normal)
+    normal = normal / np.linalg.norm(normal)
+    polygon = b[::-1] - np.outer((b[::-1] - a[0]) @ normal, normal)
+    for start, end in zip(a, np.roll(a, -1, axis=0), strict=True):
+        inward = np.cross(normal, end - start)
+        distance = (polygon - start) @ inward
+        kept = []
+        for k in range(len(polygon)):
+            p, q = distance[k - 1], distance[k]
+            if (p < 0) != (q < 0):
+                kept.append(polygon[k - 1] + p / (p - q) * (polygon[k] - polygon[k - 1]))
+            if q >= 0:
+                kept.append(polygon[k])
+        if len(kept) < 3:
+            return None
+        polygon = np.array(kept)
+    near = 1e-9 * np.linalg.norm(a[2] - a[0])
+    polygon = polygon[np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1) > near]
+    if len(polygon) < 3 or point_areas(polygon).sum() < least:
+        return None
+    return polygon
+
+
+def point_areas(polygon: Floats) -> Floats:
+    """Share of each vertex of a plane convex polygon in its area [m2]: exact area and centroid."""
+    arm = polygon - polygon.mean(axis=0)
+    triangle = 0.5 * np.linalg.norm(np.cross(arm, np.roll(arm, -1, axis=0)), axis=1)
+    return (np.roll(triangle, 1) + triangle) / 3 + triangle.sum() / (3 * len(polygon))
+
+
+def _weights(face: Floats, points: Floats) -> Floats:
+    """Barycentric or inverse bilinear weights of points on a face, shape (points, 4)."""
+    normal = np.cross(face[2] - face[0], face[-1] - face[1])
+    normal = normal / np.linalg.norm(normal)
+    out = np.zeros((len(points), 4))
+    if len(face) == 3:
+        system = np.column_stack([face[1] - face[0], face[2] - face[0], normal])
+        u, v, _ = np.linalg.solve(system, (points - face[0]).T)
+        out[:, :3] = np.column_stack([1 - u - v, u, v])
+        return out
+    for row, point in zip(out, points, strict=True):
+        u = v = 0.5
+        for _ in range(20):
+            low = face[0] + u * (face[1] - face[0])
+            high = face[3] + u * (face[2] - face[3])
+            miss = point - (low + v * (high - low))
+            along = (1 - v) * (face[1] - face[0]) + v * (face[2] - face[3])
+            du, dv, _ = np.linalg.solve(np.column_stack([along, high - low, normal]), miss)
+            u, v = u + du, v + dv
+            if abs(du) + abs(dv) < 1e-15:
+                break
+        row[:] = (1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v
+    return out

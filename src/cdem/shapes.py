@@ -1,0 +1,236 @@
+"""The four element shapes: shape functions, Gauss rules, mass and stiffness of the stress-free mesh.
+
+Everything here runs once, when a model is built; the step's kernels only read the result.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+NODES = {"tet4": 4, "pyramid5": 5, "wedge6": 6, "hex8": 8}
+"""Nodes of each shape, in the order in which elements are numbered."""
+
+_HEX_CORNERS = np.array(
+    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]]
+    + [[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
+    dtype=float,
+)
+
+
+def _shape_tet4(p: Array) -> tuple[Array, Array]:
+    values = np.column_stack([1 - p.sum(axis=1), p])
+    slopes = np.tile(np.vstack([[-1.0, -1.0, -1.0], np.eye(3)]), (len(p), 1, 1))
+    return values, slopes
+
+
+def _shape_hex8(p: Array) -> tuple[Array, Array]:
+    factors = 1 + p[:, None, :] * _HEX_CORNERS  # (points, 8, 3)
+    values = factors.prod(axis=2) / 8
+    slopes = np.stack(
+        [
+            _HEX_CORNERS[:, a] * factors[..., (a + 1) % 3] * factors[..., (a + 2) % 3] / 8
+            for a in range(3)
+        ],
+        axis=2,
+    )
+    return values, slopes
+
+
+def _shape_wedge6(p: Array) -> tuple[Array, Array]:
+    r, s, t = p.T
+    triangle = np.stack([1 - r - s, r, s], axis=1)
+    triangle_slopes = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
+    low, high = (1 - t)[:, None] / 2, (1 + t)[:, None] / 2
+    values = np.concatenate([triangle * low, triangle * high], axis=1)
+    slopes = np.empty((len(p), 6, 3))
+    for axis in range(2):
+        slopes[:, :3, axis] = triangle_slopes[:, axis] * low
+        slopes[:, 3:, axis] = triangle_slopes[:, axis] * high
+    slopes[:, :3, 2] = -triangle / 2
+    slopes[:, 3:, 2] = triangle / 2
+    return values, slopes
+
+
+def _shape_pyramid5(p: Array) -> tuple[Array, Array]:
+    # rational functions on the base [-1, 1]^2 with the apex at z = 1
+    x, y, z = p.T
+    up = 1 - z
+    sign = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
+    a = up[:, None] + x[:, None] * sign[:, 0]
+    b = up[:, None] + y[:, None] * sign[:, 1]
+    values = np.column_stack([a * b / (4 * up[:, None]), z])
+    slopes = np.zeros((len(p), 5, 3))
+    slopes[:, :4, 0] = sign[:, 0] * b / (4 * up[:, None])
+    slopes[:, :4, 1] = sign[:, 1] * a / (4 * up[:, None])
+    slopes[:, :4, 2] = (a * b / up[:, None] - a - b) / (4 * up[:, None])
+    slopes[:, 4, 2] = 1
+    return values, slopes
+
+
+_FUNCTIONS = {
+    "tet4": _shape_tet4,
+    "pyramid5": _shape_pyramid5,
+    "wedge6": _shape_wedge6,
+    "hex8": _shape_hex8,
+}
+
+
+def _line(count: int) -> tuple[Array, Array]:
+    return np.polynomial.legendre.leggauss(count)
+
+
+def _box_rule(count: int) -> tuple[Array, Array]:
+    x, w = _line(count)
+    points = np.array([(x[i], x[j], x[k]) for k, j, i in product(range(count), repeat=3)])
+    weights = np.array([w[i] * w[j] * w[k] for k, j, i in product(range(count), repeat=3)])
+    return points, weights
+
+
+def _collapsed(shape: str, count: int) -> tuple[Array, Array]:
+    """A rule of high degree from a box: collapse it onto the tetrahedron, wedge or pyramid."""
+    box, weight = _box_rule(count)
+    u, v, w = ((box + 1) / 2).T
+    if shape == "tet4":
+        points = np.column_stack([u * (1 - v) * (1 - w), v * (1 - w), w])
+        return points, weight / 8 * (1 - v) * (1 - w) ** 2
+    if shape == "wedge6":
+        return np.column_stack([u * (1 - v), v, box[:, 2]]), weight / 4 * (1 - v)
+    points = np.column_stack([box[:, 0] * (1 - w), box[:, 1] * (1 - w), w])
+    return points, weight / 2 * (1 - w) ** 2
+
+
+def _stiffness_rule(shape: str) -> tuple[Array, Array]:
+    """Points and weights of the element forces; the kernels hold the same number of points."""
+    if shape == "tet4":
+        return np.full((1, 3), 0.25), np.array([1 / 6])
+    if shape == "hex8":
+        return _box_rule(2)
+    if shape == "wedge6":
+        triangle = np.array([[1 / 6, 1 / 6], [2 / 3, 1 / 6], [1 / 6, 2 / 3]])
+        t = 1 / np.sqrt(3)
+        points = [(*rs, z) for z in (-t, t) for rs in triangle]
+        return np.array(points), np.full(6, 1 / 6)
+    # pyramid, degree 2: four points at a quarter of the height's lower part and one on the axis,
+    # from the moments of 1, z, z^2, x^2, x^2 z
+    a = np.sqrt(32 / 135)
+    points = [(i * a, j * a, 1 / 6) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return np.array([*points, (0, 0, 0.7)]), np.array([9 / 32] * 4 + [5 / 24])
+
+
+def reference_gradients(shape: str, corners: Array) -> tuple[Array, Array]:
+    """Gradients and volumes of the Gauss points of the stress-free mesh.
+
+    Args:
+        shape: "tet4", "pyramid5", "wedge6" or "hex8".
+        corners: Node positions [m], shape (elements, nodes, 3).
+
+    Returns:
+        dN/dX [1/m], shape (elements, points, nodes, 3), and w J [m3], shape (elements, points).
+    """
+    points, weights = _stiffness_rule(shape)
+    _, slopes = _FUNCTIONS[shape](points)
+    jacobian = np.einsum("enx,pnr->eprx", corners, slopes)  # dX_x / dr_r, row r
+    gradient = np.einsum("eprx,pnr->epnx", np.linalg.inv(jacobian).transpose(0, 1, 3, 2), slopes)
+    return gradient, weights * np.linalg.det(jacobian)
+
+
+def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
+    """Consistent mass matrix of each element [kg], shape (elements, nodes, nodes).
+
+    Its total mass, centre and inertia tensor are those of the solid, because positions are a
+    combination of the shape functions.
+    """
+    points, weights = _box_rule(3) if shape == "hex8" else _collapsed(shape, 4)
+    values, slopes = _FUNCTIONS[shape](points)
+    volume = np.empty((len(corners), len(points)))
+    for p in range(len(points)):
+        volume[:, p] = weights[p] * np.linalg.det(np.einsum("enx,nr->erx", corners, slopes[p]))
+    return np.einsum("e,ep,pi,pj->eij", density, volume, values, values, optimize=True)
+
+
+def _strain_rows(shape: str, gradient: Array, volume: Array) -> Array:
+    """Strain matrix B in Voigt order xx yy zz xy yz zx (engineering shear); B-bar for hexahedra."""
+    elements, points, nodes, _ = gradient.shape
+    b = np.zeros((elements, points, 6, nodes, 3))
+    gx, gy, gz = (gradient[..., axis] for axis in range(3))
+    b[:, :, 0, :, 0] = gx
+    b[:, :, 1, :, 1] = gy
+    b[:, :, 2, :, 2] = gz
+    b[:, :, 3, :, 0], b[:, :, 3, :, 1] = gy, gx
+    b[:, :, 4, :, 1], b[:, :, 4, :, 2] = gz, gy
+    b[:, :, 5, :, 2], b[:, :, 5, :, 0] = gx, gz
+    b = b.reshape(elements, points, 6, nodes * 3)
+    if shape == "hex8":
+        trace = b[:, :, :3].sum(axis=2)
+        mean = np.einsum("epk,ep->ek", trace, volume) / volume.sum(axis=1)[:, None]
+        b[:, :, :3] += ((mean[:, None] - trace) / 3)[:, :, None]
+    return b
+
+
+def elasticity(lame: Array, shear: Array) -> Array:
+    """[D] of Eq. 2 [Pa], shape (elements, 6, 6), for engineering shear strains."""
+    d = np.zeros((len(lame), 6, 6))
+    d[:, :3, :3] = lame[:, None, None]
+    for axis in range(3):
+        d[:, axis, axis] += 2 * shear
+        d[:, 3 + axis, 3 + axis] = shear
+    return d
+
+
+def squared_frequencies(
+    shape: str, gradient: Array, volume: Array, lame: Array, shear: Array, mass: Array
+) -> Array:
+    """Largest squared eigenfrequency of each free element [1/s2], exact.
+
+    The largest over the elements bounds that of the mesh.
+
+    Args:
+        shape: Shape of the elements.
+        gradient: As from `reference_gradients`.
+        volume: As from `reference_gradients`.
+        lame: First Lame constant [Pa], shape (elements,).
+        shear: Shear modulus [Pa], shape (elements,).
+        mass: Lumped masses (elements, nodes) or mass matrices (elements, nodes, nodes) [kg].
+    """
+    keys = np.concatenate(
+        [a.reshape(len(volume), -1) for a in (gradient, volume, lame, shear, mass)], axis=1
+    )
+    scale = np.abs(keys).max(axis=0, keepdims=True) + 1e-300
+    # equal elements need one solution: a grid has few kinds
+    _, first, kind = np.unique(
+        np.round(keys / scale, 10), axis=0, return_index=True, return_inverse=True
+    )
+    largest = np.empty(len(first))
+    for start in range(0, len(first), 4096):
+        some = first[start : start + 4096]
+        largest[start : start + 4096] = _largest_eigenvalue(
+            _strain_rows(shape, gradient[some], volume[some]),
+            volume[some],
+            elasticity(lame[some], shear[some]),
+            mass[some],
+        )
+    return largest[kind.reshape(-1)]
+
+
+def _largest_eigenvalue(b: Array, volume: Array, d: Array, mass: Array) -> Array:
+    nodes = mass.shape[1]
+    if mass.ndim == 2:
+        root = np.zeros((len(mass), nodes, nodes))
+        root[:, np.arange(nodes), np.arange(nodes)] = 1 / np.sqrt(mass)
+    else:  # L^-1 with M = L L^T
+        root = np.linalg.inv(np.linalg.cholesky(mass))
+    # rows of B times L^-T, per axis of the nodes
+    turned = np.einsum("epsna,emn->epsma", b.reshape(*b.shape[:3], nodes, 3), root)
+    turned = turned.reshape(b.shape)
+    if b.shape[1] == 1:  # one point: the 6 x 6 problem has the same non-zero eigenvalues
+        factor = np.linalg.cholesky(d)
+        small = np.einsum("est,epsk->eptk", factor, turned)[:, 0]
+        small = np.einsum("etk,euk->etu", small, small) * volume[:, :1, None]
+        return np.linalg.eigvalsh(small)[:, -1]
+    stiffness = np.einsum("ep,epsk,est,eptl->ekl", volume, turned, d, turned, optimize=True)
+    return np.linalg.eigvalsh(stiffness)[:, -1]

@@ -1,0 +1,165 @@
+"""Stages of a run: what each sets, when it records, when it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cdem import build as building
+from cdem.errors import CaseError
+
+if TYPE_CHECKING:
+    from cdem.simulation import Simulation
+
+STATIC_LOCAL_DAMPING = 0.8
+"""Cundall's damping of a static stage that says nothing else."""
+STATIC_RECORD_STEPS = 200
+"""Steps between history rows of a static stage, which has no meaningful time."""
+ROWS_PER_FRAME = 10
+"""History rows per recorded frame of a dynamic stage."""
+FRAMES = 50
+"""Frames of a dynamic stage when output.every is not given."""
+SETTABLE = ("interfaces.", "loads.", "groups.")
+"""What a stage's `set` may change; a changed mesh or material would be another model."""
+
+
+@dataclass
+class StageState:
+    """The running stage.
+
+    Attributes:
+        name: Its name.
+        mode: "static" or "dynamic".
+        start_time: [s].
+        start_step: Steps done before it.
+        end_time: [s], or None for a static stage.
+        row_every: Time between history rows [s].
+        rows: History rows written after the first.
+        wall_time: Wall time spent in it [s].
+    """
+
+    name: str
+    mode: str
+    start_time: float
+    start_step: int
+    end_time: float | None
+    row_every: float
+    rows: int = 0
+    wall_time: float = 0.0
+
+    @property
+    def next_row(self) -> float:
+        """Time of the next history row [s]."""
+        return self.start_time + (self.rows + 1) * self.row_every
+
+
+def damping_of(stage) -> tuple[float, float, float, float]:
+    """Local, mass, stiffness and contact damping of a stage."""
+    d = stage.damping
+    if d is None:
+        return (STATIC_LOCAL_DAMPING if stage.mode == "static" else 0.0, 0.0, 0.0, 0.0)
+    return (d.local, d.mass, d.stiffness, d.contact)
+
+
+def apply_settings(sim: Simulation, index: int) -> None:
+    """Apply damping and `set` of a stage to the core (not to motion or displacement)."""
+    stage = sim.case.stages[index]
+    for path, value in stage.set.items():
+        key = f"stages.{index}.set.{path}"
+        if not path.startswith(SETTABLE):
+            raise CaseError(
+                f"{sim.case.where(key)}: {key}: a stage can change "
+                f"{', '.join(s + '*' for s in SETTABLE)} only"
+            )
+        sim.case.set(path, value)
+    if stage.set:
+        _update_core(sim, index)
+    sim.core.set_damping(*damping_of(stage))
+
+
+def _update_core(sim: Simulation, index: int) -> None:
+    b = sim.build
+    names = b.group_names
+    laws, table = building.interfaces_of(sim.case, names)
+    was = b.bonded
+    now = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws])[table]
+    if (now & ~was).any():
+        i, j = np.argwhere(now & ~was)[0]
+        raise CaseError(
+            f"{sim.case.where(f'stages.{index}.set')}: stages.{index}.set: the interface of "
+            f"{names[i]!r} and {names[j]!r} was not bonded at the start (cohesion and "
+            "tensile_strength 0), so it cannot be given strength now; start with a strength"
+        )
+    sim.core.set_interfaces([building.interface_row(law) for law in laws])
+    sim.core.update_model(building.change(b))
+    sim.core.set_curves([c[0] for c in b.curves], [c[1] for c in b.curves])
+    sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])
+
+
+def begin(sim: Simulation) -> StageState:
+    """Start the next stage of a simulation."""
+    index = sim.stage_index
+    stage = sim.case.stages[index]
+    apply_settings(sim, index)
+    if sim.step_count:
+        sim.core.renew_step()
+    if stage.reset_displacement:
+        sim.reference = sim.fields["position"].copy()
+    end = None if stage.duration is None else sim.time + stage.duration
+    every = sim.case.output.every or (stage.duration or 1.0) / FRAMES
+    return StageState(
+        name=stage.name,
+        mode=stage.mode,
+        start_time=sim.time,
+        start_step=sim.step_count,
+        end_time=end,
+        row_every=every / ROWS_PER_FRAME,
+    )
+
+
+def advance(sim: Simulation, stage: StageState, steps: int):
+    """Run towards the stage's next event, at most `steps` steps; returns the core's report."""
+    rules = sim.case.stages[sim.stage_index]
+    done = sim.step_count - stage.start_step
+    if rules.max_steps is not None:
+        steps = min(steps, rules.max_steps - done)
+    if stage.mode == "static":
+        steps = min(steps, STATIC_RECORD_STEPS - done % STATIC_RECORD_STEPS)
+        return sim.core.run(
+            steps,
+            unbalance_limit=rules.tolerance,
+            kinetic_relaxation=rules.relax == "kinetic",
+        )
+    return sim.core.run(steps, end_time=min(stage.next_row, stage.end_time))
+
+
+def record_is_due(sim: Simulation, stage: StageState, outcome: str) -> bool:
+    """Whether a history row belongs to this moment; counts it."""
+    if stage.mode == "static":
+        due = (sim.step_count - stage.start_step) % STATIC_RECORD_STEPS == 0
+        due = due or status(sim, stage, outcome) is not None
+    else:
+        due = outcome == "time_reached"
+    stage.rows += due
+    return due
+
+
+def frame_is_due(sim: Simulation, stage: StageState, outcome: str) -> bool:
+    """Whether the history row just counted comes with a frame of the fields."""
+    if status(sim, stage, outcome) is not None:
+        return True
+    return stage.mode == "dynamic" and stage.rows % ROWS_PER_FRAME == 0
+
+
+def status(sim: Simulation, stage: StageState, outcome: str) -> str | None:
+    """How the stage ended, or None while it goes on."""
+    rules = sim.case.stages[sim.stage_index]
+    if outcome == "converged":
+        return "converged"
+    if stage.end_time is not None and sim.time >= stage.end_time:
+        return "finished"
+    if rules.max_steps is not None and sim.step_count - stage.start_step >= rules.max_steps:
+        return "max_steps"
+    return None

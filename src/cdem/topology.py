@@ -1,0 +1,384 @@
+"""From a mesh to blocks: nodes of their own, exterior faces and edges, and pairs of touching faces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.errors import MeshError
+from cdem.mesh import Mesh
+from cdem.overlap import Overlaps, find_overlaps
+from cdem.shapes import NODES, reference_gradients
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+FACES = {
+    "tet4": [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
+    "pyramid5": [(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+    "wedge6": [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
+    "hex8": [
+        (0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)
+    ],
+}  # fmt: skip
+"""Faces of each shape, outward, counter-clockwise seen from outside."""
+
+SAME_PLACE = 1e-9
+"""Points of different pieces closer than this, over the model's size, are at the same place."""
+
+
+@dataclass
+class Topology:
+    """Blocks, exterior faces and pairs of touching faces; indices are 32-bit, -1 means none.
+
+    Attributes:
+        node_position: [m], shape (nodes, 3). Nodes of a block are contiguous.
+        node_block: Block of each node.
+        node_point: Mesh point of each node.
+        block_first_node: Start of each block's nodes, shape (blocks + 1,).
+        block_group: Group of each block.
+        element_nodes: By shape, (elements, nodes of the shape).
+        element_block: By shape.
+        element_group: By shape.
+        element_cell: By shape, row of the element in the mesh.
+        face_nodes: Exterior faces, (faces, 4), the fourth -1 for a triangle.
+        face_block: Block of each face.
+        face_group: Group of each face.
+        face_element: Element behind each face; shapes in the order of `shapes.NODES`.
+        face_edges: Edge from vertex k to k + 1, (faces, 4).
+        edge_nodes: Exterior edges, (edges, 2).
+        edge_faces: The two exterior faces of the block that meet there, (edges, 2).
+        node_ring_first: Start of each node's ring, (nodes + 1,).
+        node_ring: Other ends of the exterior edges at each node.
+        pair_faces: Conforming faces of different blocks, (pairs, 2).
+        pair_shift: Vertex k of the first coincides with vertex (shift - k) mod n of the second.
+        overlap_faces: Touching faces that do not conform, (overlaps, 2).
+        overlap_first: Start of each overlap's points, (overlaps + 1,).
+        overlap_weights_a: Weights of a point on the first face's vertices, (points, 4).
+        overlap_weights_b: On the second face's.
+        overlap_area: Share of each point in the true overlap area [m2].
+        surfaces: Named surfaces, as ids of exterior faces.
+    """
+
+    node_position: Floats
+    node_block: Ints
+    node_point: Ints
+    block_first_node: Ints
+    block_group: Ints
+    element_nodes: dict[str, Ints]
+    element_block: dict[str, Ints]
+    element_group: dict[str, Ints]
+    element_cell: dict[str, Ints]
+    group_names: list[str]
+    face_nodes: Ints = field(default_factory=lambda: np.zeros((0, 4), np.int32))
+    face_block: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
+    face_group: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
+    face_element: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
+    face_edges: Ints = field(default_factory=lambda: np.zeros((0, 4), np.int32))
+    edge_nodes: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
+    edge_faces: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
+    node_ring_first: Ints = field(default_factory=lambda: np.zeros(1, np.int32))
+    node_ring: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
+    pair_faces: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
+    pair_shift: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
+    overlap_faces: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
+    overlap_first: Ints = field(default_factory=lambda: np.zeros(1, np.int32))
+    overlap_weights_a: Floats = field(default_factory=lambda: np.zeros((0, 4)))
+    overlap_weights_b: Floats = field(default_factory=lambda: np.zeros((0, 4)))
+    overlap_area: Floats = field(default_factory=lambda: np.zeros(0))
+    surfaces: dict[str, NDArray[np.intp]] = field(default_factory=dict)
+
+
+def build_topology(
+    mesh: Mesh,
+    split: Mapping[str, str],
+    bond: Callable[[str, str], bool] | None = None,
+) -> Topology:
+    """Divide a mesh into blocks and find what their faces touch.
+
+    Args:
+        mesh: The mesh.
+        split: By group, what is one block: "one" (the whole group), "connected" (each connected
+            part; the default) or "elements" (every element).
+        bond: Whether non-conforming touching faces of two groups are to be bonded.
+
+    Raises:
+        MeshError: An element is inverted or has no volume, or a point is not finite.
+    """
+    check_elements(mesh)
+    blocks = _blocks(mesh, split)
+    topology = _nodes_and_elements(mesh, blocks)
+    _faces(topology)
+    _edges(topology)
+    place = _places(mesh)
+    _pairs(topology, place)
+    _surfaces(topology, mesh)
+    if bond is not None:
+        found: Overlaps = find_overlaps(topology, bond)
+        topology.overlap_faces, topology.overlap_first = found.faces, found.first
+        topology.overlap_weights_a, topology.overlap_weights_b = found.weights_a, found.weights_b
+        topology.overlap_area = found.area
+    return topology
+
+
+def check_elements(mesh: Mesh) -> None:
+    """Stop at points that are not finite and elements that are inverted or have no volume."""
+    bad = np.flatnonzero(~np.isfinite(mesh.points).all(axis=1))
+    if len(bad):
+        raise MeshError(f"mesh point {bad[0]} is not finite: {mesh.points[bad[0]].tolist()}")
+    for shape, cells in mesh.cells.items():
+        if len(cells) == 0:
+            continue
+        corners = mesh.points[cells]
+        size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=1)
+        with np.errstate(all="ignore"):
+            try:
+                _, volume = reference_gradients(shape, corners)
+            except np.linalg.LinAlgError:
+                volume = np.stack([reference_volume(shape, c) for c in corners])
+        flat = np.flatnonzero(~(volume > 1e-12 * size[:, None] ** 3).all(axis=1))
+        if len(flat):
+            cell = flat[0]
+            group = mesh.group_names[mesh.cell_group[shape][cell]]
+            center = ", ".join(f"{x:.6g}" for x in corners[cell].mean(axis=0))
+            total = volume[cell].sum()
+            what = "is inverted" if total < 0 else "has no volume or is folded"
+            raise MeshError(
+                f"{shape} element {cell} of group {group!r}, centred at ({center}), {what} "
+                f"(volume {total:.3g} m3); {len(flat)} such element(s). Mend the mesh: nodes must be "
+                "in gmsh/VTK order and no element may be flat"
+            )
+
+
+def reference_volume(shape: str, corners: Floats) -> Floats:
+    """Volumes at the Gauss points of one element that may be flat; flat ones count as zero."""
+    try:
+        return reference_gradients(shape, corners[None])[1][0]
+    except np.linalg.LinAlgError:
+        return np.zeros(1)
+
+
+def _components(count: int, a: NDArray, b: NDArray) -> NDArray:
+    """Smallest member of each item's connected component, for links a - b between items."""
+    label = np.arange(count)
+    while True:
+        low = np.minimum(label[a], label[b])
+        before = label.copy()
+        np.minimum.at(label, a, low)
+        np.minimum.at(label, b, low)
+        label = label[label]
+        if (label == before).all():
+            return label
+
+
+def _blocks(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
+    """A label of its block for every cell, shapes one after the other."""
+    counts = [len(mesh.cells.get(s, ())) for s in NODES]
+    group = np.concatenate([mesh.cell_group[s] for s in NODES if s in mesh.cells] or [np.zeros(0)])
+    total = sum(counts)
+    cell = np.arange(total)
+    mode = [split.get(name, "connected") for name in mesh.group_names]
+    label = cell.copy()
+
+    starts = np.cumsum([0, *counts])
+    links_a, links_b = [], []
+    for shape, start in zip(NODES, starts, strict=False):
+        if shape in mesh.cells and len(mesh.cells[shape]):
+            cells = mesh.cells[shape]
+            links_a.append(np.repeat(start + np.arange(len(cells)), cells.shape[1]))
+            links_b.append(cells.ravel())
+    owner, point = np.concatenate(links_a), np.concatenate(links_b)
+    connected = np.array([m != "elements" for m in mode])[group[owner]]
+    owner, point = owner[connected], point[connected]
+    # cells of the same group hang together through points: link each to the first cell there
+    key = point * len(mode) + group[owner]
+    order = np.argsort(key, kind="stable")
+    new = np.r_[True, key[order][1:] != key[order][:-1]] if len(order) else np.zeros(0, bool)
+    first = owner[order][np.flatnonzero(new)[np.cumsum(new) - 1]] if len(order) else owner
+    label = _components(total, owner[order], first)
+    for index, kind in enumerate(mode):
+        if kind == "one":
+            some = group == index
+            if some.any():
+                label[some] = cell[some][0]
+    return label
+
+
+def _morton(points: Floats) -> NDArray[np.uint64]:
+    low, high = points.min(axis=0), points.max(axis=0)
+    cell = ((points - low) / np.maximum(high - low, 1e-300) * 2097151).astype(np.uint64)
+    code = np.zeros(len(points), np.uint64)
+    for bit in range(21):
+        for axis in range(3):
+            step = (cell[:, axis] >> np.uint64(bit)) & np.uint64(1)
+            code |= step << np.uint64(3 * bit + axis)
+    return code
+
+
+def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
+    """Give every block its nodes; order blocks, and elements inside them, along a Morton curve."""
+    shapes = [s for s in NODES if s in mesh.cells]
+    center = np.concatenate([mesh.points[mesh.cells[s]].mean(axis=1) for s in shapes])
+    group = np.concatenate([mesh.cell_group[s] for s in shapes])
+    _, block = np.unique(label, return_inverse=True)
+    count = block.max() + 1
+    members = np.bincount(block, minlength=count)
+    middle = np.stack([np.bincount(block, c, count) / members for c in center.T], axis=1)
+    order = np.lexsort((np.arange(count), _morton(middle)))
+    rank = np.empty(count, np.int64)
+    rank[order] = np.arange(count)
+    block = rank[block]
+    curve = _morton(center)
+
+    element_nodes, element_block, element_group, element_cell = {}, {}, {}, {}
+    keys = []
+    start = 0
+    for shape in NODES:
+        cells = mesh.cells.get(shape, np.zeros((0, NODES[shape]), np.int64))
+        here = slice(start, start + len(cells))
+        start += len(cells)
+        sort = np.lexsort((np.arange(len(cells)), curve[here], block[here]))
+        element_cell[shape] = sort.astype(np.int32)
+        element_block[shape] = block[here][sort].astype(np.int32)
+        element_group[shape] = group[here][sort].astype(np.int32)
+        element_nodes[shape] = cells[sort]
+        keys.append(element_block[shape][:, None].astype(np.int64) * len(mesh.points) + cells[sort])
+    flat = np.concatenate([k.ravel() for k in keys])
+    unique, inverse = np.unique(flat, return_inverse=True)
+    start = 0
+    for shape in NODES:
+        size = element_nodes[shape].size
+        nodes = inverse[start : start + size].reshape(element_nodes[shape].shape)
+        element_nodes[shape] = nodes.astype(np.int32)
+        start += size
+    node_block = (unique // len(mesh.points)).astype(np.int32)
+    node_point = (unique % len(mesh.points)).astype(np.int32)
+    block_group = np.zeros(count, np.int32)
+    for shape in NODES:
+        block_group[element_block[shape]] = element_group[shape]
+    return Topology(
+        node_position=mesh.points[node_point].astype(np.float64),
+        node_block=node_block,
+        node_point=node_point,
+        block_first_node=np.searchsorted(node_block, np.arange(count + 1)).astype(np.int32),
+        block_group=block_group,
+        element_nodes=element_nodes,
+        element_block=element_block,
+        element_group=element_group,
+        element_cell=element_cell,
+        group_names=list(mesh.group_names),
+    )
+
+
+def _same_rows(key: NDArray) -> NDArray:
+    """A number for every row, equal for equal rows."""
+    order = np.lexsort(key.T[::-1])
+    new = np.r_[True, (key[order][1:] != key[order][:-1]).any(axis=1)]
+    number = np.empty(len(key), np.int64)
+    number[order] = np.cumsum(new) - 1
+    return number
+
+
+def _faces(t: Topology) -> None:
+    rows = []
+    first = 0
+    for shape, faces in FACES.items():
+        nodes = t.element_nodes[shape]
+        for face in faces:
+            row = np.full((len(nodes), 7), -1, np.int64)
+            row[:, : len(face)] = nodes[:, face]
+            row[:, 4] = t.element_block[shape]
+            row[:, 5] = t.element_group[shape]
+            row[:, 6] = first + np.arange(len(nodes))
+            rows.append(row)
+        first += len(nodes)
+    every = np.concatenate(rows)
+    every = every[np.argsort(every[:, 6], kind="stable")]
+    number = _same_rows(np.sort(every[:, :4], axis=1))
+    outer = every[np.bincount(number)[number] == 1].astype(np.int32)
+    outer = outer[np.argsort(outer[:, 4], kind="stable")]
+    t.face_nodes = np.ascontiguousarray(outer[:, :4])
+    t.face_block, t.face_group, t.face_element = (np.ascontiguousarray(outer[:, k]) for k in (4, 5, 6))
+
+
+def _edges(t: Topology) -> None:
+    count = (t.face_nodes >= 0).sum(axis=1)
+    sides = []
+    for k in range(4):
+        start = t.face_nodes[:, k]
+        end = np.where(k + 1 < count, t.face_nodes[:, (k + 1) % 4], t.face_nodes[:, 0])
+        faces = np.flatnonzero(k < count)
+        sides.append(np.column_stack([start, end, np.arange(len(count)), np.full(len(count), k)])[faces])
+    side = np.concatenate(sides)
+    side = side[np.lexsort((side[:, 3], side[:, 2]))]
+    ends = np.sort(side[:, :2], axis=1)
+    number = _same_rows(ends)
+    edges = number.max() + 1
+    t.edge_nodes = np.zeros((edges, 2), np.int32)
+    t.edge_nodes[number] = ends
+    t.face_edges = np.full((len(count), 4), -1, np.int32)
+    t.face_edges[side[:, 2], side[:, 3]] = number
+    t.edge_faces = np.full((edges, 2), -1, np.int32)
+    order = np.argsort(number, kind="stable")
+    sorted_number = number[order]
+    rank = np.arange(len(order)) - np.searchsorted(sorted_number, sorted_number)
+    # where more than two faces of a block meet at an edge, the first two stand for it
+    use = rank < 2
+    t.edge_faces[sorted_number[use], rank[use]] = side[order][use, 2]
+
+    owner = t.edge_nodes.T.ravel()
+    other = t.edge_nodes[:, ::-1].T.ravel()
+    order = np.lexsort((other, owner))
+    nodes = len(t.node_position)
+    t.node_ring_first = np.searchsorted(owner[order], np.arange(nodes + 1)).astype(np.int32)
+    t.node_ring = np.ascontiguousarray(other[order])
+
+
+def _places(mesh: Mesh) -> NDArray:
+    """A number for every mesh point, equal for points of different pieces at the same place."""
+    size = max(float(np.ptp(mesh.points, axis=0).max()), 1e-300)
+    grid = SAME_PLACE * size
+    label = np.arange(len(mesh.points))
+    # two grids half a cell apart: points that one grid divides, the other joins
+    for shift in (0.0, 0.5):
+        cell = np.floor((mesh.points - mesh.points.min(axis=0)) / grid + shift).astype(np.int64)
+        number = _same_rows(cell)
+        first = np.full(number.max() + 1, len(label))
+        np.minimum.at(first, number, np.arange(len(label)))
+        label = np.minimum(label, label[first[number]])
+    return label
+
+
+def _pairs(t: Topology, place: NDArray) -> None:
+    at = np.where(t.face_nodes >= 0, place[t.node_point[t.face_nodes]], -1)
+    key = np.sort(at, axis=1)
+    order = np.lexsort(key.T[::-1])
+    same = (key[order][1:] == key[order][:-1]).all(axis=1)
+    i = np.flatnonzero(same)
+    pairs = np.sort(np.stack([order[i], order[i + 1]], axis=1), axis=1)
+    pairs = pairs[t.face_block[pairs[:, 0]] != t.face_block[pairs[:, 1]]]
+    pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+    a, b = pairs.T
+    t.pair_faces = pairs.astype(np.int32)
+    t.pair_shift = (at[b] == at[a][:, :1]).argmax(axis=1).astype(np.int32)
+
+
+def _surfaces(t: Topology, mesh: Mesh) -> None:
+    points = np.where(t.face_nodes >= 0, t.node_point[t.face_nodes], -1)
+    key = np.sort(points, axis=1)
+    for name, parts in mesh.surfaces.items():
+        wanted = [np.pad(p, ((0, 0), (0, 4 - p.shape[1])), constant_values=-1) for p in parts]
+        sought = np.sort(np.concatenate(wanted), axis=1)
+        number = _same_rows(np.concatenate([sought, key]))
+        hit = np.isin(number[len(sought) :], number[: len(sought)])
+        t.surfaces[name] = np.flatnonzero(hit)
+
+
+def group_touching(t: Topology) -> set[tuple[str, str]]:
+    """Pairs of group names (sorted) that touch through conforming faces or overlaps."""
+    faces = np.concatenate([t.pair_faces, t.overlap_faces])
+    groups = np.unique(np.sort(t.face_group[faces], axis=1), axis=0) if len(faces) else []
+    return {tuple(sorted((t.group_names[a], t.group_names[b]))) for a, b in groups}
