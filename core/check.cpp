@@ -115,12 +115,13 @@ Energies energies(const Model& m, const State& s) {
     e.strain += column_sum(es->energy);
     e.damping += column_sum(es->damping_work);
   }
-  e.contact = column_sum(s.springs.energy);
+  e.contact = column_sum(s.springs.energy_n) + column_sum(s.springs.energy_s);
   const Index exposed = Index(s.search.exposed_face.size());
   e.contact += ordered_sum(exposed, [&](Index i) {
     Real sum = 0;
     for (Index j = 0; j < s.edges.count[i]; ++j)
-      sum += s.edges.energy[std::size_t(s.edges.slots) * i + j];
+      sum += s.edges.energy_n[std::size_t(s.edges.slots) * i + j] +
+             s.edges.energy_s[std::size_t(s.edges.slots) * i + j];
     return sum;
   });
   e.friction = column_sum(s.springs.friction) + column_sum(s.edges.friction);

@@ -25,7 +25,7 @@ inline Candidates candidate_columns(const State& s) {
 inline SpringColumns spring_columns(State& s) {
   SpringState& c = s.springs;
   return {c.target.data(),   c.target_before.data(), c.force_n.data(), c.shear1.data(),
-          c.shear2.data(),   c.gap_free.data(),      c.energy.data(),  c.friction.data(),
+          c.shear2.data(),   c.gap_free.data(),      c.energy_n.data(), c.energy_s.data(), c.friction.data(),
           c.dashpot.data(),  c.reaction.data(),      c.lost.data()};
 }
 
@@ -33,7 +33,7 @@ inline EdgeColumns edge_columns(State& s) {
   EdgeState& c = s.edges;
   return {c.slots,          c.count.data(),   c.side.data(),     c.target_face.data(),
           c.target_edge.data(), c.shear1.data(), c.shear2.data(), c.force_n.data(),
-          c.energy.data(),  c.reaction.data(), c.friction.data(), c.dashpot.data(),
+          c.energy_n.data(), c.energy_s.data(), c.reaction.data(), c.friction.data(), c.dashpot.data(),
           c.lost.data(),    c.overflow.data()};
 }
 

@@ -43,15 +43,15 @@ void expose(const Model& m, State& s, Index face) {
   SpringState& c = s.springs;
   c.target.resize(4 * count, -1);
   c.target_before.resize(4 * count, -1);
-  for (Column<Real>* column : {&c.force_n, &c.shear1, &c.shear2, &c.gap_free, &c.energy,
-                               &c.friction, &c.dashpot})
+  for (Column<Real>* column : {&c.force_n, &c.shear1, &c.shear2, &c.gap_free, &c.energy_n,
+                               &c.energy_s, &c.friction, &c.dashpot})
     column->resize(4 * count);
   c.reaction.resize(4 * 8 * count);
   c.lost.resize(4 * count);
   EdgeState& e = s.edges;
   for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
     column->resize(slots * count, -1);
-  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy})
+  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
     column->resize(slots * count);
   e.reaction.resize(8 * slots * count);
   e.count.resize(count);
@@ -348,7 +348,7 @@ void widen_edge_slots(State& s) {
   };
   for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
     widen(*column, 1, Index(-1));
-  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy})
+  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
     widen(*column, 1, Real(0));
   widen(e.reaction, 8, Real(0));
   e.slots = Index(wide);

@@ -29,14 +29,14 @@ struct PairState {
 
 struct SpringState {
   Column<Index> target, target_before;
-  Column<Real> force_n, shear1, shear2, gap_free, energy, friction, dashpot, reaction;
+  Column<Real> force_n, shear1, shear2, gap_free, energy_n, energy_s, friction, dashpot, reaction;
   Column<Flag> lost;
 };
 
 struct EdgeState {
   Index slots = 8;
   Column<Index> count, side, target_face, target_edge;
-  Column<Real> shear1, shear2, force_n, energy, reaction, friction, dashpot;
+  Column<Real> shear1, shear2, force_n, energy_n, energy_s, reaction, friction, dashpot;
   Column<Flag> lost, overflow;
 };
 
@@ -110,7 +110,8 @@ void describe(S& s, Visit&& field) {
   field("spring.shear1", s.springs.shear1, "first shear force [N]");
   field("spring.shear2", s.springs.shear2, "second shear force [N]");
   field("spring.gap_free", s.springs.gap_free, "gap without stress [m]");
-  field("spring.energy", s.springs.energy, "stored energy [J]");
+  field("spring.energy_n", s.springs.energy_n, "stored in the normal spring [J]");
+  field("spring.energy_s", s.springs.energy_s, "stored in the shear spring [J]");
   field("spring.friction", s.springs.friction, "frictional work [J]");
   field("spring.dashpot", s.springs.dashpot, "work of the contact dashpot [J]");
   field("spring.reaction", s.springs.reaction, "force, stiffness, weights on the target");
@@ -123,7 +124,8 @@ void describe(S& s, Visit&& field) {
   field("edge.shear1", s.edges.shear1, "first shear force [N]");
   field("edge.shear2", s.edges.shear2, "second shear force [N]");
   field("edge.force_n", s.edges.force_n, "normal force, compression > 0 [N]");
-  field("edge.energy", s.edges.energy, "stored energy [J]");
+  field("edge.energy_n", s.edges.energy_n, "stored in the normal spring [J]");
+  field("edge.energy_s", s.edges.energy_s, "stored in the shear spring [J]");
   field("edge.reaction", s.edges.reaction, "force, stiffness, places on the edges");
   field("edge.friction", s.edges.friction, "frictional work [J]");
   field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");

@@ -23,7 +23,7 @@ struct ContactLaws {
 struct ContactForce {
   Real force_n;          // compression > 0  [N]
   Real shear1, shear2;   // on the mother  [N]
-  Real energy;           // stored  [J]
+  Real energy_n, energy_s;  // stored  [J]
   Real friction;         // lost in this step  [J]
   Real dashpot;          // lost in this step  [J]
 };
@@ -52,7 +52,8 @@ CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Re
   // work of the mean shear force that is not stored: exact for a force that is linear in the step
   f.friction = flex_s * (old1 * old1 + old2 * old2) - stored_s -
                0.5 * ((old1 + f.shear1) * slip1 + (old2 + f.shear2) * slip2);
-  f.energy = 0.5 / stiffness_n * elastic * elastic + stored_s;
+  f.energy_n = 0.5 / stiffness_n * elastic * elastic;
+  f.energy_s = stored_s;
   f.dashpot = (elastic - f.force_n) * gap_rate * dt;
   return f;
 }
@@ -138,7 +139,7 @@ struct UpdateSpringForces {
     springs.gap_free[slot] = 0;
     if (before < 0) {
       springs.shear1[slot] = springs.shear2[slot] = 0;
-      springs.energy[slot] = 0;
+      springs.energy_s[slot] = 0;
       return;
     }
     const Frame from = faces.shape(exposed_face[before]).frame();
@@ -153,8 +154,8 @@ struct UpdateSpringForces {
   }
   /// A contact that opened forgets its shear force; what that spring held is lost to friction.
   CDEM_HD void end(Index slot) const {
-    springs.friction[slot] += springs.energy[slot];
-    springs.energy[slot] = 0;
+    springs.friction[slot] += springs.energy_s[slot];
+    springs.energy_n[slot] = springs.energy_s[slot] = 0;
     springs.force_n[slot] = springs.shear1[slot] = springs.shear2[slot] = 0;
     Real* row = springs.reaction + std::size_t(slot) * 8;
     row[0] = row[1] = row[2] = row[3] = 0;
@@ -163,7 +164,8 @@ struct UpdateSpringForces {
     springs.force_n[slot] = f.force_n;
     springs.shear1[slot] = f.shear1;
     springs.shear2[slot] = f.shear2;
-    springs.energy[slot] = f.energy;
+    springs.energy_n[slot] = f.energy_n;
+    springs.energy_s[slot] = f.energy_s;
     springs.friction[slot] += f.friction;
     springs.dashpot[slot] += f.dashpot;
   }
@@ -224,7 +226,8 @@ struct UpdateEdgeForces {
     edges.force_n[place] = f.force_n;
     edges.shear1[place] = f.shear1;
     edges.shear2[place] = f.shear2;
-    edges.energy[place] = f.energy;
+    edges.energy_n[place] = f.energy_n;
+    edges.energy_s[place] = f.energy_s;
     edges.friction[m] += f.friction;
     edges.dashpot[m] += f.dashpot;
 

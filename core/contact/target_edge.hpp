@@ -17,7 +17,8 @@ struct EdgeColumns {
   Real* shear1;         // [N] in the frame of the edge pair
   Real* shear2;
   Real* force_n;        // [N], compression > 0
-  Real* energy;         // stored  [J]
+  Real* energy_n;       // stored in the normal spring  [J]
+  Real* energy_s;       // stored in the shear spring  [J]
   Real* reaction;       // row of 8: force on the mother x y z, stiffness, place on the mother
                         // side (0..1), place on the target's side (0..1)
   Real* friction;       // [exposed] lost so far  [J]
@@ -94,9 +95,9 @@ struct FindTargetEdges {
       edges.shear1[place] = held.shear1(f.old);
       edges.shear2[place] = held.shear2(f.old);
       edges.force_n[place] = held.loaded(f.old) ? 1.0 : 0.0;
-      edges.energy[place] = held.take_energy(f.old);
+      edges.energy_s[place] = held.take_energy(f.old);
     }
-    edges.friction[m.i] += held.energy_left();  // springs of contacts that ended
+    edges.friction[m.i] += held.energy_left();  // shear springs of contacts that ended
     edges.count[m.i] = used;
   }
 
@@ -161,7 +162,7 @@ struct FindTargetEdges {
         edge[j] = edges.target_edge[first + j];
         s1[j] = edges.shear1[first + j];
         s2[j] = edges.shear2[first + j];
-        energy[j] = edges.energy[first + j];
+        energy[j] = edges.energy_s[first + j];
         load[j] = edges.force_n[first + j] > 0;
       }
     }

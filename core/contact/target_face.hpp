@@ -31,7 +31,8 @@ struct SpringColumns {
   Real* shear1;          // [N] in the target's frame
   Real* shear2;
   Real* gap_free;        // gap at which the contact is free of stress  [m]
-  Real* energy;          // stored  [J]
+  Real* energy_n;        // stored in the normal spring  [J]
+  Real* energy_s;        // stored in the shear spring  [J]
   Real* friction;        // lost so far  [J]
   Real* dashpot;         // lost in the contact dashpot so far  [J]
   Real* reaction;        // row of 8: force on the mother x y z, stiffness, weights on the target

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 from cdem import assemble, mesh
 from cdem._native import core as native
 from cdem.case import Case
-from cdem.errors import CaseError
+from cdem.errors import CaseError, MeshError
 from cdem.mesh import Mesh
 from cdem.topology import Topology, build_topology, group_touching
 
@@ -19,6 +21,10 @@ Floats = NDArray[np.float64]
 BOND_INDENTATION = {"vertex": (0.0, 0.0), "quadrature": (0.5, 1 - 1 / np.sqrt(3))}
 """Where bond points sit, on triangles and on quadrilaterals: at the vertices, or where the points
 integrate a linear stress exactly (method of the theory page on bonds)."""
+
+
+LOOKS_ALONG = 1e-3
+"""Faces whose normal is within about 2.5 degrees of a wanted direction look along it."""
 
 
 @dataclass
@@ -63,15 +69,24 @@ def read_model(case: Case) -> Mesh:
     """Read and place the mesh file and the blocks of a case, all in one mesh."""
     pieces = []
     model = case.model
-    if model.mesh is not None:
-        pieces.append(mesh.read_mesh(case.path_of(model.mesh)))
+    path = case.mesh_path()
+    if path is not None:
+        with _blame(case, "model.mesh"):
+            pieces.append(mesh.read_mesh(path))
     for index, block in enumerate(model.blocks):
-        with case.blame(f"model.blocks.{index}"):
+        with _blame(case, f"model.blocks.{index}"):
             pieces.append(_block(block))
-    if not pieces:
-        raise CaseError(f"{case.where('model')}: model: has neither a mesh nor blocks; give one")
     merged = mesh.merge(pieces)
     return mesh.place(merged, model.rotate, model.translate)
+
+
+@contextmanager
+def _blame(case: Case, path: str) -> Iterator[None]:
+    """Say which line of the case a mesh error comes from."""
+    try:
+        yield
+    except MeshError as error:
+        raise MeshError(f"{case.where(path)}: {path}: {error}") from error
 
 
 def _block(block) -> Mesh:
@@ -95,9 +110,10 @@ def build(case: Case) -> Build:
     laws, interface_of = interfaces_of(case, names)
     bonded = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws] + [False])
     bonds = bonded[interface_of]
-    topology = build_topology(
-        merged, dict(case.model.split), lambda a, b: bool(bonds[names.index(a), names.index(b)])
-    )
+    with _blame(case, "model"):
+        topology = build_topology(
+            merged, case.model.split, lambda a, b: bool(bonds[names.index(a), names.index(b)])
+        )
     _check_interfaces(case, topology, names, interface_of)
     _snap_mates(topology)
 
@@ -221,7 +237,10 @@ def interface_row(law) -> list[float]:
 
 def stiffness_row(law) -> list[float]:
     """Value and factor of k_n, then of k_s; a value of 0 means factor times E / h."""
-    return [*law.stiffness_n.as_pair(), *law.stiffness_s.as_pair()]
+    numbers: list[float] = []
+    for k in (law.stiffness_n, law.stiffness_s):
+        numbers += [0.0, k.value] if k.relative else [k.value, 0.0]
+    return numbers
 
 
 def _snap_mates(topology: Topology) -> None:
@@ -259,7 +278,7 @@ def _select(case: Case, topology: Topology, names: list[str], item, path: str):
             )
         among = groups == names.index(item.group)
     if getattr(item, "surface", None) is not None:
-        faces = _surface(case, topology, item.surface, path)
+        faces = _surface(case, topology, names, item.surface, path)
         inside = np.zeros(len(position), bool)
         nodes = topology.face_nodes[faces].ravel()
         inside[nodes[nodes >= 0]] = True
@@ -277,14 +296,33 @@ def _select(case: Case, topology: Topology, names: list[str], item, path: str):
     return np.flatnonzero(among)
 
 
-def _surface(case: Case, topology: Topology, name: str, path: str):
-    if name not in topology.surfaces:
-        known = ", ".join(sorted(topology.surfaces)) or "none"
+def _surface(case: Case, topology: Topology, names: list[str], surface, path: str):
+    """Exterior faces of a surface by name, or those of a group that look along a normal."""
+    path += ".surface"
+    if isinstance(surface, str):
+        if surface not in topology.surfaces:
+            known = ", ".join(sorted(topology.surfaces)) or "none"
+            raise CaseError(
+                f"{case.where(path)}: {path}: no surface {surface!r} in the model; it has: {known}"
+            )
+        return topology.surfaces[surface]
+    if surface.group not in names:
         raise CaseError(
-            f"{case.where(path + '.surface')}: {path}.surface: no surface {name!r} in the model; "
-            f"it has: {known}"
+            f"{case.where(path)}: {path}.group: no group {surface.group!r} in the model; it has: "
+            f"{', '.join(names)}"
         )
-    return topology.surfaces[name]
+    nodes = topology.face_nodes
+    x = topology.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    wanted = np.asarray(surface.normal, float)
+    along = normal @ (wanted / np.linalg.norm(wanted)) > 1 - LOOKS_ALONG
+    free = np.ones(len(nodes), bool)  # faces that touch another block are inside the rock
+    free[topology.pair_faces.ravel()] = False
+    faces = np.flatnonzero(along & free & (topology.face_group == names.index(surface.group)))
+    if len(faces) == 0:
+        raise CaseError(f"{case.where(path)}: {path}: no free face of the group looks that way")
+    return faces
 
 
 def _supports(case: Case, topology: Topology, names: list[str], curves: list) -> dict:
@@ -339,7 +377,7 @@ def _loads(case: Case, topology: Topology, names: list[str], curves: list) -> di
     area = assemble.face_areas(topology.node_position, topology.face_nodes)
     corners = (topology.face_nodes >= 0).sum(axis=1)
     for index, item in enumerate(case.loads.tractions):
-        faces = _traction_faces(case, topology, names, item, f"loads.tractions.{index}")
+        faces = _surface(case, topology, names, item.surface, f"loads.tractions.{index}")
         vertex = topology.face_nodes[faces]
         used = vertex >= 0
         share = np.broadcast_to((area[faces] / corners[faces])[:, None], vertex.shape)[used]
@@ -356,32 +394,6 @@ def _loads(case: Case, topology: Topology, names: list[str], curves: list) -> di
     rows = np.zeros((len(force), 4))
     rows[:, :3] = force
     return {"load.first": first, "load.curve": curve, "load.force": rows.ravel()}
-
-
-def _traction_faces(case: Case, topology: Topology, names: list[str], item, path: str):
-    """Exterior faces of a surface by name, or of a group that look along a normal."""
-    if item.surface is None or isinstance(item.surface, str):
-        faces = _surface(case, topology, item.surface, path)
-        return np.asarray(faces)
-    if item.surface.group not in names:
-        raise CaseError(
-            f"{case.where(path)}: {path}.surface.group: no group {item.surface.group!r} in the "
-            f"model; it has: {', '.join(names)}"
-        )
-    nodes = topology.face_nodes
-    x = topology.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
-    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    wanted = np.asarray(item.surface.normal, float)
-    along = normal @ (wanted / np.linalg.norm(wanted)) > 1 - 1e-6
-    faces = np.flatnonzero(along & (topology.face_group == names.index(item.surface.group)))
-    # faces glued to another block are inside the rock
-    inner = np.zeros(len(nodes), bool)
-    inner[topology.pair_faces.ravel()] = True
-    faces = faces[~inner[faces]]
-    if len(faces) == 0:
-        raise CaseError(f"{case.where(path)}: {path}.surface: no free face looks that way")
-    return faces
 
 
 def _options(case: Case, materials) -> dict:

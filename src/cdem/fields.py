@@ -109,6 +109,10 @@ class Stiffness:
             return cls(Quantity("1", above=0).read(match[1]), relative=True)  # type: ignore[arg-type]
         return cls(Quantity("Pa/m", above=0).read(value), relative=False)  # type: ignore[arg-type]
 
+    def as_pair(self) -> tuple[float, float]:
+        """Return (stiffness [Pa/m], 0), or (0, multiple of E/h)."""
+        return (0.0, self.value) if self.relative else (self.value, 0.0)
+
     def write(self) -> float | str:
         """Return what a case file would say: a number [Pa/m] or ``"10 E/h"``."""
         return f"{self.value!r} E/h" if self.relative else self.value

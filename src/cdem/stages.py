@@ -13,8 +13,6 @@ from cdem.errors import CaseError
 if TYPE_CHECKING:
     from cdem.simulation import Simulation
 
-STATIC_LOCAL_DAMPING = 0.8
-"""Cundall's damping of a static stage that says nothing else."""
 STATIC_RECORD_STEPS = 200
 """Steps between history rows of a static stage, which has no meaningful time."""
 ROWS_PER_FRAME = 10
@@ -58,8 +56,6 @@ class StageState:
 def damping_of(stage) -> tuple[float, float, float, float]:
     """Local, mass, stiffness and contact damping of a stage."""
     d = stage.damping
-    if d is None:
-        return (STATIC_LOCAL_DAMPING if stage.mode == "static" else 0.0, 0.0, 0.0, 0.0)
     return (d.local, d.mass, d.stiffness, d.contact)
 
 

@@ -1,0 +1,58 @@
+"""cdem: rock as blocks of finite elements that touch, bond, break and slide."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cdem.case import Case
+    from cdem.errors import (
+        BackendError,
+        CaseError,
+        CdemError,
+        MeshError,
+        ModelError,
+        UnstableError,
+    )
+    from cdem.simulation import Progress, Simulation
+
+__version__ = "0.1.0"
+
+# Public names and the module of each; imported at first use, so that `import cdem` takes no time.
+_HOMES = {
+    "Case": "cdem.case",
+    "Progress": "cdem.simulation",
+    "Simulation": "cdem.simulation",
+    "BackendError": "cdem.errors",
+    "CaseError": "cdem.errors",
+    "CdemError": "cdem.errors",
+    "MeshError": "cdem.errors",
+    "ModelError": "cdem.errors",
+    "UnstableError": "cdem.errors",
+}
+
+__all__ = [
+    "BackendError",
+    "Case",
+    "CaseError",
+    "CdemError",
+    "MeshError",
+    "ModelError",
+    "Progress",
+    "Simulation",
+    "UnstableError",
+    "__version__",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'cdem' has no attribute {name!r}")
+    value = getattr(importlib.import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(globals().keys() | _HOMES.keys())

@@ -1,0 +1,114 @@
+"""What a case must not contradict: checks between its parts that need no mesh."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from cdem.errors import CaseError
+
+if TYPE_CHECKING:
+    from cdem.case import Case
+
+Problem = tuple[tuple[str | int, ...], str]  # path, what is wrong
+SETTABLE = ("interfaces.", "loads.", "groups.")  # another mesh or material is another model
+
+
+def contradictions(case: Case) -> list[Problem]:
+    """Return every mismatch between names of the case, and the mesh file if it is not there."""
+    return [
+        *_mesh_file(case),
+        *_materials(case),
+        *_groups(case),
+        *_unique_names(case),
+    ]
+
+
+def _mesh_file(case: Case) -> Iterator[Problem]:
+    if case.model.mesh is not None and not case.path_of(case.model.mesh).is_file():
+        path = case.path_of(case.model.mesh)
+        near = difflib.get_close_matches(
+            path.name, [p.name for p in path.parent.glob("*") if p.is_file()], n=1
+        )
+        hint = f"; did you mean {near[0]}?" if near else ""
+        yield (
+            ("model", "mesh"),
+            f"no file {path.resolve()} (a relative path starts at the case file's folder){hint}",
+        )
+
+
+def _materials(case: Case) -> Iterator[Problem]:
+    for name, group in case.groups.items():
+        if group.material not in case.materials:
+            yield ("groups", name, "material"), _no("material", group.material, case.materials)
+
+
+def _groups(case: Case) -> Iterator[Problem]:
+    for keys, name in _group_names(case):
+        if name not in case.groups:
+            yield keys, _no("group", name, case.groups)
+
+
+def _group_names(case: Case) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Every place of a case that names a group."""
+    for i, block in enumerate(case.model.blocks):
+        yield ("model", "blocks", i, "group"), block.group
+    for name in case.model.split:
+        yield ("model", "split", name), name
+    for i, pair in enumerate(case.interfaces.pairs):
+        for k, name in enumerate(pair.between):
+            yield ("interfaces", "pairs", i, "between", k), name
+    for kind in ("tractions", "velocities", "supports"):
+        for i, load in enumerate(getattr(case.loads, kind)):
+            if getattr(load, "group", None) is not None:
+                yield ("loads", kind, i, "group"), load.group
+            surface = getattr(load, "surface", None)
+            if surface is not None and not isinstance(surface, str):
+                yield ("loads", kind, i, "surface", "group"), surface.group
+    for i, history in enumerate(case.histories):
+        if history.group is not None:
+            yield ("histories", i, "group"), history.group
+
+
+def _unique_names(case: Case) -> Iterator[Problem]:
+    named = {
+        ("stages",): case.stages,
+        ("histories",): case.histories,
+        ("interfaces", "pairs"): case.interfaces.pairs,
+    }
+    for keys, entries in named.items():
+        seen: set[str] = set()
+        for i, entry in enumerate(entries):
+            if entry.name in seen:
+                yield (*keys, i, "name"), f"'{entry.name}' is the name of two entries"
+            if entry.name is not None:
+                seen.add(entry.name)
+
+
+def stage_settings(case: Case) -> list[Problem]:
+    """Try the ``set`` of all stages in turn on a copy; return what does not work."""
+    trial = case.model_copy(deep=True)
+    problems: list[Problem] = []
+    for i, stage in enumerate(case.stages):
+        for path, value in stage.set.items():
+            keys = ("stages", i, "set", path)
+            if not path.startswith(SETTABLE):
+                allowed = ", ".join(f"{start}*" for start in SETTABLE)
+                problems.append((keys, f"a stage can change {allowed} only"))
+                continue
+            try:
+                trial.set(path, value)
+            except CaseError as error:
+                problems.append((keys, str(error).rpartition(f"{path}: ")[2]))
+        problems += [
+            (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
+            for keys, what in contradictions(trial)
+        ]
+    return problems
+
+
+def _no(kind: str, name: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean {close[0]}?" if close else f"the case has: {', '.join(known) or 'none'}"
+    return f"no {kind} '{name}'; {hint}"
