@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +10,7 @@ from numpy.typing import NDArray
 from cdem import assemble, mesh
 from cdem._native import core as native
 from cdem.case import Case
-from cdem.errors import CaseError, MeshError
+from cdem.errors import CaseError
 from cdem.mesh import Mesh
 from cdem.topology import Topology, build_topology, group_touching
 
@@ -69,24 +67,14 @@ def read_model(case: Case) -> Mesh:
     """Read and place the mesh file and the blocks of a case, all in one mesh."""
     pieces = []
     model = case.model
-    path = case.mesh_path()
-    if path is not None:
-        with _blame(case, "model.mesh"):
-            pieces.append(mesh.read_mesh(path))
+    if model.mesh is not None:
+        with case.blame("model.mesh"):
+            pieces.append(mesh.read_mesh(case.path_of(model.mesh)))
     for index, block in enumerate(model.blocks):
-        with _blame(case, f"model.blocks.{index}"):
+        with case.blame(f"model.blocks.{index}"):
             pieces.append(_block(block))
     merged = mesh.merge(pieces)
     return mesh.place(merged, model.rotate, model.translate)
-
-
-@contextmanager
-def _blame(case: Case, path: str) -> Iterator[None]:
-    """Say which line of the case a mesh error comes from."""
-    try:
-        yield
-    except MeshError as error:
-        raise MeshError(f"{case.where(path)}: {path}: {error}") from error
 
 
 def _block(block) -> Mesh:
@@ -110,7 +98,7 @@ def build(case: Case) -> Build:
     laws, interface_of = interfaces_of(case, names)
     bonded = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws] + [False])
     bonds = bonded[interface_of]
-    with _blame(case, "model"):
+    with case.blame("model"):
         topology = build_topology(
             merged, case.model.split, lambda a, b: bool(bonds[names.index(a), names.index(b)])
         )

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from cdem.errors import CaseError
+from cdem.read import Source
 
 if TYPE_CHECKING:
     from cdem.case import Case
@@ -17,12 +18,13 @@ SETTABLE = ("interfaces.", "loads.", "groups.")  # another mesh or material is a
 
 def contradictions(case: Case) -> list[Problem]:
     """Return every mismatch between names of the case, and the mesh file if it is not there."""
-    return [
-        *_mesh_file(case),
-        *_materials(case),
-        *_groups(case),
-        *_unique_names(case),
-    ]
+    return [*_mesh_file(case), *_names(case)]
+
+
+def _names(case: Case) -> Iterator[Problem]:
+    yield from _materials(case)
+    yield from _groups(case)
+    yield from _unique_names(case)
 
 
 def _mesh_file(case: Case) -> Iterator[Problem]:
@@ -89,6 +91,7 @@ def _unique_names(case: Case) -> Iterator[Problem]:
 def stage_settings(case: Case) -> list[Problem]:
     """Try the ``set`` of all stages in turn on a copy; return what does not work."""
     trial = case.model_copy(deep=True)
+    trial._source = Source()  # so that errors name no line; the line is that of the setting
     problems: list[Problem] = []
     for i, stage in enumerate(case.stages):
         for path, value in stage.set.items():
@@ -100,10 +103,11 @@ def stage_settings(case: Case) -> list[Problem]:
             try:
                 trial.set(path, value)
             except CaseError as error:
-                problems.append((keys, str(error).rpartition(f"{path}: ")[2]))
+                what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
+                problems.append((keys, what.partition(": ")[2]))
         problems += [
             (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
-            for keys, what in contradictions(trial)
+            for keys, what in _names(trial)
         ]
     return problems
 

@@ -108,7 +108,7 @@ def load_case_data(path: Path, overrides: Iterable[str] = ()) -> tuple[dict[str,
         raise CaseError(f"{path}: the file is empty; 'cdem new incline' writes a case to start from")
     if not isinstance(tree, dict):
         raise CaseError(f"{path}:1:1: a case is a mapping (key: value), got {describe(tree)}")
-    _note_places(tree, source, (), set())
+    _note_places(tree, source, ())
     data = plain(tree, source)
     for override in overrides:
         _override(data, override, source)
@@ -141,18 +141,16 @@ def _mark(file: str, mark: Any) -> str:
     return f"{file}:{mark.line + 1}:{mark.column + 1}" if mark is not None else file
 
 
-def _note_places(node: Any, source: Source, keys: Keys, open_nodes: set[int]) -> None:
+def _note_places(node: Any, source: Source, keys: Keys) -> None:
     """Remember line and column of every key and list entry of a tree with positions."""
     if not isinstance(node, dict | list):
         return
-    if id(node) in open_nodes:
-        raise source.error([(keys, "contains itself (a YAML alias of its own anchor)")])
     places = node.lc.data or {}
     for key in node if isinstance(node, dict) else range(len(node)):
         path = (*keys, key if isinstance(node, list) else str(key))
         if key in places:  # keys merged with << have no place of their own
             source.places[path] = (places[key][0] + 1, places[key][1] + 1)
-        _note_places(node[key], source, path, open_nodes | {id(node)})
+        _note_places(node[key], source, path)
 
 
 def plain(value: Any, source: Source, keys: Keys = ()) -> Any:
@@ -216,7 +214,7 @@ def resolve(root: Any, path: str, label: str | None = None) -> Keys:
         known = _children(node)
         count = _longest_known(parts, known)
         key: Key = ".".join(parts[:count])
-        if isinstance(node, list):
+        if isinstance(node, list | tuple):
             key = _list_index(node, str(key), label, keys)
         elif keys == ("interfaces",) and key not in ("default", "pairs"):
             keys, node = (*keys, "pairs"), known.get("pairs") or []
@@ -225,7 +223,7 @@ def resolve(root: Any, path: str, label: str | None = None) -> Keys:
             raise CaseError(f"{label}: {key}: {_unknown(str(key), known)}")
         elif not isinstance(node, dict | BaseModel) and node is not None:
             raise CaseError(f"{label}: {'.'.join(map(str, keys))} has nothing inside")
-        node = node[key] if isinstance(node, list) else known.get(key)
+        node = node[key] if isinstance(node, list | tuple) else known.get(key)
         keys, parts = (*keys, key), parts[count:]
     return keys
 
@@ -241,7 +239,7 @@ def _longest_known(parts: list[str], known: dict[str, Any]) -> int:
     return next((n for n in counts if ".".join(parts[:n]) in known), 1)
 
 
-def _list_index(node: list[Any], key: str, label: str, keys: Keys) -> int:
+def _list_index(node: typing.Sequence[Any], key: str, label: str, keys: Keys) -> int:
     names = [_children(entry).get("name") for entry in node]
     if key in names:
         return names.index(key)

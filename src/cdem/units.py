@@ -87,7 +87,8 @@ def to_number(value: object, unit: str) -> float:
     if isinstance(value, str):
         match = _NUMBER.fullmatch(value)
         if match is None:
-            raise ValueError(f"must be a number or a text such as '3 {unit}', got '{value}'")
+            unit_too = "" if unit == "1" else f" or a text such as '3 {unit}'"
+            raise ValueError(f"must be a number{unit_too}, got '{value}'")
         number = float(match[1])
         if match[2]:
             number *= _ratio(match[2], unit, value)
@@ -114,14 +115,16 @@ def describe(value: object) -> str:
 
 
 def _ratio(text: str, unit: str, whole: str) -> float:
-    factor, dimension = parse_unit(text)
     target, wanted = parse_unit(unit)
+    names = [name for powers, factors in DIMENSIONS.values() if powers == wanted for name in factors]
+    allowed = "use one of: " + ", ".join(names) if names else f"use {unit} or the like"
+    try:
+        factor, dimension = parse_unit(text)
+    except ValueError as error:
+        hint = "" if "did you mean" in str(error) else f"; {allowed}"
+        raise ValueError(f"{error} in '{whole}'{hint}") from None
     if dimension != wanted:
-        names = [
-            name for powers, factors in DIMENSIONS.values() if powers == wanted for name in factors
-        ]
-        allowed = ", ".join(names or [unit])
-        raise ValueError(f"'{whole}' has the wrong dimension; use one of: {allowed}")
+        raise ValueError(f"'{whole}' has the wrong dimension; {allowed}")
     return factor / target  # exactly 1 for the same unit, so "21 deg" stays 21
 
 
@@ -131,4 +134,4 @@ def _did_you_mean(text: str) -> str:
         close = [name for name in UNITS if name.lower() == word.lower() and name != word]
         if word not in UNITS and close:
             return f"; did you mean {close[0]}?"
-    return "; known are " + ", ".join(UNITS)
+    return ""

@@ -1,0 +1,346 @@
+"""The program ``cdem``: one function for each verb. What they need is imported when they run."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import resources
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from cdem import __version__
+from cdem.errors import CaseError, CdemError
+
+if TYPE_CHECKING:
+    from cdem.simulation import Simulation
+
+STOPPED = 4  # exit status of a run that was stopped by a signal and can be resumed
+RESULT_FILES = {"case.yaml", "run.log", "summary.json", "checkpoint.h5"}
+
+app = typer.Typer(
+    name="cdem",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    help="Rock as blocks of finite elements that touch, bond, break and slide (CDEM).",
+    epilog="Start with: cdem new incline; cdem check incline.yaml; cdem run incline.yaml",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE.yaml", help="Case file.")]
+ResultFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Result folder of a run.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the case; repeatable."),
+]
+Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all cores.")]
+
+
+def main() -> None:
+    """Run the program; a user's mistake is one message on stderr, never a traceback."""
+    try:
+        app()
+    except CdemError as error:
+        print(error, file=sys.stderr)
+        sys.exit(error.exit_code)
+    except BrokenPipeError:  # the reader of our output, e.g. head, has enough
+        sys.stderr.close()
+        sys.exit(0)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        print(f"{where}{error.strerror or error}", file=sys.stderr)
+        sys.exit(1)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(f"cdem {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _top(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print version."),
+    ] = False,
+) -> None:
+    pass
+
+
+# ------------------------------------------------------------------ cases
+
+
+@app.command()
+def new(
+    template: Annotated[str | None, typer.Argument(help="Name; without it, all are listed.")] = None,
+    folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
+) -> None:
+    """Write a commented case to start from."""
+    home = resources.files("cdem") / "templates"
+    names = sorted(f.name[:-5] for f in home.iterdir() if f.name.endswith(".yaml"))
+    if template is None:
+        for name in names:
+            title = (home / f"{name}.yaml").read_text().splitlines()[0].lstrip("# ")
+            print(f"{name:<12}{title}")
+        return
+    if template not in names:
+        close = difflib.get_close_matches(template, names, n=1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        raise typer.BadParameter(f"no template '{template}'{hint} There are: {', '.join(names)}")
+    case = (home / f"{template}.yaml").read_text()
+    meshes = [f.name for f in home.iterdir() if f.name.endswith(".msh") and f.name in case]
+    files = {f"{template}.yaml": case} | {name: (home / name).read_text() for name in meshes}
+    for name in files:
+        if (folder / name).exists():
+            raise CaseError(f"{folder / name}: exists already; move it away or name another folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in files.items():
+        (folder / name).write_text(text)
+        print(f"wrote {folder / name}")
+    print(f"next: cdem run {folder / template}.yaml")
+
+
+@app.command()
+def check(
+    case_file: CaseFile,
+    settings: Settings = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Read everything and report on the model; changes nothing."""
+    from cdem.case import Case
+
+    case = Case.load(case_file, settings or [])
+    from cdem.simulation import Simulation
+
+    audit = Simulation(case, threads=threads).audit
+    print(json.dumps(audit.as_dict(), indent=2) if as_json else audit.text().rstrip())
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of a case, for editors."""
+    from cdem.case import Case
+
+    print(json.dumps(Case.schema(), indent=2))
+
+
+# ------------------------------------------------------------------ running
+
+
+@app.command()
+def run(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Result folder; default CASE.results, here."),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    device: Annotated[Literal["cpu", "cuda"], typer.Option(help="Where to compute.")] = "cpu",
+    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace what the result folder holds.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print summary.json at the end.")] = False,
+) -> None:
+    """Run all stages of a case. Ctrl-C stops it cleanly, to be resumed."""
+    if resume and overwrite:
+        raise typer.BadParameter("--resume and --overwrite exclude one another")
+    if quiet and as_json:
+        raise typer.BadParameter("--quiet and --json exclude one another")
+    folder = output or Path(f"{case_file.stem}.results")
+    with _stop_on_signal() as stop:
+        from cdem.case import Case
+
+        case = Case.load(case_file, settings or [])
+        _guard_folder(folder, resume=resume, overwrite=overwrite)
+        if resume:
+            _compare_cases(case, folder)
+        from cdem.simulation import Simulation
+
+        simulation = Simulation(
+            case,
+            threads=threads,
+            output=folder,
+            overwrite=overwrite,
+            resume=resume,
+            device=device,
+        )
+        status = _run(simulation, stop, quiet=quiet, as_json=as_json)
+    summary = folder / "summary.json"
+    if as_json:
+        print(summary.read_text().rstrip())
+    elif not quiet:
+        print(f"{status}; results are in {folder}")
+    if status == "stopped":
+        again = _resume_command(case_file, folder, settings or [], threads)
+        print(f"stopped with a checkpoint; go on with: {again}", file=sys.stderr)
+        raise typer.Exit(STOPPED)
+
+
+def _run(simulation: Simulation, stop: list[str], *, quiet: bool, as_json: bool) -> str:
+    from cdem.progress import watch
+
+    tty = sys.stderr.isatty()
+    silent = quiet or (as_json and not tty)
+    if not silent:
+        for warning in simulation.audit.warnings:
+            print(f"warning: {warning}", file=sys.stderr)
+    with watch(silent=silent, tty=tty) as progress:
+        status = simulation.run(progress, lambda: bool(stop))
+    if status != "stopped":
+        _write_report(simulation, silent=silent)
+    return status
+
+
+def _write_report(simulation: Simulation, *, silent: bool) -> None:
+    """Write report.html; the results are whole without it, so a missing extra is only said."""
+    from cdem import view
+
+    try:
+        view.report(simulation.results.folder)
+    except (CdemError, ImportError) as error:
+        if not silent:
+            print(f"no report.html: {error}", file=sys.stderr)
+
+
+def _guard_folder(folder: Path, *, resume: bool, overwrite: bool) -> None:
+    """Stop before anything is computed if the folder must not be written to."""
+    if folder.exists() and not folder.is_dir():
+        raise CaseError(f"{folder}: is a file; name another folder with -o")
+    inside = {path.name for path in folder.iterdir()} if folder.exists() else set()
+    if not inside or resume:
+        return
+    if not overwrite:
+        raise CaseError(
+            f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or -o "
+            "for another folder"
+        )
+    if not inside & RESULT_FILES:
+        raise CaseError(f"{folder}: is not a result folder, so it is not overwritten")
+
+
+def _compare_cases(case: Any, folder: Path) -> None:
+    """Say so if a run is resumed with another case than it was begun with."""
+    path = folder / "case.yaml"
+    if not path.is_file():
+        return
+    changes = [
+        line
+        for line in difflib.ndiff(path.read_text().splitlines(), case.dump().splitlines())
+        if line[0] in "+-"
+    ]
+    if changes:
+        print(
+            f"warning: this is not the case that {folder} was begun with: "
+            + "; ".join(" ".join(line.split()) for line in changes[:4]),
+            file=sys.stderr,
+        )
+
+
+@contextmanager
+def _stop_on_signal() -> Iterator[list[str]]:
+    """Collect SIGINT and SIGTERM instead of dying; a second one interrupts at once."""
+    received: list[str] = []
+
+    def receive(number: int, frame: FrameType | None) -> None:
+        if received:
+            raise KeyboardInterrupt
+        received.append(signal.Signals(number).name)
+        print(f"\n{received[0]}: stopping with a checkpoint; again to stop at once", file=sys.stderr)
+
+    before = {number: signal.signal(number, receive) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield received
+    except KeyboardInterrupt:
+        print("stopped at once; the last checkpoint, if any, is kept", file=sys.stderr)
+        raise typer.Exit(STOPPED) from None
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _resume_command(case: Path, folder: Path, settings: list[str], threads: int | None) -> str:
+    import shlex
+
+    words = ["cdem", "run", str(case), "-o", str(folder), "--resume"]
+    for setting in settings:
+        words += ["--set", setting]
+    return shlex.join(words + ([] if threads is None else ["--threads", str(threads)]))
+
+
+# ------------------------------------------------------------------ looking at results
+
+
+@app.command()
+def info(folder: ResultFolder) -> None:
+    """Say what a run did."""
+    from cdem import view
+
+    print(view.info(_results(folder)).rstrip())
+
+
+@app.command()
+def plot(folder: ResultFolder) -> None:
+    """Draw histories and energies as PNG."""
+    from cdem import view
+
+    _print_paths(view.plot(_results(folder)))
+
+
+@app.command()
+def render(
+    folder: ResultFolder,
+    field: Annotated[str, typer.Option(help="Field that colours the picture.")] = "displacement",
+    movie: Annotated[bool, typer.Option("--movie", help="Make an animation.")] = False,
+) -> None:
+    """Draw the model as pictures or an animation."""
+    from cdem import view
+
+    _print_paths(view.render(_results(folder), field=field, movie=movie))
+
+
+@app.command()
+def export(
+    folder: ResultFolder,
+    to: Annotated[Literal["vtu"], typer.Option("--to", help="File format.")] = "vtu",
+) -> None:
+    """Write the frames in a format for other programs, e.g. ParaView."""
+    from cdem import view
+
+    _print_paths(view.export(_results(folder), to=to))
+
+
+@app.command()
+def doctor() -> None:
+    """Say what works on this machine, and how to mend what does not."""
+    from cdem.doctor import report
+
+    text, healthy = report()
+    print(text)
+    if not healthy:
+        raise typer.Exit(1)
+
+
+def _results(folder: Path) -> Path:
+    if not folder.is_dir():
+        raise CaseError(f"{folder}: no such folder; name the result folder of a run")
+    if not {path.name for path in folder.iterdir()} & RESULT_FILES:
+        raise CaseError(f"{folder}: is not a result folder; 'cdem run CASE.yaml' makes one")
+    return folder
+
+
+def _print_paths(paths: Any) -> None:
+    for path in [paths] if isinstance(paths, str | Path) else paths:
+        print(path)

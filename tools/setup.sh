@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Make .venv and install cdem with its tools into it. Installs missing Debian packages when it may.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+PYTHON=${PYTHON:-python3}
+
+missing=()
+command -v g++ >/dev/null || missing+=(g++)
+command -v make >/dev/null || missing+=(make)
+command -v "$PYTHON" >/dev/null || missing+=(python3)
+"$PYTHON" -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3-venv)
+"$PYTHON" -c 'import os, sysconfig, sys
+sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' 2>/dev/null ||
+  missing+=(python3-dev)
+# pyvista draws without a screen through OSMesa
+ldconfig -p 2>/dev/null | grep -q libOSMesa || missing+=(libosmesa6)
+ldconfig -p 2>/dev/null | grep -q 'libGL\.so\.1' || missing+=(libgl1)
+ldconfig -p 2>/dev/null | grep -q libXrender || missing+=(libxrender1)
+
+if ((${#missing[@]})); then
+  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+    echo "installing Debian packages: ${missing[*]}"
+    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "${missing[@]}" \
+      >/dev/null
+  else
+    echo "missing system packages; install them with:" >&2
+    echo "  sudo apt-get install ${missing[*]}" >&2
+    case " ${missing[*]} " in
+      *" g++ "* | *" python3"*) exit 1 ;;
+      *) echo "(only pictures need these; going on)" >&2 ;;
+    esac
+  fi
+fi
+
+[ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
+.venv/bin/python -m pip install -q --upgrade pip
+.venv/bin/python -m pip install -q "scikit-build-core>=0.10" "nanobind>=2.4" "cmake>=3.27" ninja
+PATH="$PWD/.venv/bin:$PATH" .venv/bin/python -m pip install -q --no-build-isolation -e '.[dev]'
