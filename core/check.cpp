@@ -176,7 +176,8 @@ StepLimit step_limit(const Model& m, const State& s) {
       limit.contact2 = contact2;
     }
   }
-  const Real xi = m.stiffness_damping;
+  // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
+  const Real xi = m.stiffness_damping + m.contact_damping;
   limit.dt = 2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) /
              std::sqrt(1 + m.damping.local);
   return limit;

@@ -14,7 +14,7 @@ Real ordered_sum(Index count, Term&& term) {
   constexpr Index chunk = 1024;
   const Index chunks = (count + chunk - 1) / chunk;
   std::vector<Real> part(chunks);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index c = 0; c < chunks; ++c) {
     Real sum = 0;
     const Index last = c + 1 == chunks ? count : (c + 1) * chunk;

@@ -12,7 +12,7 @@ namespace cdem {
 
 inline FaceColumns face_columns(const Model& m, const State& s) {
   return {{s.nodes.motion.data()}, m.face_nodes.data(),     m.face_edges.data(),
-          m.face_group.data(),     m.face_length.data(),    m.face_area.data(),
+          m.face_group.data(),     m.face_length.data(),    m.face_reach.data(), m.face_area.data(),
           m.face_stiffness.data(), m.edge_nodes.data(),     m.edge_faces.data(),
           m.ring_first.data(),     m.ring.data(),           s.nodes.glue.data(),
           s.search.face_exposed.data(), s.dt_last};
@@ -25,14 +25,14 @@ inline Candidates candidate_columns(const State& s) {
 inline SpringColumns spring_columns(State& s) {
   SpringState& c = s.springs;
   return {c.target.data(),   c.target_before.data(), c.force_n.data(), c.shear1.data(),
-          c.shear2.data(),   c.gap_free.data(),      c.energy_n.data(), c.energy_s.data(), c.friction.data(),
+          c.shear2.data(),   c.gap_free.data(), c.sunk.data(), c.energy_n.data(), c.energy_s.data(), c.friction.data(),
           c.dashpot.data(),  c.reaction.data(),      c.lost.data()};
 }
 
 inline EdgeColumns edge_columns(State& s) {
   EdgeState& c = s.edges;
   return {c.slots,          c.count.data(),   c.side.data(),     c.target_face.data(),
-          c.target_edge.data(), c.shear1.data(), c.shear2.data(), c.force_n.data(),
+          c.target_edge.data(), c.gap_free.data(), c.sunk.data(), c.shear1.data(), c.shear2.data(), c.force_n.data(),
           c.energy_n.data(), c.energy_s.data(), c.reaction.data(), c.friction.data(), c.dashpot.data(),
           c.lost.data(),    c.overflow.data()};
 }

@@ -112,6 +112,8 @@ using Number = typename NumberOf<Item>::type;
 
 #if defined(__CUDACC__)
 
+inline constexpr Index worth_threads = 1024;  // of host loops
+
 struct Queue {
   cudaStream_t stream = nullptr;
 };
@@ -136,11 +138,14 @@ void for_each_one(Queue queue, Index count, const Kernel& kernel) {
 
 struct Queue {};
 
+/// Loops over fewer items than this run on one thread: starting the others would cost more.
+inline constexpr Index worth_threads = 1024;
+
 /// Run a straight-line kernel for every item: whole lanes, then the remainder one by one.
 template <class Kernel>
 void for_each(Queue, Index count, const Kernel& kernel) {
   const Index whole = count - count % lanes;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index i = 0; i < whole; i += lanes) kernel(Lane{i});
   for (Index i = whole; i < count; ++i) kernel(One{i});
 }
@@ -148,7 +153,7 @@ void for_each(Queue, Index count, const Kernel& kernel) {
 /// Run a kernel whose items take different paths (searches, ragged sums): one number at a time.
 template <class Kernel>
 void for_each_one(Queue, Index count, const Kernel& kernel) {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index i = 0; i < count; ++i) kernel(One{i});
 }
 

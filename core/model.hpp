@@ -49,7 +49,7 @@ struct Model {
   // exterior faces and edges
   Index face_count = 0, edge_count = 0;
   Column<Index> face_nodes, face_edges, face_group, face_block;
-  Column<Real> face_length, face_area, face_stiffness;
+  Column<Real> face_length, face_reach, face_area, face_stiffness;
   Column<Index> edge_nodes, edge_faces, ring_first, ring;
   Column<Flag> face_initially_exposed, face_movable;
 
@@ -79,7 +79,6 @@ struct Model {
   Real bond_indentation_triangle = 0, bond_indentation_quad = 0;
   bool semi_edges = true;
   Index refresh_interval = 0;  // 0: by displacement; else the paper's every so many steps
-  Real skin_ratio = 0.1;       // of the face's L
   NodeDamping damping{0, 0};
   Real stiffness_damping = 0;  // Rayleigh, fraction of critical at the stability limit
   Real contact_damping = 0;    // fraction of critical
@@ -120,6 +119,7 @@ void describe(Model& m, Visit&& field) {
   field("face.group", m.face_group);
   field("face.block", m.face_block);
   field("face.length", m.face_length);
+  field("face.reach", m.face_reach);
   field("face.area", m.face_area);
   field("face.stiffness", m.face_stiffness);
   field("face.initially_exposed", m.face_initially_exposed);

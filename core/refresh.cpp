@@ -28,7 +28,7 @@ constexpr Real release_part = 0.1;
 
 bool release_is_due(const Model& m, const PairSet& p, const PairState& s) {
   bool due = false;
-#pragma omp parallel for schedule(static) reduction(|| : due)
+#pragma omp parallel for schedule(static) reduction(|| : due) if (p.count >= worth_threads)
   for (Index i = 0; i < p.count; ++i)
     due = due || s.jump[i] > m.rules.indentation * pair_length(m, p, i);
   return due;
@@ -43,7 +43,7 @@ void expose(const Model& m, State& s, Index face) {
   SpringState& c = s.springs;
   c.target.resize(4 * count, -1);
   c.target_before.resize(4 * count, -1);
-  for (Column<Real>* column : {&c.force_n, &c.shear1, &c.shear2, &c.gap_free, &c.energy_n,
+  for (Column<Real>* column : {&c.force_n, &c.shear1, &c.shear2, &c.gap_free, &c.sunk, &c.energy_n,
                                &c.energy_s, &c.friction, &c.dashpot})
     column->resize(4 * count);
   c.reaction.resize(4 * 8 * count);
@@ -51,7 +51,7 @@ void expose(const Model& m, State& s, Index face) {
   EdgeState& e = s.edges;
   for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
     column->resize(slots * count, -1);
-  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
+  for (Column<Real>* column : {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
     column->resize(slots * count);
   e.reaction.resize(8 * slots * count);
   e.count.resize(count);
@@ -59,6 +59,7 @@ void expose(const Model& m, State& s, Index face) {
   e.dashpot.resize(count);
   e.lost.resize(count);
   e.overflow.resize(count);
+  s.search.face_sunk.resize(count);
   s.face_geometry.resize(8 * count);
   s.contact_force.resize(4 * 4 * count);
   (void)m;
@@ -90,6 +91,7 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
         s.springs.shear1[slot] = dot(force, frame.t1);
         s.springs.shear2[slot] = dot(force, frame.t2);
         s.springs.force_n[slot] = 1.0;  // loaded: may be kept as deep as it is
+        s.springs.sunk[slot] = -dot(frame_a.n, jump);
       }
     };
     give(place_a, a, node_a, place_b, frame_b, -on_b);
@@ -134,20 +136,30 @@ void label_glue(const Model& m, State& s) {
   for (Index i = 0; i < m.node_count; ++i) label[i] = root(i);
 }
 
-/// How much an exposed face may move before the lists are old  [m].
-Real skin_of(const Model& m, Index face) { return m.skin_ratio * m.face_length[face]; }
+/// How much an exposed face may move before the lists are old  [m]: what it will move in some
+/// hundred steps at its present speed. Slow rubble so gets short lists, fast rubble few refreshes.
+Real skin_of(const Model& m, const State& s, Index face) {
+  constexpr Real steps = 200, least = 0.004, most = 0.1;  // parts of the face's L
+  Real speed = 0;
+  for (Index k = 0; k < 4; ++k) {
+    const Index node = m.face_nodes[4 * face + k];
+    if (node < 0) continue;
+    const Real* v = s.nodes.motion.data() + std::size_t(node) * 8 + 4;
+    speed = std::max(speed, std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  }
+  const Real length = m.face_length[face];
+  return std::clamp(steps * s.dt * speed, least * length, most * length);
+}
 
 /// Deepest contact of a face: its targets may lie this far outside its skin  [m].
-Real sunk(const State& s, Index place) {
+Real deepest_gap(const State& s, Index place) {
   Real deepest = 0;
-  const auto look = [&](Real force_n, const Real* row) {
-    if (force_n > 0 && row[3] > 0) deepest = std::max(deepest, force_n / row[3]);
-  };
   for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
-    look(s.springs.force_n[k], s.springs.reaction.data() + 8 * k);
+    if (s.springs.target[k] >= 0)
+      deepest = std::max(deepest, s.springs.sunk[k] - s.springs.gap_free[k]);
   for (Index j = 0; j < s.edges.count[place]; ++j) {
     const std::size_t c = std::size_t(s.edges.slots) * place + j;
-    look(s.edges.force_n[c], s.edges.reaction.data() + 8 * c);
+    deepest = std::max(deepest, s.edges.sunk[c] - s.edges.gap_free[c]);
   }
   return 2 * deepest;
 }
@@ -172,14 +184,30 @@ struct ExposedFaces {
   std::vector<Real> turn;   // how much the normal may turn before the lists are old
   std::vector<Index> block;
   std::vector<Flag> movable;
+  std::vector<FaceShape> shape;
+  std::vector<Real> reach;  // of the box around the face  [m]
+
+  /// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
+  bool apart(Index x, Index y) const {
+    const Vec3<Real> center = shape[y].center();
+    Real lowest = 1e300, span = 0;
+    for (Index k = 0; k < shape[x].count; ++k) {
+      const Vec3<Real> arm = shape[x].x[k] - center;
+      lowest = std::min(lowest, dot(normal[y], arm));
+      span = std::max(span, norm(arm));
+    }
+    const Real bend = shape[y].count == 4 ? reach[y] : 0;  // a warped face is no plane
+    return lowest > reach[x] + reach[y] + turn[y] * span + bend;
+  }
 };
 
 ExposedFaces exposed_faces(const Model& m, const State& s) {
   const Index count = Index(s.search.exposed_face.size());
   const FaceColumns faces = face_columns(m, s);
   ExposedFaces e{std::vector<Box>(count), std::vector<Vec3<Real>>(count),
-                 std::vector<Real>(count), std::vector<Index>(count), std::vector<Flag>(count)};
-#pragma omp parallel for schedule(static)
+                 std::vector<Real>(count), std::vector<Index>(count), std::vector<Flag>(count),
+                 std::vector<FaceShape>(count), std::vector<Real>(count)};
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) {
     const Index face = s.search.exposed_face[x];
     const FaceShape f = faces.shape(face);
@@ -189,12 +217,15 @@ ExposedFaces exposed_faces(const Model& m, const State& s) {
       box.include(f.x[k]);
       longest = std::max(longest, norm(f.x[k + 1 == f.count ? 0 : k + 1] - f.x[k]));
     }
-    box.inflate(skin_of(m, face) + sunk(s, x));
+    e.shape[x] = f;
+    const Real skin = skin_of(m, s, face);
+    e.reach[x] = skin + deepest_gap(s, x);
+    box.inflate(e.reach[x]);
     e.box[x] = box;
     e.normal[x] = f.normal();
     // vertices move by a skin at most: the plane turns by twice that over the smallest height
     const Real height = (f.count == 3 ? 2 : 1) * m.face_area[face] / longest;
-    e.turn[x] = 2 * skin_of(m, face) / height;
+    e.turn[x] = 2 * skin / height;
     e.block[x] = m.face_block[face];
     e.movable[x] = m.face_movable[face];
   }
@@ -207,11 +238,12 @@ void list_candidates(const Model& m, State& s) {
   const Pairs mates = live_overlaps(m, s);
   const BoxTree tree(e.box);
   std::vector<std::vector<Index>> rows(count);
-#pragma omp parallel for schedule(dynamic, 256)
+#pragma omp parallel for schedule(dynamic, 256) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) {
     tree.query(e.box[x], [&](Index y) {
       if (e.block[x] == e.block[y] || (!e.movable[x] && !e.movable[y])) return;
       if (dot(e.normal[x], e.normal[y]) >= -m.rules.opposing + e.turn[x] + e.turn[y]) return;
+      if (e.apart(x, y) || e.apart(y, x)) return;
       if (!mates.empty() && std::binary_search(mates.begin(), mates.end(), std::pair(x, y)))
         return;
       rows[x].push_back(y);
@@ -244,7 +276,7 @@ void list_contact_corners(const Model& m, State& s) {
   visit([&](Index node, Index, Index face) {
     ++first[node + 1];
     Real& skin = s.search.node_skin[node];
-    skin = skin > 0 ? std::min(skin, skin_of(m, face)) : skin_of(m, face);
+    skin = skin > 0 ? std::min(skin, skin_of(m, s, face)) : skin_of(m, s, face);
   });
   for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
   corner.resize(first[m.node_count]);
@@ -290,8 +322,9 @@ void sum_stiffness(const Model& m, State& s) {
     const Interface& law = m.interfaces[m.interface_of[group * m.group_count + group]];
     const Real k = std::max(law.stiffness_n(m.face_stiffness[face]),
                             law.stiffness_s(m.face_stiffness[face]));
+    // semi-springs of either side, and as much again for semi-edges
     for (Index v = 0; v < count; ++v)
-      s.node_potential[m.face_nodes[4 * face + v]] += k * m.face_area[face] / count;
+      s.node_potential[m.face_nodes[4 * face + v]] += 2 * k * m.face_area[face] / count;
   }
 }
 
@@ -302,7 +335,7 @@ bool refresh_is_due(const Model& m, const State& s) {
       release_is_due(m, m.overlaps, s.overlaps))
     return true;
   bool due = false;
-#pragma omp parallel for schedule(static) reduction(|| : due)
+#pragma omp parallel for schedule(static) reduction(|| : due) if (m.node_count >= worth_threads)
   for (Index i = 0; i < m.node_count; ++i) {
     const Real skin = s.search.node_skin[i];
     if (skin == 0) continue;
@@ -348,7 +381,7 @@ void widen_edge_slots(State& s) {
   };
   for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
     widen(*column, 1, Index(-1));
-  for (Column<Real>* column : {&e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
+  for (Column<Real>* column : {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
     widen(*column, 1, Real(0));
   widen(e.reaction, 8, Real(0));
   e.slots = Index(wide);
@@ -411,16 +444,18 @@ Index count_missed_contacts(const Model& m, State& s) {
     std::vector<Index> all;
     for (Index t = 0; t < count; ++t)
       if (block(t) != block(x) && (movable(t) || movable(x))) all.push_back(t);
-    Flag ignored = 0;
+    Flag ignored[4] = {};
+    Index by_list[4], by_all[4];
+    springs.choose(x, listed + first, last - first, by_list, ignored);
+    springs.choose(x, all.data(), Index(all.size()), by_all, ignored);
     for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
-      missed += springs.choose(x, k, listed + first, last - first, &ignored) !=
-                springs.choose(x, k, all.data(), Index(all.size()), &ignored);
+      missed += by_list[k] != by_all[k];
     for (const Index t : all) {
       if (!m.semi_edges) break;
       if (std::binary_search(listed + first, listed + last, t)) continue;
       for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
         for (Index j = 0; j < springs.faces.vertex_count(s.search.exposed_face[t]); ++j)
-          missed += edges.touches(x, k, t, j, false, false, &ignored);
+          missed += edges.touches(x, k, t, j, false, false, ignored);
     }
   }
   return missed;

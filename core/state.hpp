@@ -29,18 +29,20 @@ struct PairState {
 
 struct SpringState {
   Column<Index> target, target_before;
-  Column<Real> force_n, shear1, shear2, gap_free, energy_n, energy_s, friction, dashpot, reaction;
+  Column<Real> force_n, shear1, shear2, gap_free, sunk, energy_n, energy_s;
+  Column<Real> friction, dashpot, reaction;
   Column<Flag> lost;
 };
 
 struct EdgeState {
   Index slots = 8;
   Column<Index> count, side, target_face, target_edge;
-  Column<Real> shear1, shear2, force_n, energy_n, energy_s, reaction, friction, dashpot;
+  Column<Real> gap_free, sunk, shear1, shear2, force_n, energy_n, energy_s, reaction, friction, dashpot;
   Column<Flag> lost, overflow;
 };
 
 struct SearchState {
+  Column<Real> face_sunk;                    // [exposed] deepest contact of the face  [m]
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
   Column<Index> candidate_first, candidate;
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
@@ -110,6 +112,7 @@ void describe(S& s, Visit&& field) {
   field("spring.shear1", s.springs.shear1, "first shear force [N]");
   field("spring.shear2", s.springs.shear2, "second shear force [N]");
   field("spring.gap_free", s.springs.gap_free, "gap without stress [m]");
+  field("spring.sunk", s.springs.sunk, "effective penetration [m]");
   field("spring.energy_n", s.springs.energy_n, "stored in the normal spring [J]");
   field("spring.energy_s", s.springs.energy_s, "stored in the shear spring [J]");
   field("spring.friction", s.springs.friction, "frictional work [J]");
@@ -124,6 +127,8 @@ void describe(S& s, Visit&& field) {
   field("edge.shear1", s.edges.shear1, "first shear force [N]");
   field("edge.shear2", s.edges.shear2, "second shear force [N]");
   field("edge.force_n", s.edges.force_n, "normal force, compression > 0 [N]");
+  field("edge.gap_free", s.edges.gap_free, "gap without stress [m]");
+  field("edge.sunk", s.edges.sunk, "effective penetration [m]");
   field("edge.energy_n", s.edges.energy_n, "stored in the normal spring [J]");
   field("edge.energy_s", s.edges.energy_s, "stored in the shear spring [J]");
   field("edge.reaction", s.edges.reaction, "force, stiffness, places on the edges");
@@ -131,6 +136,7 @@ void describe(S& s, Visit&& field) {
   field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");
   field("edge.lost", s.edges.lost, "1: lost by depth");
 
+  field("search.face_sunk", s.search.face_sunk, "deepest contact of an exposed face [m]");
   field("search.exposed_face", s.search.exposed_face, "faces that can be touched");
   field("search.face_exposed", s.search.face_exposed, "place of a face among them, or -1");
   field("search.candidate_first", s.search.candidate_first, "start of a face's candidates");

@@ -89,12 +89,14 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
   const Index* exposed = s.search.exposed_face.data();
   launch_one(q, 4 * count,
              UpdateSpringForces{face_columns(m, s), exposed, m.rules, contact_laws(m),
-                                spring_columns(s)});
+                                spring_columns(s), s.search.face_sunk.data()});
   launch_one(q, count,
-             UpdateEdgeForces{face_columns(m, s), exposed, contact_laws(m), edge_columns(s)});
+             UpdateEdgeForces{face_columns(m, s), exposed, contact_laws(m), edge_columns(s),
+                              s.search.face_sunk.data()});
   launch_one(q, count,
              GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s), m.rules,
-                              spring_columns(s), edge_columns(s), s.contact_force.data()});
+                              spring_columns(s), edge_columns(s), s.contact_force.data(),
+                              s.search.face_sunk.data()});
 }
 
 template <class Shape>

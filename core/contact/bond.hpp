@@ -169,7 +169,7 @@ struct ConformingBonds {
       corner_force.set(p, 2 * count, k, -fk);
       corner_force.set(p, 2 * count, count + k, fk);
     }
-    pairs.jump.set(0, p, select(intact > zero, zero, sqrt_of(widest)));
+    pairs.jump.set(0, p, select(live & (!(intact > zero)), sqrt_of(widest), zero));
     pairs.stored.set(0, p, select(live, total.stored, zero));
     add(pairs.fracture, p, select(live, total.fracture, zero));
     add(pairs.friction, p, select(live, total.friction, zero));

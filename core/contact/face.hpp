@@ -94,6 +94,7 @@ struct FaceColumns {
   const Index* face_edges;   // [face][4]: the edge from vertex k to k + 1
   const Index* face_group;   // [face]
   const Real* face_length;   // L: mean distance from the centre to the vertices, Eq. 3  [m]
+  const Real* face_reach;    // a little more than the farthest vertex from the centre  [m]
   const Real* face_area;     // [m2]
   const Real* face_stiffness;  // modulus of the element behind over its height  [Pa/m]
   const Index* edge_nodes;   // [edge][2]
@@ -127,20 +128,22 @@ struct FaceColumns {
   }
 };
 
-/// Centre and normal of exposed faces, one 64-byte row each: centre, pad, normal, pad.
+/// Centre, speed and normal of exposed faces, one 64-byte row each: centre, speed, normal, pad.
 struct FaceGeometry {
   const Real* rows;
   CDEM_HD Vec3<Real> center(Index exposed) const {
     const Real* r = rows + std::size_t(exposed) * 8;
     return {r[0], r[1], r[2]};
   }
+  /// Speed of the fastest vertex  [m/s].
+  CDEM_HD Real speed(Index exposed) const { return rows[std::size_t(exposed) * 8 + 3]; }
   CDEM_HD Vec3<Real> normal(Index exposed) const {
     const Real* r = rows + std::size_t(exposed) * 8 + 4;
     return {r[0], r[1], r[2]};
   }
 };
 
-/// Renew centre and normal of every exposed face.
+/// Renew centre, speed and normal of every exposed face.
 struct UpdateFaceGeometry {
   FaceColumns faces;
   const Index* exposed_face;
@@ -150,7 +153,12 @@ struct UpdateFaceGeometry {
     const FaceShape f = faces.shape(exposed_face[i.i]);
     const Vec3<Real> c = f.center(), n = f.normal();
     Real* r = rows + std::size_t(i.i) * 8;
-    r[0] = c.x, r[1] = c.y, r[2] = c.z;
+    Real fastest2 = 0;
+    for (Index k = 0; k < f.count; ++k) {
+      const Vec3<Real> v = faces.nodes.velocity(faces.vertex(exposed_face[i.i], k));
+      fastest2 = max_of(fastest2, dot(v, v));
+    }
+    r[0] = c.x, r[1] = c.y, r[2] = c.z, r[3] = sqrt_of(fastest2);
     r[4] = n.x, r[5] = n.y, r[6] = n.z;
   }
 };

@@ -19,9 +19,34 @@ struct ContactLaws {
   }
 };
 
+/// The gap at which a contact that begins is free of stress.
+///
+/// A contact met from outside is free at zero gap. One that is found already inside must not release
+/// energy that nothing put in (faces of freshly broken rock have slid a little past each other, a
+/// vertex turns a corner): it may begin as deep as the contact it comes from or, between flush faces,
+/// as their other contacts are (a seam in a flat bed, where contacts take turns to carry the same
+/// load); what is deeper counts as free of stress.
+CDEM_HD inline Real starting_gap_free(Real gap, Real gap_rate, Real dt, Real sunk_before,
+                                      Real sunk_of_faces) {
+  const Real gap_before = gap - gap_rate * dt;
+  return min_of(gap_before + max_of(sunk_before, sunk_of_faces), 0.0);
+}
+
+/// How deep a new contact between two faces may begin: see starting_gap_free.
+CDEM_HD inline Real sunk_of_flush(Real facing, Real sunk_m, Real sunk_t) {
+  constexpr Real flush = -0.999;  // cosine between the normals: 2.6 degrees
+  return facing < flush ? max_of(sunk_m, sunk_t) : 0.0;
+}
+
+/// Once a contact is lifted past its stress-free gap, that gap follows it back towards zero.
+CDEM_HD inline Real lifted_gap_free(Real gap_free, Real gap) {
+  return min_of(max_of(gap_free, gap), 0.0);
+}
+
 /// Elastic and frictional part of one contact's force.
 struct ContactForce {
   Real force_n;          // compression > 0  [N]
+  Real sunk;             // effective penetration  [m]
   Real shear1, shear2;   // on the mother  [N]
   Real energy_n, energy_s;  // stored  [J]
   Real friction;         // lost in this step  [J]
@@ -41,6 +66,7 @@ CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Re
   const Real elastic = max_of(-stiffness_n * gap, 0.0);
   f.force_n = max_of(elastic - dashpot_constant * gap_rate, 0.0);
   if (gap >= 0) f.force_n = 0;
+  f.sunk = max_of(-gap, 0.0);
   const Real try1 = old1 - stiffness_s * slip1, try2 = old2 - stiffness_s * slip2;
   const Real shear = sqrt_of(try1 * try1 + try2 * try2);
   const Real limit = f.force_n * tan_friction;
@@ -65,6 +91,7 @@ struct UpdateSpringForces {
   SearchRules rules;
   ContactLaws laws;
   SpringColumns springs;
+  const Real* face_sunk;  // [exposed] deepest contact of the face one step ago  [m]
 
   CDEM_HD void operator()(One slot) const {
     const Index m = slot.i / 4, k = slot.i % 4, t = springs.target[slot.i];
@@ -74,7 +101,7 @@ struct UpdateSpringForces {
       return;
     }
     const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    if (before != t) begin(slot.i, before, face_t);
+    if (before != t) carry_shear(slot.i, before, face_t);
 
     const FaceShape shape = faces.shape(face_t);
     const Frame frame = shape.frame();
@@ -96,8 +123,14 @@ struct UpdateSpringForces {
     const Real area = 0.5 * faces.face_area[face_m] / Real(faces.vertex_count(face_m));
     const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
     const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
+    const Real gap_rate = dot(frame.n, rate);
+    Real& free = springs.gap_free[slot.i];
+    free = before == t ? lifted_gap_free(free, foot.gap)
+                       : starting_gap_free(foot.gap, gap_rate, faces.dt, springs.sunk[slot.i],
+                                           sunk_of_flush(dot(faces.shape(face_m).normal(), frame.n),
+                                                         face_sunk[m], face_sunk[t]));
     const ContactForce f = contact_force(
-        kn, ks, law.tan_friction, foot.gap - springs.gap_free[slot.i], dot(frame.n, rate), dashpot,
+        kn, ks, law.tan_friction, foot.gap - free, gap_rate, dashpot,
         -dot(old.t1, apart), -dot(old.t2, apart), springs.shear1[slot.i], springs.shear2[slot.i],
         faces.dt);
     keep(slot.i, f);
@@ -135,11 +168,10 @@ struct UpdateSpringForces {
   }
   /// A contact that begins: without shear force, or with that of the face it comes from, turned into
   /// the new plane with its length kept (hand-over).
-  CDEM_HD void begin(Index slot, Index before, Index face_t) const {
-    springs.gap_free[slot] = 0;
+  CDEM_HD void carry_shear(Index slot, Index before, Index face_t) const {
     if (before < 0) {
       springs.shear1[slot] = springs.shear2[slot] = 0;
-      springs.energy_s[slot] = 0;
+      springs.energy_s[slot] = springs.sunk[slot] = 0;
       return;
     }
     const Frame from = faces.shape(exposed_face[before]).frame();
@@ -157,11 +189,13 @@ struct UpdateSpringForces {
     springs.friction[slot] += springs.energy_s[slot];
     springs.energy_n[slot] = springs.energy_s[slot] = 0;
     springs.force_n[slot] = springs.shear1[slot] = springs.shear2[slot] = 0;
+    springs.sunk[slot] = 0;
     Real* row = springs.reaction + std::size_t(slot) * 8;
     row[0] = row[1] = row[2] = row[3] = 0;
   }
   CDEM_HD void keep(Index slot, const ContactForce& f) const {
     springs.force_n[slot] = f.force_n;
+    springs.sunk[slot] = f.sunk;
     springs.shear1[slot] = f.shear1;
     springs.shear2[slot] = f.shear2;
     springs.energy_n[slot] = f.energy_n;
@@ -177,6 +211,7 @@ struct UpdateEdgeForces {
   const Index* exposed_face;
   ContactLaws laws;
   EdgeColumns edges;
+  const Real* face_sunk;  // [exposed] deepest contact of the face one step ago  [m]
 
   CDEM_HD void operator()(One m) const {
     for (Index j = 0; j < edges.count[m.i]; ++j) update(m.i, edges.slots * m.i + j);
@@ -220,10 +255,18 @@ struct UpdateEdgeForces {
     const Real area = faces.face_area[face_m] / Real(faces.vertex_count(face_m));
     const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
     const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
-    const ContactForce f = contact_force(kn, ks, law.tan_friction, c.gap, dot(frame.n, rate),
-                                         dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
+    const Real gap_rate = dot(frame.n, rate);
+    Real& free = edges.gap_free[place];
+    free = edges.sunk[place] >= 0
+               ? lifted_gap_free(free, c.gap)
+               : starting_gap_free(c.gap, gap_rate, faces.dt, 0.0,
+                                   sunk_of_flush(dot(normal_m, normal_t), face_sunk[m],
+                                                 face_sunk[edges.target_face[place]]));
+    const ContactForce f = contact_force(kn, ks, law.tan_friction, c.gap - free, gap_rate, dashpot,
+                                         -dot(old.t1, apart), -dot(old.t2, apart),
                                          edges.shear1[place], edges.shear2[place], faces.dt);
     edges.force_n[place] = f.force_n;
+    edges.sunk[place] = f.sunk;
     edges.shear1[place] = f.shear1;
     edges.shear2[place] = f.shear2;
     edges.energy_n[place] = f.energy_n;
@@ -244,8 +287,7 @@ struct UpdateEdgeForces {
   CDEM_HD Frame old_frame(Index face_m, Index face_t, const Vec3<Real>& old_dm,
                           const Vec3<Real>& old_dt, const Vec3<Real>& normal_m,
                           const Vec3<Real>& normal_t) const {
-    constexpr Real flush = -0.985;  // as in edge_normal
-    if (dot(normal_m, normal_t) < flush) {
+    if (dot(normal_m, normal_t) < flush_faces) {
       const Vec3<Real> was_m = faces.old_shape(face_m).normal();
       const Vec3<Real> was_t = faces.old_shape(face_t).normal();
       return edge_frame(unit(was_t - was_m), old_dt);
@@ -274,13 +316,16 @@ struct GatherFaceForces {
   SpringColumns springs;
   EdgeColumns edges;
   Real* corner_force;  // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
+  Real* face_sunk;     // [exposed] deepest contact of the face, as mother or target  [m]
 
   CDEM_HD void operator()(One m) const {
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
     Real sum[4][4] = {};
-    own(m.i, count, sum);
+    Real deepest = 0;
+    own(m.i, count, sum, deepest);
     for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c)
-      reactions(m.i, face, count, candidates.other[c], sum);
+      reactions(m.i, face, count, candidates.other[c], sum, deepest);
+    face_sunk[m.i] = deepest;
     for (Index k = 0; k < count; ++k)
       for (Index j = 0; j < 4; ++j) corner_force[(std::size_t(m.i) * 4 + k) * 4 + j] = sum[k][j];
   }
@@ -298,11 +343,12 @@ struct GatherFaceForces {
     corner[2] -= weight * row[2];
     corner[3] += abs_of(weight) * row[3];
   }
-  CDEM_HD void own(Index m, Index count, Real sum[4][4]) const {
+  CDEM_HD void own(Index m, Index count, Real sum[4][4], Real& deepest) const {
     const Real shared = rules.action / Real(count);
     for (Index k = 0; k < count; ++k) {
       if (springs.target[4 * m + k] < 0) continue;
       const Real* row = springs.reaction + (std::size_t(m) * 4 + k) * 8;
+      deepest = max_of(deepest, springs.sunk[4 * m + k]);
       add(sum[k], 1.0 - rules.action, row);
       if (shared > 0)
         for (Index j = 0; j < count; ++j) add(sum[j], shared, row);
@@ -311,14 +357,17 @@ struct GatherFaceForces {
       const Index place = edges.slots * m + j;
       const Real* row = edges.reaction + std::size_t(place) * 8;
       const Index k = edges.side[place];
+      deepest = max_of(deepest, edges.sunk[place]);
       add(sum[k], 1.0 - row[4], row);
       add(sum[k + 1 == count ? 0 : k + 1], row[4], row);
     }
   }
-  CDEM_HD void reactions(Index m, Index face, Index count, Index other, Real sum[4][4]) const {
+  CDEM_HD void reactions(Index m, Index face, Index count, Index other, Real sum[4][4],
+                         Real& deepest) const {
     for (Index k = 0; k < 4; ++k) {
       if (springs.target[4 * other + k] != m) continue;
       const Real* row = springs.reaction + (std::size_t(other) * 4 + k) * 8;
+      deepest = max_of(deepest, springs.sunk[4 * other + k]);
       for (Index j = 0; j < count; ++j) take(sum[j], row[4 + j], row);
     }
     for (Index j = 0; j < edges.count[other]; ++j) {
@@ -326,6 +375,7 @@ struct GatherFaceForces {
       if (edges.target_face[place] != m) continue;
       const Real* row = edges.reaction + std::size_t(place) * 8;
       const Index k = side_on(face, edges.target_edge[place]);
+      deepest = max_of(deepest, edges.sunk[place]);
       take(sum[k], 1.0 - row[5], row);
       take(sum[k + 1 == count ? 0 : k + 1], row[5], row);
     }

@@ -14,6 +14,8 @@ struct EdgeColumns {
   Index* side;          // side of the mother face
   Index* target_face;   // exposed face to which the target edge belongs
   Index* target_edge;   // edge
+  Real* gap_free;       // gap at which the contact is free of stress  [m]
+  Real* sunk;           // effective penetration: gap_free - gap, or 0; -1 in a new contact  [m]
   Real* shear1;         // [N] in the frame of the edge pair
   Real* shear2;
   Real* force_n;        // [N], compression > 0
@@ -47,13 +49,15 @@ CDEM_HD inline Crossing cross_edges(const Vec3<Real>& start_m, const Vec3<Real>&
           -dot(c, apart) / det};
 }
 
+/// Faces whose normals have a smaller cosine than this (10 degrees) are nearly flush.
+inline constexpr Real flush_faces = -0.985;
+
 /// Normal of an edge pair, out of the target. Nearly flush faces give the normal of the faces
 /// (crossing their edges would divide by the small angle); else it is V_mm x V_tt, Eq. 12.
 CDEM_HD inline Vec3<Real> edge_normal(const Vec3<Real>& along_m, const Vec3<Real>& along_t,
                                       const Vec3<Real>& normal_m, const Vec3<Real>& normal_t) {
-  constexpr Real flush = -0.985;  // cosine between the faces: 10 degrees
   const Vec3<Real> out = normal_t - normal_m;
-  if (dot(normal_m, normal_t) < flush) return unit(out);
+  if (dot(normal_m, normal_t) < flush_faces) return unit(out);
   const Vec3<Real> c = unit(cross(along_m, along_t));
   return dot(c, out) < 0 ? -c : c;
 }
@@ -92,6 +96,8 @@ struct FindTargetEdges {
       edges.side[place] = f.side;
       edges.target_face[place] = f.face;
       edges.target_edge[place] = f.edge;
+      edges.gap_free[place] = f.old >= 0 ? held.gap_free[f.old] : 0.0;
+      edges.sunk[place] = f.old >= 0 ? held.sunk[f.old] : -1.0;
       edges.shear1[place] = held.shear1(f.old);
       edges.shear2[place] = held.shear2(f.old);
       edges.force_n[place] = held.loaded(f.old) ? 1.0 : 0.0;
@@ -102,11 +108,11 @@ struct FindTargetEdges {
   }
 
   /// Does side k of exposed face m touch side j of exposed face t?
-  CDEM_HD bool touches(Index m, Index k, Index t, Index j, bool held, bool loaded,
+  CDEM_HD bool touches(Index m, Index k, Index target, Index j, bool held, bool loaded,
                        Flag* lost) const {
-    const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(t);
+    const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(target);
     if (dot(nm, nt) >= -rules.opposing) return false;
-    const Index face_m = exposed_face[m], face_t = exposed_face[t];
+    const Index face_m = exposed_face[m], face_t = exposed_face[target];
     const Index km = next(face_m, k), jt = next(face_t, j);
     const Index m0 = faces.vertex(face_m, k), m1 = faces.vertex(face_m, km);
     const Index t0 = faces.vertex(face_t, j), t1 = faces.vertex(face_t, jt);
@@ -115,7 +121,17 @@ struct FindTargetEdges {
     const Vec3<Real> dm = faces.nodes.position(m1) - xm, dt = faces.nodes.position(t1) - xt;
     const Vec3<Real> c = cross(dm, dt);
     constexpr Real parallel = 0.02;  // sine of the angle between the edges
-    if (dot(c, c) < parallel * parallel * dot(dm, dm) * dot(dt, dt)) return false;
+    const Real c2 = dot(c, c);
+    if (c2 < parallel * parallel * dot(dm, dm) * dot(dt, dt)) return false;
+    // most pairs pass each other far off: see it from the common perpendicular, before all else
+    constexpr Real aside = 0.2;  // of an edge; room for the indentation and for other normals
+    const Vec3<Real> apart = xt - xm;
+    const Real s = dot(cross(apart, dt), c), t = dot(cross(apart, dm), c);
+    if (s < -aside * c2 || s > (1 + aside) * c2) return false;
+    if (t < -aside * c2 || t > (1 + aside) * c2) return false;
+    const bool flush = dot(nm, nt) < flush_faces;
+    if (!flush && dot(apart, c) * dot(c, nt - nm) < 0) return false;  // not met yet
+
     const Vec3<Real> n = edge_normal(dm, dt, nm, nt);
 
     const Vec3<Real> center = geometry.center(m);
@@ -135,7 +151,7 @@ struct FindTargetEdges {
                           abs_of(dot(n, velocity_at(m0, m1, true_edges.s) -
                                             velocity_at(t0, t1, true_edges.t)));
     const Real limit = held ? rules.depth * length : rules.entry * length + approach;
-    const bool in_cones = cones_hold(m, k, t, j, dm, dt, n);
+    const bool in_cones = cones_hold(m, k, target, j, dm, dt, n);
     if (true_edges.gap < -limit) {
       if (held && loaded && in_cones) *lost = 1;
       return false;
@@ -153,6 +169,7 @@ struct FindTargetEdges {
     Index first, count;
     Index side[most_slots], edge[most_slots];
     Real s1[most_slots], s2[most_slots], energy[most_slots];
+    Real gap_free[most_slots], sunk[most_slots];
     bool load[most_slots];
 
     CDEM_HD Held(const FindTargetEdges& k, Index m)
@@ -160,6 +177,8 @@ struct FindTargetEdges {
       for (Index j = 0; j < count; ++j) {
         side[j] = edges.side[first + j];
         edge[j] = edges.target_edge[first + j];
+        gap_free[j] = edges.gap_free[first + j];
+        sunk[j] = edges.sunk[first + j];
         s1[j] = edges.shear1[first + j];
         s2[j] = edges.shear2[first + j];
         energy[j] = edges.energy_s[first + j];
@@ -187,16 +206,73 @@ struct FindTargetEdges {
     }
   };
 
+  /// A face's vertices.
+  struct Corners {
+    Index count;
+    Vec3<Real> x[4];
+  };
+  CDEM_HD Corners corners(Index exposed) const {
+    const Index face = exposed_face[exposed];
+    Corners c;
+    c.count = faces.vertex_count(face);
+    for (Index k = 0; k < c.count; ++k) c.x[k] = faces.nodes.position(faces.vertex(face, k));
+    return c;
+  }
+  /// Heights of a face's vertices over the plane of another; false when all are above `room`.
+  CDEM_HD bool heights(const Corners& c, Index over, Real room, Real* height) const {
+    const Vec3<Real> n = geometry.normal(over), center = geometry.center(over);
+    Real lowest = 1e300;
+    for (Index k = 0; k < c.count; ++k) {
+      height[k] = dot(n, c.x[k] - center);
+      lowest = min_of(lowest, height[k]);
+    }
+    return lowest <= room;
+  }
+  /// Does the side from a to b come within `room` of the plane that the heights are over?
+  CDEM_HD static bool crosses(Real a, Real b, Real room) {
+    return min_of(a, b) <= room && max_of(a, b) >= -room;
+  }
+  /// Bit j of word k: vertex k of one face is at the place of vertex j of the other. Edges that start
+  /// from the same place are vertices on each other, not edges.
+  CDEM_HD static void find_shared(const Corners& a, const Corners& b, Real near, unsigned* shared) {
+    for (Index k = 0; k < a.count; ++k) {
+      shared[k] = 0;
+      for (Index j = 0; j < b.count; ++j) {
+        const Vec3<Real> d = a.x[k] - b.x[j];
+        if (dot(d, d) < near * near) shared[k] |= 1u << j;
+      }
+    }
+  }
+
   /// All contacts of one exposed face in candidate order; returns their number.
   CDEM_HD Index find(Index m, const Held& held, Found* found) const {
     Index used = 0;
-    const Index count_m = faces.vertex_count(exposed_face[m]);
+    const Corners cm = corners(m);
+    const Real own_length = faces.face_length[exposed_face[m]];
     for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c) {
       const Index t = candidates.other[c];
-      if (!near_enough(m, t)) continue;
+      if (dot(geometry.normal(m), geometry.normal(t)) >= -rules.opposing) continue;
+      const Real length = min_of(own_length, faces.face_length[exposed_face[t]]);
+      // a contact lies in both planes up to its depth, and a warped face is no plane
       const Index count_t = faces.vertex_count(exposed_face[t]);
-      for (Index k = 0; k < count_m; ++k) {
-        for (Index j = 0; j < count_t; ++j) {
+      const Real bend = cm.count + count_t > 6 ? 0.5 * (own_length + length) : 0.0;
+      const Real deep = held.count > 0 ? rules.depth * length : rules.entry * length;
+      const Real room =
+          deep + bend +
+          2 * rules.approach_steps * faces.dt * (geometry.speed(m) + geometry.speed(t));
+      Real over_t[4], over_m[4];
+      unsigned shared[4];
+      if (!heights(cm, t, room, over_t)) continue;
+      const Corners ct = corners(t);
+      if (!heights(ct, m, room, over_m)) continue;
+      find_shared(cm, ct, rules.indentation * length, shared);
+      for (Index k = 0; k < cm.count; ++k) {
+        const Index k1 = k + 1 == cm.count ? 0 : k + 1;
+        if (!crosses(over_t[k], over_t[k1], room)) continue;
+        for (Index j = 0; j < ct.count; ++j) {
+          const Index j1 = j + 1 == ct.count ? 0 : j + 1;
+          if (!crosses(over_m[j], over_m[j1], room)) continue;
+          if ((shared[k] | shared[k1]) & (1u << j | 1u << j1)) continue;
           const Index edge = faces.face_edges[4 * exposed_face[t] + j];
           const Index old = held.find(k, edge);
           if (!touches(m, k, t, j, old >= 0, held.loaded(old), edges.lost + m)) continue;
@@ -220,19 +296,6 @@ struct FindTargetEdges {
   CDEM_HD Vec3<Real> velocity_at(Index a, Index b, Real s) const {
     const Vec3<Real> va = faces.nodes.velocity(a);
     return va + s * (faces.nodes.velocity(b) - va);
-  }
-  /// Some vertex of either face is near or behind the plane of the other: else no edge can touch.
-  CDEM_HD bool near_enough(Index m, Index t) const {
-    return lowest(m, t) <= 0 && lowest(t, m) <= 0;
-  }
-  CDEM_HD Real lowest(Index of, Index over) const {
-    const Vec3<Real> n = geometry.normal(over), c = geometry.center(over);
-    const Index face = exposed_face[of], count = faces.vertex_count(face);
-    Real smallest = 1e300;
-    for (Index k = 0; k < count; ++k)
-      smallest = min_of(smallest, dot(n, faces.nodes.position(faces.vertex(face, k)) - c));
-    // crossing edges may be inside both cones' slack: leave room for it
-    return smallest - (rules.cone + rules.entry) * faces.face_length[face];
   }
   /// The face on the other side of side k, or -1.
   CDEM_HD Index across(Index face, Index k) const {

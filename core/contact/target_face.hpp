@@ -31,6 +31,7 @@ struct SpringColumns {
   Real* shear1;          // [N] in the target's frame
   Real* shear2;
   Real* gap_free;        // gap at which the contact is free of stress  [m]
+  Real* sunk;            // effective penetration: gap_free - gap, or 0  [m]
   Real* energy_n;        // stored in the normal spring  [J]
   Real* energy_s;        // stored in the shear spring  [J]
   Real* friction;        // lost so far  [J]
@@ -54,54 +55,74 @@ struct FindTargetFaces {
   SpringColumns springs;
 
   CDEM_HD void operator()(One m) const {
-    const Index face = exposed_face[m.i];
-    for (Index k = 0; k < faces.vertex_count(face); ++k) {
-      const Index slot = 4 * m.i + k;
-      springs.target_before[slot] = springs.target[slot];
-      springs.target[slot] =
-          choose(m.i, k, candidates.other + candidates.first[m.i],
-                 candidates.first[m.i + 1] - candidates.first[m.i], springs.lost + slot);
-    }
+    const Index count = faces.vertex_count(exposed_face[m.i]);
+    for (Index k = 0; k < count; ++k) springs.target_before[4 * m.i + k] = springs.target[4 * m.i + k];
+    Index chosen[4];
+    choose(m.i, candidates.other + candidates.first[m.i],
+           candidates.first[m.i + 1] - candidates.first[m.i], chosen, springs.lost + 4 * m.i);
+    for (Index k = 0; k < count; ++k) springs.target[4 * m.i + k] = chosen[k];
   }
 
-  /// The target of vertex k of an exposed face among `count` others, or -1.
-  CDEM_HD Index choose(Index m, Index k, const Index* others, Index count, Flag* lost) const {
-    const Index slot = 4 * m + k;
-    const Index current = springs.target_before[slot];
-    const bool loaded = springs.force_n[slot] > 0;
-    const Index node = faces.vertex(exposed_face[m], k);
-    const Vec3<Real> v = faces.nodes.position(node);
-    const Vec3<Real> p = v + rules.indentation * (geometry.center(m) - v);
-
-    Real hand_over = 0;  // a loaded spring may enter its next face as deep as it leaves the last
-    if (current >= 0) {
-      const Real length = smaller_length(m, current);
-      const Real gap = qualify(m, node, v, p, current, rules.depth * length);
-      if (gap <= 0) return current;
-      const Real old_gap = plane_gap(v, current);
-      if (loaded && old_gap < 0) hand_over = -1.5 * old_gap;
-      if (loaded && sank_below(p, current, old_gap, rules.depth * length)) *lost = 1;
+  /// Targets of all vertices of an exposed face among `count` others, -1 for none; `lost` is set
+  /// where a loaded contact sank too deep.
+  CDEM_HD void choose(Index m, const Index* others, Index count, Index* chosen, Flag* lost) const {
+    const Index vertices = faces.vertex_count(exposed_face[m]);
+    Seeker seeker[4];
+    bool all_kept = true;
+    for (Index k = 0; k < vertices; ++k) {
+      seeker[k] = start(m, k, lost + k);
+      all_kept = all_kept && seeker[k].kept;
     }
-    Index best = -1;
-    Real best_gap = -1e300;
-    for (Index c = 0; c < count; ++c) {
+    for (Index c = 0; c < count && !all_kept; ++c) {
       const Index t = others[c];
       if (dot(geometry.normal(m), geometry.normal(t)) >= -rules.opposing) continue;
-      const Real plane = plane_gap(v, t);
-      if (plane > near(t)) continue;
-      const Real entry = rules.entry * smaller_length(m, t) + approach(node, t);
-      const Real gap = qualify(m, node, v, p, t, max_of(entry, hand_over + entry));
-      if (gap <= 0 && gap > best_gap) {
-        best = t;
-        best_gap = gap;
+      const Real near = above(t), length = smaller_length(m, t);
+      for (Index k = 0; k < vertices; ++k) {
+        Seeker& s = seeker[k];
+        const Real plane = plane_gap(s.v, t);
+        if (s.kept || plane > near || plane < -rules.depth * length - near) continue;
+        if (!beside(s.p, t, rules.tolerance * length)) continue;
+        const Real entry = rules.entry * length + approach(s.node, t);
+        const Real gap = qualify(m, s.node, s.v, s.p, t, entry + s.hand_over);
+        if (gap <= 0 && gap > s.gap) {
+          s.best = t;
+          s.gap = gap;
+        }
       }
     }
-    return best;
+    for (Index k = 0; k < vertices; ++k) chosen[k] = seeker[k].best;
   }
 
  private:
   static constexpr Real none = 1.0;  // a positive gap: not in contact
 
+  /// One vertex that seeks its target.
+  struct Seeker {
+    Index node, best;
+    Vec3<Real> v, p;  // true vertex, indented point
+    Real gap, hand_over;
+    bool kept;  // the current target still qualifies
+  };
+
+  CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
+    const Index slot = 4 * m + k, current = springs.target_before[slot];
+    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, false};
+    s.v = faces.nodes.position(s.node);
+    s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
+    if (current < 0) return s;
+    const bool loaded = springs.force_n[slot] > 0;
+    const Real depth = rules.depth * smaller_length(m, current);
+    if (qualify(m, s.node, s.v, s.p, current, depth) <= 0) {
+      s.best = current;
+      s.kept = true;
+      return s;
+    }
+    const Real old_gap = plane_gap(s.v, current);
+    // a loaded spring may enter its next face as deep as it leaves the last
+    if (loaded && old_gap < 0) s.hand_over = -1.5 * old_gap;
+    if (loaded && sank_below(s.p, current, old_gap, depth)) *lost = 1;
+    return s;
+  }
   CDEM_HD Real smaller_length(Index m, Index t) const {
     return min_of(faces.face_length[exposed_face[m]], faces.face_length[exposed_face[t]]);
   }
@@ -109,7 +130,7 @@ struct FindTargetFaces {
     return dot(geometry.normal(t), v - geometry.center(t));
   }
   /// A warped face may reach above its mean plane; a plane one does not.
-  CDEM_HD Real near(Index t) const {
+  CDEM_HD Real above(Index t) const {
     return faces.vertex_count(exposed_face[t]) == 3 ? 0.0 : 0.5 * faces.face_length[exposed_face[t]];
   }
   CDEM_HD Real approach(Index node, Index t) const {
@@ -121,6 +142,12 @@ struct FindTargetFaces {
     const Vec3<Real> relative =
         faces.nodes.velocity(node) - Real(1.0) / Real(count) * target_velocity;
     return rules.approach_steps * faces.dt * abs_of(dot(geometry.normal(t), relative));
+  }
+  /// Cheap part of the inside test: P lies within reach of the face's centre.
+  CDEM_HD bool beside(const Vec3<Real>& p, Index t, Real tolerance) const {
+    const Vec3<Real> n = geometry.normal(t), arm = p - geometry.center(t);
+    const Real up = dot(n, arm), reach = faces.face_reach[exposed_face[t]] + tolerance;
+    return dot(arm, arm) - up * up < reach * reach;
   }
   CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
     return gap < -depth &&

@@ -34,6 +34,10 @@ def _built() -> list[str]:
     return [isa for isa in _NEEDS if importlib.util.find_spec(f"cdem._core_{isa}")]
 
 
+# Threads that wait by spinning make a busy machine a hundred times slower; a short spin is enough.
+os.environ.setdefault("GOMP_SPINCOUNT", "20000")
+
+
 def _load() -> tuple[ModuleType, str, list[str]]:
     built = _built()
     wanted = os.environ.get("CDEM_ISA")

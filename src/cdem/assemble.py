@@ -17,6 +17,8 @@ DENSE_NODES = 16
 """Blocks of up to this many nodes get the full mass matrix: exact inertia at little cost."""
 DENSE_NODES_MOST = 256
 """Larger blocks get it only if no lumped masses have the exact inertia (one element thick)."""
+DEFORMED = 1.5
+"""How much larger than in the stress-free mesh a face may become."""
 LEAST_LUMP = 0.3
 """A corrected lumped mass may not fall below this part of the uncorrected one."""
 
@@ -352,6 +354,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.group": t.face_group.astype(np.int32),
         "face.block": t.face_block.astype(np.int32),
         "face.length": distance.sum(axis=1) / corners,
+        "face.reach": DEFORMED * distance.max(axis=1),
         "face.area": area,
         "face.stiffness": young / face_heights(t, out.element_volume, area),
         "face.movable": _movable(t, p),

@@ -54,15 +54,13 @@ class Case(Part):
     model: Model = Field(description="The bodies")
     materials: dict[str, Material] = Field(description="Materials by name")
     groups: dict[str, Group] = Field(description="Groups by name; every body is in one")
-    interfaces: Interfaces = Field(
-        default_factory=Interfaces, description="Interfaces by pair of groups"
-    )
-    loads: Loads = Field(default_factory=Loads, description="What acts from outside")
+    interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
+    loads: Loads = Field(Loads(), description="What acts from outside")
     stages: list[Stage] = Field(min_length=1, description="Parts of the run, in order")
-    contact: Contact = Field(default_factory=Contact, description="How contacts are found")
-    elements: Elements = Field(default_factory=Elements, description="Element formulation")
-    time: Time = Field(default_factory=Time, description="The time step")
-    output: Output = Field(default_factory=Output, description="What is written")
+    contact: Contact = Field(Contact(), description="How contacts are found")
+    elements: Elements = Field(Elements(), description="Element formulation")
+    time: Time = Field(Time(), description="The time step")
+    output: Output = Field(Output(), description="What is written")
     histories: list[HistoryPoint] = Field([], description="Quantities followed over time")
 
     _source: Source = PrivateAttr(default_factory=Source)
@@ -137,14 +135,15 @@ class Case(Part):
             CaseError: The path leads nowhere, or the value is not allowed there.
         """
         keys = resolve(self, path)
-        part, keep = self, 0  # the deepest Part on the way, and the keys that lead to it
-        node: Any = self
+        # the deepest Part on the way, and the number of keys that lead to it
+        part: Part = self
+        keep, node = 0, part
         for depth, key in enumerate(keys[:-1], start=1):
             node = getattr(node, str(key)) if isinstance(node, Part) else node[key]
             if isinstance(node, Part):
                 part, keep = node, depth
         field, inner = str(keys[keep]), keys[keep + 1 :]
-        new = replace_at(getattr(part, field), inner, plain(value, self._source)) if inner else value
+        new = replace_at(getattr(part, field), inner, plain(value, self._source))
         try:
             setattr(part, field, new)
         except ValidationError as error:
@@ -168,8 +167,8 @@ class Case(Part):
                 for field in Interface.model_fields.keys() - pair.model_fields_set:
                     written.pop(field, None)
         yaml, text = YAML(typ="safe", pure=True), StringIO()
-        yaml.sort_base_mapping_type_on_output = False
-        yaml.default_flow_style = None
+        yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
+        yaml.default_flow_style = None  # short ones in one line
         yaml.width = 100
         yaml.dump(data, text)
         return text.getvalue()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 from cdem.errors import CaseError
 from cdem.read import Source
@@ -74,7 +74,7 @@ def _group_names(case: Case) -> Iterator[tuple[tuple[str | int, ...], str]]:
 
 
 def _unique_names(case: Case) -> Iterator[Problem]:
-    named = {
+    named: dict[tuple[str, ...], Sequence[Any]] = {
         ("stages",): case.stages,
         ("histories",): case.histories,
         ("interfaces", "pairs"): case.interfaces.pairs,

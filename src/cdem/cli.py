@@ -81,8 +81,9 @@ def _top(
 
 @app.command()
 def new(
-    template: Annotated[str | None, typer.Argument(help="Name; without it, all are listed.")] = None,
+    template: Annotated[str | None, typer.Argument(help="Name; by default, list all.")] = None,
     folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
 ) -> None:
     """Write a commented case to start from."""
     home = resources.files("cdem") / "templates"
@@ -100,8 +101,8 @@ def new(
     meshes = [f.name for f in home.iterdir() if f.name.endswith(".msh") and f.name in case]
     files = {f"{template}.yaml": case} | {name: (home / name).read_text() for name in meshes}
     for name in files:
-        if (folder / name).exists():
-            raise CaseError(f"{folder / name}: exists already; move it away or name another folder")
+        if (folder / name).exists() and not force:
+            raise CaseError(f"{folder / name}: exists already; use --force or name another folder")
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text)
@@ -177,7 +178,7 @@ def run(
             resume=resume,
             device=device,
         )
-        status = _run(simulation, stop, quiet=quiet, as_json=as_json)
+        status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)
     summary = folder / "summary.json"
     if as_json:
         print(summary.read_text().rstrip())
@@ -189,7 +190,9 @@ def run(
         raise typer.Exit(STOPPED)
 
 
-def _run(simulation: Simulation, stop: list[str], *, quiet: bool, as_json: bool) -> str:
+def _run(
+    simulation: Simulation, folder: Path, stop: list[str], *, quiet: bool, as_json: bool
+) -> str:
     from cdem.progress import watch
 
     tty = sys.stderr.isatty()
@@ -200,16 +203,16 @@ def _run(simulation: Simulation, stop: list[str], *, quiet: bool, as_json: bool)
     with watch(silent=silent, tty=tty) as progress:
         status = simulation.run(progress, lambda: bool(stop))
     if status != "stopped":
-        _write_report(simulation, silent=silent)
+        _write_report(folder, silent=silent)
     return status
 
 
-def _write_report(simulation: Simulation, *, silent: bool) -> None:
+def _write_report(folder: Path, *, silent: bool) -> None:
     """Write report.html; the results are whole without it, so a missing extra is only said."""
     from cdem import view
 
     try:
-        view.report(simulation.results.folder)
+        view.report(folder)
     except (CdemError, ImportError) as error:
         if not silent:
             print(f"no report.html: {error}", file=sys.stderr)
@@ -258,7 +261,7 @@ def _stop_on_signal() -> Iterator[list[str]]:
         if received:
             raise KeyboardInterrupt
         received.append(signal.Signals(number).name)
-        print(f"\n{received[0]}: stopping with a checkpoint; again to stop at once", file=sys.stderr)
+        print(f"\n{received[0]}: stopping with a checkpoint; again: at once", file=sys.stderr)
 
     before = {number: signal.signal(number, receive) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
@@ -316,7 +319,7 @@ def export(
     folder: ResultFolder,
     to: Annotated[Literal["vtu"], typer.Option("--to", help="File format.")] = "vtu",
 ) -> None:
-    """Write the frames in a format for other programs, e.g. ParaView."""
+    """Write the frames as files for ParaView and the like."""
     from cdem import view
 
     _print_paths(view.export(_results(folder), to=to))

@@ -94,10 +94,9 @@ def _extras() -> list[tuple[str, str]]:
         return [("extras", "unknown: cdem is not installed, only found on the path")]
     wanted: dict[str, list[str]] = {}
     for line in requirements:
-        extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)", line)
-        name = re.match(r"[\w.-]+", line)
-        if extra and name and extra[1] not in DEVELOPER_EXTRAS:
-            wanted.setdefault(extra[1], []).append(name[0])
+        found = re.match(r"([\w.-]+).*extra\s*==\s*['\"]([^'\"]+)", line)
+        if found and found[2] not in DEVELOPER_EXTRAS:
+            wanted.setdefault(found[2], []).append(found[1])
     rows = []
     for extra, packages in sorted(wanted.items()):
         missing = [name for name in packages if not _installed(name)]

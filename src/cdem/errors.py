@@ -1,4 +1,4 @@
-"""Errors meant for the person at the keyboard: each message says where, what, and how to mend it."""
+"""Errors meant for the person at the keyboard: where, what, and how to mend it."""
 
 from __future__ import annotations
 

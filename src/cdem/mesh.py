@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import gzip
 import io
+import shutil
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -45,7 +48,7 @@ class Mesh:
 def read_mesh(path: str | Path) -> Mesh:
     """Read a volume mesh in any format that meshio knows.
 
-    Physical groups of volumes (gmsh) and cell sets become groups, those of surfaces become named
+    A file packed with gzip (``.msh.gz``) is unpacked on the way. Physical groups of volumes (gmsh) and cell sets become groups, those of surfaces become named
     surfaces; cells in no group go to the group "default".
 
     Raises:
@@ -54,7 +57,7 @@ def read_mesh(path: str | Path) -> Mesh:
     path = Path(path)
     if not path.is_file():
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
-    raw = _read_raw(path)
+    raw = _read_zipped(path) if path.suffix == ".gz" else _read_raw(path)
     groups = _cell_groups(raw)
     names: list[str] = []
     mesh = Mesh(np.asarray(raw.points, float).reshape(len(raw.points), -1))
@@ -92,6 +95,18 @@ def read_mesh(path: str | Path) -> Mesh:
     if not mesh.cells:
         raise MeshError(f"{path}: holds no volume elements; export the volume mesh, not its surface")
     return _drop_unused(mesh)
+
+
+def _read_zipped(path: Path):
+    """Read ``name.msh.gz`` as ``name.msh``."""
+    with tempfile.TemporaryDirectory() as folder:
+        plain = Path(folder) / path.stem
+        try:
+            with gzip.open(path) as packed, plain.open("wb") as file:
+                shutil.copyfileobj(packed, file)
+        except (OSError, EOFError) as error:
+            raise MeshError(f"{path}: not a gzip file ({error})") from error
+        return _read_raw(plain)
 
 
 def _read_raw(path: Path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -160,7 +161,9 @@ class InterfacePair(Interface):
         min_length=2, max_length=2, description="Two groups, or one group twice"
     )
     friction_angle: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
-        None, validate_default=False, description="Friction angle [deg]"
+        None,  # type: ignore[assignment]  # until inherit() fills it in
+        validate_default=False,
+        description="Friction angle [deg]",
     )
 
 
@@ -237,7 +240,7 @@ class _Timed(Part):
     @model_validator(mode="after")
     def _times_increase(self) -> _Timed:
         times = [time for time, _ in self.history or []]
-        if any(later <= earlier for earlier, later in zip(times, times[1:], strict=False)):
+        if any(later <= earlier for earlier, later in pairwise(times)):
             raise ValueError("history: times must increase")
         return self
 
@@ -327,7 +330,7 @@ class Stage(Part):
     reset_displacement: bool = Field(
         False, description="Zero the displacements when the stage begins"
     )
-    damping: Damping = Field(default_factory=Damping, description="Damping")
+    damping: Damping = Field(Damping(), description="Damping")
     relax: Literal["local", "kinetic"] | None = Field(
         None, description="Static only: the way to rest; default local"
     )
@@ -360,8 +363,8 @@ class Contact(Part):
     )
     tolerance: Annotated[float | Literal["auto"], Quantity("1", above=0, auto=True)] = Field(
         "auto",
-        description="In-plane tolerance over the face's size [1]; auto: a tenth of the indentation, "
-        "below which it must stay",
+        description="In-plane tolerance over the face's size [1]; auto: a tenth of the "
+        "indentation, below which it must stay",
     )
     refresh: Annotated[
         Annotated[Literal["displacement"], Tag("word")]
@@ -381,9 +384,9 @@ class Contact(Part):
 class Elements(Part):
     """How elements give forces and carry mass."""
 
-    formulation: Literal[
-        "corotational", "incremental", "paper-incremental", "paper-total"
-    ] = Field("corotational", description="How the forces of an element follow from its motion")
+    formulation: Literal["corotational", "incremental", "paper-incremental", "paper-total"] = Field(
+        "corotational", description="How the forces of an element follow from its motion"
+    )
     mass: Literal["exact", "lumped"] = Field(
         "exact", description="Exact inertia of blocks of one element, or lumped mass everywhere"
     )

@@ -49,6 +49,9 @@ class Source:
             if keys in self.places:
                 line, column = self.places[keys]
                 return f"{self.file}:{line}:{column}"
+            for longer, text in self.overrides.items():  # a mapping that an override has made
+                if longer[: len(keys)] == keys:
+                    return f"--set {text}"
             keys = keys[:-1]
         return self.file or "case"
 
@@ -71,12 +74,14 @@ class Source:
 
     def _known(self, text: str) -> Keys:
         """Split a dotted path; keys that contain dots themselves are found by what is known."""
-        parts, keys = text.split("."), ()
+        parts: list[str] = text.split(".")
+        keys: Keys = ()
         known = self.places.keys() | self.overrides.keys()
         while parts:
             for count in range(len(parts), 0, -1):
                 joined = ".".join(parts[:count])
-                key: Key = int(joined) if joined.isdigit() and (*keys, int(joined)) in known else joined
+                number = joined.isdigit() and (*keys, int(joined)) in known
+                key: Key = int(joined) if number else joined
                 if count == 1 or (*keys, key) in known:
                     break
             keys, parts = (*keys, key), parts[count:]
@@ -105,7 +110,7 @@ def load_case_data(path: Path, overrides: Iterable[str] = ()) -> tuple[dict[str,
     source = Source(file=str(path))
     tree = _parse(text, str(path))
     if tree is None:
-        raise CaseError(f"{path}: the file is empty; 'cdem new incline' writes a case to start from")
+        raise CaseError(f"{path}: the file is empty; 'cdem new incline' writes one to start from")
     if not isinstance(tree, dict):
         raise CaseError(f"{path}:1:1: a case is a mapping (key: value), got {describe(tree)}")
     _note_places(tree, source, ())
@@ -129,10 +134,13 @@ def _parse(text: str, file: str) -> Any:
         ) from None
     except MarkedYAMLError as error:
         what = " ".join(filter(None, (error.context, error.problem)))
+        place = _mark(file, error.problem_mark or error.context_mark)
         raise CaseError(
-            f"{_mark(file, error.problem_mark or error.context_mark)}: not valid YAML: {what}; look "
-            "at the indentation, brackets, quotes and colons here and just above"
+            f"{place}: not valid YAML: {what}; look at the indentation, brackets, quotes and "
+            "colons here and just above"
         ) from None
+    except TypeError:  # ruamel.yaml lets a list or mapping be a key, and then cannot hash it
+        raise CaseError(f"{file}: not valid YAML here: a list or mapping stands as a key") from None
     except YAMLError as error:
         raise CaseError(f"{file}: not valid YAML: {str(error).splitlines()[0]}") from None
 
@@ -145,7 +153,7 @@ def _note_places(node: Any, source: Source, keys: Keys) -> None:
     """Remember line and column of every key and list entry of a tree with positions."""
     if not isinstance(node, dict | list):
         return
-    places = node.lc.data or {}
+    places = node.lc.data or {}  # type: ignore[union-attr]  # ruamel.yaml adds it
     for key in node if isinstance(node, dict) else range(len(node)):
         path = (*keys, key if isinstance(node, list) else str(key))
         if key in places:  # keys merged with << have no place of their own
@@ -181,7 +189,7 @@ def plain(value: Any, source: Source, keys: Keys = ()) -> Any:
 def _override(data: dict[str, Any], text: str, source: Source) -> None:
     """Replace one value of raw data by ``path=value``; mappings on the way are made."""
     path, equals, value = text.partition("=")
-    if not equals or not path.strip():
+    if not equals or not all(part.strip() for part in path.split(".")):
         raise CaseError(f"--set {text}: write key.path=value, e.g. --set time.safety=0.5")
     keys = resolve(data, path.strip(), label=f"--set {text}")
     node: Any = data
@@ -209,7 +217,8 @@ def resolve(root: Any, path: str, label: str | None = None) -> Keys:
     Raises:
         CaseError: The path leads nowhere.
     """
-    label, node, keys, parts = label or path, root, (), path.split(".")
+    label, node, parts = label or path, root, path.split(".")
+    keys: Keys = ()
     while parts:
         known = _children(node)
         count = _longest_known(parts, known)
@@ -223,7 +232,7 @@ def resolve(root: Any, path: str, label: str | None = None) -> Keys:
             raise CaseError(f"{label}: {key}: {_unknown(str(key), known)}")
         elif not isinstance(node, dict | BaseModel) and node is not None:
             raise CaseError(f"{label}: {'.'.join(map(str, keys))} has nothing inside")
-        node = node[key] if isinstance(node, list | tuple) else known.get(key)
+        node = node[int(key)] if isinstance(node, list | tuple) else known.get(str(key))
         keys, parts = (*keys, key), parts[count:]
     return keys
 
@@ -258,9 +267,9 @@ def replace_at(tree: Any, keys: Keys, value: Any) -> Any:
     """Return a copy of nested dicts and lists with the value at ``keys`` replaced."""
     if not keys:
         return value
-    copy = dict(tree) if isinstance(tree, dict) else list(tree)
-    old = copy.get(keys[0]) if isinstance(copy, dict) else copy[int(keys[0])]
-    copy[keys[0]] = replace_at(old, keys[1:], value)  # type: ignore[index, call-overload]
+    copy: Any = dict(tree) if isinstance(tree, dict) else list(tree)
+    old = copy.get(keys[0]) if isinstance(copy, dict) else copy[keys[0]]
+    copy[keys[0]] = replace_at(old, keys[1:], value)
     return copy
 
 
@@ -351,7 +360,8 @@ def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
     lengths = {"too_short": "at least", "too_long": "at most"}
     if kind in lengths:
         limit = context.get("min_length", context.get("max_length"))
-        return f"needs {lengths[kind]} {limit} entries, got {context['actual_length']}"
+        entries = "entry" if limit == 1 else "entries"
+        return f"needs {lengths[kind]} {limit} {entries}, got {context['actual_length']}"
     plain_words = {
         "dict_type": "must be a mapping (key: value)",
         "model_type": "must be a mapping (key: value)",

@@ -1,4 +1,4 @@
-"""Numbers with units: "30 GPa", "21 deg", "2 t/m3" become SI numbers, and wrong ones are refused."""
+"""Numbers with units: "30 GPa", "21 deg", "2 t/m3" become SI numbers; wrong ones are refused."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def describe(value: object) -> str:
 
 def _ratio(text: str, unit: str, whole: str) -> float:
     target, wanted = parse_unit(unit)
-    names = [name for powers, factors in DIMENSIONS.values() if powers == wanted for name in factors]
+    names = [name for name, (_, powers) in UNITS.items() if powers == wanted]
     allowed = "use one of: " + ", ".join(names) if names else f"use {unit} or the like"
     try:
         factor, dimension = parse_unit(text)

@@ -6,6 +6,7 @@ import base64
 import csv
 import html
 import json
+import os
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -258,6 +259,8 @@ def _pyvista():
         import pyvista
     except ImportError:
         raise CdemError("pictures need pyvista; pip install 'cdem[viz]'") from None
+    if not os.environ.get("DISPLAY"):  # without a screen VTK would try, and complain about, X first
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
     if not can_draw():
         raise CdemError(OPENGL_HINT)
     return pyvista

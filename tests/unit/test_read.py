@@ -25,7 +25,7 @@ def load(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "a.yaml: the file is empty; 'cdem new incline' writes a case"),
+        ("", "a.yaml: the file is empty; 'cdem new incline' writes one"),
         ("# only a comment\n", "a.yaml: the file is empty"),
         ("- 1\n", "a.yaml:1:1: a case is a mapping (key: value), got a list of 1"),
         ("just words", "a.yaml:1:1: a case is a mapping (key: value), got 'just words'"),
@@ -39,6 +39,7 @@ def load(tmp_path, monkeypatch):
         ("a: 1\n---\nb: 2\n", "not valid YAML"),
         ("a: {b: [1, .nan]}\n", "a.yaml:1:12: a.b.1: must be a finite number, got nan"),
         ("a: \x07\n", "not valid YAML"),
+        ("? {a: [1]}\n: 2\n", "a list or mapping stands as a key"),
         (b"\x89HDF\xff\xfe", "a.yaml: not a text file"),
     ],
 )
@@ -49,7 +50,7 @@ def test_files_that_are_no_case(load, text, message):
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(CaseError, match="none.yaml: cannot read the case file: No such file"):
+    with pytest.raises(CaseError, match=r"none.yaml: cannot read the case file: No such file"):
         load_case_data(tmp_path / "none.yaml")
     with pytest.raises(CaseError, match="Is a directory"):
         load_case_data(tmp_path)
@@ -78,8 +79,9 @@ def test_anchors_and_merges_are_plain_data(load):
 
 
 def test_overrides(load):
-    data, source = load("a: {b: [1, 2]}\nc: [{name: n, d: 1}]\n",
-                        ["a.b.1=5", "e.f=[7]", "c.n.d='x y'"])
+    data, source = load(
+        "a: {b: [1, 2]}\nc: [{name: n, d: 1}]\n", ["a.b.1=5", "e.f=[7]", "c.n.d='x y'"]
+    )
     assert data == {"a": {"b": [1, 5]}, "c": [{"name": "n", "d": "x y"}], "e": {"f": [7]}}
     assert source.where("a.b.1") == "--set a.b.1=5"
 
@@ -89,6 +91,7 @@ def test_overrides(load):
     [
         ("a.b", "--set a.b: write key.path=value"),
         ("=3", "write key.path=value"),
+        ("a..b=3", "write key.path=value"),
         ("a.b.7=3", "--set a.b.7=3: no entry '7' in a.b; it has: 0 to 1"),
         ("a.b.x.y=3", "no entry 'x' in a.b"),
         ("a.b=[1", "--set a.b=[1:1:3: not valid YAML"),
@@ -119,5 +122,5 @@ def test_many_problems_are_cut_short():
 
 
 def test_plain_refuses_infinite_numbers_in_python_data():
-    with pytest.raises(CaseError, match="case: a.0: must be a finite number"):
+    with pytest.raises(CaseError, match=r"case: a.0: must be a finite number"):
         plain({"a": [float("inf")]}, Source())
