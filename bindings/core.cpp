@@ -4,7 +4,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
-
 #include <omp.h>
 
 #include "core/backend.hpp"
@@ -158,12 +157,18 @@ void set_options(Core& core, const nb::dict& o) {
 
 const char* name_of(Outcome outcome) {
   switch (outcome) {
-    case Outcome::steps_done: return "steps_done";
-    case Outcome::time_reached: return "time_reached";
-    case Outcome::converged: return "converged";
-    case Outcome::not_finite: return "not_finite";
-    case Outcome::too_fast: return "too_fast";
-    case Outcome::lost_contact: return "lost_contact";
+    case Outcome::steps_done:
+      return "steps_done";
+    case Outcome::time_reached:
+      return "time_reached";
+    case Outcome::converged:
+      return "converged";
+    case Outcome::not_finite:
+      return "not_finite";
+    case Outcome::too_fast:
+      return "too_fast";
+    case Outcome::lost_contact:
+      return "lost_contact";
   }
   return "";
 }
@@ -202,8 +207,7 @@ NB_MODULE(CDEM_MODULE, module) {
              c.model.stiffness_damping = stiffness;
              c.model.contact_damping = contact;
            })
-      .def("start",
-           [](Core& c, Array<Real> position) { start(c.model, c.state, position.data()); })
+      .def("start", [](Core& c, Array<Real> position) { start(c.model, c.state, position.data()); })
       .def("restore", &restore)
       .def("prepare", [](Core& c) { prepare(c.model, c.state); })
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })

@@ -69,16 +69,21 @@ void sample_before(const Model& m, State& s, Queue q) {
 
 void sample_after(const Model& m, State& s, Queue q) {
   launch_one(q, m.node_count,
-             SampleNodes{{s.nodes.motion.data()}, s.nodes.momentum.data(), load_columns(m, s),
-                         support_columns(m, s), s.nodes.reaction.data(),
-                         s.nodes.damping_force.data(), s.dt, s.nodes.sample.data()});
+             SampleNodes{{s.nodes.motion.data()},
+                         s.nodes.momentum.data(),
+                         load_columns(m, s),
+                         support_columns(m, s),
+                         s.nodes.reaction.data(),
+                         s.nodes.damping_force.data(),
+                         s.dt,
+                         s.nodes.sample.data()});
   finish(q);
   if (s.ledger_started) return;
   s.ledger_started = true;
   const Energies e = energies(m, s);
   // the first sample may come later than the first step: count what has been lost and done by then
-  s.energy_start = e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture -
-                   e.external;
+  s.energy_start =
+      e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture - e.external;
 }
 
 Real kinetic_energy(const Model& m, const State& s) {
@@ -89,8 +94,8 @@ namespace {
 
 Real largest_term(const Energies& e) {
   Real largest = 0;
-  for (const Real term : {e.kinetic, e.strain, e.contact, e.friction, e.damping, e.fracture,
-                          e.external, e.start})
+  for (const Real term :
+       {e.kinetic, e.strain, e.contact, e.friction, e.damping, e.fracture, e.external, e.start})
     largest = std::max(largest, std::abs(term));
   return largest;
 }
@@ -131,8 +136,8 @@ Energies energies(const Model& m, const State& s) {
     e.fracture += column_sum(p->fracture);
   }
   e.start = s.energy_start;
-  const Real open = e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture -
-                    e.external - e.start;
+  const Real open =
+      e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture - e.external - e.start;
   const Real scale = std::max(s.energy_scale, largest_term(e));
   e.error = scale > 0 ? open / scale : 0;
   return e;
@@ -178,8 +183,8 @@ StepLimit step_limit(const Model& m, const State& s) {
   }
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real xi = m.stiffness_damping + m.contact_damping;
-  limit.dt = 2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) /
-             std::sqrt(1 + m.damping.local);
+  limit.dt =
+      2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) / std::sqrt(1 + m.damping.local);
   return limit;
 }
 

@@ -11,11 +11,11 @@
 namespace cdem {
 
 inline FaceColumns face_columns(const Model& m, const State& s) {
-  return {{s.nodes.motion.data()}, m.face_nodes.data(),     m.face_edges.data(),
-          m.face_group.data(),     m.face_length.data(),    m.face_reach.data(), m.face_area.data(),
-          m.face_stiffness.data(), m.edge_nodes.data(),     m.edge_faces.data(),
-          m.ring_first.data(),     m.ring.data(),           s.nodes.glue.data(),
-          s.search.face_exposed.data(), s.dt_last};
+  return {{s.nodes.motion.data()}, m.face_nodes.data(),          m.face_edges.data(),
+          m.face_group.data(),     m.face_length.data(),         m.face_reach.data(),
+          m.face_area.data(),      m.face_stiffness.data(),      m.edge_nodes.data(),
+          m.edge_faces.data(),     m.ring_first.data(),          m.ring.data(),
+          s.nodes.glue.data(),     m.node_place.data(), s.search.face_exposed.data(), s.dt_last};
 }
 
 inline Candidates candidate_columns(const State& s) {
@@ -25,16 +25,30 @@ inline Candidates candidate_columns(const State& s) {
 inline SpringColumns spring_columns(State& s) {
   SpringState& c = s.springs;
   return {c.target.data(),   c.target_before.data(), c.force_n.data(), c.shear1.data(),
-          c.shear2.data(),   c.gap_free.data(), c.sunk.data(), c.energy_n.data(), c.energy_s.data(), c.friction.data(),
-          c.dashpot.data(),  c.reaction.data(),      c.lost.data()};
+          c.shear2.data(),   c.gap_free.data(),      c.sunk.data(),    c.energy_n.data(),
+          c.energy_s.data(), c.friction.data(),      c.dashpot.data(), c.reaction.data(),
+          c.lost.data()};
 }
 
 inline EdgeColumns edge_columns(State& s) {
   EdgeState& c = s.edges;
-  return {c.slots,          c.count.data(),   c.side.data(),     c.target_face.data(),
-          c.target_edge.data(), c.gap_free.data(), c.sunk.data(), c.shear1.data(), c.shear2.data(), c.force_n.data(),
-          c.energy_n.data(), c.energy_s.data(), c.reaction.data(), c.friction.data(), c.dashpot.data(),
-          c.lost.data(),    c.overflow.data()};
+  return {c.slots,
+          c.count.data(),
+          c.side.data(),
+          c.target_face.data(),
+          c.target_edge.data(),
+          c.gap_free.data(),
+          c.sunk.data(),
+          c.shear1.data(),
+          c.shear2.data(),
+          c.force_n.data(),
+          c.energy_n.data(),
+          c.energy_s.data(),
+          c.reaction.data(),
+          c.friction.data(),
+          c.dashpot.data(),
+          c.lost.data(),
+          c.overflow.data()};
 }
 
 inline ContactLaws contact_laws(const Model& m) {
@@ -44,12 +58,9 @@ inline ContactLaws contact_laws(const Model& m) {
 
 template <class Shape>
 ElementColumns<Shape> element_columns(const Model& m, const State& s, const ElementSet& e) {
-  return {{s.nodes.motion.data()},
-          {e.nodes.data(), e.stride},
-          {e.gradient.data(), e.stride},
-          {e.volume.data(), e.stride},
-          {e.material.data(), e.stride},
-          {{m.material_lambda.data()}, {m.material_mu.data()}}};
+  return {{s.nodes.motion.data()},       {e.nodes.data(), e.stride},
+          {e.gradient.data(), e.stride}, {e.volume.data(), e.stride},
+          {e.material.data(), e.stride}, {{m.material_lambda.data()}, {m.material_mu.data()}}};
 }
 
 inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) {
@@ -85,8 +96,8 @@ inline SupportColumns support_columns(const Model& m, const State& s) {
 }
 
 inline LoadColumns load_columns(const Model& m, const State& s) {
-  return {m.gravity,           m.gravity_mass.data(), m.load_first.data(), m.load_curve.data(),
-          m.load_force.data(), s.load_factor.data()};
+  return {m.gravity,           m.gravity_mass.data(), m.load_first.data(),
+          m.load_curve.data(), m.load_force.data(),   s.load_factor.data()};
 }
 
 inline CornerLists corner_lists(const Model& m, const State& s) {

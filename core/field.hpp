@@ -1,4 +1,5 @@
-// field.hpp - columns: owned, padded arrays, and the light views of them that kernels read and write.
+// field.hpp - columns: owned, padded arrays, and the light views of them that kernels read and
+// write.
 #pragma once
 
 #include <cstddef>
@@ -67,8 +68,8 @@ class Column {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// Rows of several numbers per item, stored row after row: number r of item i is data[r*stride + i].
-/// The stride avoids multiples of 4096 bytes, at which all rows fall into one cache set.
+/// Rows of several numbers per item, stored row after row: number r of item i is data[r*stride +
+/// i]. The stride avoids multiples of 4096 bytes, at which all rows fall into one cache set.
 inline Index padded_stride(Index count) {
   const Index whole = (count + 7) / 8 * 8;
   return whole % 512 == 0 ? whole + 8 : whole;
@@ -78,9 +79,7 @@ inline Index padded_stride(Index count) {
 struct InTable {
   const Real* data;
   Index stride;
-  CDEM_HD Real at(Index row, One item) const {
-    return data[std::size_t(row) * stride + item.i];
-  }
+  CDEM_HD Real at(Index row, One item) const { return data[std::size_t(row) * stride + item.i]; }
 #if !defined(__CUDACC__)
   Pack at(Index row, Lane item) const {
     Pack p;
@@ -94,9 +93,7 @@ struct InTable {
 struct InOutTable {
   Real* data;
   Index stride;
-  CDEM_HD Real at(Index row, One item) const {
-    return data[std::size_t(row) * stride + item.i];
-  }
+  CDEM_HD Real at(Index row, One item) const { return data[std::size_t(row) * stride + item.i]; }
   CDEM_HD void set(Index row, One item, Real value) const {
     data[std::size_t(row) * stride + item.i] = value;
   }
@@ -116,9 +113,7 @@ struct InOutTable {
 struct InIndices {
   const Index* data;
   Index stride;
-  CDEM_HD Index at(Index row, One item) const {
-    return data[std::size_t(row) * stride + item.i];
-  }
+  CDEM_HD Index at(Index row, One item) const { return data[std::size_t(row) * stride + item.i]; }
 #if !defined(__CUDACC__)
   IndexPack at(Index row, Lane item) const {
     IndexPack p;

@@ -1,4 +1,5 @@
-// launch.hpp - how a kernel meets the machine: items (One, Lane), number packs, for_each, ordered sums.
+// launch.hpp - how a kernel meets the machine: items (One, Lane), number packs, for_each, ordered
+// sums.
 #pragma once
 
 #include <cmath>

@@ -23,11 +23,11 @@ struct ElementSet {
 /// Bonded pairs of one kind: conforming triangles, conforming quadrilaterals, or overlaps.
 struct PairSet {
   Index count = 0, stride = 0;
-  Index points = 0, point_stride = 0;  // rows of point tables, and their stride
+  Index points = 0, point_stride = 0;   // rows of point tables, and their stride
   Index corner_first = 0, corners = 0;  // rows among the corner forces, and how many a pair has
-  Column<Index> faces;       // [pair][2]
-  Column<Index> nodes;       // conforming: [2 * vertices][pair]
-  Column<Index> interface;   // [pair]
+  Column<Index> faces;                  // [pair][2]
+  Column<Index> nodes;                  // conforming: [2 * vertices][pair]
+  Column<Index> interface;              // [pair]
   Column<Real> area, stiffness;
   Column<Index> point_first;  // overlaps: [pair + 1]
   Column<Real> weights_a, weights_b, point_area;
@@ -36,7 +36,7 @@ struct PairSet {
 struct Model {
   // nodes
   Index node_count = 0;
-  Column<Index> node_block;
+  Column<Index> node_block, node_place;
   Column<Real> mass, gravity_mass;
   Column<Index> dense_first, dense_step, block_first, block_count;
   Column<Real> mass_inverse, mass_matrix;
@@ -83,14 +83,15 @@ struct Model {
   Real stiffness_damping = 0;  // Rayleigh, fraction of critical at the stability limit
   Real contact_damping = 0;    // fraction of critical
   Real step_safety = 0.8;
-  Real step_given = 0;         // 0: automatic
-  Real speed_limit = 0;        // faster than this the run has gone wrong  [m/s]
+  Real step_given = 0;   // 0: automatic
+  Real speed_limit = 0;  // faster than this the run has gone wrong  [m/s]
 };
 
 /// Visit every array that Python hands over, by name; the shapes are in cdem/build.py.
 template <class Visit>
 void describe(Model& m, Visit&& field) {
   field("node.block", m.node_block);
+  field("node.place", m.node_place);
   field("node.mass", m.mass);
   field("node.gravity_mass", m.gravity_mass);
   field("node.dense_first", m.dense_first);

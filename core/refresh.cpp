@@ -51,7 +51,8 @@ void expose(const Model& m, State& s, Index face) {
   EdgeState& e = s.edges;
   for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
     column->resize(slots * count, -1);
-  for (Column<Real>* column : {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
+  for (Column<Real>* column :
+       {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
     column->resize(slots * count);
   e.reaction.resize(8 * slots * count);
   e.count.resize(count);
@@ -181,7 +182,7 @@ std::vector<std::pair<Index, Index>> live_overlaps(const Model& m, const State& 
 struct ExposedFaces {
   std::vector<Box> box;
   std::vector<Vec3<Real>> normal;
-  std::vector<Real> turn;   // how much the normal may turn before the lists are old
+  std::vector<Real> turn;  // how much the normal may turn before the lists are old
   std::vector<Index> block;
   std::vector<Flag> movable;
   std::vector<FaceShape> shape;
@@ -204,9 +205,10 @@ struct ExposedFaces {
 ExposedFaces exposed_faces(const Model& m, const State& s) {
   const Index count = Index(s.search.exposed_face.size());
   const FaceColumns faces = face_columns(m, s);
-  ExposedFaces e{std::vector<Box>(count), std::vector<Vec3<Real>>(count),
-                 std::vector<Real>(count), std::vector<Index>(count), std::vector<Flag>(count),
-                 std::vector<FaceShape>(count), std::vector<Real>(count)};
+  ExposedFaces e{std::vector<Box>(count),  std::vector<Vec3<Real>>(count),
+                 std::vector<Real>(count), std::vector<Index>(count),
+                 std::vector<Flag>(count), std::vector<FaceShape>(count),
+                 std::vector<Real>(count)};
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) {
     const Index face = s.search.exposed_face[x];
@@ -244,8 +246,7 @@ void list_candidates(const Model& m, State& s) {
       if (e.block[x] == e.block[y] || (!e.movable[x] && !e.movable[y])) return;
       if (dot(e.normal[x], e.normal[y]) >= -m.rules.opposing + e.turn[x] + e.turn[y]) return;
       if (e.apart(x, y) || e.apart(y, x)) return;
-      if (!mates.empty() && std::binary_search(mates.begin(), mates.end(), std::pair(x, y)))
-        return;
+      if (!mates.empty() && std::binary_search(mates.begin(), mates.end(), std::pair(x, y))) return;
       rows[x].push_back(y);
     });
     std::sort(rows[x].begin(), rows[x].end());
@@ -320,8 +321,8 @@ void sum_stiffness(const Model& m, State& s) {
     const Index count = m.face_nodes[4 * face + 3] < 0 ? 3 : 4;
     const Index group = m.face_group[face];
     const Interface& law = m.interfaces[m.interface_of[group * m.group_count + group]];
-    const Real k = std::max(law.stiffness_n(m.face_stiffness[face]),
-                            law.stiffness_s(m.face_stiffness[face]));
+    const Real k =
+        std::max(law.stiffness_n(m.face_stiffness[face]), law.stiffness_s(m.face_stiffness[face]));
     // semi-springs of either side, and as much again for semi-edges
     for (Index v = 0; v < count; ++v)
       s.node_potential[m.face_nodes[4 * face + v]] += 2 * k * m.face_area[face] / count;
@@ -381,7 +382,8 @@ void widen_edge_slots(State& s) {
   };
   for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
     widen(*column, 1, Index(-1));
-  for (Column<Real>* column : {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
+  for (Column<Real>* column :
+       {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
     widen(*column, 1, Real(0));
   widen(e.reaction, 8, Real(0));
   e.slots = Index(wide);
@@ -390,12 +392,16 @@ void widen_edge_slots(State& s) {
 namespace {
 
 FindTargetFaces face_search(const Model& m, State& s, const SearchRules& rules) {
-  launch_one({}, Index(s.search.exposed_face.size()),
-             UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(),
-                                s.face_geometry.data()});
+  launch_one(
+      {}, Index(s.search.exposed_face.size()),
+      UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(), s.face_geometry.data()});
   finish({});
-  return {face_columns(m, s), {s.face_geometry.data()}, s.search.exposed_face.data(),
-          candidate_columns(s), rules, spring_columns(s)};
+  return {face_columns(m, s),
+          {s.face_geometry.data()},
+          s.search.exposed_face.data(),
+          candidate_columns(s),
+          rules,
+          spring_columns(s)};
 }
 
 }  // namespace
@@ -430,8 +436,11 @@ Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
 
 Index count_missed_contacts(const Model& m, State& s) {
   const FindTargetFaces springs = face_search(m, s, m.rules);
-  const FindTargetEdges edges{face_columns(m, s), {s.face_geometry.data()},
-                              s.search.exposed_face.data(), candidate_columns(s), m.rules,
+  const FindTargetEdges edges{face_columns(m, s),
+                              {s.face_geometry.data()},
+                              s.search.exposed_face.data(),
+                              candidate_columns(s),
+                              m.rules,
                               edge_columns(s)};
   const Index count = Index(s.search.exposed_face.size());
   const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };

@@ -13,8 +13,8 @@ void size_elements(const Model& m, const ElementSet& e, ElementState& es) {
   es.stress.resize(6 * row);
   es.energy.resize(row);
   es.damping_work.resize(row);
-  const bool keeps_stress = m.formulation == Formulation::incremental ||
-                            m.formulation == Formulation::paper_incremental;
+  const bool keeps_stress =
+      m.formulation == Formulation::incremental || m.formulation == Formulation::paper_incremental;
   if (keeps_stress) es.point_stress.resize(6 * Shape::points * row);
 }
 
@@ -38,8 +38,8 @@ void start(const Model& m, State& s, const Real* position) {
   n.motion.resize(8 * count);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) n.motion[8 * i + axis] = position[3 * i + axis];
-  for (Column<Real>* column : {&n.built_position, &n.force, &n.damping_force, &n.reaction,
-                               &n.momentum, &n.sample})
+  for (Column<Real>* column :
+       {&n.built_position, &n.force, &n.damping_force, &n.reaction, &n.momentum, &n.sample})
     column->resize(4 * count);
   for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
     column->resize(count);

@@ -8,8 +8,8 @@
 namespace cdem {
 
 struct NodeState {
-  Column<Real> motion;                        // rows of 8: position, velocity
-  Column<Real> built_position;                // rows of 4: where the node was at the last refresh
+  Column<Real> motion;          // rows of 8: position, velocity
+  Column<Real> built_position;  // rows of 4: where the node was at the last refresh
   Column<Real> work_external, work_damping;
   Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
   Column<Real> unbalance;
@@ -37,7 +37,8 @@ struct SpringState {
 struct EdgeState {
   Index slots = 8;
   Column<Index> count, side, target_face, target_edge;
-  Column<Real> gap_free, sunk, shear1, shear2, force_n, energy_n, energy_s, reaction, friction, dashpot;
+  Column<Real> gap_free, sunk, shear1, shear2, force_n, energy_n, energy_s, reaction, friction,
+      dashpot;
   Column<Flag> lost, overflow;
 };
 
@@ -64,11 +65,12 @@ struct State {
   EdgeState edges;
   SearchState search;
   Column<Real> face_geometry, corner_force, contact_force;  // rows of 8, 4, 4
-  Column<Real> node_potential, node_bonds;  // stiffness that contacts may have, bonds have  [N/m]
-  Column<Real> load_factor, velocity_factor;                // of the curves in this step
+  Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]
+  Column<Real> load_factor, velocity_factor;  // of the curves in this step
 };
 
-/// Visit every array that must survive a restart, by name: checkpoint and Python views come from it.
+/// Visit every array that must survive a restart, by name: checkpoint and Python views come from
+/// it.
 template <class S, class Visit>
 void describe(S& s, Visit&& field) {
   field("node.motion", s.nodes.motion, "position [m], pad, velocity [m/s], pad");

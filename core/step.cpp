@@ -34,9 +34,9 @@ void evaluate_curves(const Model& m, Real time, Column<Real>& values) {
 }
 
 void update_face_geometry(const Model& m, State& s, Queue q) {  // contact/face.hpp
-  launch_one(q, Index(s.search.exposed_face.size()),
-             UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(),
-                                s.face_geometry.data()});
+  launch_one(
+      q, Index(s.search.exposed_face.size()),
+      UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(), s.face_geometry.data()});
 }
 
 template <Index count>
@@ -56,16 +56,23 @@ void update_bonds(const Model& m, State& s, Queue q) {  // contact/bond.hpp
   update_conforming<4>(m, s, q, m.quads, s.quads, m.bond_indentation_quad);
   const PairSet& p = m.overlaps;
   launch_one(q, p.count,
-             OverlapBonds{face_columns(m, s), p.faces.data(), p.point_first.data(),
-                          p.weights_a.data(), p.weights_b.data(), p.point_area.data(),
+             OverlapBonds{face_columns(m, s),
+                          p.faces.data(),
+                          p.point_first.data(),
+                          p.weights_a.data(),
+                          p.weights_b.data(),
+                          p.point_area.data(),
                           pair_columns(m, p, s.overlaps),
                           {s.corner_force.data() + std::size_t(p.corner_first) * 4}});
 }
 
 void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact/target_face.hpp
   launch_one(q, Index(s.search.exposed_face.size()),
-             FindTargetFaces{face_columns(m, s), {s.face_geometry.data()},
-                             s.search.exposed_face.data(), candidate_columns(s), m.rules,
+             FindTargetFaces{face_columns(m, s),
+                             {s.face_geometry.data()},
+                             s.search.exposed_face.data(),
+                             candidate_columns(s),
+                             m.rules,
                              spring_columns(s)});
 }
 
@@ -74,8 +81,11 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   const Index count = Index(s.search.exposed_face.size());
   while (true) {
     launch_one(q, count,
-               FindTargetEdges{face_columns(m, s), {s.face_geometry.data()},
-                               s.search.exposed_face.data(), candidate_columns(s), m.rules,
+               FindTargetEdges{face_columns(m, s),
+                               {s.face_geometry.data()},
+                               s.search.exposed_face.data(),
+                               candidate_columns(s),
+                               m.rules,
                                edge_columns(s)});
     finish(q);
     const Flag* overflow = s.edges.overflow.data();
@@ -108,11 +118,13 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const Real damping_time = m.stiffness_damping * s.dt;
   switch (m.formulation) {
     case Formulation::corotational:
-      return launch(q, e.count, CorotationalForce<Shape, FollowRotation>{
-                                    columns, damping_time, s.dt, work, out});
+      return launch(
+          q, e.count,
+          CorotationalForce<Shape, FollowRotation>{columns, damping_time, s.dt, work, out});
     case Formulation::paper_total:
-      return launch(q, e.count, CorotationalForce<Shape, IgnoreRotation>{
-                                    columns, damping_time, s.dt, work, out});
+      return launch(
+          q, e.count,
+          CorotationalForce<Shape, IgnoreRotation>{columns, damping_time, s.dt, work, out});
     case Formulation::incremental:
       return launch(q, e.count,
                     IncrementalForce<Shape, TurnByHalves>{columns, s.dt_last, stress, energy, out});
@@ -131,18 +143,23 @@ void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, eleme
 
 void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
   launch_one(q, m.node_count,
-             SumNodeForces{{s.nodes.motion.data()}, corner_lists(m, s), load_columns(m, s),
-                           support_columns(m, s), m.damping, m.mass.data(),
-                           s.nodes.force.data(), s.nodes.damping_force.data(),
+             SumNodeForces{{s.nodes.motion.data()},
+                           corner_lists(m, s),
+                           load_columns(m, s),
+                           support_columns(m, s),
+                           m.damping,
+                           m.mass.data(),
+                           s.nodes.force.data(),
+                           s.nodes.damping_force.data(),
                            s.nodes.unbalance.data()});
 }
 
 void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
-  launch_one(q, m.node_count,
-             MoveNodes{mass_columns(m), load_columns(m, s), support_columns(m, s), s.nodes.force.data(),
-                       s.nodes.damping_force.data(), s.dt, s.nodes.motion.data(),
-                       s.nodes.reaction.data(), s.nodes.work_external.data(),
-                       s.nodes.work_damping.data()});
+  launch_one(
+      q, m.node_count,
+      MoveNodes{mass_columns(m), load_columns(m, s), support_columns(m, s), s.nodes.force.data(),
+                s.nodes.damping_force.data(), s.dt, s.nodes.motion.data(), s.nodes.reaction.data(),
+                s.nodes.work_external.data(), s.nodes.work_damping.data()});
   finish(q);
 }
 

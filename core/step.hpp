@@ -28,9 +28,9 @@ enum class Outcome { steps_done, time_reached, converged, not_finite, too_fast, 
 
 /// When to come back from the loop.
 struct Goal {
-  std::int64_t steps = 0;         // at most
-  Real end_time = 1e300;          // [s]
-  Real unbalance_limit = 0;       // 0: do not look
+  std::int64_t steps = 0;    // at most
+  Real end_time = 1e300;     // [s]
+  Real unbalance_limit = 0;  // 0: do not look
   std::int64_t check_interval = 20;
   bool kinetic_relaxation = false;  // stop all motion when the kinetic energy has passed a peak
 };

@@ -10,7 +10,7 @@ namespace cdem {
 /// true overlap area, so that strength does not depend on which side is meshed finer.
 template <class T>
 struct BondLaw {
-  T stiffness_n, stiffness_s;      // K_n, K_s  [N/m]
+  T stiffness_n, stiffness_s;       // K_n, K_s  [N/m]
   T tension_limit, cohesion_limit;  // T A, c A  [N]
   T tan_friction;
 };
@@ -25,10 +25,10 @@ struct BondHistory {
 /// What one bond point does in a step.
 template <class T>
 struct BondForce {
-  Vec3<T> on_b;           // force on the second face  [N]
-  T stored;               // elastic energy  [J]
-  T fracture, friction;   // energy lost in this step  [J]
-  T tension, shear;       // 1 when the bond broke in this step, by that cause
+  Vec3<T> on_b;          // force on the second face  [N]
+  T stored;              // elastic energy  [J]
+  T fracture, friction;  // energy lost in this step  [J]
+  T tension, shear;      // 1 when the bond broke in this step, by that cause
 };
 
 template <class T>
@@ -54,7 +54,7 @@ CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>&
   T force_s2 = -law.stiffness_s * (along2 - h.slip2);
 
   const T before = h.bond;
-  const auto pulled = -force_n > before * law.tension_limit;
+  const auto pulled = -force_n > before * law.tension_limit;  // else it slipped
   limit_force(law.tension_limit, law.cohesion_limit, law.tan_friction, h.bond, force_n, force_s1,
               force_s2);
 
@@ -76,14 +76,14 @@ CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>&
   if (any_of(h.bond < half)) {
     const T old_n = dot(frame.n, jump_old);
     const T old1 = dot(frame.t1, jump_old), old2 = dot(frame.t2, jump_old);
-    const T was_n = select(before > half, -law.stiffness_n * old_n,
-                           max_of(-law.stiffness_n * old_n, zero));
+    const T was_n =
+        select(before > half, -law.stiffness_n * old_n, max_of(-law.stiffness_n * old_n, zero));
     const auto was_open = (!(was_n > zero)) & (before < half);
     const T was_s1 = select(was_open, zero, -law.stiffness_s * (old1 - h.slip1));
     const T was_s2 = select(was_open, zero, -law.stiffness_s * (old2 - h.slip2));
-    const T lost_s = flex_s * (was_s1 * was_s1 + was_s2 * was_s2) - stored_s -
-                     half * ((was_s1 + force_s1) * (along1 - old1) +
-                             (was_s2 + force_s2) * (along2 - old2));
+    const T lost_s =
+        flex_s * (was_s1 * was_s1 + was_s2 * was_s2) - stored_s -
+        half * ((was_s1 + force_s1) * (along1 - old1) + (was_s2 + force_s2) * (along2 - old2));
     const T lost_n =
         flex_n * was_n * was_n - stored_n - half * (was_n + force_n) * (opening - old_n);
     out.fracture = select(broke, lost_n + lost_s, zero);
@@ -107,15 +107,15 @@ CDEM_HD inline PairFrame<T> pair_frame(const Vec3<T>* mean) {
 
 /// State and properties of bonded pairs that do not depend on their number of vertices.
 struct PairColumns {
-  InIndices interface;         // [1][pair]: index of the interface's properties
-  InTable area;                // [1][pair] true overlap area  [m2]
-  InTable live;                // [1][pair] 1 until the pair is released to the contact search
-  InTable stiffness;           // [2][pair] k_n, k_s  [Pa/m]
+  InIndices interface;  // [1][pair]: index of the interface's properties
+  InTable area;         // [1][pair] true overlap area  [m2]
+  InTable live;         // [1][pair] 1 until the pair is released to the contact search
+  InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
   InLookup cohesion, tensile_strength, tan_friction;  // by interface
-  InOutTable bond, slip1, slip2;     // [point][pair]
-  InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
-  InOutTable jump;             // [1][pair] largest jump once all points are broken  [m]
-  InOutTable stored, fracture, friction;    // [1][pair]  [J]
+  InOutTable bond, slip1, slip2;                      // [point][pair]
+  InOutTable broken_tension, broken_shear;            // [1][pair] springs broken so far, by cause
+  InOutTable jump;                        // [1][pair] largest jump once all points are broken  [m]
+  InOutTable stored, fracture, friction;  // [1][pair]  [J]
 };
 
 /// Bonds of conforming pairs: `count` vertices on either side coincide at the start.
@@ -127,7 +127,7 @@ struct ConformingBonds {
   InMotion nodes;
   InIndices pair_nodes;  // [2 * count][pair]: vertices of the first face, then their mates
   PairColumns pairs;
-  Real indentation;      // a: 0 at the vertices, 1/2 (3) or 1 - 1/sqrt(3) (4) as quadrature points
+  Real indentation;  // a: 0 at the vertices, 1/2 (3) or 1 - 1/sqrt(3) (4) as quadrature points
   Real dt;
   OutForces corner_force;
 

@@ -68,8 +68,7 @@ CDEM_HD inline Projection project_on_quad(const FaceShape& f, const Vec3<Real>& 
     const Vec3<Real> low = f.x[0] + u * (f.x[1] - f.x[0]);
     const Vec3<Real> high = f.x[3] + u * (f.x[2] - f.x[3]);
     const Vec3<Real> miss = point - (low + v * (high - low));
-    const Vec3<Real> along_u =
-        (1.0 - v) * (f.x[1] - f.x[0]) + v * (f.x[2] - f.x[3]);
+    const Vec3<Real> along_u = (1.0 - v) * (f.x[1] - f.x[0]) + v * (f.x[2] - f.x[3]);
     const Vec3<Real> along_v = high - low;
     const Real det = dot(cross(along_u, along_v), n);
     const Real du = dot(cross(miss, along_v), n) / det;
@@ -90,20 +89,21 @@ CDEM_HD inline Projection project(const FaceShape& f, const Vec3<Real>& point,
 /// The exterior faces and edges of all blocks: what never changes, and the nodes' motion.
 struct FaceColumns {
   InMotion nodes;
-  const Index* face_nodes;   // [face][4], the fourth is -1 for a triangle
-  const Index* face_edges;   // [face][4]: the edge from vertex k to k + 1
-  const Index* face_group;   // [face]
-  const Real* face_length;   // L: mean distance from the centre to the vertices, Eq. 3  [m]
-  const Real* face_reach;    // a little more than the farthest vertex from the centre  [m]
-  const Real* face_area;     // [m2]
+  const Index* face_nodes;     // [face][4], the fourth is -1 for a triangle
+  const Index* face_edges;     // [face][4]: the edge from vertex k to k + 1
+  const Index* face_group;     // [face]
+  const Real* face_length;     // L: mean distance from the centre to the vertices, Eq. 3  [m]
+  const Real* face_reach;      // a little more than the farthest vertex from the centre  [m]
+  const Real* face_area;       // [m2]
   const Real* face_stiffness;  // modulus of the element behind over its height  [Pa/m]
-  const Index* edge_nodes;   // [edge][2]
-  const Index* edge_faces;   // [edge][2]: the two faces of the block that meet there, or -1
-  const Index* ring_first;   // [node + 1]
-  const Index* ring;         // other ends of the exterior edges at a node
-  const Index* node_glue;    // label shared by nodes that intact bonds hold together
-  const Index* face_exposed;  // [face]: place in the list of exposed faces, or -1
-  Real dt;                   // [s]
+  const Index* edge_nodes;     // [edge][2]
+  const Index* edge_faces;     // [edge][2]: the two faces of the block that meet there, or -1
+  const Index* ring_first;     // [node + 1]
+  const Index* ring;           // other ends of the exterior edges at a node
+  const Index* node_glue;      // label shared by nodes that intact bonds hold together
+  const Index* node_place;   // label shared by nodes that began at the same place
+  const Index* face_exposed;   // [face]: place in the list of exposed faces, or -1
+  Real dt;                     // [s]
 
   CDEM_HD Index vertex_count(Index face) const { return face_nodes[4 * face + 3] < 0 ? 3 : 4; }
   CDEM_HD Index vertex(Index face, Index k) const { return face_nodes[4 * face + k]; }

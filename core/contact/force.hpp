@@ -11,8 +11,8 @@ struct ContactLaws {
   const Index* interface_of;  // [group_m * group_count + group_t]
   const Interface* interfaces;
   Index group_count;
-  Real damping_ratio;       // of critical, on the effective mass of the two points
-  const Real* node_mass;    // [kg]
+  Real damping_ratio;     // of critical, on the effective mass of the two points
+  const Real* node_mass;  // [kg]
 
   CDEM_HD const Interface& between(Index group_m, Index group_t) const {
     return interfaces[interface_of[group_m * group_count + group_t]];
@@ -21,11 +21,11 @@ struct ContactLaws {
 
 /// The gap at which a contact that begins is free of stress.
 ///
-/// A contact met from outside is free at zero gap. One that is found already inside must not release
-/// energy that nothing put in (faces of freshly broken rock have slid a little past each other, a
-/// vertex turns a corner): it may begin as deep as the contact it comes from or, between flush faces,
-/// as their other contacts are (a seam in a flat bed, where contacts take turns to carry the same
-/// load); what is deeper counts as free of stress.
+/// A contact met from outside is free at zero gap. One that is found already inside must not
+/// release energy that nothing put in (faces of freshly broken rock have slid a little past each
+/// other, a vertex turns a corner): it may begin as deep as the contact it comes from or, between
+/// flush faces, as their other contacts are (a seam in a flat bed, where contacts take turns to
+/// carry the same load); what is deeper counts as free of stress.
 CDEM_HD inline Real starting_gap_free(Real gap, Real gap_rate, Real dt, Real sunk_before,
                                       Real sunk_of_faces) {
   const Real gap_before = gap - gap_rate * dt;
@@ -45,12 +45,12 @@ CDEM_HD inline Real lifted_gap_free(Real gap_free, Real gap) {
 
 /// Elastic and frictional part of one contact's force.
 struct ContactForce {
-  Real force_n;          // compression > 0  [N]
-  Real sunk;             // effective penetration  [m]
-  Real shear1, shear2;   // on the mother  [N]
+  Real force_n;             // compression > 0  [N]
+  Real sunk;                // effective penetration  [m]
+  Real shear1, shear2;      // on the mother  [N]
   Real energy_n, energy_s;  // stored  [J]
-  Real friction;         // lost in this step  [J]
-  Real dashpot;          // lost in this step  [J]
+  Real friction;            // lost in this step  [J]
+  Real dashpot;             // lost in this step  [J]
 };
 
 /// Normal force from the total gap, shear force from the step's slip, then Coulomb's limit.
@@ -129,10 +129,9 @@ struct UpdateSpringForces {
                        : starting_gap_free(foot.gap, gap_rate, faces.dt, springs.sunk[slot.i],
                                            sunk_of_flush(dot(faces.shape(face_m).normal(), frame.n),
                                                          face_sunk[m], face_sunk[t]));
-    const ContactForce f = contact_force(
-        kn, ks, law.tan_friction, foot.gap - free, gap_rate, dashpot,
-        -dot(old.t1, apart), -dot(old.t2, apart), springs.shear1[slot.i], springs.shear2[slot.i],
-        faces.dt);
+    const ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - free, gap_rate,
+                                         dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
+                                         springs.shear1[slot.i], springs.shear2[slot.i], faces.dt);
     keep(slot.i, f);
 
     const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
@@ -166,8 +165,8 @@ struct UpdateSpringForces {
     }
     return p;
   }
-  /// A contact that begins: without shear force, or with that of the face it comes from, turned into
-  /// the new plane with its length kept (hand-over).
+  /// A contact that begins: without shear force, or with that of the face it comes from, turned
+  /// into the new plane with its length kept (hand-over).
   CDEM_HD void carry_shear(Index slot, Index before, Index face_t) const {
     if (before < 0) {
       springs.shear1[slot] = springs.shear2[slot] = 0;
@@ -305,8 +304,8 @@ struct UpdateEdgeForces {
   }
 };
 
-/// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions of
-/// all others that have it as target. It looks through its candidates in their order instead of
+/// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions
+/// of all others that have it as target. It looks through its candidates in their order instead of
 /// letting contacts add to nodes, so the sum has one order for any number of threads.
 struct GatherFaceForces {
   FaceColumns faces;

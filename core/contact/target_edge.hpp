@@ -10,23 +10,23 @@ namespace cdem {
 /// silent. Place = slots * exposed face + j; the used ones come first.
 struct EdgeColumns {
   Index slots;
-  Index* count;         // [exposed] places in use
-  Index* side;          // side of the mother face
-  Index* target_face;   // exposed face to which the target edge belongs
-  Index* target_edge;   // edge
-  Real* gap_free;       // gap at which the contact is free of stress  [m]
-  Real* sunk;           // effective penetration: gap_free - gap, or 0; -1 in a new contact  [m]
-  Real* shear1;         // [N] in the frame of the edge pair
+  Index* count;        // [exposed] places in use
+  Index* side;         // side of the mother face
+  Index* target_face;  // exposed face to which the target edge belongs
+  Index* target_edge;  // edge
+  Real* gap_free;      // gap at which the contact is free of stress  [m]
+  Real* sunk;          // effective penetration: gap_free - gap, or 0; -1 in a new contact  [m]
+  Real* shear1;        // [N] in the frame of the edge pair
   Real* shear2;
-  Real* force_n;        // [N], compression > 0
-  Real* energy_n;       // stored in the normal spring  [J]
-  Real* energy_s;       // stored in the shear spring  [J]
-  Real* reaction;       // row of 8: force on the mother x y z, stiffness, place on the mother
-                        // side (0..1), place on the target's side (0..1)
-  Real* friction;       // [exposed] lost so far  [J]
-  Real* dashpot;        // [exposed] lost in the contact dashpot so far  [J]
-  Flag* lost;           // [exposed] 1: a loaded contact was lost because it sank too deep
-  Flag* overflow;       // [exposed] 1: more contacts than places
+  Real* force_n;   // [N], compression > 0
+  Real* energy_n;  // stored in the normal spring  [J]
+  Real* energy_s;  // stored in the shear spring  [J]
+  Real* reaction;  // row of 8: force on the mother x y z, stiffness, place on the mother
+                   // side (0..1), place on the target's side (0..1)
+  Real* friction;  // [exposed] lost so far  [J]
+  Real* dashpot;   // [exposed] lost in the contact dashpot so far  [J]
+  Flag* lost;      // [exposed] 1: a loaded contact was lost because it sank too deep
+  Flag* overflow;  // [exposed] 1: more contacts than places
 };
 
 /// Two edges at one instant: start point and vector along either, and the contact normal.
@@ -89,7 +89,8 @@ struct FindTargetEdges {
     Found found[most_slots];
     const Index used = find(m.i, held, found);
     edges.overflow[m.i] = used > edges.slots ? 1 : 0;
-    if (used > edges.slots) return;  // nothing is written: the caller makes room and runs this again
+    if (used > edges.slots)
+      return;  // nothing is written: the caller makes room and runs this again
     for (Index j = 0; j < used; ++j) {
       const Found& f = found[j];
       const Index place = edges.slots * m.i + j;
@@ -144,12 +145,10 @@ struct FindTargetEdges {
 
     const Crossing true_edges = cross_edges(xm, dm, xt, dt, n);
     if (true_edges.gap > 0) return false;
-    // both ends at once is a vertex on a vertex: the semi-springs' business
-    if (near_end(true_edges.s) && near_end(true_edges.t)) return false;
     const Real length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
-    const Real approach = rules.approach_steps * faces.dt *
-                          abs_of(dot(n, velocity_at(m0, m1, true_edges.s) -
-                                            velocity_at(t0, t1, true_edges.t)));
+    const Real approach =
+        rules.approach_steps * faces.dt *
+        abs_of(dot(n, velocity_at(m0, m1, true_edges.s) - velocity_at(t0, t1, true_edges.t)));
     const Real limit = held ? rules.depth * length : rules.entry * length + approach;
     const bool in_cones = cones_hold(m, k, target, j, dm, dt, n);
     if (true_edges.gap < -limit) {
@@ -206,16 +205,20 @@ struct FindTargetEdges {
     }
   };
 
-  /// A face's vertices.
+  /// A face's vertices; `place` tells which of them began at the same place.
   struct Corners {
-    Index count;
+    Index count, place[4];
     Vec3<Real> x[4];
   };
   CDEM_HD Corners corners(Index exposed) const {
     const Index face = exposed_face[exposed];
     Corners c;
     c.count = faces.vertex_count(face);
-    for (Index k = 0; k < c.count; ++k) c.x[k] = faces.nodes.position(faces.vertex(face, k));
+    for (Index k = 0; k < c.count; ++k) {
+      const Index node = faces.vertex(face, k);
+      c.x[k] = faces.nodes.position(node);
+      c.place[k] = faces.node_place[node];
+    }
     return c;
   }
   /// Heights of a face's vertices over the plane of another; false when all are above `room`.
@@ -232,14 +235,14 @@ struct FindTargetEdges {
   CDEM_HD static bool crosses(Real a, Real b, Real room) {
     return min_of(a, b) <= room && max_of(a, b) >= -room;
   }
-  /// Bit j of word k: vertex k of one face is at the place of vertex j of the other. Edges that start
-  /// from the same place are vertices on each other, not edges.
+  /// Bit j of word k: vertex k of one face and vertex j of the other began at the same place in the
+  /// mesh and are still there. Edges that start from one place are not edges on each other.
   CDEM_HD static void find_shared(const Corners& a, const Corners& b, Real near, unsigned* shared) {
     for (Index k = 0; k < a.count; ++k) {
       shared[k] = 0;
       for (Index j = 0; j < b.count; ++j) {
         const Vec3<Real> d = a.x[k] - b.x[j];
-        if (dot(d, d) < near * near) shared[k] |= 1u << j;
+        if (a.place[k] == b.place[j] && dot(d, d) < near * near) shared[k] |= 1u << j;
       }
     }
   }
@@ -287,10 +290,6 @@ struct FindTargetEdges {
  private:
   CDEM_HD Index next(Index face, Index k) const {
     return k + 1 == faces.vertex_count(face) ? 0 : k + 1;
-  }
-  CDEM_HD bool near_end(Real place) const {
-    const Real corner = 2 * rules.indentation;
-    return place < corner || place > 1 - corner;
   }
   CDEM_HD bool glued(Index a, Index b) const { return faces.node_glue[a] == faces.node_glue[b]; }
   CDEM_HD Vec3<Real> velocity_at(Index a, Index b, Real s) const {

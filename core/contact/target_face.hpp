@@ -7,14 +7,14 @@ namespace cdem {
 
 /// Tolerances of the search; every length is a multiple of L, the smaller of the two faces'.
 struct SearchRules {
-  Real indentation = 0.01;     // alpha, Eq. 3
-  Real action = 0;             // coefficient of the point where the force acts: 0 is the vertex
-  Real tolerance = 0.001;      // in-plane tolerance; must stay below the indentation
-  Real entry = 0.01;           // a new contact may be this deep, and 1.5 times the step's approach
-  Real depth = 0.3;            // a contact in place is kept down to here; deeper is an error
-  Real opposing = 0.02;        // faces touch only if n_m . n_t < -opposing
-  Real cone = 0.05;            // slack of the normal-cone tests (a sine)
-  Real approach_steps = 1.5;   // see entry
+  Real indentation = 0.01;    // alpha, Eq. 3
+  Real action = 0;            // coefficient of the point where the force acts: 0 is the vertex
+  Real tolerance = 0.001;     // in-plane tolerance; must stay below the indentation
+  Real entry = 0.01;          // a new contact may be this deep, and 1.5 times the step's approach
+  Real depth = 0.3;           // a contact in place is kept down to here; deeper is an error
+  Real opposing = 0.02;       // faces touch only if n_m . n_t < -opposing
+  Real cone = 0.05;           // slack of the normal-cone tests (a sine)
+  Real approach_steps = 1.5;  // see entry
 };
 
 /// Pairs of exposed faces that may touch before the next refresh: ragged rows, in both directions.
@@ -30,14 +30,14 @@ struct SpringColumns {
   Real* force_n;         // [N], compression > 0
   Real* shear1;          // [N] in the target's frame
   Real* shear2;
-  Real* gap_free;        // gap at which the contact is free of stress  [m]
-  Real* sunk;            // effective penetration: gap_free - gap, or 0  [m]
-  Real* energy_n;        // stored in the normal spring  [J]
-  Real* energy_s;        // stored in the shear spring  [J]
-  Real* friction;        // lost so far  [J]
-  Real* dashpot;         // lost in the contact dashpot so far  [J]
-  Real* reaction;        // row of 8: force on the mother x y z, stiffness, weights on the target
-  Flag* lost;            // 1: a loaded contact was lost because it sank too deep
+  Real* gap_free;  // gap at which the contact is free of stress  [m]
+  Real* sunk;      // effective penetration: gap_free - gap, or 0  [m]
+  Real* energy_n;  // stored in the normal spring  [J]
+  Real* energy_s;  // stored in the shear spring  [J]
+  Real* friction;  // lost so far  [J]
+  Real* dashpot;   // lost in the contact dashpot so far  [J]
+  Real* reaction;  // row of 8: force on the mother x y z, stiffness, weights on the target
+  Flag* lost;      // 1: a loaded contact was lost because it sank too deep
 };
 
 /// Choose the target face of every semi-spring of one exposed face.
@@ -56,7 +56,8 @@ struct FindTargetFaces {
 
   CDEM_HD void operator()(One m) const {
     const Index count = faces.vertex_count(exposed_face[m.i]);
-    for (Index k = 0; k < count; ++k) springs.target_before[4 * m.i + k] = springs.target[4 * m.i + k];
+    for (Index k = 0; k < count; ++k)
+      springs.target_before[4 * m.i + k] = springs.target[4 * m.i + k];
     Index chosen[4];
     choose(m.i, candidates.other + candidates.first[m.i],
            candidates.first[m.i + 1] - candidates.first[m.i], chosen, springs.lost + 4 * m.i);
@@ -131,7 +132,8 @@ struct FindTargetFaces {
   }
   /// A warped face may reach above its mean plane; a plane one does not.
   CDEM_HD Real above(Index t) const {
-    return faces.vertex_count(exposed_face[t]) == 3 ? 0.0 : 0.5 * faces.face_length[exposed_face[t]];
+    return faces.vertex_count(exposed_face[t]) == 3 ? 0.0
+                                                    : 0.5 * faces.face_length[exposed_face[t]];
   }
   CDEM_HD Real approach(Index node, Index t) const {
     const Index face = exposed_face[t];
@@ -150,8 +152,7 @@ struct FindTargetFaces {
     return dot(arm, arm) - up * up < reach * reach;
   }
   CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
-    return gap < -depth &&
-           faces.shape(exposed_face[t]).inside_distance(p, geometry.normal(t)) > 0;
+    return gap < -depth && faces.shape(exposed_face[t]).inside_distance(p, geometry.normal(t)) > 0;
   }
   /// Gap of the vertex to face t if it is in contact there within `limit`, else a positive number.
   CDEM_HD Real qualify(Index m, Index node, const Vec3<Real>& v, const Vec3<Real>& p, Index t,

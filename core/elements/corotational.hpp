@@ -1,4 +1,5 @@
-// corotational.hpp - element forces from the total deformation: the default, and Eq. 1 as a baseline.
+// corotational.hpp - element forces from the total deformation: the default, and Eq. 1 as a
+// baseline.
 #pragma once
 
 #include "core/elements/shapes.hpp"
@@ -41,10 +42,10 @@ struct PointStrains {
 
 /// Element forces of the total corotational form.
 ///
-/// With the strain E = sym(R^T F) - I and the law's stress S(E) in the unrotated frame, the force on
-/// node k is -sum_q w J (R S) dN_k/dX. That is the exact derivative of the stored energy
-/// sum_q w J W(E), because R is the closest rotation to F; so energy, linear and angular momentum are
-/// kept to round-off whatever the rotation. (Written with the current B instead, the force is no
+/// With the strain E = sym(R^T F) - I and the law's stress S(E) in the unrotated frame, the force
+/// on node k is -sum_q w J (R S) dN_k/dX. That is the exact derivative of the stored energy sum_q w
+/// J W(E), because R is the closest rotation to F; so energy, linear and angular momentum are kept
+/// to round-off whatever the rotation. (Written with the current B instead, the force is no
 /// derivative of an energy: it differs by terms of the size of the strain.)
 ///
 /// `damping_time` adds the stress of a Rayleigh dashpot, S(damping_time * rate of E) [s].
@@ -64,8 +65,7 @@ struct CorotationalForce {
     CornerForces<Shape, T> force;
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> stress = law.stress(p.strain[q]);
-      force.add(columns, e, q,
-                columns.point_volume.at(q, e) * (p.rotation[q] * full(stress)));
+      force.add(columns, e, q, columns.point_volume.at(q, e) * (p.rotation[q] * full(stress)));
     }
     if (damping_time > 0) add_dashpot(e, law, p, force);
     force.store(corner_force, e);
@@ -78,8 +78,7 @@ struct CorotationalForce {
     const Arms<Shape, T> arms = velocity_arms<Shape>(columns, e);
     Sym3<T> rate[Shape::points];
     for (Index q = 0; q < Shape::points; ++q) {
-      const Mat3<T> turned =
-          transpose(p.rotation[q]) * gradient_of<Shape>(columns, e, q, arms);
+      const Mat3<T> turned = transpose(p.rotation[q]) * gradient_of<Shape>(columns, e, q, arms);
       // R^T (dF/dt) U^-1: the rate of deformation in the unrotated frame, objective up to strain^2
       rate[q] = symmetric(turned * (identity<T>() - full(p.strain[q])));
     }

@@ -28,8 +28,8 @@ struct TurnByHalves {
     return T(0.5) * (f_old + f_new);
   }
   template <class T, class Law>
-  CDEM_HD static Sym3<T> update(const Sym3<T>& stress, const Increment<T>& d,
-                                const Sym3<T>& strain, const Law& law) {
+  CDEM_HD static Sym3<T> update(const Sym3<T>& stress, const Increment<T>& d, const Sym3<T>& strain,
+                                const Law& law) {
     // half of the rotation, by Cayley: (I - W/4)^-1 (I + W/4)
     const Mat3<T> one = identity<T>(), quarter = T(0.5) * (T(0.5) * d.spin);
     const Mat3<T> half_turn = inverse(one - quarter) * (one + quarter);
@@ -48,8 +48,8 @@ struct NeverTurn {
     return f_new;
   }
   template <class T, class Law>
-  CDEM_HD static Sym3<T> update(const Sym3<T>& stress, const Increment<T>&,
-                                const Sym3<T>& strain, const Law& law) {
+  CDEM_HD static Sym3<T> update(const Sym3<T>& stress, const Increment<T>&, const Sym3<T>& strain,
+                                const Law& law) {
     return stress + law.stress(strain);
   }
 };
@@ -58,9 +58,9 @@ struct NeverTurn {
 template <class Shape, class Turning>
 struct IncrementalForce {
   ElementColumns<Shape> columns;
-  Real dt;                // [s]
-  InOutTable stress;      // Cauchy, [point * 6 + component][element]  [Pa]
-  InOutTable energy;      // [1][element]  [J], work done on the element so far
+  Real dt;                 // [s]
+  InOutTable stress;       // Cauchy, [point * 6 + component][element]  [Pa]
+  InOutTable energy;       // [1][element]  [J], work done on the element so far
   OutForces corner_force;  // [N]
 
   template <class I>
@@ -75,8 +75,7 @@ struct IncrementalForce {
     for (Index q = 0; q < Shape::points; ++q) {
       f_new[q] = gradient_of<Shape>(columns, e, q, arms);
       const Mat3<T> delta_f = T(dt) * gradient_of<Shape>(columns, e, q, velocities);
-      increment[q] =
-          increment_of(delta_f, Turning::configuration(f_new[q] - delta_f, f_new[q]));
+      increment[q] = increment_of(delta_f, Turning::configuration(f_new[q] - delta_f, f_new[q]));
       strain[q] = increment[q].strain;
     }
     use_mean_dilatation<Shape>(columns, e, strain);

@@ -35,9 +35,9 @@ struct Hex8 {
 template <class Shape>
 struct ElementColumns {
   InMotion nodes;
-  InIndices element_nodes;    // [Shape::nodes][element]
-  InTable gradient;           // [point * (nodes-1)*3 + (node-1)*3 + axis][element]  [1/m]
-  InTable point_volume;       // w J: [point][element]  [m3]
+  InIndices element_nodes;     // [Shape::nodes][element]
+  InTable gradient;            // [point * (nodes-1)*3 + (node-1)*3 + axis][element]  [1/m]
+  InTable point_volume;        // w J: [point][element]  [m3]
   InIndices element_material;  // [1][element]
   MaterialTable materials;
 

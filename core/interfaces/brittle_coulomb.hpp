@@ -1,4 +1,5 @@
-// brittle_coulomb.hpp - the limit of an interface's force: tension cut-off and Mohr-Coulomb, brittle.
+// brittle_coulomb.hpp - the limit of an interface's force: tension cut-off and Mohr-Coulomb,
+// brittle.
 #pragma once
 
 #include "core/field.hpp"
@@ -31,15 +32,16 @@ struct Interface {
 ///   and from the next step on  c = T = 0
 ///
 /// Fn > 0 is compression; `bond` is 1 while intact, then 0. Returns the factor that was applied to
-/// the shear force. Departure from the paper: `>` for its `>=`, so that an unloaded contact with
-/// T = 0 (or c = 0) keeps its other strength.
+/// the shear force. Departure from the paper: `>` for its `>=`, and a millionth of c added to T, so
+/// that an unloaded contact with T = 0 (or c = 0) keeps its other strength in spite of round-off.
 template <class T>
 CDEM_HD inline T limit_force(T tension_limit, T cohesion_limit, T tan_friction, T& bond, T& force_n,
                              T& force_s1, T& force_s2) {
   const T none(0.0), all(1.0);
   const T shear_limit = max_of(force_n * tan_friction + bond * cohesion_limit, none);
   const T shear = sqrt_of(force_s1 * force_s1 + force_s2 * force_s2);
-  const auto opens = -force_n > bond * tension_limit;
+  constexpr Real round_off = 1e-6;  // of the cohesion
+  const auto opens = -force_n > bond * (tension_limit + T(round_off) * cohesion_limit);
   const auto slips = shear > shear_limit;
   const T keep = select(opens, none, select(slips, shear_limit / shear, all));
   force_n = select(opens, none, force_n);

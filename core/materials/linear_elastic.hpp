@@ -15,9 +15,12 @@ struct LinearElastic {
   CDEM_HD Sym3<T> stress(const Sym3<T>& strain) const {
     const T pressure = lambda * trace(strain);
     const T twice_mu = mu + mu;
-    return {pressure + twice_mu * strain.xx, pressure + twice_mu * strain.yy,
-            pressure + twice_mu * strain.zz, twice_mu * strain.xy,
-            twice_mu * strain.yz,            twice_mu * strain.zx};
+    return {pressure + twice_mu * strain.xx,
+            pressure + twice_mu * strain.yy,
+            pressure + twice_mu * strain.zz,
+            twice_mu * strain.xy,
+            twice_mu * strain.yz,
+            twice_mu * strain.zx};
   }
 };
 

@@ -7,12 +7,12 @@ namespace cdem {
 
 /// Loads on nodes: gravity, and forces that follow curves of time.
 struct LoadColumns {
-  Vec3<Real> gravity;         // [m/s2]
-  const Real* gravity_mass;   // [node] mass that gravity acts on  [kg]
-  const Index* load_first;    // [node + 1]
-  const Index* load_curve;    // curve that scales the load
-  const Real* load_force;     // row of 4  [N]
-  const Real* curve_value;    // [curve] factors at the time of this step
+  Vec3<Real> gravity;        // [m/s2]
+  const Real* gravity_mass;  // [node] mass that gravity acts on  [kg]
+  const Index* load_first;   // [node + 1]
+  const Index* load_curve;   // curve that scales the load
+  const Real* load_force;    // row of 4  [N]
+  const Real* curve_value;   // [curve] factors at the time of this step
 
   CDEM_HD Vec3<Real> at(Index node) const {
     Vec3<Real> f = gravity_mass[node] * gravity;
@@ -44,12 +44,12 @@ struct SupportColumns {
 
 /// Which corner rows belong to a node.
 struct CornerLists {
-  const Index* first;          // [node + 1], rows of elements and bonded pairs
+  const Index* first;  // [node + 1], rows of elements and bonded pairs
   const Index* corner;
   InForces corner_force;
   const Index* contact_first;  // [node + 1], rows of exposed faces
   const Index* contact_corner;
-  const Real* contact_force;   // row of 4: force, stiffness
+  const Real* contact_force;  // row of 4: force, stiffness
 };
 
 /// Damping of the nodes' motion.
@@ -65,10 +65,10 @@ struct SumNodeForces {
   LoadColumns loads;
   SupportColumns supports;
   NodeDamping damping;
-  const Real* mass;       // [node]  [kg]
-  Real* force;            // row of 4: x y z [N], stiffness of the contacts [N/m]
-  Real* damping_force;    // row of 4  [N]
-  Real* unbalance;        // [node] |x| + |y| + |z| of the unbalanced force on free components  [N]
+  const Real* mass;     // [node]  [kg]
+  Real* force;          // row of 4: x y z [N], stiffness of the contacts [N/m]
+  Real* damping_force;  // row of 4  [N]
+  Real* unbalance;      // [node] |x| + |y| + |z| of the unbalanced force on free components  [N]
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
@@ -105,20 +105,20 @@ struct SumNodeForces {
 /// Mass of the nodes: a number each, or for small blocks the inverse of the consistent mass matrix,
 /// which gives them their exact inertia.
 struct MassColumns {
-  const Real* mass;           // [node] row sum of the mass matrix  [kg]
-  const Index* dense_first;   // [node]: start of the node's row in `dense`, or -1 when lumped
-  const Index* dense_step;    // [node]: from one axis to the next (0 when all three share)
-  const Index* block_first;   // [node]: first node of the block
-  const Index* block_count;   // [node]: nodes of the block
-  const Real* inverse;        // rows of the inverse, supported nodes taken out  [1/kg]
-  const Real* matrix;         // rows of the matrix, in the same places  [kg]
+  const Real* mass;          // [node] row sum of the mass matrix  [kg]
+  const Index* dense_first;  // [node]: start of the node's row in `dense`, or -1 when lumped
+  const Index* dense_step;   // [node]: from one axis to the next (0 when all three share)
+  const Index* block_first;  // [node]: first node of the block
+  const Index* block_count;  // [node]: nodes of the block
+  const Real* inverse;       // rows of the inverse, supported nodes taken out  [1/kg]
+  const Real* matrix;        // rows of the matrix, in the same places  [kg]
 };
 
 /// Advance velocity and position by one step of central differences, and account for the work.
 ///
 /// The force of time n acts with the mean of the velocities before and after it. Counted so, and
-/// with 1/2 v_before . M v_after as kinetic energy, central differences keep the sum of all energies
-/// exactly when forces are linear.
+/// with 1/2 v_before . M v_after as kinetic energy, central differences keep the sum of all
+/// energies exactly when forces are linear.
 struct MoveNodes {
   MassColumns mass;
   LoadColumns loads;
@@ -126,10 +126,10 @@ struct MoveNodes {
   const Real* force;          // row of 4  [N]
   const Real* damping_force;  // row of 4  [N]
   Real dt;
-  Real* motion;               // row of 8
-  Real* reaction;             // row of 4: force of the support  [N]
-  Real* work_external;        // [node] of loads, gravity and supports so far  [J]
-  Real* work_damping;         // [node] taken out by damping so far  [J]
+  Real* motion;         // row of 8
+  Real* reaction;       // row of 4: force of the support  [N]
+  Real* work_external;  // [node] of loads, gravity and supports so far  [J]
+  Real* work_damping;   // [node] taken out by damping so far  [J]
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
@@ -212,8 +212,8 @@ struct NodeMomentum {
 
 /// Energy of the nodes at the time of the forces; runs after the motion.
 struct SampleNodes {
-  InMotion nodes;          // velocity: after
-  const Real* momentum;    // row of 4: M v before
+  InMotion nodes;        // velocity: after
+  const Real* momentum;  // row of 4: M v before
   LoadColumns loads;
   SupportColumns supports;
   const Real* reaction;

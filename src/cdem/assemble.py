@@ -148,6 +148,7 @@ def _elements(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
     out.counts["corner_rows"] = row
     out.arrays["node.gravity_mass"] = gravity_mass
     out.arrays["node.block"] = t.node_block
+    out.arrays["node.place"] = t.node_place
     _mass(t, p, mass, geometry, out)
 
 
@@ -244,7 +245,9 @@ def _correct_lumps(
         x, exact = x / scale, exact / scale**2
         rows = np.vstack([np.ones(len(m)), x.T, (x[:, upper[0]] * x[:, upper[1]]).T])
         target = np.concatenate([[m.sum()], np.zeros(3), exact[upper]])
-        shift = m * (rows.T @ np.linalg.lstsq((rows * m) @ rows.T, target - rows @ m, rcond=1e-12)[0])
+        shift = m * (
+            rows.T @ np.linalg.lstsq((rows * m) @ rows.T, target - rows @ m, rcond=1e-12)[0]
+        )
         good = np.abs(rows @ (m + shift) - target).max() < 1e-9 * m.sum()
         if good and (m + shift > LEAST_LUMP * m).all():
             mass[nodes] = m + shift
@@ -305,7 +308,9 @@ def _block_matrices(t: Topology, scaled, blocks: NDArray, n: int) -> Floats:
             continue
         nodes = t.element_nodes[shape][some]
         local = nodes - t.block_first_node[t.element_block[shape][some]][:, None]
-        np.add.at(m, (where[some][:, None, None], local[:, :, None], local[:, None]), matrices[some])
+        np.add.at(
+            m, (where[some][:, None, None], local[:, :, None], local[:, None]), matrices[some]
+        )
     return m
 
 

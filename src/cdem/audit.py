@@ -202,8 +202,13 @@ class Audit:
     def text(self) -> str:
         """The report as a page of text."""
         lines = [self._sim.case.title or "untitled case", ""]
-        lines += [f"  {key.replace('_', ' '):<14}{value:>12,}" for key, value in self.counts.items()]
-        lines += ["", f"  {'group':<18}{'blocks':>9}{'elements':>10}{'volume [m3]':>14}{'mass [kg]':>14}"]
+        lines += [
+            f"  {key.replace('_', ' '):<14}{value:>12,}" for key, value in self.counts.items()
+        ]
+        lines += [
+            "",
+            f"  {'group':<18}{'blocks':>9}{'elements':>10}{'volume [m3]':>14}{'mass [kg]':>14}",
+        ]
         for name, g in self.groups.items():
             lines.append(
                 f"  {name:<18}{g['blocks']:>9,}{g['elements']:>10,}{g['volume']:>14.6g}"

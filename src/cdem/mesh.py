@@ -93,7 +93,9 @@ def read_mesh(path: str | Path) -> Mesh:
     mesh.cell_group = {s: np.concatenate(g) for s, g in group.items() if g}
     mesh.group_names = names
     if not mesh.cells:
-        raise MeshError(f"{path}: holds no volume elements; export the volume mesh, not its surface")
+        raise MeshError(
+            f"{path}: holds no volume elements; export the volume mesh, not its surface"
+        )
     return _drop_unused(mesh)
 
 
@@ -116,7 +118,9 @@ def _read_raw(path: Path):
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             return meshio.read(path)
     except SystemExit as error:  # meshio leaves the program when a reader fails
-        raise MeshError(f"{path}: not a mesh that can be read; see the formats of meshio") from error
+        raise MeshError(
+            f"{path}: not a mesh that can be read; see the formats of meshio"
+        ) from error
     except Exception as error:
         raise MeshError(
             f"{path}: not a mesh that can be read ({error or type(error).__name__}); "
@@ -129,9 +133,7 @@ def _cell_groups(raw) -> dict[int, NDArray]:
     out: dict[int, NDArray] = {}
     tags = raw.cell_data.get("gmsh:physical")
     if tags is not None:
-        by_tag = {
-            (int(dim), int(tag)): name for name, (tag, dim) in raw.field_data.items()
-        }
+        by_tag = {(int(dim), int(tag)): name for name, (tag, dim) in raw.field_data.items()}
         for index, block in enumerate(raw.cells):
             names = {t: by_tag.get((block.dim, int(t)), f"group{int(t)}") for t in set(tags[index])}
             names[0] = names.get(0, "default") if (block.dim, 0) in by_tag else "default"
@@ -202,7 +204,9 @@ def box(
     return Mesh(points, {shape: cells}, {shape: np.zeros(len(cells), np.int32)}, [group])
 
 
-def polyhedron(group: str, vertices: ArrayLike, faces: Sequence[Sequence[int]] | None = None) -> Mesh:
+def polyhedron(
+    group: str, vertices: ArrayLike, faces: Sequence[Sequence[int]] | None = None
+) -> Mesh:
     """A convex polyhedron as a block of tets around its centroid; four vertices are one tet.
 
     Args:

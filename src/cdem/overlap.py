@@ -70,9 +70,9 @@ def _corners(t: Topology, face: int) -> Floats:
 def _candidates(t: Topology, bond: Callable[[str, str], bool]) -> list[tuple[int, int]]:
     """Pairs of free faces of different blocks whose boxes meet and whose planes agree."""
     groups = len(t.group_names)
-    wanted = np.array(
-        [[bond(a, b) for b in t.group_names] for a in t.group_names], bool
-    ).reshape(groups, groups)
+    wanted = np.array([[bond(a, b) for b in t.group_names] for a in t.group_names], bool).reshape(
+        groups, groups
+    )
     free = np.ones(len(t.face_nodes), bool)
     free[t.pair_faces.ravel()] = False
     free &= wanted.any(axis=1)[t.face_group]

@@ -207,9 +207,7 @@ def _stress(sim: Simulation) -> NDArray[np.float64]:
     """Mean stress of each element [Pa], xx yy zz xy yz zx, shapes one after the other."""
     tables = sim.core.stress()
     counts = sim.build.assembly.counts
-    rows = [
-        tables[shape].reshape(6, -1)[:, : counts[f"{shape}.count"]].T for shape in tables
-    ]
+    rows = [tables[shape].reshape(6, -1)[:, : counts[f"{shape}.count"]].T for shape in tables]
     return np.concatenate(rows)
 
 

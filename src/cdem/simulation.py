@@ -181,9 +181,7 @@ class Simulation:
         return {
             "kind": np.repeat([0, 1], [len(slots), len(places)]),
             "mother_face": exposed[np.concatenate([slots // 4, mothers])],
-            "target_face": exposed[
-                np.concatenate([target[slots], s["edge.target_face"][places]])
-            ],
+            "target_face": exposed[np.concatenate([target[slots], s["edge.target_face"][places]])],
             "force_n": np.concatenate([s["spring.force_n"][slots], s["edge.force_n"][places]]),
             "force": np.concatenate(
                 [

@@ -38,6 +38,7 @@ class Topology:
         node_position: [m], shape (nodes, 3). Nodes of a block are contiguous.
         node_block: Block of each node.
         node_point: Mesh point of each node.
+        node_place: A number shared by nodes that began at the same place.
         block_first_node: Start of each block's nodes, shape (blocks + 1,).
         block_group: Group of each block.
         element_nodes: By shape, (elements, nodes of the shape).
@@ -73,6 +74,7 @@ class Topology:
     element_group: dict[str, Ints]
     element_cell: dict[str, Ints]
     group_names: list[str]
+    node_place: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
     face_nodes: Ints = field(default_factory=lambda: np.zeros((0, 4), np.int32))
     face_block: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
     face_group: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
@@ -114,6 +116,7 @@ def build_topology(
     _faces(topology)
     _edges(topology)
     place = _places(mesh)
+    topology.node_place = place[topology.node_point].astype(np.int32)
     _pairs(topology, place)
     _surfaces(topology, mesh)
     if bond is not None:
@@ -301,7 +304,9 @@ def _faces(t: Topology) -> None:
     outer = every[np.bincount(number)[number] == 1].astype(np.int32)
     outer = outer[np.argsort(outer[:, 4], kind="stable")]
     t.face_nodes = np.ascontiguousarray(outer[:, :4])
-    t.face_block, t.face_group, t.face_element = (np.ascontiguousarray(outer[:, k]) for k in (4, 5, 6))
+    t.face_block, t.face_group, t.face_element = (
+        np.ascontiguousarray(outer[:, k]) for k in (4, 5, 6)
+    )
 
 
 def _edges(t: Topology) -> None:
@@ -311,7 +316,9 @@ def _edges(t: Topology) -> None:
         start = t.face_nodes[:, k]
         end = np.where(k + 1 < count, t.face_nodes[:, (k + 1) % 4], t.face_nodes[:, 0])
         faces = np.flatnonzero(k < count)
-        sides.append(np.column_stack([start, end, np.arange(len(count)), np.full(len(count), k)])[faces])
+        sides.append(
+            np.column_stack([start, end, np.arange(len(count)), np.full(len(count), k)])[faces]
+        )
     side = np.concatenate(sides)
     side = side[np.lexsort((side[:, 3], side[:, 2]))]
     ends = np.sort(side[:, :2], axis=1)

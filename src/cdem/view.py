@@ -20,9 +20,7 @@ from cdem.errors import CdemError
 
 UNITS = {"displacement": "m", "velocity": "m/s", "damage": "1", "group": "", "block": ""}
 """Fields that `render` can colour by, with their units."""
-OPENGL_HINT = (
-    "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install libosmesa6 libgl1 libxrender1"
-)
+OPENGL_HINT = "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install libosmesa6 libgl1 libxrender1"
 ENERGY_COLUMNS = ("kinetic", "strain", "contact", "friction", "damping", "fracture", "external")
 
 
@@ -101,7 +99,8 @@ class SurfaceSeries:
     def __getitem__(self, frame: int) -> Surface:
         root, steps = self._root, self._root["Steps"]
         points, cells, ids = (
-            int(root[n][frame]) for n in ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
+            int(root[n][frame])
+            for n in ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
         )
         first_point = int(steps["PointOffsets"][frame])
         first_cell = int(steps["CellOffsets"][frame, 0])
@@ -150,8 +149,12 @@ def info(folder: Path) -> str:
         lines.append("  " + ", ".join(f"{k} {e[k]:.4g} J" for k in ENERGY_COLUMNS))
     if s["unbalance_ratio"] is not None:
         lines.append(f"  unbalance ratio {s['unbalance_ratio']:.3g}")
-    lines.append(f"  broken springs: {s['broken']['tension']:,} tension, {s['broken']['shear']:,} shear")
-    lines.append(f"  {'group':<18}{'mass [kg]':>13}{'moved [m]':>12}{'most [m]':>12}{'speed [m/s]':>13}")
+    lines.append(
+        f"  broken springs: {s['broken']['tension']:,} tension, {s['broken']['shear']:,} shear"
+    )
+    lines.append(
+        f"  {'group':<18}{'mass [kg]':>13}{'moved [m]':>12}{'most [m]':>12}{'speed [m/s]':>13}"
+    )
     for name, g in s["groups"].items():
         moved, speed = np.linalg.norm(g["displacement"]), np.linalg.norm(g["velocity"])
         lines.append(

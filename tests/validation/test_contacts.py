@@ -1,0 +1,276 @@
+"""The six contact types at rest, collisions, and the search against an all-pairs search."""
+
+import numpy as np
+import pytest
+from scenes import mean_velocity, momentum, simulate, turn
+
+TIP = np.degrees(np.arctan(np.sqrt(2)))
+
+
+def cube(kind, height=0.0, side=0.6):
+    """A cube with a face, an edge or a vertex lowest, that lowest point at `height`."""
+    turned = {
+        "face": np.eye(3),
+        "edge": turn([0, 1, 0], 45),
+        "vertex": turn([0, 1, 0], TIP) @ turn([0, 0, 1], 45),
+    }[kind]
+    corners = side * (np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T - 0.5)
+    corners = corners @ turned.T
+    corners[:, 2] += height - corners[:, 2].min()
+    return corners
+
+
+def pair(lower, upper, gap=0.0):
+    """Two bodies that meet at the origin: the lower's topmost and the upper's lowest feature."""
+    below = cube(lower) * [1, 1, -1]
+    if lower == "edge":
+        below = below @ turn([0, 0, 1], 90).T  # edges cross instead of lying along each other
+    return [
+        {"group": "lower", "polyhedron": {"vertices": below.tolist()}},
+        {"group": "upper", "polyhedron": {"vertices": (cube(upper) + [0, 0, gap]).tolist()}},
+    ]
+
+
+KINDS = [
+    ("face", "face"),
+    ("face", "edge"),
+    ("face", "vertex"),
+    ("edge", "edge"),
+    ("edge", "vertex"),
+]
+
+
+@pytest.mark.parametrize("rotation", [None, ([1, 2, 3], 50.0)])
+@pytest.mark.parametrize("lower, upper", KINDS)
+def test_contact_types_carry_the_weight(lower, upper, rotation):
+    """The upper body rests on the lower one; it has no time to fall over.
+
+    At rest the contact forces sum to the weight along gravity, in any orientation.
+    """
+    down = np.array([0, 0, -1.0])
+    more = {}
+    if rotation:
+        down = turn(*rotation) @ down
+        more["model"] = {"rotate": {"axis": list(rotation[0]), "angle": rotation[1]}}
+    sim = simulate(
+        pair(lower, upper),
+        {"lower": {"fix": ["x", "y", "z"]}, "upper": {}},
+        interfaces={"default": {"friction_angle": 45}},
+        loads={"gravity": list(9.81 * down)},
+        stages=[{"name": "rest", "mode": "dynamic", "duration": 1, "damping": {"local": 0.8}}],
+        **more,
+    )
+    sim.step(6000)
+    mass = sim.fields["mass"][sim.build.nodes_of("upper")].sum()
+    t, contacts = sim.build.topology, sim.contacts
+    groups = t.face_group[contacts["mother_face"]]
+    upper_group = sim.build.group_names.index("upper")
+    sign = np.where(groups == upper_group, 1.0, -1.0)
+    carried = (sign[:, None] * contacts["force"]).sum(axis=0)
+    assert len(contacts["kind"]) > 0
+    np.testing.assert_allclose(carried @ -down, mass * 9.81, rtol=0.02)
+    penetration = sim.core.fields()["spring.sunk"].max(initial=0)
+    assert max(penetration, sim.core.fields()["edge.sunk"].max(initial=0)) < 1e-4
+
+
+def test_vertex_on_vertex_is_caught():
+    """The sixth type: a vertex comes down a little beside another vertex, and is turned aside."""
+    blocks = pair("vertex", "vertex")
+    blocks[1]["translate"] = [0.01, 0.004, 0.0]
+    sim = simulate(
+        blocks,
+        {"lower": {"fix": ["x", "y", "z"]}, "upper": {"velocity": [0, 0, -0.5]}},
+        interfaces={"default": {"friction_angle": 20}},
+    )
+    while sim.time < 0.05:
+        sim.step(100)
+    velocity = mean_velocity(sim, "upper")
+    assert velocity[2] > -0.45
+    assert np.linalg.norm(velocity[:2]) > 0.01
+
+
+def test_penetration_is_what_k_n_predicts():
+    """Face on face: both sides' springs carry half each, so the weight sinks rho g h / k_n."""
+    k_n = 1e9
+    sim = simulate(
+        [
+            {"group": "lower", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},
+            {"group": "upper", "box": {"size": [1, 1, 1]}},
+        ],
+        {"lower": {"fix": ["x", "y", "z"]}, "upper": {}},
+        interfaces={"default": {"friction_angle": 30, "stiffness_n": k_n, "stiffness_s": k_n}},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=[{"name": "rest", "mode": "static", "tolerance": 1e-7}],
+    )
+    assert sim.run() == "converged"
+    nodes = sim.build.nodes_of("upper")[:]
+    bottom = nodes[sim.build.start_position[nodes, 2] < 1e-9]
+    # the block alone has springs (its face lies inside the big one): half of k_n acts
+    expected = -2500 * 9.81 / (k_n / 2)
+    np.testing.assert_allclose(sim.fields["displacement"][bottom, 2], expected, rtol=1e-3)
+
+
+def collide(kind, speed=0.5, phi=0.0, safety=0.2, spin=(0, 0, 0)):
+    blocks = pair("edge" if kind == "edge" else "face", kind, gap=0.01)
+    sim = simulate(
+        blocks,
+        {
+            "lower": {"angular_velocity": [-spin[0], spin[1], -spin[2]]},
+            "upper": {"velocity": [0, 0, -speed], "angular_velocity": list(spin)},
+        },
+        interfaces={"default": {"friction_angle": phi}},
+        rock={"young_modulus": "1 GPa"},
+        time={"safety": safety},
+    )
+    linear, angular = momentum(sim)
+    while sim.time < 0.01 / speed + 0.1:
+        sim.step(500)
+    return sim, linear, angular
+
+
+@pytest.mark.parametrize("kind", ["face", "edge", "vertex"])
+def test_collisions_keep_momentum_and_energy(kind):
+    sim, linear, angular = collide(kind)
+    now, turned = momentum(sim)
+    assert mean_velocity(sim, "upper")[2] > -0.5  # they did meet
+    np.testing.assert_allclose(now, linear, atol=1e-12 * np.abs(linear).max())
+    np.testing.assert_allclose(turned, angular, atol=1e-9 * np.abs(linear).max())
+    assert abs(sim.energies["error"]) < 1e-3
+
+
+def test_a_spinning_collision_with_friction():
+    sim, linear, angular = collide("edge", phi=26.0, spin=(0.5, 0.2, 1.0))
+    now, turned = momentum(sim)
+    np.testing.assert_allclose(now, linear, atol=1e-12 * np.abs(linear).max())
+    np.testing.assert_allclose(turned, angular, atol=1e-6 * np.abs(angular).max())
+    assert abs(sim.energies["error"]) < 1e-3
+
+
+@pytest.mark.parametrize("speed", [1.0, 10.0, 50.0])
+def test_a_fast_drop_is_never_missed(speed):
+    sim = simulate(
+        [
+            {"group": "bed", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},
+            {"group": "block", "box": {"size": [1, 1, 1]}, "translate": [0, 0, 0.2]},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "block": {"velocity": [0, 0, -speed]}},
+    )
+    while sim.time < 0.2 / speed + 0.01:
+        sim.step(200)
+    assert mean_velocity(sim, "block")[2] > 0.5 * speed
+
+
+def test_overlapping_blocks_are_reported_and_free_of_stress():
+    depth = 1e-4
+    sim = simulate(
+        [
+            {"group": "lower", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},
+            {"group": "upper", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -depth]},
+        ],
+        {"lower": {"fix": ["x", "y", "z"]}, "upper": {}},
+    )
+    assert f"up to {depth:g} m" in sim.audit.warnings[0]
+    sim.step(200)
+    assert np.abs(sim.fields["velocity"]).max() < 1e-9
+
+
+@pytest.mark.parametrize("axis", [[0, 0, 1], [1, 0, 0], [1, 2, 3]])
+def test_rigid_rotation_of_a_loaded_pair(axis):
+    """A pressed, sheared frictional pair is turned by 90 degrees: its forces turn with it.
+
+    The motion is imposed on all nodes; the contact force is what semi-springs report.
+    """
+    sim = simulate(
+        [
+            {"group": "lower", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -1]},
+            {"group": "upper", "box": {"size": [0.6, 0.6, 0.6]}, "translate": [0.2, 0.2, 1e-6]},
+        ],
+        {"lower": {}, "upper": {}},
+        interfaces={"default": {"friction_angle": 40}},
+    )
+    start = sim.build.start_position.copy()
+    upper = sim.build.nodes_of("upper")
+
+    def impose(now, before):
+        dt = sim.core.scalars()["dt_last"]
+        sim.fields["position"][:] = now
+        sim.fields["velocity"][:] = (now - before) / dt
+        sim.step(1)
+
+    def contact_force():
+        contacts = sim.contacts
+        faces = contacts["mother_face"]
+        own = sim.build.topology.face_group[faces] == sim.build.group_names.index("upper")
+        return contacts["force"][own].sum(axis=0)
+
+    loaded = start.copy()
+    loaded[upper] += [3e-6, 1e-6, -1.1e-5]
+    impose(start, start)
+    impose(loaded, start)
+    before = contact_force()
+    assert before[2] > 0 and before[0] < 0
+    steps, last = 300, loaded
+    for n in range(1, steps + 1):
+        now = loaded @ turn(axis, 90.0 * n / steps).T
+        impose(now, last)
+        last = now
+    np.testing.assert_allclose(
+        contact_force(), turn(axis, 90) @ before, atol=1e-9 * np.linalg.norm(before)
+    )
+
+
+def tumble(steps, blocks_per_side):
+    """Random convex blocks falling and tumbling in a box; counts contacts that the lists missed."""
+    rng = np.random.default_rng(7)
+    n = blocks_per_side
+    bodies = []
+    for i, j, k in np.ndindex(n, n, n):
+        size = rng.uniform(0.5, 0.8, 3)
+        points = (np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T - 0.5) * size
+        if rng.random() < 0.5:  # a tetrahedron
+            points = points[[0, 3, 5, 6]]
+        points = points @ turn(rng.normal(size=3), rng.uniform(0, 180)).T
+        place = np.array([i, j, k]) + 0.5 + rng.uniform(-0.03, 0.03, 3)
+        bodies.append({"group": "blocks", "polyhedron": {"vertices": (points + place).tolist()}})
+    side = float(n)
+    walls = [
+        {"group": "walls", "box": {"size": size}, "translate": at}
+        for size, at in [
+            ([side + 2, side + 2, 1], [-1, -1, -1]),
+            ([1, side + 2, 3 * side], [-1, -1, 0]),
+            ([1, side + 2, 3 * side], [side, -1, 0]),
+            ([side + 2, 1, 3 * side], [-1, -1, 0]),
+            ([side + 2, 1, 3 * side], [-1, side, 0]),
+        ]
+    ]
+    sim = simulate(
+        bodies + walls,
+        {
+            "blocks": {"velocity": [1.0, 2.0, -5.0], "angular_velocity": [0.5, 0.3, 2.0]},
+            "walls": {"fix": ["x", "y", "z"]},
+        },
+        interfaces={"default": {"friction_angle": 20}},
+        rock={"young_modulus": "0.1 GPa"},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=[{"name": "fall", "mode": "dynamic", "duration": 9, "damping": {"contact": 0.1}}],
+    )
+    missed = touching = 0
+    for _ in range(steps):
+        sim.step(1)
+        missed += sim.core.count_missed_contacts()
+        touching = max(touching, len(sim.contacts["kind"]))
+    return missed, touching, sim
+
+
+def test_no_contact_is_missed():
+    missed, touching, _ = tumble(steps=400, blocks_per_side=2)
+    assert missed == 0
+    assert touching > 0
+
+
+@pytest.mark.slow
+def test_no_contact_is_missed_among_343_blocks():
+    missed, touching, sim = tumble(steps=2000, blocks_per_side=7)
+    assert missed == 0
+    assert touching > 100
+    assert np.isfinite(sim.fields["position"]).all()

@@ -1,0 +1,213 @@
+"""Table 1 of Feng et al. (2014): tension, cohesion, friction, toppling; strength in bending."""
+
+import numpy as np
+import pytest
+from scenes import simulate
+
+CUBES = [
+    {"group": "base", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -1]},
+    {"group": "block", "box": {"size": [1, 1, 1]}},
+]
+
+
+@pytest.mark.parametrize("points", ["vertex", "quadrature"])
+def test_tension(points):
+    """P_t = T; both sides carry springs of half the area (Fig. 14), so not 2 T."""
+    sim = simulate(
+        CUBES,
+        {"base": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={
+            "default": {"friction_angle": 26, "cohesion": "30 kPa", "tensile_strength": "10 kPa"}
+        },
+        rock={"poisson_ratio": 0.0},
+        contact={"bond_points": points},
+        loads={
+            "tractions": [
+                {
+                    "surface": {"group": "block", "normal": [0, 0, 1]},
+                    "traction": [0, 0, 1e4],
+                    "history": [[0, 0], [0.04, 0.8], [0.24, 1.05]],
+                }
+            ]
+        },
+        stages=[{"name": "pull", "mode": "dynamic", "duration": 1, "damping": {"local": 0.8}}],
+    )
+    while sum(sim.broken.values()) == 0:
+        sim.step(5)
+        assert sim.time < 0.24
+    pulled = 1e4 * np.interp(sim.time, [0, 0.04, 0.24], [0, 0.8, 1.05])
+    assert pulled == pytest.approx(10e3, rel=2e-4)
+    assert sim.broken["tension"] > 0
+    assert sim.broken["shear"] == 0
+
+
+def test_cohesion():
+    """P_s = c: a thin block, so that the traction's moment opens nothing."""
+    height = 0.001
+    sim = simulate(
+        [
+            {"group": "base", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -1]},
+            {"group": "block", "box": {"size": [1, 1, height]}},
+        ],
+        {"base": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={
+            "default": {
+                "friction_angle": 26,
+                "cohesion": "30 kPa",
+                "tensile_strength": "30 kPa",
+                "stiffness_n": "10 GPa/m",
+                "stiffness_s": "10 GPa/m",
+            }
+        },
+        rock={"poisson_ratio": 0.0},
+        time={"mass_scaling": {"step": "5 us"}},
+        loads={
+            "tractions": [
+                {
+                    "surface": {"group": "block", "normal": [0, 0, 1]},
+                    "traction": [3e4, 0, 0],
+                    "history": [[0, 0], [0.02, 0.9], [0.12, 1.03]],
+                }
+            ]
+        },
+        stages=[{"name": "push", "mode": "dynamic", "duration": 1, "damping": {"local": 0.8}}],
+    )
+    while sum(sim.broken.values()) == 0:
+        sim.step(5)
+        assert sim.time < 0.12
+    pushed = 3e4 * np.interp(sim.time, [0, 0.02, 0.12], [0, 0.9, 1.03])
+    # the moment of the traction, P h, pulls the rear points by 3 P h / 1 m on average: 0.3 %
+    assert pushed == pytest.approx(30e3 / (1 + 3 * height * np.tan(np.radians(26))), rel=1e-3)
+    assert sim.broken["shear"] > 0
+
+
+def tilted(phi, slope, size, steps, rock=None):
+    """A block at rest on a bed under gravity tilted by `slope`, loaded slowly."""
+    angle = np.radians(slope)
+    gravity = 9.81 * np.array([np.sin(angle), 0, -np.cos(angle)])
+    sim = simulate(
+        [
+            {"group": "bed", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},
+            {"group": "block", "box": {"size": size}},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+        rock=rock,
+        interfaces={"default": {"friction_angle": phi}},
+        loads={"gravity": list(gravity)},
+        stages=[{"name": "rest", "mode": "dynamic", "duration": 9, "damping": {"local": 0.8}}],
+    )
+    sim.step(steps)
+    return sim
+
+
+@pytest.mark.parametrize("off, slides", [(-0.002, True), (0.002, False)])
+def test_friction_angle(off, slides):
+    """A block on a slope of 45 deg slides if phi < 45 deg; a low one, or it would topple."""
+    sim = tilted(45 + off, 45.0, [1, 1, 0.4], steps=20000)
+    first = sim.fields["displacement"][-8:, 0].mean()
+    sim.step(40000)
+    moved = sim.fields["displacement"][-8:, 0].mean() - first
+    # 2e-3 deg leave a net push of 3.5e-5 m g: it moves on, or not at all
+    assert (moved > 5e-7) == slides
+
+
+@pytest.mark.parametrize("off, stands", [(-0.01, True), (0.01, False)])
+def test_toppling_angle(off, stands):
+    """A 4:1 block topples at atan(1/4) = 14.036 deg: there its uphill edge leaves the bed.
+
+    The bed is held at every node, so its surface is z = 0 exactly, and the uphill edge carries load
+    as long as it is below that. A softer column bends downhill, which is physical.
+    """
+    theory = np.degrees(np.arctan(0.25))
+    sim = tilted(26, theory + off, [1, 1, 4], steps=90000, rock={"young_modulus": "20 GPa"})
+    x = sim.fields["position"]
+    nodes = sim.build.nodes_of("block")
+    uphill = nodes[(x[nodes, 2] < 1) & (x[nodes, 0] < 0.5)]
+    assert len(uphill) == 2
+    assert (x[uphill, 2] < 0).all() == stands
+
+
+def test_unloaded_interface_keeps_its_other_strength():
+    """Departure from Eq. 14 as printed: with T = 0 an unloaded bond does not break at once."""
+    sim = simulate(
+        CUBES,
+        {"base": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={"default": {"friction_angle": 26, "cohesion": "30 kPa"}},
+    )
+    sim.step(100)
+    assert sum(sim.broken.values()) == 0
+
+
+@pytest.mark.parametrize("low, high", [((1, 1, 1), (2, 2, 1)), ((2, 2, 1), (3, 3, 1))])
+def test_non_conforming_interface(low, high):
+    """Over a 1:2 and a 2:3 interface the stress is uniform and the jump is traction / k_n.
+
+    The bond points carry the true overlap area, so neither stiffness nor strength depends on which
+    side is meshed finer.
+    """
+    traction, k_n = 1e4, 1e11
+    sim = simulate(
+        [
+            {"group": "base", "box": {"size": [1, 1, 1], "divisions": low}, "translate": [0, 0, -1]},
+            {"group": "block", "box": {"size": [1, 1, 1], "divisions": high}},
+        ],
+        {"base": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={
+            "default": {"friction_angle": 26, "cohesion": "1 MPa", "tensile_strength": "1 MPa"}
+        },
+        rock={"poisson_ratio": 0.0},
+        loads={
+            "tractions": [
+                {"surface": {"group": "block", "normal": [0, 0, 1]}, "traction": [0, 0, traction]}
+            ]
+        },
+        stages=[{"name": "pull", "mode": "static", "tolerance": 1e-8}],
+    )
+    assert sim.build.assembly.arrays["overlaps.point_area"].sum() == pytest.approx(1, rel=1e-12)
+    assert sim.run() == "converged"
+    nodes = sim.build.nodes_of("block")
+    bottom = nodes[sim.build.start_position[nodes, 2] < 1e-9]
+    jump = sim.fields["displacement"][bottom, 2]
+    np.testing.assert_allclose(jump, traction / k_n, rtol=1e-4)
+
+
+@pytest.mark.parametrize("divisions", [1, 2])
+def test_bending_strength_of_vertex_bonds(divisions):
+    """Springs at the corners are a trapezoidal rule: they bear (1 + 2 / n^2) T b^3 / 6 in bending."""
+    n, strength = divisions, 10e3
+    shape = {"size": [1, 1, 1], "divisions": [n, 1, 1]}
+    sim = simulate(
+        [
+            {"group": "base", "box": shape, "translate": [0, 0, -1]},
+            {"group": "block", "box": shape},
+        ],
+        {"base": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={
+            "default": {
+                "friction_angle": 26,
+                "cohesion": "1 MPa",
+                "tensile_strength": strength,
+                # soft against the blocks, so that the interface stays plane
+                "stiffness_n": "0.002 E/h",
+                "stiffness_s": "0.002 E/h",
+            }
+        },
+        rock={"poisson_ratio": 0.0},
+        loads={
+            # a couple: up on one half side, down on the other, growing slowly
+            "tractions": [
+                {
+                    "surface": {"group": "block", "normal": [sign, 0, 0]},
+                    "traction": [0, 0, -sign * 1e4],
+                    "history": [[0, 0], [8.0, 1.0]],
+                }
+                for sign in (1, -1)
+            ]
+        },
+        stages=[{"name": "bend", "mode": "dynamic", "duration": 9, "damping": {"local": 0.8}}],
+    )
+    while sum(sim.broken.values()) == 0:
+        sim.step(50)
+        assert sim.time < 8.0
+    moment = 1e4 * sim.time / 8.0  # force 1 m2 x traction on either side, 1 m apart
+    assert moment == pytest.approx((1 + 2 / n**2) * strength / 6, rel=0.01)

@@ -1,0 +1,126 @@
+"""Sliding: a = g (sin t - cos t tan phi), Feng et al. (2014), Eq. 15, whatever the bed's mesh."""
+
+import numpy as np
+import pytest
+from scenes import mean_velocity, simulate, turn
+
+GRAVITY = 9.81
+
+
+def slide(bed, slope, phi, *, size=(1, 1, 0.4), divisions=(1, 1, 1), start=(1.37, 1.503, 0), time=0.5,
+          rotation=None, rock=None):  # fmt: skip
+    """Acceleration down the slope of a block, fitted after 0.1 s, and the theory's [m/s2]."""
+    angle = np.radians(slope)
+    gravity = GRAVITY * np.array([np.sin(angle), 0, -np.cos(angle)])
+    down = np.array([1.0, 0, 0])
+    more = {}
+    if rotation is not None:
+        axis, degrees = rotation
+        gravity, down = turn(axis, degrees) @ gravity, turn(axis, degrees) @ down
+        more["model"] = {"rotate": {"axis": list(axis), "angle": degrees}}
+    sim = simulate(
+        [
+            *bed,
+            {"group": "block", "box": {"size": size, "divisions": divisions}, "translate": start},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={"default": {"friction_angle": phi}},
+        rock=rock,
+        loads={"gravity": list(gravity)},
+        stages=[
+            {
+                "name": "slide",
+                "mode": "dynamic",
+                "duration": 9,
+                "damping": {"contact": 0.1, "stiffness": 0.2},
+            }
+        ],
+        **more,
+    )
+    times, speeds = [], []
+    while sim.time < time:
+        sim.step(200)
+        if sim.time > 0.1:
+            times.append(sim.time)
+            speeds.append(mean_velocity(sim, "block") @ down)
+    theory = GRAVITY * (np.sin(angle) - np.cos(angle) * np.tan(np.radians(phi)))
+    return np.polyfit(times, speeds, 1)[0], theory
+
+
+def plate(divisions, **more):
+    box = {"size": [8, 4, 1], "divisions": list(divisions), **more}
+    return [{"group": "bed", "box": box, "translate": [0, 0, -1]}]
+
+
+BEDS = {
+    "one face": plate((1, 1, 1)),
+    "20 x 8 hexahedra": plate((20, 8, 1)),
+    "2,016 tets": plate((28, 12, 1), shape="tet4"),
+}
+
+
+@pytest.mark.parametrize("bed", BEDS)
+def test_the_mesh_of_the_bed_does_not_matter(bed):
+    measured, theory = slide(BEDS[bed], 30, 10)
+    assert measured == pytest.approx(theory, rel=1e-3)
+
+
+def test_in_a_rotated_frame():
+    measured, theory = slide(BEDS["20 x 8 hexahedra"], 30, 10, rotation=([1, 2, 3], 77.0))
+    assert measured == pytest.approx(theory, rel=1e-3)
+
+
+def test_over_separate_flush_blocks():
+    bed = [
+        {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]}
+        for i in range(16)
+    ]
+    measured, theory = slide(bed, 35, 20)
+    assert measured == pytest.approx(theory, rel=1e-3)
+
+
+def test_a_meshed_slider_over_flush_blocks():
+    bed = [
+        {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]}
+        for i in range(16)
+    ]
+    measured, theory = slide(bed, 35, 20, divisions=(2, 2, 2))
+    assert measured == pytest.approx(theory, rel=1e-3)
+
+
+@pytest.mark.parametrize("down", [1e-6, 1e-5, 1e-4])
+def test_small_steps_down(down):
+    bed = [
+        {"group": "bed", "box": {"size": [1, 4, 1]}, "translate": [i, 0, -1 - down * i]}
+        for i in range(8)
+    ]
+    measured, theory = slide(bed, 35, 20)
+    assert measured == pytest.approx(theory, rel=2e-3)
+
+
+@pytest.mark.parametrize("kind", ["rail", "turned rail"])
+def test_crossed_contacts(kind):
+    """Fig. 18: a slider across a rail touches it by edges alone; theta 45, phi 30: 2.9315 m/s2.
+
+    (With the paper's g = 9.8 that is 2.928.) The slider lies across, the rails run down the slope.
+    """
+    rail = {"size": [12, 0.3, 0.3]}
+    if kind == "rail":
+        beds = [
+            {"group": "bed", "box": rail, "translate": [-1, y, -0.3]} for y in (0.5, 3.5)
+        ]
+    else:  # standing on an edge
+        half = 0.3 / np.sqrt(2)
+        beds = [
+            {
+                "group": "bed",
+                "box": rail,
+                "rotate": {"axis": [1, 0, 0], "angle": 45},
+                "translate": [-1, y, -2 * half],
+            }
+            for y in (0.5, 3.5)
+        ]
+    measured, theory = slide(
+        beds, 45, 30, size=(1, 5, 0.4), start=(0.3, -0.4, 0), rock={"young_modulus": "10 GPa"}
+    )
+    assert measured == pytest.approx(theory, rel=5e-4)
