@@ -11,11 +11,14 @@
 namespace cdem {
 
 inline FaceColumns face_columns(const Model& m, const State& s) {
-  return {{s.nodes.motion.data()}, m.face_nodes.data(),          m.face_edges.data(),
-          m.face_group.data(),     m.face_length.data(),         m.face_reach.data(),
-          m.face_area.data(),      m.face_stiffness.data(),      m.edge_nodes.data(),
-          m.edge_faces.data(),     m.ring_first.data(),          m.ring.data(),
-          s.nodes.glue.data(),     m.node_place.data(), s.search.face_exposed.data(), s.dt_last};
+  return {{s.nodes.motion.data()},      m.face_nodes.data(),
+          m.face_edges.data(),          m.face_group.data(),
+          m.face_length.data(),         m.face_reach.data(),
+          m.face_area.data(),           m.face_stiffness.data(),
+          m.edge_nodes.data(),          m.edge_faces.data(),
+          m.ring_first.data(),          m.ring.data(),
+          s.nodes.glue.data(),          m.node_place.data(),
+          s.search.face_exposed.data(), s.dt_last};
 }
 
 inline Candidates candidate_columns(const State& s) {

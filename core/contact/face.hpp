@@ -101,7 +101,7 @@ struct FaceColumns {
   const Index* ring_first;     // [node + 1]
   const Index* ring;           // other ends of the exterior edges at a node
   const Index* node_glue;      // label shared by nodes that intact bonds hold together
-  const Index* node_place;   // label shared by nodes that began at the same place
+  const Index* node_place;     // label shared by nodes that began at the same place
   const Index* face_exposed;   // [face]: place in the list of exposed faces, or -1
   Real dt;                     // [s]
 

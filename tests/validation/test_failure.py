@@ -148,7 +148,11 @@ def test_non_conforming_interface(low, high):
     traction, k_n = 1e4, 1e11
     sim = simulate(
         [
-            {"group": "base", "box": {"size": [1, 1, 1], "divisions": low}, "translate": [0, 0, -1]},
+            {
+                "group": "base",
+                "box": {"size": [1, 1, 1], "divisions": low},
+                "translate": [0, 0, -1],
+            },
             {"group": "block", "box": {"size": [1, 1, 1], "divisions": high}},
         ],
         {"base": {"fix": ["x", "y", "z"]}, "block": {}},

@@ -106,9 +106,7 @@ def test_crossed_contacts(kind):
     """
     rail = {"size": [12, 0.3, 0.3]}
     if kind == "rail":
-        beds = [
-            {"group": "bed", "box": rail, "translate": [-1, y, -0.3]} for y in (0.5, 3.5)
-        ]
+        beds = [{"group": "bed", "box": rail, "translate": [-1, y, -0.3]} for y in (0.5, 3.5)]
     else:  # standing on an edge
         half = 0.3 / np.sqrt(2)
         beds = [
