@@ -147,11 +147,13 @@ struct ConformingBonds {
     BondForce<T> total{none, zero, zero, zero, zero, zero};
     T widest(0.0), intact(0.0);
     for (Index k = 0; k < count; ++k) {
-      BondHistory<T> h{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
+      const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
+      BondHistory<T> h = old;
       const BondForce<T> f = bond_force(frame, jump[k], jump[k] - T(dt) * rate[k], law, h);
-      pairs.bond.set(k, p, h.bond);
-      pairs.slip1.set(k, p, h.slip1);
-      pairs.slip2.set(k, p, h.slip2);
+      // a released pair beside live ones in a lane keeps its history as it was
+      pairs.bond.set(k, p, select(live, h.bond, old.bond));
+      pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
+      pairs.slip2.set(k, p, select(live, h.slip2, old.slip2));
       force[k] = f.on_b;
       sum = sum + f.on_b;
       widest = max_of(widest, dot(jump[k], jump[k]));
@@ -173,8 +175,8 @@ struct ConformingBonds {
     pairs.stored.set(0, p, select(live, total.stored, zero));
     add(pairs.fracture, p, select(live, total.fracture, zero));
     add(pairs.friction, p, select(live, total.friction, zero));
-    add(pairs.broken_tension, p, total.tension);
-    add(pairs.broken_shear, p, total.shear);
+    add(pairs.broken_tension, p, select(live, total.tension, zero));
+    add(pairs.broken_shear, p, select(live, total.shear, zero));
   }
 
  private:

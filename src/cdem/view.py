@@ -363,7 +363,7 @@ class _Scene:
         plotter.add_mesh(
             mesh,
             scalars=name,
-            cmap="tab10" if self.field == "group" else "viridis",
+            cmap="tab10" if self.field == "group" else "YlOrBr",
             clim=(0.0, max(self.high, 1e-12)),
             show_edges=mesh.n_cells < 20000,
             edge_color="#444444",
@@ -374,7 +374,7 @@ class _Scene:
         plotter.camera_position = self.camera
         box = np.ravel([self.low_corner, self.high_corner], order="F")
         plotter.reset_camera(bounds=box)
-        plotter.camera.zoom(1.25)
+        plotter.camera.zoom(1.05)
         image = plotter.screenshot(return_img=True)
         plotter.close()
         return image

@@ -1,0 +1,126 @@
+"""The same case gives the same bits: threads, instruction sets, splits into runs, restarts."""
+
+import hashlib
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scenes import case
+
+import cdem
+from cdem import _native
+
+STAGES = [
+    {"name": "rest", "mode": "static", "max_steps": 100},
+    {
+        "name": "fall",
+        "mode": "dynamic",
+        "duration": 0.006,
+        "damping": {"contact": 0.1, "stiffness": 0.1},
+        "set": {"interfaces.default.cohesion": 2e5, "interfaces.default.tensile_strength": 1e5},
+    },
+]
+
+
+def breaking_cube():
+    """A cube of 384 bonded tets thrown at a bed, so that it breaks: every kernel has work."""
+    return case(
+        [
+            {
+                "group": "body",
+                "box": {"size": [1, 1, 1], "divisions": [4, 4, 4], "shape": "tet4"},
+                "translate": [0, 0, 0.002],
+            },
+            {"group": "bed", "box": {"size": [4, 4, 1]}, "translate": [-1, -1, -1]},
+        ],
+        {"body": {"velocity": [0.2, 0.1, -2]}, "bed": {"fix": ["x", "y", "z"]}},
+        interfaces={"default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}},
+        rock={"young_modulus": "0.1 GPa"},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=STAGES,
+        model={"split": {"body": "elements"}},
+        output={"every": 0.002},
+    )
+
+
+def digest(sim):
+    """A hash of everything that a checkpoint keeps."""
+    whole = hashlib.sha256()
+    for name, values in sorted(sim.core.fields().items()):
+        whole.update(name.encode())
+        whole.update(np.ascontiguousarray(values).tobytes())
+    return whole.hexdigest()
+
+
+def run_here(threads):
+    sim = cdem.Simulation(breaking_cube(), threads=threads)
+    sim.run()
+    assert sum(sim.broken.values()) > 10
+    return digest(sim)
+
+
+def test_threads():
+    assert len({run_here(threads) for threads in (1, 2, 3, 7)}) == 1
+
+
+CHILD = """
+import sys
+sys.path.insert(0, {tests!r})
+sys.path.insert(0, {here!r})
+from test_bits import run_here
+print(run_here(2))
+"""
+
+
+def test_instruction_sets():
+    here = os.path.dirname(__file__)
+    code = CHILD.format(tests=os.path.dirname(here), here=here)
+    flags = _native._cpu_flags()
+    found = set()
+    for isa in _native.available:
+        if not flags >= _native._NEEDS[isa]:
+            continue
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            env=os.environ | {"CDEM_ISA": isa},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        found.add(done.stdout.strip())
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize("stops", [[3], [2, 5]])
+def test_stop_and_resume(tmp_path, stops):
+    """Stopped and resumed, also twice over, the run ends with the same bits and the same files."""
+    whole = cdem.Simulation(breaking_cube(), threads=2, output=tmp_path / "whole")
+    whole.run()
+
+    asked = 0
+
+    def should_stop():
+        nonlocal asked
+        asked += 1
+        return asked == limit
+
+    broken = tmp_path / "broken"
+    for number, limit in enumerate([*stops, None]):
+        asked = 0
+        sim = cdem.Simulation(breaking_cube(), threads=2, output=broken, resume=number > 0)
+        status = sim.run(should_stop=should_stop if limit else None)
+    assert status == "finished"
+    assert digest(sim) == digest(whole)
+    histories = [(tmp_path / f / "histories.csv").read_text() for f in ("whole", "broken")]
+    assert histories[0] == histories[1]
+
+
+def test_split_into_runs():
+    one, many = (cdem.Simulation(breaking_cube(), threads=2) for _ in range(2))
+    one.step(300)
+    for count in (1, 7, 92, 150, 50):
+        many.step(count)
+    for name in ("node.motion", "triangles.bond", "spring.force_n"):
+        assert np.array_equal(one.core.fields()[name], many.core.fields()[name])
