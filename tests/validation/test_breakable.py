@@ -67,7 +67,11 @@ def dropped(divisions, steps_safety, time):
             ],
             {"body": {"velocity": [0.3, 0.1, -4]}, "bed": {"fix": ["x", "y", "z"]}},
             interfaces={
-                "default": {"friction_angle": 30, "cohesion": "20 kPa", "tensile_strength": "10 kPa"}
+                "default": {
+                    "friction_angle": 30,
+                    "cohesion": "20 kPa",
+                    "tensile_strength": "10 kPa",
+                }
             },
             rock={"young_modulus": "0.2 GPa"},
             loads={"gravity": [0, 0, -9.81]},
