@@ -1,0 +1,103 @@
+"""Blocks, faces, pairs and overlaps of meshes."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cdem import mesh
+from cdem.errors import MeshError
+from cdem.overlap import clip, point_areas
+from cdem.shapes import NODES, reference_gradients
+from cdem.topology import build_topology
+
+SPRINGS = {"hex8": 24, "wedge6": 18, "pyramid5": 16, "tet4": 12}
+
+
+def one_element(shape):
+    box = mesh.box("a", (1, 1, 1), shape=shape)
+    cell = box.cells[shape][:1]
+    used, numbers = np.unique(cell, return_inverse=True)
+    return mesh.Mesh(
+        box.points[used], {shape: numbers.reshape(cell.shape)}, {shape: np.zeros(1, int)}, ["a"]
+    )
+
+
+@pytest.mark.parametrize("shape", SPRINGS)
+def test_semi_springs_of_one_element(shape):
+    t = build_topology(one_element(shape), {})
+    assert (t.face_nodes >= 0).sum() == SPRINGS[shape]
+    assert (t.edge_faces >= 0).all()
+    faces, edges, nodes = len(t.face_nodes), len(t.edge_nodes), len(t.node_position)
+    assert nodes - edges + faces == 2  # Euler
+
+
+@pytest.mark.parametrize("shape", SPRINGS)
+def test_boxes_fill_their_volume(shape):
+    t = build_topology(mesh.box("a", (1, 2, 3), (2, 2, 2), shape=shape), {})
+    volume = sum(
+        reference_gradients(s, t.node_position[t.element_nodes[s]])[1].sum() for s in NODES
+    )
+    assert volume == pytest.approx(6, rel=1e-12)
+    x = t.node_position[np.where(t.face_nodes < 0, t.face_nodes[:, 2:3], t.face_nodes)]
+    outward = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    assert (np.einsum("ij,ij->i", outward, x.mean(axis=1) - [0.5, 1, 1.5]) > 0).all()
+
+
+def test_a_fully_split_box_pairs_every_inner_face_once():
+    t = build_topology(mesh.box("a", (1, 1, 1), (3, 3, 3), shape="tet4"), {"a": "elements"})
+    assert len(t.block_group) == 162
+    assert 2 * len(t.pair_faces) + 2 * 6 * 9 == len(t.face_nodes)
+    assert len(np.unique(t.pair_faces)) == t.pair_faces.size
+    for (a, b), shift in zip(t.pair_faces, t.pair_shift, strict=True):
+        for k in range(3):
+            xa = t.node_position[t.face_nodes[a, k]]
+            xb = t.node_position[t.face_nodes[b, (shift - k) % 3]]
+            assert (xa == xb).all()
+
+
+def test_boxes_side_by_side_are_mated_by_place():
+    left, right = mesh.box("a", (1, 1, 1)), mesh.box("b", (1, 1, 1))
+    right.points = right.points + [1 + 1e-12, 0, 0]
+    t = build_topology(mesh.merge([left, right]), {})
+    assert len(t.pair_faces) == 1
+
+
+def test_inverted_element_is_an_error():
+    bad = one_element("tet4")
+    bad.cells["tet4"] = bad.cells["tet4"][:, [1, 0, 2, 3]]
+    with pytest.raises(MeshError, match=r"tet4 element 0 of group 'a'.*is inverted"):
+        build_topology(bad, {})
+
+
+def test_polyhedra():
+    corners = np.array(np.meshgrid([0, 1], [0, 2], [0, 3])).reshape(3, -1).T
+    block = mesh.polyhedron("a", corners)
+    volume = reference_gradients("tet4", block.points[block.cells["tet4"]])[1].sum()
+    assert volume == pytest.approx(6, rel=1e-12)
+    np.testing.assert_allclose(block.points[-1], [0.5, 1, 1.5])
+    with pytest.raises(MeshError, match="not convex"):
+        mesh.polyhedron("a", [*corners, [0.5, 1, 1.4]])
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.floats(-0.9, 0.9), st.floats(-0.9, 0.9), st.floats(0, 2 * np.pi), st.floats(0.3, 2.0)
+)  # fmt: skip
+def test_overlap_shares_area_and_centroid_exactly(dx, dy, angle, size):
+    """A square moved and turned over another one: the points carry the polygon's area and centre."""
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) - 0.5
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    lower = np.column_stack([square, np.zeros(4)])
+    upper = np.column_stack([size * square @ turn.T + [dx, dy], np.zeros(4)])[::-1]
+    polygon = clip(lower, upper)
+    if polygon is None:
+        return
+    weights = point_areas(polygon)
+    x, y = polygon[:, 0], polygon[:, 1]
+    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    cross = x * y1 - x1 * y
+    area = abs(cross.sum()) / 2
+    center = np.array([((x + x1) * cross).sum(), ((y + y1) * cross).sum()]) / (3 * cross.sum())
+    assert weights.sum() == pytest.approx(area, rel=1e-9)
+    np.testing.assert_allclose(weights @ polygon[:, :2] / area, center, atol=1e-9)
