@@ -12,10 +12,12 @@ command -v "$PYTHON" >/dev/null || missing+=(python3)
 "$PYTHON" -c 'import os, sysconfig, sys
 sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' 2>/dev/null ||
   missing+=(python3-dev)
-# pyvista draws without a screen through OSMesa
-ldconfig -p 2>/dev/null | grep -q libOSMesa || missing+=(libosmesa6)
-ldconfig -p 2>/dev/null | grep -q 'libGL\.so\.1' || missing+=(libgl1)
-ldconfig -p 2>/dev/null | grep -q libXrender || missing+=(libxrender1)
+# pyvista draws without a screen through OSMesa. ldconfig lies outside an ordinary user's PATH, and
+# piping it into grep -q fails now and then under pipefail (grep leaves first).
+libraries=$(PATH="$PATH:/usr/sbin:/sbin" ldconfig -p 2>/dev/null || true)
+[[ $libraries == *libOSMesa* ]] || missing+=(libosmesa6)
+[[ $libraries == *libGL.so.1* ]] || missing+=(libgl1)
+[[ $libraries == *libXrender* ]] || missing+=(libxrender1)
 
 if ((${#missing[@]})); then
   if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then

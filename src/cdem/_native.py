@@ -40,14 +40,20 @@ os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 
 def _load() -> tuple[ModuleType, str, list[str]]:
     built = _built()
+    flags = _cpu_flags()
     wanted = os.environ.get("CDEM_ISA")
     if wanted is not None:
         if wanted not in built:
             raise BackendError(
                 f"CDEM_ISA={wanted}: no such compiled core; built are: {', '.join(built) or 'none'}"
             )
+        # Without this the first instruction that is missing kills Python. No flags: not known.
+        lacking = _NEEDS[wanted] - flags
+        if flags and lacking:
+            raise BackendError(
+                f"CDEM_ISA={wanted}: this CPU lacks {', '.join(sorted(lacking))}; unset CDEM_ISA"
+            )
         return importlib.import_module(f"cdem._core_{wanted}"), wanted, built
-    flags = _cpu_flags()
     for isa in built:
         if flags >= _NEEDS[isa]:
             return importlib.import_module(f"cdem._core_{isa}"), isa, built
