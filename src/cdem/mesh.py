@@ -48,8 +48,9 @@ class Mesh:
 def read_mesh(path: str | Path) -> Mesh:
     """Read a volume mesh in any format that meshio knows.
 
-    A file packed with gzip (``.msh.gz``) is unpacked on the way. Physical groups of volumes (gmsh) and cell sets become groups, those of surfaces become named
-    surfaces; cells in no group go to the group "default".
+    A file packed with gzip (``.msh.gz``) is unpacked on the way. Physical groups of volumes (gmsh)
+    and cell sets become groups, those of surfaces become named surfaces; cells in no group go to
+    the group "default", and a cell in several groups to the first, which `Mesh.notes` reports.
 
     Raises:
         MeshError: The file is missing, unreadable, or holds no linear volume elements.
@@ -96,7 +97,26 @@ def read_mesh(path: str | Path) -> Mesh:
         raise MeshError(
             f"{path}: holds no volume elements; export the volume mesh, not its surface"
         )
+    mesh.notes += _several_groups(raw, path)
     return _drop_unused(mesh)
+
+
+def _several_groups(raw, path: Path) -> list[str]:
+    """A note if volume elements are in more than one group, for only one of them can count."""
+    sets = {n: s for n, s in raw.cell_sets.items() if not n.startswith("gmsh:")}
+    cells, names = 0, set()
+    for index, block in enumerate(raw.cells):
+        if block.type not in _MESHIO_SHAPES:
+            continue
+        held = np.zeros(len(block.data), int)
+        inside = {n: np.asarray(s[index], np.intp) for n, s in sets.items() if s[index] is not None}
+        for members in inside.values():
+            held[members] += 1
+        cells += int((held > 1).sum())
+        names |= {n for n, members in inside.items() if (held[members] > 1).any()}
+    if cells == 0:
+        return []
+    return [f"{path}: {cells} elements are in several of the groups {sorted(names)}; one counts"]
 
 
 def _read_zipped(path: Path):
@@ -220,6 +240,9 @@ def polyhedron(
     points = np.asarray(vertices, float)
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < 4:
         raise MeshError("a polyhedron needs at least four vertices of three coordinates")
+    if not np.isfinite(points).all():
+        bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+        raise MeshError(f"vertex {bad} of a polyhedron is not finite: {points[bad].tolist()}")
     triangles = _hull(points) if faces is None else _fan(points, faces)
     if len(points) == 4:
         a, b, c, d = points
@@ -261,8 +284,8 @@ def _hull(points: Floats) -> NDArray[np.int64]:
             for k in range(j + 1, n):
                 normal = np.cross(points[j] - points[i], points[k] - points[i])
                 size = np.linalg.norm(normal)
-                if size < near * near:
-                    continue
+                if size <= near * np.linalg.norm(points[[j, k, k]] - points[[i, i, j]], axis=1).max():
+                    continue  # three in a line span no plane
                 normal = normal / size
                 height = (points - points[i]) @ normal
                 if height.max() > near and height.min() < -near:
@@ -282,8 +305,8 @@ def _hull(points: Floats) -> NDArray[np.int64]:
     if missing:
         x = ", ".join(f"{c:g}" for c in points[missing[0]])
         raise MeshError(
-            f"a polyhedron is not convex: vertex {missing[0]} at ({x}) lies inside the hull of the "
-            "others; cut the block into convex ones"
+            f"a polyhedron is not convex: vertex {missing[0]} at ({x}) is no corner of the hull; "
+            "leave it out if it repeats another or lies on a side, else cut the block into convex ones"
         )
     return np.array(triangles)
 
@@ -312,8 +335,10 @@ def _fan(points: Floats, faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
             raise MeshError(f"face {number} of a polyhedron needs three or more vertices it has")
         x = points[list(face)]
         normal = sum(np.cross(x[i] - x[0], x[i + 1] - x[0]) for i in range(1, len(x) - 1))
-        normal = normal / np.linalg.norm(normal)
-        loop = list(face)
+        size = np.linalg.norm(normal)
+        if size == 0:
+            raise MeshError(f"face {number} of a polyhedron has no area")
+        normal, loop = normal / size, list(face)
         if (middle - x[0]) @ normal > 0:
             normal, loop = -normal, loop[::-1]
         out = np.argmax((points - x[0]) @ normal)

@@ -28,6 +28,8 @@ FACES = {
 
 SAME_PLACE = 1e-9
 """Points of different pieces closer than this, over the model's size, are at the same place."""
+SLANTED = np.array([0.5426, 0.6477, 0.5348])
+"""A direction, of length below 1, along which the points of a grid do not line up."""
 
 
 @dataclass
@@ -137,41 +139,43 @@ def check_elements(mesh: Mesh) -> None:
             continue
         corners = mesh.points[cells]
         size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=1)
-        with np.errstate(all="ignore"):
-            try:
-                _, volume = reference_gradients(shape, corners)
-            except np.linalg.LinAlgError:
-                volume = np.stack([reference_volume(shape, c) for c in corners])
-        flat = np.flatnonzero(~(volume > 1e-12 * size[:, None] ** 3).all(axis=1))
+        least, total = _volumes(shape, corners)
+        flat = np.flatnonzero(~(least > 1e-12 * size**3))
         if len(flat):
             cell = flat[0]
             group = mesh.group_names[mesh.cell_group[shape][cell]]
             center = ", ".join(f"{x:.6g}" for x in corners[cell].mean(axis=0))
-            total = volume[cell].sum()
-            what = "is inverted" if total < 0 else "has no volume or is folded"
+            what = "is inverted" if total[cell] < 0 else "has no volume or is folded"
             raise MeshError(
                 f"{shape} element {cell} of group {group!r}, centred at ({center}), {what} "
-                f"(volume {total:.3g} m3); {len(flat)} such element(s). Mend the mesh: nodes must be "
+                f"(volume {total[cell]:.3g} m3); {len(flat)} such element(s). Mend the mesh: nodes must be "
                 "in gmsh/VTK order and no element may be flat"
             )
 
 
-def reference_volume(shape: str, corners: Floats) -> Floats:
-    """Volumes at the Gauss points of one element that may be flat; flat ones count as zero."""
+def _volumes(shape: str, corners: Floats) -> tuple[Floats, Floats]:
+    """Least volume at a Gauss point and whole volume of each element [m3]; singular ones are 0."""
     try:
-        return reference_gradients(shape, corners[None])[1][0]
-    except np.linalg.LinAlgError:
-        return np.zeros(1)
+        volume = reference_gradients(shape, corners)[1]
+        return volume.min(axis=1), volume.sum(axis=1)
+    except np.linalg.LinAlgError:  # one singular element refuses them all: halve until it is alone
+        if len(corners) == 1:
+            return np.zeros(1), np.zeros(1)
+        half = len(corners) // 2
+        parts = _volumes(shape, corners[:half]), _volumes(shape, corners[half:])
+        return tuple(np.concatenate(both) for both in zip(*parts, strict=True))
 
 
 def _components(count: int, a: NDArray, b: NDArray) -> NDArray:
     """Smallest member of each item's connected component, for links a - b between items."""
     label = np.arange(count)
     while True:
-        low = np.minimum(label[a], label[b])
+        at_a, at_b = label[a], label[b]
+        low = np.minimum(at_a, at_b)
         before = label.copy()
-        np.minimum.at(label, a, low)
-        np.minimum.at(label, b, low)
+        # hang whole trees, not single items: a long chain then takes few rounds
+        np.minimum.at(label, at_a, low)
+        np.minimum.at(label, at_b, low)
         label = label[label]
         if (label == before).all():
             return label
@@ -346,17 +350,21 @@ def _edges(t: Topology) -> None:
 
 def _places(mesh: Mesh) -> NDArray:
     """A number for every mesh point, equal for points of different pieces at the same place."""
-    size = max(float(np.ptp(mesh.points, axis=0).max()), 1e-300)
-    grid = SAME_PLACE * size
-    label = np.arange(len(mesh.points))
-    # two grids half a cell apart: points that one grid divides, the other joins
-    for shift in (0.0, 0.5):
-        cell = np.floor((mesh.points - mesh.points.min(axis=0)) / grid + shift).astype(np.int64)
-        number = _same_rows(cell)
-        first = np.full(number.max() + 1, len(label))
-        np.minimum.at(first, number, np.arange(len(label)))
-        label = np.minimum(label, label[first[number]])
-    return label
+    near = SAME_PLACE * float(np.ptp(mesh.points, axis=0).max())
+    # along a slanted line only points at the same place follow closely, even in regular grids
+    along = (mesh.points - mesh.points.min(axis=0)) @ SLANTED
+    order = np.argsort(along, kind="stable")
+    x, along = mesh.points[order], along[order]
+    first, second = [], []
+    for step in range(1, len(x)):
+        i = np.flatnonzero(along[step:] - along[:-step] <= near)
+        if len(i) == 0:
+            break
+        i = i[np.linalg.norm(x[i + step] - x[i], axis=1) <= near]
+        first.append(order[i])
+        second.append(order[i + step])
+    none = np.zeros(0, np.intp)
+    return _components(len(x), np.concatenate([none, *first]), np.concatenate([none, *second]))
 
 
 def _pairs(t: Topology, place: NDArray) -> None:
@@ -369,8 +377,14 @@ def _pairs(t: Topology, place: NDArray) -> None:
     pairs = pairs[t.face_block[pairs[:, 0]] != t.face_block[pairs[:, 1]]]
     pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
     a, b = pairs.T
-    t.pair_faces = pairs.astype(np.int32)
-    t.pair_shift = (at[b] == at[a][:, :1]).argmax(axis=1).astype(np.int32)
+    shift = (at[b] == at[a][:, :1]).argmax(axis=1)
+    # mated faces run round in opposite senses; those of bodies inside one another do not
+    k = np.arange(4)
+    sides = (at[a] >= 0).sum(axis=1)[:, None]
+    mate = np.take_along_axis(at[b], (shift[:, None] - k) % sides, axis=1)
+    facing = ((mate == at[a]) | (k >= sides)).all(axis=1)
+    t.pair_faces = pairs[facing].astype(np.int32)
+    t.pair_shift = shift[facing].astype(np.int32)
 
 
 def _surfaces(t: Topology, mesh: Mesh) -> None:
