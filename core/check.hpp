@@ -30,6 +30,9 @@ void sample_before(const Model& model, State& state, Queue queue);
 void sample_after(const Model& model, State& state, Queue queue);
 Real kinetic_energy(const Model& model, const State& state);
 Report check_health(const Model& model, const State& state);
+/// Renew centre, normal and sharp sides of every exposed face; those sides only where there are
+/// candidates, unless `all`.
+void update_face_geometry(const Model& model, State& state, Queue queue, bool all);
 void widen_edge_slots(State& state);
 /// Stiffness that bonds and possible contacts put on each node.
 void sum_stiffness(const Model& model, State& state);

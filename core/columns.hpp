@@ -25,6 +25,11 @@ inline Candidates candidate_columns(const State& s) {
   return {s.search.candidate_first.data(), s.search.candidate.data()};
 }
 
+inline EdgeCandidates edge_candidate_columns(const State& s) {
+  return {s.search.edge_candidate_first.data(), s.search.edge_candidate.data(),
+          s.search.edge_candidate_sides.data()};
+}
+
 inline SpringColumns spring_columns(State& s) {
   SpringState& c = s.springs;
   return {c.target.data(),   c.target_before.data(), c.force_n.data(), c.shear1.data(),

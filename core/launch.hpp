@@ -151,10 +151,11 @@ void for_each(Queue, Index count, const Kernel& kernel) {
   for (Index i = whole; i < count; ++i) kernel(One{i});
 }
 
-/// Run a kernel whose items take different paths (searches, ragged sums): one number at a time.
+/// Run a kernel whose items take different paths (searches, ragged sums): one number at a time,
+/// dealt out in small parts, for the faces that are in contact lie together.
 template <class Kernel>
 void for_each_one(Queue, Index count, const Kernel& kernel) {
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index i = 0; i < count; ++i) kernel(One{i});
 }
 

@@ -1,4 +1,4 @@
-// refresh.cpp - now and then: release broken pairs, expose faces, renew the candidate lists.
+// refresh.cpp - now and then: release broken pairs, expose faces, have the lists renewed.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,16 +7,14 @@
 #include <vector>
 
 #include "core/backend.hpp"
+#include "core/candidates.hpp"
 #include "core/check.hpp"
 #include "core/columns.hpp"
-#include "core/contact/boxes.hpp"
 #include "core/contact/force.hpp"
 
 namespace cdem {
 
 namespace {
-
-using Pairs = std::vector<std::pair<Index, Index>>;
 
 Real pair_length(const Model& m, const PairSet& p, Index i) {
   return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
@@ -137,154 +135,6 @@ void label_glue(const Model& m, State& s) {
   for (Index i = 0; i < m.node_count; ++i) label[i] = root(i);
 }
 
-/// How much an exposed face may move before the lists are old  [m]: what it will move in some
-/// hundred steps at its present speed. Slow rubble so gets short lists, fast rubble few refreshes.
-Real skin_of(const Model& m, const State& s, Index face) {
-  constexpr Real steps = 200, least = 0.004, most = 0.1;  // parts of the face's L
-  Real speed = 0;
-  for (Index k = 0; k < 4; ++k) {
-    const Index node = m.face_nodes[4 * face + k];
-    if (node < 0) continue;
-    const Real* v = s.nodes.motion.data() + std::size_t(node) * 8 + 4;
-    speed = std::max(speed, std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-  }
-  const Real length = m.face_length[face];
-  return std::clamp(steps * s.dt * speed, least * length, most * length);
-}
-
-/// Deepest contact of a face: its targets may lie this far outside its skin  [m].
-Real deepest_gap(const State& s, Index place) {
-  Real deepest = 0;
-  for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
-    if (s.springs.target[k] >= 0)
-      deepest = std::max(deepest, s.springs.sunk[k] - s.springs.gap_free[k]);
-  for (Index j = 0; j < s.edges.count[place]; ++j) {
-    const std::size_t c = std::size_t(s.edges.slots) * place + j;
-    deepest = std::max(deepest, s.edges.sunk[c] - s.edges.gap_free[c]);
-  }
-  return 2 * deepest;
-}
-
-/// Faces of the same live pair, as sorted keys: bonds look after them.
-std::vector<std::pair<Index, Index>> live_overlaps(const Model& m, const State& s) {
-  Pairs mates;
-  for (Index i = 0; i < m.overlaps.count; ++i) {
-    if (!(s.overlaps.live[i] > 0)) continue;
-    const Index a = s.search.face_exposed[m.overlaps.faces[2 * i]];
-    const Index b = s.search.face_exposed[m.overlaps.faces[2 * i + 1]];
-    mates.push_back({a, b});
-    mates.push_back({b, a});
-  }
-  std::sort(mates.begin(), mates.end());
-  return mates;
-}
-
-struct ExposedFaces {
-  std::vector<Box> box;
-  std::vector<Vec3<Real>> normal;
-  std::vector<Real> turn;  // how much the normal may turn before the lists are old
-  std::vector<Index> block;
-  std::vector<Flag> movable;
-  std::vector<FaceShape> shape;
-  std::vector<Real> reach;  // of the box around the face  [m]
-
-  /// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
-  bool apart(Index x, Index y) const {
-    const Vec3<Real> center = shape[y].center();
-    Real lowest = 1e300, span = 0;
-    for (Index k = 0; k < shape[x].count; ++k) {
-      const Vec3<Real> arm = shape[x].x[k] - center;
-      lowest = std::min(lowest, dot(normal[y], arm));
-      span = std::max(span, norm(arm));
-    }
-    const Real bend = shape[y].count == 4 ? reach[y] : 0;  // a warped face is no plane
-    return lowest > reach[x] + reach[y] + turn[y] * span + bend;
-  }
-};
-
-ExposedFaces exposed_faces(const Model& m, const State& s) {
-  const Index count = Index(s.search.exposed_face.size());
-  const FaceColumns faces = face_columns(m, s);
-  ExposedFaces e{std::vector<Box>(count),  std::vector<Vec3<Real>>(count),
-                 std::vector<Real>(count), std::vector<Index>(count),
-                 std::vector<Flag>(count), std::vector<FaceShape>(count),
-                 std::vector<Real>(count)};
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
-  for (Index x = 0; x < count; ++x) {
-    const Index face = s.search.exposed_face[x];
-    const FaceShape f = faces.shape(face);
-    Box box = Box::nothing();
-    Real longest = 0;
-    for (Index k = 0; k < f.count; ++k) {
-      box.include(f.x[k]);
-      longest = std::max(longest, norm(f.x[k + 1 == f.count ? 0 : k + 1] - f.x[k]));
-    }
-    e.shape[x] = f;
-    const Real skin = skin_of(m, s, face);
-    e.reach[x] = skin + deepest_gap(s, x);
-    box.inflate(e.reach[x]);
-    e.box[x] = box;
-    e.normal[x] = f.normal();
-    // vertices move by a skin at most: the plane turns by twice that over the smallest height
-    const Real height = (f.count == 3 ? 2 : 1) * m.face_area[face] / longest;
-    e.turn[x] = 2 * skin / height;
-    e.block[x] = m.face_block[face];
-    e.movable[x] = m.face_movable[face];
-  }
-  return e;
-}
-
-void list_candidates(const Model& m, State& s) {
-  const Index count = Index(s.search.exposed_face.size());
-  const ExposedFaces e = exposed_faces(m, s);
-  const Pairs mates = live_overlaps(m, s);
-  const BoxTree tree(e.box);
-  std::vector<std::vector<Index>> rows(count);
-#pragma omp parallel for schedule(dynamic, 256) if (count >= worth_threads)
-  for (Index x = 0; x < count; ++x) {
-    tree.query(e.box[x], [&](Index y) {
-      if (e.block[x] == e.block[y] || (!e.movable[x] && !e.movable[y])) return;
-      if (dot(e.normal[x], e.normal[y]) >= -m.rules.opposing + e.turn[x] + e.turn[y]) return;
-      if (e.apart(x, y) || e.apart(y, x)) return;
-      if (!mates.empty() && std::binary_search(mates.begin(), mates.end(), std::pair(x, y))) return;
-      rows[x].push_back(y);
-    });
-    std::sort(rows[x].begin(), rows[x].end());
-  }
-  Column<Index>&first = s.search.candidate_first, &other = s.search.candidate;
-  first.resize(count + 1);
-  first[0] = 0;
-  for (Index x = 0; x < count; ++x) first[x + 1] = first[x] + Index(rows[x].size());
-  other.resize(first[count]);
-  for (Index x = 0; x < count; ++x)
-    std::copy(rows[x].begin(), rows[x].end(), other.data() + first[x]);
-}
-
-/// Node -> contact rows of its exposed faces, and the motion at which each node's list is old.
-void list_contact_corners(const Model& m, State& s) {
-  Column<Index>&first = s.search.contact_first, &corner = s.search.contact_corner;
-  first.resize(m.node_count + 1);
-  first.fill(0);
-  s.search.node_skin.resize(m.node_count);
-  s.search.node_skin.fill(0);
-  const auto visit = [&](auto&& at) {
-    for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
-      const Index face = s.search.exposed_face[x];
-      for (Index k = 0; k < 4; ++k)
-        if (m.face_nodes[4 * face + k] >= 0) at(m.face_nodes[4 * face + k], Index(4 * x) + k, face);
-    }
-  };
-  visit([&](Index node, Index, Index face) {
-    ++first[node + 1];
-    Real& skin = s.search.node_skin[node];
-    skin = skin > 0 ? std::min(skin, skin_of(m, s, face)) : skin_of(m, s, face);
-  });
-  for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
-  corner.resize(first[m.node_count]);
-  std::vector<Index> next(first.data(), first.data() + m.node_count);
-  visit([&](Index node, Index row, Index) { corner[next[node]++] = row; });
-}
-
 }  // namespace
 
 /// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to.
@@ -368,6 +218,16 @@ void refresh_contacts(const Model& m, State& s) {
   ++s.refreshes;
 }
 
+void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
+  const Index count = Index(s.search.exposed_face.size());
+  const Index* exposed = s.search.exposed_face.data();
+  launch_one(q, count, UpdateFaceGeometry{face_columns(m, s), exposed, s.face_geometry.data()});
+  launch_one(
+      q, count,
+      MarkSharpSides{face_columns(m, s), exposed, all ? nullptr : s.search.candidate_first.data(),
+                     s.face_geometry.data()});
+}
+
 void widen_edge_slots(State& s) {
   EdgeState& e = s.edges;
   const std::size_t count = s.search.exposed_face.size(), old = e.slots, wide = 2 * old;
@@ -392,9 +252,7 @@ void widen_edge_slots(State& s) {
 namespace {
 
 FindTargetFaces face_search(const Model& m, State& s, const SearchRules& rules) {
-  launch_one(
-      {}, Index(s.search.exposed_face.size()),
-      UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(), s.face_geometry.data()});
+  update_face_geometry(m, s, {}, true);
   finish({});
   return {face_columns(m, s),
           {s.face_geometry.data()},
@@ -439,7 +297,7 @@ Index count_missed_contacts(const Model& m, State& s) {
   const FindTargetEdges edges{face_columns(m, s),
                               {s.face_geometry.data()},
                               s.search.exposed_face.data(),
-                              candidate_columns(s),
+                              edge_candidate_columns(s),
                               m.rules,
                               edge_columns(s)};
   const Index count = Index(s.search.exposed_face.size());
@@ -459,13 +317,11 @@ Index count_missed_contacts(const Model& m, State& s) {
     springs.choose(x, all.data(), Index(all.size()), by_all, ignored);
     for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
       missed += by_list[k] != by_all[k];
-    for (const Index t : all) {
-      if (!m.semi_edges) break;
-      if (std::binary_search(listed + first, listed + last, t)) continue;
+    if (!m.semi_edges) continue;
+    for (const Index t : all)
       for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
         for (Index j = 0; j < springs.faces.vertex_count(s.search.exposed_face[t]); ++j)
-          missed += edges.touches(x, k, t, j, false, false, ignored);
-    }
+          missed += !edges.listed(x, k, t, j) && edges.touches(x, k, t, j, false, false, ignored);
   }
   return missed;
 }

@@ -46,6 +46,7 @@ struct SearchState {
   Column<Real> face_sunk;                    // [exposed] deepest contact of the face  [m]
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
   Column<Index> candidate_first, candidate;
+  Column<Index> edge_candidate_first, edge_candidate, edge_candidate_sides;
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
 };
@@ -143,6 +144,9 @@ void describe(S& s, Visit&& field) {
   field("search.face_exposed", s.search.face_exposed, "place of a face among them, or -1");
   field("search.candidate_first", s.search.candidate_first, "start of a face's candidates");
   field("search.candidate", s.search.candidate, "exposed faces that it may touch");
+  field("search.edge_candidate_first", s.search.edge_candidate_first, "start of a face's sides");
+  field("search.edge_candidate", s.search.edge_candidate, "exposed face whose side may be crossed");
+  field("search.edge_candidate_sides", s.search.edge_candidate_sides, "4 * own side + its side");
   field("search.contact_first", s.search.contact_first, "start of a node's contact rows");
   field("search.contact_corner", s.search.contact_corner, "contact rows of a node");
   field("search.node_skin", s.search.node_skin, "motion that calls for a refresh [m]");

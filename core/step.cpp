@@ -33,12 +33,6 @@ void evaluate_curves(const Model& m, Real time, Column<Real>& values) {
   }
 }
 
-void update_face_geometry(const Model& m, State& s, Queue q) {  // contact/face.hpp
-  launch_one(
-      q, Index(s.search.exposed_face.size()),
-      UpdateFaceGeometry{face_columns(m, s), s.search.exposed_face.data(), s.face_geometry.data()});
-}
-
 template <Index count>
 void update_conforming(const Model& m, State& s, Queue q, const PairSet& p, PairState& ps,
                        Real indentation) {
@@ -84,7 +78,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
                FindTargetEdges{face_columns(m, s),
                                {s.face_geometry.data()},
                                s.search.exposed_face.data(),
-                               candidate_columns(s),
+                               edge_candidate_columns(s),
                                m.rules,
                                edge_columns(s)});
     finish(q);
@@ -169,7 +163,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   evaluate_curves(m, s.time + 0.5 * s.dt, s.velocity_factor);
   const bool refreshed = refresh_is_due(m, s);
   if (refreshed) refresh_contacts(m, s);
-  update_face_geometry(m, s, q);
+  update_face_geometry(m, s, q, false);  // contact/face.hpp
   update_bonds(m, s, q);
   find_target_faces(m, s, q);
   find_target_edges(m, s, q);

@@ -115,6 +115,12 @@ struct FaceColumns {
     if (f.count == 3) f.x[3] = f.x[2];
     return f;
   }
+  /// The face on the other side of side k, or -1.
+  CDEM_HD Index across(Index face, Index k) const {
+    const Index edge = face_edges[4 * face + k];
+    const Index a = edge_faces[2 * edge], b = edge_faces[2 * edge + 1];
+    return a == face ? b : a;
+  }
   /// Where a node was one step ago.
   CDEM_HD Vec3<Real> old_position(Index node) const {
     return nodes.position(node) - dt * nodes.velocity(node);
@@ -128,22 +134,32 @@ struct FaceColumns {
   }
 };
 
-/// Centre, speed and normal of exposed faces, one 64-byte row each: centre, speed, normal, pad.
+/// Centre, sharp sides and normal of exposed faces, one 64-byte row each: centre, sharp, normal,
+/// pad.
 struct FaceGeometry {
   const Real* rows;
   CDEM_HD Vec3<Real> center(Index exposed) const {
     const Real* r = rows + std::size_t(exposed) * 8;
     return {r[0], r[1], r[2]};
   }
-  /// Speed of the fastest vertex  [m/s].
-  CDEM_HD Real speed(Index exposed) const { return rows[std::size_t(exposed) * 8 + 3]; }
+  /// Is side k an edge, or does the block's surface go on flat beyond it?
+  CDEM_HD bool sharp(Index exposed, Index k) const {
+    return Index(rows[std::size_t(exposed) * 8 + 3]) & (1 << k);
+  }
   CDEM_HD Vec3<Real> normal(Index exposed) const {
     const Real* r = rows + std::size_t(exposed) * 8 + 4;
     return {r[0], r[1], r[2]};
   }
 };
 
-/// Renew centre, speed and normal of every exposed face.
+/// Normal of any face, from its row if it is exposed.
+CDEM_HD inline Vec3<Real> normal_of(const FaceColumns& faces, const FaceGeometry& geometry,
+                                    Index face) {
+  const Index exposed = faces.face_exposed[face];
+  return exposed >= 0 ? geometry.normal(exposed) : faces.shape(face).normal();
+}
+
+/// Renew centre and normal of every exposed face.
 struct UpdateFaceGeometry {
   FaceColumns faces;
   const Index* exposed_face;
@@ -153,13 +169,33 @@ struct UpdateFaceGeometry {
     const FaceShape f = faces.shape(exposed_face[i.i]);
     const Vec3<Real> c = f.center(), n = f.normal();
     Real* r = rows + std::size_t(i.i) * 8;
-    Real fastest2 = 0;
-    for (Index k = 0; k < f.count; ++k) {
-      const Vec3<Real> v = faces.nodes.velocity(faces.vertex(exposed_face[i.i], k));
-      fastest2 = max_of(fastest2, dot(v, v));
-    }
-    r[0] = c.x, r[1] = c.y, r[2] = c.z, r[3] = sqrt_of(fastest2);
+    r[0] = c.x, r[1] = c.y, r[2] = c.z;
     r[4] = n.x, r[5] = n.y, r[6] = n.z;
+  }
+};
+
+/// Faces of one block whose normals have a larger cosine than this (2.6 degrees) meet in no edge.
+inline constexpr Real coplanar_faces = 0.999;
+
+/// Renew which sides of every exposed face are sharp; runs after UpdateFaceGeometry.
+struct MarkSharpSides {
+  FaceColumns faces;
+  const Index* exposed_face;
+  const Index* candidate_first;  // faces without candidates need no marks; null: mark all
+  Real* rows;
+
+  CDEM_HD void operator()(One i) const {
+    if (candidate_first && candidate_first[i.i] == candidate_first[i.i + 1]) return;
+    const FaceGeometry geometry{rows};
+    const Index face = exposed_face[i.i];
+    int sharp = 0;
+    for (Index k = 0; k < faces.vertex_count(face); ++k) {
+      const Index across = faces.across(face, k);
+      if (across < 0 ||
+          !(dot(geometry.normal(i.i), normal_of(faces, geometry, across)) > coplanar_faces))
+        sharp |= 1 << k;
+    }
+    rows[std::size_t(i.i) * 8 + 3] = Real(sharp);
   }
 };
 

@@ -29,6 +29,13 @@ struct EdgeColumns {
   Flag* overflow;  // [exposed] 1: more contacts than places
 };
 
+/// Pairs of sides of exposed faces that may cross before the next refresh, in both directions.
+struct EdgeCandidates {
+  const Index* first;  // [exposed + 1]
+  const Index* face;   // exposed face to which the target side belongs, ascending in a row
+  const Index* sides;  // 4 * side of the mother + side of the target
+};
+
 /// Two edges at one instant: start point and vector along either, and the contact normal.
 struct EdgePair {
   Vec3<Real> start_m, along_m, start_t, along_t, n;
@@ -77,7 +84,7 @@ struct FindTargetEdges {
   FaceColumns faces;
   FaceGeometry geometry;
   const Index* exposed_face;
-  Candidates candidates;
+  EdgeCandidates candidates;
   SearchRules rules;
   EdgeColumns edges;
 
@@ -111,6 +118,7 @@ struct FindTargetEdges {
   /// Does side k of exposed face m touch side j of exposed face t?
   CDEM_HD bool touches(Index m, Index k, Index target, Index j, bool held, bool loaded,
                        Flag* lost) const {
+    if (!geometry.sharp(m, k) || !geometry.sharp(target, j)) return false;
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(target);
     if (dot(nm, nt) >= -rules.opposing) return false;
     const Index face_m = exposed_face[m], face_t = exposed_face[target];
@@ -118,6 +126,11 @@ struct FindTargetEdges {
     const Index m0 = faces.vertex(face_m, k), m1 = faces.vertex(face_m, km);
     const Index t0 = faces.vertex(face_t, j), t1 = faces.vertex(face_t, jt);
     if (glued(m0, t0) || glued(m0, t1) || glued(m1, t0) || glued(m1, t1)) return false;
+    // edges that start from one place are not edges on each other
+    const Real length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
+    const Real near = rules.indentation * length;
+    if (together(m0, t0, near) || together(m0, t1, near)) return false;
+    if (together(m1, t0, near) || together(m1, t1, near)) return false;
     const Vec3<Real> xm = faces.nodes.position(m0), xt = faces.nodes.position(t0);
     const Vec3<Real> dm = faces.nodes.position(m1) - xm, dt = faces.nodes.position(t1) - xt;
     const Vec3<Real> c = cross(dm, dt);
@@ -145,7 +158,6 @@ struct FindTargetEdges {
 
     const Crossing true_edges = cross_edges(xm, dm, xt, dt, n);
     if (true_edges.gap > 0) return false;
-    const Real length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
     const Real approach =
         rules.approach_steps * faces.dt *
         abs_of(dot(n, velocity_at(m0, m1, true_edges.s) - velocity_at(t0, t1, true_edges.t)));
@@ -156,6 +168,13 @@ struct FindTargetEdges {
       return false;
     }
     return in_cones;
+  }
+
+  /// Is the pair among the candidates?
+  bool listed(Index m, Index k, Index t, Index j) const {
+    for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c)
+      if (candidates.face[c] == t && candidates.sides[c] == 4 * k + j) return true;
+    return false;
   }
 
   /// A contact found in this step; `old` is its place among those of the step before, or -1.
@@ -205,84 +224,16 @@ struct FindTargetEdges {
     }
   };
 
-  /// A face's vertices; `place` tells which of them began at the same place.
-  struct Corners {
-    Index count, place[4];
-    Vec3<Real> x[4];
-  };
-  CDEM_HD Corners corners(Index exposed) const {
-    const Index face = exposed_face[exposed];
-    Corners c;
-    c.count = faces.vertex_count(face);
-    for (Index k = 0; k < c.count; ++k) {
-      const Index node = faces.vertex(face, k);
-      c.x[k] = faces.nodes.position(node);
-      c.place[k] = faces.node_place[node];
-    }
-    return c;
-  }
-  /// Heights of a face's vertices over the plane of another; false when all are above `room`.
-  CDEM_HD bool heights(const Corners& c, Index over, Real room, Real* height) const {
-    const Vec3<Real> n = geometry.normal(over), center = geometry.center(over);
-    Real lowest = 1e300;
-    for (Index k = 0; k < c.count; ++k) {
-      height[k] = dot(n, c.x[k] - center);
-      lowest = min_of(lowest, height[k]);
-    }
-    return lowest <= room;
-  }
-  /// Does the side from a to b come within `room` of the plane that the heights are over?
-  CDEM_HD static bool crosses(Real a, Real b, Real room) {
-    return min_of(a, b) <= room && max_of(a, b) >= -room;
-  }
-  /// Bit j of word k: vertex k of one face and vertex j of the other began at the same place in the
-  /// mesh and are still there. Edges that start from one place are not edges on each other.
-  CDEM_HD static void find_shared(const Corners& a, const Corners& b, Real near, unsigned* shared) {
-    for (Index k = 0; k < a.count; ++k) {
-      shared[k] = 0;
-      for (Index j = 0; j < b.count; ++j) {
-        const Vec3<Real> d = a.x[k] - b.x[j];
-        if (a.place[k] == b.place[j] && dot(d, d) < near * near) shared[k] |= 1u << j;
-      }
-    }
-  }
-
   /// All contacts of one exposed face in candidate order; returns their number.
   CDEM_HD Index find(Index m, const Held& held, Found* found) const {
     Index used = 0;
-    const Corners cm = corners(m);
-    const Real own_length = faces.face_length[exposed_face[m]];
     for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c) {
-      const Index t = candidates.other[c];
-      if (dot(geometry.normal(m), geometry.normal(t)) >= -rules.opposing) continue;
-      const Real length = min_of(own_length, faces.face_length[exposed_face[t]]);
-      // a contact lies in both planes up to its depth, and a warped face is no plane
-      const Index count_t = faces.vertex_count(exposed_face[t]);
-      const Real bend = cm.count + count_t > 6 ? 0.5 * (own_length + length) : 0.0;
-      const Real deep = held.count > 0 ? rules.depth * length : rules.entry * length;
-      const Real room =
-          deep + bend +
-          2 * rules.approach_steps * faces.dt * (geometry.speed(m) + geometry.speed(t));
-      Real over_t[4], over_m[4];
-      unsigned shared[4];
-      if (!heights(cm, t, room, over_t)) continue;
-      const Corners ct = corners(t);
-      if (!heights(ct, m, room, over_m)) continue;
-      find_shared(cm, ct, rules.indentation * length, shared);
-      for (Index k = 0; k < cm.count; ++k) {
-        const Index k1 = k + 1 == cm.count ? 0 : k + 1;
-        if (!crosses(over_t[k], over_t[k1], room)) continue;
-        for (Index j = 0; j < ct.count; ++j) {
-          const Index j1 = j + 1 == ct.count ? 0 : j + 1;
-          if (!crosses(over_m[j], over_m[j1], room)) continue;
-          if ((shared[k] | shared[k1]) & (1u << j | 1u << j1)) continue;
-          const Index edge = faces.face_edges[4 * exposed_face[t] + j];
-          const Index old = held.find(k, edge);
-          if (!touches(m, k, t, j, old >= 0, held.loaded(old), edges.lost + m)) continue;
-          if (used < most_slots) found[used] = {k, t, edge, old};
-          ++used;
-        }
-      }
+      const Index t = candidates.face[c], k = candidates.sides[c] / 4, j = candidates.sides[c] % 4;
+      const Index edge = faces.face_edges[4 * exposed_face[t] + j];
+      const Index old = held.find(k, edge);
+      if (!touches(m, k, t, j, old >= 0, held.loaded(old), edges.lost + m)) continue;
+      if (used < most_slots) found[used] = {k, t, edge, old};
+      ++used;
     }
     return used;
   }
@@ -291,39 +242,32 @@ struct FindTargetEdges {
   CDEM_HD Index next(Index face, Index k) const {
     return k + 1 == faces.vertex_count(face) ? 0 : k + 1;
   }
+  /// Nodes that began at the same place in the mesh and are still there.
+  CDEM_HD bool together(Index a, Index b, Real near) const {
+    if (faces.node_place[a] != faces.node_place[b]) return false;
+    const Vec3<Real> d = faces.nodes.position(a) - faces.nodes.position(b);
+    return dot(d, d) < near * near;
+  }
   CDEM_HD bool glued(Index a, Index b) const { return faces.node_glue[a] == faces.node_glue[b]; }
   CDEM_HD Vec3<Real> velocity_at(Index a, Index b, Real s) const {
     const Vec3<Real> va = faces.nodes.velocity(a);
     return va + s * (faces.nodes.velocity(b) - va);
   }
-  /// The face on the other side of side k, or -1.
-  CDEM_HD Index across(Index face, Index k) const {
-    const Index edge = faces.face_edges[4 * face + k];
-    const Index a = faces.edge_faces[2 * edge], b = faces.edge_faces[2 * edge + 1];
-    return a == face ? b : a;
-  }
-  CDEM_HD Vec3<Real> normal_of(Index face) const {
-    const Index exposed = faces.face_exposed[face];
-    return exposed >= 0 ? geometry.normal(exposed) : faces.shape(face).normal();
-  }
-  /// True edges (not between coplanar faces), right face, and -n in the mother edge's normal cone,
+  /// Right face, and -n in the mother edge's normal cone,
   /// n in the target edge's: the faces at an edge fall away from the contact plane.
   CDEM_HD bool cones_hold(Index m, Index k, Index t, Index j, const Vec3<Real>& dm,
                           const Vec3<Real>& dt, const Vec3<Real>& n) const {
-    constexpr Real coplanar = 0.999;
     const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    const Index across_m = across(face_m, k), across_t = across(face_t, j);
+    const Index across_m = faces.across(face_m, k), across_t = faces.across(face_t, j);
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(t);
     if (dot(n, unit(cross(nm, dm))) < -rules.cone) return false;
     if (dot(n, unit(cross(nt, dt))) > rules.cone) return false;
     if (across_m >= 0) {
-      const Vec3<Real> n2 = normal_of(across_m);
-      if (dot(nm, n2) > coplanar) return false;
+      const Vec3<Real> n2 = normal_of(faces, geometry, across_m);
       if (dot(n, unit(cross(n2, -dm))) < -rules.cone) return false;
     }
     if (across_t >= 0) {
-      const Vec3<Real> n2 = normal_of(across_t);
-      if (dot(nt, n2) > coplanar) return false;
+      const Vec3<Real> n2 = normal_of(faces, geometry, across_t);
       if (dot(n, unit(cross(n2, -dt))) > rules.cone) return false;
       if (faces.face_exposed[across_t] >= 0) {
         const Real here = dot(nm, nt), there = dot(nm, n2);

@@ -284,7 +284,10 @@ def _hull(points: Floats) -> NDArray[np.int64]:
             for k in range(j + 1, n):
                 normal = np.cross(points[j] - points[i], points[k] - points[i])
                 size = np.linalg.norm(normal)
-                if size <= near * np.linalg.norm(points[[j, k, k]] - points[[i, i, j]], axis=1).max():
+                if (
+                    size
+                    <= near * np.linalg.norm(points[[j, k, k]] - points[[i, i, j]], axis=1).max()
+                ):
                     continue  # three in a line span no plane
                 normal = normal / size
                 height = (points - points[i]) @ normal
