@@ -121,48 +121,23 @@ struct FindTargetEdges {
     if (!geometry.sharp(m, k) || !geometry.sharp(target, j)) return false;
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(target);
     if (dot(nm, nt) >= -rules.opposing) return false;
-    const Index face_m = exposed_face[m], face_t = exposed_face[target];
-    const Index km = next(face_m, k), jt = next(face_t, j);
-    const Index m0 = faces.vertex(face_m, k), m1 = faces.vertex(face_m, km);
-    const Index t0 = faces.vertex(face_t, j), t1 = faces.vertex(face_t, jt);
-    if (glued(m0, t0) || glued(m0, t1) || glued(m1, t0) || glued(m1, t1)) return false;
-    // edges that start from one place are not edges on each other
-    const Real length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
-    const Real near = rules.indentation * length;
-    if (together(m0, t0, near) || together(m0, t1, near)) return false;
-    if (together(m1, t0, near) || together(m1, t1, near)) return false;
-    const Vec3<Real> xm = faces.nodes.position(m0), xt = faces.nodes.position(t0);
-    const Vec3<Real> dm = faces.nodes.position(m1) - xm, dt = faces.nodes.position(t1) - xt;
-    const Vec3<Real> c = cross(dm, dt);
-    constexpr Real parallel = 0.02;  // sine of the angle between the edges
-    const Real c2 = dot(c, c);
-    if (c2 < parallel * parallel * dot(dm, dm) * dot(dt, dt)) return false;
-    // most pairs pass each other far off: see it from the common perpendicular, before all else
-    constexpr Real aside = 0.2;  // of an edge; room for the indentation and for other normals
-    const Vec3<Real> apart = xt - xm;
-    const Real s = dot(cross(apart, dt), c), t = dot(cross(apart, dm), c);
-    if (s < -aside * c2 || s > (1 + aside) * c2) return false;
-    if (t < -aside * c2 || t > (1 + aside) * c2) return false;
-    const bool flush = dot(nm, nt) < flush_faces;
-    if (!flush && dot(apart, c) * dot(c, nt - nm) < 0) return false;  // not met yet
+    const Sides p = sides(m, k, target, j);
+    if (joined(p) || far_apart(p, nm, nt)) return false;
 
-    const Vec3<Real> n = edge_normal(dm, dt, nm, nt);
-
-    const Vec3<Real> center = geometry.center(m);
-    const Vec3<Real> p0 = xm + rules.indentation * (center - xm);
-    const Vec3<Real> along = (1.0 - rules.indentation) * dm;
+    const Vec3<Real> n = edge_normal(p.dm, p.dt, nm, nt);
+    const Vec3<Real> p0 = p.xm + rules.indentation * (geometry.center(m) - p.xm);
     const Real slack = held ? 0.5 * rules.indentation : 0.0;
-    const Crossing inner = cross_edges(p0, along, xt, dt, n);
+    const Crossing inner = cross_edges(p0, (1.0 - rules.indentation) * p.dm, p.xt, p.dt, n);
     if (inner.s < -slack || inner.s > 1.0 + slack) return false;
     if (inner.t < -slack || inner.t > 1.0 + slack) return false;
 
-    const Crossing true_edges = cross_edges(xm, dm, xt, dt, n);
+    const Crossing true_edges = cross_edges(p.xm, p.dm, p.xt, p.dt, n);
     if (true_edges.gap > 0) return false;
-    const Real approach =
-        rules.approach_steps * faces.dt *
-        abs_of(dot(n, velocity_at(m0, m1, true_edges.s) - velocity_at(t0, t1, true_edges.t)));
-    const Real limit = held ? rules.depth * length : rules.entry * length + approach;
-    const bool in_cones = cones_hold(m, k, target, j, dm, dt, n);
+    const Real approach = rules.approach_steps * faces.dt *
+                          abs_of(dot(n, velocity_at(p.m0, p.m1, true_edges.s) -
+                                            velocity_at(p.t0, p.t1, true_edges.t)));
+    const Real limit = held ? rules.depth * p.length : rules.entry * p.length + approach;
+    const bool in_cones = cones_hold(m, k, target, j, p.dm, p.dt, n);
     if (true_edges.gap < -limit) {
       if (held && loaded && in_cones) *lost = 1;
       return false;
@@ -239,6 +214,42 @@ struct FindTargetEdges {
   }
 
  private:
+  /// A side of the mother and one of the target: nodes, start, vector; L of the smaller face.
+  struct Sides {
+    Index m0, m1, t0, t1;
+    Vec3<Real> xm, dm, xt, dt;
+    Real length;
+  };
+  CDEM_HD Sides sides(Index m, Index k, Index t, Index j) const {
+    const Index face_m = exposed_face[m], face_t = exposed_face[t];
+    Sides p;
+    p.m0 = faces.vertex(face_m, k), p.m1 = faces.vertex(face_m, next(face_m, k));
+    p.t0 = faces.vertex(face_t, j), p.t1 = faces.vertex(face_t, next(face_t, j));
+    p.xm = faces.nodes.position(p.m0), p.xt = faces.nodes.position(p.t0);
+    p.dm = faces.nodes.position(p.m1) - p.xm, p.dt = faces.nodes.position(p.t1) - p.xt;
+    p.length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
+    return p;
+  }
+  /// Sides that a bond holds together, or that start from one place, are not edges on each other.
+  CDEM_HD bool joined(const Sides& p) const {
+    const Real near = rules.indentation * p.length;
+    return glued(p.m0, p.t0) || glued(p.m0, p.t1) || glued(p.m1, p.t0) || glued(p.m1, p.t1) ||
+           together(p.m0, p.t0, near) || together(p.m0, p.t1, near) || together(p.m1, p.t0, near) ||
+           together(p.m1, p.t1, near);
+  }
+  /// Most pairs are parallel, pass each other far off or have not met yet: see it from the common
+  /// perpendicular before all else.
+  CDEM_HD bool far_apart(const Sides& p, const Vec3<Real>& nm, const Vec3<Real>& nt) const {
+    constexpr Real parallel = 0.02;  // sine of the angle between the edges
+    constexpr Real aside = 0.2;      // of an edge; room for the indentation and for other normals
+    const Vec3<Real> c = cross(p.dm, p.dt), apart = p.xt - p.xm;
+    const Real c2 = dot(c, c);
+    if (c2 < parallel * parallel * dot(p.dm, p.dm) * dot(p.dt, p.dt)) return true;
+    const Real s = dot(cross(apart, p.dt), c), t = dot(cross(apart, p.dm), c);
+    if (s < -aside * c2 || s > (1 + aside) * c2) return true;
+    if (t < -aside * c2 || t > (1 + aside) * c2) return true;
+    return dot(nm, nt) >= flush_faces && dot(apart, c) * dot(c, nt - nm) < 0;
+  }
   CDEM_HD Index next(Index face, Index k) const {
     return k + 1 == faces.vertex_count(face) ? 0 : k + 1;
   }
