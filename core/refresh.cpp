@@ -58,7 +58,6 @@ void expose(const Model& m, State& s, Index face) {
   e.dashpot.resize(count);
   e.lost.resize(count);
   e.overflow.resize(count);
-  s.search.face_sunk.resize(count);
   s.face_geometry.resize(8 * count);
   s.contact_force.resize(4 * 4 * count);
   (void)m;

@@ -43,7 +43,6 @@ struct EdgeState {
 };
 
 struct SearchState {
-  Column<Real> face_sunk;                    // [exposed] deepest contact of the face  [m]
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
   Column<Index> candidate_first, candidate;
   Column<Index> edge_candidate_first, edge_candidate, edge_candidate_sides;
@@ -139,7 +138,6 @@ void describe(S& s, Visit&& field) {
   field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");
   field("edge.lost", s.edges.lost, "1: lost by depth");
 
-  field("search.face_sunk", s.search.face_sunk, "deepest contact of an exposed face [m]");
   field("search.exposed_face", s.search.exposed_face, "faces that can be touched");
   field("search.face_exposed", s.search.face_exposed, "place of a face among them, or -1");
   field("search.candidate_first", s.search.candidate_first, "start of a face's candidates");

@@ -91,16 +91,14 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
 void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, contact/force.hpp
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
-  launch_one(q, 4 * count,
-             UpdateSpringForces{face_columns(m, s), exposed, m.rules, contact_laws(m),
-                                spring_columns(s), s.search.face_sunk.data()});
+  launch_one(
+      q, 4 * count,
+      UpdateSpringForces{face_columns(m, s), exposed, m.rules, contact_laws(m), spring_columns(s)});
   launch_one(q, count,
-             UpdateEdgeForces{face_columns(m, s), exposed, contact_laws(m), edge_columns(s),
-                              s.search.face_sunk.data()});
+             UpdateEdgeForces{face_columns(m, s), exposed, contact_laws(m), edge_columns(s)});
   launch_one(q, count,
              GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s), m.rules,
-                              spring_columns(s), edge_columns(s), s.contact_force.data(),
-                              s.search.face_sunk.data()});
+                              spring_columns(s), edge_columns(s), s.contact_force.data()});
 }
 
 template <class Shape>

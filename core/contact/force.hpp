@@ -23,19 +23,11 @@ struct ContactLaws {
 ///
 /// A contact met from outside is free at zero gap. One that is found already inside must not
 /// release energy that nothing put in (faces of freshly broken rock have slid a little past each
-/// other, a vertex turns a corner): it may begin as deep as the contact it comes from or, between
-/// flush faces, as their other contacts are (a seam in a flat bed, where contacts take turns to
-/// carry the same load); what is deeper counts as free of stress.
-CDEM_HD inline Real starting_gap_free(Real gap, Real gap_rate, Real dt, Real sunk_before,
-                                      Real sunk_of_faces) {
+/// other, a vertex turns a corner): it may begin as deep as the contact it takes over from; what is
+/// deeper counts as free of stress.
+CDEM_HD inline Real starting_gap_free(Real gap, Real gap_rate, Real dt, Real sunk_before) {
   const Real gap_before = gap - gap_rate * dt;
-  return min_of(gap_before + max_of(sunk_before, sunk_of_faces), 0.0);
-}
-
-/// How deep a new contact between two faces may begin: see starting_gap_free.
-CDEM_HD inline Real sunk_of_flush(Real facing, Real sunk_m, Real sunk_t) {
-  constexpr Real flush = -0.999;  // cosine between the normals: 2.6 degrees
-  return facing < flush ? max_of(sunk_m, sunk_t) : 0.0;
+  return min_of(gap_before + sunk_before, 0.0);
 }
 
 /// Once a contact is lifted past its stress-free gap, that gap follows it back towards zero.
@@ -91,7 +83,6 @@ struct UpdateSpringForces {
   SearchRules rules;
   ContactLaws laws;
   SpringColumns springs;
-  const Real* face_sunk;  // [exposed] deepest contact of the face one step ago  [m]
 
   CDEM_HD void operator()(One slot) const {
     const Index m = slot.i / 4, k = slot.i % 4, t = springs.target[slot.i];
@@ -126,9 +117,7 @@ struct UpdateSpringForces {
     const Real gap_rate = dot(frame.n, rate);
     Real& free = springs.gap_free[slot.i];
     free = before == t ? lifted_gap_free(free, foot.gap)
-                       : starting_gap_free(foot.gap, gap_rate, faces.dt, springs.sunk[slot.i],
-                                           sunk_of_flush(dot(faces.shape(face_m).normal(), frame.n),
-                                                         face_sunk[m], face_sunk[t]));
+                       : starting_gap_free(foot.gap, gap_rate, faces.dt, springs.sunk[slot.i]);
     const ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - free, gap_rate,
                                          dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
                                          springs.shear1[slot.i], springs.shear2[slot.i], faces.dt);
@@ -210,7 +199,6 @@ struct UpdateEdgeForces {
   const Index* exposed_face;
   ContactLaws laws;
   EdgeColumns edges;
-  const Real* face_sunk;  // [exposed] deepest contact of the face one step ago  [m]
 
   CDEM_HD void operator()(One m) const {
     for (Index j = 0; j < edges.count[m.i]; ++j) update(m.i, edges.slots * m.i + j);
@@ -256,11 +244,8 @@ struct UpdateEdgeForces {
     const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
     const Real gap_rate = dot(frame.n, rate);
     Real& free = edges.gap_free[place];
-    free = edges.sunk[place] >= 0
-               ? lifted_gap_free(free, c.gap)
-               : starting_gap_free(c.gap, gap_rate, faces.dt, 0.0,
-                                   sunk_of_flush(dot(normal_m, normal_t), face_sunk[m],
-                                                 face_sunk[edges.target_face[place]]));
+    free = edges.sunk[place] >= 0 ? lifted_gap_free(free, c.gap)
+                                  : starting_gap_free(c.gap, gap_rate, faces.dt, 0.0);
     const ContactForce f = contact_force(kn, ks, law.tan_friction, c.gap - free, gap_rate, dashpot,
                                          -dot(old.t1, apart), -dot(old.t2, apart),
                                          edges.shear1[place], edges.shear2[place], faces.dt);
@@ -315,16 +300,13 @@ struct GatherFaceForces {
   SpringColumns springs;
   EdgeColumns edges;
   Real* corner_force;  // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
-  Real* face_sunk;     // [exposed] deepest contact of the face, as mother or target  [m]
 
   CDEM_HD void operator()(One m) const {
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
     Real sum[4][4] = {};
-    Real deepest = 0;
-    own(m.i, count, sum, deepest);
+    own(m.i, count, sum);
     for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c)
-      reactions(m.i, face, count, candidates.other[c], sum, deepest);
-    face_sunk[m.i] = deepest;
+      reactions(m.i, face, count, candidates.other[c], sum);
     for (Index k = 0; k < count; ++k)
       for (Index j = 0; j < 4; ++j) corner_force[(std::size_t(m.i) * 4 + k) * 4 + j] = sum[k][j];
   }
@@ -342,12 +324,11 @@ struct GatherFaceForces {
     corner[2] -= weight * row[2];
     corner[3] += abs_of(weight) * row[3];
   }
-  CDEM_HD void own(Index m, Index count, Real sum[4][4], Real& deepest) const {
+  CDEM_HD void own(Index m, Index count, Real sum[4][4]) const {
     const Real shared = rules.action / Real(count);
     for (Index k = 0; k < count; ++k) {
       if (springs.target[4 * m + k] < 0) continue;
       const Real* row = springs.reaction + (std::size_t(m) * 4 + k) * 8;
-      deepest = max_of(deepest, springs.sunk[4 * m + k]);
       add(sum[k], 1.0 - rules.action, row);
       if (shared > 0)
         for (Index j = 0; j < count; ++j) add(sum[j], shared, row);
@@ -356,17 +337,14 @@ struct GatherFaceForces {
       const Index place = edges.slots * m + j;
       const Real* row = edges.reaction + std::size_t(place) * 8;
       const Index k = edges.side[place];
-      deepest = max_of(deepest, edges.sunk[place]);
       add(sum[k], 1.0 - row[4], row);
       add(sum[k + 1 == count ? 0 : k + 1], row[4], row);
     }
   }
-  CDEM_HD void reactions(Index m, Index face, Index count, Index other, Real sum[4][4],
-                         Real& deepest) const {
+  CDEM_HD void reactions(Index m, Index face, Index count, Index other, Real sum[4][4]) const {
     for (Index k = 0; k < 4; ++k) {
       if (springs.target[4 * other + k] != m) continue;
       const Real* row = springs.reaction + (std::size_t(other) * 4 + k) * 8;
-      deepest = max_of(deepest, springs.sunk[4 * other + k]);
       for (Index j = 0; j < count; ++j) take(sum[j], row[4 + j], row);
     }
     for (Index j = 0; j < edges.count[other]; ++j) {
@@ -374,7 +352,6 @@ struct GatherFaceForces {
       if (edges.target_face[place] != m) continue;
       const Real* row = edges.reaction + std::size_t(place) * 8;
       const Index k = side_on(face, edges.target_edge[place]);
-      deepest = max_of(deepest, edges.sunk[place]);
       take(sum[k], 1.0 - row[5], row);
       take(sum[k + 1 == count ? 0 : k + 1], row[5], row);
     }
