@@ -68,6 +68,7 @@ struct ExposedFaces {
   std::vector<Index> block;
   std::vector<Flag> movable;
   std::vector<FaceShape> shape;
+  std::vector<Real> skin;   // how far a vertex may move before the lists are old  [m]
   std::vector<Real> reach;  // of the box around the face  [m]
 
   /// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
@@ -90,7 +91,7 @@ ExposedFaces exposed_faces(const Model& m, const State& s) {
   ExposedFaces e{std::vector<Box>(count),  std::vector<Vec3<Real>>(count),
                  std::vector<Real>(count), std::vector<Index>(count),
                  std::vector<Flag>(count), std::vector<FaceShape>(count),
-                 std::vector<Real>(count)};
+                 std::vector<Real>(count), std::vector<Real>(count)};
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) {
     const Index face = s.search.exposed_face[x];
@@ -103,6 +104,7 @@ ExposedFaces exposed_faces(const Model& m, const State& s) {
     }
     e.shape[x] = f;
     const Real skin = skin_of(m, s, face);
+    e.skin[x] = skin;
     e.reach[x] = skin + deepest_gap(s, x);
     box.inflate(e.reach[x]);
     e.box[x] = box;
@@ -154,53 +156,99 @@ Real segment_distance(const Vec3<Real>& a, const Vec3<Real>& d, const Vec3<Real>
   return norm(apart + s * d - t * e);
 }
 
-/// Sides of exposed faces that may be edges of a contact: not those between coplanar faces.
-std::vector<Flag> sharp_sides(const Model& m, const State& s, const ExposedFaces& e) {
+/// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
+/// lie between theirs, which is what `fall` tells (see FindTargetEdges::cones_hold).
+struct ExposedSide {
+  bool sharp = false;  // may be an edge of a contact: its faces are not coplanar
+  Vec3<Real> start, along;
+  Vec3<Real> fall, fall_across;  // normal x side, of the face and of the one across
+  Index across = -1;             // exposed face on the other side, or -1
+  Real length = 0;               // [m]
+  Real turn = 0, turn_face = 0, turn_across = 0;  // of the side and of both faces
+};
+
+std::vector<ExposedSide> exposed_sides(const Model& m, const State& s, const ExposedFaces& e) {
   const Index count = Index(s.search.exposed_face.size());
-  std::vector<Flag> sharp(4 * std::size_t(count), 0);
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  std::vector<ExposedSide> sides(4 * std::size_t(count));
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) {
     const Index face = s.search.exposed_face[x];
     for (Index k = 0; k < e.shape[x].count; ++k) {
+      ExposedSide& side = sides[4 * std::size_t(x) + k];
+      side.start = e.shape[x].x[k];
+      side.along = e.shape[x].x[k + 1 == e.shape[x].count ? 0 : k + 1] - side.start;
+      side.length = norm(side.along);
+      side.turn = 2 * e.skin[x] / side.length;
+      side.turn_face = e.turn[x];
+      side.fall = unit(cross(e.normal[x], side.along));
       const Index edge = m.face_edges[4 * face + k];
       const Index a = m.edge_faces[2 * edge], b = m.edge_faces[2 * edge + 1];
       const Index across = a == face ? b : a;
-      const Index y = across < 0 ? -1 : s.search.face_exposed[across];
-      // the angle between them may change by what both may turn; one that is not exposed: unknown
-      sharp[4 * x + k] =
-          y < 0 || std::acos(std::min(1.0, dot(e.normal[x], e.normal[y]))) + e.turn[x] + e.turn[y] >
-                       std::acos(coplanar_faces);
+      side.across = across < 0 ? -1 : s.search.face_exposed[across];
+      side.sharp = true;
+      if (side.across < 0) continue;  // none, or one whose motion nothing watches
+      side.turn_across = e.turn[side.across];
+      side.fall_across = unit(cross(e.normal[side.across], -side.along));
+      // the angle between the faces may change by what both may turn
+      const Real angle = std::acos(std::min(1.0, dot(e.normal[x], e.normal[side.across])));
+      side.sharp = angle + e.turn[x] + side.turn_across > std::acos(coplanar_faces);
     }
   }
-  return sharp;
+  return sides;
+}
+
+/// Can the two sides never be each other's edges until the next refresh, wherever they are? The
+/// tests of FindTargetEdges on directions, with room for what everything may turn.
+bool turned_away(const SearchRules& rules, const ExposedFaces& e, Index x, const ExposedSide& p,
+                 Index y, const ExposedSide& q) {
+  const Vec3<Real>&normal_x = e.normal[x], &normal_y = e.normal[y];
+  const Real turns = p.turn_face + q.turn_face;
+  if (q.across >= 0 &&
+      dot(normal_x, e.normal[q.across]) < dot(normal_x, normal_y) - 2 * turns - q.turn_across)
+    return true;  // the face across is the right face of that edge
+  if (dot(normal_x, normal_y) < flush_faces + turns) return false;
+  const Vec3<Real> c = cross(p.along, q.along);
+  const Real sine = norm(c) / (p.length * q.length) - p.turn - q.turn;
+  if (!(sine > 0)) return false;
+  const Real swing = (p.turn + q.turn) / sine;  // of the contact normal
+  const Vec3<Real> out = normal_y - normal_x;
+  const Real side = dot(c, out) / norm(c);
+  if (std::abs(side) < 2 * swing + turns) return false;  // either sign may come
+  const Vec3<Real> n = (side < 0 ? -1 : 1) / norm(c) * c;
+  const auto beyond = [&](Real sine_of_cone, const ExposedSide& of, Real turn_face) {
+    return sine_of_cone < -(rules.cone + swing + of.turn + turn_face);
+  };
+  return beyond(dot(n, p.fall), p, p.turn_face) || beyond(-dot(n, q.fall), q, q.turn_face) ||
+         (p.across >= 0 && beyond(dot(n, p.fall_across), p, p.turn_across)) ||
+         (q.across >= 0 && beyond(-dot(n, q.fall_across), q, q.turn_across));
 }
 
 void list_edges(const Model& m, State& s, const ExposedFaces& e) {
   const Index count = m.semi_edges ? Index(s.search.exposed_face.size()) : 0;
-  const std::vector<Flag> sharp = sharp_sides(m, s, e);
+  const FaceColumns faces = face_columns(m, s);
+  const std::vector<ExposedSide> sides = exposed_sides(m, s, e);
   struct Entry {
     Index face, sides;
   };
   std::vector<std::vector<Entry>> rows(count);
 #pragma omp parallel for schedule(dynamic, 64) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) {
-    const FaceShape& mother = e.shape[x];
     const Index face_x = s.search.exposed_face[x];
     for (Index c = s.search.candidate_first[x]; c < s.search.candidate_first[x + 1]; ++c) {
       const Index y = s.search.candidate[c], face_y = s.search.exposed_face[y];
-      const FaceShape& target = e.shape[y];
       // what both may move, how deep a contact may begin, and the indentation, which decides
       const Real room = e.reach[x] + e.reach[y] +
                         m.rules.entry * std::min(m.face_length[face_x], m.face_length[face_y]) +
                         2 * m.rules.indentation * (m.face_reach[face_x] + m.face_reach[face_y]);
-      for (Index k = 0; k < mother.count; ++k) {
-        if (!sharp[4 * x + k]) continue;
-        const Vec3<Real> d = mother.x[k + 1 == mother.count ? 0 : k + 1] - mother.x[k];
-        for (Index j = 0; j < target.count; ++j) {
-          if (!sharp[4 * y + j]) continue;
-          const Vec3<Real> t = target.x[j + 1 == target.count ? 0 : j + 1] - target.x[j];
-          if (segment_distance(mother.x[k], d, target.x[j], t) > room) continue;
-          rows[x].push_back({y, 4 * k + j});
+      for (Index k = 0; k < e.shape[x].count; ++k) {
+        const ExposedSide& p = sides[4 * std::size_t(x) + k];
+        if (!p.sharp) continue;
+        for (Index j = 0; j < e.shape[y].count; ++j) {
+          const ExposedSide& q = sides[4 * std::size_t(y) + j];
+          if (!q.sharp || segment_distance(p.start, p.along, q.start, q.along) > room) continue;
+          SidePair pair;
+          if (!pair_sides(faces, face_x, k, face_y, j, pair)) continue;
+          if (!turned_away(m.rules, e, x, p, y, q)) rows[x].push_back({y, pair.code()});
         }
       }
     }
@@ -219,6 +267,21 @@ void list_edges(const Model& m, State& s, const ExposedFaces& e) {
 }
 
 }  // namespace
+
+bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,
+                SidePair& pair) {
+  const Index km = k + 1 == faces.vertex_count(face_m) ? 0 : k + 1;
+  const Index jt = j + 1 == faces.vertex_count(face_t) ? 0 : j + 1;
+  const Index mother[2] = {faces.vertex(face_m, k), faces.vertex(face_m, km)};
+  const Index target[2] = {faces.vertex(face_t, j), faces.vertex(face_t, jt)};
+  pair = {k, j, 0};
+  for (Index i = 0; i < 4; ++i) {
+    const Index a = mother[i >> 1], b = target[i & 1];
+    if (faces.node_glue[a] == faces.node_glue[b]) return false;
+    if (faces.node_place[a] == faces.node_place[b]) pair.shared |= 1 << i;
+  }
+  return true;
+}
 
 void list_candidates(const Model& m, State& s) {
   const ExposedFaces e = exposed_faces(m, s);

@@ -317,10 +317,20 @@ Index count_missed_contacts(const Model& m, State& s) {
     for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
       missed += by_list[k] != by_all[k];
     if (!m.semi_edges) continue;
+    const EdgeCandidates& c = edges.candidates;
     for (const Index t : all)
       for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
-        for (Index j = 0; j < springs.faces.vertex_count(s.search.exposed_face[t]); ++j)
-          missed += !edges.listed(x, k, t, j) && edges.touches(x, k, t, j, false, false, ignored);
+        for (Index j = 0; j < springs.faces.vertex_count(s.search.exposed_face[t]); ++j) {
+          SidePair pair;
+          if (!pair_sides(springs.faces, s.search.exposed_face[x], k, s.search.exposed_face[t], j,
+                          pair) ||
+              !edges.touches(x, t, pair, false, false, ignored))
+            continue;
+          bool found = false;
+          for (Index i = c.first[x]; i < c.first[x + 1]; ++i)
+            found = found || (c.face[i] == t && c.sides[i] == pair.code());
+          missed += !found;
+        }
   }
   return missed;
 }

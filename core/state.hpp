@@ -144,7 +144,8 @@ void describe(S& s, Visit&& field) {
   field("search.candidate", s.search.candidate, "exposed faces that it may touch");
   field("search.edge_candidate_first", s.search.edge_candidate_first, "start of a face's sides");
   field("search.edge_candidate", s.search.edge_candidate, "exposed face whose side may be crossed");
-  field("search.edge_candidate_sides", s.search.edge_candidate_sides, "4 * own side + its side");
+  field("search.edge_candidate_sides", s.search.edge_candidate_sides,
+        "which sides, which ends shared");
   field("search.contact_first", s.search.contact_first, "start of a node's contact rows");
   field("search.contact_corner", s.search.contact_corner, "contact rows of a node");
   field("search.node_skin", s.search.node_skin, "motion that calls for a refresh [m]");

@@ -33,7 +33,15 @@ struct EdgeColumns {
 struct EdgeCandidates {
   const Index* first;  // [exposed + 1]
   const Index* face;   // exposed face to which the target side belongs, ascending in a row
-  const Index* sides;  // 4 * side of the mother + side of the target
+  const Index* sides;  // SidePair::code
+};
+
+/// Side k of the mother and side j of the target. Bit 2 a + b of `shared`: end a of the one and end
+/// b of the other began at the same place in the mesh.
+struct SidePair {
+  Index k, j, shared;
+  CDEM_HD Index code() const { return shared << 4 | k << 2 | j; }
+  CDEM_HD static SidePair of(Index code) { return {code >> 2 & 3, code & 3, code >> 4}; }
 };
 
 /// Two edges at one instant: start point and vector along either, and the contact normal.
@@ -115,14 +123,15 @@ struct FindTargetEdges {
     edges.count[m.i] = used;
   }
 
-  /// Does side k of exposed face m touch side j of exposed face t?
-  CDEM_HD bool touches(Index m, Index k, Index target, Index j, bool held, bool loaded,
+  /// Does a side of exposed face m touch one of exposed face t?
+  CDEM_HD bool touches(Index m, Index target, const SidePair& pair, bool held, bool loaded,
                        Flag* lost) const {
+    const Index k = pair.k, j = pair.j;
     if (!geometry.sharp(m, k) || !geometry.sharp(target, j)) return false;
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(target);
     if (dot(nm, nt) >= -rules.opposing) return false;
     const Sides p = sides(m, k, target, j);
-    if (joined(p) || far_apart(p, nm, nt)) return false;
+    if ((pair.shared && together(p, pair.shared)) || far_apart(p, nm, nt)) return false;
 
     const Vec3<Real> n = edge_normal(p.dm, p.dt, nm, nt);
     const Vec3<Real> p0 = p.xm + rules.indentation * (geometry.center(m) - p.xm);
@@ -143,13 +152,6 @@ struct FindTargetEdges {
       return false;
     }
     return in_cones;
-  }
-
-  /// Is the pair among the candidates?
-  bool listed(Index m, Index k, Index t, Index j) const {
-    for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c)
-      if (candidates.face[c] == t && candidates.sides[c] == 4 * k + j) return true;
-    return false;
   }
 
   /// A contact found in this step; `old` is its place among those of the step before, or -1.
@@ -203,11 +205,12 @@ struct FindTargetEdges {
   CDEM_HD Index find(Index m, const Held& held, Found* found) const {
     Index used = 0;
     for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c) {
-      const Index t = candidates.face[c], k = candidates.sides[c] / 4, j = candidates.sides[c] % 4;
-      const Index edge = faces.face_edges[4 * exposed_face[t] + j];
-      const Index old = held.find(k, edge);
-      if (!touches(m, k, t, j, old >= 0, held.loaded(old), edges.lost + m)) continue;
-      if (used < most_slots) found[used] = {k, t, edge, old};
+      const Index t = candidates.face[c];
+      const SidePair pair = SidePair::of(candidates.sides[c]);
+      const Index edge = faces.face_edges[4 * exposed_face[t] + pair.j];
+      const Index old = held.find(pair.k, edge);
+      if (!touches(m, t, pair, old >= 0, held.loaded(old), edges.lost + m)) continue;
+      if (used < most_slots) found[used] = {pair.k, t, edge, old};
       ++used;
     }
     return used;
@@ -230,12 +233,17 @@ struct FindTargetEdges {
     p.length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
     return p;
   }
-  /// Sides that a bond holds together, or that start from one place, are not edges on each other.
-  CDEM_HD bool joined(const Sides& p) const {
+  /// Sides that start from one place in the mesh, and are still there, are not edges on each other.
+  CDEM_HD bool together(const Sides& p, Index shared) const {
     const Real near = rules.indentation * p.length;
-    return glued(p.m0, p.t0) || glued(p.m0, p.t1) || glued(p.m1, p.t0) || glued(p.m1, p.t1) ||
-           together(p.m0, p.t0, near) || together(p.m0, p.t1, near) || together(p.m1, p.t0, near) ||
-           together(p.m1, p.t1, near);
+    const Index mother[2] = {p.m0, p.m1}, target[2] = {p.t0, p.t1};
+    for (Index pair = 0; pair < 4; ++pair) {
+      if (!(shared >> pair & 1)) continue;
+      const Vec3<Real> d =
+          faces.nodes.position(mother[pair >> 1]) - faces.nodes.position(target[pair & 1]);
+      if (dot(d, d) < near * near) return true;
+    }
+    return false;
   }
   /// Most pairs are parallel, pass each other far off or have not met yet: see it from the common
   /// perpendicular before all else.
@@ -253,13 +261,6 @@ struct FindTargetEdges {
   CDEM_HD Index next(Index face, Index k) const {
     return k + 1 == faces.vertex_count(face) ? 0 : k + 1;
   }
-  /// Nodes that began at the same place in the mesh and are still there.
-  CDEM_HD bool together(Index a, Index b, Real near) const {
-    if (faces.node_place[a] != faces.node_place[b]) return false;
-    const Vec3<Real> d = faces.nodes.position(a) - faces.nodes.position(b);
-    return dot(d, d) < near * near;
-  }
-  CDEM_HD bool glued(Index a, Index b) const { return faces.node_glue[a] == faces.node_glue[b]; }
   CDEM_HD Vec3<Real> velocity_at(Index a, Index b, Real s) const {
     const Vec3<Real> va = faces.nodes.velocity(a);
     return va + s * (faces.nodes.velocity(b) - va);
