@@ -131,11 +131,12 @@ struct FindTargetEdges {
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(target);
     if (dot(nm, nt) >= -rules.opposing) return false;
     const Sides p = sides(m, k, target, j);
-    if ((pair.shared && together(p, pair.shared)) || far_apart(p, nm, nt)) return false;
-
-    const Vec3<Real> n = edge_normal(p.dm, p.dt, nm, nt);
+    if (pair.shared && together(p, pair.shared)) return false;
     const Vec3<Real> p0 = p.xm + rules.indentation * (geometry.center(m) - p.xm);
     const Real slack = held ? 0.5 * rules.indentation : 0.0;
+    if (far_apart(p, p0, nm, nt, slack)) return false;
+
+    const Vec3<Real> n = edge_normal(p.dm, p.dt, nm, nt);
     const Crossing inner = cross_edges(p0, (1.0 - rules.indentation) * p.dm, p.xt, p.dt, n);
     if (inner.s < -slack || inner.s > 1.0 + slack) return false;
     if (inner.t < -slack || inner.t > 1.0 + slack) return false;
@@ -246,17 +247,21 @@ struct FindTargetEdges {
     return false;
   }
   /// Most pairs are parallel, pass each other far off or have not met yet: see it from the common
-  /// perpendicular before all else.
-  CDEM_HD bool far_apart(const Sides& p, const Vec3<Real>& nm, const Vec3<Real>& nt) const {
+  /// perpendicular, without a root or a division, before all else. `p0` is where the indented side
+  /// starts.
+  CDEM_HD bool far_apart(const Sides& p, const Vec3<Real>& p0, const Vec3<Real>& nm,
+                         const Vec3<Real>& nt, Real slack) const {
     constexpr Real parallel = 0.02;  // sine of the angle between the edges
-    constexpr Real aside = 0.2;      // of an edge; room for the indentation and for other normals
-    const Vec3<Real> c = cross(p.dm, p.dt), apart = p.xt - p.xm;
+    const Vec3<Real> c = cross(p.dm, p.dt), apart = p.xt - p0;
     const Real c2 = dot(c, c);
     if (c2 < parallel * parallel * dot(p.dm, p.dm) * dot(p.dt, p.dt)) return true;
+    const bool flush = dot(nm, nt) < flush_faces;
+    if (!flush && dot(p.xt - p.xm, c) * dot(c, nt - nm) < 0) return true;
+    // flush faces have another normal than c: leave room for it; for others only for round-off
+    const Real room = flush ? 0.2 : slack + 1e-9;
     const Real s = dot(cross(apart, p.dt), c), t = dot(cross(apart, p.dm), c);
-    if (s < -aside * c2 || s > (1 + aside) * c2) return true;
-    if (t < -aside * c2 || t > (1 + aside) * c2) return true;
-    return dot(nm, nt) >= flush_faces && dot(apart, c) * dot(c, nt - nm) < 0;
+    const Real longest = (1.0 - rules.indentation) * c2;
+    return s < -room * c2 || s > longest + room * c2 || t < -room * c2 || t > (1.0 + room) * c2;
   }
   CDEM_HD Index next(Index face, Index k) const {
     return k + 1 == faces.vertex_count(face) ? 0 : k + 1;
