@@ -207,6 +207,8 @@ NB_MODULE(CDEM_MODULE, module) {
              c.model.stiffness_damping = stiffness;
              c.model.contact_damping = contact;
            })
+      .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
+      .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
       .def("start", [](Core& c, Array<Real> position) { start(c.model, c.state, position.data()); })
       .def("restore", &restore)
       .def("prepare", [](Core& c) { prepare(c.model, c.state); })

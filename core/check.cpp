@@ -161,19 +161,21 @@ Real unbalance_ratio(const Model& m, const State& s) {
 StepLimit step_limit(const Model& m, const State& s) {
   StepLimit limit;
   Real largest = -1;
+  const MassColumns mass = mass_columns(m);
   for (Index i = 0; i < m.node_count; ++i) {
     Real stiffness = 0;
-    const Index first = m.dense_first[i] < 0 ? i : m.block_first[i];
-    const Index last = m.dense_first[i] < 0 ? i + 1 : first + m.block_count[i];
-    if (m.dense_first[i] >= 0 && i != first) continue;
+    const bool dense = mass.row(i) >= 0;
+    const Index first = dense ? m.block_first[i] : i;
+    const Index last = dense ? first + m.block_count[i] : i + 1;
+    if (dense && i != first) continue;
     Real element2 = 0;
     for (Index j = first; j < last; ++j) {
       const Real contact = std::max(s.nodes.force[std::size_t(j) * 4 + 3], s.node_potential[j]);
       stiffness = std::max(stiffness, contact + s.node_bonds[j]);
-      element2 = std::max(element2, m.frequency2[j]);
+      element2 = std::max(element2, m.lumped ? m.lumped_frequency2[j] : m.frequency2[j]);
     }
     // Gershgorin: a spring between two points adds at most twice its stiffness to a row
-    const Real contact2 = 2 * stiffness * m.inverse_mass_bound[i];
+    const Real contact2 = 2 * stiffness * (m.lumped ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
     if (element2 + contact2 > largest) {
       largest = element2 + contact2;
       limit.node = i;
@@ -210,6 +212,23 @@ Report check_health(const Model& m, const State& s) {
     if (lost) return {Outcome::lost_contact, Index(i), 0};
   }
   return {};
+}
+
+void change_mass(Model& m, State& s, bool lumped) {
+  const auto kinetic = [&] {
+    launch_one({}, m.node_count,
+               NodeMomentum{{s.nodes.motion.data()}, mass_columns(m), s.nodes.momentum.data()});
+    finish({});
+    return ordered_sum(m.node_count, [&](Index i) {
+      const Real *p = s.nodes.momentum.data() + std::size_t(i) * 4,
+                 *v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
+      return 0.5 * (p[0] * v[0] + p[1] * v[1] + p[2] * v[2]);
+    });
+  };
+  if (m.lumped == lumped) return;
+  const Real before = kinetic();
+  m.lumped = lumped;
+  s.stopped_energy += before - kinetic();
 }
 
 void stop_motion(const Model& m, State& s) {

@@ -42,6 +42,7 @@ struct Model {
   Column<Real> mass_inverse, mass_matrix;
   Column<Real> inverse_mass_bound;  // largest eigenvalue of the inverse mass matrix  [1/kg]
   Column<Real> frequency2;          // largest of the node's elements, squared  [1/s2]
+  Column<Real> lumped_frequency2;   // the same with lumped masses
 
   ElementSet tet4, pyramid5, wedge6, hex8;
   Column<Real> material_lambda, material_mu;
@@ -80,6 +81,7 @@ struct Model {
   bool semi_edges = true;
   Index refresh_interval = 0;  // 0: by displacement; else the paper's every so many steps
   NodeDamping damping{0, 0};
+  bool lumped = false;         // lumped masses for all: quicker to rest, wrong inertia
   Real stiffness_damping = 0;  // Rayleigh, fraction of critical at the stability limit
   Real contact_damping = 0;    // fraction of critical
   Real step_safety = 0.8;
@@ -94,6 +96,7 @@ void describe(Model& m, Visit&& field) {
   field("node.place", m.node_place);
   field("node.mass", m.mass);
   field("node.gravity_mass", m.gravity_mass);
+  field("node.lumped_frequency2", m.lumped_frequency2);
   field("node.dense_first", m.dense_first);
   field("node.dense_step", m.dense_step);
   field("node.block_first", m.block_first);

@@ -136,7 +136,8 @@ void label_glue(const Model& m, State& s) {
 
 }  // namespace
 
-/// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to.
+/// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to before
+/// the next refresh.
 void sum_stiffness(const Model& m, State& s) {
   s.node_bonds.resize(m.node_count);
   s.node_bonds.fill(0);
@@ -166,6 +167,7 @@ void sum_stiffness(const Model& m, State& s) {
   s.node_potential.resize(m.node_count);
   s.node_potential.fill(0);
   for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
+    if (s.search.candidate_first[x] == s.search.candidate_first[x + 1]) continue;
     const Index face = s.search.exposed_face[x];
     const Index count = m.face_nodes[4 * face + 3] < 0 ? 3 : 4;
     const Index group = m.face_group[face];
@@ -207,8 +209,8 @@ void refresh_contacts(const Model& m, State& s) {
   release_pairs(m, s, m.quads, s.quads);
   release_pairs(m, s, m.overlaps, s.overlaps);
   label_glue(m, s);
-  sum_stiffness(m, s);
   list_candidates(m, s);
+  sum_stiffness(m, s);
   list_contact_corners(m, s);
   for (Index i = 0; i < m.node_count; ++i)
     std::copy_n(s.nodes.motion.data() + std::size_t(i) * 8, 3,

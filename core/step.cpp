@@ -147,20 +147,22 @@ void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
 }
 
 void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
-  launch_one(
-      q, m.node_count,
-      MoveNodes{mass_columns(m), load_columns(m, s), support_columns(m, s), s.nodes.force.data(),
-                s.nodes.damping_force.data(), s.dt, s.nodes.motion.data(), s.nodes.reaction.data(),
-                s.nodes.work_external.data(), s.nodes.work_damping.data()});
+  launch_one(q, m.node_count,
+             MoveNodes{mass_columns(m), load_columns(m, s), support_columns(m, s),
+                       s.nodes.force.data(), s.nodes.damping_force.data(), s.dt_last, s.dt,
+                       s.nodes.motion.data(), s.nodes.reaction.data(), s.nodes.work_external.data(),
+                       s.nodes.work_damping.data()});
   finish(q);
 }
 
 /// One step: contacts, elements, nodes. Everything before move_nodes belongs to the time `s.time`.
 void step(const Model& m, State& s, Queue q, bool sampled) {
+  if (refresh_is_due(m, s)) {
+    refresh_contacts(m, s);
+    renew_step(m, s);  // faces that may now touch call for a shorter step before they do
+  }
   evaluate_curves(m, s.time, s.load_factor);
   evaluate_curves(m, s.time + 0.5 * s.dt, s.velocity_factor);
-  const bool refreshed = refresh_is_due(m, s);
-  if (refreshed) refresh_contacts(m, s);
   update_face_geometry(m, s, q, false);  // contact/face.hpp
   update_bonds(m, s, q);
   find_target_faces(m, s, q);
@@ -174,7 +176,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   s.dt_last = s.dt;
   s.time += s.dt;
   s.step += 1;
-  if (refreshed || s.step % step_check_interval == 0) renew_step(m, s);
+  if (s.step % step_check_interval == 0) renew_step(m, s);
 }
 
 }  // namespace

@@ -55,6 +55,8 @@ void renew_step(const Model& model, State& state);
 StepLimit step_limit(const Model& model, const State& state);
 void report_elements(const Model& model, State& state, Queue queue);
 
+/// Change between lumped and exact masses; what kinetic energy that takes is booked as damping.
+void change_mass(Model& model, State& state, bool lumped);
 /// Zero all velocities; their energy is booked as damping.
 void stop_motion(const Model& model, State& state);
 

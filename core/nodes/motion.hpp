@@ -105,6 +105,7 @@ struct SumNodeForces {
 /// Mass of the nodes: a number each, or for small blocks the inverse of the consistent mass matrix,
 /// which gives them their exact inertia.
 struct MassColumns {
+  bool lumped;               // only the numbers count, whatever the matrices
   const Real* mass;          // [node] row sum of the mass matrix  [kg]
   const Index* dense_first;  // [node]: start of the node's row in `dense`, or -1 when lumped
   const Index* dense_step;   // [node]: from one axis to the next (0 when all three share)
@@ -112,24 +113,27 @@ struct MassColumns {
   const Index* block_count;  // [node]: nodes of the block
   const Real* inverse;       // rows of the inverse, supported nodes taken out  [1/kg]
   const Real* matrix;        // rows of the matrix, in the same places  [kg]
+
+  /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
+  CDEM_HD Index row(Index node) const { return lumped ? -1 : dense_first[node]; }
 };
 
 /// Advance velocity and position by one step of central differences, and account for the work.
 ///
-/// The force of time n acts with the mean of the velocities before and after it. Counted so, and
-/// with 1/2 v_before . M v_after as kinetic energy, central differences keep the sum of all
-/// energies exactly when forces are linear.
+/// The force of time n acts from the middle of the step before to the middle of this one, with the
+/// mean of the velocities before and after it. Counted so, and with 1/2 v_before . M v_after as
+/// kinetic energy, central differences keep the sum of all energies exactly when forces are linear.
 struct MoveNodes {
   MassColumns mass;
   LoadColumns loads;
   SupportColumns supports;
   const Real* force;          // row of 4  [N]
   const Real* damping_force;  // row of 4  [N]
-  Real dt;
-  Real* motion;         // row of 8
-  Real* reaction;       // row of 4: force of the support  [N]
-  Real* work_external;  // [node] of loads, gravity and supports so far  [J]
-  Real* work_damping;   // [node] taken out by damping so far  [J]
+  Real dt_before, dt;         // of the last step and of this one  [s]
+  Real* motion;               // row of 8
+  Real* reaction;             // row of 4: force of the support  [N]
+  Real* work_external;        // [node] of loads, gravity and supports so far  [J]
+  Real* work_damping;         // [node] taken out by damping so far  [J]
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
@@ -137,21 +141,22 @@ struct MoveNodes {
     acceleration(i, a);
     Real* r = motion + std::size_t(i) * 8;
     const Vec3<Real> v0{r[4], r[5], r[6]};
+    const Real kick = 0.5 * (dt_before + dt);
     for (Index axis = 0; axis < 3; ++axis) {
-      r[4 + axis] = supports.given(i, axis) ? supports.at(i, axis) : r[4 + axis] + dt * a[axis];
+      r[4 + axis] = supports.given(i, axis) ? supports.at(i, axis) : r[4 + axis] + kick * a[axis];
       r[axis] += dt * r[4 + axis];
     }
-    const Vec3<Real> v1{r[4], r[5], r[6]}, mean = 0.5 * (v0 + v1);
+    const Vec3<Real> v1{r[4], r[5], r[6]}, way = 0.5 * (dt_before * v0 + dt * v1);
     Vec3<Real> external = loads.at(i);
     if (supports.support[i] >= 0) external = external + react(i, v0, v1);
     const Real* d = damping_force + std::size_t(i) * 4;
-    work_external[i] += dt * dot(external, mean);
-    work_damping[i] -= dt * dot(Vec3<Real>{d[0], d[1], d[2]}, mean);
+    work_external[i] += dot(external, way);
+    work_damping[i] -= dot(Vec3<Real>{d[0], d[1], d[2]}, way);
   }
 
  private:
   CDEM_HD void acceleration(Index i, Real* a) const {
-    const Index row = mass.dense_first[i];
+    const Index row = mass.row(i);
     if (row < 0) {
       for (Index axis = 0; axis < 3; ++axis)
         a[axis] = force[std::size_t(i) * 4 + axis] / mass.mass[i];
@@ -168,9 +173,9 @@ struct MoveNodes {
   /// Force of the support: what is missing for the motion that it imposed. Other supported nodes of
   /// a block with a full mass matrix count as unaccelerated.
   CDEM_HD Vec3<Real> react(Index i, const Vec3<Real>& v0, const Vec3<Real>& v1) const {
-    const Vec3<Real> gained = (1.0 / dt) * (v1 - v0);
+    const Vec3<Real> gained = (2.0 / (dt_before + dt)) * (v1 - v0);
     Real need[3] = {mass.mass[i] * gained.x, mass.mass[i] * gained.y, mass.mass[i] * gained.z};
-    const Index row = mass.dense_first[i];
+    const Index row = mass.row(i);
     if (row >= 0) {
       const Real own = mass.matrix[row + i - mass.block_first[i]];
       need[0] = own * gained.x, need[1] = own * gained.y, need[2] = own * gained.z;
@@ -197,7 +202,7 @@ struct NodeMomentum {
   Real* momentum;  // row of 4  [kg m/s]
 
   CDEM_HD void operator()(One node) const {
-    const Index i = node.i, row = mass.dense_first[i];
+    const Index i = node.i, row = mass.row(i);
     Vec3<Real> p{0.0, 0.0, 0.0};
     if (row < 0) {
       p = mass.mass[i] * nodes.velocity(i);

@@ -154,7 +154,6 @@ def _elements(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
 
 def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None:
     """Masses of the nodes, and the squared frequency that bounds the time step."""
-    count = len(t.node_position)
     first = t.block_first_node
     size = np.diff(first)
     block_nodes = size[t.node_block]
@@ -163,10 +162,41 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
     held[t.node_block[~p.supported.all(axis=1)]] = False
     dense_block &= ~held  # a block that cannot move needs no inverse
 
-    lumped = np.zeros(count)
-    frequency2 = np.zeros(count)
+    while True:
+        scaled, lumped, frequency2, lumped_frequency2 = _scaled_masses(t, p, matrices, geometry, dense_block, out)
+        mass = lumped.copy()
+        if not p.exact_mass:
+            break
+        without = _correct_lumps(t, scaled, lumped, mass, dense_block | held, out)
+        if len(without) == 0:
+            break
+        dense_block[without] = True  # a full matrix has other frequencies: once more
+    # a node made lighter than its elements' share raises their frequency by as much
+    lighter = lumped / mass
+    worst = np.ones(len(size))
+    np.maximum.at(worst, t.node_block, np.where(dense_block[t.node_block], 1.0, lighter))
+    frequency2 *= worst[t.node_block]
+    lumped_frequency2 *= worst[t.node_block]
+
+    out.arrays["node.mass"] = mass
+    out.arrays["node.frequency2"] = frequency2
+    out.arrays["node.lumped_frequency2"] = lumped_frequency2
+    out.arrays["node.block_first"] = first[t.node_block].astype(np.int32)
+    out.arrays["node.block_count"] = block_nodes.astype(np.int32)
+    _dense_blocks(t, p, scaled, dense_block, out)
+
+
+def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, out: Assembly):
+    """Mass matrices after mass scaling, the nodes' lumped masses, and their elements' frequencies.
+
+    Elements of blocks with a full mass matrix vibrate with theirs, all others with lumped masses;
+    the second frequencies are those of lumped masses for all.
+    """
+    lumped = np.zeros(len(t.node_position))
+    frequency2 = np.zeros(len(t.node_position))
+    lumped_frequency2 = np.zeros(len(t.node_position))
     scaled = {}
-    out.element_frequency = {}
+    out.element_frequency, out.added_mass = {}, 0.0
     for shape in shapes.NODES:
         connectivity, m = t.element_nodes[shape], matrices[shape]
         if len(m) == 0:
@@ -175,35 +205,21 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
             continue
         group = t.element_group[shape]
         dense = dense_block[t.element_block[shape]]
-        square = np.empty(len(m))
-        for kind, some in ((m, dense), (m.sum(axis=2), ~dense)):
-            if some.any():
-                gradient, volume = (a[some] for a in geometry[shape])
-                square[some] = shapes.squared_frequencies(
-                    shape, gradient, volume, p.lame[group[some]], p.shear[group[some]], kind[some]
-                )
+        rock = (p.lame[group], p.shear[group])
+        lumped_square = shapes.squared_frequencies(shape, *geometry[shape], *rock, m.sum(axis=2))
+        square = lumped_square.copy()
+        if dense.any():
+            some = (a[dense] for a in (*geometry[shape], *rock, m))
+            square[dense] = shapes.squared_frequencies(shape, *some)
         heavier = np.maximum(1.0, square * (p.target_step / 2) ** 2)
         out.added_mass += float(((heavier - 1) * out.element_mass[shape]).sum())
         scaled[shape] = m * heavier[:, None, None]
         square /= heavier
         out.element_frequency[shape] = np.sqrt(square)
         np.maximum.at(frequency2, connectivity, square[:, None])
+        np.maximum.at(lumped_frequency2, connectivity, (lumped_square / heavier)[:, None])
         np.add.at(lumped, connectivity, scaled[shape].sum(axis=2))
-
-    mass = lumped.copy()
-    if p.exact_mass:
-        _correct_lumps(t, scaled, lumped, mass, dense_block | held, dense_block, out)
-    # a node made lighter than its elements' share raises their frequency by as much
-    lighter = lumped / mass
-    worst = np.ones(len(size))
-    np.maximum.at(worst, t.node_block, np.where(dense_block[t.node_block], 1.0, lighter))
-    frequency2 *= worst[t.node_block]
-
-    out.arrays["node.mass"] = mass
-    out.arrays["node.frequency2"] = frequency2
-    out.arrays["node.block_first"] = first[t.node_block].astype(np.int32)
-    out.arrays["node.block_count"] = block_nodes.astype(np.int32)
-    _dense_blocks(t, p, scaled, dense_block, out)
+    return scaled, lumped, frequency2, lumped_frequency2
 
 
 def _second_moments(t: Topology, scaled, blocks: NDArray[np.bool_]) -> tuple[Floats, Floats]:
@@ -221,17 +237,19 @@ def _second_moments(t: Topology, scaled, blocks: NDArray[np.bool_]) -> tuple[Flo
 
 
 def _correct_lumps(
-    t: Topology, scaled, lumped: Floats, mass: Floats, skip, dense_block, out: Assembly
-) -> None:
+    t: Topology, scaled, lumped: Floats, mass: Floats, skip, out: Assembly
+) -> NDArray[np.intp]:
     """Shift the lumped masses of larger blocks, as little as possible, to their exact inertia.
 
     Minimises sum (m - m_lumped)^2 / m_lumped with mass, centre and second moments given. Blocks for
-    which that needs a mass near zero (one element thick) get the full mass matrix instead, if small
-    enough; else they keep their lumped masses and are counted for the audit.
+    which that needs a mass near zero (one element thick) are returned if small enough for the full
+    mass matrix; else they keep their lumped masses and are counted for the audit.
     """
     todo = np.flatnonzero(~skip)
+    without: list[int] = []
+    out.lumped_blocks = 0
     if len(todo) == 0:
-        return
+        return np.array(without, np.intp)
     origin, second = _second_moments(t, scaled, ~skip)
     upper = np.triu_indices(3)
     for b in todo:
@@ -252,9 +270,10 @@ def _correct_lumps(
         if good and (m + shift > LEAST_LUMP * m).all():
             mass[nodes] = m + shift
         elif len(m) <= DENSE_NODES_MOST:
-            dense_block[b] = True
+            without.append(b)
         else:
             out.lumped_blocks += 1
+    return np.array(without, np.intp)
 
 
 def _dense_blocks(t: Topology, p: Properties, scaled, dense_block, out: Assembly) -> None:

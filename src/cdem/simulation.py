@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -119,9 +120,9 @@ class Simulation:
         self.finished_stages: list[dict[str, Any]] = []
         self.reference = self.build.start_position.copy()
         self.wall_time = 0.0
-        self.damping_of_audit = stages.damping_of(self.case.stages[0]) if self.case.stages else None
-        if self.damping_of_audit:
-            self.core.set_damping(*self.damping_of_audit)
+        if self.case.stages:  # so that it can be stepped before any stage begins
+            self.core.set_damping(*stages.damping_of(self.case.stages[0]))
+            self.core.set_lumped(stages.is_lumped(self.case.stages[0]))
         if resume:
             self._restore()
         else:
@@ -250,7 +251,7 @@ class Simulation:
 
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing."""
-        self._guard(self.core.run(count, check_interval=CHECK_INTERVAL))
+        self._guard(partial(self.core.run, count, check_interval=CHECK_INTERVAL))
 
     def _run_stage(self, progress, should_stop) -> str:
         if self.stage is None:
@@ -261,7 +262,7 @@ class Simulation:
         while True:
             steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
             before, clock = self.step_count, time.perf_counter()
-            outcome = self._guard(stages.advance(self, stage, steps))
+            outcome = self._guard(partial(stages.advance, self, stage, steps))
             now = time.perf_counter()
             done = self.step_count - before
             speed = done / max(now - clock, 1e-9)
@@ -324,9 +325,13 @@ class Simulation:
             fraction=fraction,
         )
 
-    def _guard(self, report: tuple[str, int, float]) -> str:
+    def _guard(self, advance: Callable[[], tuple[str, int, float]]) -> str:
         """Turn a failed outcome of the core into an error that says what, where and when."""
-        outcome, culprit, value = report
+        failure = ""
+        try:
+            outcome, culprit, value = advance()
+        except RuntimeError as error:  # the core cannot go on: no room left for contacts
+            outcome, culprit, value, failure = "full", -1, 0.0, str(error)
         if outcome in ("steps_done", "time_reached", "converged"):
             return outcome
         topology, names = self.build.topology, self.build.group_names
@@ -335,6 +340,8 @@ class Simulation:
         if self.results:
             self.results.fail(self)
             kept = " The last good checkpoint is kept; look at it with cdem info and cdem render."
+        if failure:
+            raise UnstableError(f"{when}{failure}. A smaller time.safety may help too.{kept}")
         dt = float(self.core.scalars()["dt"])
         if outcome == "lost_contact":
             face = int(self.core.fields()["search.exposed_face"][culprit])

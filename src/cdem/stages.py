@@ -59,6 +59,16 @@ def damping_of(stage) -> tuple[float, float, float, float]:
     return (d.local, d.mass, d.stiffness, d.contact)
 
 
+def is_lumped(stage) -> bool:
+    """Whether a stage moves lumped masses.
+
+    A static stage only looks for rest, which does not depend on inertia, and lumped masses allow a
+    longer step (2.2 times for a tet); local damping scales forces node by node, which is stable for
+    lumped masses alone.
+    """
+    return stage.mode == "static" or stage.damping.local > 0
+
+
 def apply_settings(sim: Simulation, index: int) -> None:
     """Apply damping and `set` of a stage to the core (not to motion or displacement)."""
     stage = sim.case.stages[index]
@@ -73,6 +83,7 @@ def apply_settings(sim: Simulation, index: int) -> None:
     if stage.set:
         _update_core(sim, index)
     sim.core.set_damping(*damping_of(stage))
+    sim.core.set_lumped(is_lumped(stage))
 
 
 def _update_core(sim: Simulation, index: int) -> None:
@@ -98,6 +109,7 @@ def begin(sim: Simulation) -> StageState:
     """Start the next stage of a simulation."""
     index = sim.stage_index
     stage = sim.case.stages[index]
+    sim.core.change_mass(is_lumped(stage))
     apply_settings(sim, index)
     if sim.step_count:
         sim.core.renew_step()

@@ -1,0 +1,79 @@
+"""The automatic time step: below the stability limit, and not far below."""
+
+import numpy as np
+import pytest
+from scenes import simulate
+
+from cdem.errors import UnstableError
+
+TET = [[0, 0, 0], [1, 0, 0], [0.2, 1.1, 0], [0.1, 0.2, 0.9]]
+SCENES = {
+    "a tet": ([{"group": "a", "polyhedron": {"vertices": TET}}], {}),
+    "a hexahedron": ([{"group": "a", "box": {"size": [1, 1, 1]}}], {}),
+    "a plate": ([{"group": "a", "box": {"size": [4, 1, 4], "divisions": [4, 1, 4]}}], {}),
+    "a plate of wedges": (
+        [{"group": "a", "box": {"size": [2, 1, 2], "divisions": [2, 1, 2], "shape": "wedge6"}}],
+        {},
+    ),
+    "a meshed cube": ([{"group": "a", "box": {"size": [1, 1, 1], "divisions": [8, 8, 8]}}], {}),
+    "27 bonded hexahedra": (
+        [{"group": "a", "box": {"size": [3, 3, 3], "divisions": [3, 3, 3]}}],
+        {"split": {"a": "elements"}},
+    ),
+    "48 bonded tets": (
+        [{"group": "a", "box": {"size": [2, 2, 2], "divisions": [2, 2, 2], "shape": "tet4"}}],
+        {"split": {"a": "elements"}},
+    ),
+}
+BOND = {"friction_angle": 30, "cohesion": "100 GPa", "tensile_strength": "100 GPa"}
+
+
+def build(name, stiffness, **time):
+    blocks, model = SCENES[name]
+    return simulate(
+        blocks,
+        {"a": {}},
+        interfaces={"default": {**BOND, "stiffness_n": stiffness, "stiffness_s": stiffness}},
+        model=model,
+        time=time,
+    )
+
+
+def is_stable(name, stiffness, dt, steps=1500):
+    """Does a shake of 1e-9 m/s stay small?"""
+    sim = build(name, stiffness, step=dt)
+    velocity = sim.fields["velocity"]
+    velocity += np.random.default_rng(1).normal(size=velocity.shape) * 1e-9
+    try:
+        sim.step(steps)
+    except UnstableError:
+        return False
+    return np.abs(sim.fields["velocity"]).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    "name, stiffness, least",
+    [
+        ("a tet", "1 E/h", 0.9),
+        ("a hexahedron", "1 E/h", 0.9),
+        ("a plate", "1 E/h", 0.8),
+        ("a plate of wedges", "1 E/h", 0.8),
+        ("a meshed cube", "1 E/h", 0.7),
+        ("27 bonded hexahedra", "1 E/h", 0.8),
+        ("27 bonded hexahedra", "10 E/h", 0.8),
+        ("48 bonded tets", "1 E/h", 0.8),
+        ("48 bonded tets", "10 E/h", 0.8),
+    ],
+)
+def test_the_step_is_stable_and_not_needlessly_short(name, stiffness, least):
+    """0.98 of the estimate is stable; 1.05 of the limit found by trial is not."""
+    estimate = build(name, stiffness).core.step_limit()[0]
+    assert is_stable(name, stiffness, 0.98 * estimate)
+    low, high = 0.98, 1.05 / least
+    assert not is_stable(name, stiffness, high * estimate)
+    while high - low > 0.02:
+        middle = 0.5 * (low + high)
+        low, high = (
+            (middle, high) if is_stable(name, stiffness, middle * estimate) else (low, middle)
+        )
+    assert not is_stable(name, stiffness, 1.05 * high * estimate)
