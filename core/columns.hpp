@@ -94,8 +94,14 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
 }
 
 inline MassColumns mass_columns(const Model& m) {
-  return {m.lumped,             m.mass.data(),        m.dense_first.data(),  m.dense_step.data(), m.block_first.data(),
-          m.block_count.data(), m.mass_inverse.data(), m.mass_matrix.data()};
+  return {m.lumped,
+          m.mass.data(),
+          m.dense_first.data(),
+          m.dense_step.data(),
+          m.block_first.data(),
+          m.block_count.data(),
+          m.mass_inverse.data(),
+          m.mass_matrix.data()};
 }
 
 inline SupportColumns support_columns(const Model& m, const State& s) {

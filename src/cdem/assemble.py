@@ -163,7 +163,9 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
     dense_block &= ~held  # a block that cannot move needs no inverse
 
     while True:
-        scaled, lumped, frequency2, lumped_frequency2 = _scaled_masses(t, p, matrices, geometry, dense_block, out)
+        scaled, lumped, frequency2, lumped_frequency2 = _scaled_masses(
+            t, p, matrices, geometry, dense_block, out
+        )
         mass = lumped.copy()
         if not p.exact_mass:
             break
