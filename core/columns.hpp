@@ -88,6 +88,7 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           inout(s.broken_tension),
           inout(s.broken_shear),
           inout(s.jump),
+          inout(s.jump_at_break),
           inout(s.stored),
           inout(s.fracture),
           inout(s.friction)};

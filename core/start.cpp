@@ -23,6 +23,7 @@ void size_pairs(const PairSet& p, PairState& s) {
   for (Column<Real>* column :
        {&s.broken_tension, &s.broken_shear, &s.jump, &s.stored, &s.fracture, &s.friction})
     column->resize(row);
+  s.jump_at_break.resize(row, -1.0);
   s.live.resize(row);
   for (Index i = 0; i < p.count; ++i) s.live[i] = 1;
   s.bond.resize(points, 1.0);

@@ -23,7 +23,7 @@ struct ElementState {
 };
 
 struct PairState {
-  Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump;
+  Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> stored, fracture, friction;
 };
 
@@ -99,7 +99,8 @@ void describe(S& s, Visit&& field) {
     field(name + "slip2", p.slip2, "plastic slip [m]");
     field(name + "broken_tension", p.broken_tension, "springs broken in tension");
     field(name + "broken_shear", p.broken_shear, "springs broken in shear");
-    field(name + "jump", p.jump, "largest jump of a broken pair [m]");
+    field(name + "jump", p.jump, "change of a broken pair's largest jump since it broke [m]");
+    field(name + "jump_at_break", p.jump_at_break, "that jump when it broke, or -1 [m]");
     field(name + "stored", p.stored, "elastic energy [J]");
     field(name + "fracture", p.fracture, "energy of fracture [J]");
     field(name + "friction", p.friction, "frictional work [J]");

@@ -114,8 +114,19 @@ struct PairColumns {
   InLookup cohesion, tensile_strength, tan_friction;  // by interface
   InOutTable bond, slip1, slip2;                      // [point][pair]
   InOutTable broken_tension, broken_shear;            // [1][pair] springs broken so far, by cause
-  InOutTable jump;                        // [1][pair] largest jump once all points are broken  [m]
+  InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
+  InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
   InOutTable stored, fracture, friction;  // [1][pair]  [J]
+
+  /// A pair that opened as a hinge has a wide jump when its last point breaks: what counts for its
+  /// release is how far it has moved since.
+  template <class I, class M, class T>
+  CDEM_HD void note_jump(I p, const M& broken, const T& widest) const {
+    const T none(-1.0), zero(0.0), old = jump_at_break.at(0, p);
+    const T start = select(broken, select(old < zero, widest, old), none);
+    jump_at_break.set(0, p, start);
+    jump.set(0, p, select(broken, abs_of(widest - start), zero));
+  }
 };
 
 /// Bonds of conforming pairs: `count` vertices on either side coincide at the start.
@@ -171,7 +182,7 @@ struct ConformingBonds {
       corner_force.set(p, 2 * count, k, -fk);
       corner_force.set(p, 2 * count, count + k, fk);
     }
-    pairs.jump.set(0, p, select(live & (!(intact > zero)), sqrt_of(widest), zero));
+    pairs.note_jump(p, live & (!(intact > zero)), sqrt_of(widest));
     pairs.stored.set(0, p, select(live, total.stored, zero));
     add(pairs.fracture, p, select(live, total.fracture, zero));
     add(pairs.friction, p, select(live, total.friction, zero));
@@ -253,7 +264,7 @@ struct OverlapBonds {
       tension += f.tension, shear += f.shear;
     }
     for (Index k = 0; k < 8; ++k) corner_force.set(p, 8, k, force[k]);
-    pairs.jump.set(0, p, intact > 0 ? 0.0 : widest);
+    pairs.note_jump(p, !(intact > 0), widest);
     pairs.stored.set(0, p, stored);
     pairs.fracture.set(0, p, pairs.fracture.at(0, p) + fracture);
     pairs.friction.set(0, p, pairs.friction.at(0, p) + friction);

@@ -40,37 +40,51 @@ KINDS = [
 ]
 
 
-@pytest.mark.parametrize("rotation", [None, ([1, 2, 3], 50.0)])
-@pytest.mark.parametrize("lower, upper", KINDS)
-def test_contact_types_carry_the_weight(lower, upper, rotation):
-    """The upper body rests on the lower one; it has no time to fall over.
+K_N = 2e9
 
-    At rest the contact forces sum to the weight along gravity, in any orientation.
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("lower, upper", KINDS)
+def test_contact_types_carry_the_weight(lower, upper, seed):
+    """The upper body comes to rest on the lower one, in any orientation (it has no time to topple).
+
+    Each semi-spring carries k_n A / (2 N) and each semi-edge k_n A / N times its penetration
+    (Eq. 3-5, half because both sides see a contact), and together they carry the weight.
     """
     down = np.array([0, 0, -1.0])
     more = {}
-    if rotation:
-        down = turn(*rotation) @ down
-        more["model"] = {"rotate": {"axis": list(rotation[0]), "angle": rotation[1]}}
+    if seed:
+        rng = np.random.default_rng(seed)
+        axis, angle = list(rng.normal(size=3)), float(rng.uniform(10, 350))
+        down = turn(axis, angle) @ down
+        more["model"] = {"rotate": {"axis": axis, "angle": angle}}
     sim = simulate(
         pair(lower, upper),
         {"lower": {"fix": ["x", "y", "z"]}, "upper": {}},
-        interfaces={"default": {"friction_angle": 45}},
+        interfaces={"default": {"friction_angle": 45, "stiffness_n": K_N, "stiffness_s": K_N}},
         loads={"gravity": list(9.81 * down)},
         stages=[{"name": "rest", "mode": "dynamic", "duration": 1, "damping": {"local": 0.8}}],
         **more,
     )
-    sim.step(6000)
-    mass = sim.fields["mass"][sim.build.nodes_of("upper")].sum()
-    t, contacts = sim.build.topology, sim.contacts
-    groups = t.face_group[contacts["mother_face"]]
+    sim.step(4000)
+    t, state = sim.build.topology, sim.core.fields()
+    area, exposed = sim.build.assembly.arrays["face.area"], state["search.exposed_face"]
+    share = area / (t.face_nodes >= 0).sum(axis=1) * K_N  # k_n A / N
+    slots = np.flatnonzero(state["spring.target"] >= 0)
+    forces = 0.5 * share[exposed[slots // 4]] * state["spring.sunk"][slots]
+    wide = len(state["edge.side"]) // len(exposed)
+    places = [wide * x + j for x, n in enumerate(state["edge.count"]) for j in range(n)]
+    crossing = share[exposed[np.array(places, int) // wide]] * state["edge.sunk"][places]
+    predicted = np.concatenate([forces, crossing])
+    np.testing.assert_allclose(sim.contacts["force_n"], predicted, rtol=1e-9)
+    if "edge" not in (lower, upper):  # one normal for all: the weight itself
+        weight = 9.81 * sim.fields["mass"][sim.build.nodes_of("upper")].sum()
+        np.testing.assert_allclose(predicted.sum(), weight, rtol=1e-3)
     upper_group = sim.build.group_names.index("upper")
-    sign = np.where(groups == upper_group, 1.0, -1.0)
-    carried = (sign[:, None] * contacts["force"]).sum(axis=0)
-    assert len(contacts["kind"]) > 0
-    np.testing.assert_allclose(carried @ -down, mass * 9.81, rtol=0.02)
-    penetration = sim.core.fields()["spring.sunk"].max(initial=0)
-    assert max(penetration, sim.core.fields()["edge.sunk"].max(initial=0)) < 1e-4
+    own = t.face_group[sim.contacts["mother_face"]] == upper_group
+    carried = (np.where(own, 1.0, -1.0)[:, None] * sim.contacts["force"]).sum(axis=0)
+    mass = sim.fields["mass"][sim.build.nodes_of("upper")].sum()
+    np.testing.assert_allclose(carried, -9.81 * mass * down, atol=1e-3 * 9.81 * mass)
 
 
 def test_vertex_on_vertex_is_caught():
@@ -135,6 +149,26 @@ def test_collisions_keep_momentum_and_energy(kind):
     assert mean_velocity(sim, "upper")[2] > -0.5  # they did meet
     np.testing.assert_allclose(now, linear, atol=1e-12 * np.abs(linear).max())
     np.testing.assert_allclose(turned, angular, atol=1e-9 * np.abs(linear).max())
+    assert abs(sim.energies["error"]) < 1e-3
+
+
+def test_energy_in_a_collision_converges_with_the_step():
+    """At 0.8 of the stability limit a bounce is off by up to 0.8 %, at 0.1 by about 1e-4."""
+    for kind in ("face", "edge", "vertex"):
+        coarse = abs(collide(kind, safety=0.8)[0].energies["error"])
+        fine = abs(collide(kind, safety=0.1)[0].energies["error"])
+        assert coarse < 8e-3
+        assert fine < 2e-4
+
+
+@pytest.mark.parametrize("phi", [0.0, 26.0])
+def test_the_ledger_closes_over_1e5_steps(phi):
+    """A collision of crossed edges, then free flight of both bodies, tumbling."""
+    sim, linear, angular = collide("edge", phi=phi, spin=(0.5, 0.2, 1.0))
+    sim.step(100_000 - sim.step_count)
+    now, turned = momentum(sim)
+    np.testing.assert_allclose(now, linear, atol=1e-12 * np.abs(linear).max())
+    np.testing.assert_allclose(turned, angular, atol=1e-6 * np.abs(angular).max())
     assert abs(sim.energies["error"]) < 1e-3
 
 
