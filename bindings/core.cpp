@@ -101,6 +101,7 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
   s.step = whole("step"), s.refreshes = whole("refreshes"), s.built_step = whole("built_step");
   s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
   s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
+  s.relax_damping = real("relax_damping"), s.stop_due = whole("stop_due") != 0;
   s.ledger_started = whole("ledger_started") != 0;
   s.edges.slots = Index(whole("edge_slots"));
 }
@@ -112,6 +113,7 @@ nb::dict scalars(const Core& core) {
   d["step"] = s.step, d["refreshes"] = s.refreshes, d["built_step"] = s.built_step;
   d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
   d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
+  d["relax_damping"] = s.relax_damping, d["stop_due"] = std::int64_t(s.stop_due);
   d["ledger_started"] = std::int64_t(s.ledger_started);
   d["edge_slots"] = std::int64_t(s.edges.slots);
   return d;
@@ -147,12 +149,20 @@ void set_options(Core& core, const nb::dict& o) {
   m.bond_indentation_triangle = real("bond_indentation_triangle");
   m.bond_indentation_quad = real("bond_indentation_quad");
   m.semi_edges = nb::cast<bool>(o["semi_edges"]);
+  m.check_search = nb::cast<bool>(o["check_search"]);
   m.refresh_interval = nb::cast<Index>(o["refresh_interval"]);
   m.step_safety = real("step_safety");
   m.step_given = real("step_given");
   m.speed_limit = real("speed_limit");
   const auto g = nb::cast<std::vector<Real>>(o["gravity"]);
   m.gravity = {g.at(0), g.at(1), g.at(2)};
+}
+
+Relaxation relaxation(const std::string& name) {
+  if (name == "none") return Relaxation::none;
+  if (name == "kinetic") return Relaxation::kinetic;
+  if (name == "adaptive") return Relaxation::adaptive;
+  throw nb::value_error("unknown relaxation");
 }
 
 const char* name_of(Outcome outcome) {
@@ -169,6 +179,8 @@ const char* name_of(Outcome outcome) {
       return "too_fast";
     case Outcome::lost_contact:
       return "lost_contact";
+    case Outcome::missed_contact:
+      return "missed_contact";
   }
   return "";
 }
@@ -218,17 +230,17 @@ NB_MODULE(CDEM_MODULE, module) {
       .def(
           "run",
           [](Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
-             std::int64_t check_interval, bool kinetic_relaxation) {
+             std::int64_t check_interval, const std::string& way) {
+            const Relaxation relax = relaxation(way);
             Report r;
             {
               nb::gil_scoped_release release;
-              r = run(c.model, c.state,
-                      {steps, end_time, unbalance_limit, check_interval, kinetic_relaxation});
+              r = run(c.model, c.state, {steps, end_time, unbalance_limit, check_interval, relax});
             }
             return std::make_tuple(std::string(name_of(r.outcome)), r.culprit, r.value);
           },
           "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0, "check_interval"_a = 20,
-          "kinetic_relaxation"_a = false)
+          "relaxation"_a = "none")
       .def("energies",
            [](Core& c) {
              const Energies e = energies(c.model, c.state);
@@ -259,7 +271,6 @@ NB_MODULE(CDEM_MODULE, module) {
              d["hex8"] = view(c.state.hex8.stress, self);
              return d;
            })
-      .def("stop_motion", [](Core& c) { stop_motion(c.model, c.state); })
       .def("adopt_overlaps",
            [](Core& c) {
              Index count = 0, face = -1;

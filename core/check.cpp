@@ -214,27 +214,43 @@ Report check_health(const Model& m, const State& s) {
   return {};
 }
 
+namespace {
+
+/// Half of momentum times velocity, with the present masses  [J].
+Real energy_of_motion(const Model& m, State& s) {
+  launch_one({}, m.node_count,
+             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m), s.nodes.momentum.data()});
+  finish({});
+  return ordered_sum(m.node_count, [&](Index i) {
+    const Real *p = s.nodes.momentum.data() + std::size_t(i) * 4,
+               *v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
+    return 0.5 * (p[0] * v[0] + p[1] * v[1] + p[2] * v[2]);
+  });
+}
+
+}  // namespace
+
 void change_mass(Model& m, State& s, bool lumped) {
-  const auto kinetic = [&] {
-    launch_one({}, m.node_count,
-               NodeMomentum{{s.nodes.motion.data()}, mass_columns(m), s.nodes.momentum.data()});
-    finish({});
-    return ordered_sum(m.node_count, [&](Index i) {
-      const Real *p = s.nodes.momentum.data() + std::size_t(i) * 4,
-                 *v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
-      return 0.5 * (p[0] * v[0] + p[1] * v[1] + p[2] * v[2]);
-    });
-  };
   if (m.lumped == lumped) return;
-  const Real before = kinetic();
+  const Real before = energy_of_motion(m, s);
   m.lumped = lumped;
-  s.stopped_energy += before - kinetic();
+  s.stopped_energy += before - energy_of_motion(m, s);
 }
 
 void stop_motion(const Model& m, State& s) {
-  s.stopped_energy += kinetic_energy(m, s);
-  for (Index i = 0; i < m.node_count; ++i)
-    for (int axis = 4; axis < 7; ++axis) s.nodes.motion[std::size_t(i) * 8 + axis] = 0;
+  const LoadColumns loads = load_columns(m, s);
+  // the forces of this moment have worked since the middle of the last step
+  s.stopped_energy += energy_of_motion(m, s) + ordered_sum(m.node_count, [&](Index i) {
+                        const Real *f = s.nodes.force.data() + std::size_t(i) * 4,
+                                   *d = s.nodes.damping_force.data() + std::size_t(i) * 4;
+                        Real* v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
+                        const Vec3<Real> way = 0.5 * s.dt_last * Vec3<Real>{v[0], v[1], v[2]};
+                        s.nodes.work_external[i] += dot(loads.at(i), way);
+                        s.nodes.work_damping[i] -= dot(Vec3<Real>{d[0], d[1], d[2]}, way);
+                        v[0] = v[1] = v[2] = 0;
+                        return dot(Vec3<Real>{f[0], f[1], f[2]}, way);
+                      });
+  s.dt_last = 0;
 }
 
 }  // namespace cdem

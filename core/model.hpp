@@ -79,6 +79,7 @@ struct Model {
   SearchRules rules;
   Real bond_indentation_triangle = 0, bond_indentation_quad = 0;
   bool semi_edges = true;
+  bool check_search = false;   // compare every search with an all-pairs search
   Index refresh_interval = 0;  // 0: by displacement; else the paper's every so many steps
   NodeDamping damping{0, 0};
   bool lumped = false;         // lumped masses for all: quicker to rest, wrong inertia

@@ -13,6 +13,7 @@ struct NodeState {
   Column<Real> work_external, work_damping;
   Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
   Column<Real> unbalance;
+  Column<Real> relax;  // rows of 8, adaptive relaxation only: force and velocity of the last step
   Column<Index> glue;
 };
 
@@ -57,6 +58,9 @@ struct State {
   Real energy_start = 0, energy_scale = 0;  // of the ledger
   Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]
   Real kinetic_peak = 0;                    // since the motion was last stopped  [J]
+  bool stop_due = false;                    // kinetic relaxation: stop all motion in the next step
+  Real relax_damping = 0;  // mass damping that adaptive relaxation has found  [1/s]
+  Index missed = 0;        // contacts that an all-pairs search found and ours did not
   bool ledger_started = false;
   NodeState nodes;
   ElementState tet4, pyramid5, wedge6, hex8;
@@ -78,6 +82,7 @@ void describe(S& s, Visit&& field) {
   field("node.work_external", s.nodes.work_external, "work of loads and supports [J]");
   field("node.work_damping", s.nodes.work_damping, "work taken out by damping [J]");
   field("node.reaction", s.nodes.reaction, "force of supports [N]");
+  field("node.relax", s.nodes.relax, "force and velocity of the last step, adaptive relaxation");
   field("node.glue", s.nodes.glue, "label shared by nodes that intact bonds hold together");
 
   const auto elements = [&](const char* shape, auto& e) {

@@ -139,7 +139,7 @@ void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
                            corner_lists(m, s),
                            load_columns(m, s),
                            support_columns(m, s),
-                           m.damping,
+                           {m.damping.local, m.damping.mass + s.relax_damping},
                            m.mass.data(),
                            s.nodes.force.data(),
                            s.nodes.damping_force.data(),
@@ -165,11 +165,13 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   evaluate_curves(m, s.time + 0.5 * s.dt, s.velocity_factor);
   update_face_geometry(m, s, q, false);  // contact/face.hpp
   update_bonds(m, s, q);
+  if (m.check_search) s.missed += count_missed_contacts(m, s);
   find_target_faces(m, s, q);
   find_target_edges(m, s, q);
   update_contact_forces(m, s, q);
   update_element_forces(m, s, q);
   sum_node_forces(m, s, q);
+  if (s.stop_due) stop_motion(m, s);
   if (sampled) sample_before(m, s, q);
   move_nodes(m, s, q);
   if (sampled) sample_after(m, s, q);
@@ -179,19 +181,56 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   if (s.step % step_check_interval == 0) renew_step(m, s);
 }
 
+/// Kinetic relaxation: stop all motion when the kinetic energy has passed a peak.
+void relax_kinetically(const Model& m, State& s) {
+  const Real kinetic = kinetic_energy(m, s);
+  s.stop_due = kinetic < s.kinetic_peak;
+  s.kinetic_peak = s.stop_due ? 0 : kinetic;
+}
+
+/// Adaptive relaxation: damp critically the mode that moves now. Its frequency is the Rayleigh
+/// quotient of the last displacement, v . K v / v . M v, with K v from the change of the forces.
+void relax_adaptively(const Model& m, State& s) {
+  const std::size_t rows = 8 * std::size_t(m.node_count);
+  const bool known = s.nodes.relax.size() == rows;
+  s.nodes.relax.resize(rows);
+  Real* before = s.nodes.relax.data();
+  const Real *force = s.nodes.force.data(), *damping = s.nodes.damping_force.data(),
+             *motion = s.nodes.motion.data();
+  if (known) {
+    const Real stiff = ordered_sum(m.node_count, [&](std::size_t i) {
+      Real sum = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum -= before[8 * i + 4 + k] * (force[4 * i + k] - damping[4 * i + k] - before[8 * i + k]);
+      return sum;
+    });
+    const Real heavy = ordered_sum(m.node_count, [&](std::size_t i) {
+      const Real* v = before + 8 * i + 4;
+      return m.mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    });
+    s.relax_damping = heavy > 0 && stiff > 0 ? 2 * std::sqrt(stiff / (s.dt_last * heavy)) : 0;
+  }
+#pragma omp parallel for schedule(static) if (m.node_count >= worth_threads)
+  for (std::size_t i = 0; i < std::size_t(m.node_count); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      before[8 * i + k] = force[4 * i + k] - damping[4 * i + k];
+      before[8 * i + 4 + k] = motion[8 * i + 4 + k];
+    }
+}
+
 }  // namespace
 
 Report run(const Model& m, State& s, const Goal& goal) {
+  if (goal.relaxation != Relaxation::adaptive) s.relax_damping = 0;
+  if (goal.relaxation != Relaxation::kinetic) s.stop_due = false;
   for (std::int64_t n = 1; n <= goal.steps; ++n) {
     const bool last = n == goal.steps || s.time + s.dt >= goal.end_time;
     const bool scheduled = s.step % goal.check_interval == 0;  // whatever the split into runs
     const bool check = last || scheduled;
-    step(m, s, {}, check || goal.kinetic_relaxation);
-    if (goal.kinetic_relaxation) {
-      const Real kinetic = kinetic_energy(m, s);
-      if (kinetic < s.kinetic_peak) stop_motion(m, s);
-      s.kinetic_peak = kinetic < s.kinetic_peak ? 0 : kinetic;
-    }
+    step(m, s, {}, check || goal.relaxation == Relaxation::kinetic);
+    if (goal.relaxation == Relaxation::kinetic) relax_kinetically(m, s);
+    if (goal.relaxation == Relaxation::adaptive) relax_adaptively(m, s);
+    if (s.missed > 0) return {Outcome::missed_contact, -1, Real(s.missed)};
     if (!check) continue;
     const Report report = check_health(m, s);
     if (report.outcome != Outcome::steps_done) return report;

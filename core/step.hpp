@@ -24,7 +24,18 @@ struct StepLimit {
   Real contact2 = 0;  // and of its bonds and contacts  [1/s2]
 };
 
-enum class Outcome { steps_done, time_reached, converged, not_finite, too_fast, lost_contact };
+enum class Outcome {
+  steps_done,
+  time_reached,
+  converged,
+  not_finite,
+  too_fast,
+  lost_contact,
+  missed_contact
+};
+
+/// The way to rest of a static stage, besides damping that the model has already.
+enum class Relaxation { none, kinetic, adaptive };
 
 /// When to come back from the loop.
 struct Goal {
@@ -32,7 +43,7 @@ struct Goal {
   Real end_time = 1e300;     // [s]
   Real unbalance_limit = 0;  // 0: do not look
   std::int64_t check_interval = 20;
-  bool kinetic_relaxation = false;  // stop all motion when the kinetic energy has passed a peak
+  Relaxation relaxation = Relaxation::none;
 };
 
 struct Report {
@@ -57,7 +68,8 @@ void report_elements(const Model& model, State& state, Queue queue);
 
 /// Change between lumped and exact masses; what kinetic energy that takes is booked as damping.
 void change_mass(Model& model, State& state, bool lumped);
-/// Zero all velocities; their energy is booked as damping.
+/// Between forces and motion: zero all velocities; their energy is booked as damping. The step that
+/// follows starts from rest with half a kick, as a central difference must.
 void stop_motion(const Model& model, State& state);
 
 // refresh.cpp

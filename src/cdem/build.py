@@ -401,6 +401,7 @@ def _options(case: Case, materials) -> dict:
         "bond_indentation_triangle": triangle,
         "bond_indentation_quad": quad,
         "semi_edges": contact.edges,
+        "check_search": contact.check,
         "refresh_interval": 0 if contact.refresh == "displacement" else int(contact.refresh),
         "step_safety": case.time.safety,
         "step_given": 0.0 if case.time.step == "auto" else case.time.step,

@@ -331,7 +331,7 @@ class Stage(Part):
         False, description="Zero the displacements when the stage begins"
     )
     damping: Damping = Field(Damping(), description="Damping")
-    relax: Literal["local", "kinetic"] | None = Field(
+    relax: Literal["local", "kinetic", "adaptive"] | None = Field(
         None, description="Static only: the way to rest; default local"
     )
     set: dict[str, Any] = Field(

@@ -351,6 +351,11 @@ class Simulation:
                 f"{when}a loaded contact of block {block} (group {group}) sank too deep to be "
                 f"followed. Raise stiffness_n of its interface, or lower the impact speed.{kept}"
             )
+        if outcome == "missed_contact":
+            raise UnstableError(
+                f"{when}the all-pairs search of contact.check found {int(value)} contact(s) that the "
+                f"lists had missed. Please report this case.{kept}"
+            )
         block = int(topology.node_block[culprit])
         group = names[topology.block_group[block]]
         where = f"node {culprit} of block {block} (group {group})"

@@ -138,7 +138,7 @@ def advance(sim: Simulation, stage: StageState, steps: int):
         return sim.core.run(
             steps,
             unbalance_limit=rules.tolerance,
-            kinetic_relaxation=rules.relax == "kinetic",
+            relaxation="none" if rules.relax == "local" else rules.relax,
         )
     return sim.core.run(steps, end_time=min(stage.next_row, stage.end_time))
 

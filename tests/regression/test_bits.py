@@ -124,3 +124,46 @@ def test_split_into_runs():
         many.step(count)
     for name in ("node.motion", "triangles.bond", "spring.force_n"):
         assert np.array_equal(one.core.fields()[name], many.core.fields()[name])
+
+
+@pytest.mark.parametrize("way", ["local", "kinetic", "adaptive"])
+def test_stop_and_resume_on_the_way_to_rest(tmp_path, way):
+    def settle(**more):
+        return cdem.Simulation(
+            case(
+                [
+                    {
+                        "group": "a",
+                        "box": {"size": [2, 2, 2], "divisions": [2, 2, 2], "shape": "tet4"},
+                    }
+                ],
+                {"a": {}},
+                interfaces={
+                    "default": {"friction_angle": 30, "cohesion": 1e9, "tensile_strength": 1e9}
+                },
+                loads={
+                    "gravity": [0, 0, -9.81],
+                    "supports": [
+                        {"box": {"min": [-1, -1, -1], "max": [3, 3, 0.001]}, "fix": ["x", "y", "z"]}
+                    ],
+                },
+                stages=[{"name": "rest", "mode": "static", "relax": way, "tolerance": 1e-6}],
+                model={"split": {"a": "elements"}},
+            ),
+            threads=2,
+            **more,
+        )
+
+    whole = settle(output=tmp_path / "whole")
+    assert whole.run() == "converged"
+    asked = 0
+
+    def should_stop():
+        nonlocal asked
+        asked += 1
+        return asked == 1
+
+    assert settle(output=tmp_path / "broken").run(should_stop=should_stop) == "stopped"
+    resumed = settle(output=tmp_path / "broken", resume=True)
+    assert resumed.run() == "converged"
+    assert digest(resumed) == digest(whole)
