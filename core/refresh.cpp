@@ -304,6 +304,14 @@ Index count_missed_contacts(const Model& m, State& s) {
   const Index count = Index(s.search.exposed_face.size());
   const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };
   const auto movable = [&](Index x) { return m.face_movable[s.search.exposed_face[x]] != 0; };
+  // spheres around two faces, with room for any depth of contact: what is farther off cannot touch
+  const auto near = [&](Index x, Index t) {
+    const Index face = s.search.exposed_face[x], other = s.search.exposed_face[t];
+    const Vec3<Real> apart = springs.geometry.center(x) - springs.geometry.center(t);
+    const Real reach =
+        m.face_reach[face] + m.face_reach[other] + m.face_length[face] + m.face_length[other];
+    return dot(apart, apart) < reach * reach;
+  };
   Index missed = 0;
 #pragma omp parallel for schedule(dynamic, 8) reduction(+ : missed)
   for (Index x = 0; x < count; ++x) {
@@ -311,7 +319,7 @@ Index count_missed_contacts(const Model& m, State& s) {
     const Index* listed = s.search.candidate.data();
     std::vector<Index> all;
     for (Index t = 0; t < count; ++t)
-      if (block(t) != block(x) && (movable(t) || movable(x))) all.push_back(t);
+      if (block(t) != block(x) && (movable(t) || movable(x)) && near(x, t)) all.push_back(t);
     Flag ignored[4] = {};
     Index by_list[4], by_all[4];
     springs.choose(x, listed + first, last - first, by_list, ignored);
