@@ -327,8 +327,7 @@ class _Scene:
         if field in ("group", "block", "damage"):
             self.high = max(float(values.max()), 1.0)
         first = series[0]
-        self.low_corner = np.minimum(first.points.min(axis=0), last.points.min(axis=0))
-        self.high_corner = np.maximum(first.points.max(axis=0), last.points.max(axis=0))
+        self.low_corner, self.high_corner = self._bounds(first, last)
         self.camera = self._camera(first, last)
 
     def _values(self, surface: Surface) -> NDArray:
@@ -337,6 +336,22 @@ class _Scene:
         if self.field not in surface.cell_data:
             raise CdemError(f"the run did not record {self.field!r}; add it to output.fields")
         return surface.cell_data[self.field].astype(float)
+
+    @staticmethod
+    def _bounds(first: Surface, last: Surface) -> tuple[NDArray, NDArray]:
+        """What to show: all that moved with half its size around it, but nothing beyond the model."""
+        low = np.minimum(first.points.min(axis=0), last.points.min(axis=0))
+        high = np.maximum(first.points.max(axis=0), last.points.max(axis=0))
+        moved = np.linalg.norm(last.point_data.get("displacement", np.zeros((1, 3))), axis=1)
+        some = moved > 0.2 * np.nanpercentile(moved, 99.5)
+        if not some.any() or moved.max() < 1e-3 * np.linalg.norm(high - low):
+            return low, high
+        places = np.vstack(
+            [last.points[some], last.points[some] - last.point_data["displacement"][some]]
+        )
+        near, far = places.min(axis=0), places.max(axis=0)
+        margin = 0.5 * (far - near).max()
+        return np.maximum(low, near - margin), np.minimum(high, far + margin)
 
     def _camera(self, first: Surface, last: Surface):
         """Look across the main motion from above; along -y when nothing moves in plan."""
