@@ -166,17 +166,22 @@ void sum_stiffness(const Model& m, State& s) {
 
   s.node_potential.resize(m.node_count);
   s.node_potential.fill(0);
+  const FaceColumns faces = face_columns(m, s);
+  const ContactLaws laws = contact_laws(m);
   for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
-    if (s.search.candidate_first[x] == s.search.candidate_first[x + 1]) continue;
     const Index face = s.search.exposed_face[x];
-    const Index count = m.face_nodes[4 * face + 3] < 0 ? 3 : 4;
-    const Index group = m.face_group[face];
-    const Interface& law = m.interfaces[m.interface_of[group * m.group_count + group]];
-    const Real k =
-        std::max(law.stiffness_n(m.face_stiffness[face]), law.stiffness_s(m.face_stiffness[face]));
+    Real stiffest = 0;
+    for (Index c = s.search.candidate_first[x]; c < s.search.candidate_first[x + 1]; ++c) {
+      const Index other = s.search.exposed_face[s.search.candidate[c]];
+      const Interface& law = laws.between(m.face_group[face], m.face_group[other]);
+      const Real stiffer = std::max(m.face_stiffness[face], m.face_stiffness[other]);
+      stiffest =
+          std::max(stiffest, faces.contact_area(face, other) *
+                                 std::max(law.stiffness_n(stiffer), law.stiffness_s(stiffer)));
+    }
     // semi-springs of either side, and as much again for semi-edges
-    for (Index v = 0; v < count; ++v)
-      s.node_potential[m.face_nodes[4 * face + v]] += 2 * k * m.face_area[face] / count;
+    for (Index v = 0; v < faces.vertex_count(face); ++v)
+      s.node_potential[faces.vertex(face, v)] += 2 * stiffest;
   }
 }
 

@@ -108,6 +108,13 @@ struct FaceColumns {
   CDEM_HD Index vertex_count(Index face) const { return face_nodes[4 * face + 3] < 0 ? 3 : 4; }
   CDEM_HD Index vertex(Index face, Index k) const { return face_nodes[4 * face + k]; }
 
+  /// Characteristic area of a contact: a vertex's share of its face (Eq. 4-5), but not more than
+  /// that of the face it meets; else a large face gives a small block a spring that no step can
+  /// follow.
+  CDEM_HD Real contact_area(Index face_m, Index face_t) const {
+    return min_of(face_area[face_m] / Real(vertex_count(face_m)),
+                  face_area[face_t] / Real(vertex_count(face_t)));
+  }
   CDEM_HD FaceShape shape(Index face) const {
     FaceShape f;
     f.count = vertex_count(face);

@@ -111,7 +111,7 @@ struct UpdateSpringForces {
     }
     const Interface& law = laws.between(faces.face_group[face_m], faces.face_group[face_t]);
     const Real stiffer = max_of(faces.face_stiffness[face_m], faces.face_stiffness[face_t]);
-    const Real area = 0.5 * faces.face_area[face_m] / Real(faces.vertex_count(face_m));
+    const Real area = 0.5 * faces.contact_area(face_m, face_t);
     const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
     const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
     const Real gap_rate = dot(frame.n, rate);
@@ -239,7 +239,7 @@ struct UpdateEdgeForces {
     const Interface& law = laws.between(faces.face_group[face_m], faces.face_group[face_t]);
     const Real stiffer = max_of(faces.face_stiffness[face_m], faces.face_stiffness[face_t]);
     // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
-    const Real area = faces.face_area[face_m] / Real(faces.vertex_count(face_m));
+    const Real area = faces.contact_area(face_m, face_t);
     const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
     const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
     const Real gap_rate = dot(frame.n, rate);
