@@ -208,11 +208,15 @@ def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, 
         group = t.element_group[shape]
         dense = dense_block[t.element_block[shape]]
         rock = (p.lame[group], p.shear[group])
-        lumped_square = shapes.squared_frequencies(shape, *geometry[shape], *rock, m.sum(axis=2))
+        gradient, volume = geometry[shape]
+        lumped_square = shapes.squared_frequencies(
+            shape, gradient, volume, rock[0], rock[1], m.sum(axis=2)
+        )
         square = lumped_square.copy()
         if dense.any():
-            some = (a[dense] for a in (*geometry[shape], *rock, m))
-            square[dense] = shapes.squared_frequencies(shape, *some)
+            square[dense] = shapes.squared_frequencies(
+                shape, gradient[dense], volume[dense], rock[0][dense], rock[1][dense], m[dense]
+            )
         heavier = np.maximum(1.0, square * (p.target_step / 2) ** 2)
         out.added_mass += float(((heavier - 1) * out.element_mass[shape]).sum())
         scaled[shape] = m * heavier[:, None, None]
@@ -272,7 +276,7 @@ def _correct_lumps(
         if good and (m + shift > LEAST_LUMP * m).all():
             mass[nodes] = m + shift
         elif len(m) <= DENSE_NODES_MOST:
-            without.append(b)
+            without.append(int(b))
         else:
             out.lumped_blocks += 1
     return np.array(without, np.intp)
@@ -302,7 +306,7 @@ def _dense_blocks(t: Topology, p: Properties, scaled, dense_block, out: Assembly
                 for i, b in enumerate(blocks[some]):
                     inverses[i] = _supported_inverse(m[some][i], p.supported[first[b] :][: int(n)])
             else:
-                inverses = np.linalg.inv(inverses)
+                inverses[:] = np.linalg.inv(inverses)
             k = int(some.sum())
             rows = place + n * n * axes * np.arange(k)[:, None] + n * np.arange(n)
             nodes = start[some][:, None] + np.arange(n)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from cdem._native import core as native
 from cdem.case import Case
 from cdem.errors import CaseError
 from cdem.mesh import Mesh
+from cdem.parts import Interface
 from cdem.topology import Topology, build_topology, group_touching
 
 Floats = NDArray[np.float64]
@@ -44,7 +46,7 @@ class Build:
     mesh: Mesh
     topology: Topology
     assembly: assemble.Assembly
-    core: native.Core
+    core: Any  # Core of the module for this machine's instruction set
     curves: list[tuple[list[float], list[float]]]
     start_position: Floats
     bonded: NDArray[np.bool_]
@@ -184,7 +186,7 @@ def _check_groups(case: Case, names: list[str]) -> None:
 
 def interfaces_of(case: Case, names: list[str]):
     """Interface laws in use, and the index of each pair of groups (-1 where none was given)."""
-    laws = list(case.interfaces.pairs)
+    laws: list[Interface] = list(case.interfaces.pairs)
     table = np.full((len(names), len(names)), -1, np.int32)
     if case.interfaces.default is not None:
         laws.append(case.interfaces.default)
@@ -334,12 +336,12 @@ def _supports(case: Case, topology: Topology, names: list[str], curves: list) ->
         nodes = _select(case, topology, names, item, f"loads.supports.{index}")
         axes = ["xyz".index(c) for c in item.fix]
         hold(nodes, axes, [0.0] * len(axes), 0)
-    for index, item in enumerate(case.loads.velocities):
-        nodes = _select(case, topology, names, item, f"loads.velocities.{index}")
-        axes = ["xyz".index(c) for c in item.components]
-        hold(nodes, axes, [item.velocity[a] for a in axes], _curve(item.history, curves))
+    for index, driven in enumerate(case.loads.velocities):
+        nodes = _select(case, topology, names, driven, f"loads.velocities.{index}")
+        axes = ["xyz".index(c) for c in driven.components]
+        hold(nodes, axes, [driven.velocity[a] for a in axes], _curve(driven.history, curves))
 
-    held = component.any(axis=1)
+    held = np.asarray(component.any(axis=1))
     row = np.full(count, -1, np.int32)
     row[held] = np.arange(held.sum())
     if not held.any():  # the core looks rows up; an empty table still needs one

@@ -293,7 +293,7 @@ def _hull(points: Floats) -> NDArray[np.int64]:
                 height = (points - points[i]) @ normal
                 if height.max() > near and height.min() < -near:
                     continue
-                on = tuple(np.flatnonzero(np.abs(height) <= near))
+                on = tuple(np.flatnonzero(np.abs(height) <= near).tolist())
                 if on in seen:
                     continue
                 seen.add(on)
@@ -337,7 +337,7 @@ def _fan(points: Floats, faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
         if len(face) < 3 or min(face) < 0 or max(face) >= len(points):
             raise MeshError(f"face {number} of a polyhedron needs three or more vertices it has")
         x = points[list(face)]
-        normal = sum(np.cross(x[i] - x[0], x[i + 1] - x[0]) for i in range(1, len(x) - 1))
+        normal = np.cross(x[1:-1] - x[0], x[2:] - x[0]).sum(axis=0)
         size = np.linalg.norm(normal)
         if size == 0:
             raise MeshError(f"face {number} of a polyhedron has no area")

@@ -75,7 +75,7 @@ def _candidates(t: Topology, bond: Callable[[str, str], bool]) -> list[tuple[int
     )
     free = np.ones(len(t.face_nodes), bool)
     free[t.pair_faces.ravel()] = False
-    free &= wanted.any(axis=1)[t.face_group]
+    free &= np.asarray(wanted.any(axis=1))[t.face_group]
     ids = np.flatnonzero(free)
     if len(ids) < 2:
         return []
@@ -90,7 +90,8 @@ def _candidates(t: Topology, bond: Callable[[str, str], bool]) -> list[tuple[int
     # sweep along the longest axis: open boxes are those that began within the largest extent
     axis = int(np.argmax(np.ptp(x.reshape(-1, 3), axis=0)))
     order = np.argsort(low[:, axis], kind="stable")
-    low, high, normal, x, size, ids = (a[order] for a in (low, high, normal, x, size, ids))
+    low, high, normal = low[order], high[order], normal[order]
+    x, size, ids = x[order], size[order], ids[order]
     end = np.searchsorted(low[:, axis], high[:, axis], side="right")
     found = []
     for i in range(len(ids)):
@@ -101,7 +102,7 @@ def _candidates(t: Topology, bond: Callable[[str, str], bool]) -> list[tuple[int
         j = j[wanted[t.face_group[ids[i]], t.face_group[ids[j]]]]
         gap = np.abs((x[j].mean(axis=1) - x[i].mean(axis=0)) @ normal[i])
         j = j[gap < COPLANAR * np.minimum(size[i], size[j])]
-        found += [tuple(sorted((int(ids[i]), int(k)))) for k in ids[j]]
+        found += [(min(a, b), max(a, b)) for a, b in ((int(ids[i]), int(k)) for k in ids[j])]
     return sorted(found)
 
 

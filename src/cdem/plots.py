@@ -30,7 +30,7 @@ ENERGIES = {
 """Columns of the ledger: colour (the Okabe-Ito set, told apart by everybody) and line."""
 AXIS_COLORS = {"x": "#0072b2", "y": "#009e73", "z": "#d55e00"}
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
-STYLE = {
+STYLE: Any = {
     "axes.formatter.limits": (-3, 4),
     "axes.formatter.use_mathtext": True,
     "axes.grid": True,

@@ -116,7 +116,9 @@ class Results:
         if frame and self._volume is not None and self._surface is not None:
             fields = sim.fields
             wanted = sim.case.output.fields
-            points = {n: fields[n] for n in ("displacement", "velocity") if n in wanted}
+            points: dict[str, NDArray] = {
+                n: fields[n] for n in ("displacement", "velocity") if n in wanted
+            }
             damage = _damage(sim)
             cells: dict[str, NDArray] = {}
             if "stress" in wanted:
@@ -124,17 +126,17 @@ class Results:
             if "damage" in wanted:
                 cells["damage"] = damage
             self._volume.append(sim.time, fields["position"], points, cells)
-            self._append_surface(sim, points, damage)
+            self._append_surface(self._surface, sim, points, damage)
             self.frames += 1
 
-    def _append_surface(self, sim: Simulation, points, damage) -> None:
+    def _append_surface(self, surface: SurfaceWriter, sim: Simulation, points, damage) -> None:
         t = sim.build.topology
         faces, broken = visible_faces(sim)
         nodes = t.face_nodes[faces]
         used = np.unique(nodes[nodes >= 0])
         number = np.full(len(t.node_position) + 1, -1, np.int32)
         number[used] = np.arange(len(used))
-        self._surface.append(
+        surface.append(
             sim.time,
             sim.fields["position"][used],
             number[nodes],
@@ -236,7 +238,8 @@ def _tracks(sim: Simulation) -> list[tuple[str, Any]]:
         if entry.group is not None:
             nodes = sim.build.nodes_of(entry.group)
         else:
-            nodes = np.array([np.linalg.norm(position - entry.point, axis=1).argmin()])
+            place = np.asarray(entry.point, float)
+            nodes = np.array([np.linalg.norm(position - place, axis=1).argmin()])
         for quantity in entry.quantities:
             if quantity == "energy":
                 name = f"{entry.name}.kinetic_energy [J]"

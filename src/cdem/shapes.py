@@ -156,7 +156,7 @@ def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
 def _strain_rows(shape: str, gradient: Array, volume: Array) -> Array:
     """Strain matrix B in Voigt order xx yy zz xy yz zx (engineering shear); B-bar for hexahedra."""
     elements, points, nodes, _ = gradient.shape
-    b = np.zeros((elements, points, 6, nodes, 3))
+    b: Array = np.zeros((elements, points, 6, nodes, 3))
     gx, gy, gz = (gradient[..., axis] for axis in range(3))
     b[:, :, 0, :, 0] = gx
     b[:, :, 1, :, 1] = gy

@@ -140,6 +140,7 @@ def advance(sim: Simulation, stage: StageState, steps: int):
             unbalance_limit=rules.tolerance,
             relaxation="none" if rules.relax == "local" else rules.relax,
         )
+    assert stage.end_time is not None
     return sim.core.run(steps, end_time=min(stage.next_row, stage.end_time))
 
 

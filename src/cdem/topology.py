@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from cdem.shapes import NODES, reference_gradients
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
-FACES = {
+FACES: dict[str, list[tuple[int, ...]]] = {
     "tet4": [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
     "pyramid5": [(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
     "wedge6": [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
@@ -162,8 +163,10 @@ def _volumes(shape: str, corners: Floats) -> tuple[Floats, Floats]:
         if len(corners) == 1:
             return np.zeros(1), np.zeros(1)
         half = len(corners) // 2
-        parts = _volumes(shape, corners[:half]), _volumes(shape, corners[half:])
-        return tuple(np.concatenate(both) for both in zip(*parts, strict=True))
+        (least, total), (least2, total2) = (
+            _volumes(shape, part) for part in (corners[:half], corners[half:])
+        )
+        return np.concatenate([least, least2]), np.concatenate([total, total2])
 
 
 def _components(count: int, a: NDArray, b: NDArray) -> NDArray:
@@ -184,7 +187,9 @@ def _components(count: int, a: NDArray, b: NDArray) -> NDArray:
 def _blocks(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
     """A label of its block for every cell, shapes one after the other."""
     counts = [len(mesh.cells.get(s, ())) for s in NODES]
-    group = np.concatenate([mesh.cell_group[s] for s in NODES if s in mesh.cells] or [np.zeros(0)])
+    group = np.concatenate(
+        [mesh.cell_group[s] for s in NODES if s in mesh.cells] or [np.zeros(0, np.int32)]
+    )
     total = sum(counts)
     cell = np.arange(total)
     mode = [split.get(name, "connected") for name in mesh.group_names]
@@ -240,7 +245,8 @@ def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
     block = rank[block]
     curve = _morton(center)
 
-    element_nodes, element_block, element_group, element_cell = {}, {}, {}, {}
+    element_nodes: dict[str, Any] = {}
+    element_block, element_group, element_cell = {}, {}, {}
     keys = []
     start = 0
     for shape in NODES:
@@ -401,5 +407,5 @@ def _surfaces(t: Topology, mesh: Mesh) -> None:
 def group_touching(t: Topology) -> set[tuple[str, str]]:
     """Pairs of group names (sorted) that touch through conforming faces or overlaps."""
     faces = np.concatenate([t.pair_faces, t.overlap_faces])
-    groups = np.unique(np.sort(t.face_group[faces], axis=1), axis=0) if len(faces) else []
+    groups = np.unique(np.sort(t.face_group[faces].reshape(-1, 2), axis=1), axis=0)
     return {tuple(sorted((t.group_names[a], t.group_names[b]))) for a, b in groups}

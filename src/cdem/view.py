@@ -418,7 +418,7 @@ def export(folder: Path, *, to: str = "vtu") -> list[Path]:
         count, size = int(root["NumberOfPoints"][0]), len(root["Types"])
         for frame, time in enumerate(steps["Values"][:]):
             start = int(steps["PointOffsets"][frame])
-            data = {}
+            data: dict[str, dict[str, NDArray]] = {}
             for kind, rows in (("PointData", count), ("CellData", size)):
                 data[kind] = {}
                 for name, values in root[kind].items():
@@ -471,14 +471,14 @@ def report(folder: Path) -> Path:
         f'{base64.b64encode(p.read_bytes()).decode()}">'
         for p in pictures
     )
-    error = f"{100 * e['error']:.3g} %" if e else "not sampled"
+    closing = f"{100 * e['error']:.3g} %" if e else "not sampled"
     page = f"""<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>{html.escape(s["title"] or "cdem run")}</title>
 <style>body{{font:16px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}}
 img{{max-width:100%;display:block;margin:1em 0}}td{{padding:.1em 1.5em .1em 0}}
 pre{{background:#f4f4f4;padding:1em;overflow:auto}}</style>
 <h1>{html.escape(s["title"] or "cdem run")}</h1>
-<p>Energy balance closes to <b>{error}</b>.</p>
+<p>Energy balance closes to <b>{closing}</b>.</p>
 <pre>{html.escape(info(folder))}</pre>{missing}{images}
 <h2>Energies at the end</h2><table>{rows}</table>
 <p>Files beside this page: case.yaml, summary.json, histories.csv, frames.vtkhdf, surface.vtkhdf,
