@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from cdem.simulation import Simulation
 
 STOPPED = 4  # exit status of a run that was stopped by a signal and can be resumed
-RESULT_FILES = {"case.yaml", "run.log", "summary.json", "checkpoint.h5"}
-
 app = typer.Typer(
     name="cdem",
     no_args_is_help=True,
@@ -165,10 +163,10 @@ def run(
         from cdem.case import Case
 
         case = Case.load(case_file, settings or [])
-        _guard_folder(folder, resume=resume, overwrite=overwrite)
+        from cdem.simulation import Simulation
+
         if resume:
             _compare_cases(case, folder)
-        from cdem.simulation import Simulation
 
         simulation = Simulation(
             case,
@@ -216,22 +214,6 @@ def _write_report(folder: Path, *, silent: bool) -> None:
     except (CdemError, ImportError) as error:
         if not silent:
             print(f"no report.html: {error}", file=sys.stderr)
-
-
-def _guard_folder(folder: Path, *, resume: bool, overwrite: bool) -> None:
-    """Stop before anything is computed if the folder must not be written to."""
-    if folder.exists() and not folder.is_dir():
-        raise CaseError(f"{folder}: is a file; name another folder with -o")
-    inside = {path.name for path in folder.iterdir()} if folder.exists() else set()
-    if not inside or resume:
-        return
-    if not overwrite:
-        raise CaseError(
-            f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or -o "
-            "for another folder"
-        )
-    if not inside & RESULT_FILES:
-        raise CaseError(f"{folder}: is not a result folder, so it is not overwritten")
 
 
 def _compare_cases(case: Any, folder: Path) -> None:
@@ -339,6 +321,8 @@ def doctor() -> None:
 def _results(folder: Path) -> Path:
     if not folder.is_dir():
         raise CaseError(f"{folder}: no such folder; name the result folder of a run")
+    from cdem.results import RESULT_FILES
+
     if not {path.name for path in folder.iterdir()} & RESULT_FILES:
         raise CaseError(f"{folder}: is not a result folder; 'cdem run CASE.yaml' makes one")
     return folder

@@ -27,6 +27,27 @@ ENERGIES = ("kinetic", "strain", "contact")
 WORKS = ("friction", "damping", "fracture", "external")
 
 
+RESULT_FILES = {"case.yaml", "run.log", "summary.json", "checkpoint.h5"}
+"""A folder that holds one of these is a result folder."""
+
+
+def _guard(folder: Path, *, overwrite: bool, resume: bool) -> None:
+    """Stop before anything is computed if the folder must not be written to."""
+    if folder.exists() and not folder.is_dir():
+        raise CdemError(f"{folder}: is a file; name another folder with -o")
+    inside = {path.name for path in folder.iterdir()} if folder.exists() else set()
+    if resume:
+        if "checkpoint.h5" not in inside:
+            raise CdemError(f"{folder}: no checkpoint to resume from; run without --resume")
+    elif inside and not overwrite:
+        raise CdemError(
+            f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or -o "
+            "for another folder"
+        )
+    elif inside and not inside & RESULT_FILES:
+        raise CdemError(f"{folder}: is not a result folder, so it is not overwritten")
+
+
 class Results:
     """Writes the result folder of one simulation.
 
@@ -36,19 +57,13 @@ class Results:
         resume: Go on in an existing one.
 
     Raises:
-        CdemError: The folder exists and neither was asked for, or there is nothing to resume.
+        CdemError: The folder exists and neither was asked for, it holds other things than results, or
+            there is nothing to resume.
     """
 
     def __init__(self, folder: Path, *, overwrite: bool, resume: bool) -> None:
         self.folder = folder
-        if resume:
-            if not (folder / "checkpoint.h5").is_file():
-                raise CdemError(f"{folder}: no checkpoint to resume from; run without --resume")
-        elif folder.exists() and any(folder.iterdir()) and not overwrite:
-            raise CdemError(
-                f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or "
-                "-o for another folder"
-            )
+        _guard(folder, overwrite=overwrite, resume=resume)
         self.overwrite = overwrite
         self.rows = 0
         self.frames = 0
