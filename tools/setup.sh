@@ -19,19 +19,19 @@ libraries=$(PATH="$PATH:/usr/sbin:/sbin" ldconfig -p 2>/dev/null || true)
 [[ $libraries == *libGL.so.1* ]] || missing+=(libgl1)
 [[ $libraries == *libXrender* ]] || missing+=(libxrender1)
 
-if ((${#missing[@]})); then
-  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-    echo "installing Debian packages: ${missing[*]}"
-    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "${missing[@]}" \
-      >/dev/null
-  else
-    echo "missing system packages; install them with:" >&2
-    echo "  sudo apt-get install ${missing[*]}" >&2
-    case " ${missing[*]} " in
-      *" g++ "* | *" python3"*) exit 1 ;;
-      *) echo "(only pictures need these; going on)" >&2 ;;
-    esac
-  fi
+install() {
+  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || return 1
+  echo "installing Debian packages: $*"
+  apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "$@" >/dev/null
+}
+
+if ((${#missing[@]})) && ! install "${missing[@]}"; then
+  echo "missing system packages; install them with:" >&2
+  echo "  sudo apt-get install ${missing[*]}" >&2
+  case " ${missing[*]} " in
+    *" g++ "* | *" make "* | *" python3"*) exit 1 ;;
+    *) echo "(only pictures need these; going on)" >&2 ;;
+  esac
 fi
 
 [ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
