@@ -19,8 +19,6 @@ ROWS_PER_FRAME = 10
 """History rows per recorded frame of a dynamic stage."""
 FRAMES = 50
 """Frames of a dynamic stage when output.every is not given."""
-SETTABLE = ("interfaces.", "loads.", "groups.")
-"""What a stage's `set` may change; a changed mesh or material would be another model."""
 
 
 @dataclass
@@ -73,12 +71,6 @@ def apply_settings(sim: Simulation, index: int) -> None:
     """Apply damping and `set` of a stage to the core (not to motion or displacement)."""
     stage = sim.case.stages[index]
     for path, value in stage.set.items():
-        key = f"stages.{index}.set.{path}"
-        if not path.startswith(SETTABLE):
-            raise CaseError(
-                f"{sim.case.where(key)}: {key}: a stage can change "
-                f"{', '.join(s + '*' for s in SETTABLE)} only"
-            )
         sim.case.set(path, value)
     if stage.set:
         _update_core(sim, index)
