@@ -105,6 +105,7 @@ void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     expose(m, s, p.faces[2 * i + 1]);
     if (p.point_first.size() == 0) hand_over(m, s, p, ps, i);
     ps.live[i] = ps.jump[i] = ps.stored[i] = 0;
+    ps.jump_at_break[i] = -1;
     Real* rows = s.corner_force.data() + std::size_t(p.corner_first + i * p.corners) * 4;
     std::fill(rows, rows + std::size_t(p.corners) * 4, 0.0);
   }
