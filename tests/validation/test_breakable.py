@@ -93,10 +93,11 @@ def dropped(divisions, steps_safety, time):
 
 
 def test_dropped_it_breaks_and_the_ledger_closes():
-    sim = dropped(1, 0.4, 0.05)
-    assert sum(sim.broken.values()) > 10
+    """48 tets: all 216 bond points break, friction takes three quarters of the energy."""
+    sim = dropped(2, 0.4, 0.05)
+    assert sum(sim.broken.values()) > 200
     assert np.isfinite(sim.fields["position"]).all()
-    assert abs(sim.energies["error"]) < 0.03
+    assert abs(sim.energies["error"]) < 0.01
 
 
 @pytest.mark.slow
