@@ -93,7 +93,7 @@ def dropped(divisions, steps_safety, time):
 
 
 def test_dropped_it_breaks_and_the_ledger_closes():
-    """48 tets: all 216 bond points break, friction takes three quarters of the energy."""
+    """48 tets: all 216 bond points break, friction takes 60 % of the energy."""
     sim = dropped(2, 0.4, 0.05)
     assert sum(sim.broken.values()) > 200
     assert np.isfinite(sim.fields["position"]).all()
