@@ -59,6 +59,11 @@ BEDS = {
 }
 
 
+FLUSH = [
+    {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]} for i in range(16)
+]
+
+
 @pytest.mark.parametrize("bed", BEDS)
 def test_the_mesh_of_the_bed_does_not_matter(bed):
     measured, theory = slide(BEDS[bed], 30, 10)
@@ -71,20 +76,12 @@ def test_in_a_rotated_frame():
 
 
 def test_over_separate_flush_blocks():
-    bed = [
-        {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]}
-        for i in range(16)
-    ]
-    measured, theory = slide(bed, 35, 20)
+    measured, theory = slide(FLUSH, 35, 20)
     assert measured == pytest.approx(theory, rel=1e-3)
 
 
 def test_a_meshed_slider_over_flush_blocks():
-    bed = [
-        {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]}
-        for i in range(16)
-    ]
-    measured, theory = slide(bed, 35, 20, divisions=(2, 2, 2))
+    measured, theory = slide(FLUSH, 35, 20, divisions=(2, 2, 2))
     assert measured == pytest.approx(theory, rel=1e-3)
 
 
@@ -150,16 +147,12 @@ def test_a_seam_is_not_felt(bed):
     The sum over the block may still jump when a loaded vertex of the bed comes out from under it:
     by its share of the weight, here up to 9 %.
     """
-    flush = [
-        {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]}
-        for i in range(16)
-    ]
     slope = np.radians(30)
     gravity = GRAVITY * np.array([np.sin(slope), 0, -np.cos(slope)])
     box = {"size": [1, 1, 0.4]}
     sim = simulate(
         [
-            *(BEDS.get(bed) or flush),
+            *(BEDS.get(bed) or FLUSH),
             {"group": "block", "box": box, "translate": [1.37, 1.503, 0]},
         ],
         {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
