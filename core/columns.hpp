@@ -25,6 +25,10 @@ inline Candidates candidate_columns(const State& s) {
   return {s.search.candidate_first.data(), s.search.candidate.data()};
 }
 
+inline Sources source_columns(const State& s) {
+  return {s.search.source_first.data(), s.search.source.data()};
+}
+
 inline EdgeCandidates edge_candidate_columns(const State& s) {
   return {s.search.edge_candidate_first.data(), s.search.edge_candidate.data(),
           s.search.edge_candidate_sides.data()};

@@ -172,14 +172,20 @@ void sum_stiffness(const Model& m, State& s) {
   for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
     const Index face = s.search.exposed_face[x];
     Real stiffest = 0;
-    for (Index c = s.search.candidate_first[x]; c < s.search.candidate_first[x + 1]; ++c) {
-      const Index other = s.search.exposed_face[s.search.candidate[c]];
+    const auto meet = [&](Index y) {
+      const Index other = s.search.exposed_face[y];
       const Interface& law = laws.between(m.face_group[face], m.face_group[other]);
       const Real stiffer = std::max(m.face_stiffness[face], m.face_stiffness[other]);
       stiffest =
           std::max(stiffest, faces.contact_area(face, other) *
                                  std::max(law.stiffness_n(stiffer), law.stiffness_s(stiffer)));
-    }
+    };
+    for (Index c = s.search.candidate_first[4 * x]; c < s.search.candidate_first[4 * x + 4]; ++c)
+      meet(s.search.candidate[c]);
+    for (Index c = s.search.edge_candidate_first[x]; c < s.search.edge_candidate_first[x + 1]; ++c)
+      meet(s.search.edge_candidate[c]);
+    for (Index c = s.search.source_first[x]; c < s.search.source_first[x + 1]; ++c)
+      meet(s.search.source[c]);
     // semi-springs of either side, and as much again for semi-edges
     for (Index v = 0; v < faces.vertex_count(face); ++v)
       s.node_potential[faces.vertex(face, v)] += 2 * stiffest;
@@ -193,13 +199,16 @@ bool refresh_is_due(const Model& m, const State& s) {
       release_is_due(m, m.overlaps, s.overlaps))
     return true;
   bool due = false;
+  // beyond the horizon the lists take every vertex to stand still: what rests needs no new ones
+  const Real after = std::min(s.time - s.search.built_time, s.search.horizon);
 #pragma omp parallel for schedule(static) reduction(|| : due) if (m.node_count >= worth_threads)
   for (Index i = 0; i < m.node_count; ++i) {
     const Real skin = s.search.node_skin[i];
     if (skin == 0) continue;
     const Real* now = s.nodes.motion.data() + std::size_t(i) * 8;
-    const Real* then = s.nodes.built_position.data() + std::size_t(i) * 4;
-    const Real dx = now[0] - then[0], dy = now[1] - then[1], dz = now[2] - then[2];
+    const Real* then = s.nodes.built_motion.data() + std::size_t(i) * 8;
+    const Real dx = now[0] - then[0] - after * then[4], dy = now[1] - then[1] - after * then[5],
+               dz = now[2] - then[2] - after * then[6];
     due = due || dx * dx + dy * dy + dz * dz > skin * skin;
   }
   return due;
@@ -210,6 +219,7 @@ void refresh_contacts(const Model& m, State& s) {
     s.search.face_exposed.resize(m.face_count, -1);
     for (Index f = 0; f < m.face_count; ++f)
       if (m.face_initially_exposed[f]) expose(m, s, f);
+    s.nodes.built_motion.assign(s.nodes.motion.data(), s.nodes.motion.size());
   }
   release_pairs(m, s, m.triangles, s.triangles);
   release_pairs(m, s, m.quads, s.quads);
@@ -218,9 +228,6 @@ void refresh_contacts(const Model& m, State& s) {
   list_candidates(m, s);
   sum_stiffness(m, s);
   list_contact_corners(m, s);
-  for (Index i = 0; i < m.node_count; ++i)
-    std::copy_n(s.nodes.motion.data() + std::size_t(i) * 8, 3,
-                s.nodes.built_position.data() + std::size_t(i) * 4);
   s.built_step = s.step;
   ++s.refreshes;
 }
@@ -229,10 +236,10 @@ void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
   launch_one(q, count, UpdateFaceGeometry{face_columns(m, s), exposed, s.face_geometry.data()});
-  launch_one(
-      q, count,
-      MarkSharpSides{face_columns(m, s), exposed, all ? nullptr : s.search.candidate_first.data(),
-                     s.face_geometry.data()});
+  launch_one(q, count,
+             MarkSharpSides{face_columns(m, s), exposed,
+                            all ? nullptr : s.search.edge_candidate_first.data(),
+                            all ? nullptr : s.search.source_first.data(), s.face_geometry.data()});
 }
 
 void widen_edge_slots(State& s) {
@@ -281,7 +288,7 @@ Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
   count = 0;
   face = -1;
   for (Index x = 0; x < exposed; ++x) {
-    search(One{x});
+    for (Index k = 0; k < 4; ++k) search(One{4 * x + k});
     const Index mother = s.search.exposed_face[x];
     for (Index k = 0; k < search.faces.vertex_count(mother); ++k) {
       const Index t = s.springs.target[4 * x + k];
@@ -321,17 +328,17 @@ Index count_missed_contacts(const Model& m, State& s) {
   Index missed = 0;
 #pragma omp parallel for schedule(dynamic, 8) reduction(+ : missed)
   for (Index x = 0; x < count; ++x) {
-    const Index first = s.search.candidate_first[x], last = s.search.candidate_first[x + 1];
     const Index* listed = s.search.candidate.data();
     std::vector<Index> all;
     for (Index t = 0; t < count; ++t)
       if (block(t) != block(x) && (movable(t) || movable(x)) && near(x, t)) all.push_back(t);
-    Flag ignored[4] = {};
-    Index by_list[4], by_all[4];
-    springs.choose(x, listed + first, last - first, by_list, ignored);
-    springs.choose(x, all.data(), Index(all.size()), by_all, ignored);
-    for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
-      missed += by_list[k] != by_all[k];
+    Flag ignored = 0;
+    for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k) {
+      const Index first = s.search.candidate_first[4 * x + k];
+      const Index count_listed = s.search.candidate_first[4 * x + k + 1] - first;
+      missed += springs.choose(x, k, listed + first, count_listed, &ignored) !=
+                springs.choose(x, k, all.data(), Index(all.size()), &ignored);
+    }
     if (!m.semi_edges) continue;
     const EdgeCandidates& c = edges.candidates;
     for (const Index t : all)
@@ -340,7 +347,7 @@ Index count_missed_contacts(const Model& m, State& s) {
           SidePair pair;
           if (!pair_sides(springs.faces, s.search.exposed_face[x], k, s.search.exposed_face[t], j,
                           pair) ||
-              !edges.touches(x, t, pair, false, false, ignored))
+              !edges.touches(x, t, pair, false, false, &ignored))
             continue;
           bool found = false;
           for (Index i = c.first[x]; i < c.first[x + 1]; ++i)

@@ -8,8 +8,8 @@
 namespace cdem {
 
 struct NodeState {
-  Column<Real> motion;          // rows of 8: position, velocity
-  Column<Real> built_position;  // rows of 4: where the node was at the last refresh
+  Column<Real> motion;        // rows of 8: position, velocity
+  Column<Real> built_motion;  // rows of 8: position and velocity at the last refresh
   Column<Real> work_external, work_damping;
   Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
   Column<Real> unbalance;
@@ -45,8 +45,10 @@ struct EdgeState {
 
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
-  Column<Index> candidate_first, candidate;
+  Real horizon = 0, built_time = 0;          // how long the lists look ahead, and from when  [s]
+  Column<Index> candidate_first, candidate;  // by vertex
   Column<Index> edge_candidate_first, edge_candidate, edge_candidate_sides;
+  Column<Index> source_first, source;           // faces whose contacts may act on a face
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
 };
@@ -78,7 +80,7 @@ struct State {
 template <class S, class Visit>
 void describe(S& s, Visit&& field) {
   field("node.motion", s.nodes.motion, "position [m], pad, velocity [m/s], pad");
-  field("node.built_position", s.nodes.built_position, "position at the last refresh [m]");
+  field("node.built_motion", s.nodes.built_motion, "position and velocity at the last refresh");
   field("node.work_external", s.nodes.work_external, "work of loads and supports [J]");
   field("node.work_damping", s.nodes.work_damping, "work taken out by damping [J]");
   field("node.reaction", s.nodes.reaction, "force of supports [N]");
@@ -146,15 +148,17 @@ void describe(S& s, Visit&& field) {
 
   field("search.exposed_face", s.search.exposed_face, "faces that can be touched");
   field("search.face_exposed", s.search.face_exposed, "place of a face among them, or -1");
-  field("search.candidate_first", s.search.candidate_first, "start of a face's candidates");
+  field("search.candidate_first", s.search.candidate_first, "start of a vertex's candidates");
   field("search.candidate", s.search.candidate, "exposed faces that it may touch");
+  field("search.source_first", s.search.source_first, "start of a face's sources");
+  field("search.source", s.search.source, "exposed faces whose contacts may act on it");
   field("search.edge_candidate_first", s.search.edge_candidate_first, "start of a face's sides");
   field("search.edge_candidate", s.search.edge_candidate, "exposed face whose side may be crossed");
   field("search.edge_candidate_sides", s.search.edge_candidate_sides,
         "which sides, which ends shared");
   field("search.contact_first", s.search.contact_first, "start of a node's contact rows");
   field("search.contact_corner", s.search.contact_corner, "contact rows of a node");
-  field("search.node_skin", s.search.node_skin, "motion that calls for a refresh [m]");
+  field("search.node_skin", s.search.node_skin, "straying that calls for a refresh [m]");
 }
 
 }  // namespace cdem

@@ -61,7 +61,7 @@ void update_bonds(const Model& m, State& s, Queue q) {  // contact/bond.hpp
 }
 
 void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact/target_face.hpp
-  launch_one(q, Index(s.search.exposed_face.size()),
+  launch_one(q, 4 * Index(s.search.exposed_face.size()),
              FindTargetFaces{face_columns(m, s),
                              {s.face_geometry.data()},
                              s.search.exposed_face.data(),
@@ -91,13 +91,15 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
 void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, contact/force.hpp
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
+  const FaceGeometry geometry{s.face_geometry.data()};
+  launch_one(q, 4 * count,
+             UpdateSpringForces{face_columns(m, s), geometry, exposed, m.rules, contact_laws(m),
+                                spring_columns(s)});
   launch_one(
-      q, 4 * count,
-      UpdateSpringForces{face_columns(m, s), exposed, m.rules, contact_laws(m), spring_columns(s)});
+      q, count,
+      UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m), edge_columns(s)});
   launch_one(q, count,
-             UpdateEdgeForces{face_columns(m, s), exposed, contact_laws(m), edge_columns(s)});
-  launch_one(q, count,
-             GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s), m.rules,
+             GatherFaceForces{face_columns(m, s), exposed, source_columns(s), m.rules,
                               spring_columns(s), edge_columns(s), s.contact_force.data()});
 }
 

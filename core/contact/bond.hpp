@@ -36,6 +36,30 @@ struct PairFrame {
   Vec3<T> n, t1, t2;  // n points from the first face into the second
 };
 
+/// Elastic energy of a bond point  [J].
+template <class T>
+CDEM_HD inline T stored_energy(const BondLaw<T>& law, const T& force_n, const T& force_s1,
+                               const T& force_s2) {
+  const T half(0.5), flex_n = half / law.stiffness_n, flex_s = half / law.stiffness_s;
+  return flex_n * force_n * force_n + flex_s * (force_s1 * force_s1 + force_s2 * force_s2);
+}
+
+/// Does an intact bond point bear this jump? Then `on_b` and `stored` are what bond_force gives,
+/// without the history that an intact point does not have.
+template <class T>
+CDEM_HD inline auto bears(const PairFrame<T>& frame, const Vec3<T>& jump, const BondLaw<T>& law,
+                          Vec3<T>& on_b, T& stored) {
+  T force_n = -law.stiffness_n * dot(frame.n, jump);
+  T force_s1 = -law.stiffness_s * dot(frame.t1, jump);
+  T force_s2 = -law.stiffness_s * dot(frame.t2, jump);
+  T bond(1.0);
+  limit_force(law.tension_limit, law.cohesion_limit, law.tan_friction, bond, force_n, force_s1,
+              force_s2);
+  on_b = force_n * frame.n + force_s1 * frame.t1 + force_s2 * frame.t2;
+  stored = stored_energy(law, force_n, force_s1, force_s2);
+  return bond > T(0.5);
+}
+
 /// Force of one bond point from the jump of displacement x_b - x_a across it, Eq. 13-14.
 ///
 /// The force is total, not incremental: F_n = -K_n n.jump, F_s = -K_s (t.jump - slip), so it cannot
@@ -67,13 +91,13 @@ CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>&
   const T slip1 = select(h.bond > half, h.slip1, along1 + force_s1 / law.stiffness_s);
   const T slip2 = select(h.bond > half, h.slip2, along2 + force_s2 / law.stiffness_s);
 
-  const T flex_n = half / law.stiffness_n, flex_s = half / law.stiffness_s;
-  const T stored_n = flex_n * force_n * force_n;
-  const T stored_s = flex_s * (force_s1 * force_s1 + force_s2 * force_s2);
-  out.stored = stored_n + stored_s;
+  out.stored = stored_energy(law, force_n, force_s1, force_s2);
   out.fracture = zero;
   out.friction = zero;
   if (any_of(h.bond < half)) {
+    const T flex_n = half / law.stiffness_n, flex_s = half / law.stiffness_s;
+    const T stored_n = flex_n * force_n * force_n;
+    const T stored_s = flex_s * (force_s1 * force_s1 + force_s2 * force_s2);
     const T old_n = dot(frame.n, jump_old);
     const T old1 = dot(frame.t1, jump_old), old2 = dot(frame.t2, jump_old);
     const T was_n =
@@ -147,15 +171,40 @@ struct ConformingBonds {
     using T = Number<I>;
     const auto live = pairs.live.at(0, p) > T(0.0);
     if (!any_of(live)) return;
-    Vec3<T> mean[count], jump[count], rate[count];
-    gather(p, mean, jump, rate);
+    Vec3<T> mean[count], jump[count], force[count];
+    gather_jumps(p, mean, jump);
     const PairFrame<T> frame = pair_frame<count>(mean);
     const BondLaw<T> law = law_of(p);
+    T stored(0.0);
+    if (any_of(live & !all_bear(p, frame, jump, law, force, stored))) {
+      update_history(p, live, frame, jump, law, force);
+    } else {
+      pairs.stored.set(0, p, select(live, stored, T(0.0)));
+    }
+    write_forces(p, live, force);
+  }
 
+ private:
+  /// The common case: all points of the pair were intact and stay so.
+  template <class I, class T>
+  CDEM_HD auto all_bear(I p, const PairFrame<T>& frame, const Vec3<T>* jump, const BondLaw<T>& law,
+                        Vec3<T>* force, T& stored) const {
+    auto all = pairs.bond.at(0, p) > T(0.5);
+    for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
+    for (Index k = 0; k < count; ++k) {
+      T part;
+      all = all & bears(frame, jump[k], law, force[k], part);
+      stored += part;
+    }
+    return all;
+  }
+  template <class I, class M, class T>
+  CDEM_HD void update_history(I p, const M& live, const PairFrame<T>& frame, const Vec3<T>* jump,
+                              const BondLaw<T>& law, Vec3<T>* force) const {
     const T zero(0.0);
-    const Vec3<T> none{zero, zero, zero};
-    Vec3<T> force[count], sum = none;
-    BondForce<T> total{none, zero, zero, zero, zero, zero};
+    Vec3<T> rate[count];
+    gather_rates(p, rate);
+    BondForce<T> total{{zero, zero, zero}, zero, zero, zero, zero, zero};
     T widest(0.0), intact(0.0);
     for (Index k = 0; k < count; ++k) {
       const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
@@ -166,7 +215,6 @@ struct ConformingBonds {
       pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
       pairs.slip2.set(k, p, select(live, h.slip2, old.slip2));
       force[k] = f.on_b;
-      sum = sum + f.on_b;
       widest = max_of(widest, dot(jump[k], jump[k]));
       intact += h.bond;
       total.stored += f.stored;
@@ -175,13 +223,6 @@ struct ConformingBonds {
       total.tension += f.tension;
       total.shear += f.shear;
     }
-    const T own(1.0 - indentation), shared(indentation / count);
-    for (Index k = 0; k < count; ++k) {
-      Vec3<T> fk = own * force[k] + shared * sum;
-      fk = {select(live, fk.x, zero), select(live, fk.y, zero), select(live, fk.z, zero)};
-      corner_force.set(p, 2 * count, k, -fk);
-      corner_force.set(p, 2 * count, count + k, fk);
-    }
     pairs.note_jump(p, live & (!(intact > zero)), sqrt_of(widest));
     pairs.stored.set(0, p, select(live, total.stored, zero));
     add(pairs.fracture, p, select(live, total.fracture, zero));
@@ -189,30 +230,45 @@ struct ConformingBonds {
     add(pairs.broken_tension, p, select(live, total.tension, zero));
     add(pairs.broken_shear, p, select(live, total.shear, zero));
   }
-
- private:
+  template <class I, class M, class T>
+  CDEM_HD void write_forces(I p, const M& live, const Vec3<T>* force) const {
+    const T own(1.0 - indentation), shared(indentation / count), zero(0.0);
+    Vec3<T> sum{zero, zero, zero};
+    for (Index k = 0; k < count; ++k) sum = sum + force[k];
+    for (Index k = 0; k < count; ++k) {
+      Vec3<T> fk = own * force[k] + shared * sum;
+      fk = {select(live, fk.x, zero), select(live, fk.y, zero), select(live, fk.z, zero)};
+      corner_force.set(p, 2 * count, k, -fk);
+      corner_force.set(p, 2 * count, count + k, fk);
+    }
+  }
   template <class I>
   CDEM_HD static void add(InOutTable table, I p, Number<I> more) {
     table.set(0, p, table.at(0, p) + more);
   }
   template <class I, class T>
-  CDEM_HD void gather(I p, Vec3<T>* mean, Vec3<T>* jump, Vec3<T>* rate) const {
-    Vec3<T> jump_sum{T(0.0), T(0.0), T(0.0)}, rate_sum = jump_sum;
+  CDEM_HD void gather_jumps(I p, Vec3<T>* mean, Vec3<T>* jump) const {
     for (Index k = 0; k < count; ++k) {
-      const auto a = pair_nodes.at(k, p);
-      const auto b = pair_nodes.at(count + k, p);
-      const Vec3<T> xa = nodes.position(a), xb = nodes.position(b);
+      const Vec3<T> xa = nodes.position(pair_nodes.at(k, p));
+      const Vec3<T> xb = nodes.position(pair_nodes.at(count + k, p));
       mean[k] = T(0.5) * (xa + xb);
       jump[k] = xb - xa;
-      rate[k] = nodes.velocity(b) - nodes.velocity(a);
-      jump_sum = jump_sum + jump[k];
-      rate_sum = rate_sum + rate[k];
     }
+    move_inside(jump);
+  }
+  template <class I, class T>
+  CDEM_HD void gather_rates(I p, Vec3<T>* rate) const {
+    for (Index k = 0; k < count; ++k)
+      rate[k] = nodes.velocity(pair_nodes.at(count + k, p)) - nodes.velocity(pair_nodes.at(k, p));
+    move_inside(rate);
+  }
+  /// From the vertices to the bond points.
+  template <class T>
+  CDEM_HD void move_inside(Vec3<T>* values) const {
     const T own(1.0 - indentation), shared(indentation / count);
-    for (Index k = 0; k < count; ++k) {
-      jump[k] = own * jump[k] + shared * jump_sum;
-      rate[k] = own * rate[k] + shared * rate_sum;
-    }
+    Vec3<T> sum{T(0.0), T(0.0), T(0.0)};
+    for (Index k = 0; k < count; ++k) sum = sum + values[k];
+    for (Index k = 0; k < count; ++k) values[k] = own * values[k] + shared * sum;
   }
   template <class I>
   CDEM_HD BondLaw<Number<I>> law_of(I p) const {

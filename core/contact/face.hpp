@@ -22,8 +22,8 @@ struct FaceShape {
     return Real(1.0) / Real(count) * sum;
   }
   CDEM_HD Vec3<Real> normal() const { return unit(cross(x[2] - x[0], x[3] - x[1])); }
-  CDEM_HD Frame frame() const {
-    const Vec3<Real> n = normal();
+  CDEM_HD Frame frame() const { return frame(normal()); }
+  CDEM_HD Frame frame(const Vec3<Real>& n) const {
     const Vec3<Real> side = x[1] - x[0];
     const Vec3<Real> t1 = unit(side - dot(n, side) * n);
     return {n, t1, cross(n, t1)};
@@ -188,11 +188,14 @@ inline constexpr Real coplanar_faces = 0.999;
 struct MarkSharpSides {
   FaceColumns faces;
   const Index* exposed_face;
-  const Index* candidate_first;  // faces without candidates need no marks; null: mark all
+  // faces whose sides nobody may cross need no marks; null: mark all
+  const Index *edge_candidate_first, *source_first;
   Real* rows;
 
   CDEM_HD void operator()(One i) const {
-    if (candidate_first && candidate_first[i.i] == candidate_first[i.i + 1]) return;
+    if (source_first && source_first[i.i] == source_first[i.i + 1] &&
+        edge_candidate_first[i.i] == edge_candidate_first[i.i + 1])
+      return;
     const FaceGeometry geometry{rows};
     const Index face = exposed_face[i.i];
     int sharp = 0;

@@ -79,6 +79,7 @@ CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Re
 /// Force of every semi-spring in contact; slot = 4 * exposed face + vertex.
 struct UpdateSpringForces {
   FaceColumns faces;
+  FaceGeometry geometry;
   const Index* exposed_face;
   SearchRules rules;
   ContactLaws laws;
@@ -95,7 +96,7 @@ struct UpdateSpringForces {
     if (before != t) carry_shear(slot.i, before, face_t);
 
     const FaceShape shape = faces.shape(face_t);
-    const Frame frame = shape.frame();
+    const Frame frame = shape.frame(geometry.normal(t));
     const Mother mother = mother_point(face_m, k);
     const Projection foot = project(shape, mother.x, frame.n);
 
@@ -196,6 +197,7 @@ struct UpdateSpringForces {
 /// Force of every semi-edge contact of one exposed face.
 struct UpdateEdgeForces {
   FaceColumns faces;
+  FaceGeometry geometry;
   const Index* exposed_face;
   ContactLaws laws;
   EdgeColumns edges;
@@ -213,7 +215,8 @@ struct UpdateEdgeForces {
             faces.vertex(face, k + 1 == faces.vertex_count(face) ? 0 : k + 1)};
   }
   CDEM_HD void update(Index m, Index place) const {
-    const Index face_m = exposed_face[m], face_t = exposed_face[edges.target_face[place]];
+    const Index t = edges.target_face[place];
+    const Index face_m = exposed_face[m], face_t = exposed_face[t];
     const Index edge = edges.target_edge[place];
     const Side sm = side_of(face_m, edges.side[place]);
     // the frame belongs to the edge, whichever of its faces is the right one just now
@@ -221,8 +224,7 @@ struct UpdateEdgeForces {
 
     const Vec3<Real> xm = faces.nodes.position(sm.a), xt = faces.nodes.position(st.a);
     const Vec3<Real> dm = faces.nodes.position(sm.b) - xm, dt = faces.nodes.position(st.b) - xt;
-    const Vec3<Real> normal_m = faces.shape(face_m).normal(),
-                     normal_t = faces.shape(face_t).normal();
+    const Vec3<Real> normal_m = geometry.normal(m), normal_t = geometry.normal(t);
     const Frame frame = edge_frame(edge_normal(dm, dt, normal_m, normal_t), dt);
     const Crossing c = cross_edges(xm, dm, xt, dt, frame.n);
 
@@ -290,12 +292,12 @@ struct UpdateEdgeForces {
 };
 
 /// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions
-/// of all others that have it as target. It looks through its candidates in their order instead of
+/// of all others that have it as target. It looks through its sources in their order instead of
 /// letting contacts add to nodes, so the sum has one order for any number of threads.
 struct GatherFaceForces {
   FaceColumns faces;
   const Index* exposed_face;
-  Candidates candidates;
+  Sources sources;
   SearchRules rules;
   SpringColumns springs;
   EdgeColumns edges;
@@ -305,8 +307,8 @@ struct GatherFaceForces {
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
     Real sum[4][4] = {};
     own(m.i, count, sum);
-    for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c)
-      reactions(m.i, face, count, candidates.other[c], sum);
+    for (Index c = sources.first[m.i]; c < sources.first[m.i + 1]; ++c)
+      reactions(m.i, face, count, sources.other[c], sum);
     for (Index k = 0; k < count; ++k)
       for (Index j = 0; j < 4; ++j) corner_force[(std::size_t(m.i) * 4 + k) * 4 + j] = sum[k][j];
   }

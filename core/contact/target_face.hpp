@@ -17,8 +17,14 @@ struct SearchRules {
   Real approach_steps = 1.5;  // see entry
 };
 
-/// Pairs of exposed faces that may touch before the next refresh: ragged rows, in both directions.
+/// Faces that a vertex of an exposed face may touch before the next refresh: ragged rows.
 struct Candidates {
+  const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
+  const Index* other;  // exposed face, ascending in a row
+};
+
+/// Exposed faces whose semi-springs and semi-edges may act on an exposed face: ragged rows.
+struct Sources {
   const Index* first;  // [exposed + 1]
   const Index* other;  // exposed face, ascending in a row
 };
@@ -40,7 +46,7 @@ struct SpringColumns {
   Flag* lost;      // 1: a loaded contact was lost because it sank too deep
 };
 
-/// Choose the target face of every semi-spring of one exposed face.
+/// Choose the target face of one semi-spring.
 ///
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
 /// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
@@ -54,44 +60,32 @@ struct FindTargetFaces {
   SearchRules rules;
   SpringColumns springs;
 
-  CDEM_HD void operator()(One m) const {
-    const Index count = faces.vertex_count(exposed_face[m.i]);
-    for (Index k = 0; k < count; ++k)
-      springs.target_before[4 * m.i + k] = springs.target[4 * m.i + k];
-    Index chosen[4];
-    choose(m.i, candidates.other + candidates.first[m.i],
-           candidates.first[m.i + 1] - candidates.first[m.i], chosen, springs.lost + 4 * m.i);
-    for (Index k = 0; k < count; ++k) springs.target[4 * m.i + k] = chosen[k];
+  CDEM_HD void operator()(One slot) const {
+    const Index first = candidates.first[slot.i], last = candidates.first[slot.i + 1];
+    springs.target_before[slot.i] = springs.target[slot.i];
+    if (first == last && springs.target[slot.i] < 0) return;
+    springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, candidates.other + first, last - first,
+                                    springs.lost + slot.i);
   }
 
-  /// Targets of all vertices of an exposed face among `count` others, -1 for none; `lost` is set
-  /// where a loaded contact sank too deep.
-  CDEM_HD void choose(Index m, const Index* others, Index count, Index* chosen, Flag* lost) const {
-    const Index vertices = faces.vertex_count(exposed_face[m]);
-    Seeker seeker[4];
-    bool all_kept = true;
-    for (Index k = 0; k < vertices; ++k) {
-      seeker[k] = start(m, k, lost + k);
-      all_kept = all_kept && seeker[k].kept;
-    }
-    for (Index c = 0; c < count && !all_kept; ++c) {
+  /// Target of vertex k of exposed face m among `count` others, or -1; `lost` is set where a loaded
+  /// contact sank too deep.
+  CDEM_HD Index choose(Index m, Index k, const Index* others, Index count, Flag* lost) const {
+    Seeker s = start(m, k, lost);
+    for (Index c = 0; c < count && !s.kept; ++c) {
       const Index t = others[c];
-      if (dot(geometry.normal(m), geometry.normal(t)) >= -rules.opposing) continue;
       const Real near = above(t), length = smaller_length(m, t);
-      for (Index k = 0; k < vertices; ++k) {
-        Seeker& s = seeker[k];
-        const Real plane = plane_gap(s.v, t);
-        if (s.kept || plane > near || plane < -rules.depth * length - near) continue;
-        if (!beside(s.p, t, rules.tolerance * length)) continue;
-        const Real entry = rules.entry * length + approach(s.node, t);
-        const Real gap = qualify(m, s.node, s.v, s.p, t, entry + s.hand_over);
-        if (gap <= 0 && gap > s.gap) {
-          s.best = t;
-          s.gap = gap;
-        }
+      const Real plane = plane_gap(s.v, t);
+      if (plane > near || plane < -rules.depth * length - near) continue;
+      if (!beside(s.p, t, rules.tolerance * length)) continue;
+      const Real entry = rules.entry * length + approach(s.node, t);
+      const Real gap = qualify(m, s.node, s.v, s.p, t, entry + s.hand_over);
+      if (gap <= 0 && gap > s.gap) {
+        s.best = t;
+        s.gap = gap;
       }
     }
-    for (Index k = 0; k < vertices; ++k) chosen[k] = seeker[k].best;
+    return s.best;
   }
 
  private:
