@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cdem import shapes
 
@@ -143,9 +144,39 @@ class Audit:
         ).max(axis=0)
         return int((6 * volume / area < SLIVER * longest).sum())
 
+    def _free_blocks(self) -> dict[str, int]:
+        """Blocks of each group that neither supports nor bonds nor contacts hold at the start."""
+        t, a = self._sim.build.topology, self._sim.build.assembly
+        core = self._sim.core.fields()
+        exposed = core["search.exposed_face"]
+        vertices, sides = core["search.candidate_first"], core["search.edge_candidate_first"]
+        pairs = [
+            np.empty((0, 2), int),
+            *a.pair_faces.values(),
+            exposed[_pairs_of(vertices, core["search.candidate"]) // (4, 1)],
+            exposed[_pairs_of(sides, core["search.edge_candidate"])],
+        ]
+        joined = t.face_block[np.concatenate(pairs)]
+        held = np.zeros(len(t.block_group), bool)
+        held[t.node_block[a.arrays["support.row"][: len(t.node_block)] >= 0]] = True
+        while True:  # as many rounds as blocks lie one behind another
+            reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
+            if not reached.any():
+                break
+            held[joined[reached]] = True
+        names = [self._sim.build.group_names[g] for g in t.block_group[~held]]
+        return {name: names.count(name) for name in dict.fromkeys(names)}
+
     def _warnings(self) -> list[str]:
         sim, b = self._sim, self._sim.build
         out = list(b.mesh.notes)
+        if any(s.mode == "static" for s in sim.case.stages):
+            for name, count in self._free_blocks().items():
+                blocks = "1 block has" if count == 1 else f"{count:,} blocks have"
+                out.append(
+                    f"group {name}: {blocks} no support, direct or through others, at the start; in "
+                    "a static stage they move until something stops them"
+                )
         depth, count, face = sim.overlap
         if count:
             block = int(b.topology.face_block[face])
@@ -248,3 +279,8 @@ class Audit:
             lines.append(f"  dynamic stages: about {wall:,.0f} s of wall time while little moves")
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+
+def _pairs_of(first: NDArray, other: NDArray) -> NDArray:
+    """Row and entry of every entry of ragged rows, shape (entries, 2)."""
+    return np.column_stack([np.repeat(np.arange(len(first) - 1), np.diff(first)), other])

@@ -59,10 +59,11 @@ def describe(p: Progress) -> str:
     """One line: stage, time, step, step size, unbalance, energy error, broken, speed, time left."""
     end = "" if p.end_time is None else f" of {p.end_time:.4g}"
     left = "" if p.time_left is None else f", {_clock(p.time_left)} left"
+    note = f", {p.note}" if p.note else ""
     return (
         f"{p.stage}: t {p.time:.4g}{end} s, step {p.step:,}, dt {p.dt:.3g} s, "
         f"unbalance {p.unbalance_ratio:.2g}, energy error {p.energy_error:.1e}, "
-        f"broken {p.broken:,}, {p.steps_per_second:,.0f} steps/s{left}"
+        f"broken {p.broken:,}, {p.steps_per_second:,.0f} steps/s{left}{note}"
     )
 
 

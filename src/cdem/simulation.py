@@ -46,6 +46,7 @@ class Progress:
         steps_per_second: Speed over the last report.
         time_left: Estimate of the stage's remaining wall time [s], or None.
         fraction: Part of the stage that is done, or None.
+        note: What a user should know now, or nothing.
     """
 
     stage: str
@@ -59,6 +60,7 @@ class Progress:
     steps_per_second: float
     time_left: float | None
     fraction: float | None
+    note: str
 
 
 class Simulation:
@@ -258,7 +260,7 @@ class Simulation:
             self.stage = stages.begin(self)
             self._record()
         stage = self.stage
-        speed, began = 0.0, time.perf_counter()
+        speed, began, note = 0.0, time.perf_counter(), ""
         while True:
             steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
             before, clock = self.step_count, time.perf_counter()
@@ -271,8 +273,14 @@ class Simulation:
             if stages.record_is_due(self, stage, outcome):
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
             status = stages.status(self, stage, outcome)
+            known, note = (
+                note,
+                stage.note(self.step_count - stage.start_step, self.core.unbalance_ratio()),
+            )
             if progress:
-                progress(self._progress(stage, speed))
+                progress(self._progress(stage, speed, note))
+            if note and not known and self.results:
+                self.results.log(f"{stage.name}: {note}")
             if status is not None:
                 self._end_stage(stage, status)
                 return status
@@ -304,7 +312,7 @@ class Simulation:
         if self.results:
             self.results.record(self, frame)
 
-    def _progress(self, stage: stages.StageState, speed: float) -> Progress:
+    def _progress(self, stage: stages.StageState, speed: float, note: str) -> Progress:
         end = stage.end_time
         fraction = left = None
         if end is not None:
@@ -323,6 +331,7 @@ class Simulation:
             steps_per_second=speed,
             time_left=left,
             fraction=fraction,
+            note=note,
         )
 
     def _guard(self, advance: Callable[[], tuple[str, int, float]]) -> str:

@@ -17,6 +17,8 @@ STATIC_RECORD_STEPS = 200
 """Steps between history rows of a static stage, which has no meaningful time."""
 ROWS_PER_FRAME = 10
 """History rows per recorded frame of a dynamic stage."""
+STALL_STEPS = 10_000
+"""A static stage that comes no nearer to rest in as many steps is said to stall."""
 FRAMES = 50
 """Frames of a dynamic stage when output.every is not given."""
 
@@ -34,6 +36,8 @@ class StageState:
         row_every: Time between history rows [s].
         rows: History rows written after the first.
         wall_time: Wall time spent in it [s].
+        least_unbalance: Smallest unbalance ratio of a static stage so far, or None.
+        least_step: Step at which it was reached.
     """
 
     name: str
@@ -44,6 +48,22 @@ class StageState:
     row_every: float
     rows: int = 0
     wall_time: float = 0.0
+    least_unbalance: float | None = None
+    least_step: int = 0
+
+    def note(self, step: int, unbalance: float) -> str:
+        """What a user should know about a static stage that does not come to rest, or nothing."""
+        if self.mode != "static":
+            return ""
+        if self.least_unbalance is None or unbalance < 0.95 * self.least_unbalance:
+            self.least_unbalance, self.least_step = unbalance, step
+        waited = step - self.least_step
+        if waited < STALL_STEPS:
+            return ""
+        return (
+            f"no nearer to rest for {waited:,} steps (does a block move freely? "
+            "else try a larger tolerance or another relax)"
+        )
 
     @property
     def next_row(self) -> float:

@@ -79,3 +79,30 @@ def test_a_static_stage_ends_without_kinetic_energy_gained():
     )  # fmt: skip
     sim.run()
     assert abs(sim.energies["error"]) < 1e-3
+
+
+@pytest.mark.parametrize("gap", [0, 0.5])
+def test_what_cannot_rest_is_said(gap):
+    """Two blocks upon a bed come to rest; above it under upward gravity they never do."""
+    cube = {"size": [1, 1, 1]}
+    sim = simulate(
+        [
+            {"group": "body", "box": cube, "translate": [0, 0, gap]},
+            {"group": "top", "box": cube, "translate": [0, 0, 1 + gap]},
+            {"group": "bed", "box": {"size": [4, 4, 1]}, "translate": [-1, -1, -1]},
+        ],
+        {"body": {}, "top": {}, "bed": {"fix": ["x", "y", "z"]}},
+        loads={"gravity": [0, 0, 9.81 if gap else -9.81]},
+        stages=[{"name": "rest", "mode": "static", "relax": "local", "max_steps": 12_000}],
+    )
+    warned = [w for w in sim.audit.warnings if "1 block has no support" in w]
+    notes = []
+    status = sim.run(progress=lambda p: notes.append(p.note))
+    if gap:
+        assert len(warned) == 2
+        assert status == "max_steps"
+        assert "no nearer to rest" in notes[-1]
+    else:
+        assert not warned
+        assert status == "converged"
+        assert not any(notes)
