@@ -146,14 +146,17 @@ Energies energies(const Model& m, const State& s) {
 Real unbalance_ratio(const Model& m, const State& s) {
   const Real unbalanced = column_sum(s.nodes.unbalance);
   const LoadColumns loads = load_columns(m, s);
-  const auto size = [](const Vec3<Real>& f) {
-    return std::abs(f.x) + std::abs(f.y) + std::abs(f.z);
-  };
-  Real applied = ordered_sum(m.node_count, [&](Index i) { return size(loads.at(i)); });
+  const SupportColumns supports = support_columns(m, s);
+  // what acts on supports needs no balance: a heavy fixed bed must not hide a block that slides
+  Real applied = ordered_sum(m.node_count, [&](Index i) {
+    const Vec3<Real> f = loads.at(i);
+    return (supports.given(i, 0) ? 0 : std::abs(f.x)) + (supports.given(i, 1) ? 0 : std::abs(f.y)) +
+           (supports.given(i, 2) ? 0 : std::abs(f.z));
+  });
   if (applied == 0)  // moved by its supports alone: compare with what they carry
     applied = ordered_sum(m.node_count, [&](Index i) {
       const Real* r = s.nodes.reaction.data() + std::size_t(i) * 4;
-      return size({r[0], r[1], r[2]});
+      return std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]);
     });
   return applied > 0 ? unbalanced / applied : 0;
 }

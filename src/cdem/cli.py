@@ -137,6 +137,53 @@ def schema() -> None:
 
 
 @app.command()
+def critical(
+    case_file: CaseFile,
+    between: Annotated[tuple[float, float], typer.Option(help="A value that rests, one that fails.")],
+    parameter: Annotated[
+        str | None, typer.Option(metavar="PATH", help="Value of the case to vary.")
+    ] = None,
+    factor: Annotated[
+        bool, typer.Option("--factor", help="Vary the factor of safety on all strengths instead.")
+    ] = False,
+    tolerance: Annotated[float, typer.Option(help="Width of the bracket to reach.")] = 0.01,
+    settings: Settings = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON at the end.")] = False,
+) -> None:
+    """Find the value at which a case fails, by bisection of its last, static stage.
+
+    A trial is stable when it comes to rest. It has failed when a node has moved 2 % of the mean face
+    size while the kinetic energy grew, or the whole of it, or found no rest in a million steps.
+    """
+    if (parameter is None) == (not factor):
+        raise typer.BadParameter("give either --parameter PATH or --factor")
+    from cdem import critical as search
+    from cdem.case import Case
+
+    case = Case.load(case_file, settings or [])
+    vary = search.parameter(parameter) if parameter else search.strength_reduction(case)
+    name = parameter or "factor"
+
+    def report(trial: search.Trial, stable: float, failed: float) -> None:
+        verdict = "stable" if trial.stable else "fails"
+        print(
+            f"{name} = {trial.value:.6g}: {verdict} ({trial.steps:,} steps, {trial.why}); "
+            f"between {min(stable, failed):.6g} and {max(stable, failed):.6g}",
+            file=sys.stderr,
+            flush=True,
+        )
+
+    found = search.find_critical(
+        case, vary, between, tolerance=tolerance, threads=threads, report=report
+    )
+    if as_json:
+        print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
+    else:
+        print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+
+
+@app.command()
 def run(
     case_file: CaseFile,
     output: Annotated[

@@ -251,6 +251,10 @@ class Simulation:
             status = self._run_stage(None, None)
         return status
 
+    def advance(self, stage: stages.StageState, steps: int) -> str:
+        """Run towards the next event of a stage, at most `steps` steps; returns the outcome."""
+        return self._guard(partial(stages.advance, self, stage, steps))
+
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing."""
         self._guard(partial(self.core.run, count, check_interval=CHECK_INTERVAL))
@@ -264,7 +268,7 @@ class Simulation:
         while True:
             steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
             before, clock = self.step_count, time.perf_counter()
-            outcome = self._guard(partial(stages.advance, self, stage, steps))
+            outcome = self.advance(stage, steps)
             now = time.perf_counter()
             done = self.step_count - before
             speed = done / max(now - clock, 1e-9)

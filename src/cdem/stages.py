@@ -93,12 +93,13 @@ def apply_settings(sim: Simulation, index: int) -> None:
     for path, value in stage.set.items():
         sim.case.set(path, value)
     if stage.set:
-        _update_core(sim, index)
+        update_core(sim, index)
     sim.core.set_damping(*damping_of(stage))
     sim.core.set_lumped(is_lumped(stage))
 
 
-def _update_core(sim: Simulation, index: int) -> None:
+def update_core(sim: Simulation, index: int) -> None:
+    """Hand the values that the case has now to the core."""
     b = sim.build
     names = b.group_names
     laws, table = building.interfaces_of(sim.case, names)

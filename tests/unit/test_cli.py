@@ -177,7 +177,7 @@ def test_new_lists_and_writes_templates(cdem, folder):
     status, out, _ = cdem("new")
     assert status == 0
     names = [line.split()[0] for line in out.splitlines()]
-    assert names == ["incline", "landslide", "slope", "wall"]
+    assert names == ["incline", "landslide", "safety", "slope", "wall"]
     for name in names:
         assert cdem("new", name, "cases")[0] == 0
         case = Case.load(folder / "cases" / f"{name}.yaml")
@@ -190,7 +190,7 @@ def test_new_lists_and_writes_templates(cdem, folder):
     assert "did you mean incline?" in cdem("new", "inclin")[2]
 
 
-@pytest.mark.parametrize("name", ["incline", "wall", "slope", "landslide"])
+@pytest.mark.parametrize("name", ["incline", "wall", "slope", "safety", "landslide"])
 def test_templates_check(cdem, name):
     cdem("new", name)
     status, out, err = cdem("check", f"{name}.yaml")
@@ -213,10 +213,10 @@ def test_doctor_says_what_works(cdem, monkeypatch):
 
 
 def test_the_progress_line_says_it_all():
-    progress = Progress("slide", 0.5, 2.0, 12345, 1e-5, 3e-3, 1e-4, 42, 1500.0, 3725.0, 0.25)
+    progress = Progress("slide", 0.5, 2.0, 12345, 1e-5, 3e-3, 1e-4, 42, 1500.0, 3725.0, 0.25, "a word")
     assert describe(progress) == (
         "slide: t 0.5 of 2 s, step 12,345, dt 1e-05 s, unbalance 0.003, energy error 1.0e-04, "
-        "broken 42, 1,500 steps/s, 1:02:05 left"
+        "broken 42, 1,500 steps/s, 1:02:05 left, a word"
     )
 
 
