@@ -229,7 +229,8 @@ int touching_vertices(const Model& m, const State& s, const ExposedFace& x, cons
     return false;
   };
   const auto never_deepest = [&](Index node, const Vec3<Real>& v) {
-    for (Index r = faces.ring_first[node]; r < faces.ring_first[node + 1]; ++r) {
+    const Index point = faces.node_glue[node];
+    for (Index r = faces.ring_first[point]; r < faces.ring_first[point + 1]; ++r) {
       const Index other = faces.ring[r];
       if (s.search.node_skin[other] == 0) continue;  // nothing watches its motion
       const Vec3<Real> d = faces.nodes.position(other) - v;
@@ -277,8 +278,7 @@ struct ExposedSide {
   Real turn = 0, turn_face = 0, turn_across = 0;  // of the side and of both faces
 };
 
-std::vector<ExposedSide> exposed_sides(const Model& m, const State& s,
-                                       const std::vector<ExposedFace>& exposed) {
+std::vector<ExposedSide> exposed_sides(const State& s, const std::vector<ExposedFace>& exposed) {
   std::vector<ExposedSide> sides(4 * exposed.size());
 #pragma omp parallel for schedule(static, 128) if (exposed.size() >= worth_threads)
   for (std::size_t x = 0; x < exposed.size(); ++x) {
@@ -291,9 +291,7 @@ std::vector<ExposedSide> exposed_sides(const Model& m, const State& s,
       side.turn = 2 * e.stir / side.length;
       side.turn_face = e.turn;
       side.fall = unit(cross(e.normal, side.along));
-      const Index edge = m.face_edges[4 * e.face + k];
-      const Index a = m.edge_faces[2 * edge], b = m.edge_faces[2 * edge + 1];
-      const Index across = a == e.face ? b : a;
+      const Index across = s.search.across[4 * x + k];
       side.across = across < 0 ? -1 : s.search.face_exposed[across];
       side.sharp = true;
       if (side.across < 0) continue;  // none, or one whose motion nothing watches
@@ -399,7 +397,7 @@ std::vector<Row> find_rows(const Model& m, const State& s) {
   std::vector<ExposedFace> exposed(count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) exposed[x] = exposed_face(m, s, x);
-  const std::vector<ExposedSide> sides = exposed_sides(m, s, exposed);
+  const std::vector<ExposedSide> sides = exposed_sides(s, exposed);
   const Pairs mates = live_overlaps(m, s);
   std::vector<Box> boxes(count);
   for (Index x = 0; x < count; ++x) boxes[x] = exposed[x].box;

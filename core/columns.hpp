@@ -15,8 +15,8 @@ inline FaceColumns face_columns(const Model& m, const State& s) {
           m.face_edges.data(),          m.face_group.data(),
           m.face_length.data(),         m.face_reach.data(),
           m.face_area.data(),           m.face_stiffness.data(),
-          m.edge_nodes.data(),          m.edge_faces.data(),
-          m.ring_first.data(),          m.ring.data(),
+          m.edge_nodes.data(),          s.search.across.data(),
+          s.search.ring_first.data(),   s.search.ring.data(),
           s.nodes.glue.data(),          m.node_place.data(),
           s.search.face_exposed.data(), s.dt_last};
 }

@@ -1,7 +1,6 @@
 // refresh.cpp - now and then: release broken pairs, expose faces, have the lists renewed.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "core/check.hpp"
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
+#include "core/surface.hpp"
 
 namespace cdem {
 
@@ -111,30 +111,6 @@ void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
   }
 }
 
-/// Label nodes that intact bonds hold together: they are one point and cannot touch each other.
-void label_glue(const Model& m, State& s) {
-  Index* label = s.nodes.glue.data();
-  std::iota(label, label + m.node_count, 0);
-  const auto root = [&](Index i) {
-    while (label[i] != i) i = label[i] = label[label[i]];
-    return i;
-  };
-  const auto join = [&](const PairSet& p, const PairState& ps) {
-    for (Index i = 0; i < p.count; ++i) {
-      if (!(ps.live[i] > 0)) continue;
-      for (Index k = 0; k < p.points; ++k) {
-        if (!(ps.bond[std::size_t(k) * p.point_stride + i] > 0)) continue;
-        const Index a = root(p.nodes[std::size_t(k) * p.stride + i]);
-        const Index b = root(p.nodes[std::size_t(p.points + k) * p.stride + i]);
-        label[std::max(a, b)] = std::min(a, b);
-      }
-    }
-  };
-  join(m.triangles, s.triangles);
-  join(m.quads, s.quads);
-  for (Index i = 0; i < m.node_count; ++i) label[i] = root(i);
-}
-
 }  // namespace
 
 /// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to before
@@ -224,7 +200,7 @@ void refresh_contacts(const Model& m, State& s) {
   release_pairs(m, s, m.triangles, s.triangles);
   release_pairs(m, s, m.quads, s.quads);
   release_pairs(m, s, m.overlaps, s.overlaps);
-  label_glue(m, s);
+  join_surfaces(m, s);
   list_candidates(m, s);
   sum_stiffness(m, s);
   list_contact_corners(m, s);

@@ -48,7 +48,9 @@ struct SearchState {
   Real horizon = 0, built_time = 0;          // how long the lists look ahead, and from when  [s]
   Column<Index> candidate_first, candidate;  // by vertex
   Column<Index> edge_candidate_first, edge_candidate, edge_candidate_sides;
-  Column<Index> source_first, source;           // faces whose contacts may act on a face
+  Column<Index> source_first, source;  // faces whose contacts may act on a face
+  Column<Index> across;                // side of an exposed face -> face beyond it, or -1
+  Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
 };
@@ -74,6 +76,27 @@ struct State {
   Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]
   Column<Real> load_factor, velocity_factor;  // of the curves in this step
 };
+
+/// What the search has built: part of `describe`.
+template <class S, class Visit>
+void describe_search(S& search, Visit&& field) {
+  field("search.exposed_face", search.exposed_face, "faces that can be touched");
+  field("search.face_exposed", search.face_exposed, "place of a face among them, or -1");
+  field("search.candidate_first", search.candidate_first, "start of a vertex's candidates");
+  field("search.candidate", search.candidate, "exposed faces that it may touch");
+  field("search.source_first", search.source_first, "start of a face's sources");
+  field("search.source", search.source, "exposed faces whose contacts may act on it");
+  field("search.edge_candidate_first", search.edge_candidate_first, "start of a face's sides");
+  field("search.edge_candidate", search.edge_candidate, "exposed face whose side may be crossed");
+  field("search.edge_candidate_sides", search.edge_candidate_sides,
+        "which sides, which ends shared");
+  field("search.across", search.across, "face beyond a side of an exposed face, or -1");
+  field("search.ring_first", search.ring_first, "start of a point's ring");
+  field("search.ring", search.ring, "other ends of the edges that leave a point");
+  field("search.contact_first", search.contact_first, "start of a node's contact rows");
+  field("search.contact_corner", search.contact_corner, "contact rows of a node");
+  field("search.node_skin", search.node_skin, "straying that calls for a refresh [m]");
+}
 
 /// Visit every array that must survive a restart, by name: checkpoint and Python views come from
 /// it.
@@ -146,19 +169,7 @@ void describe(S& s, Visit&& field) {
   field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");
   field("edge.lost", s.edges.lost, "1: lost by depth");
 
-  field("search.exposed_face", s.search.exposed_face, "faces that can be touched");
-  field("search.face_exposed", s.search.face_exposed, "place of a face among them, or -1");
-  field("search.candidate_first", s.search.candidate_first, "start of a vertex's candidates");
-  field("search.candidate", s.search.candidate, "exposed faces that it may touch");
-  field("search.source_first", s.search.source_first, "start of a face's sources");
-  field("search.source", s.search.source, "exposed faces whose contacts may act on it");
-  field("search.edge_candidate_first", s.search.edge_candidate_first, "start of a face's sides");
-  field("search.edge_candidate", s.search.edge_candidate, "exposed face whose side may be crossed");
-  field("search.edge_candidate_sides", s.search.edge_candidate_sides,
-        "which sides, which ends shared");
-  field("search.contact_first", s.search.contact_first, "start of a node's contact rows");
-  field("search.contact_corner", s.search.contact_corner, "contact rows of a node");
-  field("search.node_skin", s.search.node_skin, "straying that calls for a refresh [m]");
+  describe_search(s.search, field);
 }
 
 }  // namespace cdem

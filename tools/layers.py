@@ -9,7 +9,7 @@ LAYERS = """launch math field
             materials interfaces elements contact nodes
             model state columns
             backend
-            step check start refresh candidates""".splitlines()
+            step check start refresh surface candidates""".splitlines()
 DEEPEST = 10
 
 

@@ -97,9 +97,9 @@ struct FaceColumns {
   const Real* face_area;       // [m2]
   const Real* face_stiffness;  // modulus of the element behind over its height  [Pa/m]
   const Index* edge_nodes;     // [edge][2]
-  const Index* edge_faces;     // [edge][2]: the two faces of the block that meet there, or -1
-  const Index* ring_first;     // [node + 1]
-  const Index* ring;           // other ends of the exterior edges at a node
+  const Index* beyond;         // [exposed][4]: face on the other side of side k, or -1
+  const Index* ring_first;     // [label + 1]
+  const Index* ring;           // other ends of the edges that leave a point
   const Index* node_glue;      // label shared by nodes that intact bonds hold together
   const Index* node_place;     // label shared by nodes that began at the same place
   const Index* face_exposed;   // [face]: place in the list of exposed faces, or -1
@@ -122,12 +122,9 @@ struct FaceColumns {
     if (f.count == 3) f.x[3] = f.x[2];
     return f;
   }
-  /// The face on the other side of side k, or -1.
-  CDEM_HD Index across(Index face, Index k) const {
-    const Index edge = face_edges[4 * face + k];
-    const Index a = edge_faces[2 * edge], b = edge_faces[2 * edge + 1];
-    return a == face ? b : a;
-  }
+  /// The face on the other side of side k of an exposed face, or -1: of the same block or of one
+  /// that is bonded to it there.
+  CDEM_HD Index across(Index exposed, Index k) const { return beyond[4 * exposed + k]; }
   /// Where a node was one step ago.
   CDEM_HD Vec3<Real> old_position(Index node) const {
     return nodes.position(node) - dt * nodes.velocity(node);
@@ -200,7 +197,7 @@ struct MarkSharpSides {
     const Index face = exposed_face[i.i];
     int sharp = 0;
     for (Index k = 0; k < faces.vertex_count(face); ++k) {
-      const Index across = faces.across(face, k);
+      const Index across = faces.across(i.i, k);
       if (across < 0 ||
           !(dot(geometry.normal(i.i), normal_of(faces, geometry, across)) > coplanar_faces))
         sharp |= 1 << k;

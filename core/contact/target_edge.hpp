@@ -274,8 +274,8 @@ struct FindTargetEdges {
   /// n in the target edge's: the faces at an edge fall away from the contact plane.
   CDEM_HD bool cones_hold(Index m, Index k, Index t, Index j, const Vec3<Real>& dm,
                           const Vec3<Real>& dt, const Vec3<Real>& n) const {
-    const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    const Index across_m = faces.across(face_m, k), across_t = faces.across(face_t, j);
+    const Index face_t = exposed_face[t];
+    const Index across_m = faces.across(m, k), across_t = faces.across(t, j);
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(t);
     if (dot(n, unit(cross(nm, dm))) < -rules.cone) return false;
     if (dot(n, unit(cross(nt, dt))) > rules.cone) return false;

@@ -161,9 +161,10 @@ struct FindTargetFaces {
       if (faces.node_glue[faces.vertex(exposed_face[t], j)] == faces.node_glue[node]) return none;
     return deepest(node, v, n) ? gap : none;
   }
-  /// No exterior edge that leaves v goes below the plane through v.
+  /// No edge that leaves v, or what is bonded to it there, goes below the plane through v.
   CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {
-    for (Index r = faces.ring_first[node]; r < faces.ring_first[node + 1]; ++r) {
+    const Index point = faces.node_glue[node];
+    for (Index r = faces.ring_first[point]; r < faces.ring_first[point + 1]; ++r) {
       const Vec3<Real> d = faces.nodes.position(faces.ring[r]) - v;
       if (dot(d, n) < -rules.cone * norm(d)) return false;
     }

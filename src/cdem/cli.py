@@ -139,7 +139,9 @@ def schema() -> None:
 @app.command()
 def critical(
     case_file: CaseFile,
-    between: Annotated[tuple[float, float], typer.Option(help="A value that rests, one that fails.")],
+    between: Annotated[
+        tuple[float, float], typer.Option(help="A value that rests, one that fails.")
+    ],
     parameter: Annotated[
         str | None, typer.Option(metavar="PATH", help="Value of the case to vary.")
     ] = None,

@@ -78,7 +78,9 @@ def parameter(path: str) -> Apply:
     """
     if not path.startswith(SETTABLE):
         allowed = ", ".join(f"{start}*" for start in SETTABLE)
-        raise CaseError(f"{path}: only {allowed} can be varied; another mesh or rock is another case")
+        raise CaseError(
+            f"{path}: only {allowed} can be varied; another mesh or rock is another case"
+        )
     return lambda case, value: case.set(path, value)
 
 

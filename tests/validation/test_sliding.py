@@ -194,3 +194,53 @@ def test_a_seam_is_not_felt(bed):
     assert seams >= 3
     assert felt < 0.01
     assert largest < 0.09
+
+
+def test_a_bonded_bed_is_one_surface():
+    """A hull with a raised bow slides over separate bonded tets as over one block.
+
+    A corner of a tet by itself would stick into the bow: the block was thrown back.
+    """
+    slope, phi = np.radians(30), 10
+    hull = [[x, y, z] for y in (0, 0.8) for x, z in ((0, 0.4), (0.3, 0), (0.9, 0), (1.3, 0.4))]
+    sim = simulate(
+        [
+            {
+                "group": "bed",
+                "box": {"size": [5, 3, 0.5], "divisions": [10, 6, 1], "shape": "tet4"},
+                "translate": [0, 0, -0.5],
+            },
+            {"group": "block", "polyhedron": {"vertices": hull}, "translate": [1.37, 1.103, 0]},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={
+            "default": {"friction_angle": phi, "stiffness_n": "1 E/h", "stiffness_s": "1 E/h"},
+            "pairs": [
+                {
+                    "between": ["bed", "bed"],
+                    "friction_angle": 45,
+                    "cohesion": "1 GPa",
+                    "tensile_strength": "1 GPa",
+                }
+            ],
+        },
+        loads={"gravity": [GRAVITY * np.sin(slope), 0, -GRAVITY * np.cos(slope)]},
+        stages=[
+            {
+                "name": "slide",
+                "mode": "dynamic",
+                "duration": 9,
+                "damping": {"contact": 0.1, "stiffness": 0.2},
+            }
+        ],
+        model={"split": {"bed": "elements"}},
+    )
+    times, speeds = [], []
+    while sim.time < 0.4:
+        sim.step(100)
+        if sim.time > 0.1:
+            times.append(sim.time)
+            speeds.append(mean_velocity(sim, "block")[0])
+    theory = GRAVITY * (np.sin(slope) - np.cos(slope) * np.tan(np.radians(phi)))
+    assert np.polyfit(times, speeds, 1)[0] == pytest.approx(theory, rel=1e-3)
+    assert sim.core.fields()["edge.count"].sum() == 0

@@ -1,0 +1,14 @@
+// surface.hpp - what intact bonds join is one body: its points, and the surface around them.
+#pragma once
+
+#include "core/model.hpp"
+#include "core/state.hpp"
+
+namespace cdem {
+
+/// Label the nodes that intact bonds hold together, and find the surface that they make: the edges
+/// that leave every point, and the face beyond every side of an exposed face. Without it every
+/// element of a bonded bed would stand by itself, and its corners would catch on what slides over.
+void join_surfaces(const Model& model, State& state);
+
+}  // namespace cdem
