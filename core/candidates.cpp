@@ -315,7 +315,6 @@ bool never_cross(const SearchRules& rules, const std::vector<ExposedFace>& expos
   if (q.across >= 0 &&
       dot(x.normal, exposed[q.across].normal) < opposed - 2 * turns - q.turn_across)
     return true;  // the face across is the right face of that edge
-  if (opposed < flush_faces + turns) return false;
   const Vec3<Real> c = cross(p.along, q.along);
   const Real sine = norm(c) / (p.length * q.length) - p.turn - q.turn;
   if (!(sine > 0)) return false;

@@ -224,13 +224,13 @@ struct UpdateEdgeForces {
 
     const Vec3<Real> xm = faces.nodes.position(sm.a), xt = faces.nodes.position(st.a);
     const Vec3<Real> dm = faces.nodes.position(sm.b) - xm, dt = faces.nodes.position(st.b) - xt;
-    const Vec3<Real> normal_m = geometry.normal(m), normal_t = geometry.normal(t);
-    const Frame frame = edge_frame(edge_normal(dm, dt, normal_m, normal_t), dt);
+    const Vec3<Real> out = geometry.normal(t) - geometry.normal(m);
+    const Frame frame = edge_frame(edge_normal(dm, dt, out), dt);
     const Crossing c = cross_edges(xm, dm, xt, dt, frame.n);
 
     const Vec3<Real> om = faces.old_position(sm.a), ot = faces.old_position(st.a);
     const Vec3<Real> old_dm = faces.old_position(sm.b) - om, old_dt = faces.old_position(st.b) - ot;
-    const Frame old = old_frame(face_m, face_t, old_dm, old_dt, normal_m, normal_t);
+    const Frame old = edge_frame(edge_normal(old_dm, old_dt, out), old_dt);
     const Vec3<Real> apart = (om + c.s * old_dm) - (ot + c.t * old_dt);
 
     const Vec3<Real> vm = faces.nodes.velocity(sm.a), vt = faces.nodes.velocity(st.a);
@@ -268,18 +268,6 @@ struct UpdateEdgeForces {
     row[3] = f.force_n > 0 ? max_of(kn, ks) : 0.0;
     row[4] = line.s;
     row[5] = faces.vertex(face_t, side_on(face_t, edge)) == st.a ? line.t : 1.0 - line.t;
-  }
-  /// Frame of one step ago, with the same choice of normal as today's.
-  CDEM_HD Frame old_frame(Index face_m, Index face_t, const Vec3<Real>& old_dm,
-                          const Vec3<Real>& old_dt, const Vec3<Real>& normal_m,
-                          const Vec3<Real>& normal_t) const {
-    if (dot(normal_m, normal_t) < flush_faces) {
-      const Vec3<Real> was_m = faces.old_shape(face_m).normal();
-      const Vec3<Real> was_t = faces.old_shape(face_t).normal();
-      return edge_frame(unit(was_t - was_m), old_dt);
-    }
-    const Vec3<Real> c = unit(cross(old_dm, old_dt));
-    return edge_frame(dot(c, normal_t - normal_m) < 0 ? -c : c, old_dt);
   }
   CDEM_HD Real flexibility(const Side& side, Real s) const {
     return (1.0 - s) * (1.0 - s) / laws.node_mass[side.a] + s * s / laws.node_mass[side.b];

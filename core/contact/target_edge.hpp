@@ -64,15 +64,11 @@ CDEM_HD inline Crossing cross_edges(const Vec3<Real>& start_m, const Vec3<Real>&
           -dot(c, apart) / det};
 }
 
-/// Faces whose normals have a smaller cosine than this (10 degrees) are nearly flush.
-inline constexpr Real flush_faces = -0.985;
-
-/// Normal of an edge pair, out of the target. Nearly flush faces give the normal of the faces
-/// (crossing their edges would divide by the small angle); else it is V_mm x V_tt, Eq. 12.
+/// Normal of an edge pair, V_mm x V_tt of Eq. 12, on the side of `out`. Any other, e.g. the normal
+/// of faces that are nearly flush, makes or loses energy: only along the common perpendicular is
+/// the gap's rate the velocity of the two points of the crossing.
 CDEM_HD inline Vec3<Real> edge_normal(const Vec3<Real>& along_m, const Vec3<Real>& along_t,
-                                      const Vec3<Real>& normal_m, const Vec3<Real>& normal_t) {
-  const Vec3<Real> out = normal_t - normal_m;
-  if (dot(normal_m, normal_t) < flush_faces) return unit(out);
+                                      const Vec3<Real>& out) {
   const Vec3<Real> c = unit(cross(along_m, along_t));
   return dot(c, out) < 0 ? -c : c;
 }
@@ -136,7 +132,7 @@ struct FindTargetEdges {
     const Real slack = held ? 0.5 * rules.indentation : 0.0;
     if (far_apart(p, p0, nm, nt, slack)) return false;
 
-    const Vec3<Real> n = edge_normal(p.dm, p.dt, nm, nt);
+    const Vec3<Real> n = edge_normal(p.dm, p.dt, nt - nm);
     const Crossing inner = cross_edges(p0, (1.0 - rules.indentation) * p.dm, p.xt, p.dt, n);
     if (inner.s < -slack || inner.s > 1.0 + slack) return false;
     if (inner.t < -slack || inner.t > 1.0 + slack) return false;
@@ -255,10 +251,8 @@ struct FindTargetEdges {
     const Vec3<Real> c = cross(p.dm, p.dt), apart = p.xt - p0;
     const Real c2 = dot(c, c);
     if (c2 < parallel * parallel * dot(p.dm, p.dm) * dot(p.dt, p.dt)) return true;
-    const bool flush = dot(nm, nt) < flush_faces;
-    if (!flush && dot(p.xt - p.xm, c) * dot(c, nt - nm) < 0) return true;
-    // flush faces have another normal than c: leave room for it; for others only for round-off
-    const Real room = flush ? 0.2 : slack + 1e-9;
+    if (dot(p.xt - p.xm, c) * dot(c, nt - nm) < 0) return true;
+    const Real room = slack + 1e-9;  // for round-off
     const Real s = dot(cross(apart, p.dt), c), t = dot(cross(apart, p.dm), c);
     const Real longest = (1.0 - rules.indentation) * c2;
     return s < -room * c2 || s > longest + room * c2 || t < -room * c2 || t > (1.0 + room) * c2;

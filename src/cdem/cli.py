@@ -20,6 +20,7 @@ from cdem.errors import CaseError, CdemError
 
 if TYPE_CHECKING:
     from cdem.simulation import Simulation
+    from cdem.verify import Outcome
 
 STOPPED = 4  # exit status of a run that was stopped by a signal and can be resumed
 app = typer.Typer(
@@ -156,7 +157,8 @@ def critical(
     """Find the value at which a case fails, by bisection of its last, static stage.
 
     A trial is stable when it comes to rest. It has failed when a node has moved 2 % of the mean face
-    size while the kinetic energy grew, or the whole of it, or found no rest in a million steps.
+    size while the kinetic energy grew, or the whole of it, or goes on moving while the unbalance
+    ratio stalls, or found no rest in a million steps.
     """
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
@@ -183,6 +185,68 @@ def critical(
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:
         print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+
+
+@app.command()
+def verify(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[NAME]...", help="Problems, or folders of your own; default quick."
+        ),
+    ] = None,
+    full: Annotated[
+        bool, typer.Option("--full", help="All problems, in all variants; takes hours.")
+    ] = False,
+    report: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the manual: .html, or .md (table).")
+    ] = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
+    listing: Annotated[bool, typer.Option("--list", help="Only list the problems.")] = False,
+) -> None:
+    """Compute problems whose answer is known and compare; exit status 3 if one is missed."""
+    from cdem import verify as verification
+
+    chosen = verification.problems(names or [])
+    if listing:
+        for problem in chosen:
+            print(f"{problem.name:<20}{'' if problem.quick else '(full) '}{problem.title}")
+        return
+    if report:
+        from cdem import manual
+
+        manual.check_path(report)
+    if not names and not full:
+        chosen = [problem for problem in chosen if problem.quick]
+    outcomes: list[verification.Outcome] = []
+    for problem in chosen:
+        if not as_json:
+            print(f"{problem.name}: {problem.title}", flush=True)
+        outcomes.append(problem.run(full=full, threads=threads))
+        if not as_json:
+            _print_outcome(outcomes[-1])
+        if report:  # after each, so that nothing is lost if the next one is stopped
+            manual.write(outcomes, report)
+    passed = sum(outcome.passed for outcome in outcomes)
+    if as_json:
+        print(json.dumps([outcome.as_dict() for outcome in outcomes], indent=2))
+    else:
+        print(f"{passed} of {len(outcomes)} problems pass" + (f"; see {report}" if report else ""))
+    if passed < len(outcomes):
+        raise typer.Exit(3)
+
+
+def _print_outcome(outcome: Outcome) -> None:
+    from cdem.verify import HEADINGS
+
+    rows = [HEADINGS, *(check.texts() for check in outcome.checks)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
+    for row in rows if outcome.checks else []:
+        print("  " + "  ".join(f"{t:<{w}}" for t, w in zip(row, widths, strict=True)).rstrip())
+    if outcome.failure:
+        print(f"  FAILED: {outcome.failure}")
+    print(f"  {outcome.wall_time:.1f} s", flush=True)
 
 
 @app.command()

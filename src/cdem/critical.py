@@ -18,6 +18,9 @@ TRAVEL = 0.02
 """A trial has failed when a node has moved this part of the mean face size, ever faster."""
 FAR = 1.0
 """A trial has failed when a node has moved this part of the mean face size, in any way."""
+STALL_STEPS = 10_000
+"""A trial has failed when its unbalance ratio came no lower in as many steps, in which nodes moved
+farther than in all steps before."""
 MOST_STEPS = 1_000_000
 """A trial that has not come to rest in so many steps counts as failed."""
 
@@ -116,8 +119,9 @@ def find_critical(
     All stages but the last prepare the case with its own values. Each trial sets the value and runs
     the last stage, which must be static, from the state of the last stable trial. It is stable when
     the unbalance ratio falls below the stage's tolerance. It has failed when a node has moved by
-    `TRAVEL` of the mean face size while the kinetic energy grew, or by `FAR` in any way, or when
-    there is no rest in `MOST_STEPS` steps (or the stage's ``max_steps``).
+    `TRAVEL` of the mean face size while the kinetic energy grew, or by `FAR` in any way, or goes on
+    moving while the unbalance ratio stalls (`STALL_STEPS`), or when there is no rest in `MOST_STEPS`
+    steps (or the stage's ``max_steps``).
 
     Args:
         case: Is changed: it ends with the last value tried.
@@ -184,6 +188,7 @@ def _try(sim: Simulation, apply: Apply, value: float) -> Trial:
     start = sim.fields["position"].copy()
     most = sim.case.stages[-1].max_steps or MOST_STEPS
     half_way = 0.0  # kinetic energy when half of TRAVEL was reached
+    least, least_step, least_moved = np.inf, 0, 0.0  # unbalance ratio
     while True:
         try:
             outcome = sim.advance(stage, 10 * CHECK_INTERVAL)
@@ -198,6 +203,11 @@ def _try(sim: Simulation, apply: Apply, value: float) -> Trial:
             half_way = kinetic
         elif moved > FAR or (moved > TRAVEL and kinetic > half_way):
             why = f"has moved {moved * size:.3g} m, kinetic energy {kinetic:.3g} J"
+            return Trial(value, False, why, done)
+        if unbalance < 0.95 * least:
+            least, least_step, least_moved = unbalance, done, moved
+        elif done - least_step >= STALL_STEPS and moved > 2 * least_moved:
+            why = f"goes on moving, {moved * size:.3g} m, unbalance ratio stays at {unbalance:.2g}"
             return Trial(value, False, why, done)
         if done >= most:
             return Trial(value, False, f"no rest in {done:,} steps, ratio {unbalance:.2g}", done)

@@ -134,35 +134,15 @@ class Results:
             points: dict[str, NDArray] = {
                 n: fields[n] for n in ("displacement", "velocity") if n in wanted
             }
-            damage = _damage(sim)
+            damage = damage_of(sim)
             cells: dict[str, NDArray] = {}
             if "stress" in wanted:
                 cells["stress"] = _stress(sim)
             if "damage" in wanted:
                 cells["damage"] = damage
             self._volume.append(sim.time, fields["position"], points, cells)
-            self._append_surface(self._surface, sim, points, damage)
+            self._surface.append(sim.time, *surface_of(sim, points, damage))
             self.frames += 1
-
-    def _append_surface(self, surface: SurfaceWriter, sim: Simulation, points, damage) -> None:
-        t = sim.build.topology
-        faces, broken = visible_faces(sim)
-        nodes = t.face_nodes[faces]
-        used = np.unique(nodes[nodes >= 0])
-        number = np.full(len(t.node_position) + 1, -1, np.int32)
-        number[used] = np.arange(len(used))
-        surface.append(
-            sim.time,
-            sim.fields["position"][used],
-            number[nodes],
-            {name: values[used] for name, values in points.items()},
-            {
-                "group": t.face_group[faces],
-                "block": t.face_block[faces],
-                "damage": damage[t.face_element[faces]],
-                "broken": broken.astype(np.int8),
-            },
-        )
 
     def checkpoint(self, sim: Simulation) -> None:
         """Write the checkpoint."""
@@ -194,7 +174,36 @@ class Results:
         self.log(f"failed at step {sim.step_count}, t = {sim.time:.6g} s")
 
 
-def _damage(sim: Simulation) -> NDArray[np.float64]:
+def surface_of(
+    sim: Simulation, points: dict[str, NDArray], damage: NDArray
+) -> tuple[NDArray, NDArray, dict[str, NDArray], dict[str, NDArray]]:
+    """Outer and broken faces now: positions, vertices of the faces (-1 after a triangle's), fields.
+
+    Args:
+        sim: The simulation.
+        points: Fields on its nodes, to be carried over to the points of the surface.
+        damage: Broken part of the bonds of each element, see `damage_of`.
+    """
+    t = sim.build.topology
+    faces, broken = visible_faces(sim)
+    nodes = t.face_nodes[faces]
+    used = np.unique(nodes[nodes >= 0])
+    number = np.full(len(t.node_position) + 1, -1, np.int32)
+    number[used] = np.arange(len(used))
+    return (
+        sim.fields["position"][used],
+        number[nodes],
+        {name: values[used] for name, values in points.items()},
+        {
+            "group": t.face_group[faces],
+            "block": t.face_block[faces],
+            "damage": damage[t.face_element[faces]],
+            "broken": broken.astype(np.int8),
+        },
+    )
+
+
+def damage_of(sim: Simulation) -> NDArray[np.float64]:
     """Broken part of the bonded faces of each element, 0 to 1, shapes one after the other."""
     b = sim.build
     state = sim.core.fields()

@@ -251,15 +251,26 @@ class Simulation:
             status = self._run_stage(None, None)
         return status
 
-    def advance(self, stage: stages.StageState, steps: int) -> str:
+    def run_until(self, time: float) -> str:
+        """Run stages up to the first step at or after a simulated time [s]; returns the status.
+
+        The time counts from the start of the first stage. The rest can be run afterwards, and gives
+        the same bits as an unbroken run.
+        """
+        status = "finished"
+        while self.stage_index < len(self.case.stages) and self.time < time:
+            status = self._run_stage(None, None, until=time)
+        return status
+
+    def advance(self, stage: stages.StageState, steps: int, until: float = np.inf) -> str:
         """Run towards the next event of a stage, at most `steps` steps; returns the outcome."""
-        return self._guard(partial(stages.advance, self, stage, steps))
+        return self._guard(partial(stages.advance, self, stage, steps, until))
 
     def step(self, count: int = 1) -> None:
-        """Do a number of steps with the present settings, recording nothing."""
+        """Do a number of steps with the present settings, recording nothing and ending no stage."""
         self._guard(partial(self.core.run, count, check_interval=CHECK_INTERVAL))
 
-    def _run_stage(self, progress, should_stop) -> str:
+    def _run_stage(self, progress, should_stop, until: float = np.inf) -> str:
         if self.stage is None:
             self.stage = stages.begin(self)
             self._record()
@@ -268,7 +279,7 @@ class Simulation:
         while True:
             steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
             before, clock = self.step_count, time.perf_counter()
-            outcome = self.advance(stage, steps)
+            outcome = self.advance(stage, steps, until)
             now = time.perf_counter()
             done = self.step_count - before
             speed = done / max(now - clock, 1e-9)
@@ -291,6 +302,8 @@ class Simulation:
             if should_stop and should_stop():
                 self.checkpoint()
                 return "stopped"
+            if self.time >= until:
+                return "running"
             if self.results and now - began > self.case.output.checkpoint_every:
                 began = now
                 self.checkpoint()

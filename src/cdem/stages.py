@@ -140,8 +140,8 @@ def begin(sim: Simulation) -> StageState:
     )
 
 
-def advance(sim: Simulation, stage: StageState, steps: int):
-    """Run towards the stage's next event, at most `steps` steps; returns the core's report."""
+def advance(sim: Simulation, stage: StageState, steps: int, until: float):
+    """Run towards the stage's next event or a time, at most `steps` steps; the core's report."""
     rules = sim.case.stages[sim.stage_index]
     done = sim.step_count - stage.start_step
     if rules.max_steps is not None:
@@ -150,11 +150,12 @@ def advance(sim: Simulation, stage: StageState, steps: int):
         steps = min(steps, STATIC_RECORD_STEPS - done % STATIC_RECORD_STEPS)
         return sim.core.run(
             steps,
+            end_time=until,
             unbalance_limit=rules.tolerance,
             relaxation="none" if rules.relax == "local" else rules.relax,
         )
     assert stage.end_time is not None
-    return sim.core.run(steps, end_time=min(stage.next_row, stage.end_time))
+    return sim.core.run(steps, end_time=min(stage.next_row, stage.end_time, until))
 
 
 def record_is_due(sim: Simulation, stage: StageState, outcome: str) -> bool:
@@ -163,7 +164,8 @@ def record_is_due(sim: Simulation, stage: StageState, outcome: str) -> bool:
         due = (sim.step_count - stage.start_step) % STATIC_RECORD_STEPS == 0
         due = due or status(sim, stage, outcome) is not None
     else:
-        due = outcome == "time_reached"
+        assert stage.end_time is not None
+        due = sim.time >= min(stage.next_row, stage.end_time)
     stage.rows += due
     return due
 

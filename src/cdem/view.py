@@ -9,14 +9,18 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
+
+if TYPE_CHECKING:
+    from cdem.simulation import Simulation
 
 UNITS = {"displacement": "m", "velocity": "m/s", "damage": "1", "group": "", "block": ""}
 """Fields that `render` can colour by, with their units."""
@@ -73,6 +77,17 @@ class Surface:
     faces: NDArray[np.int64]
     point_data: dict[str, NDArray]
     cell_data: dict[str, NDArray]
+
+
+def snapshot(sim: Simulation) -> Surface:
+    """The surface of a simulation as it is now."""
+    from cdem.results import damage_of, surface_of
+
+    points = {name: sim.fields[name] for name in ("displacement", "velocity")}
+    places, vertices, point_data, cell_data = surface_of(sim, points, damage_of(sim))
+    counts = (vertices >= 0).sum(axis=1)
+    faces = np.column_stack([counts, vertices])
+    return Surface(sim.time, places, faces[faces >= 0], point_data, cell_data)
 
 
 class SurfaceSeries:
@@ -166,7 +181,12 @@ def info(folder: Path) -> str:
 # ---------------------------------------------------------------------- plots
 
 
-def _pyplot():
+def pyplot():
+    """matplotlib's pyplot, ready to draw into files.
+
+    Raises:
+        CdemError: matplotlib is not installed.
+    """
     try:
         import matplotlib
     except ImportError:
@@ -180,7 +200,7 @@ def _pyplot():
 
 def plot(folder: Path) -> list[Path]:
     """Draw energies, unbalance and all histories; returns the PNG files."""
-    plt = _pyplot()
+    plt = pyplot()
     folder = Path(folder)
     columns = read_histories(folder)
     time = columns.pop("time [s]")
@@ -284,9 +304,8 @@ def render(folder: Path, *, field: str = "displacement", movie: bool = False) ->
         raise CdemError(f"no field {field!r} to draw; choose one of: {', '.join(UNITS)}")
     folder = Path(folder)
     series = SurfaceSeries(folder)
-    pyvista = _pyvista()
     last = len(series) - 1
-    scene = _Scene(pyvista, series, field)
+    scene = _Scene(_pyvista(), series, field)
     paths, images = [], []
     for frame in sorted({0, last // 2, last}):
         image = scene.draw(series[frame])
@@ -300,6 +319,12 @@ def render(folder: Path, *, field: str = "displacement", movie: bool = False) ->
     if movie:
         paths.append(_write_movie(folder / f"{field}.gif", scene, series))
     return paths
+
+
+def picture(surfaces: Sequence[Surface], field: str = "displacement") -> NDArray[np.uint8]:
+    """Surfaces of one run side by side, in the same view and colours, shape (height, width, 3)."""
+    scene = _Scene(_pyvista(), surfaces, field)
+    return np.concatenate([scene.draw(surface) for surface in surfaces], axis=1)
 
 
 def _write_image(path: Path, image: NDArray) -> None:
@@ -319,7 +344,7 @@ def _write_movie(path: Path, scene: _Scene, series: SurfaceSeries) -> Path:
 class _Scene:
     """One view and one colour range for all frames of a run."""
 
-    def __init__(self, pyvista, series: SurfaceSeries, field: str) -> None:
+    def __init__(self, pyvista, series: Sequence[Surface] | SurfaceSeries, field: str) -> None:
         self.pyvista, self.field = pyvista, field
         last = series[len(series) - 1]
         values = self._values(last)
@@ -327,7 +352,8 @@ class _Scene:
         if field in ("group", "block", "damage"):
             self.high = max(float(values.max()), 1.0)
         first = series[0]
-        self.low_corner, self.high_corner = self._bounds(first, last)
+        middle = series[(len(series) - 1) // 2]
+        self.low_corner, self.high_corner = self._bounds(first, middle, last)
         self.camera = self._camera(first, last)
 
     def _values(self, surface: Surface) -> NDArray:
@@ -338,18 +364,20 @@ class _Scene:
         return surface.cell_data[self.field].astype(float)
 
     @staticmethod
-    def _bounds(first: Surface, last: Surface) -> tuple[NDArray, NDArray]:
+    def _bounds(*frames: Surface) -> tuple[NDArray, NDArray]:
         """What to show: all that moved with half its size around it, but nothing beyond the model."""
-        low = np.minimum(first.points.min(axis=0), last.points.min(axis=0))
-        high = np.maximum(first.points.max(axis=0), last.points.max(axis=0))
-        moved = np.linalg.norm(last.point_data.get("displacement", np.zeros((1, 3))), axis=1)
-        some = moved > 0.2 * np.nanpercentile(moved, 99.5)
-        if not some.any() or moved.max() < 1e-3 * np.linalg.norm(high - low):
+        low = np.min([f.points.min(axis=0) for f in frames], axis=0)
+        high = np.max([f.points.max(axis=0) for f in frames], axis=0)
+        places = []
+        for f in frames:
+            displacement = f.point_data.get("displacement", np.zeros((1, 3)))
+            moved = np.linalg.norm(displacement, axis=1)
+            if moved.max() > 1e-3 * np.linalg.norm(high - low):
+                some = moved > 0.2 * np.nanpercentile(moved, 99.5)
+                places += [f.points[some], f.points[some] - displacement[some]]
+        if not places:
             return low, high
-        places = np.vstack(
-            [last.points[some], last.points[some] - last.point_data["displacement"][some]]
-        )
-        near, far = places.min(axis=0), places.max(axis=0)
+        near, far = np.vstack(places).min(axis=0), np.vstack(places).max(axis=0)
         margin = 0.5 * (far - near).max()
         return np.maximum(low, near - margin), np.minimum(high, far + margin)
 

@@ -308,3 +308,34 @@ def test_no_contact_is_missed_among_343_blocks():
     assert missed == 0
     assert touching > 100
     assert np.isfinite(sim.fields["position"]).all()
+
+
+@pytest.mark.parametrize("velocity", [(0, 0, -0.5), (0, -0.5, -0.3)])
+@pytest.mark.parametrize("turns", [(4, 8, 2), (4, 1, 1), (30, 1, 1)])
+def test_edges_of_nearly_flush_faces_make_no_energy(turns, velocity):
+    """Two edges that cross at a few degrees, their faces tilted by a few: the ledger closes.
+
+    With the normal of the faces instead of V_mm x V_tt the first gained 83 % of its energy.
+    """
+    yaw, pitch, roll = turns
+    rotation = turn([0, 0, 1], yaw) @ turn([0, 1, 0], pitch) @ turn([1, 0, 0], roll)
+    corners = np.array(np.meshgrid([-0.5, 0.5], [0, 0.5], [0, 0.5])).reshape(3, -1).T
+    sim = simulate(
+        [
+            {"group": "lower", "polyhedron": {"vertices": (corners * [1, -1, -1]).tolist()}},
+            {
+                "group": "upper",
+                "polyhedron": {"vertices": (corners @ rotation.T + [0, 0, 0.002]).tolist()},
+            },
+        ],
+        {"lower": {}, "upper": {"velocity": list(velocity)}},
+        interfaces={"default": {"friction_angle": 0}},
+        rock={"young_modulus": "1 GPa"},
+        time={"safety": 0.2},
+    )
+    edges = 0
+    while sim.time < 0.03:
+        sim.step(20)
+        edges += int((sim.contacts["kind"] == 1).sum())
+    assert edges > 0
+    assert abs(sim.energies["error"]) < 1e-3

@@ -1,0 +1,119 @@
+"""The verification manual: what `cdem verify` found, as a page with formulas, plots and pictures."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import platform
+from collections.abc import Sequence
+from pathlib import Path
+
+from cdem import __version__, view
+from cdem._native import name as native_name
+from cdem.errors import CaseError, CdemError
+from cdem.verify import HEADINGS, Curve, Outcome, Picture
+
+STYLE = """body{font:16px/1.5 sans-serif;max-width:65em;margin:2em auto;padding:0 1em}
+img{max-width:100%;display:block;margin:1em 0}table{border-collapse:collapse;margin:1em 0}
+td,th{padding:.2em .8em;text-align:left;border-bottom:1px solid #ddd}
+pre{background:#f4f4f4;padding:1em;overflow:auto}.MISS{color:#b00;font-weight:bold}
+.pass{color:#070}section{border-top:2px solid #ccc;margin-top:2em}"""
+
+
+def check_path(path: Path) -> None:
+    """Refuse, before anything is computed, a report that could not be written."""
+    if path.suffix not in (".html", ".md"):
+        raise CaseError(f"{path}: a report ends in .html (the manual) or .md (the table alone)")
+    if not path.parent.is_dir():
+        raise CaseError(f"{path}: there is no folder {path.parent}")
+
+
+def write(outcomes: Sequence[Outcome], path: Path) -> None:
+    """Write the manual (.html), or its table alone (.md)."""
+    text = _markdown(outcomes) if path.suffix == ".md" else _page(outcomes)
+    path.write_text(text)
+
+
+def _machine() -> str:
+    return f"cdem {__version__} ({native_name}), {platform.system()} {platform.machine()}"
+
+
+def _markdown(outcomes: Sequence[Outcome]) -> str:
+    heads = ("problem", *HEADINGS)
+    lines = [f"{_machine()}", "", "| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    for outcome in outcomes:
+        for check in outcome.checks:
+            lines.append("| " + " | ".join((outcome.problem.name, *check.texts())) + " |")
+        if outcome.failure:
+            lines.append(f"| {outcome.problem.name} | {outcome.failure} ||||||FAILED |")
+    return "\n".join(lines) + "\n"
+
+
+def _page(outcomes: Sequence[Outcome]) -> str:
+    from markdown_it import MarkdownIt
+
+    markdown = MarkdownIt("commonmark").enable("table")
+    contents, sections = "", ""
+    for outcome in outcomes:
+        name, verdict = outcome.problem.name, "pass" if outcome.passed else "MISS"
+        title = html.escape(outcome.problem.title)
+        contents += f'<li><a href="#{name}">{title}</a> <span class="{verdict}">{verdict}</span>'
+        failure = f'<p class="MISS">{html.escape(outcome.failure)}</p>' if outcome.failure else ""
+        shown = "".join(_exhibit(e) for e in outcome.exhibits)
+        sections += (
+            f'<section id="{name}">{markdown.render(outcome.problem.page)}{_table(outcome)}'
+            f"{failure}{shown}<p>{outcome.wall_time:.1f} s; repeat with "
+            f"<code>cdem verify {name}</code></p></section>"
+        )
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8"><title>cdem verification manual'
+        f"</title><style>{STYLE}</style><h1>Verification manual</h1><p>{html.escape(_machine())}; "
+        f"{sum(o.passed for o in outcomes)} of {len(outcomes)} problems pass.</p>"
+        f"<ol>{contents}</ol>{sections}</html>\n"
+    )
+
+
+def _table(outcome: Outcome) -> str:
+    rows = "".join(f"<th>{name}</th>" for name in HEADINGS)
+    for check in outcome.checks:
+        *cells, verdict = check.texts()
+        rows += "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells)
+        rows += f'<td class="{verdict}">{verdict}</td></tr>'
+    return f"<table>{rows}</table>"
+
+
+def _exhibit(exhibit: Curve | Picture) -> str:
+    title = html.escape(exhibit.title)
+    try:
+        data = _plot(exhibit) if isinstance(exhibit, Curve) else _draw(exhibit)
+    except CdemError as error:
+        return f"<p>{title}: not drawn, {html.escape(str(error))}</p>"
+    return (
+        f'<figure><img alt="{title}" src="data:image/png;base64,'
+        f'{base64.b64encode(data).decode()}"><figcaption>{title}</figcaption></figure>'
+    )
+
+
+def _plot(curve: Curve) -> bytes:
+    plt = view.pyplot()
+    figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+    for label, (x, y) in curve.lines.items():
+        axes.plot(x, y, "o" if label.startswith(".") else "-", label=label.lstrip("."))
+    if curve.log:
+        axes.set(xscale="log", yscale="log")
+    axes.set(xlabel=curve.x_label, ylabel=curve.y_label)
+    axes.grid(alpha=0.3)
+    axes.legend()
+    data = io.BytesIO()
+    figure.savefig(data, format="png", dpi=110)
+    plt.close(figure)
+    return data.getvalue()
+
+
+def _draw(picture: Picture) -> bytes:
+    from PIL import Image
+
+    data = io.BytesIO()
+    Image.fromarray(view.picture(picture.surfaces, picture.field)).save(data, format="png")
+    return data.getvalue()

@@ -1,0 +1,136 @@
+"""`cdem verify`: finding problems, verdicts, the manual, and problems that are broken."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+
+import pytest
+
+from cdem import cli, verify
+from cdem.errors import CaseError
+from cdem.verify import Check, Problem
+
+CASE = """\
+model: {blocks: [{group: cube, box: {size: [1, 1, 1]}}]}
+materials: {rock: {density: 2700, young_modulus: "1 GPa", poisson_ratio: 0.25}}
+groups: {cube: {material: rock}}
+interfaces: {default: {friction_angle: 30}}
+loads: {gravity: [0, 0, -10]}
+stages: [{name: fall, mode: dynamic, duration: "10 ms"}]
+"""
+PROBLEM = '''\
+"""A cube falls."""
+
+def theory(gravity, time):
+    """v = g t, Galilei (1638)."""
+    return gravity * time
+
+def run(study):
+    """Compare its speed."""
+    simulation = study.simulate()
+    simulation.run()
+    speed = simulation.fields["velocity"][:, 2].mean()
+    study.check("speed", theory=theory(-10, simulation.time), ours=speed, within=WITHIN, unit="m/s")
+    study.curve("Speed", "t", "v", {"here": ([0, 1], [0, 1]), ".there": ([0], [1])})
+'''
+
+
+@pytest.fixture
+def fall(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "fall"
+    folder.mkdir()
+    (folder / "case.yaml").write_text(CASE)
+    (folder / "problem.py").write_text(PROBLEM.replace("WITHIN", "1e-9"))
+    (folder / "README.md").write_text("# The falling cube\n\nIt falls with $v = g t$.\n")
+    return folder
+
+
+@pytest.fixture
+def cdem(monkeypatch, capsys):
+    """Call the program; returns exit status, stdout and stderr."""
+
+    def call(*words: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["cdem", *words])
+        try:
+            cli.main()
+            status = 0
+        except SystemExit as end:
+            status = end.code or 0
+        printed = capsys.readouterr()
+        return status, printed.out, printed.err
+
+    return call
+
+
+def test_errors_are_relative_or_absolute():
+    assert Check("q", theory=-2.0, ours=-2.1, within=0.06).error == pytest.approx(-0.05)
+    assert Check("q", theory=0.0, ours=0.1, within=0.2, absolute=True).passed
+    assert not Check("q", theory=1.0, ours=math.nan, within=1e9).passed
+
+
+def test_shipped_problems_are_whole():
+    found = verify.problems()
+    assert len(found) >= 10
+    for problem in found:
+        assert problem.page.startswith("# ")
+        assert problem.title != problem.name
+        assert problem.module.theory.__doc__, problem.name
+        assert list(problem.folder.glob("*.yaml")), problem.name
+
+
+def test_a_problem_of_ones_own(fall, cdem):
+    status, out, _ = cdem("verify", str(fall), "--report", "manual.html")
+    assert status == 0
+    assert "A cube falls" in out
+    assert "1 of 1 problems pass" in out
+    manual = (fall.parent / "manual.html").read_text()
+    for part in ("The falling cube", "speed", "m/s", "data:image/png", "cdem verify fall"):
+        assert part in manual
+    status, out, _ = cdem("verify", str(fall), "--json", "--report", "table.md")
+    assert json.loads(out)[0]["checks"][0]["passed"]
+    assert "| fall | speed |" in (fall.parent / "table.md").read_text()
+
+
+def test_a_miss_is_said_and_told_by_the_exit_status(fall, cdem):
+    text = PROBLEM.replace("theory(-10, ", "theory(-11, ").replace("WITHIN", "0.01")
+    (fall / "problem.py").write_text(text)
+    status, out, _ = cdem("verify", str(fall))
+    assert status == 3
+    assert "MISS" in out
+    assert "0 of 1 problems pass" in out
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        (("simulation.run()", "simulation.runs()"), "problem.py:10: AttributeError"),
+        (("study.simulate()", 'study.simulate("stages.0.duration=-1")'), "must be above 0"),
+        (("def theory", "def theories"), "has no function theory"),
+    ],
+)
+def test_a_broken_problem_is_one_message(fall, cdem, change, said):
+    (fall / "problem.py").write_text(PROBLEM.replace(*change).replace("WITHIN", "1"))
+    status, out, err = cdem("verify", str(fall))
+    assert status in (1, 3)
+    assert said in out + err
+    assert "Traceback" not in out + err
+
+
+def test_wrong_names_and_reports(fall, cdem):
+    status, _, err = cdem("verify", "slidin")
+    assert (status, "did you mean sliding?" in err) == (1, True)
+    status, _, err = cdem("verify", str(fall), "--report", "manual.pdf")
+    assert (status, ".html" in err) == (1, True)
+    status, _, err = cdem("verify", str(fall), "--report", "none/manual.html")
+    assert (status, "no folder" in err) == (1, True)
+    with pytest.raises(CaseError, match=r"has no problem\.py"):
+        Problem(fall.parent)
+
+
+def test_the_list_names_all(cdem):
+    status, out, _ = cdem("verify", "--list")
+    assert status == 0
+    assert [line.split()[0] for line in out.splitlines()] == [p.name for p in verify.problems()]
