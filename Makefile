@@ -4,7 +4,7 @@ BIN := .venv/bin
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup test validate lint format demo cuda clean
+.PHONY: setup test validate verify lint format demo cuda clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -18,6 +18,9 @@ test: setup
 
 validate: setup
 	$(BIN)/python -m pytest -m slow
+
+verify: setup
+	$(BIN)/cdem verify
 
 lint: setup
 	$(BIN)/ruff check src tests tools

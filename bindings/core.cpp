@@ -7,6 +7,7 @@
 #include <omp.h>
 
 #include "core/backend.hpp"
+#include "core/measure.hpp"
 #include "core/step.hpp"
 
 namespace nb = nanobind;
@@ -196,6 +197,9 @@ NB_MODULE(CDEM_MODULE, module) {
   module.def("padded_stride", &padded_stride, "count"_a);
   module.def("device_name", &device_name);
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
+  module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,
+             "Memory bandwidth of a triad over arrays of so many bytes together [B/s].");
+  module.def("measure_flops", &measure_flops, "Peak rate of fused multiply-adds [flop/s].");
   module.def("max_threads", [] { return omp_get_max_threads(); });
 
   nb::class_<Core>(module, "Core")
@@ -251,6 +255,11 @@ NB_MODULE(CDEM_MODULE, module) {
              d["friction"] = e.friction, d["damping"] = e.damping, d["fracture"] = e.fracture;
              d["external"] = e.external, d["start"] = e.start, d["error"] = e.error;
              return d;
+           })
+      .def("seconds",
+           [](const Core& c) {
+             const Real* t = c.state.seconds;
+             return std::make_tuple(t[0], t[1], t[2], t[3]);
            })
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
       .def("step_limit",

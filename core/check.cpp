@@ -57,7 +57,10 @@ void report_elements(const Model& m, State& s, Queue q) {
   report_shape<Tet4>(m, s, q, m.tet4, s.tet4);
   report_shape<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5);
   report_shape<Wedge6>(m, s, q, m.wedge6, s.wedge6);
-  report_shape<Hex8>(m, s, q, m.hex8, s.hex8);
+  if (m.hex8.hourglass.size() > 0)
+    report_shape<Hex8OnePoint>(m, s, q, m.hex8, s.hex8);
+  else
+    report_shape<Hex8>(m, s, q, m.hex8, s.hex8);
   finish(q);
 }
 

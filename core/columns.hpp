@@ -72,7 +72,8 @@ template <class Shape>
 ElementColumns<Shape> element_columns(const Model& m, const State& s, const ElementSet& e) {
   return {{s.nodes.motion.data()},       {e.nodes.data(), e.stride},
           {e.gradient.data(), e.stride}, {e.volume.data(), e.stride},
-          {e.material.data(), e.stride}, {{m.material_lambda.data()}, {m.material_mu.data()}}};
+          {e.material.data(), e.stride}, {{m.material_lambda.data()}, {m.material_mu.data()}},
+          {e.hourglass.data(), e.stride}};
 }
 
 inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) {

@@ -18,6 +18,7 @@ struct ElementSet {
   Index corner_first = 0;  // first of its rows among the corner forces
   Column<Index> nodes, material;
   Column<Real> gradient, volume;
+  Column<Real> hourglass;  // of hexahedra with one point, else empty
 };
 
 /// Bonded pairs of one kind: conforming triangles, conforming quadrilaterals, or overlaps.
@@ -114,6 +115,7 @@ void describe(Model& m, Visit&& field) {
     field(name + "material", e.material);
     field(name + "gradient", e.gradient);
     field(name + "volume", e.volume);
+    field(name + "hourglass", e.hourglass);
   };
   elements("tet4", m.tet4);
   elements("pyramid5", m.pyramid5);

@@ -76,7 +76,8 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
     const Vec3<Real> jump = faces.nodes.position(node_b) - faces.nodes.position(node_a);
     if (dot(frame_a.n, jump) >= 0) continue;  // open: nothing to carry over
     const std::size_t point = std::size_t(k) * p.point_stride + i;
-    const Real area = p.area[i] / p.points, ks = area * p.stiffness[std::size_t(p.stride) + i];
+    const Real area = p.area[i] / p.points, kn = area * p.stiffness[i],
+               ks = area * p.stiffness[std::size_t(p.stride) + i];
     const Vec3<Real> slip = ps.slip1[point] * frame_a.t1 + ps.slip2[point] * frame_a.t2;
     const Vec3<Real> along = jump - dot(frame_a.n, jump) * frame_a.n;
     const Vec3<Real> on_b = (-0.5 * ks) * (along - slip);
@@ -88,8 +89,10 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
         s.springs.target[slot] = s.springs.target_before[slot] = target;
         s.springs.shear1[slot] = dot(force, frame.t1);
         s.springs.shear2[slot] = dot(force, frame.t2);
-        s.springs.force_n[slot] = 1.0;  // loaded: may be kept as deep as it is
-        s.springs.sunk[slot] = -dot(frame_a.n, jump);
+        const Real sunk = -dot(frame_a.n, jump);
+        s.springs.sunk[slot] = sunk;
+        s.springs.force_n[slot] = 0.5 * kn * sunk;
+        s.springs.energy_n[slot] = 0.25 * kn * sunk * sunk;
       }
     };
     give(place_a, a, node_a, place_b, frame_b, -on_b);

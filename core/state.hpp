@@ -55,7 +55,11 @@ struct SearchState {
   Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
 };
 
+/// What the wall time of steps is counted by.
+enum class Phase { search, contact, element, node };
+
 struct State {
+  Real seconds[4] = {};  // wall time so far by Phase; no part of the results
   Real time = 0;
   Real dt = 0, dt_last = 0;  // of the coming and of the last step  [s]
   std::int64_t step = 0, refreshes = 0, built_step = -1;

@@ -2,6 +2,7 @@
 #include "core/step.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "core/backend.hpp"
@@ -132,7 +133,10 @@ void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, eleme
   update_elements<Tet4>(m, s, q, m.tet4, s.tet4);
   update_elements<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5);
   update_elements<Wedge6>(m, s, q, m.wedge6, s.wedge6);
-  update_elements<Hex8>(m, s, q, m.hex8, s.hex8);
+  if (m.hex8.hourglass.size() > 0)
+    update_elements<Hex8OnePoint>(m, s, q, m.hex8, s.hex8);
+  else
+    update_elements<Hex8>(m, s, q, m.hex8, s.hex8);
 }
 
 void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
@@ -157,21 +161,39 @@ void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
   finish(q);
 }
 
+/// Counts wall time by phase of the step.
+struct Stopwatch {
+  State& s;
+  std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
+
+  void lap(Phase phase) {
+    const auto now = std::chrono::steady_clock::now();
+    s.seconds[int(phase)] += std::chrono::duration<Real>(now - last).count();
+    last = now;
+  }
+};
+
 /// One step: contacts, elements, nodes. Everything before move_nodes belongs to the time `s.time`.
 void step(const Model& m, State& s, Queue q, bool sampled) {
+  Stopwatch watch{s};
   if (refresh_is_due(m, s)) {
     refresh_contacts(m, s);
     renew_step(m, s);  // faces that may now touch call for a shorter step before they do
   }
+  watch.lap(Phase::search);
   evaluate_curves(m, s.time, s.load_factor);
   evaluate_curves(m, s.time + 0.5 * s.dt, s.velocity_factor);
   update_face_geometry(m, s, q, false);  // contact/face.hpp
   update_bonds(m, s, q);
+  watch.lap(Phase::contact);
   if (m.check_search) s.missed += count_missed_contacts(m, s);
   find_target_faces(m, s, q);
   find_target_edges(m, s, q);
+  watch.lap(Phase::search);
   update_contact_forces(m, s, q);
+  watch.lap(Phase::contact);
   update_element_forces(m, s, q);
+  watch.lap(Phase::element);
   sum_node_forces(m, s, q);
   if (s.stop_due) stop_motion(m, s);
   if (sampled) sample_before(m, s, q);
@@ -181,6 +203,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   s.time += s.dt;
   s.step += 1;
   if (s.step % step_check_interval == 0) renew_step(m, s);
+  watch.lap(Phase::node);
 }
 
 /// Kinetic relaxation: stop all motion when the kinetic energy has passed a peak.
@@ -210,7 +233,11 @@ void relax_adaptively(const Model& m, State& s) {
       const Real* v = before + 8 * i + 4;
       return m.mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     });
-    s.relax_damping = heavy > 0 && stiff > 0 ? 2 * std::sqrt(stiff / (s.dt_last * heavy)) : 0;
+    // the damping force lags by half a step, so w dt < sqrt(4 - 2 c dt) must hold for the fastest
+    // mode
+    const Real most = 1.8 * (1 - m.step_safety * m.step_safety) / s.dt_last;
+    const Real critical = heavy > 0 && stiff > 0 ? 2 * std::sqrt(stiff / (s.dt_last * heavy)) : 0;
+    s.relax_damping = std::min(critical, most);
   }
 #pragma omp parallel for schedule(static) if (m.node_count >= worth_threads)
   for (std::size_t i = 0; i < std::size_t(m.node_count); ++i)

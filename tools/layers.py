@@ -5,7 +5,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-LAYERS = """launch math field
+LAYERS = """launch math field measure
             materials interfaces elements contact nodes
             model state columns
             backend

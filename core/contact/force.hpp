@@ -45,20 +45,32 @@ struct ContactForce {
   Real dashpot;             // lost in this step  [J]
 };
 
+/// What a contact had one step ago; all zero for one that begins.
+struct ContactBefore {
+  Real force_n, sunk;   // [N], [m]
+  Real shear1, shear2;  // [N]
+};
+
 /// Normal force from the total gap, shear force from the step's slip, then Coulomb's limit.
 ///
 /// `slip` is the relative tangential displacement of the step in the target's own frame: because
 /// the tangential part of (mother point - target point) is zero now, it is minus the tangential
 /// part that the same two material points had one step ago in the frame of one step ago. That makes
 /// it exactly objective: a rigid rotation of a loaded pair gives none.
+///
+/// What dashpot and friction take is the work of their mean force in the step: what central
+/// differences make of it. (The new force alone with the rate, which is that of half a step ago,
+/// read up to 8 % of an impact's energy too much.)
 CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Real tan_friction,
                                           Real gap, Real gap_rate, Real dashpot_constant,
-                                          Real slip1, Real slip2, Real old1, Real old2, Real dt) {
+                                          Real slip1, Real slip2, const ContactBefore& before,
+                                          Real dt) {
   ContactForce f;
   const Real elastic = max_of(-stiffness_n * gap, 0.0);
   f.force_n = max_of(elastic - dashpot_constant * gap_rate, 0.0);
   if (gap >= 0) f.force_n = 0;
   f.sunk = max_of(-gap, 0.0);
+  const Real old1 = before.shear1, old2 = before.shear2;
   const Real try1 = old1 - stiffness_s * slip1, try2 = old2 - stiffness_s * slip2;
   const Real shear = sqrt_of(try1 * try1 + try2 * try2);
   const Real limit = f.force_n * tan_friction;
@@ -67,12 +79,12 @@ CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Re
   f.shear2 = keep * try2;
   const Real flex_s = 0.5 / stiffness_s;
   const Real stored_s = flex_s * (f.shear1 * f.shear1 + f.shear2 * f.shear2);
-  // work of the mean shear force that is not stored: exact for a force that is linear in the step
   f.friction = flex_s * (old1 * old1 + old2 * old2) - stored_s -
                0.5 * ((old1 + f.shear1) * slip1 + (old2 + f.shear2) * slip2);
   f.energy_n = 0.5 / stiffness_n * elastic * elastic;
   f.energy_s = stored_s;
-  f.dashpot = (elastic - f.force_n) * gap_rate * dt;
+  const Real braked = before.force_n - stiffness_n * before.sunk + f.force_n - elastic;
+  f.dashpot = -0.5 * braked * gap_rate * dt;
   return f;
 }
 
@@ -119,9 +131,12 @@ struct UpdateSpringForces {
     Real& free = springs.gap_free[slot.i];
     free = before == t ? lifted_gap_free(free, foot.gap)
                        : starting_gap_free(foot.gap, gap_rate, faces.dt, springs.sunk[slot.i]);
-    const ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - free, gap_rate,
-                                         dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
-                                         springs.shear1[slot.i], springs.shear2[slot.i], faces.dt);
+    ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - free, gap_rate, dashpot,
+                                   -dot(old.t1, apart), -dot(old.t2, apart),
+                                   {springs.force_n[slot.i], springs.sunk[slot.i],
+                                    springs.shear1[slot.i], springs.shear2[slot.i]},
+                                   faces.dt);
+    if (before >= 0 && before != t) f.dashpot = 0;  // a change of face is no work of the dashpot
     keep(slot.i, f);
 
     const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
@@ -173,9 +188,12 @@ struct UpdateSpringForces {
     springs.shear1[slot] = scale * a;
     springs.shear2[slot] = scale * b;
   }
-  /// A contact that opened forgets its shear force; what that spring held is lost to friction.
+  /// A contact that opened forgets its shear force; what that spring held is lost to friction, and
+  /// what the normal spring held and did not give back to the dashpot.
   CDEM_HD void end(Index slot) const {
     springs.friction[slot] += springs.energy_s[slot];
+    springs.dashpot[slot] +=
+        springs.energy_n[slot] - 0.5 * springs.force_n[slot] * springs.sunk[slot];
     springs.energy_n[slot] = springs.energy_s[slot] = 0;
     springs.force_n[slot] = springs.shear1[slot] = springs.shear2[slot] = 0;
     springs.sunk[slot] = 0;
@@ -250,7 +268,9 @@ struct UpdateEdgeForces {
                                   : starting_gap_free(c.gap, gap_rate, faces.dt, 0.0);
     const ContactForce f = contact_force(kn, ks, law.tan_friction, c.gap - free, gap_rate, dashpot,
                                          -dot(old.t1, apart), -dot(old.t2, apart),
-                                         edges.shear1[place], edges.shear2[place], faces.dt);
+                                         {edges.force_n[place], max_of(edges.sunk[place], 0.0),
+                                          edges.shear1[place], edges.shear2[place]},
+                                         faces.dt);
     edges.force_n[place] = f.force_n;
     edges.sunk[place] = f.sunk;
     edges.shear1[place] = f.shear1;

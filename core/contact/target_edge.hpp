@@ -112,10 +112,17 @@ struct FindTargetEdges {
       edges.sunk[place] = f.old >= 0 ? held.sunk[f.old] : -1.0;
       edges.shear1[place] = held.shear1(f.old);
       edges.shear2[place] = held.shear2(f.old);
-      edges.force_n[place] = held.loaded(f.old) ? 1.0 : 0.0;
-      edges.energy_s[place] = held.take_energy(f.old);
+      edges.force_n[place] = f.old >= 0 ? held.force_n[f.old] : 0.0;
+      edges.energy_n[place] = f.old >= 0 ? held.energy_n[f.old] : 0.0;
+      edges.energy_s[place] = f.old >= 0 ? held.energy_s[f.old] : 0.0;
+      if (f.old >= 0) held.goes_on[f.old] = true;
     }
-    edges.friction[m.i] += held.energy_left();  // shear springs of contacts that ended
+    for (Index j = 0; j < held.count;
+         ++j) {  // what springs of contacts that ended did not give back
+      if (held.goes_on[j]) continue;
+      edges.friction[m.i] += held.energy_s[j];
+      edges.dashpot[m.i] += held.energy_n[j] - 0.5 * held.force_n[j] * max_of(held.sunk[j], 0.0);
+    }
     edges.count[m.i] = used;
   }
 
@@ -160,9 +167,9 @@ struct FindTargetEdges {
     const EdgeColumns& edges;
     Index first, count;
     Index side[most_slots], edge[most_slots];
-    Real s1[most_slots], s2[most_slots], energy[most_slots];
-    Real gap_free[most_slots], sunk[most_slots];
-    bool load[most_slots];
+    Real s1[most_slots], s2[most_slots], energy_s[most_slots];
+    Real gap_free[most_slots], sunk[most_slots], force_n[most_slots], energy_n[most_slots];
+    bool goes_on[most_slots];
 
     CDEM_HD Held(const FindTargetEdges& k, Index m)
         : edges(k.edges), first(k.edges.slots * m), count(k.edges.count[m]) {
@@ -173,8 +180,10 @@ struct FindTargetEdges {
         sunk[j] = edges.sunk[first + j];
         s1[j] = edges.shear1[first + j];
         s2[j] = edges.shear2[first + j];
-        energy[j] = edges.energy_s[first + j];
-        load[j] = edges.force_n[first + j] > 0;
+        energy_s[j] = edges.energy_s[first + j];
+        force_n[j] = edges.force_n[first + j];
+        energy_n[j] = edges.energy_n[first + j];
+        goes_on[j] = false;
       }
     }
     CDEM_HD Index find(Index k, Index e) const {
@@ -182,20 +191,9 @@ struct FindTargetEdges {
         if (side[j] == k && edge[j] == e) return j;
       return -1;
     }
-    CDEM_HD bool loaded(Index j) const { return j >= 0 && load[j]; }
+    CDEM_HD bool loaded(Index j) const { return j >= 0 && force_n[j] > 0; }
     CDEM_HD Real shear1(Index j) const { return j >= 0 ? s1[j] : 0.0; }
     CDEM_HD Real shear2(Index j) const { return j >= 0 ? s2[j] : 0.0; }
-    CDEM_HD Real take_energy(Index j) {
-      if (j < 0) return 0.0;
-      const Real e = energy[j];
-      energy[j] = 0;
-      return e;
-    }
-    CDEM_HD Real energy_left() const {
-      Real sum = 0;
-      for (Index j = 0; j < count; ++j) sum += energy[j];
-      return sum;
-    }
   };
 
   /// All contacts of one exposed face in candidate order; returns their number.

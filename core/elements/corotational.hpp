@@ -67,6 +67,8 @@ struct CorotationalForce {
       const Sym3<T> stress = law.stress(p.strain[q]);
       force.add(columns, e, q, columns.point_volume.at(q, e) * (p.rotation[q] * full(stress)));
     }
+    if constexpr (Shape::hourglass)
+      Hourglass<T>(columns, e, position_arms<Shape>(columns, e)).add(columns, e, T(1.0), force);
     if (damping_time > 0) add_dashpot(e, law, p, force);
     force.store(corner_force, e);
   }
@@ -89,6 +91,11 @@ struct CorotationalForce {
       const Sym3<T> stress = T(damping_time) * law.stress(rate[q]);
       force.add(columns, e, q, volume * (p.rotation[q] * full(stress)));
       power += volume * contract(stress, rate[q]);
+    }
+    if constexpr (Shape::hourglass) {
+      const Hourglass<T> modes(columns, e, arms);
+      modes.add(columns, e, T(damping_time), force);
+      power += T(damping_time) * modes.stiffness * modes.square();
     }
     damping_work.set(0, e, damping_work.at(0, e) + T(dt) * power);
   }
@@ -116,6 +123,10 @@ struct CorotationalReport {
       mean = mean + w * symmetric(r * full(s) * transpose(r));
       volume += w;
       stored += T(0.5) * w * contract(s, p.strain[q]);
+    }
+    if constexpr (Shape::hourglass) {
+      const Hourglass<T> modes(columns, e, position_arms<Shape>(columns, e));
+      stored += T(0.5) * modes.stiffness * modes.square();
     }
     energy.set(0, e, stored);
     const T scale = T(1.0) / volume;

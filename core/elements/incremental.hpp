@@ -92,6 +92,14 @@ struct IncrementalForce {
       // Cauchy stress to first Piola-Kirchhoff: P = det(F) sigma F^-T
       force.add(columns, e, q, volume * (full(after) * cofactor(f_new[q])));
     }
+    if constexpr (Shape::hourglass) {
+      const Hourglass<T> modes(columns, e, arms), rates(columns, e, velocities);
+      modes.add(columns, e, T(1.0), force);
+      T power(0.0);  // of the mean amplitude in the step
+      for (Index a = 0; a < 4; ++a)
+        power += dot(modes.amplitude[a] - T(0.5 * dt) * rates.amplitude[a], rates.amplitude[a]);
+      work += T(dt) * modes.stiffness * power;
+    }
     energy.set(0, e, energy.at(0, e) + work);
     force.store(corner_force, e);
   }

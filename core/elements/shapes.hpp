@@ -9,23 +9,29 @@ namespace cdem {
 /// One Gauss point: the strain is constant.
 struct Tet4 {
   static constexpr Index nodes = 4, points = 1;
-  static constexpr bool mean_dilatation = false;
+  static constexpr bool mean_dilatation = false, hourglass = false;
 };
 /// Rational shape functions, five Gauss points.
 struct Pyramid5 {
   static constexpr Index nodes = 5, points = 5;
-  static constexpr bool mean_dilatation = false;
+  static constexpr bool mean_dilatation = false, hourglass = false;
 };
 /// Six Gauss points: three in the triangle times two.
 struct Wedge6 {
   static constexpr Index nodes = 6, points = 6;
-  static constexpr bool mean_dilatation = false;
+  static constexpr bool mean_dilatation = false, hourglass = false;
 };
 /// 2 x 2 x 2 Gauss points; the volumetric strain is the element's mean (B-bar), so that nearly
 /// incompressible rock does not lock.
 struct Hex8 {
   static constexpr Index nodes = 8, points = 8;
-  static constexpr bool mean_dilatation = true;
+  static constexpr bool mean_dilatation = true, hourglass = false;
+};
+/// One point with the mean gradients, and springs against the four ways to deform that have no mean
+/// strain (hourglass modes).
+struct Hex8OnePoint {
+  static constexpr Index nodes = 8, points = 1;
+  static constexpr bool mean_dilatation = false, hourglass = true;
 };
 
 /// What every element kernel reads: nodes, reference gradients, volumes, material.
@@ -40,6 +46,7 @@ struct ElementColumns {
   InTable point_volume;        // w J: [point][element]  [m3]
   InIndices element_material;  // [1][element]
   MaterialTable materials;
+  InTable hourglass;  // one-point: [4 * 3] moments of the modes [m], and their stiffness [N/m]
 
   template <class I>
   CDEM_HD Vec3<Number<I>> gradient_at(I e, Index point, Index node) const {
@@ -109,6 +116,56 @@ struct CornerForces {
   template <class I>
   CDEM_HD void store(OutForces out, I e) const {
     for (Index k = 0; k < Shape::nodes; ++k) out.set(e, Shape::nodes, k, f[k]);
+  }
+};
+
+/// Amplitudes of the hourglass modes and what resists them: Flanagan & Belytschko (1981), total.
+///
+/// Mode a has the pattern G_ak = rs, st, tr, rst at node k. Its amplitude is what the positions
+/// hold of the pattern beyond their linear part, q_a = sum_k G_ak x_k - F sum_k G_ak X_k, so it is
+/// zero for any rigid motion and any constant strain, without asking for the rotation. The energy
+/// is k/2 sum |q_a|^2; with k = E V^(1/3) / 48 a cube bends like a beam.
+template <class T>
+struct Hourglass {
+  Vec3<T> moment[4], amplitude[4];
+  T stiffness;
+
+  template <class I>
+  CDEM_HD Hourglass(const ElementColumns<Hex8OnePoint>& c, I e, const Arms<Hex8OnePoint, T>& arms)
+      : stiffness(c.hourglass.at(12, e)) {
+    const Mat3<T> f = gradient_of<Hex8OnePoint>(c, e, 0, arms);
+    for (Index a = 0; a < 4; ++a) {
+      moment[a] = {c.hourglass.at(3 * a, e), c.hourglass.at(3 * a + 1, e),
+                   c.hourglass.at(3 * a + 2, e)};
+      amplitude[a] = T(-1.0) * (f * moment[a]);
+      for (Index k = 1; k < 8; ++k) amplitude[a] = amplitude[a] + T(pattern(a, k)) * arms[k];
+    }
+  }
+  /// q . q summed over the modes.
+  CDEM_HD T square() const {
+    T sum(0.0);
+    for (Index a = 0; a < 4; ++a) sum += dot(amplitude[a], amplitude[a]);
+    return sum;
+  }
+  /// Add `scale` times the springs' forces to those of the corners.
+  template <class I>
+  CDEM_HD void add(const ElementColumns<Hex8OnePoint>& c, I e, const T& scale,
+                   CornerForces<Hex8OnePoint, T>& force) const {
+    for (Index k = 1; k < 8; ++k) {
+      const Vec3<T> gradient = c.gradient_at(e, 0, k);
+      for (Index a = 0; a < 4; ++a) {
+        const T share = T(pattern(a, k)) - dot(moment[a], gradient);
+        const Vec3<T> fk = (scale * stiffness * share) * amplitude[a];
+        force.f[k] = force.f[k] - fk;
+        force.f[0] = force.f[0] + fk;  // shares sum to zero
+      }
+    }
+  }
+
+ private:
+  CDEM_HD static constexpr Real pattern(Index mode, Index node) {
+    const Real r = ((node + 1) & 2) ? 1 : -1, s = (node & 2) ? 1 : -1, t = (node & 4) ? 1 : -1;
+    return mode == 0 ? r * s : mode == 1 ? s * t : mode == 2 ? t * r : r * s * t;
   }
 };
 

@@ -37,6 +37,7 @@ class Properties:
         exact_mass: Exact inertia (default) or lumped masses as they come.
         supported: Components of nodes that are held or moved, shape (nodes, 3).
         target_step: Time step for which elements are made heavier where needed, or 0 [s].
+        one_point: Whether hexahedra have one Gauss point and hourglass springs.
     """
 
     density: Floats
@@ -48,6 +49,7 @@ class Properties:
     exact_mass: bool
     supported: NDArray[np.bool_]
     target_step: float = 0.0
+    one_point: bool = False
 
     @property
     def lame(self) -> Floats:
@@ -131,7 +133,12 @@ def _elements(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
         group = t.element_group[shape]
         gradient, volume = shapes.reference_gradients(shape, corners)
         matrices = shapes.mass_matrices(shape, corners, p.density[group])
-        geometry[shape] = (gradient, volume)
+        hourglass = np.zeros((count, 0))
+        if shape == "hex8" and p.one_point:
+            gradient, volume, hourglass = shapes.one_point(
+                corners, gradient, volume, p.young_modulus[group]
+            )
+        geometry[shape] = (gradient, volume, hourglass)
         mass[shape] = matrices
         np.add.at(gravity_mass, connectivity, matrices.sum(axis=2))
         points = volume.shape[1]
@@ -140,6 +147,7 @@ def _elements(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
         out.arrays[f"{shape}.material"] = table(group[None].astype(np.int32), stride)
         out.arrays[f"{shape}.gradient"] = table(flat.T, stride)
         out.arrays[f"{shape}.volume"] = table(volume.T, stride)
+        out.arrays[f"{shape}.hourglass"] = table(hourglass.T, stride)
         out.counts[f"{shape}.count"] = count
         out.counts[f"{shape}.corner_first"] = row
         row += count * nodes
@@ -208,14 +216,20 @@ def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, 
         group = t.element_group[shape]
         dense = dense_block[t.element_block[shape]]
         rock = (p.lame[group], p.shear[group])
-        gradient, volume = geometry[shape]
+        gradient, volume, hourglass = geometry[shape]
         lumped_square = shapes.squared_frequencies(
-            shape, gradient, volume, rock[0], rock[1], m.sum(axis=2)
+            shape, gradient, volume, rock[0], rock[1], m.sum(axis=2), hourglass
         )
         square = lumped_square.copy()
         if dense.any():
             square[dense] = shapes.squared_frequencies(
-                shape, gradient[dense], volume[dense], rock[0][dense], rock[1][dense], m[dense]
+                shape,
+                gradient[dense],
+                volume[dense],
+                rock[0][dense],
+                rock[1][dense],
+                m[dense],
+                hourglass[dense],
             )
         heavier = np.maximum(1.0, square * (p.target_step / 2) ** 2)
         out.added_mass += float(((heavier - 1) * out.element_mass[shape]).sum())

@@ -141,6 +141,7 @@ def _properties(case: Case, names, laws, interface_of, bonds, supports) -> assem
         supported=supports["component"][np.maximum(supports["row"], 0)].astype(bool)
         & (supports["row"] >= 0)[:, None],
         target_step=0.0 if scaling is None else scaling.step,
+        one_point=case.elements.hexahedra == "one-point",
     )
 
 

@@ -250,6 +250,36 @@ def _print_outcome(outcome: Outcome) -> None:
 
 
 @app.command()
+def benchmark(
+    full: Annotated[
+        bool, typer.Option("--full", help="Also a million tets; needs 8 GB and half an hour.")
+    ] = False,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
+) -> None:
+    """Measure the speed of the kernels against the machine's own limits."""
+    import os
+
+    from cdem import benchmark as bench
+
+    threads = threads or os.cpu_count() or 1
+    limits = bench.machine(threads)
+    if not as_json:
+        for key, value in limits.items():
+            print(
+                f"{key}: {value / 1e9:.1f} G/s" if isinstance(value, float) else f"{key}: {value}"
+            )
+        print(f"{'what':<34}{'size':>10}{'thr':>4}{'median':>10} (least .. most)")
+    rows = []
+    for row in bench.run(list(bench.SIZES)[: 3 if full else 2], threads):
+        rows.append(row)
+        if not as_json:
+            print(row.text(), flush=True)
+    if as_json:
+        print(json.dumps({"machine": limits, "rows": [vars(row) for row in rows]}, indent=2))
+
+
+@app.command()
 def run(
     case_file: CaseFile,
     output: Annotated[

@@ -179,11 +179,22 @@ def find_critical(
 
 def _try(sim: Simulation, apply: Apply, value: float) -> Trial:
     """Run the last stage at one value from the state that the simulation is in."""
+    start = sim.step_count
+    stable, why = rests(sim, lambda: apply(sim.case, value))
+    return Trial(value, stable, why, sim.step_count - start)
+
+
+def rests(sim: Simulation, prepare: Callable[[], None] | None = None) -> tuple[bool, str]:
+    """Run the last, static stage; return whether it comes to rest, and why or why not.
+
+    The rules are those of `find_critical`. `prepare` may change the case as the stage begins.
+    """
     sim.stage_index = len(sim.case.stages) - 1
-    sim.stage = stage = stages.begin(sim)
-    apply(sim.case, value)
-    stages.update_core(sim, sim.stage_index)
-    sim.core.renew_step()
+    stage = stages.begin(sim)
+    if prepare:
+        prepare()
+        stages.update_core(sim, sim.stage_index)
+        sim.core.renew_step()
     size = float(sim.build.assembly.arrays["face.length"][: sim.audit.counts["faces"]].mean())
     start = sim.fields["position"].copy()
     most = sim.case.stages[-1].max_steps or MOST_STEPS
@@ -193,24 +204,22 @@ def _try(sim: Simulation, apply: Apply, value: float) -> Trial:
         try:
             outcome = sim.advance(stage, 10 * CHECK_INTERVAL)
         except UnstableError as error:
-            return Trial(value, False, str(error), sim.step_count - stage.start_step)
+            return False, str(error)
         done, unbalance = sim.step_count - stage.start_step, sim.core.unbalance_ratio()
         if outcome == "converged":
-            return Trial(value, True, f"rests, unbalance ratio {unbalance:.2g}", done)
+            return True, f"rests, unbalance ratio {unbalance:.2g}"
         moved = float(np.linalg.norm(sim.fields["position"] - start, axis=1).max()) / size
         kinetic = float(sim.energies["kinetic"])
         if moved < 0.5 * TRAVEL:
             half_way = kinetic
         elif moved > FAR or (moved > TRAVEL and kinetic > half_way):
-            why = f"has moved {moved * size:.3g} m, kinetic energy {kinetic:.3g} J"
-            return Trial(value, False, why, done)
+            return False, f"has moved {moved * size:.3g} m, kinetic energy {kinetic:.3g} J"
         if unbalance < 0.95 * least:
             least, least_step, least_moved = unbalance, done, moved
         elif done - least_step >= STALL_STEPS and moved > 2 * least_moved:
-            why = f"goes on moving, {moved * size:.3g} m, unbalance ratio stays at {unbalance:.2g}"
-            return Trial(value, False, why, done)
+            return False, f"goes on moving, {moved * size:.3g} m, ratio stays at {unbalance:.2g}"
         if done >= most:
-            return Trial(value, False, f"no rest in {done:,} steps, ratio {unbalance:.2g}", done)
+            return False, f"no rest in {done:,} steps, ratio {unbalance:.2g}"
 
 
 @dataclass

@@ -390,7 +390,10 @@ class Elements(Part):
     mass: Literal["exact", "lumped"] = Field(
         "exact", description="Exact inertia of blocks of one element, or lumped mass everywhere"
     )
-    hourglass: Literal["full"] = Field("full", description="Integration of hexahedra")
+    hexahedra: Literal["full", "one-point"] = Field(
+        "full",
+        description="Integration of hexahedra: 2 x 2 x 2 points, or one and hourglass springs",
+    )
 
 
 class MassScaling(Part):

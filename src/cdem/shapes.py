@@ -104,6 +104,33 @@ def _collapsed(shape: str, count: int) -> tuple[Array, Array]:
     return points, weight / 2 * (1 - w) ** 2
 
 
+HOURGLASS = np.stack([_HEX_CORNERS[:, list(axes)].prod(axis=1) for axes in ((0, 1), (1, 2), (2, 0), (0, 1, 2))])  # fmt: skip
+"""Patterns rs, st, tr, rst of the hourglass modes of a hexahedron, shape (4, 8)."""
+
+
+def one_point(
+    corners: Array, gradient: Array, volume: Array, young: Array
+) -> tuple[Array, Array, Array]:
+    """Hexahedra with one point: the mean gradients, and springs against hourglass modes.
+
+    Args:
+        corners: Node positions [m], shape (elements, 8, 3).
+        gradient: Of the full rule, as from `reference_gradients`.
+        volume: Of the full rule.
+        young: Young's modulus [Pa], shape (elements,).
+
+    Returns:
+        Gradients (elements, 1, 8, 3), volumes (elements, 1), and for each element the moments
+        sum G_ak X_k of the four modes [m] and the stiffness E V^(1/3) / 48 [N/m], shape
+        (elements, 13): bending of a cube is then that of a beam.
+    """
+    whole = volume.sum(axis=1, keepdims=True)
+    mean = np.einsum("epnx,ep->enx", gradient, volume)[:, None] / whole[:, :, None, None]
+    moments = np.einsum("an,enx->eax", HOURGLASS, corners).reshape(len(corners), 12)
+    stiffness = young[:, None] * np.cbrt(whole) / 48
+    return mean, whole, np.concatenate([moments, stiffness], axis=1)
+
+
 def _stiffness_rule(shape: str) -> tuple[Array, Array]:
     """Points and weights of the element forces; the kernels hold the same number of points."""
     if shape == "tet4":
@@ -183,7 +210,13 @@ def elasticity(lame: Array, shear: Array) -> Array:
 
 
 def squared_frequencies(
-    shape: str, gradient: Array, volume: Array, lame: Array, shear: Array, mass: Array
+    shape: str,
+    gradient: Array,
+    volume: Array,
+    lame: Array,
+    shear: Array,
+    mass: Array,
+    hourglass: Array,
 ) -> Array:
     """Largest squared eigenfrequency of each free element [1/s2], exact.
 
@@ -196,9 +229,11 @@ def squared_frequencies(
         lame: First Lame constant [Pa], shape (elements,).
         shear: Shear modulus [Pa], shape (elements,).
         mass: Lumped masses (elements, nodes) or mass matrices (elements, nodes, nodes) [kg].
+        hourglass: As from `one_point`, or of shape (elements, 0).
     """
     keys = np.concatenate(
-        [a.reshape(len(volume), -1) for a in (gradient, volume, lame, shear, mass)], axis=1
+        [a.reshape(len(volume), -1) for a in (gradient, volume, lame, shear, mass, hourglass)],
+        axis=1,
     )
     scale = np.abs(keys).max(axis=0, keepdims=True) + 1e-300
     # equal elements need one solution: a grid has few kinds
@@ -213,11 +248,21 @@ def squared_frequencies(
             volume[some],
             elasticity(lame[some], shear[some]),
             mass[some],
+            _hourglass_rows(gradient[some], hourglass[some]),
         )
     return largest[kind.reshape(-1)]
 
 
-def _largest_eigenvalue(b: Array, volume: Array, d: Array, mass: Array) -> Array:
+def _hourglass_rows(gradient: Array, hourglass: Array) -> Array:
+    """Patterns of the hourglass springs times the root of their stiffness, (elements, 4, nodes)."""
+    if hourglass.shape[1] == 0:
+        return np.zeros((len(hourglass), 0, gradient.shape[2]))
+    moments = hourglass[:, :12].reshape(-1, 4, 3)
+    modes: Array = HOURGLASS - np.einsum("eax,enx->ean", moments, gradient[:, 0])
+    return np.sqrt(hourglass[:, 12, None, None]) * modes
+
+
+def _largest_eigenvalue(b: Array, volume: Array, d: Array, mass: Array, springs: Array) -> Array:
     nodes = mass.shape[1]
     if mass.ndim == 2:
         root = np.zeros((len(mass), nodes, nodes))
@@ -227,10 +272,16 @@ def _largest_eigenvalue(b: Array, volume: Array, d: Array, mass: Array) -> Array
     # rows of B times L^-T, per axis of the nodes
     turned = np.einsum("epsna,emn->epsma", b.reshape(*b.shape[:3], nodes, 3), root)
     turned = turned.reshape(b.shape)
-    if b.shape[1] == 1:  # one point: the 6 x 6 problem has the same non-zero eigenvalues
+    if (
+        b.shape[1] == 1 and springs.shape[1] == 0
+    ):  # one point: the 6 x 6 problem has the same non-zero eigenvalues
         factor = np.linalg.cholesky(d)
         small = np.einsum("est,epsk->eptk", factor, turned)[:, 0]
         small = np.einsum("etk,euk->etu", small, small) * volume[:, :1, None]
         return np.linalg.eigvalsh(small)[:, -1]
     stiffness = np.einsum("ep,epsk,est,eptl->ekl", volume, turned, d, turned, optimize=True)
+    if springs.shape[1]:
+        rows = np.einsum("ean,emn->eam", springs, root)
+        resisted = np.einsum("ean,eam,xy->enxmy", rows, rows, np.eye(3))
+        stiffness += resisted.reshape(stiffness.shape)
     return np.linalg.eigvalsh(stiffness)[:, -1]

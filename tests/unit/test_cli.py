@@ -227,3 +227,19 @@ def test_import_and_help_are_fast():
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     heavy = {"numpy", "h5py", "pydantic", "ruamel.yaml", "meshio", "matplotlib", "pyvista"}
     assert heavy & set(out.stdout.split()) == set()
+
+
+def test_benchmark_rows_say_what_was_measured(monkeypatch):
+    from cdem import benchmark
+
+    monkeypatch.setattr(benchmark, "SECONDS", 1e-4)
+    monkeypatch.setattr(benchmark, "TRIAD_BYTES", 3_000_000)
+    for row in (benchmark.tets_shared(2, 1), benchmark.tets_bonded(2, 1), benchmark.rubble(1, 1)):
+        assert 0 < row.least <= row.rate <= row.most
+        assert sum(v for k, v in row.more.items() if k.split()[0] in benchmark.PHASES) == (
+            pytest.approx(100)
+        )
+        assert row.name in row.text()
+    limits = benchmark.machine(2)
+    assert limits["bandwidth, 2 threads"] > 1e8
+    assert limits["multiply-adds, 1 threads"] > 1e8

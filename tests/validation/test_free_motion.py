@@ -13,6 +13,8 @@ SHAPES = {
 
 
 def spinning(shape, spin, **more):
+    if shape == "hex8 of one point":
+        shape, more["elements"] = "hex8", {"hexahedra": "one-point"}
     return simulate(
         [{"group": "block", **SHAPES[shape]}], {"block": {"angular_velocity": list(spin)}}, **more
     )
@@ -48,7 +50,7 @@ def revolve(shape, revolutions, rate=20.0):
     return end_error - start_error, end_volume / start_volume - 1, swing
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", [*SHAPES, "hex8 of one point"])
 def test_spin_keeps_energy_and_volume(shape):
     energy, drift, swing = revolve(shape, 10)
     assert abs(energy) < 1e-6
