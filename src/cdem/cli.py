@@ -213,10 +213,11 @@ def verify(
         for problem in chosen:
             print(f"{problem.name:<20}{'' if problem.quick else '(full) '}{problem.title}")
         return
+    manual = None
     if report:
-        from cdem import manual
+        from cdem.manual import Manual
 
-        manual.check_path(report)
+        manual = Manual(report)
     if not names and not full:
         chosen = [problem for problem in chosen if problem.quick]
     outcomes: list[verification.Outcome] = []
@@ -226,8 +227,8 @@ def verify(
         outcomes.append(problem.run(full=full, threads=threads))
         if not as_json:
             _print_outcome(outcomes[-1])
-        if report:  # after each, so that nothing is lost if the next one is stopped
-            manual.write(outcomes, report)
+        if manual:  # after each, so that nothing is lost if the next one is stopped
+            manual.add(outcomes[-1])
     passed = sum(outcome.passed for outcome in outcomes)
     if as_json:
         print(json.dumps([outcome.as_dict() for outcome in outcomes], indent=2))

@@ -21,56 +21,76 @@ pre{background:#f4f4f4;padding:1em;overflow:auto}.MISS{color:#b00;font-weight:bo
 .pass{color:#070}section{border-top:2px solid #ccc;margin-top:2em}"""
 
 
-def check_path(path: Path) -> None:
-    """Refuse, before anything is computed, a report that could not be written."""
-    if path.suffix not in (".html", ".md"):
-        raise CaseError(f"{path}: a report ends in .html (the manual) or .md (the table alone)")
-    if not path.parent.is_dir():
-        raise CaseError(f"{path}: there is no folder {path.parent}")
+class Manual:
+    """A report that grows: the manual (.html), or its table alone (.md).
 
+    Raises:
+        CaseError: It could not be written there; found before anything is computed.
+    """
 
-def write(outcomes: Sequence[Outcome], path: Path) -> None:
-    """Write the manual (.html), or its table alone (.md)."""
-    text = _markdown(outcomes) if path.suffix == ".md" else _page(outcomes)
-    path.write_text(text)
+    def __init__(self, path: Path) -> None:
+        if path.suffix not in (".html", ".md"):
+            raise CaseError(f"{path}: a report ends in .html (the manual) or .md (the table alone)")
+        if not path.parent.is_dir():
+            raise CaseError(f"{path}: there is no folder {path.parent}")
+        self.path = path
+        self._outcomes: list[Outcome] = []
+        self._parts: list[str] = []
+
+    def add(self, outcome: Outcome) -> None:
+        """Write the report with one outcome more."""
+        self._outcomes.append(outcome)
+        if self.path.suffix == ".md":
+            self._parts.append(_rows(outcome))
+            self.path.write_text(_table_head() + "".join(self._parts))
+        else:
+            self._parts.append(_section(outcome))
+            self.path.write_text(_page(self._outcomes, self._parts))
 
 
 def _machine() -> str:
     return f"cdem {__version__} ({native_name}), {platform.system()} {platform.machine()}"
 
 
-def _markdown(outcomes: Sequence[Outcome]) -> str:
+def _table_head() -> str:
     heads = ("problem", *HEADINGS)
-    lines = [f"{_machine()}", "", "| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
-    for outcome in outcomes:
-        for check in outcome.checks:
-            lines.append("| " + " | ".join((outcome.problem.name, *check.texts())) + " |")
-        if outcome.failure:
-            lines.append(f"| {outcome.problem.name} | {outcome.failure} ||||||FAILED |")
-    return "\n".join(lines) + "\n"
+    return f"{_machine()}\n\n| " + " | ".join(heads) + " |\n" + "|---" * len(heads) + "|\n"
 
 
-def _page(outcomes: Sequence[Outcome]) -> str:
+def _rows(outcome: Outcome) -> str:
+    name = outcome.problem.name
+    rows = "".join("| " + " | ".join((name, *c.texts())) + " |\n" for c in outcome.checks)
+    if outcome.failure:
+        rows += f"| {name} | {outcome.failure} ||||||FAILED |\n"
+    return rows.replace("|T|", "T")  # a bar ends a cell
+
+
+def _section(outcome: Outcome) -> str:
     from markdown_it import MarkdownIt
 
-    markdown = MarkdownIt("commonmark").enable("table")
-    contents, sections = "", ""
+    page = MarkdownIt("commonmark").enable("table").render(outcome.problem.page)
+    failure = f'<p class="MISS">{html.escape(outcome.failure)}</p>' if outcome.failure else ""
+    shown = "".join(_exhibit(e) for e in outcome.exhibits)
+    name = outcome.problem.name
+    return (
+        f'<section id="{name}">{page}{_table(outcome)}{failure}{shown}<p>{outcome.wall_time:.1f} s; '
+        f"repeat with <code>cdem verify {name}</code></p></section>"
+    )
+
+
+def _page(outcomes: Sequence[Outcome], sections: Sequence[str]) -> str:
+    contents = ""
     for outcome in outcomes:
-        name, verdict = outcome.problem.name, "pass" if outcome.passed else "MISS"
-        title = html.escape(outcome.problem.title)
-        contents += f'<li><a href="#{name}">{title}</a> <span class="{verdict}">{verdict}</span>'
-        failure = f'<p class="MISS">{html.escape(outcome.failure)}</p>' if outcome.failure else ""
-        shown = "".join(_exhibit(e) for e in outcome.exhibits)
-        sections += (
-            f'<section id="{name}">{markdown.render(outcome.problem.page)}{_table(outcome)}'
-            f"{failure}{shown}<p>{outcome.wall_time:.1f} s; repeat with "
-            f"<code>cdem verify {name}</code></p></section>"
+        verdict = "pass" if outcome.passed else "MISS"
+        contents += (
+            f'<li><a href="#{outcome.problem.name}">{html.escape(outcome.problem.title)}</a> '
+            f'<span class="{verdict}">{verdict}</span>'
         )
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><title>cdem verification manual'
         f"</title><style>{STYLE}</style><h1>Verification manual</h1><p>{html.escape(_machine())}; "
         f"{sum(o.passed for o in outcomes)} of {len(outcomes)} problems pass.</p>"
-        f"<ol>{contents}</ol>{sections}</html>\n"
+        f"<ol>{contents}</ol>{''.join(sections)}</html>\n"
     )
 
 

@@ -91,7 +91,7 @@ def run(study):
     simulation = study.simulate(settings(fall * RADIUS), "stages.0={name: fall, mode: dynamic, "
                                 "duration: 3, damping: {contact: 0.2, stiffness: 0.2}}")  # fmt: skip
     shown = [view.snapshot(simulation)]
-    for time in (1.5, 2.2):
+    for time in (1.0, 1.5):
         simulation.run_until(time)
         shown.append(view.snapshot(simulation))
-    study.picture(f"t / R = {fall:.4f}: start, 1.5 s, 2.2 s", *shown)
+    study.picture(f"t / R = {fall:.4f}: start, 1.0 s, 1.5 s", *shown)

@@ -62,13 +62,13 @@ def run(study):
                 ours=found.value, within=0.25, absolute=True)  # fmt: skip
     simulation = study.simulate(
         settings(),
-        "stages.1={name: fall, mode: dynamic, duration: 6, damping: {contact: 0.2, stiffness: 0.2},"
+        "stages.1={name: fall, mode: dynamic, duration: 3, damping: {contact: 0.2, stiffness: 0.2},"
         " set: {interfaces.default.friction_angle: 33}}",
     )
     simulation.run_stage("load")
     shown = [view.snapshot(simulation)]
     start = simulation.time
-    for time in (4, 6):
+    for time in (1.5, 3):
         simulation.run_until(start + time)
         shown.append(view.snapshot(simulation))
-    study.picture("With 33 degrees of friction: start, 4 s, 6 s", *shown)
+    study.picture("With 33 degrees of friction: start, 1.5 s, 3 s", *shown)
