@@ -132,8 +132,9 @@ def _plot(curve: Curve) -> bytes:
 
 
 def _draw(picture: Picture) -> bytes:
+    image = view.picture(picture.surfaces, picture.field)  # says so if the extra is not installed
     from PIL import Image
 
     data = io.BytesIO()
-    Image.fromarray(view.picture(picture.surfaces, picture.field)).save(data, format="png")
+    Image.fromarray(image).save(data, format="png")
     return data.getvalue()

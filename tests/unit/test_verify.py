@@ -134,3 +134,16 @@ def test_the_list_names_all(cdem):
     status, out, _ = cdem("verify", "--list")
     assert status == 0
     assert [line.split()[0] for line in out.splitlines()] == [p.name for p in verify.problems()]
+
+
+def test_a_manual_without_the_extra_says_what_is_missing(fall, cdem, monkeypatch):
+    from cdem import view
+    from cdem.errors import CdemError
+
+    def missing(*_):
+        raise CdemError("plots need matplotlib")
+
+    monkeypatch.setattr(view, "pyplot", missing)
+    status, _, _ = cdem("verify", str(fall), "--report", "manual.html")
+    assert status == 0
+    assert "not drawn, plots need matplotlib" in (fall.parent / "manual.html").read_text()
