@@ -211,8 +211,12 @@ def _check_interfaces(case: Case, topology: Topology, names: list[str], table) -
                 f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} touch but have no "
                 f"interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
             )
-    if (table < 0).any():
-        first = np.argwhere(table < 0)[0]
+    missing = table < 0
+    for index in range(len(names)):  # a block does not touch itself
+        if (topology.block_group == index).sum() < 2:
+            missing[index, index] = False
+    if missing.any():
+        first = np.argwhere(missing)[0]
         a, b = names[first[0]], names[first[1]]
         raise CaseError(
             f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} may come to touch but "

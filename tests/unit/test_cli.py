@@ -243,3 +243,14 @@ def test_benchmark_rows_say_what_was_measured(monkeypatch):
     limits = benchmark.machine(2)
     assert limits["bandwidth, 2 threads"] > 1e8
     assert limits["multiply-adds, 1 threads"] > 1e8
+
+
+def test_only_what_can_touch_needs_an_interface(cdem, folder):
+    alone = CASE.replace("interfaces: {default: {friction_angle: 30}}\n", "")
+    (folder / "alone.yaml").write_text(alone)
+    assert cdem("check", "alone.yaml")[0] == 0
+    second = ", {group: cube, box: {size: [1, 1, 1]}, translate: [3, 0, 0]}]}"
+    (folder / "two.yaml").write_text(alone.replace("]}}]}", "]}}" + second))
+    status, _, err = cdem("check", "two.yaml")
+    assert status == 1
+    assert "may come to touch" in err
