@@ -8,6 +8,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,13 @@ class Row:
         )
 
 
+@cache
+def bandwidth(threads: int) -> float:
+    """Measured bandwidth of a triad [B/s]; once for each number of threads."""
+    native.set_threads(threads)
+    return native.measure_bandwidth(TRIAD_BYTES)
+
+
 def machine(threads: int) -> dict[str, Any]:
     """Name of the machine, and its measured bandwidth [B/s] and peak of multiply-adds [flop/s]."""
     limits: dict[str, Any] = {
@@ -74,8 +82,8 @@ def machine(threads: int) -> dict[str, Any]:
         "cores": os.cpu_count(),
     }
     for count in sorted({1, threads}):
+        limits[f"bandwidth, {count} threads"] = bandwidth(count)
         native.set_threads(count)
-        limits[f"bandwidth, {count} threads"] = native.measure_bandwidth(TRIAD_BYTES)
         limits[f"multiply-adds, {count} threads"] = native.measure_flops()
     return limits
 
@@ -126,7 +134,7 @@ def tets_shared(m: int, threads: int) -> Row:
     # a node sums about 24 corners (24 numbers of 4 bytes, 32 bytes of force each), and moves
     moved += len(sim.fields["mass"]) / tets * (24 * (4 + 32) + 2 * 64 + 3 * 32)
     row.more["B/tet moved"] = moved
-    row.more["of bandwidth"] = row.rate * moved / native.measure_bandwidth(TRIAD_BYTES)
+    row.more["of bandwidth"] = row.rate * moved / bandwidth(threads)
     row.more["start-up [s]"] = start
     if m == SIZES["1e4"]:
         row.more["wave speed error [%]"] = 100 * _wave_error(m, {})

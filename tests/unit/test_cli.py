@@ -33,22 +33,9 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.fixture
-def cdem(folder, monkeypatch, capsys):
-    """Call the program; returns exit status, stdout and stderr."""
-    monkeypatch.setattr(cli, "_write_report", lambda folder, silent: None)  # pictures take seconds
-
-    def call(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["cdem", *words])
-        try:
-            cli.main()
-            status = 0
-        except SystemExit as end:
-            status = end.code or 0
-        printed = capsys.readouterr()
-        return status, printed.out, printed.err
-
-    return call
+@pytest.fixture(autouse=True)
+def no_pictures(folder, monkeypatch):
+    monkeypatch.setattr(cli, "_write_report", lambda folder, silent: None)  # they take seconds
 
 
 def test_version_and_help(cdem):

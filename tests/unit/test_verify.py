@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 
 import pytest
 
-from cdem import cli, verify
+from cdem import verify
 from cdem.errors import CaseError
 from cdem.verify import Check, Problem
 
@@ -46,23 +45,6 @@ def fall(tmp_path, monkeypatch):
     (folder / "problem.py").write_text(PROBLEM.replace("WITHIN", "1e-9"))
     (folder / "README.md").write_text("# The falling cube\n\nIt falls with $v = g t$.\n")
     return folder
-
-
-@pytest.fixture
-def cdem(monkeypatch, capsys):
-    """Call the program; returns exit status, stdout and stderr."""
-
-    def call(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["cdem", *words])
-        try:
-            cli.main()
-            status = 0
-        except SystemExit as end:
-            status = end.code or 0
-        printed = capsys.readouterr()
-        return status, printed.out, printed.err
-
-    return call
 
 
 def test_errors_are_relative_or_absolute():
