@@ -125,11 +125,14 @@ nb::dict scalars(const Core& core) {
 void set_interfaces(Core& core, const std::vector<std::vector<Real>>& rows) {
   Model& m = core.model;
   m.interfaces.resize(rows.size());
+  m.rules.lifted = 0;
   for (Column<Real>* column : {&m.cohesion, &m.tensile_strength, &m.tan_friction})
     column->resize(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::vector<Real>& r = rows[i];
-    m.interfaces[i] = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4), r.at(5), r.at(6)};
+    m.interfaces[i] = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4),
+                       r.at(5), r.at(6), r.at(7), r.at(8)};
+    m.rules.lifted = std::max(m.rules.lifted, 2 * r.at(8));
     m.cohesion[i] = r[0], m.tensile_strength[i] = r[1], m.tan_friction[i] = r[2];
   }
 }

@@ -165,7 +165,7 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   }
   e.warp = count == 3 ? 0.0 : e.warp + 2 * e.stir;
   e.deepest = deepest_gap(s, place);
-  e.box.inflate(skin + e.deepest);
+  e.box.inflate(skin + e.deepest + m.rules.lifted);
   // the plane turns by what two vertices may move apart over the smallest height
   const Real height = (count == 3 ? 2 : 1) * m.face_area[e.face] / longest;
   e.turn = 2 * e.stir / height;
@@ -189,7 +189,7 @@ struct GapChange {
 };
 
 /// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
-bool apart(const ExposedFace& x, const ExposedFace& y) {
+bool apart(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
   Real lowest = 1e300, span = 0;
   for (Index k = 0; k < x.shape.count; ++k) {
     const Vec3<Real> arm = x.shape.x[k] - y.center;
@@ -197,14 +197,14 @@ bool apart(const ExposedFace& x, const ExposedFace& y) {
     span = std::max(span, norm(arm));
   }
   const Real turned = y.turn * (span + motion_between(x, y));
-  return lowest + GapChange(x, y, y.normal).least > turned + y.warp;
+  return lowest + GapChange(x, y, y.normal).least > turned + y.warp + rules.lifted;
 }
 
 /// May anything of the two faces touch before the next refresh?
 bool may_touch(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
   return x.block != y.block && (x.movable || y.movable) &&
-         dot(x.normal, y.normal) < -rules.opposing + x.turn + y.turn && !apart(x, y) &&
-         !apart(y, x);
+         dot(x.normal, y.normal) < -rules.opposing + x.turn + y.turn && !apart(rules, x, y) &&
+         !apart(rules, y, x);
 }
 
 /// Which vertices of x may come into contact with y before the next refresh, bit by bit: the tests
@@ -245,7 +245,9 @@ int touching_vertices(const Model& m, const State& s, const ExposedFace& x, cons
   for (Index k = 0; k < x.shape.count; ++k) {
     const Vec3<Real> v = x.shape.x[k], arm = v - y.center;
     const Real room = y.turn * (norm(arm) + motion) + y.warp, gap = dot(y.normal, arm);
-    if (gap + change.least > room || gap + change.most < -rules.depth * length - room) continue;
+    if (gap + change.least > room + rules.lifted ||
+        gap + change.most < -rules.depth * length - room)
+      continue;
     if (beside(v + rules.indentation * (x.center - v))) continue;
     const Index node = faces.vertex(x.face, k);
     if (glued(node) || never_deepest(node, v)) continue;

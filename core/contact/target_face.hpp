@@ -15,6 +15,7 @@ struct SearchRules {
   Real opposing = 0.02;       // faces touch only if n_m . n_t < -opposing
   Real cone = 0.05;           // slack of the normal-cone tests (a sine)
   Real approach_steps = 1.5;  // see entry
+  Real lifted = 0;            // [m] gap up to which contacts that have dilated are kept, at most
 };
 
 /// Faces that a vertex of an exposed face may touch before the next refresh: ragged rows.
@@ -51,7 +52,8 @@ struct SpringColumns {
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
 /// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
 /// into it, v is behind its plane within the limit, and no exterior edge that leaves v goes deeper
-/// (v is the locally deepest point). The current target is kept while it qualifies.
+/// (v is the locally deepest point). The current target is kept while it qualifies. A contact that
+/// has dilated acts above the plane, and is kept to twice the height to which it has risen.
 struct FindTargetFaces {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -76,11 +78,11 @@ struct FindTargetFaces {
       const Index t = others[c];
       const Real near = above(t), length = smaller_length(m, t);
       const Real plane = plane_gap(s.v, t);
-      if (plane > near || plane < -rules.depth * length - near) continue;
+      if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
       if (!beside(s.p, t, rules.tolerance * length)) continue;
       const Real entry = rules.entry * length + approach(s.node, t);
-      const Real gap = qualify(m, s.node, s.v, s.p, t, entry + s.hand_over);
-      if (gap <= 0 && gap > s.gap) {
+      const Real gap = qualify(m, s.node, s.v, s.p, t, s.lifted, entry + s.hand_over);
+      if (gap < none && gap > s.gap) {
         s.best = t;
         s.gap = gap;
       }
@@ -89,25 +91,27 @@ struct FindTargetFaces {
   }
 
  private:
-  static constexpr Real none = 1.0;  // a positive gap: not in contact
+  static constexpr Real none = 1e300;  // a gap that is no contact
 
   /// One vertex that seeks its target.
   struct Seeker {
     Index node, best;
     Vec3<Real> v, p;  // true vertex, indented point
     Real gap, hand_over;
-    bool kept;  // the current target still qualifies
+    Real lifted;  // highest gap of a contact  [m]
+    bool kept;    // the current target still qualifies
   };
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
     const Index slot = 4 * m + k, current = springs.target_before[slot];
-    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, false};
+    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false};
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;
     const bool loaded = springs.force_n[slot] > 0;
     const Real depth = rules.depth * smaller_length(m, current);
-    if (qualify(m, s.node, s.v, s.p, current, depth) <= 0) {
+    s.lifted = 2 * max_of(springs.gap_free[slot], 0.0);
+    if (qualify(m, s.node, s.v, s.p, current, s.lifted, depth) < none) {
       s.best = current;
       s.kept = true;
       return s;
@@ -148,15 +152,16 @@ struct FindTargetFaces {
   CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
     return gap < -depth && faces.shape(exposed_face[t]).inside_distance(p, geometry.normal(t)) > 0;
   }
-  /// Gap of the vertex to face t if it is in contact there within `limit`, else a positive number.
+  /// Gap of the vertex to face t if it is in contact there, no higher than `lifted` and no deeper
+  /// than `limit`, else `none`.
   CDEM_HD Real qualify(Index m, Index node, const Vec3<Real>& v, const Vec3<Real>& p, Index t,
-                       Real limit) const {
+                       Real lifted, Real limit) const {
     const Vec3<Real> n = geometry.normal(t);
     if (dot(geometry.normal(m), n) >= -rules.opposing) return none;
     const FaceShape f = faces.shape(exposed_face[t]);
     if (f.inside_distance(p, n) < -rules.tolerance * smaller_length(m, t)) return none;
     const Real gap = project(f, v, n).gap;
-    if (gap > 0 || gap < -limit) return none;
+    if (gap > lifted || gap < -limit) return none;
     for (Index j = 0; j < f.count; ++j)
       if (faces.node_glue[faces.vertex(exposed_face[t], j)] == faces.node_glue[node]) return none;
     return deepest(node, v, n) ? gap : none;

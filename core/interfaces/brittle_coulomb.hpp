@@ -16,6 +16,8 @@ struct Interface {
   Real tan_friction;      // tan(phi)  [-]
   Real stiffness_n_value, stiffness_n_factor;
   Real stiffness_s_value, stiffness_s_factor;
+  Real tan_dilation;   // tan(psi): opening per slip of a sliding contact  [-]
+  Real dilation_most;  // opening at which it dilates no more  [m]
 
   CDEM_HD Real stiffness_n(Real auto_stiffness) const {
     return stiffness_n_value > 0 ? stiffness_n_value : stiffness_n_factor * auto_stiffness;

@@ -227,7 +227,11 @@ def _check_interfaces(case: Case, topology: Topology, names: list[str], table) -
 def interface_row(law) -> list[float]:
     """The numbers of an interface that the core keeps."""
     tangent = float(np.tan(np.radians(law.friction_angle)))
-    return [law.cohesion, law.tensile_strength, tangent, *stiffness_row(law)]
+    dilation = float(np.tan(np.radians(law.dilation_angle)))
+    return [
+        *(law.cohesion, law.tensile_strength, tangent, *stiffness_row(law)),
+        *(dilation, dilation * law.dilation_slip),
+    ]
 
 
 def stiffness_row(law) -> list[float]:

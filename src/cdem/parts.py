@@ -151,6 +151,12 @@ class Interface(Part):
     stiffness_s: Stiffness = Field(
         AUTO_STIFFNESS, description="Shear stiffness: auto (10 E/h), a number [Pa/m], or '5 E/h'"
     )
+    dilation_angle: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
+        0.0, description="Dilation angle [deg]: a sliding joint lifts by its tangent times the slip"
+    )
+    dilation_slip: Annotated[float, Quantity("m", at_least=0)] = Field(
+        0.0, description="Slip after which a joint dilates no more [m]"
+    )
 
 
 class InterfacePair(Interface):
@@ -165,6 +171,18 @@ class InterfacePair(Interface):
         validate_default=False,
         description="Friction angle [deg]",
     )
+
+
+def _check_dilation(law: Interface, where: str) -> None:
+    """A joint that lifts more than it slips against friction would make energy."""
+    if law.dilation_angle > law.friction_angle:
+        raise ValueError(
+            f"{where}dilation_angle must not be larger than friction_angle, {law.friction_angle:g}"
+        )
+    if law.dilation_angle > 0 and not law.dilation_slip > 0:
+        raise ValueError(
+            f"{where}dilation_angle needs dilation_slip, the slip after which it dilates no more"
+        )
 
 
 class Interfaces(Part):
@@ -185,6 +203,10 @@ class Interfaces(Part):
                     f"pairs.{number}: friction_angle is missing, and so is interfaces.default"
                 )
         self.inherit()
+        if self.default is not None:
+            _check_dilation(self.default, "default: ")
+        for number, pair in enumerate(self.pairs):
+            _check_dilation(pair, f"pairs.{number}: ")
         return self
 
     def inherit(self) -> None:

@@ -188,6 +188,16 @@ def test_overrides_replace_values_and_make_mappings(write):
 
 BAD = [  # what is written, what stands there instead, the message
     (
+        "stiffness_n: auto,",
+        'stiffness_n: auto, dilation_angle: "30 deg",',
+        "default: dilation_angle must not be larger than friction_angle, 26",
+    ),
+    (
+        'name: base, cohesion: "10 kPa",',
+        "name: base, dilation_angle: 5,",
+        "pairs.0: dilation_angle needs dilation_slip",
+    ),
+    (
         "density:",
         "densty:",
         "slope.yaml:10:13: materials.granite.densty: unknown key; did you mean density?",
