@@ -137,16 +137,12 @@ class Results:
             points: dict[str, NDArray] = {
                 n: fields[n] for n in ("displacement", "velocity") if n in wanted
             }
-            damage = damage_of(sim)
-            cells: dict[str, NDArray] = {}
+            whole: dict[str, NDArray] = {"damage": damage_of(sim), "piece": pieces_of(sim)}
+            cells: dict[str, NDArray] = {n: v for n, v in whole.items() if n in wanted}
             if "stress" in wanted:
                 cells["stress"] = _stress(sim)
-            if "damage" in wanted:
-                cells["damage"] = damage
-            if "piece" in wanted:
-                cells["piece"] = pieces_of(sim)
             self._volume.append(sim.time, fields["position"], points, cells)
-            self._surface.append(sim.time, *surface_of(sim, points, damage))
+            self._surface.append(sim.time, *surface_of(sim, points, whole))
             self.frames += 1
 
     def checkpoint(self, sim: Simulation) -> None:
@@ -180,14 +176,14 @@ class Results:
 
 
 def surface_of(
-    sim: Simulation, points: dict[str, NDArray], damage: NDArray
+    sim: Simulation, points: dict[str, NDArray], elements: dict[str, NDArray]
 ) -> tuple[NDArray, NDArray, dict[str, NDArray], dict[str, NDArray]]:
     """Outer and broken faces now: positions, vertices of the faces (-1 after a triangle's), fields.
 
     Args:
         sim: The simulation.
         points: Fields on its nodes, to be carried over to the points of the surface.
-        damage: Broken part of the bonds of each element, see `damage_of`.
+        elements: Fields on its elements, to be carried over to their faces.
     """
     t = sim.build.topology
     faces, broken = visible_faces(sim)
@@ -202,7 +198,7 @@ def surface_of(
         {
             "group": t.face_group[faces],
             "block": t.face_block[faces],
-            "damage": damage[t.face_element[faces]],
+            **{name: values[t.face_element[faces]] for name, values in elements.items()},
             "broken": broken.astype(np.int8),
         },
     )
