@@ -16,6 +16,8 @@ from cdem.solids import Solids
 
 Floats = NDArray[np.float64]
 
+STILL = 1e-6
+"""Rock that moved less than this part of its size has not moved."""
 MOVING = 0.1
 """Groups that moved at least this part of what the farthest group moved are the moving ones."""
 SECTION = {"time": "s", "area": "m2", "velocity": "m/s", "discharge": "m3/s", "passed": "m3"}
@@ -65,7 +67,7 @@ class Body:
         count = np.bincount(self.group, minlength=len(names))
         way = [np.bincount(self.group, e, len(names)) / np.maximum(count, 1) for e in elements.T]
         distance = np.linalg.norm(way, axis=0)
-        if distance.max() == 0:
+        if distance.max() <= STILL * np.ptp(self.series.points(0), axis=0).max():
             raise CdemError(f"{self.series.path}: nothing has moved; name the groups to look at")
         return [n for n, d in zip(names, distance, strict=True) if d >= MOVING * distance.max()]
 
@@ -144,9 +146,10 @@ class Line:
     Args:
         line: x0, y0, x1, y1 [m].
         forward: Direction of motion in plan, shape (2,).
+        start: The elements at the start; their volumes are those that pass.
     """
 
-    def __init__(self, line: Sequence[float], forward: Floats) -> None:
+    def __init__(self, line: Sequence[float], forward: Floats, start: Solids) -> None:
         self.line = tuple(float(v) for v in line)
         if len(self.line) != 4 or not np.isfinite(self.line).all():
             raise CdemError(f"a section needs x0, y0, x1, y1, got {list(line)}")
@@ -157,6 +160,8 @@ class Line:
         self.along = (end - self.begin) / self.length
         normal = np.array([self.along[1], -self.along[0]])
         self.normal = normal if normal @ forward >= 0 else -normal
+        self.volume = start.volumes()
+        self.share = start.shares_ahead(self.begin, self.normal)
         self.passed = 0.0
         self.rows: list[list[float]] = []
 
@@ -166,14 +171,14 @@ class Line:
         """Add a frame: its time [s], elements, their velocities, and centroids before and now."""
         area = solids.cut_areas(self.begin, self.along, self.length)
         discharge = float(area @ (velocity[:, :2] @ self.normal))
-        # an element has passed when the straight way of its centroid crosses the line
+        share = solids.shares_ahead(self.begin, self.normal)
         last, here = ((c[:, :2] - self.begin) @ self.normal for c in (before, now))
-        crossing = np.flatnonzero((last >= 0) != (here >= 0))
-        t = (last / np.where(last == here, 1.0, last - here))[crossing]
-        place = before[crossing] + t[:, None] * (now - before)[crossing]
-        r = (place[:, :2] - self.begin) @ self.along
-        hit = crossing[(r >= 0) & (r <= self.length)]
-        self.passed += float(solids.volumes()[hit] @ np.where(here[hit] >= 0, 1.0, -1.0))
+        # where the straight way of the centroid since the last frame comes nearest to the line
+        t = np.clip(last / np.where(last == here, 1.0, last - here), 0.0, 1.0)[:, None]
+        r = ((before + t * (now - before))[:, :2] - self.begin) @ self.along
+        within = (r >= 0) & (r <= self.length)
+        self.passed += float((self.volume * (share - self.share))[within].sum())
+        self.share = share
         whole = float(area.sum())
         speed = discharge / whole if whole > 0 else np.nan
         self.rows.append([time, whole, speed, discharge, self.passed])

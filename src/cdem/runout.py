@@ -18,14 +18,12 @@ from numpy.typing import NDArray
 from cdem.checkpoint import write_json_atomic
 from cdem.deposit import Deposit
 from cdem.errors import CdemError
-from cdem.moving import FRAGMENT, SECTION, Body, Line, Section
+from cdem.moving import FRAGMENT, SECTION, STILL, Body, Line, Section
 from cdem.series import read_histories
 from cdem.solids import Solids
 
 Floats = NDArray[np.float64]
 
-STILL = 1e-6
-"""A centre of mass that moved less than this part of the body's size has no direction."""
 SAME = 1e-9
 """Heights and lengths that differ by less than this part of the body's size are the same."""
 HISTORY = {
@@ -259,7 +257,7 @@ def measure(
         raise CdemError(f"the direction must be an azimuth in degrees, got {direction}")
     way = np.array([np.sin(np.radians(direction)), np.cos(np.radians(direction)), 0.0])
     crown = _crown(body.series.points(0)[body.nodes], way)
-    lines = [Line(line, way[:2]) for line in sections]
+    lines = [Line(line, way[:2], body.start) for line in sections]
 
     rows, before = [], body.start.centroids()
     for frame, time in enumerate(body.series.times):

@@ -96,6 +96,20 @@ class Solids:
             knots, mass = knots[open_], mass[open_]
         return 0.5 * (low + high)
 
+    def shares_ahead(self, place: Floats, normal: Floats) -> Floats:
+        """Part of each element's volume that is ahead of an upright plane, 0 to 1.
+
+        Args:
+            place: A point of the plane in plan [m], shape (2,).
+            normal: Horizontal unit vector that points ahead, shape (2,).
+        """
+        ahead = (self.triangles[:, :, :2] - place) @ normal
+        middle = (self.middle[:, :2] - place) @ normal
+        knots = np.sort(np.column_stack([ahead, middle[self.owner]]), axis=1)
+        volume = self._tets()[1]
+        behind = np.bincount(self.owner, volume * _fraction_below(knots, 0.0), len(self.middle))
+        return 1 - behind / self.volumes()
+
     def cut_areas(self, start: Floats, along: Floats, length: float) -> Floats:
         """Area of each element's cut with an upright rectangle of unlimited height [m2].
 
