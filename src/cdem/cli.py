@@ -114,16 +114,27 @@ def check(
     case_file: CaseFile,
     settings: Settings = None,
     threads: Threads = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.png", help="Draw groups, supports, loads and interfaces."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Read everything and report on the model; changes nothing."""
+    """Read everything and report on the model; runs nothing."""
+    if picture and picture.suffix.lower() != ".png":
+        raise typer.BadParameter(f"--picture writes PNG: name a .png file, not {picture}")
     from cdem.case import Case
 
     case = Case.load(case_file, settings or [])
     from cdem.simulation import Simulation
 
-    audit = Simulation(case, threads=threads).audit
+    simulation = Simulation(case, threads=threads)
+    audit = simulation.audit
     print(json.dumps(audit.as_dict(), indent=2) if as_json else audit.text().rstrip())
+    if picture:
+        from cdem import preview, scene
+
+        scene.write_image(picture, preview.draw_model(simulation))
 
 
 @app.command()

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +55,12 @@ def can_draw() -> bool:
     return done.returncode == 0
 
 
-def _pyvista():
+def load_pyvista() -> Any:
+    """pyvista, ready to draw without a screen.
+
+    Raises:
+        CdemError: It is not installed, or there is no OpenGL to draw with.
+    """
     try:
         import pyvista
     except ImportError:
@@ -83,16 +88,16 @@ def render(folder: Path, *, field: str = "displacement", movie: bool = False) ->
     folder = Path(folder)
     series = SurfaceSeries(folder)
     last = len(series) - 1
-    scene = _Scene(_pyvista(), series, field)
+    scene = _Scene(load_pyvista(), series, field)
     paths, images = [], []
     for frame in sorted({0, last // 2, last}):
         image = scene.draw(series[frame])
         path = folder / f"{field}-{frame:04d}.png"
-        _write_image(path, image)
+        write_image(path, image)
         paths.append(path)
         images.append(image)
     overview = folder / f"{field}-overview.png"
-    _write_image(overview, np.concatenate(images, axis=1))
+    write_image(overview, np.concatenate(images, axis=1))
     paths.append(overview)
     if movie:
         paths.append(_write_movie(folder / f"{field}.gif", scene, series))
@@ -101,11 +106,12 @@ def render(folder: Path, *, field: str = "displacement", movie: bool = False) ->
 
 def picture(surfaces: Sequence[Surface], field: str = "displacement") -> NDArray[np.uint8]:
     """Surfaces of one run side by side, in the same view and colours, shape (height, width, 3)."""
-    scene = _Scene(_pyvista(), surfaces, field)
+    scene = _Scene(load_pyvista(), surfaces, field)
     return np.concatenate([scene.draw(surface) for surface in surfaces], axis=1)
 
 
-def _write_image(path: Path, image: NDArray) -> None:
+def write_image(path: Path, image: NDArray) -> None:
+    """Write a picture, shape (height, width, 3), as the file's name says."""
     from PIL import Image
 
     Image.fromarray(image).save(path)
