@@ -28,13 +28,21 @@ FRAGMENT = {
 
 
 class Body:
-    """The moving elements of a run, frame by frame."""
+    """The moving elements of a run, frame by frame.
+
+    Attributes:
+        frames: From the start, where displacements were last reset, to the end.
+        start: The elements at the start.
+        mass: Of each element [kg].
+    """
 
     def __init__(self, folder: Path, groups: Sequence[str] | None) -> None:
         self.series = FrameSeries(folder)
-        if len(self.series) < 2:
+        self.frames = range(self._first(), len(self.series))
+        if len(self.frames) < 2:
             raise CdemError(
-                f"{self.series.path}: holds one frame; run-out needs the start and a later one"
+                f"{self.series.path}: holds no frame after the start at "
+                f"{self.series.times[self.frames[0]]:.6g} s; run-out needs a later one"
             )
         names = self.series.group_names
         self.group = self.series.field("CellData", "group", 0)
@@ -54,20 +62,28 @@ class Body:
         case = Case.load(folder / "case.yaml")
         densities = [case.materials[case.groups[name].material].density for name in names]
         self.density = np.array(densities)[self.group[self.chosen]]
-        self.start = self.solids(0)
-        self.mass = self.density * self.start.volumes()
+        self.start = self.solids(self.frames[0])
+        self.mass = self.density * self.solids(0).volumes()  # the mesh is free of stress
+
+    def _first(self) -> int:
+        """Last frame without displacements: settling that a stage has reset is no run-out."""
+        if "displacement" in self.series.names["PointData"]:
+            for frame in reversed(range(len(self.series))):
+                if not self.series.field("PointData", "displacement", frame).any():
+                    return frame
+        return 0
 
     def _moving(self, names: list[str]) -> list[str]:
         """Groups that moved, on average, a tenth of what the farthest one moved, or more."""
-        last = len(self.series) - 1
-        moved = self.series.points(last) - self.series.points(0)
+        start = self.series.points(self.frames[0])
+        moved = self.series.points(self.frames[-1]) - start
         elements = np.concatenate(
             [moved[nodes].mean(axis=1) for nodes in self.series.cells.values()]
         )
         count = np.bincount(self.group, minlength=len(names))
         way = [np.bincount(self.group, e, len(names)) / np.maximum(count, 1) for e in elements.T]
         distance = np.linalg.norm(way, axis=0)
-        if distance.max() <= STILL * np.ptp(self.series.points(0), axis=0).max():
+        if distance.max() <= STILL * np.ptp(start, axis=0).max():
             raise CdemError(f"{self.series.path}: nothing has moved; name the groups to look at")
         return [n for n, d in zip(names, distance, strict=True) if d >= MOVING * distance.max()]
 

@@ -232,7 +232,8 @@ def measure(
 
     Args:
         folder: Result folder of `cdem run`.
-        groups: Moving groups; by default those that moved a tenth as far as the farthest, or more.
+        groups: Moving groups; by default those that moved a tenth as far as the farthest, or more,
+            since displacements were last reset.
         direction: Of motion, clockwise from y (north) [deg]; by default that in which the
             centre of mass moved in plan.
         cell: Side of a cell of the thickness map [m]; by default about the size of an element.
@@ -249,18 +250,18 @@ def measure(
     """
     folder = Path(folder)
     body = Body(folder, groups)
-    last = len(body.series) - 1
-    end = body.solids(last)
+    end = body.solids(body.frames[-1])
     if direction is None:
         direction = _direction(body, end)
     elif not np.isfinite(direction):
         raise CdemError(f"the direction must be an azimuth in degrees, got {direction}")
     way = np.array([np.sin(np.radians(direction)), np.cos(np.radians(direction)), 0.0])
-    crown = _crown(body.series.points(0)[body.nodes], way)
+    crown = _crown(body.series.points(body.frames[0])[body.nodes], way)
     lines = [Line(line, way[:2], body.start) for line in sections]
 
     rows, before = [], body.start.centroids()
-    for frame, time in enumerate(body.series.times):
+    for frame in body.frames:
+        time = body.series.times[frame]
         solids = body.solids(frame)
         volume, centroid = solids.volumes(), solids.centroids()
         velocity = body.velocities(frame)
@@ -286,13 +287,13 @@ def measure(
             line.follow(time, solids, velocity, before, centroid)
         before = centroid
     history = dict(zip(list(HISTORY)[: len(rows[0])], np.array(rows).T, strict=True))
-    history |= _broken(folder, body.series.times)
+    history |= _broken(folder, history["time"])
     deposit = Deposit.of(end, cell)
     return RunOut(
         groups=body.groups,
         direction=float(direction % 360),
         crown=crown,
-        front=_front(body, last, way),
+        front=_front(body, body.frames[-1], way),
         history=history,
         fragments={} if pieces is None else pieces.table(body.mass, centroid),
         sections=[line.section() for line in lines],

@@ -7,11 +7,12 @@ import json
 
 import numpy as np
 import pytest
-from scenes import case
+from scenes import case, simulate
 
 import cdem as package
 from cdem import runout
 from cdem.errors import CdemError
+from cdem.results import pieces_of
 
 TIME = 0.5
 SPEED = 4.0  # towards azimuth 30 deg
@@ -180,6 +181,36 @@ def test_pieces_of_a_bar_broken_in_a_known_place(broken):
     np.testing.assert_allclose(pieces["share_of_smaller"], [0.5, 0], atol=1e-3)
     # the default is what moved: the right half alone, one piece from the time of the break
     assert runout.measure(broken).groups == ["right"]
+
+
+@pytest.mark.parametrize(("kind", "divisions"), [("quads", [1, 1, 1]), ("overlaps", [2, 1, 1])])
+def test_blocks_hang_together_by_one_point(kind, divisions):
+    blocks = [box("a", [2, 1, 1], [0, 0, 0]), box("b", [2, 1, 1], [0, 0, 1], divisions)]
+    bond = {"friction_angle": 0, "cohesion": "1 MPa", "tensile_strength": "1 MPa"}
+    sim = simulate(blocks, {"a": {}, "b": {}}, interfaces={"default": bond})
+    bonds = sim.core.fields()[f"{kind}.bond"]
+    first = bonds[:1].copy()
+    bonds[:] = 0
+    assert len(set(pieces_of(sim))) == 2
+    bonds[:1] = first
+    assert len(set(pieces_of(sim))) == 1
+
+
+def test_settling_that_was_reset_is_no_run_out(tmp_path):
+    stages = [
+        {"name": "settle", "mode": "dynamic", "duration": 0.2},
+        {"name": "slide", "mode": "dynamic", "duration": 0.1, "reset_displacement": True},
+    ]
+    folder = run(
+        tmp_path / "r", [box("cube", [1, 1, 1], [0, 0, 0])], {"cube": {"velocity": [1, 0, 0]}},
+        stages=stages, output={"every": 0.05},
+    )  # fmt: skip
+    found = runout.measure(folder, sections=[(1.15, -9, 1.15, 9)])
+    assert found.crown[0] == pytest.approx(0.2, rel=1e-3)
+    assert found.history["time"][0] == pytest.approx(0.2, rel=1e-3)
+    assert found.centre_travel == pytest.approx(0.1, rel=2e-2)
+    # 0.05 m were beyond the line when the slide began
+    assert found.sections[0].history["passed"][-1] == pytest.approx(found.centre_travel, rel=1e-6)
 
 
 def test_a_strength_set_to_zero_joins_nothing(tmp_path):
