@@ -46,6 +46,7 @@ class Deposit:
         """
         if cell is None:
             cell = _round(float(np.cbrt(solids.volumes().mean())))
+        cell = float(cell)
         if not (np.isfinite(cell) and cell > 0):
             raise CdemError(f"the cell of the map must be above 0 m, got {cell:g}")
         _, (rows, columns) = solids.grid(cell)
