@@ -114,16 +114,27 @@ def check(
     case_file: CaseFile,
     settings: Settings = None,
     threads: Threads = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.png", help="Draw groups, supports, loads and interfaces."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Read everything and report on the model; changes nothing."""
+    """Read everything and report on the model; runs nothing."""
+    if picture and picture.suffix.lower() != ".png":
+        raise typer.BadParameter(f"--picture writes PNG: name a .png file, not {picture}")
     from cdem.case import Case
 
     case = Case.load(case_file, settings or [])
     from cdem.simulation import Simulation
 
-    audit = Simulation(case, threads=threads).audit
+    simulation = Simulation(case, threads=threads)
+    audit = simulation.audit
     print(json.dumps(audit.as_dict(), indent=2) if as_json else audit.text().rstrip())
+    if picture:
+        from cdem import preview, scene
+
+        scene.write_image(picture, preview.draw_model(simulation))
 
 
 @app.command()
@@ -438,6 +449,58 @@ def render(
     from cdem import view
 
     _print_paths(view.render(_results(folder), field=field, movie=movie))
+
+
+@app.command()
+def runout(
+    folder: ResultFolder,
+    groups: Annotated[
+        str | None, typer.Option(metavar="A,B", help="Moving groups; default those that moved.")
+    ] = None,
+    direction: Annotated[
+        str, typer.Option(metavar="AZIMUTH", help="Degrees clockwise from y, or auto.")
+    ] = "auto",
+    cell: Annotated[
+        float | None, typer.Option(help="Cell of the map [m]; default about an element's size.")
+    ] = None,
+    sections: Annotated[
+        list[str] | None,
+        typer.Option("--section", metavar="X0,Y0,X1,Y1", help="Line to look through; repeatable."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print runout.json instead.")] = False,
+) -> None:
+    """Measure front, reach, H/L, deposit, sections and pieces; write maps and tables."""
+    from cdem import runout as measuring
+
+    found = measuring.measure(
+        _results(folder),
+        groups=None if groups is None else [name.strip() for name in groups.split(",")],
+        direction=None if direction == "auto" else _numbers(direction, "--direction", 1)[0],
+        cell=cell,
+        sections=[_numbers(line, "--section", 4) for line in sections or []],
+    )
+    paths = found.write(folder)
+    try:
+        paths.append(found.draw(folder))
+    except CdemError as error:  # without the extra that draws, the numbers are whole
+        print(f"no deposit.png: {error}", file=sys.stderr)
+    if as_json:
+        print((folder / "runout.json").read_text().rstrip())
+        return
+    print(found.text())
+    _print_paths(paths)
+
+
+def _numbers(text: str, option: str, count: int) -> list[float]:
+    """Numbers between commas; wrong usage if they are not numbers, or not so many."""
+    try:
+        numbers = [float(word) for word in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count:
+        what = "a number" if count == 1 else f"{count} numbers with commas between"
+        raise typer.BadParameter(f"{option} needs {what}, got {text!r}")
+    return numbers
 
 
 @app.command()

@@ -436,7 +436,7 @@ class Time(Part):
     mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst elements")
 
 
-OutputField = Literal["displacement", "velocity", "stress", "damage"]
+OutputField = Literal["displacement", "velocity", "stress", "damage", "piece"]
 
 
 class Output(Part):
@@ -446,7 +446,7 @@ class Output(Part):
         None, description="Time between frames [s]; by default a fiftieth of each dynamic stage"
     )
     fields: list[OutputField] = Field(
-        ["displacement", "velocity", "stress", "damage"], description="Fields of a frame"
+        ["displacement", "velocity", "stress", "damage", "piece"], description="Fields of a frame"
     )
     checkpoint_every: Annotated[float, Quantity("s", above=0)] = Field(
         300.0, description="Wall time between checkpoints [s]"

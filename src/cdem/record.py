@@ -212,6 +212,11 @@ class FrameWriter(_Series):
         self._put_fields("CellData", cell_data, self._static)
         self._finish_frame(time, 0, (start, 0, 0))
 
+    def name_groups(self, names: Sequence[str]) -> None:
+        """Say what the numbers of the field "group" stand for."""
+        self.root["CellData/group"].attrs["names"] = list(names)
+        self.file.flush()
+
     def _cut_geometry(self, frames: int) -> dict[str, int]:
         points = frames * int(self.root["NumberOfPoints"][0]) if frames else 0
         self._shorten("Points", points)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.build import interfaces_of
 from cdem.errors import CdemError
 from cdem.record import (
     FrameWriter,
@@ -19,6 +20,7 @@ from cdem.record import (
     write_checkpoint,
     write_json_atomic,
 )
+from cdem.topology import components
 
 if TYPE_CHECKING:
     from cdem.simulation import Simulation
@@ -109,6 +111,7 @@ class Results:
         self._volume = FrameWriter(
             self.folder / "frames.vtkhdf", t.element_nodes, static, resume_steps=frames
         )
+        self._volume.name_groups(sim.build.group_names)
         self._surface = SurfaceWriter(self.folder / "surface.vtkhdf", resume_steps=frames)
 
     # ------------------------------------------------------------------ writing
@@ -134,14 +137,12 @@ class Results:
             points: dict[str, NDArray] = {
                 n: fields[n] for n in ("displacement", "velocity") if n in wanted
             }
-            damage = damage_of(sim)
-            cells: dict[str, NDArray] = {}
+            whole: dict[str, NDArray] = {"damage": damage_of(sim), "piece": pieces_of(sim)}
+            cells: dict[str, NDArray] = {n: v for n, v in whole.items() if n in wanted}
             if "stress" in wanted:
                 cells["stress"] = _stress(sim)
-            if "damage" in wanted:
-                cells["damage"] = damage
             self._volume.append(sim.time, fields["position"], points, cells)
-            self._surface.append(sim.time, *surface_of(sim, points, damage))
+            self._surface.append(sim.time, *surface_of(sim, points, whole))
             self.frames += 1
 
     def checkpoint(self, sim: Simulation) -> None:
@@ -175,14 +176,14 @@ class Results:
 
 
 def surface_of(
-    sim: Simulation, points: dict[str, NDArray], damage: NDArray
+    sim: Simulation, points: dict[str, NDArray], elements: dict[str, NDArray]
 ) -> tuple[NDArray, NDArray, dict[str, NDArray], dict[str, NDArray]]:
     """Outer and broken faces now: positions, vertices of the faces (-1 after a triangle's), fields.
 
     Args:
         sim: The simulation.
         points: Fields on its nodes, to be carried over to the points of the surface.
-        damage: Broken part of the bonds of each element, see `damage_of`.
+        elements: Fields on its elements, to be carried over to their faces.
     """
     t = sim.build.topology
     faces, broken = visible_faces(sim)
@@ -197,36 +198,56 @@ def surface_of(
         {
             "group": t.face_group[faces],
             "block": t.face_block[faces],
-            "damage": damage[t.face_element[faces]],
+            **{name: values[t.face_element[faces]] for name, values in elements.items()},
             "broken": broken.astype(np.int8),
         },
     )
 
 
-def damage_of(sim: Simulation) -> NDArray[np.float64]:
-    """Broken part of the bonded faces of each element, 0 to 1, shapes one after the other."""
+def bonds_of(sim: Simulation) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Bonded pairs of faces, shape (pairs, 2), and the part of each one's bond points that holds."""
     b = sim.build
     state = sim.core.fields()
-    count = sum(len(e) for e in b.topology.element_nodes.values())
-    broken, total = np.zeros(count), np.zeros(count)
+    faces, intact = [], []
     for kind, points in (("triangles", 3), ("quads", 4)):
         pairs = b.assembly.counts[f"{kind}.count"]
-        if pairs == 0:
-            continue
-        intact = state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].mean(axis=0)
-        for side in range(2):
-            element = b.topology.face_element[b.assembly.pair_faces[kind][:, side]]
-            np.add.at(broken, element, 1 - intact)
-            np.add.at(total, element, 1.0)
-    overlaps = b.assembly.counts["overlaps.count"]
-    if overlaps:
+        faces.append(b.assembly.pair_faces[kind])
+        intact.append(state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].mean(axis=0))
+    if b.assembly.counts["overlaps.count"]:
         first = b.topology.overlap_first
-        intact = np.add.reduceat(state["overlaps.bond"], first[:-1]) / np.diff(first)
-        for side in range(2):
-            element = b.topology.face_element[b.topology.overlap_faces[:, side]]
-            np.add.at(broken, element, 1 - intact)
-            np.add.at(total, element, 1.0)
+        faces.append(b.topology.overlap_faces)
+        intact.append(np.add.reduceat(state["overlaps.bond"], first[:-1]) / np.diff(first))
+    return np.concatenate(faces), np.concatenate(intact)
+
+
+def damage_of(sim: Simulation) -> NDArray[np.float64]:
+    """Broken part of the bonded faces of each element, 0 to 1, shapes one after the other."""
+    t = sim.build.topology
+    count = sum(len(e) for e in t.element_nodes.values())
+    broken, total = np.zeros(count), np.zeros(count)
+    faces, intact = bonds_of(sim)
+    for side in range(2):
+        element = t.face_element[faces[:, side]]
+        np.add.at(broken, element, 1 - intact)
+        np.add.at(total, element, 1.0)
     return broken / np.maximum(total, 1)
+
+
+def pieces_of(sim: Simulation) -> NDArray[np.int32]:
+    """Piece of each element, shapes one after the other: the least block that it hangs together with.
+
+    Blocks hang together through every pair of faces of which a bond point still holds, and whose
+    interface has a strength: one whose cohesion and tension a stage has set to zero joins nothing.
+    """
+    t = sim.build.topology
+    laws, interface = interfaces_of(sim.case, sim.build.group_names)
+    strong = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws] + [False])
+    faces, intact = bonds_of(sim)
+    groups = t.face_group[faces]
+    holds = (intact > 0) & strong[interface[groups[:, 0], groups[:, 1]]]
+    a, b = t.face_block[faces[holds]].T
+    piece = components(len(t.block_group), a, b)
+    return piece[np.concatenate(list(t.element_block.values()))].astype(np.int32)
 
 
 def _stress(sim: Simulation) -> NDArray[np.float64]:

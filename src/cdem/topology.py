@@ -169,7 +169,7 @@ def _volumes(shape: str, corners: Floats) -> tuple[Floats, Floats]:
         return np.concatenate([least, least2]), np.concatenate([total, total2])
 
 
-def _components(count: int, a: NDArray, b: NDArray) -> NDArray:
+def components(count: int, a: NDArray, b: NDArray) -> NDArray:
     """Smallest member of each item's connected component, for links a - b between items."""
     label = np.arange(count)
     while True:
@@ -210,7 +210,7 @@ def _blocks(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
     order = np.argsort(key, kind="stable")
     new = np.r_[True, key[order][1:] != key[order][:-1]] if len(order) else np.zeros(0, bool)
     first = owner[order][np.flatnonzero(new)[np.cumsum(new) - 1]] if len(order) else owner
-    label = _components(total, owner[order], first)
+    label = components(total, owner[order], first)
     for index, kind in enumerate(mode):
         if kind == "one":
             some = group == index
@@ -370,7 +370,7 @@ def _places(mesh: Mesh) -> NDArray:
         first.append(order[i])
         second.append(order[i + step])
     none = np.zeros(0, np.intp)
-    return _components(len(x), np.concatenate([none, *first]), np.concatenate([none, *second]))
+    return components(len(x), np.concatenate([none, *first]), np.concatenate([none, *second]))
 
 
 def _pairs(t: Topology, place: NDArray) -> None:

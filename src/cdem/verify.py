@@ -24,7 +24,7 @@ from cdem.simulation import Simulation
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from cdem.view import Surface
+    from cdem.series import Surface
 
 SHIPPED = Path(__file__).parent / "verification"
 

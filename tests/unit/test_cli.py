@@ -42,7 +42,19 @@ def test_version_and_help(cdem):
     assert cdem("--version") == (0, f"cdem {__version__}\n", "")
     status, out, _ = cdem("--help")
     assert status == 0
-    for verb in ("new", "check", "run", "info", "plot", "render", "export", "schema", "doctor"):
+    verbs = (
+        "new",
+        "check",
+        "run",
+        "info",
+        "plot",
+        "render",
+        "runout",
+        "export",
+        "schema",
+        "doctor",
+    )
+    for verb in verbs:
         assert f"  {verb} " in out
 
 

@@ -1,0 +1,178 @@
+"""A picture of a model before anything is run: groups, what holds and loads it, its interfaces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.scene import load_pyvista, snapshot
+
+if TYPE_CHECKING:
+    from cdem.simulation import Simulation
+
+SIZE = (1000, 850)
+MOST_INNER = 5000
+"""More pairs of faces inside one group would hide everything else: they are counted, not drawn."""
+INNER_SIZE = 0.6
+"""Faces of pairs inside a group are drawn smaller by this, so that one sees between them."""
+ROW = 28
+"""Height of a row of the legend [pixels]."""
+ARROW = 0.08
+"""Length of the arrow of the largest load over the size of the model."""
+DOTS = ("black", "#d62728", "#9467bd", "#17becf", "#8c564b", "#7f7f7f", "#2ca02c")
+"""Colours of the dots, one for each way of being held."""
+
+
+def draw_model(sim: Simulation) -> NDArray[np.uint8]:
+    """Two views side by side, shape (height, width, 3).
+
+    Left the groups, with dots where nodes are held or driven and arrows where they are loaded; right
+    the pairs of faces that touch, by pair of groups, in the body made translucent.
+
+    Raises:
+        CdemError: pyvista is not installed, or there is no OpenGL to draw with.
+    """
+    pyvista = load_pyvista()
+    panels = [_Panel(pyvista, sim) for _ in range(2)]
+    _groups(panels[0], sim)
+    _held(panels[0], sim)
+    _loads(panels[0], sim)
+    _interfaces(panels[1], sim)
+    rows = max(len(panel.legend) for panel in panels)
+    return np.concatenate(
+        [np.concatenate([_legend(panel.legend, rows), panel.image()]) for panel in panels], axis=1
+    )
+
+
+class _Panel:
+    """One view of the model, and the entries of its legend."""
+
+    def __init__(self, pyvista: Any, sim: Simulation) -> None:
+        self.pyvista = pyvista
+        self.plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
+        self.plotter.set_background("white")
+        self.legend: list[tuple[str, str]] = []
+        position = sim.build.start_position
+        self.low, self.high = position.min(axis=0), position.max(axis=0)
+        self.size = float(np.linalg.norm(self.high - self.low))
+        self.surface = snapshot(sim)
+
+    def add(self, mesh: Any, color: str, label: str | None = None, **how: Any) -> None:
+        """Draw a mesh in one colour; with a label it is in the legend."""
+        self.plotter.add_mesh(mesh, color=color, **how)
+        if label is not None:
+            self.legend.append((label, color))
+
+    def faces(self, points: NDArray, nodes: NDArray) -> Any:
+        """A mesh of faces, whose fourth node is -1 for a triangle."""
+        counts = (nodes >= 0).sum(axis=1)
+        flat = np.column_stack([counts, nodes])
+        return self.pyvista.PolyData(points, faces=flat[flat >= 0])
+
+    def image(self) -> NDArray[np.uint8]:
+        center = 0.5 * (self.low + self.high)
+        back = np.array([0.6, -0.8, 0.75])
+        self.plotter.camera_position = [center + 2 * self.size * back, center, (0, 0, 1)]
+        self.plotter.reset_camera(bounds=np.ravel([self.low, self.high], order="F"))
+        self.plotter.camera.zoom(1.1)
+        self.plotter.add_axes(color="black")
+        image = self.plotter.screenshot(return_img=True)
+        self.plotter.close()
+        return image
+
+
+def _legend(entries: list[tuple[str, str]], rows: int) -> NDArray[np.uint8]:
+    """Labels with their colours, as wide as a panel."""
+    import matplotlib
+    from PIL import Image, ImageDraw, ImageFont
+
+    font = ImageFont.truetype(f"{matplotlib.get_data_path()}/fonts/ttf/DejaVuSans.ttf", 19)
+    image = Image.new("RGB", (SIZE[0], ROW * rows + 10), "white")
+    draw = ImageDraw.Draw(image)
+    for number, (label, color) in enumerate(entries):
+        y = 10 + ROW * number
+        draw.rectangle((20, y + 3, 38, y + 21), fill=color, outline="#888888")
+        draw.text((50, y), label, fill="black", font=font)
+    return np.asarray(image)
+
+
+def _color(index: int) -> str:
+    """One of ten colours that are easy to tell apart (Tableau's), again and again."""
+    colors = ("4e79a7", "f28e2b", "59a14f", "e15759", "76b7b2", "edc948", "b07aa1", "ff9da7",
+              "9c755f", "bab0ac")  # fmt: skip
+    return "#" + colors[index % len(colors)]
+
+
+def _groups(panel: _Panel, sim: Simulation) -> None:
+    surface = panel.surface
+    mesh = panel.pyvista.PolyData(surface.points, faces=surface.faces)
+    for index, name in enumerate(sim.build.group_names):
+        some = np.flatnonzero(surface.cell_data["group"] == index)
+        if len(some):
+            part = mesh.extract_cells(some)
+            edges = {"show_edges": mesh.n_cells < 20000, "edge_color": "#444444", "line_width": 0.4}
+            panel.add(part, _color(index), f"{name}", **edges)
+
+
+def _held(panel: _Panel, sim: Simulation) -> None:
+    """Dots at the nodes of outer faces that are held or driven, one colour for each way."""
+    arrays = sim.build.assembly.arrays
+    row = arrays["support.row"]
+    component = arrays["support.component"].reshape(-1, 3)
+    driven = (arrays["support.velocity"].reshape(-1, 3) != 0).any(axis=1)
+    outer = np.unique(sim.build.topology.face_nodes)
+    nodes = outer[(outer >= 0) & (row[outer] >= 0)]
+    ways = np.column_stack([component[row[nodes]], driven[row[nodes]]])
+    for number, way in enumerate(np.unique(ways, axis=0)):
+        some = nodes[(ways == way).all(axis=1)]
+        axes = ", ".join(a for a, held in zip("xyz", way[:3], strict=True) if held)
+        what = "driven" if way[3] else "held"
+        panel.add(
+            panel.pyvista.PolyData(sim.build.start_position[some]), DOTS[number % len(DOTS)],
+            f"{what} in {axes}: {len(some):,} nodes", point_size=7, render_points_as_spheres=True,
+        )  # fmt: skip
+
+
+def _loads(panel: _Panel, sim: Simulation) -> None:
+    """Arrows of the nodal forces that come from tractions, the largest at full length."""
+    arrays = sim.build.assembly.arrays
+    first = arrays["load.first"]
+    nodes = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    if len(nodes) == 0:
+        return
+    force = arrays["load.force"].reshape(-1, 4)[:, :3]
+    arrows = force / np.linalg.norm(force, axis=1).max() * ARROW * panel.size
+    tips = sim.build.start_position[nodes]
+    cloud = panel.pyvista.PolyData(tips - arrows)
+    cloud["load"] = arrows
+    glyphs = cloud.glyph(orient="load", scale="load", factor=1.0)
+    panel.add(glyphs, "#c00000", f"traction: {len(np.unique(nodes)):,} nodes")
+
+
+def _interfaces(panel: _Panel, sim: Simulation) -> None:
+    surface = panel.surface
+    skin = panel.pyvista.PolyData(surface.points, faces=surface.faces)
+    panel.add(skin, "#bbbbbb", opacity=0.15)
+    t, names = sim.build.topology, sim.build.group_names
+    pairs = np.concatenate([t.pair_faces, t.overlap_faces])
+    groups = np.sort(t.face_group[pairs].reshape(-1, 2), axis=1)
+    for number, (a, b) in enumerate(np.unique(groups, axis=0)):
+        faces = pairs[(groups == (a, b)).all(axis=1), 0]
+        law = sim.case.interfaces.between(names[a], names[b])
+        assert law is not None  # or the model would not have been built
+        label = f"{names[a]} - {names[b]}: {len(faces):,} pair(s), {law.friction_angle:g} deg"
+        if sim.build.bonded[a, b]:
+            label += f", bonded c {law.cohesion:.3g} T {law.tensile_strength:.3g} Pa"
+        if a == b and len(faces) > MOST_INNER:
+            panel.legend.append((label + " (not drawn)", "#ffffff"))
+            continue
+        nodes = t.face_nodes[faces]
+        points = t.node_position[np.where(nodes < 0, nodes[:, :1], nodes)]
+        if a == b:
+            middle = np.where((nodes >= 0)[..., None], points, np.nan)
+            middle = np.nanmean(middle, axis=1, keepdims=True)
+            points = middle + INNER_SIZE * (points - middle)
+        own = np.where(nodes < 0, -1, np.arange(nodes.size).reshape(nodes.shape))
+        panel.add(panel.faces(points.reshape(-1, 3), own), _color(number), label)
