@@ -177,7 +177,8 @@ class Study:
                            ours=measure(*(text.format(value) for text in settings)),
                            absolute=absolute)  # fmt: skip
             errors = [abs(check.error) for check in self.checks[-len(values) :]]
-            self.curve(f"Error against {what}", f"{what} [1]", "error",
+            self.curve(f"Error against {what}", f"{what} [1]",
+                       f"error [{unit if absolute else 1}]",
                        {".cdem": (values, errors), "allowed": (values, [within] * len(values))},
                        log=True)  # fmt: skip
 
