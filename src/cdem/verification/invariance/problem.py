@@ -77,7 +77,7 @@ def scenes():
                      "groups.upper.velocity=[0, 0, -0.5]"]  # fmt: skip
     return {
         "tumbling tetrahedron": Scene("tumble.yaml", step=5e-3),
-        "beam that breaks": Scene("beam.yaml", step=2e-3, bonds=True),
+        "beam that cracks": Scene("beam.yaml", step=2e-3, bonds=True),
         "swinging square": Scene("../swing/case.yaml", ["stages.0.duration=1"], step=2e-4),
         "slide over 160 hexahedra": Scene("../sliding/case.yaml", slope, step=2e-4, quick=False),
         "slide on edges": Scene("../crossed/case.yaml", only(0.005), frame=2e-8, noise=2e-6),
