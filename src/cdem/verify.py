@@ -10,12 +10,14 @@ import difflib
 import importlib.util
 import math
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from cdem.case import Case
 from cdem.errors import CaseError, CdemError
@@ -27,6 +29,16 @@ if TYPE_CHECKING:
     from cdem.series import Surface
 
 SHIPPED = Path(__file__).parent / "verification"
+
+INFLUENCES = {
+    "indentation": (["contact.indentation={}"], (0.002, 0.01, 0.05)),
+    "k h / E": (
+        ["interfaces.default.stiffness_n={} E/h", "interfaces.default.stiffness_s={} E/h"],
+        (1, 10, 100),
+    ),
+    "share of the stable step": (["time.safety={}"], (0.2, 0.4, 0.8)),
+}
+"""What ought not to matter to a strength: the settings that change it, and values to try."""
 
 
 @dataclass
@@ -138,6 +150,37 @@ class Study:
         self.checks.append(
             Check(quantity, float(theory), float(ours), within, absolute, unit, paper)
         )
+
+    def influences(
+        self,
+        quantity: str,
+        measure: Callable[..., float],
+        *,
+        theory: float,
+        within: float,
+        absolute: bool = False,
+        unit: str = "",
+    ) -> None:
+        """Check that indentation, contact stiffness and time step hardly matter; show the errors.
+
+        Args:
+            quantity: What is measured.
+            measure: Gives it for settings of the case, as `simulate` takes them.
+            theory: What it should be, whatever the settings.
+            within: Largest error that passes; see `Check`, as for the others.
+            absolute: Whether errors are differences.
+            unit: Of theory and measure.
+        """
+        for what, (settings, values) in INFLUENCES.items():
+            for value in values:
+                self.check(f"{quantity}, {what} {value:g}", theory=theory, within=within, unit=unit,
+                           ours=measure(*(text.format(value) for text in settings)),
+                           absolute=absolute)  # fmt: skip
+            errors = [abs(check.error) for check in self.checks[-len(values) :]]
+            self.curve(f"Error against {what}", f"{what} [1]",
+                       f"error [{unit if absolute else 1}]",
+                       {".cdem": (values, errors), "allowed": (values, [within] * len(values))},
+                       log=True)  # fmt: skip
 
     def curve(
         self,
@@ -286,6 +329,26 @@ def problems(names: Iterable[str] = ()) -> list[Problem]:
             hint = f"; did you mean {close[0]}?" if close else ""
             raise CaseError(f"no problem or folder {name!r}{hint} There are: {', '.join(shipped)}")
     return found
+
+
+def break_factor(simulation: Simulation, every: int = 1) -> float:
+    """Step until the first bond breaks; the factor on the first traction's history then.
+
+    Args:
+        simulation: Of a case whose first traction grows with a history.
+        every: Steps between looks.
+
+    Returns:
+        The factor, or infinity if the history ends with all bonds intact.
+    """
+    history = simulation.case.loads.tractions[0].history
+    assert history is not None
+    times, factors = zip(*history, strict=True)
+    while sum(simulation.broken.values()) == 0:
+        if simulation.time > times[-1]:
+            return math.inf
+        simulation.step(every)
+    return float(np.interp(simulation.time, times, factors))
 
 
 def _place(error: Exception, folder: Path) -> str:

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from cdem.verify import break_factor
+
 SIDE, COUPLE = 1.0, 1e4  # [m]; moment at the end of the history [N m]
 
 
@@ -21,13 +23,9 @@ def bend(simulation):
     start, nodes = simulation.build.start_position, simulation.build.nodes_of("block")
     low = nodes[start[nodes, 2] < 1e-6]
     right, left = low[start[low, 0] > SIDE - 1e-6], low[start[low, 0] < 1e-6]
-    stiffness = 0.0
-    while sum(simulation.broken.values()) == 0 and simulation.time < 40:
-        simulation.step(5)
-        moment = COUPLE * simulation.time / 40
-        up = simulation.fields["displacement"][:, 2]
-        stiffness = moment / ((up[left].mean() - up[right].mean()) / SIDE)
-    return stiffness, moment
+    moment = COUPLE * break_factor(simulation, every=5)
+    up = simulation.fields["displacement"][:, 2]
+    return moment / ((up[left].mean() - up[right].mean()) / SIDE), moment
 
 
 def run(study):

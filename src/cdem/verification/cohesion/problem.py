@@ -2,28 +2,40 @@
 
 import numpy as np
 
+from cdem.verify import break_factor
 
-def theory(cohesion, friction_angle, height, side=1.0):
-    """Traction at failure [Pa]; its moment P h pulls the rear bonds by 3 P h / side on average.
+MESHES = {"1:1": (1, 1), "1:2": (1, 2), "2:3": (2, 3)}  # faces along each side, below and above
 
-    c = P + 3 (P h / side) tan(phi): Mohr-Coulomb of a rear bond, in tension.
+
+def theory(cohesion, slope=0.0, friction_angle=0.0):
+    """Traction at failure [Pa]; `slope` is height over side where it pushes the top alone, else 0.
+
+    The moment P h of a push on the top pulls the rear row of bonds (half the area, b from the front
+    row) by 2 P h / b: c = P + 2 (P h / b) tan(phi), Mohr-Coulomb in tension.
     """
-    return cohesion / (1 + 3 * height / side * np.tan(np.radians(friction_angle)))
-
-
-def push(simulation):
-    """Traction at which the first bond breaks [Pa]."""
-    traction = simulation.case.loads.tractions[0]
-    while sum(simulation.broken.values()) == 0:
-        simulation.step(5)
-        if simulation.time > traction.history[-1][0]:
-            return np.inf
-    return traction.traction[0] * np.interp(simulation.time, *np.transpose(traction.history))
+    return cohesion / (1 + 2 * slope * np.tan(np.radians(friction_angle)))
 
 
 def run(study):
-    """A block thin enough that the moment of the traction adds 0.15 %."""
-    simulation = study.simulate()
-    law, height = simulation.case.interfaces.default, simulation.case.model.blocks[1].box.size[2]
-    study.check("traction at failure", unit="Pa", paper=29600, within=1e-3, ours=push(simulation),
-                theory=theory(law.cohesion, law.friction_angle, height))  # fmt: skip
+    """A cube in pure shear, and plates that are pushed along their top; all influences when full."""
+
+    def shear(*settings, file="case.yaml"):
+        """Traction at which the first bond breaks [Pa]."""
+        simulation = study.simulate(*settings, file=file)
+        return simulation.case.loads.tractions[0].traction[0] * break_factor(simulation)
+
+    law = study.case().interfaces.default
+    for name, cells in MESHES.items():
+        divisions = [f"model.blocks.{i}.box.divisions=[{n}, {n}, 1]" for i, n in enumerate(cells)]
+        for points in ("vertex", "quadrature") if study.full else ("vertex",):
+            study.check(f"traction at failure, meshes {name}, bonds at {points}", unit="Pa",
+                        theory=theory(law.cohesion), paper=29600 if name == "1:1" else None,
+                        within=5e-5, ours=shear(*divisions, f"contact.bond_points={points}"))  # fmt: skip
+    for height in (0.001, 0.01, 0.05) if study.full else (0.001,):
+        ours = shear(f"model.blocks.1.box.size=[1, 1, {height}]", file="plate.yaml")
+        study.check(f"push on the top at failure, plate of {1e3 * height:g} mm", unit="Pa",
+                    theory=theory(law.cohesion, height, law.friction_angle), ours=ours,
+                    within=2e-4 if height < 0.005 else 1e-3)  # fmt: skip
+    if study.full:
+        study.influences("traction at failure", shear, theory=theory(law.cohesion), within=5e-5,
+                         unit="Pa")  # fmt: skip
