@@ -98,8 +98,7 @@ def build(case: Case) -> Build:
     names = merged.group_names
     _check_groups(case, names)
     laws, interface_of = interfaces_of(case, names)
-    bonded = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws] + [False])
-    bonds = bonded[interface_of]
+    bonds = bonded_pairs(laws, interface_of)
     with case.blame("model"):
         topology = build_topology(
             merged, case.model.split, lambda a, b: bool(bonds[names.index(a), names.index(b)])
@@ -222,6 +221,12 @@ def _check_interfaces(case: Case, topology: Topology, names: list[str], table) -
             f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} may come to touch but "
             f"have no interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
         )
+
+
+def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Which pairs of groups have strength, shape (groups, groups); those without a law have none."""
+    strong = [law.cohesion > 0 or law.tensile_strength > 0 for law in laws]
+    return np.array([*strong, False])[table]
 
 
 def interface_row(law) -> list[float]:

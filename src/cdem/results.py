@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.build import interfaces_of
+from cdem.build import bonded_pairs, interfaces_of
 from cdem.errors import CdemError
 from cdem.record import (
     FrameWriter,
@@ -140,7 +140,7 @@ class Results:
             whole: dict[str, NDArray] = {"damage": damage_of(sim), "piece": pieces_of(sim)}
             cells: dict[str, NDArray] = {n: v for n, v in whole.items() if n in wanted}
             if "stress" in wanted:
-                cells["stress"] = _stress(sim)
+                cells["stress"] = stress_of(sim)
             self._volume.append(sim.time, fields["position"], points, cells)
             self._surface.append(sim.time, *surface_of(sim, points, whole))
             self.frames += 1
@@ -241,16 +241,15 @@ def pieces_of(sim: Simulation) -> NDArray[np.int32]:
     """
     t = sim.build.topology
     laws, interface = interfaces_of(sim.case, sim.build.group_names)
-    strong = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws] + [False])
     faces, intact = bonds_of(sim)
     groups = t.face_group[faces]
-    holds = (intact > 0) & strong[interface[groups[:, 0], groups[:, 1]]]
+    holds = (intact > 0) & bonded_pairs(laws, interface)[groups[:, 0], groups[:, 1]]
     a, b = t.face_block[faces[holds]].T
     piece = components(len(t.block_group), a, b)
     return piece[np.concatenate(list(t.element_block.values()))].astype(np.int32)
 
 
-def _stress(sim: Simulation) -> NDArray[np.float64]:
+def stress_of(sim: Simulation) -> NDArray[np.float64]:
     """Mean stress of each element [Pa], xx yy zz xy yz zx, shapes one after the other."""
     tables = sim.core.stress()
     counts = sim.build.assembly.counts

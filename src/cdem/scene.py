@@ -184,7 +184,8 @@ class _Scene:
         pyvista = self.pyvista
         mesh = pyvista.PolyData(surface.points, faces=surface.faces)
         values = self._values(surface)
-        name = f"{self.field} [{UNITS[self.field]}]" if UNITS[self.field] else self.field
+        unit = UNITS.get(self.field)  # a field of a study may be any, and names its own unit
+        name = f"{self.field} [{unit}]" if unit else self.field
         on_points = len(values) == len(surface.points) and self.field in surface.point_data
         (mesh.point_data if on_points else mesh.cell_data)[name] = values
         plotter = pyvista.Plotter(off_screen=True, window_size=(1100, 800))

@@ -104,7 +104,7 @@ def update_core(sim: Simulation, index: int) -> None:
     names = b.group_names
     laws, table = building.interfaces_of(sim.case, names)
     was = b.bonded
-    now = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws])[table]
+    now = building.bonded_pairs(laws, table)
     if (now & ~was).any():
         i, j = np.argwhere(now & ~was)[0]
         raise CaseError(

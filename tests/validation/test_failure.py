@@ -138,6 +138,20 @@ def test_unloaded_interface_keeps_its_other_strength():
     assert sum(sim.broken.values()) == 0
 
 
+def test_a_stage_changes_the_strength_of_the_only_interface():
+    """The base is one block and touches no other base: that pair of groups needs no law."""
+    law = {"between": ["base", "block"], "friction_angle": 26, "cohesion": "30 kPa"}
+    stage = {"name": "weaker", "mode": "dynamic", "duration": 1e-3}
+    sim = simulate(
+        CUBES,
+        {"base": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={"pairs": [law]},
+        stages=[stage | {"set": {"interfaces.pairs.0.cohesion": "10 kPa"}}],
+    )
+    assert sim.run() == "finished"
+    assert sum(sim.broken.values()) == 0
+
+
 @pytest.mark.parametrize("low, high", [((1, 1, 1), (2, 2, 1)), ((2, 2, 1), (3, 3, 1))])
 def test_non_conforming_interface(low, high):
     """Over a 1:2 and a 2:3 interface the stress is uniform and the jump is traction / k_n.
