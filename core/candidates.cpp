@@ -19,8 +19,6 @@ namespace cdem {
 
 namespace {
 
-using Pairs = std::vector<std::pair<Index, Index>>;
-
 /// Velocity that the lists foresee for a node.
 Vec3<Real> foreseen(const State& s, Index node) {
   const Real* v = s.nodes.built_motion.data() + std::size_t(node) * 8 + 4;
@@ -58,10 +56,13 @@ void add_rigid_motion(const ElementSet& e, Index corners, InMotion nodes,
 /// (which leaves the elements' vibrations out), and how far they may stray from there: as far as
 /// they would with the change of velocity that they had since the last refresh.
 void foresee_motion(const Model& m, State& s) {
-  constexpr Index steps = 200;
+  constexpr Index fewest = 20, steps = 200;
   constexpr Real least = 0.001, most = 0.1;  // skin in parts of the smallest L of the node's faces
   constexpr Real period = 10;                // of vibrations, in steps
-  s.search.horizon = s.dt * (m.refresh_interval > 0 ? m.refresh_interval : steps);
+  // rubble that collides strays long before a far horizon, and would list ever more for nothing
+  const std::int64_t lasted = s.built_step < 0 ? steps : s.step - s.built_step;
+  const Index ahead = std::clamp<std::int64_t>(2 * lasted, fewest, steps);
+  s.search.horizon = s.dt * (m.refresh_interval > 0 ? m.refresh_interval : ahead);
   s.search.built_time = s.time;
   std::vector<Vec3<Real>> sum(m.node_count, Vec3<Real>{0, 0, 0});
   std::vector<Real> weight(m.node_count);
@@ -104,20 +105,6 @@ Real deepest_gap(const State& s, Index place) {
     deepest = std::max(deepest, s.edges.sunk[c] - s.edges.gap_free[c]);
   }
   return 2 * deepest;
-}
-
-/// Faces of the same live pair, as sorted keys: bonds look after them.
-Pairs live_overlaps(const Model& m, const State& s) {
-  Pairs mates;
-  for (Index i = 0; i < m.overlaps.count; ++i) {
-    if (!(s.overlaps.live[i] > 0)) continue;
-    const Index a = s.search.face_exposed[m.overlaps.faces[2 * i]];
-    const Index b = s.search.face_exposed[m.overlaps.faces[2 * i + 1]];
-    mates.push_back({a, b});
-    mates.push_back({b, a});
-  }
-  std::sort(mates.begin(), mates.end());
-  return mates;
 }
 
 /// An exposed face as the lists see it: where it is, and how it may move before they are old.
@@ -207,9 +194,12 @@ bool may_touch(const SearchRules& rules, const ExposedFace& x, const ExposedFace
          !apart(rules, y, x);
 }
 
-/// Which vertices of x may come into contact with y before the next refresh, bit by bit: the tests
-/// of FindTargetFaces::qualify with room for the motion.
-int touching_vertices(const Model& m, const State& s, const ExposedFace& x, const ExposedFace& y) {
+/// Which vertices of x may come into contact with exposed face y before the next refresh, bit by
+/// bit: the tests of FindTargetFaces::qualify with room for the motion. A vertex that a bond holds
+/// to y has no contact there through its other faces too.
+int touching_vertices(const Model& m, const State& s, const Bonded& bonded,
+                      const std::vector<ExposedFace>& exposed, Index place_x, Index place_y) {
+  const ExposedFace &x = exposed[place_x], &y = exposed[place_y];
   const SearchRules& rules = m.rules;
   const Real motion = motion_between(x, y), length = std::min(x.length, y.length);
   const GapChange change(x, y, y.normal);
@@ -250,7 +240,8 @@ int touching_vertices(const Model& m, const State& s, const ExposedFace& x, cons
       continue;
     if (beside(v + rules.indentation * (x.center - v))) continue;
     const Index node = faces.vertex(x.face, k);
-    if (glued(node) || never_deepest(node, v)) continue;
+    if (glued(node) || Bonded::among(bonded.vertices, node, place_y) || never_deepest(node, v))
+      continue;
     mask |= 1 << k;
   }
   return mask;
@@ -310,13 +301,9 @@ std::vector<ExposedSide> exposed_sides(const State& s, const std::vector<Exposed
 
 /// Can the two sides never be each other's edges until the next refresh? The tests of
 /// FindTargetEdges with room for the motion. `apart` leads from q to p.
-bool never_cross(const SearchRules& rules, const std::vector<ExposedFace>& exposed,
-                 const ExposedFace& x, const ExposedSide& p, const ExposedFace& y,
-                 const ExposedSide& q, const Vec3<Real>& apart) {
-  const Real turns = p.turn_face + q.turn_face, opposed = dot(x.normal, y.normal);
-  if (q.across >= 0 &&
-      dot(x.normal, exposed[q.across].normal) < opposed - 2 * turns - q.turn_across)
-    return true;  // the face across is the right face of that edge
+bool never_cross(const SearchRules& rules, const ExposedFace& x, const ExposedSide& p,
+                 const ExposedFace& y, const ExposedSide& q, const Vec3<Real>& apart) {
+  const Real turns = p.turn_face + q.turn_face;
   const Vec3<Real> c = cross(p.along, q.along);
   const Real sine = norm(c) / (p.length * q.length) - p.turn - q.turn;
   if (!(sine > 0)) return false;
@@ -375,18 +362,28 @@ void list_crossings(const Model& m, const State& s, const std::vector<ExposedFac
   const Real room = 1.05 * motion_between(face_x, face_y) + face_x.deepest + face_y.deepest +
                     m.rules.entry * std::min(face_x.length, face_y.length) +
                     2 * m.rules.indentation * m.face_reach[face_x.face];
+  bool right[4];  // is y the right face of its side j, or may it become so?
+  for (Index j = 0; j < face_y.shape.count; ++j) {
+    const ExposedSide& q = sides[4 * std::size_t(y) + j];
+    const Real turns = 2 * (face_x.turn + face_y.turn) + q.turn_across;
+    right[j] = q.sharp && !(q.across >= 0 && dot(face_x.normal, exposed[q.across].normal) <
+                                                 dot(face_x.normal, face_y.normal) - turns);
+  }
   for (Index k = 0; k < face_x.shape.count; ++k) {
     const ExposedSide& p = sides[4 * std::size_t(x) + k];
     if (!p.sharp) continue;
     for (Index j = 0; j < face_y.shape.count; ++j) {
       const ExposedSide& q = sides[4 * std::size_t(y) + j];
-      if (!q.sharp) continue;
+      if (!right[j]) continue;
+      const Vec3<Real> normal = cross(p.along, q.along);
+      const Real off = dot(normal, p.start - q.start);
+      if (off * off > room * room * dot(normal, normal)) continue;  // so far are even the lines
       const Vec3<Real> apart = between_segments(p.start, p.along, q.start, q.along);
       SidePair pair;
       if (dot(apart, apart) > room * room ||
           !pair_sides(face_columns(m, s), face_x.face, k, face_y.face, j, pair) ||
           stay_together(m, s, face_x, face_y, pair) ||
-          never_cross(m.rules, exposed, face_x, p, face_y, q, apart))
+          never_cross(m.rules, face_x, p, face_y, q, apart))
         continue;
       row.crossings.push_back({y, pair.code()});
     }
@@ -399,7 +396,7 @@ std::vector<Row> find_rows(const Model& m, const State& s) {
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) exposed[x] = exposed_face(m, s, x);
   const std::vector<ExposedSide> sides = exposed_sides(s, exposed);
-  const Pairs mates = live_overlaps(m, s);
+  const Bonded bonded = live_overlaps(m, s);
   std::vector<Box> boxes(count);
   for (Index x = 0; x < count; ++x) boxes[x] = exposed[x].box;
   const BoxTree tree(boxes);
@@ -408,13 +405,12 @@ std::vector<Row> find_rows(const Model& m, const State& s) {
   for (Index x = 0; x < count; ++x) {
     std::vector<Index> near;
     tree.query(boxes[x], [&](Index y) {
-      if (may_touch(m.rules, exposed[x], exposed[y]) &&
-          !std::binary_search(mates.begin(), mates.end(), std::pair(x, y)))
+      if (may_touch(m.rules, exposed[x], exposed[y]) && !Bonded::among(bonded.faces, x, y))
         near.push_back(y);
     });
     std::sort(near.begin(), near.end());
     for (const Index y : near) {
-      const int vertices = touching_vertices(m, s, exposed[x], exposed[y]);
+      const int vertices = touching_vertices(m, s, bonded, exposed, x, y);
       if (vertices) rows[x].touches.push_back({y, vertices});
       if (m.semi_edges) list_crossings(m, s, exposed, sides, x, y, rows[x]);
     }
@@ -466,6 +462,22 @@ bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, I
     if (faces.node_place[a] == faces.node_place[b]) pair.shared |= 1 << i;
   }
   return true;
+}
+
+Bonded live_overlaps(const Model& m, const State& s) {
+  Bonded bonded;
+  for (Index i = 0; i < m.overlaps.count; ++i) {
+    if (!(s.overlaps.live[i] > 0)) continue;
+    for (Index side = 0; side < 2; ++side) {
+      const Index face = m.overlaps.faces[2 * i + side];
+      const Index mate = s.search.face_exposed[m.overlaps.faces[2 * i + 1 - side]];
+      bonded.faces.push_back({s.search.face_exposed[face], mate});
+      for (Index k = 0; k < 4; ++k) bonded.vertices.push_back({m.face_nodes[4 * face + k], mate});
+    }
+  }
+  std::sort(bonded.faces.begin(), bonded.faces.end());
+  std::sort(bonded.vertices.begin(), bonded.vertices.end());
+  return bonded;
 }
 
 void list_candidates(const Model& m, State& s) {

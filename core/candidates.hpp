@@ -1,11 +1,27 @@
 // candidates.hpp - which faces and edges may touch before the lists are renewed. Host code.
 #pragma once
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "core/contact/target_edge.hpp"
 #include "core/model.hpp"
 #include "core/state.hpp"
 
 namespace cdem {
+
+/// What live bonds of overlaps look after, as sorted keys.
+struct Bonded {
+  using Pairs = std::vector<std::pair<Index, Index>>;
+  Pairs faces;     // exposed face and the one it is bonded to
+  Pairs vertices;  // node of a bonded face and exposed face that it is bonded to
+
+  static bool among(const Pairs& pairs, Index a, Index b) {
+    return std::binary_search(pairs.begin(), pairs.end(), std::pair(a, b));
+  }
+};
+Bonded live_overlaps(const Model& m, const State& s);
 
 /// Face -> faces that it may touch; pair of faces -> pairs of their sides that may cross.
 void list_candidates(const Model& model, State& state);

@@ -1,6 +1,7 @@
 // refresh.cpp - now and then: release broken pairs, expose faces, have the lists renewed.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -151,20 +152,22 @@ void sum_stiffness(const Model& m, State& s) {
   for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
     const Index face = s.search.exposed_face[x];
     Real stiffest = 0;
-    const auto meet = [&](Index y) {
+    // the law is that of mother and target, in this order: joints may differ from their groups
+    const auto meet = [&](Index y, bool is_target) {
       const Index other = s.search.exposed_face[y];
-      const Interface& law = laws.between(m.face_group[face], m.face_group[other]);
+      const Interface& law = is_target ? laws.between(m.face_group[face], m.face_group[other])
+                                       : laws.between(m.face_group[other], m.face_group[face]);
       const Real stiffer = std::max(m.face_stiffness[face], m.face_stiffness[other]);
       stiffest =
           std::max(stiffest, faces.contact_area(face, other) *
                                  std::max(law.stiffness_n(stiffer), law.stiffness_s(stiffer)));
     };
     for (Index c = s.search.candidate_first[4 * x]; c < s.search.candidate_first[4 * x + 4]; ++c)
-      meet(s.search.candidate[c]);
+      meet(s.search.candidate[c], true);
     for (Index c = s.search.edge_candidate_first[x]; c < s.search.edge_candidate_first[x + 1]; ++c)
-      meet(s.search.edge_candidate[c]);
+      meet(s.search.edge_candidate[c], true);
     for (Index c = s.search.source_first[x]; c < s.search.source_first[x + 1]; ++c)
-      meet(s.search.source[c]);
+      meet(s.search.source[c], false);
     // semi-springs of either side, and as much again for semi-edges
     for (Index v = 0; v < faces.vertex_count(face); ++v)
       s.node_potential[faces.vertex(face, v)] += 2 * stiffest;
@@ -294,6 +297,7 @@ Index count_missed_contacts(const Model& m, State& s) {
                               m.rules,
                               edge_columns(s)};
   const Index count = Index(s.search.exposed_face.size());
+  const Bonded bonded = live_overlaps(m, s);
   const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };
   const auto movable = [&](Index x) { return m.face_movable[s.search.exposed_face[x]] != 0; };
   // spheres around two faces, with room for any depth of contact: what is farther off cannot touch
@@ -308,15 +312,21 @@ Index count_missed_contacts(const Model& m, State& s) {
 #pragma omp parallel for schedule(dynamic, 8) reduction(+ : missed)
   for (Index x = 0; x < count; ++x) {
     const Index* listed = s.search.candidate.data();
-    std::vector<Index> all;
+    std::vector<Index> all, open;
     for (Index t = 0; t < count; ++t)
-      if (block(t) != block(x) && (movable(t) || movable(x)) && near(x, t)) all.push_back(t);
+      if (block(t) != block(x) && (movable(t) || movable(x)) && near(x, t) &&
+          !Bonded::among(bonded.faces, x, t))
+        all.push_back(t);
     Flag ignored = 0;
     for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k) {
       const Index first = s.search.candidate_first[4 * x + k];
       const Index count_listed = s.search.candidate_first[4 * x + k + 1] - first;
+      const Index node = springs.faces.vertex(s.search.exposed_face[x], k);
+      open.clear();
+      std::copy_if(all.begin(), all.end(), std::back_inserter(open),
+                   [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
       missed += springs.choose(x, k, listed + first, count_listed, &ignored) !=
-                springs.choose(x, k, all.data(), Index(all.size()), &ignored);
+                springs.choose(x, k, open.data(), Index(open.size()), &ignored);
     }
     if (!m.semi_edges) continue;
     const EdgeCandidates& c = edges.candidates;

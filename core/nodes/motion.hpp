@@ -82,9 +82,7 @@ struct SumNodeForces {
       stiffness += r[3];
     }
     const Vec3<Real> v = nodes.velocity(i);
-    const Real viscous = damping.mass * mass[i];
-    const Vec3<Real> d{drag(f.x, v.x) - viscous * v.x, drag(f.y, v.y) - viscous * v.y,
-                       drag(f.z, v.z) - viscous * v.z};
+    const Vec3<Real> d{drag(i, 0, f.x, v.x), drag(i, 1, f.y, v.y), drag(i, 2, f.z, v.z)};
     unbalance[i] = free(i, 0, f.x) + free(i, 1, f.y) + free(i, 2, f.z);
     Real* r = force + std::size_t(i) * 4;
     r[0] = f.x + d.x, r[1] = f.y + d.y, r[2] = f.z + d.z, r[3] = stiffness;
@@ -93,9 +91,12 @@ struct SumNodeForces {
   }
 
  private:
-  CDEM_HD Real drag(Real f, Real v) const {
+  /// Damping of one component. Where a support prescribes the motion there is nothing to damp: it
+  /// would only add to the support's force.
+  CDEM_HD Real drag(Index node, Index axis, Real f, Real v) const {
+    if (supports.given(node, axis)) return 0.0;
     const Real size = damping.local * abs_of(f);
-    return v > 0 ? -size : (v < 0 ? size : 0.0);
+    return (v > 0 ? -size : (v < 0 ? size : 0.0)) - damping.mass * mass[node] * v;
   }
   CDEM_HD Real free(Index node, Index axis, Real f) const {
     return supports.given(node, axis) ? 0.0 : abs_of(f);

@@ -229,3 +229,29 @@ def test_bending_strength_of_vertex_bonds(divisions):
         assert sim.time < 40.0
     moment = 1e4 * sim.time / 40.0  # force 1 m2 x traction on either side, 1 m apart
     assert moment == pytest.approx((1 + 2 / n**2) * strength / 6, rel=0.01)
+
+
+def test_a_bond_stands_alone_under_an_overhanging_side():
+    """Its vertices touch the larger bed in no second way: the bond carries all the weight."""
+    fall = np.tan(np.radians(35))
+
+    def slice_(x0, x1, y0, y1, low, high):
+        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        return {"vertices": [[x, y, z - fall * x] for z in (low, high) for x, y in corners]}
+
+    sim = simulate(
+        [
+            {"group": "bed", "polyhedron": slice_(-2, 10, -1, 5, -5, 0)},
+            {"group": "slice", "polyhedron": slice_(0, 8, 0, 4, 0, 5)},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "slice": {}},
+        interfaces={
+            "default": {"friction_angle": 25, "cohesion": "10 MPa", "tensile_strength": "10 MPa"}
+        },
+        loads={"gravity": [0, 0, -9.81]},
+        contact={"check": True},
+        stages=[{"name": "rest", "mode": "static", "relax": "adaptive", "tolerance": 1e-4}],
+    )
+    sim.run()
+    assert sum(sim.broken.values()) == 0
+    assert len(sim.contacts["kind"]) == 0

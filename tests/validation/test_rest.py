@@ -106,3 +106,27 @@ def test_what_cannot_rest_is_said(gap):
         assert not warned
         assert status == "converged"
         assert not any(notes)
+
+
+@pytest.mark.parametrize("damping", [{"local": 0.8}, {"mass": 200.0}])
+def test_damping_leaves_the_force_of_a_driven_end_alone(damping):
+    """A bar that is pressed by v t / 2 presses back with E A v t / 2 l at both ends."""
+    end = {"group": "slope", "normal": [0, 0, 1]}
+    sim = simulate(
+        [{"group": "slope", "box": {"size": [1, 1, 2], "divisions": [2, 2, 4]}}],
+        {"slope": {}},
+        rock={"poisson_ratio": 0.0, "young_modulus": "10 GPa"},
+        loads={
+            "supports": [{"surface": end | {"normal": [0, 0, -1]}, "fix": ["x", "y", "z"]}],
+            "velocities": [
+                {"surface": end, "components": ["z"], "velocity": [0, 0, -0.01],
+                 "history": [[0, 0], [0.02, 1]]}
+            ],
+        },
+        stages=[{"name": "press", "mode": "dynamic", "duration": 0.06, "damping": damping}],
+    )  # fmt: skip
+    sim.run()
+    height, force = sim.build.start_position[:, 2], sim.fields["reaction"][:, 2]
+    pressed = 1e10 * 0.01 * 0.05 / 2
+    assert force[height < 0.01].sum() == pytest.approx(pressed, rel=0.01)
+    assert force[height > 1.99].sum() == pytest.approx(-pressed, rel=0.01)
