@@ -137,7 +137,7 @@ class Results:
             damage = damage_of(sim)
             cells: dict[str, NDArray] = {}
             if "stress" in wanted:
-                cells["stress"] = _stress(sim)
+                cells["stress"] = stress_of(sim)
             if "damage" in wanted:
                 cells["damage"] = damage
             self._volume.append(sim.time, fields["position"], points, cells)
@@ -229,7 +229,7 @@ def damage_of(sim: Simulation) -> NDArray[np.float64]:
     return broken / np.maximum(total, 1)
 
 
-def _stress(sim: Simulation) -> NDArray[np.float64]:
+def stress_of(sim: Simulation) -> NDArray[np.float64]:
     """Mean stress of each element [Pa], xx yy zz xy yz zx, shapes one after the other."""
     tables = sim.core.stress()
     counts = sim.build.assembly.counts
