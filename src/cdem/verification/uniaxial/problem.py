@@ -141,18 +141,20 @@ def joints(study, law):
 
 def rows(study, law):
     """Regular specimens: every facet of two directions reaches its strength at once."""
-    speeds = (0.005, 0.0025) if study.full else (0.005,)
-    for angle, speed in [(60, v) for v in speeds] + [(50, 0.005), (70, 0.005)] * study.full:
+    more = [(60, 10, 0.0025), (50, 10, 0.005), (50, 40, 0.005), (70, 10, 0.005)]
+    for angle, stiffness, speed in [(60, 10, 0.005)] + more * study.full:
         points, triangles, true = regular(angle, 4)
         simulation = plane.simulate(
-            study, points, triangles, *settings(0.2, speed=speed), depth=DEPTH
+            study, points, triangles, *settings(0.2, stiffness, speed), depth=DEPTH
         )
         _, stress, kinetic = press(simulation)
-        name = f"facets at {true:.1f} deg, platen at {1000 * speed:g} mm/s"
+        name = (
+            f"facets at {true:.1f} deg, k = {stiffness} E / 0.2 m, platen at {1000 * speed:g} mm/s"
+        )
         study.check(f"strength, {name}", unit="Pa", theory=theory(law, true), ours=stress.max(),
-                    within=5e-3)  # fmt: skip
+                    within=5e-3 if stiffness == 10 else 2e-3)  # fmt: skip
         study.check(f"kinetic over strain energy at the peak, {name}", theory=0, absolute=True,
-                    ours=kinetic[stress.argmax()], within=1e-3)  # fmt: skip
+                    ours=kinetic[stress.argmax()], within=2e-4)  # fmt: skip
 
 
 def run(study):
