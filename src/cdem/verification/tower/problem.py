@@ -5,6 +5,7 @@ import numpy as np
 from cdem import view
 from cdem.critical import find_critical
 from cdem.simulation import Simulation
+from cdem.verification.masonry import tilt
 
 
 def theory(count, width=1.0):
@@ -13,13 +14,6 @@ def theory(count, width=1.0):
     The lowest joint decides: above a joint n cubes topple at atan(1 / n), and n is largest there.
     """
     return np.degrees(np.arctan2(width, count * width))
-
-
-def tilt(case, degrees, azimuth=0.0):
-    """Turn gravity instead of the model."""
-    angle, way = np.radians([degrees, azimuth])
-    along = 9.81 * np.sin(angle)
-    case.set("loads.gravity", [along * np.cos(way), along * np.sin(way), -9.81 * np.cos(angle)])
 
 
 def run(study):
