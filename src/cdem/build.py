@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem import assemble, mesh
+from cdem import assemble, joints, mesh
 from cdem._native import core as native
 from cdem.case import Case
 from cdem.errors import CaseError
@@ -39,7 +39,8 @@ class Build:
         core: The compiled core, holding model and state.
         curves: Times and factors of load and velocity histories; the first is constant.
         start_position: Positions at the start [m], shape (nodes, 3).
-        bonded: Whether the interface of two groups was bonded at the start, shape (groups, groups).
+        bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
+            at the start, shape (kinds, kinds).
     """
 
     case: Case
@@ -75,8 +76,15 @@ def read_model(case: Case) -> Mesh:
     for index, block in enumerate(model.blocks):
         with case.blame(f"model.blocks.{index}"):
             pieces.append(_block(block))
-    merged = mesh.merge(pieces)
-    return mesh.place(merged, model.rotate, model.translate)
+    if not model.joints:
+        return mesh.place(mesh.merge(pieces), model.rotate, model.translate)
+    pieces = [mesh.place(piece, model.rotate, model.translate) for piece in pieces]
+    hulls: list[list[list[int]] | None] = [None] * (model.mesh is not None)
+    for block in model.blocks:
+        body = block.polyhedron
+        hulls.append(body and mesh.outward_faces(np.array(body.vertices), body.faces))
+    with case.blame("model.joints"):
+        return joints.cut_model(list(zip(pieces, hulls, strict=True)), model)
 
 
 def _block(block) -> Mesh:
@@ -100,10 +108,9 @@ def build(case: Case) -> Build:
     laws, interface_of = interfaces_of(case, names)
     bonded = np.array([law.cohesion > 0 or law.tensile_strength > 0 for law in laws] + [False])
     bonds = bonded[interface_of]
+    sets = [joint.name for joint in case.model.joints]
     with case.blame("model"):
-        topology = build_topology(
-            merged, case.model.split, lambda a, b: bool(bonds[names.index(a), names.index(b)])
-        )
+        topology = build_topology(merged, case.model.split, sets, bonds)
     _check_interfaces(case, topology, names, interface_of)
     _snap_mates(topology)
 
@@ -186,21 +193,32 @@ def _check_groups(case: Case, names: list[str]) -> None:
 
 
 def interfaces_of(case: Case, names: list[str]):
-    """Interface laws in use, and the index of each pair of groups (-1 where none was given)."""
+    """Interface laws in use, and the index for each pair of kinds of faces (-1: none was given).
+
+    Kinds of faces are those of `Topology.face_kind`. Two faces of the same set of joints have the law
+    of that set, if it has one; all others have that of their groups.
+    """
     laws: list[Interface] = list(case.interfaces.pairs)
     table = np.full((len(names), len(names)), -1, np.int32)
     if case.interfaces.default is not None:
         laws.append(case.interfaces.default)
         table[:] = len(laws) - 1
     for index, pair in enumerate(case.interfaces.pairs):
-        for name in pair.between:
+        for name in pair.between or []:
             if name not in names:
                 raise CaseError(
                     f"{case.where(f'interfaces.pairs.{index}.between')}: interfaces.pairs.{index}."
                     f"between: no group {name!r} in the model; it has: {', '.join(names)}"
                 )
-        a, b = (names.index(name) for name in pair.between)
-        table[a, b] = table[b, a] = index
+        if pair.between is not None:
+            a, b = (names.index(name) for name in pair.between)
+            table[a, b] = table[b, a] = index
+    sets = [joint.name for joint in case.model.joints]
+    table = np.tile(table, (1 + len(sets), 1 + len(sets)))
+    for index, pair in enumerate(case.interfaces.pairs):
+        if pair.joint is not None:
+            start = len(names) * (1 + sets.index(pair.joint))
+            table[start : start + len(names), start : start + len(names)] = index
     return laws, table
 
 
@@ -211,7 +229,7 @@ def _check_interfaces(case: Case, topology: Topology, names: list[str], table) -
                 f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} touch but have no "
                 f"interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
             )
-    missing = table < 0
+    missing = table[: len(names), : len(names)] < 0
     for index in range(len(names)):  # a block does not touch itself
         if (topology.block_group == index).sum() < 2:
             missing[index, index] = False

@@ -98,7 +98,7 @@ def read_mesh(path: str | Path) -> Mesh:
             f"{path}: holds no volume elements; export the volume mesh, not its surface"
         )
     mesh.notes += _several_groups(raw, path)
-    return _drop_unused(mesh)
+    return drop_unused(mesh)
 
 
 def _several_groups(raw, path: Path) -> list[str]:
@@ -171,7 +171,7 @@ def _cell_groups(raw) -> dict[int, NDArray]:
     return out
 
 
-def _drop_unused(mesh: Mesh) -> Mesh:
+def drop_unused(mesh: Mesh) -> Mesh:
     """Leave out points that no volume element uses."""
     used = np.unique(np.concatenate([c.ravel() for c in mesh.cells.values()]))
     number = np.full(len(mesh.points), -1)
@@ -243,7 +243,7 @@ def polyhedron(
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
         raise MeshError(f"vertex {bad} of a polyhedron is not finite: {points[bad].tolist()}")
-    triangles = _hull(points) if faces is None else _fan(points, faces)
+    triangles = _fans(outward_faces(points, faces))
     if len(points) == 4:
         a, b, c, d = points
         tet = [0, 1, 2, 3] if np.linalg.det([b - a, c - a, d - a]) > 0 else [0, 2, 1, 3]
@@ -269,8 +269,18 @@ def _tolerance(points: Floats) -> float:
     return 1e-9 * float(np.ptp(points, axis=0).max())
 
 
-def _hull(points: Floats) -> NDArray[np.int64]:
-    """Triangles of the convex hull, outward; each plane polygon is cut into a fan.
+def outward_faces(points: Floats, faces: Sequence[Sequence[int]] | None) -> list[list[int]]:
+    """Polygons around a convex polyhedron, outward: those given, or of its hull (see above)."""
+    return _hull(points) if faces is None else _outward(points, faces)
+
+
+def _fans(faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
+    """Triangles of polygons, each cut into a fan from its first vertex."""
+    return np.array([(f[0], f[m], f[m + 1]) for f in faces for m in range(1, len(f) - 1)])
+
+
+def _hull(points: Floats) -> list[list[int]]:
+    """Polygons of the convex hull, outward.
 
     Looks at the plane of every three vertices, which is plenty fast for a block's few dozens.
     """
@@ -278,7 +288,7 @@ def _hull(points: Floats) -> NDArray[np.int64]:
     near = _tolerance(points)
     middle = points.mean(axis=0)
     seen: set[tuple[int, ...]] = set()
-    triangles: list[tuple[int, int, int]] = []
+    faces: list[list[int]] = []
     for i in range(n):
         for j in range(i + 1, n):
             for k in range(j + 1, n):
@@ -299,11 +309,10 @@ def _hull(points: Floats) -> NDArray[np.int64]:
                 seen.add(on)
                 if (middle - points[i]) @ normal > 0:
                     normal = -normal
-                loop = _around(points, on, normal)
-                triangles += [(loop[0], loop[m], loop[m + 1]) for m in range(1, len(loop) - 1)]
-    used = {v for t in triangles for v in t}
+                faces.append(_around(points, on, normal))
+    used = {v for face in faces for v in face}
     missing = sorted(set(range(n)) - used)
-    if len(triangles) < 4:
+    if len(faces) < 4:
         raise MeshError("a polyhedron has no volume: its vertices lie in a plane")
     if missing:
         x = ", ".join(f"{c:g}" for c in points[missing[0]])
@@ -311,7 +320,7 @@ def _hull(points: Floats) -> NDArray[np.int64]:
             f"a polyhedron is not convex: vertex {missing[0]} at ({x}) is no corner of the hull; "
             "leave it out if it repeats another or lies on a side, else cut the block into convex ones"
         )
-    return np.array(triangles)
+    return faces
 
 
 def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
@@ -329,10 +338,11 @@ def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
     return corners
 
 
-def _fan(points: Floats, faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
+def _outward(points: Floats, faces: Sequence[Sequence[int]]) -> list[list[int]]:
+    """The faces that a user gave, turned outward; refused if they do not bound a convex body."""
     near = 100 * _tolerance(points)
     middle = points.mean(axis=0)
-    triangles = []
+    loops = []
     for number, face in enumerate(faces):
         if len(face) < 3 or min(face) < 0 or max(face) >= len(points):
             raise MeshError(f"face {number} of a polyhedron needs three or more vertices it has")
@@ -350,12 +360,12 @@ def _fan(points: Floats, faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
                 f"a polyhedron is not convex: vertex {out} lies outside face {number}; "
                 "cut the block into convex ones"
             )
-        triangles += [(loop[0], loop[m], loop[m + 1]) for m in range(1, len(loop) - 1)]
-    sides = [tuple(sorted((t[a], t[a - 1]))) for t in triangles for a in range(3)]
+        loops.append(loop)
+    sides = [tuple(sorted((t[a], t[a - 1]))) for t in _fans(loops) for a in range(3)]
     open_sides = sorted(s for s in set(sides) if sides.count(s) != 2)
     if open_sides:
         raise MeshError(f"the faces of a polyhedron leave its edge {open_sides[0]} open")
-    return np.array(triangles)
+    return loops
 
 
 def place(mesh: Mesh, rotate=None, translate: Sequence[float] | None = None) -> Mesh:
