@@ -195,8 +195,10 @@ def _check_groups(case: Case, names: list[str]) -> None:
 def interfaces_of(case: Case, names: list[str]):
     """Interface laws in use, and the index for each pair of kinds of faces (-1: none was given).
 
-    Kinds of faces are those of `Topology.face_kind`. Two faces of the same set of joints have the law
-    of that set, if it has one; all others have that of their groups.
+    Kinds of faces are those of `Topology.face_kind`. What touches a face made by a set of joints has
+    the law of that set, if there is one and the toucher (first index) is of the same set or group:
+    a corner that rests on a joint may touch it as a corner of any face of its block. All else has the
+    law of its groups.
     """
     laws: list[Interface] = list(case.interfaces.pairs)
     table = np.full((len(names), len(names)), -1, np.int32)
@@ -219,6 +221,8 @@ def interfaces_of(case: Case, names: list[str]):
         if pair.joint is not None:
             start = len(names) * (1 + sets.index(pair.joint))
             table[start : start + len(names), start : start + len(names)] = index
+            for group in range(len(names)):
+                table[group :: len(names), start + group] = index
     return laws, table
 
 

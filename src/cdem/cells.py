@@ -71,17 +71,30 @@ class Cells:
         return after
 
     def triangles(self) -> tuple[Ints, Ints]:
-        """Fans over all faces, and the face of each triangle.
+        """Triangles of all faces, and the face of each.
 
-        A fan starts at the corner that is lowest along a slanted line, so that equal faces of two
-        cells are divided alike.
+        Equal faces of two cells are divided alike, for a face is first put into a form that does not
+        depend on where its corners begin and which way they run.
         """
-        owner, count = self.owner(), np.diff(self.first)
-        low = np.lexsort((self.points[self.corner] @ SLANTED, owner))[self.first[:-1]]
-        start, rank = self.first[:-1][owner], np.arange(len(owner)) - self.first[:-1][owner]
-        turned = self.corner[start + (rank + (low - self.first[:-1])[owner]) % count[owner]]
-        i = np.flatnonzero((rank > 0) & (rank < count[owner] - 1))
-        return np.column_stack([turned[start[i]], turned[i], turned[i + 1]]), owner[i]
+        count = np.diff(self.first)
+        triangles, face = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)]
+        for n in np.unique(count).tolist():
+            faces = np.flatnonzero(count == n)
+            loop = self.corner[self.first[faces][:, None] + np.arange(n)]
+            along = self.points[loop] @ SLANTED
+            loop, along = (
+                np.take_along_axis(
+                    a, (along.argmin(axis=1)[:, None] + np.arange(n)) % n, axis=1
+                )
+                for a in (loop, along)
+            )
+            back = along[:, -1] < along[:, 1]
+            loop[back, 1:] = loop[back, :0:-1]
+            where, local = best_triangles(self.points[loop])
+            local = np.where(back[where][:, None], local[:, ::-1], local)
+            triangles.append(np.take_along_axis(loop[where], local, axis=1))
+            face.append(faces[where])
+        return np.concatenate(triangles), np.concatenate(face)
 
     def volumes(self) -> Floats:
         """Volume of each cell [m3]."""
@@ -91,6 +104,43 @@ class Cells:
         origin[cell] = self.points[triangles[:, 0]]  # any point of the cell
         a, b, c = (self.points[triangles[:, k]] - origin[cell] for k in range(3))
         return np.bincount(cell, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, len(self.block))
+
+
+def best_triangles(x: Floats) -> tuple[Ints, Ints]:
+    """Divide plane convex polygons into triangles whose least height is as large as it can be.
+
+    Args:
+        x: Corners [m], shape (polygons, corners, 3).
+
+    Returns:
+        The polygon of each triangle, and its corners by number, running the same way.
+    """
+    polygons, n, _ = x.shape
+    best = np.full((polygons, n, n), np.inf)  # of the part from corner i to corner j
+    split = np.zeros((polygons, n, n), np.int64)
+    for gap in range(2, n):
+        for i in range(n - gap):
+            j = i + gap
+            k = np.arange(i + 1, j)
+            area = np.linalg.norm(np.cross(x[:, k] - x[:, [i]], x[:, [j]] - x[:, [i]]), axis=2)
+            sides = np.stack([x[:, k] - x[:, [i]], x[:, k] - x[:, [j]]])
+            longest = np.linalg.norm(sides, axis=3).max(axis=0)
+            longest = np.maximum(longest, np.linalg.norm(x[:, i] - x[:, j], axis=1)[:, None])
+            height = area / np.maximum(longest, 1e-300)
+            least = np.minimum(np.minimum(best[:, i, k], best[:, k, j]), height)
+            split[:, i, j] = k[least.argmax(axis=1)]
+            best[:, i, j] = least.max(axis=1)
+    polygon = np.arange(polygons)
+    i, j = np.zeros(polygons, np.int64), np.full(polygons, n - 1)
+    owner, corners = [], []
+    while len(polygon):
+        k = split[polygon, i, j]
+        owner.append(polygon)
+        corners.append(np.column_stack([i, k, j]))
+        polygon, i, j = (np.concatenate(p) for p in ((polygon, polygon), (i, k), (k, j)))
+        some = j - i > 1
+        polygon, i, j = polygon[some], i[some], j[some]
+    return np.concatenate(owner), np.concatenate(corners)
 
 
 def from_mesh(mesh: Mesh, group_names: Sequence[str], label: NDArray) -> Cells:
@@ -141,8 +191,8 @@ def _refuse_warped(points: Floats, faces: Ints) -> None:
     if len(bad):
         at = ", ".join(f"{v:.6g}" for v in x[bad[0]].mean(axis=0))
         raise MeshError(
-            f"joints cut elements with plane sides only; {len(bad)} sides are warped, the first at "
-            f"({at}) by {off[bad[0]]:.3g} m. Use tetrahedra in the groups that joints cut"
+            f"joints cut elements with plane sides only; {len(bad)} of their sides are warped, "
+            f"the first at ({at}) by {off[bad[0]]:.3g} m. Use tetrahedra in the groups that joints cut"
         )
 
 
