@@ -200,7 +200,7 @@ class Audit:
         soft = [i for i in self.interfaces if i["compliance_percent"] > SOFT]
         for row in soft:
             out.append(
-                f"the interface of {row['between'][0]} and {row['between'][1]} adds "
+                f"the interface {_place(row)} adds "
                 f"{row['compliance_percent']:.0f} % compliance; raise its stiffness_n"
             )
         if b.assembly.lumped_blocks:
@@ -267,9 +267,8 @@ class Audit:
         if self.interfaces:
             lines += ["", "  bonded interfaces"]
         for row in self.interfaces:
-            joint = f", joint {row['joint']}" if row["joint"] else ""
             lines.append(
-                f"    {row['between'][0]} - {row['between'][1]}{joint}: {row['bonded_pairs']:,} pairs, "
+                f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
                 f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
                 f"{row['stiffness_n'][1]:.3g} Pa/m, adds {row['compliance_percent']:.3g} % compliance"
             )
@@ -285,6 +284,12 @@ class Audit:
             lines.append(f"  dynamic stages: about {wall:,.0f} s of wall time while little moves")
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+
+def _place(row: dict[str, Any]) -> str:
+    """Groups, and set of joints if any, of a row of interfaces."""
+    joint = f", joint {row['joint']}" if row["joint"] else ""
+    return " - ".join(row["between"]) + joint
 
 
 def _pairs_of(first: NDArray, other: NDArray) -> NDArray:

@@ -82,7 +82,9 @@ def read_model(case: Case) -> Mesh:
     hulls: list[list[list[int]] | None] = [None] * (model.mesh is not None)
     for block in model.blocks:
         body = block.polyhedron
-        hulls.append(body and mesh.outward_faces(np.array(body.vertices), body.faces))
+        hulls.append(
+            None if body is None else mesh.outward_faces(np.array(body.vertices), body.faces)
+        )
     with case.blame("model.joints"):
         return joints.cut_model(list(zip(pieces, hulls, strict=True)), model)
 

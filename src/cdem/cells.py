@@ -8,7 +8,7 @@ closed and together fill what was there, whatever the planes do.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +16,13 @@ from numpy.typing import NDArray
 from cdem.errors import MeshError
 from cdem.mesh import Mesh
 from cdem.shapes import NODES
-from cdem.topology import FACES, SAME_PLACE, SLANTED, components
+from cdem.topology import FACES, SAME_PLACE, SLANTED
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 WARPED = 1e-6
 """How far the corners of a side may lie off its plane, over its size, to be cut."""
-LEAST_TET = 1e-10
-"""Volume of a tet over its longest edge cubed below which closing an edge is taken back."""
 
 
 @dataclass
@@ -83,9 +81,7 @@ class Cells:
             loop = self.corner[self.first[faces][:, None] + np.arange(n)]
             along = self.points[loop] @ SLANTED
             loop, along = (
-                np.take_along_axis(
-                    a, (along.argmin(axis=1)[:, None] + np.arange(n)) % n, axis=1
-                )
+                np.take_along_axis(a, (along.argmin(axis=1)[:, None] + np.arange(n)) % n, axis=1)
                 for a in (loop, along)
             )
             back = along[:, -1] < along[:, 1]
@@ -103,7 +99,8 @@ class Cells:
         origin = np.zeros((len(self.block), 3))
         origin[cell] = self.points[triangles[:, 0]]  # any point of the cell
         a, b, c = (self.points[triangles[:, k]] - origin[cell] for k in range(3))
-        return np.bincount(cell, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, len(self.block))
+        part = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
+        return np.asarray(np.bincount(cell, part, len(self.block)), np.float64)
 
 
 def best_triangles(x: Floats) -> tuple[Ints, Ints]:
@@ -130,16 +127,18 @@ def best_triangles(x: Floats) -> tuple[Ints, Ints]:
             least = np.minimum(np.minimum(best[:, i, k], best[:, k, j]), height)
             split[:, i, j] = k[least.argmax(axis=1)]
             best[:, i, j] = least.max(axis=1)
-    polygon = np.arange(polygons)
-    i, j = np.zeros(polygons, np.int64), np.full(polygons, n - 1)
     owner, corners = [], []
-    while len(polygon):
-        k = split[polygon, i, j]
+    # polygon, first and last corner of the parts that are left to divide
+    left = np.column_stack([np.arange(polygons), np.zeros(polygons, int), np.full(polygons, n - 1)])
+    while len(left):
+        polygon, start, end = left.T
+        middle = split[polygon, start, end]
         owner.append(polygon)
-        corners.append(np.column_stack([i, k, j]))
-        polygon, i, j = (np.concatenate(p) for p in ((polygon, polygon), (i, k), (k, j)))
-        some = j - i > 1
-        polygon, i, j = polygon[some], i[some], j[some]
+        corners.append(np.column_stack([start, middle, end]))
+        left = np.concatenate(
+            [np.column_stack([polygon, start, middle]), np.column_stack([polygon, middle, end])]
+        )
+        left = left[left[:, 2] - left[:, 1] > 1]
     return np.concatenate(owner), np.concatenate(corners)
 
 
@@ -252,7 +251,8 @@ def cut(
     *,
     among: NDArray[np.bool_],
     thinnest: float = 0.0,
-    choose: Callable[[int], NDArray[np.bool_]] | None = None,
+    chance: Callable[[int], Floats] | None = None,
+    persistence: float = 1.0,
 ) -> tuple[Cells, int]:
     """Cut blocks by the plane normal . x = offset.
 
@@ -263,7 +263,8 @@ def cut(
         source: Number of the plane, kept by the faces that it makes.
         among: Which groups it may cut.
         thinnest: A block is left whole if it reaches less than this far to one side [m].
-        choose: Which of so many blocks that could be cut are cut; all when left out.
+        chance: Gives so many random numbers from 0 to 1, one for each block that could be cut.
+        persistence: Blocks whose number is below are cut.
 
     Returns:
         The cells now, and how many blocks were left whole because a part would be too thin.
@@ -281,8 +282,8 @@ def cut(
     may &= (low < -near) & (high > near)
     thin = may & (np.minimum(-low, high) < thinnest)
     chosen = may & ~thin
-    if choose is not None:
-        chosen[chosen] = choose(int(chosen.sum()))
+    if chance is not None:
+        chosen[chosen] = chance(int(chosen.sum())) < persistence
     while chosen.any():
         made, broken = _split(c, distance, side, chosen, source)
         if len(broken) == 0:
@@ -408,123 +409,3 @@ def _turned(corner: Ints, count: Ints) -> Ints:
     first = np.concatenate([[0], np.cumsum(count)])
     face = np.repeat(np.arange(len(count)), count)
     return corner[first[face] + first[face + 1] - 1 - np.arange(len(corner))]
-
-
-# ---------------------------------------------------------------------- meshing
-
-
-def close_short_edges(c: Cells, shortest: float) -> tuple[Cells, int]:
-    """Make one point of the ends of edges shorter than a length; returns how many points went.
-
-    A closing that would spoil a cell (open it, or turn a tet of its mesh inside out) is taken back; a
-    cell that it flattens is left out.
-    """
-    ends = np.sort(np.column_stack([c.corner, c.corner[c.following()]]), axis=1)
-    ends = ends[np.linalg.norm(np.subtract(*c.points[ends.T]), axis=1) < shortest]
-    barred = np.zeros(len(c.points), bool)
-    while True:
-        ends = ends[~barred[ends].any(axis=1)]
-        same = components(len(c.points), ends[:, 0], ends[:, 1])
-        closed = _without_flat(replace(c, corner=same[c.corner]))
-        bad = _spoilt(closed)
-        if len(bad) == 0:
-            return closed, int((same != np.arange(len(same))).sum())
-        # bar the points that moved into or out of the spoilt cells
-        inside = np.isin(c.cell, bad)[c.owner()]
-        touched = np.isin(same, same[c.corner[inside]])
-        moved = np.bincount(same, minlength=len(same))[same] > 1
-        if not (touched & moved & ~barred).any():
-            return closed, int((same != np.arange(len(same))).sum())
-        barred |= touched & moved
-
-
-def _without_flat(c: Cells) -> Cells:
-    """Leave out corners that repeat, faces that lost their area and cells left with two faces."""
-    keep = c.corner != c.corner[c.following()]
-    count = np.bincount(c.owner()[keep], minlength=len(c.cell))
-    full = count >= 3
-    solid = np.bincount(c.cell[full], minlength=len(c.block)) >= 4
-    full &= solid[c.cell]
-    return replace(
-        c,
-        corner=c.corner[keep & full[c.owner()]],
-        first=np.concatenate([[0], np.cumsum(count[full])]),
-        cell=c.cell[full],
-        source=c.source[full],
-    )
-
-
-def _spoilt(c: Cells) -> Ints:
-    """Cells that are open, or whose tets are flat or inside out."""
-    a, b = c.corner, c.corner[c.following()]
-    cell = c.cell[c.owner()]
-    forth, back = np.lexsort((b, a, cell)), np.lexsort((a, b, cell))
-    differs = (a[forth] != b[back]) | (b[forth] != a[back])
-    if differs.any():
-        return np.unique(cell[forth][differs])
-    points, tets, cells = _tets(c)
-    x = points[tets]
-    volume = np.linalg.det(x[:, 1:] - x[:, :1]) / 6
-    size = np.ptp(x, axis=1).max(axis=1)
-    return np.unique(cells[volume < LEAST_TET * size**3])
-
-
-def _tets(c: Cells) -> tuple[Floats, Ints, Ints]:
-    """Tets around the centre of each cell, but one for a tet: points, tets and their cells."""
-    triangles, face = c.triangles()
-    cell = c.cell[face]
-    origin = np.zeros((len(c.block), 3))
-    origin[cell] = c.points[triangles[:, 0]]
-    x, y, z = (c.points[triangles[:, k]] - origin[cell] for k in range(3))
-    part = np.einsum("ij,ij->i", x, np.cross(y, z))
-    count, volume = (np.bincount(cell, w, len(origin)) for w in (None, part))
-    moment = np.column_stack([np.bincount(cell, part * s / 4, len(origin)) for s in (x + y + z).T])
-    many = np.flatnonzero(count > 4)
-    top = np.zeros(len(origin), np.int64)
-    top[many] = len(c.points) + np.arange(len(many))
-    points = np.concatenate([c.points, origin[many] + moment[many] / volume[many, None]])
-    # each corner of a tet is on three of its four triangles: the one off the first is what is left
-    single = np.flatnonzero(count == 4)
-    _, first = np.unique(cell, return_index=True)
-    is_first = np.zeros(len(cell), bool)
-    is_first[first] = True
-    total = np.bincount(cell, triangles.sum(axis=1), len(origin)).astype(np.int64) // 3
-    total[cell[is_first]] -= triangles[is_first].sum(axis=1)
-    top[single] = total[single]
-    used = is_first | (count[cell] > 4)
-    return points, np.column_stack([triangles[used][:, ::-1], top[cell[used]]]), cell[used]
-
-
-def to_mesh(
-    c: Cells, group_names: Sequence[str], surfaces: Sequence[str], planes: Sequence[str]
-) -> Mesh:
-    """Mesh all cells with tets; blocks share no points.
-
-    Args:
-        c: The cells.
-        group_names: Names of the groups that the cells number.
-        surfaces: Names of the surfaces of the uncut body, in order of their bits.
-        planes: For each plane, the name of the surface that its faces form.
-    """
-    points, tets, cell = _tets(c)
-    triangles, face = c.triangles()
-
-    def own(at: Ints, cells: Ints) -> Ints:
-        return c.block[cells][:, None] * len(points) + at
-
-    keys, inverse = np.unique(own(tets, cell), return_inverse=True)
-    out = Mesh(
-        points[keys % len(points)],
-        {"tet4": inverse.reshape(-1, 4)},
-        {"tet4": c.group[cell].astype(np.int32)},
-        list(group_names),
-    )
-    corners = np.searchsorted(keys, own(triangles, c.cell[face]))
-    source = c.source[face]
-    for bit, name in enumerate(surfaces):
-        out.surfaces[name] = [corners[(source < 0) & ((-1 - source) >> bit & 1 == 1)]]
-    names = np.array([*planes, ""], object)
-    of_plane = names[np.where(source >= 0, source, len(planes))]
-    for name in dict.fromkeys(planes):
-        out.surfaces[name] = [corners[of_plane == name]]
-    return out

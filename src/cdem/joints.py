@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from cdem import cells
+from cdem import cell_mesh, cells
 from cdem.cells import Cells
 from cdem.errors import CaseError
 from cdem.mesh import Mesh, drop_unused, merge
@@ -59,9 +59,7 @@ def fisher(mean: Floats, concentration: float, random: np.random.Generator) -> F
     sine = np.sqrt(max(0.0, 1 - cosine**2))
     across = np.cross(mean, np.eye(3)[np.abs(mean).argmin()])
     across /= np.linalg.norm(across)
-    return cosine * mean + sine * (
-        np.cos(turn) * across + np.sin(turn) * np.cross(mean, across)
-    )
+    return cosine * mean + sine * (np.cos(turn) * across + np.sin(turn) * np.cross(mean, across))
 
 
 def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.random.Generator]]:
@@ -78,7 +76,10 @@ def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.ran
     Yields:
         Unit normal, offset ``normal . x`` [m], and a generator for what else is random.
     """
-    mean = np.asarray(joint.normal or pole(joint.dip, joint.dip_direction), float)
+    if joint.dip is None or joint.dip_direction is None:
+        mean = np.asarray(joint.normal, float)
+    else:
+        mean = pole(joint.dip, joint.dip_direction)
     mean = mean / np.linalg.norm(mean)
     along = (points - joint.origin) @ mean
     low, high = along.min(), along.max()
@@ -135,16 +136,22 @@ def cut_by_sets(
         among = np.array([joint.group in (None, name) for name in group_names])
         for normal, offset, random in planes(joint, corners):
             c, count = cells.cut(
-                c, normal, offset, len(of_plane), among=among, thinnest=thinnest,
-                choose=lambda n, r=random, p=joint.persistence: r.random(n) < p,
-            )  # fmt: skip
+                c,
+                normal,
+                offset,
+                len(of_plane),
+                among=among,
+                thinnest=thinnest,
+                chance=random.random,
+                persistence=joint.persistence,
+            )
             of_plane.append(joint.name)
             thin += count
     return c, of_plane, thin
 
 
 def cut_model(
-    pieces: Sequence[tuple[Mesh, Sequence[ArrayLike] | None]],
+    pieces: Sequence[tuple[Mesh, Sequence[Sequence[int]] | None]],
     model: Model,
 ) -> Mesh:
     """Cut a model by its joints and mesh the blocks.
@@ -180,14 +187,14 @@ def cut_model(
             parts.append(cells.from_mesh(inside, names, block_labels(inside, model.split)))
         else:
             (group,) = inside.group_names
-            used = 1 + max(max(np.asarray(face).tolist()) for face in faces)
+            used = 1 + max(max(face) for face in faces)
             parts.append(cells.from_polyhedron(inside.points[:used], faces, names.index(group)))
     c = cells.join(parts)
     thinnest = thinnest_of(model, c.points)
     c, of_plane, thin = cut_by_sets(c, model.joints, names, thinnest)
     whole = c.volumes().sum()
-    c, closed = cells.close_short_edges(c, SHORTEST * thinnest)
-    made = cells.to_mesh(c, names, surfaces, of_plane)
+    c, closed = cell_mesh.close_short_edges(c, SHORTEST * thinnest)
+    made = cell_mesh.to_mesh(c, names, surfaces, of_plane)
     made.notes = _notes(thin, closed, c.volumes().sum() / whole - 1, thinnest)
     for joint in model.joints:
         made.surfaces.setdefault(joint.name, [])

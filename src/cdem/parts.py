@@ -97,7 +97,9 @@ class Scatter(Part):
 class Joint(Part):
     """A set of joints: planes that cut bodies into blocks. x is east, y north, z up."""
 
-    name: Name = Field(description="Name, unique in the case; its faces form a surface of this name")
+    name: Name = Field(
+        description="Name, unique in the case; its faces form a surface of this name"
+    )
     group: Name | None = Field(None, description="Group that it cuts; all when left out")
     dip: Annotated[float, Quantity("deg", at_least=0, at_most=90)] | None = Field(
         None, description="Steepest angle of the planes below the horizontal [deg]"

@@ -6,7 +6,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cdem
-from cdem import cells, joints, mesh
+from cdem import cell_mesh, cells, joints, mesh
 from cdem.parts import Joint, Model
 from cdem.topology import block_labels, build_topology
 
@@ -79,7 +79,7 @@ def test_planes_along_the_elements_of_a_mesh_make_joint_faces():
     c = cut(cube(divisions=(2, 2, 2)), [((1, 0, 0), 1)])
     assert c.blocks == 2
     assert (c.source == 0).sum() == 8
-    t = build_topology(cells.to_mesh(c, ["rock"], [], ["wall"]), {}, ["wall"])
+    t = build_topology(cell_mesh.to_mesh(c, ["rock"], [], ["wall"]), {}, ["wall"])
     assert len(t.block_group) == 2 and len(t.pair_faces) == 8
     assert (t.face_kind[t.pair_faces] == 1).all() and (t.face_kind == 1).sum() == 16
 
@@ -98,7 +98,7 @@ def bodies(draw):
     return c, size, random
 
 
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 @given(bodies(), st.integers(1, 12), st.booleans())
 def test_what_is_cut_stays_exact_closed_and_convex(body, count, close):
     c, size, random = body
@@ -140,9 +140,9 @@ def test_what_is_cut_stays_exact_closed_and_convex(body, count, close):
     assert np.abs(net).max(initial=0) <= 1e-12 * size**2 * max(1, len(faces))
 
     if close:
-        closed, _ = cells.close_short_edges(c, 0.01 * size)
+        closed, _ = cell_mesh.close_short_edges(c, 0.01 * size)
         assert sides_that_are_single(closed) == (0, set())
-        made = cells.to_mesh(closed, ["rock"], [], [str(k) for k in range(len(planes))])
+        made = cell_mesh.to_mesh(closed, ["rock"], [], [str(k) for k in range(len(planes))])
         x = made.points[made.cells["tet4"]]
         tets = np.linalg.det(x[:, 1:] - x[:, :1]) / 6
         assert tets.sum() == pytest.approx(closed.volumes().sum(), rel=1e-12)

@@ -26,7 +26,12 @@ def upper_part(**joint):
             "supports": [{"box": {"min": [0, 0, 0], "max": [2, 2, 0.01]}, "fix": ["x", "y", "z"]}],
         },
         stages=[
-            {"name": "run", "mode": "dynamic", "duration": 1.0, "damping": {"contact": 0.3, "stiffness": 0.3}}
+            {
+                "name": "run",
+                "mode": "dynamic",
+                "duration": 1.0,
+                "damping": {"contact": 0.3, "stiffness": 0.3},
+            }
         ],
     )
 
