@@ -1,12 +1,15 @@
 """Joint planes, the exact cutter, and interfaces by set of joints."""
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cdem
-from cdem import cell_mesh, cells, joints, mesh
+from cdem import Case
+from cdem import cell_mesh, cells, cli, joints, mesh
 from cdem.parts import Joint, Model
 from cdem.topology import block_labels, build_topology
 
@@ -315,3 +318,41 @@ def test_interfaces_follow_the_joint_then_the_groups():
     assert ((kind[:, 0] == 2) == (law == 0)).all() and set(law) == {0, 1}
     table = a.arrays["interface.of"].reshape(4, 4)
     assert (table == [[1, 1, 0, 1]] * 4).all()  # what touches a face of set b has its law
+
+
+CASE = """\
+model:
+  blocks: [{group: rock, box: {size: [6, 6, 6]}}]
+  joints:
+    - {name: bedding, dip: "30 deg", dip_direction: "90 deg", spacing: 2, scatter: {fisher: 500}}
+    - {name: cross, group: rock, dip: 85, dip_direction: 5, spacing: 2.5, persistence: 0.7}
+    - {name: fault, normal: [1, 0, 0.3], origin: [3, 3, 3]}
+materials: {m: {density: 2500, young_modulus: "1 GPa", poisson_ratio: 0.2}}
+groups: {rock: {material: m}}
+interfaces:
+  default: {friction_angle: 30, cohesion: "1 MPa", stiffness_n: "2 GPa/m", stiffness_s: "2 GPa/m"}
+  pairs: [{name: fault, joint: fault, friction_angle: 10, tensile_strength: "1 kPa"}]
+loads: {gravity: [0, 0, -10], supports: [{box: {min: [0, 0, 0], max: [6, 6, 0]}, fix: [x, y, z]}]}
+stages:
+  - {name: settle, mode: static, max_steps: 20}
+  - {name: run, mode: dynamic, duration: 1, max_steps: 20, set: {interfaces.fault.cohesion: 0}}
+output: {frames: false}
+"""
+
+
+def test_a_jointed_case_is_checked_and_run(cdem, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(cli, "_write_report", lambda folder, silent: None)  # it takes seconds
+    (tmp_path / "rock.yaml").write_text(CASE)
+    status, out, _ = cdem("check", "rock.yaml")
+    assert status == 0
+    for name in ("bedding", "cross", "fault"):
+        assert f"rock - rock, joint {name}: " in out
+    status, _, err = cdem("run", "rock.yaml", "--quiet", "--threads", "1")
+    assert (status, err) == (0, "")
+    summary = json.loads((tmp_path / "rock.results" / "summary.json").read_text())
+    assert summary["steps"] == 40 and summary["counts"]["blocks"] > 12
+    resolved = Case.load(tmp_path / "rock.results" / "case.yaml")
+    assert resolved.model.joints[1].persistence == 0.7
+    status, out, _ = cdem("check", "rock.yaml", "--set", "model.joints.2.origin=[90, 0, 0]")
+    assert status == 0 and "joint set fault cuts nothing" in out
