@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem import assemble, joints, mesh
+from cdem import assemble, bodies, joints, mesh
 from cdem._native import core as native
 from cdem.case import Case
 from cdem.errors import CaseError
@@ -75,7 +75,7 @@ def read_model(case: Case) -> Mesh:
             pieces.append(mesh.read_mesh(case.path_of(model.mesh)))
     for index, block in enumerate(model.blocks):
         with case.blame(f"model.blocks.{index}"):
-            pieces.append(_block(block))
+            pieces.append(_block(case, block))
     if not model.joints:
         return mesh.place(mesh.merge(pieces), model.rotate, model.translate)
     pieces = [mesh.place(piece, model.rotate, model.translate) for piece in pieces]
@@ -89,8 +89,10 @@ def read_model(case: Case) -> Mesh:
         return joints.cut_model(list(zip(pieces, hulls, strict=True)), model)
 
 
-def _block(block) -> Mesh:
-    if block.box is not None:
+def _block(case: Case, block) -> Mesh:
+    if block.file is not None:
+        piece = bodies.read_bodies(case.path_of(block.file), block.group)
+    elif block.box is not None:
         piece = mesh.box(block.group, block.box.size, block.box.divisions, shape=block.box.shape)
     else:
         piece = mesh.polyhedron(block.group, block.polyhedron.vertices, block.polyhedron.faces)

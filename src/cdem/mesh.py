@@ -58,7 +58,7 @@ def read_mesh(path: str | Path) -> Mesh:
     path = Path(path)
     if not path.is_file():
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
-    raw = _read_zipped(path) if path.suffix == ".gz" else _read_raw(path)
+    raw = _read_zipped(path) if path.suffix == ".gz" else read_raw(path)
     groups = _cell_groups(raw)
     names: list[str] = []
     mesh = Mesh(np.asarray(raw.points, float).reshape(len(raw.points), -1))
@@ -128,10 +128,10 @@ def _read_zipped(path: Path):
                 shutil.copyfileobj(packed, file)
         except (OSError, EOFError) as error:
             raise MeshError(f"{path}: not a gzip file ({error})") from error
-        return _read_raw(plain)
+        return read_raw(plain)
 
 
-def _read_raw(path: Path):
+def read_raw(path: Path):
     import meshio
 
     try:
@@ -139,7 +139,8 @@ def _read_raw(path: Path):
             return meshio.read(path)
     except SystemExit as error:  # meshio leaves the program when a reader fails
         raise MeshError(
-            f"{path}: not a mesh that can be read; see the formats of meshio"
+            f"{path}: not a mesh that can be read; see the formats of meshio. Polyhedral cells are "
+            "read with model.blocks: [{group: NAME, file: FILE}]"
         ) from error
     except Exception as error:
         raise MeshError(
@@ -265,13 +266,28 @@ def _centroid(points: Floats, triangles: NDArray) -> Floats:
     return middle + (volume[:, None] * (a + b + c) / 4).sum(axis=0) / volume.sum()
 
 
+def _text(point: Floats) -> str:
+    return ", ".join(f"{c:g}" for c in point)
+
+
 def _tolerance(points: Floats) -> float:
     return 1e-9 * float(np.ptp(points, axis=0).max())
 
 
-def outward_faces(points: Floats, faces: Sequence[Sequence[int]] | None) -> list[list[int]]:
-    """Polygons around a convex polyhedron, outward: those given, or of its hull (see above)."""
-    return _hull(points) if faces is None else _outward(points, faces)
+def outward_faces(
+    points: Floats, faces: Sequence[Sequence[int]] | None, near: float = 0.0
+) -> list[list[int]]:
+    """Polygons around a convex polyhedron, outward: those given, or of its hull.
+
+    Args:
+        points: Vertices [m], shape (vertices, 3).
+        faces: Vertex ids of each face, in either turn, or None.
+        near: How far rounding may have moved vertices off the faces that were given [m].
+
+    Raises:
+        MeshError: No volume, or not convex.
+    """
+    return _hull(points) if faces is None else _outward(points, faces, near)
 
 
 def _fans(faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
@@ -315,9 +331,8 @@ def _hull(points: Floats) -> list[list[int]]:
     if len(faces) < 4:
         raise MeshError("a polyhedron has no volume: its vertices lie in a plane")
     if missing:
-        x = ", ".join(f"{c:g}" for c in points[missing[0]])
         raise MeshError(
-            f"a polyhedron is not convex: vertex {missing[0]} at ({x}) is no corner of the hull; "
+            f"a polyhedron is not convex: vertex {missing[0]} at ({_text(points[missing[0]])}) is no corner of the hull; "
             "leave it out if it repeats another or lies on a side, else cut the block into convex ones"
         )
     return faces
@@ -338,9 +353,9 @@ def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
     return corners
 
 
-def _outward(points: Floats, faces: Sequence[Sequence[int]]) -> list[list[int]]:
+def _outward(points: Floats, faces: Sequence[Sequence[int]], near: float) -> list[list[int]]:
     """The faces that a user gave, turned outward; refused if they do not bound a convex body."""
-    near = 100 * _tolerance(points)
+    near = max(near, 100 * _tolerance(points))
     middle = points.mean(axis=0)
     loops = []
     for number, face in enumerate(faces):
@@ -357,8 +372,9 @@ def _outward(points: Floats, faces: Sequence[Sequence[int]]) -> list[list[int]]:
         out = np.argmax((points - x[0]) @ normal)
         if (points[out] - x[0]) @ normal > near:
             raise MeshError(
-                f"a polyhedron is not convex: vertex {out} lies outside face {number}; "
-                "cut the block into convex ones"
+                f"a polyhedron is not convex: vertex {out} at ({_text(points[out])}) lies "
+                f"{(points[out] - x[0]) @ normal:.3g} m outside face {number} "
+                f"({'; '.join(map(_text, x[:4]))}); cut the block into convex ones"
             )
         loops.append(loop)
     sides = [tuple(sorted((t[a], t[a - 1]))) for t in _fans(loops) for a in range(3)]

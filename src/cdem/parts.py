@@ -77,12 +77,17 @@ class Block(Part):
     group: Name = Field(description="Group that the body belongs to")
     box: Box | None = Field(None, description="A box of elements")
     polyhedron: Polyhedron | None = Field(None, description="A convex polyhedron")
+    file: Name | None = Field(
+        None,
+        description="Convex bodies from a file, relative to the case file: each closed surface of an "
+        ".obj or .stl, each cell of a .vtu or .vtk, polyhedra too",
+    )
     rotate: Rotate | None = Field(None, description="Rotation of the body")
     translate: Length3 | None = Field(None, description="Shift of the body after its rotation [m]")
 
     @model_validator(mode="after")
     def _one_shape(self) -> Block:
-        _exactly_one(self, ("box", "polyhedron"))
+        _exactly_one(self, ("box", "polyhedron", "file"))
         return self
 
 

@@ -8,8 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cdem
-from cdem import Case
-from cdem import cell_mesh, cells, cli, joints, mesh
+from cdem import Case, cell_mesh, cells, cli, joints, mesh
 from cdem.parts import Joint, Model
 from cdem.topology import block_labels, build_topology
 
