@@ -319,6 +319,27 @@ def test_interfaces_follow_the_joint_then_the_groups():
     assert (table == [[1, 1, 0, 1]] * 4).all()  # what touches a face of set b has its law
 
 
+@pytest.mark.parametrize("persistence, fisher", [(1.0, 200.0), (0.6, 200.0)])
+def test_all_of_every_joint_is_bonded(persistence, fisher):
+    """Where neighbours were cut differently, the true overlaps of their faces add up."""
+    more = {"persistence": persistence, "scatter": {"fisher": fisher}}
+    b = cdem.Simulation(
+        case(
+            {
+                "model.joints": [s | more for s in SETS],
+                "interfaces.default": {"friction_angle": 30, "cohesion": 1e6},
+            }
+        ),
+        threads=1,
+    ).build
+    a = b.assembly
+    made = a.arrays["face.area"][b.topology.face_kind > 0].sum() / 2
+    kinds = ("triangles", "overlaps")
+    bonded = [a.arrays[f"{k}.area"][: a.counts[f"{k}.count"]].sum() for k in kinds]
+    assert sum(bonded) == pytest.approx(made, rel=1e-9)
+    assert bonded[1] > 0.1 * made or persistence == 1
+
+
 CASE = """\
 model:
   blocks: [{group: rock, box: {size: [6, 6, 6]}}]

@@ -59,5 +59,4 @@ def test_slides_down_the_dip_direction_with_the_friction_of_the_joint(direction)
     late = np.array(times) > 0.05
     slope = np.polyfit(np.array(times)[late], np.array(speeds)[late], 1)[0]
     exact = G * (np.sin(t) - np.cos(t) * np.tan(np.radians(FRICTION)))
-    print("miss", (slope - exact * down) / exact)
     assert slope == pytest.approx(exact * down, abs=3e-3 * exact)
