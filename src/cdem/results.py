@@ -199,6 +199,7 @@ def surface_of(
             "block": t.face_block[faces],
             "damage": damage[t.face_element[faces]],
             "broken": broken.astype(np.int8),
+            "joint": (t.face_kind // len(t.group_names))[faces],  # 0: not made by a set of joints
         },
     )
 

@@ -22,7 +22,14 @@ from cdem.errors import CdemError
 if TYPE_CHECKING:
     from cdem.simulation import Simulation
 
-UNITS = {"displacement": "m", "velocity": "m/s", "damage": "1", "group": "", "block": ""}
+UNITS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "damage": "1",
+    "group": "",
+    "block": "",
+    "joint": "",
+}
 """Fields that `render` can colour by, with their units."""
 OPENGL_HINT = "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install libosmesa6 libgl1 libxrender1"
 ENERGY_COLUMNS = ("kinetic", "strain", "contact", "friction", "damping", "fracture", "external")
@@ -349,7 +356,7 @@ class _Scene:
         last = series[len(series) - 1]
         values = self._values(last)
         self.high = float(np.nanpercentile(values, 99.5)) if len(values) else 1.0
-        if field in ("group", "block", "damage"):
+        if field in ("group", "block", "joint", "damage"):
             self.high = max(float(values.max()), 1.0)
         first = series[0]
         middle = series[(len(series) - 1) // 2]
@@ -406,7 +413,7 @@ class _Scene:
         plotter.add_mesh(
             mesh,
             scalars=name,
-            cmap="tab10" if self.field == "group" else "YlOrBr",
+            cmap="tab10" if self.field in ("group", "joint") else "YlOrBr",
             clim=(0.0, max(self.high, 1e-12)),
             show_edges=mesh.n_cells < 20000,
             edge_color="#444444",

@@ -11,6 +11,7 @@ import cdem
 from cdem import Case, cell_mesh, cells, cli, joints, mesh
 from cdem.parts import Joint, Model
 from cdem.topology import block_labels, build_topology
+from cdem.view import snapshot
 
 ALL = np.array([True])
 
@@ -317,6 +318,18 @@ def test_interfaces_follow_the_joint_then_the_groups():
     assert ((kind[:, 0] == 2) == (law == 0)).all() and set(law) == {0, 1}
     table = a.arrays["interface.of"].reshape(4, 4)
     assert (table == [[1, 1, 0, 1]] * 4).all()  # what touches a face of set b has its law
+
+
+def test_surfaces_that_are_drawn_know_the_set():
+    sim = cdem.Simulation(case({"model.joints": SETS}), threads=1)
+    surface = snapshot(sim)
+    faces = surface.faces.reshape(-1, 4)[:, 1:]
+    for number, joint in enumerate(SETS, start=1):
+        x = surface.points[faces[surface.cell_data["joint"] == number]]
+        normal = joint.get("normal") or joints.pole(joint["dip"], joint["dip_direction"])
+        along = (x - joint["origin"]) @ normal / np.linalg.norm(normal) / joint["spacing"]
+        assert len(x) > 10 and np.abs(along - np.round(along)).max() < 1e-9
+    assert set(surface.cell_data["joint"]) == {0, 1, 2, 3}
 
 
 @pytest.mark.parametrize("persistence, fisher", [(1.0, 200.0), (0.6, 200.0)])
