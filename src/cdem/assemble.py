@@ -31,7 +31,8 @@ class Properties:
         density: [kg/m3], shape (groups,).
         young_modulus: [Pa], shape (groups,).
         poisson_ratio: shape (groups,).
-        interface_of: Index of the interface between two groups, shape (groups, groups).
+        interface_of: Index of the interface between two kinds of faces (see
+            `Topology.face_kind`), shape (kinds, kinds).
         bonded: Whether that interface starts bonded (has cohesion or tension), the same shape.
         stiffness: (value, factor) of k_n and k_s by interface, shape (interfaces, 4).
         exact_mass: Exact inertia (default) or lumped masses as they come.
@@ -109,7 +110,7 @@ def assemble(topology: Topology, properties: Properties, padded_stride) -> Assem
         "nodes": len(topology.node_position),
         "faces": len(topology.face_nodes),
         "edges": len(topology.edge_nodes),
-        "groups": len(properties.density),
+        "groups": len(properties.interface_of),  # kinds of faces, to the core
     }
     out.arrays["material.lambda"] = properties.lame
     out.arrays["material.mu"] = properties.shear
@@ -395,7 +396,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
     out.arrays |= {
         "face.nodes": nodes.astype(np.int32).ravel(),
         "face.edges": t.face_edges.astype(np.int32).ravel(),
-        "face.group": t.face_group.astype(np.int32),
+        "face.group": t.face_kind.astype(np.int32),
         "face.block": t.face_block.astype(np.int32),
         "face.length": distance.sum(axis=1) / corners,
         "face.reach": DEFORMED * distance.max(axis=1),
@@ -418,11 +419,10 @@ def _movable(t: Topology, p: Properties) -> NDArray[np.int8]:
 
 
 def _pairs(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
-    group = t.face_group
     a, b = t.pair_faces.T
-    bonded = p.bonded[group[a], group[b]] if len(a) else np.zeros(0, bool)
+    bonded = p.bonded[t.face_kind[a], t.face_kind[b]] if len(a) else np.zeros(0, bool)
     corners = (t.face_nodes >= 0).sum(axis=1)
-    exposed = np.ones(len(group), np.int8)
+    exposed = np.ones(len(corners), np.int8)
     exposed[t.pair_faces[bonded].ravel()] = 0
     out.arrays["face.initially_exposed"] = exposed
     empty_real, empty_int = np.zeros(0), np.zeros(0, np.int32)
@@ -463,8 +463,8 @@ def _pairs(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
 
 
 def _pair_set(kind, faces, area, t: Topology, p: Properties, stride: int, out: Assembly) -> None:
-    group = t.face_group[faces].reshape(-1, 2)
-    interface = p.interface_of[group[:, 0], group[:, 1]].astype(np.int32)
+    sides = t.face_kind[faces].reshape(-1, 2)
+    interface = p.interface_of[sides[:, 0], sides[:, 1]].astype(np.int32)
     out.pair_faces[kind] = faces
     out.arrays[f"{kind}.faces"] = faces.astype(np.int32).ravel()
     out.arrays[f"{kind}.interface"] = table(interface[None], stride)

@@ -70,7 +70,7 @@ class Audit:
         return out
 
     def _interfaces(self) -> list[dict[str, Any]]:
-        """One row per pair of groups that is bonded: pairs, area, stiffness, compliance."""
+        """One row per bonded pair of groups or set of joints: pairs, area, stiffness, compliance."""
         b = self._sim.build
         t, a = b.topology, b.assembly
         case = self._sim.case
@@ -78,7 +78,8 @@ class Audit:
             [case.materials[case.groups[n].material].young_modulus for n in b.group_names]
         )
         volume = np.concatenate(list(a.element_volume.values()))
-        rows: dict[tuple[str, str], dict[str, Any]] = {}
+        sets = [None, *(joint.name for joint in case.model.joints)]
+        rows: dict[tuple[str, str, str | None], dict[str, Any]] = {}
         for kind in ("triangles", "quads", "overlaps"):
             count = a.counts[f"{kind}.count"]
             if count == 0:
@@ -92,9 +93,12 @@ class Audit:
             young = sim_young[t.face_group[faces]].mean(axis=1)
             soft = area * young * (1 / (5 * normal) + 2 / (15 * shear))
             group = np.sort(t.face_group[faces], axis=1)
-            for i, j in np.unique(group, axis=0):
-                some = (group == (i, j)).all(axis=1)
-                key = (b.group_names[i], b.group_names[j])
+            joint = (t.face_kind // len(b.group_names))[faces]
+            joint = np.where(joint[:, 0] == joint[:, 1], joint[:, 0], 0)
+            where = np.column_stack([group, joint])
+            for i, j, k in np.unique(where, axis=0):
+                some = (where == (i, j, k)).all(axis=1)
+                key = (b.group_names[i], b.group_names[j], sets[k])
                 row = rows.setdefault(key, {"pairs": 0, "area": 0.0, "soft": 0.0, "k": [], "e": []})
                 row["pairs"] += int(some.sum())
                 row["area"] += float(area[some].sum())
@@ -103,7 +107,8 @@ class Audit:
                 row["e"].append(t.face_element[faces[some]].ravel())
         return [
             {
-                "between": list(key),
+                "between": list(key[:2]),
+                "joint": key[2],
                 "bonded_pairs": row["pairs"],
                 "area": row["area"],
                 "stiffness_n": [min(row["k"]), max(row["k"])],
@@ -195,7 +200,7 @@ class Audit:
         soft = [i for i in self.interfaces if i["compliance_percent"] > SOFT]
         for row in soft:
             out.append(
-                f"the interface of {row['between'][0]} and {row['between'][1]} adds "
+                f"the interface {_place(row)} adds "
                 f"{row['compliance_percent']:.0f} % compliance; raise its stiffness_n"
             )
         if b.assembly.lumped_blocks:
@@ -263,7 +268,7 @@ class Audit:
             lines += ["", "  bonded interfaces"]
         for row in self.interfaces:
             lines.append(
-                f"    {row['between'][0]} - {row['between'][1]}: {row['bonded_pairs']:,} pairs, "
+                f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
                 f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
                 f"{row['stiffness_n'][1]:.3g} Pa/m, adds {row['compliance_percent']:.3g} % compliance"
             )
@@ -279,6 +284,12 @@ class Audit:
             lines.append(f"  dynamic stages: about {wall:,.0f} s of wall time while little moves")
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+
+def _place(row: dict[str, Any]) -> str:
+    """Groups, and set of joints if any, of a row of interfaces."""
+    joint = f", joint {row['joint']}" if row["joint"] else ""
+    return " - ".join(row["between"]) + joint
 
 
 def _pairs_of(first: NDArray, other: NDArray) -> NDArray:

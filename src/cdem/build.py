@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem import assemble, mesh
+from cdem import assemble, bodies, joints, mesh
 from cdem._native import core as native
 from cdem.case import Case
 from cdem.errors import CaseError
@@ -39,7 +39,8 @@ class Build:
         core: The compiled core, holding model and state.
         curves: Times and factors of load and velocity histories; the first is constant.
         start_position: Positions at the start [m], shape (nodes, 3).
-        bonded: Whether the interface of two groups was bonded at the start, shape (groups, groups).
+        bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
+            at the start, shape (kinds, kinds).
     """
 
     case: Case
@@ -74,13 +75,24 @@ def read_model(case: Case) -> Mesh:
             pieces.append(mesh.read_mesh(case.path_of(model.mesh)))
     for index, block in enumerate(model.blocks):
         with case.blame(f"model.blocks.{index}"):
-            pieces.append(_block(block))
-    merged = mesh.merge(pieces)
-    return mesh.place(merged, model.rotate, model.translate)
+            pieces.append(_block(case, block))
+    if not model.joints:
+        return mesh.place(mesh.merge(pieces), model.rotate, model.translate)
+    pieces = [mesh.place(piece, model.rotate, model.translate) for piece in pieces]
+    hulls: list[list[list[int]] | None] = [None] * (model.mesh is not None)
+    for block in model.blocks:
+        body = block.polyhedron
+        hulls.append(
+            None if body is None else mesh.outward_faces(np.array(body.vertices), body.faces)
+        )
+    with case.blame("model.joints"):
+        return joints.cut_model(list(zip(pieces, hulls, strict=True)), model)
 
 
-def _block(block) -> Mesh:
-    if block.box is not None:
+def _block(case: Case, block) -> Mesh:
+    if block.file is not None:
+        piece = bodies.read_bodies(case.path_of(block.file), block.group)
+    elif block.box is not None:
         piece = mesh.box(block.group, block.box.size, block.box.divisions, shape=block.box.shape)
     else:
         piece = mesh.polyhedron(block.group, block.polyhedron.vertices, block.polyhedron.faces)
@@ -99,10 +111,9 @@ def build(case: Case) -> Build:
     _check_groups(case, names)
     laws, interface_of = interfaces_of(case, names)
     bonds = bonded_pairs(laws, interface_of)
+    sets = [joint.name for joint in case.model.joints]
     with case.blame("model"):
-        topology = build_topology(
-            merged, case.model.split, lambda a, b: bool(bonds[names.index(a), names.index(b)])
-        )
+        topology = build_topology(merged, case.model.split, sets, bonds)
     _check_interfaces(case, topology, names, interface_of)
     _snap_mates(topology)
 
@@ -185,21 +196,36 @@ def _check_groups(case: Case, names: list[str]) -> None:
 
 
 def interfaces_of(case: Case, names: list[str]):
-    """Interface laws in use, and the index of each pair of groups (-1 where none was given)."""
+    """Interface laws in use, and the index for each pair of kinds of faces (-1: none was given).
+
+    Kinds of faces are those of `Topology.face_kind`. What touches a face made by a set of joints has
+    the law of that set, if there is one and the toucher (first index) is of the same set or group:
+    a corner that rests on a joint may touch it as a corner of any face of its block. All else has the
+    law of its groups.
+    """
     laws: list[Interface] = list(case.interfaces.pairs)
     table = np.full((len(names), len(names)), -1, np.int32)
     if case.interfaces.default is not None:
         laws.append(case.interfaces.default)
         table[:] = len(laws) - 1
     for index, pair in enumerate(case.interfaces.pairs):
-        for name in pair.between:
+        for name in pair.between or []:
             if name not in names:
                 raise CaseError(
                     f"{case.where(f'interfaces.pairs.{index}.between')}: interfaces.pairs.{index}."
                     f"between: no group {name!r} in the model; it has: {', '.join(names)}"
                 )
-        a, b = (names.index(name) for name in pair.between)
-        table[a, b] = table[b, a] = index
+        if pair.between is not None:
+            a, b = (names.index(name) for name in pair.between)
+            table[a, b] = table[b, a] = index
+    sets = [joint.name for joint in case.model.joints]
+    table = np.tile(table, (1 + len(sets), 1 + len(sets)))
+    for index, pair in enumerate(case.interfaces.pairs):
+        if pair.joint is not None:
+            start = len(names) * (1 + sets.index(pair.joint))
+            table[start : start + len(names), start : start + len(names)] = index
+            for group in range(len(names)):
+                table[group :: len(names), start + group] = index
     return laws, table
 
 
@@ -210,7 +236,7 @@ def _check_interfaces(case: Case, topology: Topology, names: list[str], table) -
                 f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} touch but have no "
                 f"interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
             )
-    missing = table < 0
+    missing = table[: len(names), : len(names)] < 0
     for index in range(len(names)):  # a block does not touch itself
         if (topology.block_group == index).sum() < 2:
             missing[index, index] = False

@@ -159,6 +159,9 @@ class Case(Part):
         data = self.model_dump(mode="json", exclude_none=True)
         if self.model.mesh is not None:
             data["model"]["mesh"] = str(self.path_of(self.model.mesh).resolve())
+        for block, data_of_block in zip(self.model.blocks, data["model"]["blocks"], strict=True):
+            if block.file is not None:
+                data_of_block["file"] = str(self.path_of(block.file).resolve())
         if self.interfaces.default is not None:
             # A pair's inherited values follow the default when a stage sets it, so leave them out.
             for pair, written in zip(

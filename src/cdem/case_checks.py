@@ -24,6 +24,7 @@ def contradictions(case: Case) -> list[Problem]:
 def _names(case: Case) -> Iterator[Problem]:
     yield from _materials(case)
     yield from _groups(case)
+    yield from _joints(case)
     yield from _unique_names(case)
 
 
@@ -52,14 +53,29 @@ def _groups(case: Case) -> Iterator[Problem]:
             yield keys, _no("group", name, case.groups)
 
 
+def _joints(case: Case) -> Iterator[Problem]:
+    names = [joint.name for joint in case.model.joints]
+    for i, pair in enumerate(case.interfaces.pairs):
+        if pair.joint is not None and pair.joint not in names:
+            yield ("interfaces", "pairs", i, "joint"), _no("joint set", pair.joint, names)
+    everywhere = any(joint.group is None for joint in case.model.joints)
+    cut = {joint.group for joint in case.model.joints}
+    for name, kind in case.model.split.items():
+        if kind == "one" and names and (everywhere or name in cut):
+            yield ("model", "split", name), "joints cut this group, so it cannot be one block"
+
+
 def _group_names(case: Case) -> Iterator[tuple[tuple[str | int, ...], str]]:
     """Every place of a case that names a group."""
     for i, block in enumerate(case.model.blocks):
         yield ("model", "blocks", i, "group"), block.group
     for name in case.model.split:
         yield ("model", "split", name), name
+    for i, joint in enumerate(case.model.joints):
+        if joint.group is not None:
+            yield ("model", "joints", i, "group"), joint.group
     for i, pair in enumerate(case.interfaces.pairs):
-        for k, name in enumerate(pair.between):
+        for k, name in enumerate(pair.between or []):
             yield ("interfaces", "pairs", i, "between", k), name
     for kind in ("tractions", "velocities", "supports"):
         for i, load in enumerate(getattr(case.loads, kind)):
@@ -78,6 +94,7 @@ def _unique_names(case: Case) -> Iterator[Problem]:
         ("stages",): case.stages,
         ("histories",): case.histories,
         ("interfaces", "pairs"): case.interfaces.pairs,
+        ("model", "joints"): case.model.joints,
     }
     for keys, entries in named.items():
         seen: set[str] = set()

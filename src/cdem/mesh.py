@@ -58,7 +58,7 @@ def read_mesh(path: str | Path) -> Mesh:
     path = Path(path)
     if not path.is_file():
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
-    raw = _read_zipped(path) if path.suffix == ".gz" else _read_raw(path)
+    raw = _read_zipped(path) if path.suffix == ".gz" else read_raw(path)
     groups = _cell_groups(raw)
     names: list[str] = []
     mesh = Mesh(np.asarray(raw.points, float).reshape(len(raw.points), -1))
@@ -98,7 +98,7 @@ def read_mesh(path: str | Path) -> Mesh:
             f"{path}: holds no volume elements; export the volume mesh, not its surface"
         )
     mesh.notes += _several_groups(raw, path)
-    return _drop_unused(mesh)
+    return drop_unused(mesh)
 
 
 def _several_groups(raw, path: Path) -> list[str]:
@@ -128,10 +128,10 @@ def _read_zipped(path: Path):
                 shutil.copyfileobj(packed, file)
         except (OSError, EOFError) as error:
             raise MeshError(f"{path}: not a gzip file ({error})") from error
-        return _read_raw(plain)
+        return read_raw(plain)
 
 
-def _read_raw(path: Path):
+def read_raw(path: Path):
     import meshio
 
     try:
@@ -139,7 +139,8 @@ def _read_raw(path: Path):
             return meshio.read(path)
     except SystemExit as error:  # meshio leaves the program when a reader fails
         raise MeshError(
-            f"{path}: not a mesh that can be read; see the formats of meshio"
+            f"{path}: not a mesh that can be read; see the formats of meshio. Polyhedral cells are "
+            "read with model.blocks: [{group: NAME, file: FILE}]"
         ) from error
     except Exception as error:
         raise MeshError(
@@ -171,7 +172,7 @@ def _cell_groups(raw) -> dict[int, NDArray]:
     return out
 
 
-def _drop_unused(mesh: Mesh) -> Mesh:
+def drop_unused(mesh: Mesh) -> Mesh:
     """Leave out points that no volume element uses."""
     used = np.unique(np.concatenate([c.ravel() for c in mesh.cells.values()]))
     number = np.full(len(mesh.points), -1)
@@ -243,7 +244,7 @@ def polyhedron(
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
         raise MeshError(f"vertex {bad} of a polyhedron is not finite: {points[bad].tolist()}")
-    triangles = _hull(points) if faces is None else _fan(points, faces)
+    triangles = _fans(outward_faces(points, faces))
     if len(points) == 4:
         a, b, c, d = points
         tet = [0, 1, 2, 3] if np.linalg.det([b - a, c - a, d - a]) > 0 else [0, 2, 1, 3]
@@ -265,12 +266,37 @@ def _centroid(points: Floats, triangles: NDArray) -> Floats:
     return middle + (volume[:, None] * (a + b + c) / 4).sum(axis=0) / volume.sum()
 
 
+def _text(point: Floats) -> str:
+    return ", ".join(f"{c:g}" for c in point)
+
+
 def _tolerance(points: Floats) -> float:
     return 1e-9 * float(np.ptp(points, axis=0).max())
 
 
-def _hull(points: Floats) -> NDArray[np.int64]:
-    """Triangles of the convex hull, outward; each plane polygon is cut into a fan.
+def outward_faces(
+    points: Floats, faces: Sequence[Sequence[int]] | None, near: float = 0.0
+) -> list[list[int]]:
+    """Polygons around a convex polyhedron, outward: those given, or of its hull.
+
+    Args:
+        points: Vertices [m], shape (vertices, 3).
+        faces: Vertex ids of each face, in either turn, or None.
+        near: How far rounding may have moved vertices off the faces that were given [m].
+
+    Raises:
+        MeshError: No volume, or not convex.
+    """
+    return _hull(points) if faces is None else _outward(points, faces, near)
+
+
+def _fans(faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
+    """Triangles of polygons, each cut into a fan from its first vertex."""
+    return np.array([(f[0], f[m], f[m + 1]) for f in faces for m in range(1, len(f) - 1)])
+
+
+def _hull(points: Floats) -> list[list[int]]:
+    """Polygons of the convex hull, outward.
 
     Looks at the plane of every three vertices, which is plenty fast for a block's few dozens.
     """
@@ -278,7 +304,7 @@ def _hull(points: Floats) -> NDArray[np.int64]:
     near = _tolerance(points)
     middle = points.mean(axis=0)
     seen: set[tuple[int, ...]] = set()
-    triangles: list[tuple[int, int, int]] = []
+    faces: list[list[int]] = []
     for i in range(n):
         for j in range(i + 1, n):
             for k in range(j + 1, n):
@@ -299,19 +325,17 @@ def _hull(points: Floats) -> NDArray[np.int64]:
                 seen.add(on)
                 if (middle - points[i]) @ normal > 0:
                     normal = -normal
-                loop = _around(points, on, normal)
-                triangles += [(loop[0], loop[m], loop[m + 1]) for m in range(1, len(loop) - 1)]
-    used = {v for t in triangles for v in t}
+                faces.append(_around(points, on, normal))
+    used = {v for face in faces for v in face}
     missing = sorted(set(range(n)) - used)
-    if len(triangles) < 4:
+    if len(faces) < 4:
         raise MeshError("a polyhedron has no volume: its vertices lie in a plane")
     if missing:
-        x = ", ".join(f"{c:g}" for c in points[missing[0]])
         raise MeshError(
-            f"a polyhedron is not convex: vertex {missing[0]} at ({x}) is no corner of the hull; "
+            f"a polyhedron is not convex: vertex {missing[0]} at ({_text(points[missing[0]])}) is no corner of the hull; "
             "leave it out if it repeats another or lies on a side, else cut the block into convex ones"
         )
-    return np.array(triangles)
+    return faces
 
 
 def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
@@ -329,10 +353,11 @@ def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
     return corners
 
 
-def _fan(points: Floats, faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
-    near = 100 * _tolerance(points)
+def _outward(points: Floats, faces: Sequence[Sequence[int]], near: float) -> list[list[int]]:
+    """The faces that a user gave, turned outward; refused if they do not bound a convex body."""
+    near = max(near, 100 * _tolerance(points))
     middle = points.mean(axis=0)
-    triangles = []
+    loops = []
     for number, face in enumerate(faces):
         if len(face) < 3 or min(face) < 0 or max(face) >= len(points):
             raise MeshError(f"face {number} of a polyhedron needs three or more vertices it has")
@@ -347,15 +372,16 @@ def _fan(points: Floats, faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
         out = np.argmax((points - x[0]) @ normal)
         if (points[out] - x[0]) @ normal > near:
             raise MeshError(
-                f"a polyhedron is not convex: vertex {out} lies outside face {number}; "
-                "cut the block into convex ones"
+                f"a polyhedron is not convex: vertex {out} at ({_text(points[out])}) lies "
+                f"{(points[out] - x[0]) @ normal:.3g} m outside face {number} "
+                f"({'; '.join(map(_text, x[:4]))}); cut the block into convex ones"
             )
-        triangles += [(loop[0], loop[m], loop[m + 1]) for m in range(1, len(loop) - 1)]
-    sides = [tuple(sorted((t[a], t[a - 1]))) for t in triangles for a in range(3)]
+        loops.append(loop)
+    sides = [tuple(sorted((t[a], t[a - 1]))) for t in _fans(loops) for a in range(3)]
     open_sides = sorted(s for s in set(sides) if sides.count(s) != 2)
     if open_sides:
         raise MeshError(f"the faces of a polyhedron leave its edge {open_sides[0]} open")
-    return np.array(triangles)
+    return loops
 
 
 def place(mesh: Mesh, rotate=None, translate: Sequence[float] | None = None) -> Mesh:

@@ -11,7 +11,6 @@ neither strength nor stiffness depends on which side is meshed finer.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -40,10 +39,10 @@ class Overlaps:
     area: Floats
 
 
-def find_overlaps(t: Topology, bond: Callable[[str, str], bool]) -> Overlaps:
-    """Find all touching, coplanar, opposing, non-conforming faces of groups that are bonded."""
+def find_overlaps(t: Topology, bonded: NDArray[np.bool_]) -> Overlaps:
+    """Find all touching, coplanar, opposing, non-conforming faces of kinds that are bonded."""
     faces, first, weights_a, weights_b, areas = [], [0], [], [], []
-    for a, b in _candidates(t, bond):
+    for a, b in _candidates(t, bonded):
         polygon = clip(_corners(t, a), _corners(t, b))
         if polygon is None:
             continue
@@ -67,15 +66,11 @@ def _corners(t: Topology, face: int) -> Floats:
     return t.node_position[nodes[nodes >= 0]]
 
 
-def _candidates(t: Topology, bond: Callable[[str, str], bool]) -> list[tuple[int, int]]:
+def _candidates(t: Topology, bonded: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Pairs of free faces of different blocks whose boxes meet and whose planes agree."""
-    groups = len(t.group_names)
-    wanted = np.array([[bond(a, b) for b in t.group_names] for a in t.group_names], bool).reshape(
-        groups, groups
-    )
     free = np.ones(len(t.face_nodes), bool)
     free[t.pair_faces.ravel()] = False
-    free &= np.asarray(wanted.any(axis=1))[t.face_group]
+    free &= np.asarray(bonded.any(axis=1))[t.face_kind]
     ids = np.flatnonzero(free)
     if len(ids) < 2:
         return []
@@ -99,7 +94,7 @@ def _candidates(t: Topology, bond: Callable[[str, str], bool]) -> list[tuple[int
         j = j[((low[j] <= high[i]) & (high[j] >= low[i])).all(axis=1)]
         j = j[normal[j] @ normal[i] < -1 + COPLANAR]
         j = j[t.face_block[ids[j]] != t.face_block[ids[i]]]
-        j = j[wanted[t.face_group[ids[i]], t.face_group[ids[j]]]]
+        j = j[bonded[t.face_kind[ids[i]], t.face_kind[ids[j]]]]
         gap = np.abs((x[j].mean(axis=1) - x[i].mean(axis=0)) @ normal[i])
         j = j[gap < COPLANAR * np.minimum(size[i], size[j])]
         found += [(min(a, b), max(a, b)) for a, b in ((int(ids[i]), int(k)) for k in ids[j])]

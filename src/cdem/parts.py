@@ -77,12 +77,64 @@ class Block(Part):
     group: Name = Field(description="Group that the body belongs to")
     box: Box | None = Field(None, description="A box of elements")
     polyhedron: Polyhedron | None = Field(None, description="A convex polyhedron")
+    file: Name | None = Field(
+        None,
+        description="Convex bodies from a file, relative to the case file: each closed surface of an "
+        ".obj or .stl, each cell of a .vtu or .vtk, polyhedra too",
+    )
     rotate: Rotate | None = Field(None, description="Rotation of the body")
     translate: Length3 | None = Field(None, description="Shift of the body after its rotation [m]")
 
     @model_validator(mode="after")
     def _one_shape(self) -> Block:
-        _exactly_one(self, ("box", "polyhedron"))
+        _exactly_one(self, ("box", "polyhedron", "file"))
+        return self
+
+
+class Scatter(Part):
+    """How the planes of a set scatter about their mean direction."""
+
+    fisher: Annotated[float, Quantity("1", above=0)] = Field(
+        description="Concentration kappa [1]: 63 % of the normals lie within 81 deg / sqrt(kappa)"
+    )
+
+
+class Joint(Part):
+    """A set of joints: planes that cut bodies into blocks. x is east, y north, z up."""
+
+    name: Name = Field(
+        description="Name, unique in the case; its faces form a surface of this name"
+    )
+    group: Name | None = Field(None, description="Group that it cuts; all when left out")
+    dip: Annotated[float, Quantity("deg", at_least=0, at_most=90)] | None = Field(
+        None, description="Steepest angle of the planes below the horizontal [deg]"
+    )
+    dip_direction: Annotated[float, Quantity("deg", at_least=0, at_most=360)] | None = Field(
+        None, description="Where that steepest line points, clockwise from north [deg]"
+    )
+    normal: Direction3 | None = Field(
+        None, description="Normal of the planes, instead of dip and dip_direction [1]"
+    )
+    spacing: Annotated[float, Quantity("m", above=0)] | None = Field(
+        None, description="Distance between the planes [m]; one plane when left out"
+    )
+    origin: Length3 = Field([0.0, 0.0, 0.0], description="A point on one of the planes [m]")
+    persistence: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
+        1.0, description="Chance that a plane cuts a block that it meets [1]"
+    )
+    scatter: Scatter | None = Field(None, description="Scatter of the planes' directions")
+    seed: int = Field(0, ge=0, description="Another number gives other scatter and persistence")
+
+    @model_validator(mode="after")
+    def _one_direction(self) -> Joint:
+        given = [self.dip is not None, self.dip_direction is not None]
+        if self.normal is not None:
+            if any(given):
+                raise ValueError("give dip and dip_direction, or normal, not both")
+            if not any(self.normal):
+                raise ValueError("normal must not be [0, 0, 0]")
+        elif not all(given):
+            raise ValueError("give dip and dip_direction, or normal")
         return self
 
 
@@ -97,6 +149,14 @@ class Model(Part):
         {},
         description="What is one block, per group: the group, each connected part (default), "
         "or each element",
+    )
+    joints: list[Joint] = Field(
+        [], description="Sets of joints that cut the bodies, in this order, once all are in place"
+    )
+    thinnest: Annotated[float, Quantity("m", at_least=0)] | None = Field(
+        None,
+        description="Joints cut off no part thinner than this [m]; default a hundredth of the "
+        "smallest spacing",
     )
     rotate: Rotate | None = Field(None, description="Rotation of the whole model")
     translate: Length3 | None = Field(None, description="Shift of the whole model [m]")
@@ -160,17 +220,25 @@ class Interface(Part):
 
 
 class InterfacePair(Interface):
-    """The interface between two groups; what it does not say is taken from the default."""
+    """The interface between two groups, or in a set of joints; the rest is as in the default."""
 
     name: Name | None = Field(None, description="A name for use in paths, e.g. interfaces.bed")
-    between: list[Name] = Field(
-        min_length=2, max_length=2, description="Two groups, or one group twice"
+    between: list[Name] | None = Field(
+        None, min_length=2, max_length=2, description="Two groups, or one group twice"
+    )
+    joint: Name | None = Field(
+        None, description="Set of joints instead of groups: where two of its faces touch"
     )
     friction_angle: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
         None,  # type: ignore[assignment]  # until inherit() fills it in
         validate_default=False,
         description="Friction angle [deg]",
     )
+
+    @model_validator(mode="after")
+    def _one_place(self) -> InterfacePair:
+        _exactly_one(self, ("between", "joint"))
+        return self
 
 
 def _check_dilation(law: Interface, where: str) -> None:
@@ -186,7 +254,7 @@ def _check_dilation(law: Interface, where: str) -> None:
 
 
 class Interfaces(Part):
-    """Interfaces by pair of groups."""
+    """Interfaces by pair of groups, or by set of joints."""
 
     default: Interface | None = Field(None, description="For pairs of groups not listed in pairs")
     pairs: list[InterfacePair] = Field([], description="For the pairs of groups named")
@@ -195,9 +263,11 @@ class Interfaces(Part):
     def _complete_and_single(self) -> Interfaces:
         seen = set()
         for number, pair in enumerate(self.pairs):
-            if frozenset(pair.between) in seen:
-                raise ValueError(f"pairs.{number}: {' and '.join(pair.between)} are listed twice")
-            seen.add(frozenset(pair.between))
+            key = frozenset(pair.between) if pair.between else pair.joint
+            if key in seen:
+                what = f"{' and '.join(pair.between)} are" if pair.between else f"{pair.joint} is"
+                raise ValueError(f"pairs.{number}: {what} listed twice")
+            seen.add(key)
             if self.default is None and "friction_angle" not in pair.model_fields_set:
                 raise ValueError(
                     f"pairs.{number}: friction_angle is missing, and so is interfaces.default"
@@ -219,7 +289,7 @@ class Interfaces(Part):
     def between(self, group_a: str, group_b: str) -> Interface | None:
         """Return the interface of two groups, or None when the case says nothing about them."""
         for pair in self.pairs:
-            if set(pair.between) == {group_a, group_b}:
+            if pair.between and set(pair.between) == {group_a, group_b}:
                 return pair
         return self.default
 

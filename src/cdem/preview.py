@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.build import interfaces_of
 from cdem.scene import load_pyvista, snapshot
 
 if TYPE_CHECKING:
@@ -158,12 +159,17 @@ def _interfaces(panel: _Panel, sim: Simulation) -> None:
     t, names = sim.build.topology, sim.build.group_names
     pairs = np.concatenate([t.pair_faces, t.overlap_faces])
     groups = np.sort(t.face_group[pairs].reshape(-1, 2), axis=1)
-    for number, (a, b) in enumerate(np.unique(groups, axis=0)):
-        faces = pairs[(groups == (a, b)).all(axis=1), 0]
-        law = sim.case.interfaces.between(names[a], names[b])
-        assert law is not None  # or the model would not have been built
-        label = f"{names[a]} - {names[b]}: {len(faces):,} pair(s), {law.friction_angle:g} deg"
-        if sim.build.bonded[a, b]:
+    laws, table = interfaces_of(sim.case, names)
+    kinds = t.face_kind[pairs].reshape(-1, 2)
+    where = np.column_stack([groups, table[kinds[:, 0], kinds[:, 1]]])
+    for number, (a, b, index) in enumerate(np.unique(where, axis=0)):
+        faces = pairs[(where == (a, b, index)).all(axis=1), 0]
+        law = laws[index]
+        joint = f", joint {law.joint}" if getattr(law, "joint", None) else ""
+        label = (
+            f"{names[a]} - {names[b]}{joint}: {len(faces):,} pair(s), {law.friction_angle:g} deg"
+        )
+        if law.cohesion > 0 or law.tensile_strength > 0:
             label += f", bonded c {law.cohesion:.3g} T {law.tensile_strength:.3g} Pa"
         if a == b and len(faces) > MOST_INNER:
             panel.legend.append((label + " (not drawn)", "#ffffff"))

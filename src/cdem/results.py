@@ -200,6 +200,7 @@ def surface_of(
             "block": t.face_block[faces],
             **{name: values[t.face_element[faces]] for name, values in elements.items()},
             "broken": broken.astype(np.int8),
+            "joint": (t.face_kind // len(t.group_names))[faces],  # 0: not made by a set of joints
         },
     )
 
@@ -242,8 +243,8 @@ def pieces_of(sim: Simulation) -> NDArray[np.int32]:
     t = sim.build.topology
     laws, interface = interfaces_of(sim.case, sim.build.group_names)
     faces, intact = bonds_of(sim)
-    groups = t.face_group[faces]
-    holds = (intact > 0) & bonded_pairs(laws, interface)[groups[:, 0], groups[:, 1]]
+    kinds = t.face_kind[faces]
+    holds = (intact > 0) & bonded_pairs(laws, interface)[kinds[:, 0], kinds[:, 1]]
     a, b = t.face_block[faces[holds]].T
     piece = components(len(t.block_group), a, b)
     return piece[np.concatenate(list(t.element_block.values()))].astype(np.int32)

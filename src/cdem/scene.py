@@ -25,6 +25,7 @@ UNITS = {
     "group": "",
     "block": "",
     "piece": "",
+    "joint": "",
 }
 """Fields that `render` can colour by, with their units."""
 GOLDEN = 0.6180339887
@@ -133,7 +134,7 @@ class _Scene:
         last = series[len(series) - 1]
         values = self._values(last)
         self.high = float(np.nanpercentile(values, 99.5)) if len(values) else 1.0
-        if field in ("group", "block", "damage", "piece"):
+        if field in ("group", "block", "joint", "damage", "piece"):
             self.high = max(float(values.max()), 1.0)
         first = series[0]
         middle = series[(len(series) - 1) // 2]
@@ -193,7 +194,7 @@ class _Scene:
         plotter.add_mesh(
             mesh,
             scalars=name,
-            cmap={"group": "tab10", "piece": "tab20"}.get(self.field, "YlOrBr"),
+            cmap={"group": "tab10", "joint": "tab10", "piece": "tab20"}.get(self.field, "YlOrBr"),
             clim=(0.0, max(self.high, 1e-12)),
             show_edges=mesh.n_cells < 20000,
             edge_color="#444444",

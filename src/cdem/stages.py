@@ -106,7 +106,7 @@ def update_core(sim: Simulation, index: int) -> None:
     was = b.bonded
     now = building.bonded_pairs(laws, table)
     if (now & ~was).any():
-        i, j = np.argwhere(now & ~was)[0]
+        i, j = np.argwhere(now & ~was)[0] % len(names)
         raise CaseError(
             f"{sim.case.where(f'stages.{index}.set')}: stages.{index}.set: the interface of "
             f"{names[i]!r} and {names[j]!r} was not bonded at the start (cohesion and "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -51,6 +51,8 @@ class Topology:
         face_nodes: Exterior faces, (faces, 4), the fourth -1 for a triangle.
         face_block: Block of each face.
         face_group: Group of each face.
+        face_kind: What decides its interface: its group, plus the number of groups times
+            (1 + joint set) for a face that a set of joints made.
         face_element: Element behind each face; shapes in the order of `shapes.NODES`.
         face_edges: Edge from vertex k to k + 1, (faces, 4).
         edge_nodes: Exterior edges, (edges, 2).
@@ -81,6 +83,7 @@ class Topology:
     face_nodes: Ints = field(default_factory=lambda: np.zeros((0, 4), np.int32))
     face_block: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
     face_group: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
+    face_kind: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
     face_element: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
     face_edges: Ints = field(default_factory=lambda: np.zeros((0, 4), np.int32))
     edge_nodes: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
@@ -100,7 +103,8 @@ class Topology:
 def build_topology(
     mesh: Mesh,
     split: Mapping[str, str],
-    bond: Callable[[str, str], bool] | None = None,
+    joints: Sequence[str] = (),
+    bonded: NDArray[np.bool_] | None = None,
 ) -> Topology:
     """Divide a mesh into blocks and find what their faces touch.
 
@@ -108,13 +112,15 @@ def build_topology(
         mesh: The mesh.
         split: By group, what is one block: "one" (the whole group), "connected" (each connected
             part; the default) or "elements" (every element).
-        bond: Whether non-conforming touching faces of two groups are to be bonded.
+        joints: Sets of joints; the faces of each are the surface of its name.
+        bonded: Whether non-conforming touching faces of two kinds (see `Topology.face_kind`) are
+            to be bonded, shape (kinds, kinds).
 
     Raises:
         MeshError: An element is inverted or has no volume, or a point is not finite.
     """
     check_elements(mesh)
-    blocks = _blocks(mesh, split)
+    blocks = block_labels(mesh, split)
     topology = _nodes_and_elements(mesh, blocks)
     _faces(topology)
     _edges(topology)
@@ -122,8 +128,11 @@ def build_topology(
     topology.node_place = place[topology.node_point].astype(np.int32)
     _pairs(topology, place)
     _surfaces(topology, mesh)
-    if bond is not None:
-        found: Overlaps = find_overlaps(topology, bond)
+    topology.face_kind = topology.face_group.copy()
+    for number, name in enumerate(joints):
+        topology.face_kind[topology.surfaces[name]] += (1 + number) * len(mesh.group_names)
+    if bonded is not None:
+        found: Overlaps = find_overlaps(topology, bonded)
         topology.overlap_faces, topology.overlap_first = found.faces, found.first
         topology.overlap_weights_a, topology.overlap_weights_b = found.weights_a, found.weights_b
         topology.overlap_area = found.area
@@ -184,7 +193,7 @@ def components(count: int, a: NDArray, b: NDArray) -> NDArray:
             return label
 
 
-def _blocks(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
+def block_labels(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
     """A label of its block for every cell, shapes one after the other."""
     counts = [len(mesh.cells.get(s, ())) for s in NODES]
     group = np.concatenate(

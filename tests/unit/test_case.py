@@ -258,7 +258,7 @@ BAD = [  # what is written, what stands there instead, the message
     (
         ", polyhedron:",
         ", box: {size: [1, 1, 1]}, polyhedron:",
-        "model.blocks.1: give exactly one of box, polyhedron; got box and polyhedron",
+        "model.blocks.1: give exactly one of box, polyhedron, file; got box and polyhedron",
     ),
     (
         "size: [10, 4, 1]",

@@ -1,0 +1,62 @@
+"""A body cut by joints slides as its joints say: along the dip direction, with the joint's friction.
+
+Acceleration of what lies on a plane of dip t: g (sin t - cos t tan phi), down the dip direction.
+"""
+
+import numpy as np
+import pytest
+from scenes import simulate
+
+G, DIP, FRICTION = 9.81, 35.0, 15.0
+
+
+def upper_part(**joint):
+    """A cube cut in two, its lower part held; the default interface would hold the upper one."""
+    return simulate(
+        [{"group": "rock", "box": {"size": [2, 2, 2]}}],
+        {"rock": {}},
+        rock={"young_modulus": "1 GPa"},
+        model={"joints": [{"name": "bed", "origin": [1, 1, 1], **joint}]},
+        interfaces={
+            "default": {"friction_angle": 60},
+            "pairs": [{"joint": "bed", "friction_angle": FRICTION}],
+        },
+        loads={
+            "gravity": [0, 0, -G],
+            "supports": [{"box": {"min": [0, 0, 0], "max": [2, 2, 0.01]}, "fix": ["x", "y", "z"]}],
+        },
+        stages=[
+            {
+                "name": "run",
+                "mode": "dynamic",
+                "duration": 1.0,
+                "damping": {"contact": 0.3, "stiffness": 0.3},
+            }
+        ],
+    )
+
+
+def velocity(sim):
+    """Of the part that is not held [m/s]."""
+    fields, t = sim.fields, sim.build.topology
+    held = np.unique(t.node_block[sim.build.start_position[:, 2] < 0.01])
+    free = ~np.isin(t.node_block, held)
+    mass = fields["mass"][free]
+    return mass @ fields["velocity"][free] / mass.sum()
+
+
+@pytest.mark.parametrize("direction", [0.0, 90.0, 217.0])
+def test_slides_down_the_dip_direction_with_the_friction_of_the_joint(direction):
+    sim = upper_part(dip=DIP, dip_direction=direction)
+    assert len(sim.build.topology.block_group) == 2
+    t, azimuth = np.radians(DIP), np.radians(direction)
+    down = np.array([np.cos(t) * np.sin(azimuth), np.cos(t) * np.cos(azimuth), -np.sin(t)])
+    times, speeds = [], []
+    while sim.time < 0.2:
+        sim.step(200)
+        times.append(sim.time)
+        speeds.append(velocity(sim))
+    late = np.array(times) > 0.05
+    slope = np.polyfit(np.array(times)[late], np.array(speeds)[late], 1)[0]
+    exact = G * (np.sin(t) - np.cos(t) * np.tan(np.radians(FRICTION)))
+    assert slope == pytest.approx(exact * down, abs=3e-3 * exact)
