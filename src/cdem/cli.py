@@ -150,24 +150,36 @@ def critical(
         bool, typer.Option("--factor", help="Vary the factor of safety on all strengths instead.")
     ] = False,
     tolerance: Annotated[float, typer.Option(help="Width of the bracket to reach.")] = 0.01,
+    limits: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--criterion",
+            metavar="NAME=VALUE",
+            help="Another limit of failure: travel, far, stall_steps or most_steps; repeatable.",
+        ),
+    ] = None,
     settings: Settings = None,
     threads: Threads = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON at the end.")] = False,
 ) -> None:
     """Find the value at which a case fails, by bisection of its last, static stage.
 
-    A trial is stable when it comes to rest. It has failed when a node has moved 2 % of the mean face
-    size while the kinetic energy grew, or the whole of it, or goes on moving while the unbalance
-    ratio stalls, or found no rest in a million steps.
+    A trial is stable when it comes to rest. It has failed when a node has moved 2 % (travel) of the
+    mean face size while the kinetic energy grew, or the whole of it (far), or goes on moving at no
+    lower rate while the unbalance ratio stalls, or found no rest in a million steps. Trials start
+    from the last stable state, unless the parameter makes another model (model.*, materials.*).
     """
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
     from cdem import critical as search
     from cdem.case import Case
+    from cdem.criterion import Criterion
 
     case = Case.load(case_file, settings or [])
-    vary = search.parameter(parameter) if parameter else search.strength_reduction(case)
+    vary = search.parameter(parameter) if parameter else search.strength_reduction()
     name = parameter or "factor"
+    criterion = Criterion.read(limits or [])
+    print(f"a trial {criterion.text()}", file=sys.stderr)
 
     def report(trial: search.Trial, stable: float, failed: float) -> None:
         verdict = "stable" if trial.stable else "fails"
@@ -179,7 +191,13 @@ def critical(
         )
 
     found = search.find_critical(
-        case, vary, between, tolerance=tolerance, threads=threads, report=report
+        case,
+        vary,
+        between,
+        tolerance=tolerance,
+        criterion=criterion,
+        threads=threads,
+        report=report,
     )
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
@@ -226,7 +244,9 @@ def sweep(
             folder,
             workers=workers,
             scheduler=scheduler,
-            progress=None if show is None else lambda p: show(str(p.finished == p.total), *describe(p)),
+            progress=None
+            if show is None
+            else lambda p: show(str(p.finished == p.total), *describe(p)),
             should_stop=lambda: bool(stop),
         )
     paths = table.write(folder)

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from cdem.criterion import Criterion
 from cdem.errors import CaseError
 from cdem.fields import Name, Part, Quantity
 from cdem.formula import Formula, is_formula, unknown
@@ -142,6 +143,7 @@ class CriticalSearch(Part):
         min_length=2, max_length=2, description="A value that rests and one that fails; or formulas"
     )
     tolerance: Positive = Field(0.01, description="Width of the bracket to reach")
+    criterion: Criterion = Field(Criterion(), description="What counts as failed")
 
     @model_validator(mode="after")
     def _one_target(self) -> CriticalSearch:

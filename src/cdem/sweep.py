@@ -15,6 +15,7 @@ from typing import Any
 from cdem import __version__, sampling
 from cdem.case import Case
 from cdem.checkpoint import write_json_atomic
+from cdem.criterion import Criterion
 from cdem.errors import BackendError, CaseError, CdemError
 from cdem.formula import Formula, is_formula
 from cdem.progress import clock
@@ -325,9 +326,16 @@ def _search(case: Case, search: dict[str, Any]) -> dict[str, Any]:
     """Find the critical value as `cdem critical` does."""
     from cdem.critical import find_critical, parameter, strength_reduction
 
-    vary = strength_reduction(case) if search["factor"] else parameter(search["parameter"])
+    vary = strength_reduction() if search["factor"] else parameter(search["parameter"])
     low, high = search["between"]
-    found = find_critical(case, vary, (low, high), tolerance=search["tolerance"], threads=1)
+    found = find_critical(
+        case,
+        vary,
+        (low, high),
+        tolerance=search["tolerance"],
+        criterion=Criterion(**search["criterion"]),
+        threads=1,
+    )
     return {"status": "found", "critical": found.as_dict()}
 
 
