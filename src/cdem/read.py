@@ -310,11 +310,18 @@ def explain(
         root: The model of the whole data.
         within: Path of the part that was validated, if not the whole.
     """
+    return source.error(problems_of(error, root, within))
+
+
+def problems_of(
+    error: ValidationError, root: type[BaseModel], within: Keys = ()
+) -> list[tuple[Keys, str]]:
+    """Path of each error that pydantic found, and what is wrong there in our words."""
     problems = []
     for detail in error.errors(include_url=False):
         keys, model = _real_path(root, (*within, *detail["loc"]))
         problems.append((keys, _words(detail, keys, model)))
-    return source.error(problems)
+    return problems
 
 
 def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] | None]:

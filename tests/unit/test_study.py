@@ -42,7 +42,7 @@ FRICTION = "interfaces.default.friction_angle"
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("paramters: {}", "study.yaml:2:1: paramters: unknown key; did you mean parameters?"),
+        ("paramaters: {}", "study.yaml:2:1: paramaters: unknown key; did you mean parameters?"),
         ("parameters: {}", "parameters: needs at least 1 entry, got 0"),
         (
             "parameters: {a.b: {}}",
