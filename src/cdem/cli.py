@@ -127,11 +127,14 @@ def check(
 
 
 @app.command()
-def schema() -> None:
-    """Print the JSON schema of a case, for editors."""
+def schema(
+    of: Annotated[Literal["case", "study"], typer.Argument(help="Kind of file.")] = "case",
+) -> None:
+    """Print the JSON schema of a case or a study, for editors."""
     from cdem.case import Case
+    from cdem.study import Study
 
-    print(json.dumps(Case.schema(), indent=2))
+    print(json.dumps((Case if of == "case" else Study).schema(), indent=2))
 
 
 # ------------------------------------------------------------------ running

@@ -17,6 +17,8 @@ from cdem.read import Keys, Source, explain, load_case_data, plain
 Number = Annotated[float, Quantity("1")]
 Positive = Annotated[float, Quantity("1", above=0)]
 CRITICAL_RESULTS = ("value", "stable", "failed", "trials", "steps")
+COLUMNS = ("run", "status", "wall_time", "error")
+"""Columns of every table, whose names a study cannot use for others."""
 KINDS = ("values", "grid", "uniform", "normal", "lognormal", "triangular")
 
 
@@ -265,6 +267,17 @@ class Study(Part):
         """The case file."""
         return self._source.folder / self.case
 
+    @classmethod
+    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
+        """Return the JSON schema of a study file, for editors."""
+        whole = cls.model_json_schema() | {"title": "cdem study"}
+        fields = whole["properties"]  # two of which may be lists for short
+        parameter = fields["parameters"]["additionalProperties"]
+        fields["parameters"]["additionalProperties"] = {"anyOf": [parameter, {"type": "array"}]}
+        names = {"type": "array", "items": {"type": "string"}}
+        fields["results"] = {"anyOf": [fields["results"], names]}
+        return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole
+
     def error(self, keys: Keys, what: str) -> CaseError:
         """An error about one place of the study."""
         return self._source.error([(keys, what)])
@@ -298,6 +311,9 @@ def _contradictions(study: Study) -> Iterator[tuple[Keys, str]]:
         if name in study.parameters:
             yield ("results", name), "is the name of a parameter, too"
         known.append(name)
+    for field, names in (("parameters", study.parameters), ("results", study.results)):
+        for name in set(names) & set(COLUMNS):
+            yield (field, name), "is the name of a column of every table; choose another"
     yield from _parameters(study, used)
     yield from _plots(study)
     if study.critical:

@@ -42,7 +42,7 @@ FRICTION = "interfaces.default.friction_angle"
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("paramaters: {}", "study.yaml:2:1: paramaters: unknown key; did you mean parameters?"),
+        ("parameterz: {}", "study.yaml:2:1: parameterz: unknown key; did you mean parameters?"),
         ("parameters: {}", "parameters: needs at least 1 entry, got 0"),
         (
             "parameters: {a.b: {}}",
@@ -60,6 +60,7 @@ FRICTION = "interfaces.default.friction_angle"
         ("parameters: {phi: [1]}\nset: {a.b: = 1 +}", "is no formula"),
         ("parameters: {a.b: [1], c.d: [1, 2]}\ncombine: together", "there are: a.b 1, c.d 2"),
         ("parameters: {a.b: [1]}\ncritical: {between: [1, 2]}", "give either parameter or factor"),
+        ("parameters: {a.b: [1]}\nresults: {error: time}", "a column of every table"),
         ("parameters: {a.b: [1]}\nplots: [{lines: x}]", "lines needs x"),
         ("parameters: {a.b: [1]}\nplots: [{lines: f, x: a.c}]", "'a.c' is not known; did you"),
         (
