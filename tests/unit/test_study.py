@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +14,8 @@ from cdem.formula import Formula
 from cdem.sampling import draw, quantile, rows
 from cdem.study import Parameter, Sampling, Study
 from cdem.sweep import plan
+from cdem.sweep_plots import effects
+from cdem.table import Table, collect
 
 CASE = """\
 model: {blocks: [{group: cube, box: {size: [1, 1, 1]}}]}
@@ -208,3 +212,49 @@ def test_limits_cut_a_distribution_off():
     assert quantile(normal, 0.999999) == pytest.approx(1, abs=1e-5)
     lognormal = Parameter(lognormal={"mean": 1, "deviation": 1, "low": 0.5})
     assert quantile(lognormal, 0.0) == pytest.approx(0.5)
+
+
+def table_of(study: Study, of) -> Table:
+    """The table of a study whose runs gave the number that `of` makes of their parameters."""
+    runs = plan(study, Path("out"))
+    for run in runs:
+        result = {"f": of(*run.parameters.values()), "text": "x", "list": [1.0, None]}
+        run.result = {"status": "finished", "summary": result, "histories": {"toe.x [m]": 2.0}}
+    return Table(study, runs)
+
+
+def test_effects_of_lists_and_of_drawn_values(study):
+    """One at a time: the other parameter stays at its first value. Drawn: rank correlations."""
+    alone = study(
+        "parameters: {a: [1, 2, 4], b: [10, 30]}\ncombine: one-at-a-time\n"
+        "set: {loads.gravity: [0, = a, = b]}\nresults: [f]"
+    )
+    assert effects(table_of(alone, lambda a, b: a * b), "f") == {"a": (10, 40), "b": (10, 30)}
+    drawn = study(
+        "parameters: {a: {uniform: {low: 1, high: 2}}, b: {uniform: {low: 0, high: 1}}}\n"
+        "sampling: {count: 100}\nset: {loads.gravity: [0, = a, = b]}\nresults: [f]"
+    )
+    found = effects(table_of(drawn, lambda a, b: math.exp(-5 * a) + 1e-9 * b), "f")
+    assert found["a"] == (0, pytest.approx(-1))  # however curved
+    assert abs(found["b"][1]) < 0.3
+
+
+def test_the_table_reads_back_to_the_same_bits(study, tmp_path):
+    whole = study(
+        "parameters: {loads.gravity.2: {values: [-10, -0.1], unit: m/s2}}\n"
+        "results: {f: f, toe: histories.toe.x, none: list.1, root: = sqrt(f)}"
+    )
+    table = table_of(whole, lambda g: g / 3)
+    paths = table.write(tmp_path)
+    first, second = csv.DictReader(paths[0].open())
+    assert first["loads.gravity.2 [m/s2]"] == "-10"
+    assert (float(second["f"]), second["toe"], second["none"]) == (-0.1 / 3, "2.0", "")
+    assert first["root"] == ""  # of a number below zero
+    if len(paths) > 1:  # with pyarrow
+        from pyarrow import parquet
+
+        columns = parquet.read_table(paths[1]).to_pydict()
+        assert columns["f"] == [-10 / 3, -0.1 / 3] and columns["none"] == [None, None]
+    assert set(collect(study("parameters: {loads.gravity.2: [1]}"), table.runs[0])) == {
+        "f", "list.0", "list.1", "histories.toe.x",
+    }  # fmt: skip
