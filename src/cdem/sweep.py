@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -235,10 +236,16 @@ def _identity(case: Case, search: dict[str, Any] | None) -> str:
     """Hash of all that a result depends on; a mesh counts by what it holds."""
     data = case.model_dump(mode="json")
     if case.model.mesh is not None:
-        content = case.path_of(case.model.mesh).read_bytes()
-        data["model"]["mesh"] = hashlib.sha256(content).hexdigest()
+        mesh = case.path_of(case.model.mesh)
+        data["model"]["mesh"] = _digest(mesh, mesh.stat().st_mtime_ns)
     whole = {"case": data, "critical": search, "version": __version__}
     return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
+
+
+@lru_cache(maxsize=8)
+def _digest(mesh: Path, changed: int) -> str:
+    """Hash of a mesh file; read once, not for every run."""
+    return hashlib.sha256(mesh.read_bytes()).hexdigest()
 
 
 def _open(folder: Path, study: Study) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import cdem
 from cdem.errors import CaseError
 from cdem.formula import Formula
 from cdem.sampling import draw, quantile, rows
@@ -129,7 +130,7 @@ def test_formulas_and_units_reach_the_case(study, tmp_path):
     assert case["loads"]["gravity"] == [0, -40.0, 0]
 
 
-def test_identity_is_that_of_case_action_and_mesh(study, tmp_path):
+def test_identity_is_that_of_case_and_action(study, tmp_path):
     """The same case by another way is the same run; another title of the study changes nothing."""
     [one] = plan(study(f"parameters: {{{FRICTION}: [20]}}"), tmp_path)
     [same] = plan(
@@ -142,6 +143,20 @@ def test_identity_is_that_of_case_action_and_mesh(study, tmp_path):
     )
     assert one.identity == same.identity
     assert len({run.identity for run in (one, other, sought)}) == 3
+
+
+def test_a_mesh_counts_by_what_it_holds(tmp_path):
+    """Another folder is the same run; another mesh in a file of the same name is not."""
+    home = Path(cdem.__file__).parent / "templates"
+
+    def identity(folder: str, more: str) -> str:
+        (tmp_path / folder).mkdir()
+        for name in ("slope.yaml", "slope.msh"):
+            (tmp_path / folder / name).write_text((home / name).read_text() + more)
+        study = Study(case=str(tmp_path / folder / "slope.yaml"), parameters={"time.safety": [0.5]})
+        return plan(study, tmp_path)[0].identity
+
+    assert identity("a", "") == identity("b", "") != identity("c", "\n")
 
 
 @pytest.mark.parametrize(

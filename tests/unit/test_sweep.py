@@ -59,7 +59,7 @@ def cluster():
     from distributed import LocalCluster
 
     with LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     ) as cluster:
         yield cluster
 
@@ -163,7 +163,7 @@ def test_a_scheduler_that_is_killed_is_said_and_the_sweep_goes_on(folder, cluste
             lost.close()
         return False
 
-    with LocalCluster(n_workers=1, dashboard_address=None, silence_logs=50) as lost:
+    with LocalCluster(n_workers=1, dashboard_address=":0", silence_logs=50) as lost:
         address = lost.scheduler_address
         with pytest.raises(BackendError, match="scheduler is gone; finished runs are kept"):
             run_study("study.yaml", "out", scheduler=address, should_stop=end)
