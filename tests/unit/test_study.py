@@ -151,9 +151,11 @@ def test_a_mesh_counts_by_what_it_holds(tmp_path):
 
     def identity(folder: str, more: str) -> str:
         (tmp_path / folder).mkdir()
-        for name in ("slope.yaml", "slope.msh"):
+        for name in ("landslide.yaml", "slope.msh"):
             (tmp_path / folder / name).write_text((home / name).read_text() + more)
-        study = Study(case=str(tmp_path / folder / "slope.yaml"), parameters={"time.safety": [0.5]})
+        study = Study(
+            case=str(tmp_path / folder / "landslide.yaml"), parameters={"time.safety": [0.5]}
+        )
         return plan(study, tmp_path)[0].identity
 
     assert identity("a", "") == identity("b", "") != identity("c", "\n")
