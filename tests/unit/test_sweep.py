@@ -16,6 +16,7 @@ import pytest
 pytest.importorskip("distributed")
 psutil = pytest.importorskip("psutil")
 
+from cdem import cli  # noqa: E402
 from cdem.errors import BackendError, CaseError  # noqa: E402
 from cdem.study import Study  # noqa: E402
 from cdem.sweep import run_study  # noqa: E402
@@ -30,6 +31,7 @@ interfaces: {default: {friction_angle: 30}}
 loads: {gravity: [0, 0, -10]}
 stages: [{name: fall, mode: dynamic, duration: 0.05}]
 histories: [{name: top, point: [0, 0, 1], quantities: [displacement]}]
+output: {frames: false}
 """
 STUDY = """\
 case: cube.yaml
@@ -72,14 +74,15 @@ def results_of(folder: Path) -> dict[str, float]:
 def slow(folder: Path, seconds: float) -> None:
     """Make each of six runs take about as long."""
     case = CASE.replace("duration: 0.05", f"duration: {10 * seconds}")
-    (folder / "cube.yaml").write_text(case.replace("histories", "output: {every: 100}\nhistories"))
+    (folder / "cube.yaml").write_text(case.replace("frames: false", "frames: false, every: 100"))
     (folder / "study.yaml").write_text(
         "case: cube.yaml\nparameters: {groups.cube.velocity.0: [1, 2, 3, 4, 5, 6]}"
     )
 
 
-def test_a_sweep_from_the_command_line(cdem, folder):
+def test_a_sweep_from_the_command_line(cdem, folder, monkeypatch):
     """Two of six runs fail, the others are those of `cdem run`; asked again, nothing is repeated."""
+    monkeypatch.setattr(cli, "_write_report", lambda folder, silent: None)  # it takes seconds
     status, out, err = cdem("sweep", "study.yaml", "--workers", "2", "-o", "out")
     assert status == 3
     assert err.count("failed: ") == 2 and "moves at 1e+06 m/s" in err
