@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 
 import cdem
+from cdem.case import Case
 from cdem.errors import CaseError
 from cdem.formula import Formula
 from cdem.sampling import draw, quantile, rows
+from cdem.simulation import Simulation
 from cdem.study import Parameter, Sampling, Study
-from cdem.sweep import plan
+from cdem.sweep import execute, plan
 from cdem.sweep_plots import effects
 from cdem.table import Table, collect
 
@@ -25,6 +27,7 @@ groups: {cube: {material: rock}}
 interfaces: {default: {friction_angle: 30, cohesion: 0}}
 loads: {gravity: [0, 0, -10]}
 stages: [{name: fall, mode: dynamic, duration: "5 ms"}]
+output: {frames: false}
 """
 
 
@@ -275,3 +278,22 @@ def test_the_table_reads_back_to_the_same_bits(study, tmp_path):
     assert set(collect(study("parameters: {loads.gravity.2: [1]}"), table.runs[0])) == {
         "f", "list.0", "list.1", "histories.toe.x",
     }  # fmt: skip
+
+
+def test_a_kept_run_goes_on_from_its_checkpoint(study, tmp_path):
+    """To the bit as if it had not been broken off; a second time it is not executed at all."""
+    text = "parameters: {stages.fall.duration: [0.1]}\nkeep: true"
+    [broken] = plan(study(text), tmp_path / "broken")
+    [whole] = plan(study(text), tmp_path / "whole")
+    folder = tmp_path / "broken/runs" / broken.name / "results"
+    half = Simulation(Case.from_dict(broken.task["case"]), threads=1, output=folder)
+    assert half.run(should_stop=lambda: half.time > 0.02) == "stopped"
+    before = half.step_count
+
+    found, expected = execute(broken.task), execute(whole.task)
+    assert f"resumed at step {before}" in (folder / "run.log").read_text()
+    for key in ("groups", "energies", "steps"):
+        assert found["summary"][key] == expected["summary"][key]
+    stamp = (folder / "summary.json").stat().st_mtime
+    assert execute(broken.task) == found
+    assert (folder / "summary.json").stat().st_mtime == stamp
