@@ -71,7 +71,7 @@ def _lines(table: Table, plot: Plot, axes: Any) -> None:
         here = here[np.argsort(x[here], kind="stable")]
         color = f"C{number % 10}"
         single = len(np.unique(x[here])) == len(here)  # one value of y for each x: a line
-        name = f"{label_of(table.study, plot.by)} = {key}" if plot.by else None
+        name = key.removesuffix(".0") if plot.by else None
         if beside is not None:
             axes.plot(x[here], beside[here], "-" if single else "x", color=color, lw=0.9, alpha=0.7)
         style = "o" if beside is not None or not single else "o-"
@@ -80,7 +80,8 @@ def _lines(table: Table, plot: Plot, axes: Any) -> None:
         axes.plot([], [], "-", color="gray", lw=0.9, label=plot.beside)
     axes.set(xlabel=label_of(table.study, plot.x), ylabel=plot.label or plot.result)
     if plot.by or plot.beside:
-        axes.legend(frameon=False, fontsize=8)
+        heading = label_of(table.study, plot.by) if plot.by else None
+        axes.legend(frameon=False, fontsize=8, title=heading, title_fontsize=8)
 
 
 def _map(table: Table, plot: Plot, axes: Any) -> None:
