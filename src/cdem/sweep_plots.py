@@ -28,7 +28,7 @@ def draw_all(table: Table, folder: Path) -> list[Path]:
     plt = pyplot()
     paths = []
     for i, plot in enumerate(table.study.plots):
-        figure, axes = plt.subplots(figsize=(6.0, 4.2))
+        figure, axes = plt.subplots(figsize=(6.0, 4.6))
         try:
             {"lines": _lines, "map": _map, "tornado": _tornado}[plot.kind](table, plot, axes)
         except ValueError as error:
@@ -81,7 +81,8 @@ def _lines(table: Table, plot: Plot, axes: Any) -> None:
     axes.set(xlabel=label_of(table.study, plot.x), ylabel=plot.label or plot.result)
     if plot.by or plot.beside:
         heading = label_of(table.study, plot.by) if plot.by else None
-        axes.legend(frameon=False, fontsize=8, title=heading, title_fontsize=8)
+        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "ncols": 5}
+        axes.legend(frameon=False, fontsize=8, title=heading, title_fontsize=8, **below)
 
 
 def _map(table: Table, plot: Plot, axes: Any) -> None:
