@@ -26,7 +26,15 @@ from cdem.parts import (
     Stage,
     Time,
 )
-from cdem.read import Source, explain, load_case_data, plain, replace_at, resolve
+from cdem.read import (
+    Source,
+    explain,
+    load_case_data,
+    plain,
+    problems_of,
+    replace_at,
+    resolve,
+)
 
 
 class Case(Part):
@@ -66,13 +74,21 @@ class Case(Part):
     _source: Source = PrivateAttr(default_factory=Source)
 
     def __init__(self, _source: Source | None = None, **data: Any) -> None:
-        source = _source or Source()
+        source, data = _source or Source(), plain(data, _source or Source())
+        problems: list[case_checks.Problem] = []
         try:
-            super().__init__(**plain(data, source))
+            super().__init__(**data)
         except ValidationError as error:
-            raise explain(error, source, Case) from None
+            problems = problems_of(error, Case)
+            try:  # so that names are checked, too, if all the rest is sound
+                super().__init__(**case_checks.without(data, problems))
+            except ValidationError:
+                raise source.error(problems) from None
         self._source = source
-        problems = case_checks.contradictions(self) or case_checks.stage_settings(self)
+        names = case_checks.contradictions(self)
+        if not problems:  # else settings might fail for what was left out
+            problems = case_checks.stage_settings(self, names)
+        problems += names
         if problems:
             raise source.error(problems)
 

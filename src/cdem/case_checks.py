@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Iterator, Sequence
+from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
 from cdem.errors import CaseError
@@ -105,8 +106,31 @@ def _unique_names(case: Case) -> Iterator[Problem]:
                 seen.add(entry.name)
 
 
-def stage_settings(case: Case) -> list[Problem]:
-    """Try the ``set`` of all stages in turn on a copy; return what does not work."""
+def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]:
+    """Leave out the values that are wrong, so that the rest of a case can be looked at.
+
+    Groups, materials and entries of lists stay: without them the rest would look wrong.
+    """
+    rest = deepcopy(data)
+    for keys, _ in problems:
+        node: Any = rest
+        for key in keys[:-1]:
+            inside = node.get(key) if isinstance(node, dict) else None
+            if isinstance(node, list) and isinstance(key, int) and key < len(node):
+                inside = node[key]
+            node = inside
+        if isinstance(node, dict) and keys[:-1] not in (("groups",), ("materials",)):
+            node.pop(keys[-1], None)
+    return rest
+
+
+def stage_settings(case: Case, known: Sequence[Problem]) -> list[Problem]:
+    """Try the ``set`` of all stages in turn on a copy; return what does not work.
+
+    Args:
+        case: The case.
+        known: What is wrong with it already, which is not repeated.
+    """
     trial = case.model_copy(deep=True)
     trial._source = Source()  # so that errors name no line; the line is that of the setting
     problems: list[Problem] = []
@@ -125,6 +149,7 @@ def stage_settings(case: Case) -> list[Problem]:
         problems += [
             (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
             for keys, what in _names(trial)
+            if (keys, what) not in known
         ]
     return problems
 

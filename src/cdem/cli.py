@@ -138,11 +138,14 @@ def check(
 
 
 @app.command()
-def schema() -> None:
-    """Print the JSON schema of a case, for editors."""
+def schema(
+    of: Annotated[Literal["case", "study"], typer.Argument(help="Kind of file.")] = "case",
+) -> None:
+    """Print the JSON schema of a case or a study, for editors."""
     from cdem.case import Case
+    from cdem.study import Study
 
-    print(json.dumps(Case.schema(), indent=2))
+    print(json.dumps((Case if of == "case" else Study).schema(), indent=2))
 
 
 # ------------------------------------------------------------------ running
@@ -161,24 +164,36 @@ def critical(
         bool, typer.Option("--factor", help="Vary the factor of safety on all strengths instead.")
     ] = False,
     tolerance: Annotated[float, typer.Option(help="Width of the bracket to reach.")] = 0.01,
+    limits: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--criterion",
+            metavar="NAME=VALUE",
+            help="Another limit of failure: travel, far, stall_steps or most_steps; repeatable.",
+        ),
+    ] = None,
     settings: Settings = None,
     threads: Threads = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON at the end.")] = False,
 ) -> None:
     """Find the value at which a case fails, by bisection of its last, static stage.
 
-    A trial is stable when it comes to rest. It has failed when a node has moved 2 % of the mean face
-    size while the kinetic energy grew, or the whole of it, or goes on moving while the unbalance
-    ratio stalls, or found no rest in a million steps.
+    A trial is stable when it comes to rest. It has failed when a node has moved 2 % (travel) of the
+    mean face size while the kinetic energy grew, or the whole of it (far), or goes on moving at no
+    lower rate while the unbalance ratio stalls, or found no rest in a million steps. Trials start
+    from the last stable state, unless the parameter makes another model (model.*, materials.*).
     """
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
     from cdem import critical as search
     from cdem.case import Case
+    from cdem.criterion import Criterion
 
     case = Case.load(case_file, settings or [])
-    vary = search.parameter(parameter) if parameter else search.strength_reduction(case)
+    vary = search.parameter(parameter) if parameter else search.strength_reduction()
     name = parameter or "factor"
+    criterion = Criterion.read(limits or [])
+    print(f"a trial {criterion.text()}", file=sys.stderr)
 
     def report(trial: search.Trial, stable: float, failed: float) -> None:
         verdict = "stable" if trial.stable else "fails"
@@ -190,12 +205,91 @@ def critical(
         )
 
     found = search.find_critical(
-        case, vary, between, tolerance=tolerance, threads=threads, report=report
+        case,
+        vary,
+        between,
+        tolerance=tolerance,
+        criterion=criterion,
+        threads=threads,
+        report=report,
     )
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:
         print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+
+
+@app.command()
+def sweep(
+    study_file: Annotated[Path, typer.Argument(metavar="STUDY.yaml", help="Study file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for all results; default STUDY.sweep, here."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Local processes, of one thread; default all cores.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Use this Dask scheduler instead.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
+) -> None:
+    """Run a study: many variants of a case. What is finished is never repeated.
+
+    Ctrl-C ends it; the same command goes on. Exit status 3 says that runs have failed.
+    """
+    if quiet and as_json:
+        raise typer.BadParameter("--quiet and --json exclude one another")
+    if workers and scheduler:
+        raise typer.BadParameter("--workers and --scheduler exclude one another")
+    from cdem.progress import line
+    from cdem.study import Study
+    from cdem.sweep import describe, run_study
+
+    folder = output or Path(f"{study_file.stem}.sweep")
+    tty = sys.stderr.isatty()
+    with (
+        _stop_on_signal("stopping, finished runs are kept") as stop,
+        line(silent=quiet or (as_json and not tty), tty=tty) as show,
+    ):
+        table = run_study(
+            Study.load(study_file),
+            folder,
+            workers=workers,
+            scheduler=scheduler,
+            progress=None
+            if show is None
+            else lambda p: show(str(p.finished == p.total), *describe(p)),
+            should_stop=lambda: bool(stop),
+        )
+    paths = table.write(folder)
+    if not quiet:
+        paths += _draw_plots(table, folder)
+    if as_json:
+        print(json.dumps(table.as_dict(), indent=2))
+    elif not quiet:
+        _print_paths(paths)
+    for run in table.failed:
+        print(f"failed: {run.text()}", file=sys.stderr)
+    if table.waiting:
+        print(f"stopped; {table.waiting} runs are left: the same command goes on", file=sys.stderr)
+        raise typer.Exit(STOPPED)
+    if table.failed:
+        raise typer.Exit(3)
+
+
+def _draw_plots(table: Any, folder: Path) -> list[Path]:
+    """Draw a study's plots; the table is whole without them, so a missing extra is only said."""
+    from cdem.sweep_plots import draw_all
+
+    try:
+        return draw_all(table, folder / "plots")
+    except CaseError:
+        raise
+    except CdemError as error:
+        print(f"no plots: {error}", file=sys.stderr)
+        return []
 
 
 @app.command()
@@ -390,7 +484,7 @@ def _compare_cases(case: Any, folder: Path) -> None:
 
 
 @contextmanager
-def _stop_on_signal() -> Iterator[list[str]]:
+def _stop_on_signal(kept: str = "stopping with a checkpoint") -> Iterator[list[str]]:
     """Collect SIGINT and SIGTERM instead of dying; a second one interrupts at once."""
     received: list[str] = []
 
@@ -398,7 +492,7 @@ def _stop_on_signal() -> Iterator[list[str]]:
         if received:
             raise KeyboardInterrupt
         received.append(signal.Signals(number).name)
-        print(f"\n{received[0]}: stopping with a checkpoint; again: at once", file=sys.stderr)
+        print(f"\n{received[0]}: {kept}; again: at once", file=sys.stderr)
 
     before = {number: signal.signal(number, receive) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

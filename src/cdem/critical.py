@@ -11,18 +11,9 @@ import numpy as np
 from cdem import stages
 from cdem.case import Case
 from cdem.case_checks import SETTABLE
+from cdem.criterion import Criterion
 from cdem.errors import CaseError, UnstableError
 from cdem.simulation import CHECK_INTERVAL, Simulation
-
-TRAVEL = 0.02
-"""A trial has failed when a node has moved this part of the mean face size, ever faster."""
-FAR = 1.0
-"""A trial has failed when a node has moved this part of the mean face size, in any way."""
-STALL_STEPS = 10_000
-"""A trial has failed when its unbalance ratio came no lower in as many steps, in which nodes moved
-farther than in all steps before."""
-MOST_STEPS = 1_000_000
-"""A trial that has not come to rest in so many steps counts as failed."""
 
 Apply = Callable[[Case, float], None]
 
@@ -51,11 +42,13 @@ class Critical:
     Attributes:
         stable: The last value at which the case rests.
         failed: The nearest value at which it fails.
+        criterion: What counted as failed.
         trials: All values tried, in order.
     """
 
     stable: float
     failed: float
+    criterion: Criterion
     trials: list[Trial] = field(default_factory=list)
 
     @property
@@ -69,34 +62,49 @@ class Critical:
             "value": self.value,
             "stable": self.stable,
             "failed": self.failed,
+            "criterion": self.criterion.model_dump(),
             "trials": [vars(t) for t in self.trials],
         }
 
 
+@dataclass(frozen=True)
+class _OneValue:
+    """Put one value into a case."""
+
+    path: str
+
+    @property
+    def makes_a_model(self) -> bool:
+        """Whether another value makes another model, which no state of an earlier trial fits."""
+        return not self.path.startswith(SETTABLE)
+
+    def __call__(self, case: Case, value: float) -> None:
+        case.set(self.path, value)
+
+
 def parameter(path: str) -> Apply:
-    """Vary one value of the case, e.g. ``interfaces.bed.friction_angle`` (plain units).
+    """Vary one value of the case, e.g. ``interfaces.bed.friction_angle`` (plain units)."""
+    return _OneValue(path)
 
-    Raises:
-        CaseError: A stage cannot change that value.
+
+def strength_reduction() -> Apply:
+    """Divide cohesion, tensile strength and tan(phi) of all interfaces by the varied factor.
+
+    The strengths are those that hold in the last stage, its own settings included.
     """
-    if not path.startswith(SETTABLE):
-        allowed = ", ".join(f"{start}*" for start in SETTABLE)
-        raise CaseError(
-            f"{path}: only {allowed} can be varied; another mesh or rock is another case"
-        )
-    return lambda case, value: case.set(path, value)
-
-
-def strength_reduction(case: Case) -> Apply:
-    """Divide cohesion, tensile strength and tan(phi) of all interfaces by the varied factor."""
-    laws = [law for law in (case.interfaces.default, *case.interfaces.pairs) if law is not None]
-    strength = [(law.cohesion, law.tensile_strength, law.friction_angle) for law in laws]
-    places = ["default"] * (case.interfaces.default is not None)
-    places += [f"pairs.{i}" for i in range(len(case.interfaces.pairs))]
+    strength: dict[str, tuple[float, float, float]] = {}
 
     def apply(case: Case, factor: float) -> None:
-        for place, (cohesion, tension, angle) in zip(places, strength, strict=True):
-            path = f"interfaces.{place}"
+        if not strength:  # the first trial: nothing is reduced yet
+            laws = {"default": case.interfaces.default} | {
+                f"pairs.{i}": law for i, law in enumerate(case.interfaces.pairs)
+            }
+            strength.update(
+                (f"interfaces.{place}", (law.cohesion, law.tensile_strength, law.friction_angle))
+                for place, law in laws.items()
+                if law is not None
+            )
+        for path, (cohesion, tension, angle) in strength.items():
             case.set(f"{path}.cohesion", cohesion / factor)
             case.set(f"{path}.tensile_strength", tension / factor)
             less = np.degrees(np.arctan(np.tan(np.radians(angle)) / factor))
@@ -111,6 +119,7 @@ def find_critical(
     between: tuple[float, float],
     *,
     tolerance: float,
+    criterion: Criterion | None = None,
     threads: int | None = None,
     report: Callable[[Trial, float, float], None] | None = None,
 ) -> Critical:
@@ -118,16 +127,17 @@ def find_critical(
 
     All stages but the last prepare the case with its own values. Each trial sets the value and runs
     the last stage, which must be static, from the state of the last stable trial. It is stable when
-    the unbalance ratio falls below the stage's tolerance. It has failed when a node has moved by
-    `TRAVEL` of the mean face size while the kinetic energy grew, or by `FAR` in any way, or goes on
-    moving while the unbalance ratio stalls (`STALL_STEPS`), or when there is no rest in `MOST_STEPS`
-    steps (or the stage's ``max_steps``).
+    the unbalance ratio falls below the stage's tolerance, and failed by the `criterion`.
+
+    Where every value of a `parameter` makes another model (its geometry, its rock), each trial builds
+    it and runs all stages; then every static stage has to come to rest.
 
     Args:
         case: Is changed: it ends with the last value tried.
         apply: Puts a value into the case; see `parameter` and `strength_reduction`.
         between: Two values, one stable and one not, in either order.
         tolerance: Width of the bracket at which the search ends.
+        criterion: What counts as failed; by default that of `Criterion`.
         threads: Threads of the core; None for all.
         report: Called after every trial with the trial and the bracket (stable, failed) so far.
 
@@ -140,23 +150,18 @@ def find_critical(
         raise CaseError(f"{where}: the last stage must be static: it decides what comes to rest")
     if not tolerance > 0:
         raise CaseError(f"tolerance {tolerance}: must be above zero")
-    sim = Simulation(case, threads=threads)
-    while sim.stage_index < len(case.stages) - 1:
-        sim.run_stage(case.stages[sim.stage_index].name)
-    state = _keep(sim)
+    criterion = criterion or Criterion()
+    cold = isinstance(apply, _OneValue) and apply.makes_a_model
+    search = (_Cold if cold else _Warm)(case, apply, criterion, threads)
     trials: list[Trial] = []
 
     def attempt(value: float) -> Trial:
-        _bring_back(sim, state)
-        trial = _try(sim, apply, value)
-        trials.append(trial)
-        return trial
+        trials.append(search.attempt(float(value)))
+        return trials[-1]
 
     ends = []
     for value in between:
         ends.append(attempt(value))
-        if ends[-1].stable:
-            at_rest = _keep(sim)
         if report:
             report(ends[-1], *between)
     if ends[0].stable == ends[1].stable:
@@ -165,31 +170,81 @@ def find_critical(
             f"both {between[0]:g} and {between[1]:g} {what} ({ends[1].why}); give a wider range"
         )
     stable, failed = between if ends[0].stable else between[::-1]
-    state = at_rest
+    search.begin_bisection()
     while abs(stable - failed) > tolerance:
         trial = attempt(0.5 * (stable + failed))
         if trial.stable:
-            stable, state = trial.value, _keep(sim)
+            stable = trial.value
         else:
             failed = trial.value
         if report:
             report(trial, stable, failed)
-    return Critical(stable, failed, trials)
+    return Critical(float(stable), float(failed), criterion, trials)
 
 
-def _try(sim: Simulation, apply: Apply, value: float) -> Trial:
-    """Run the last stage at one value from the state that the simulation is in."""
-    start = sim.step_count
-    stable, why = rests(sim, lambda: apply(sim.case, value))
-    return Trial(value, stable, why, sim.step_count - start)
+class _Warm:
+    """Trials of one model, each from the state of the last stable one."""
+
+    def __init__(self, case: Case, apply: Apply, criterion: Criterion, threads: int | None) -> None:
+        self.apply, self.criterion = apply, criterion
+        self.sim = Simulation(case, threads=threads)
+        while self.sim.stage_index < len(case.stages) - 1:
+            self.sim.run_stage(case.stages[self.sim.stage_index].name)
+        self.start = self.at_rest = _keep(self.sim)
+        self.bisecting = False
+
+    def begin_bisection(self) -> None:
+        """From now on trials start from rest, not from the state that the case was prepared in."""
+        self.bisecting = True
+
+    def attempt(self, value: float) -> Trial:
+        sim = self.sim
+        _bring_back(sim, self.at_rest if self.bisecting else self.start)
+        before = sim.step_count
+        stable, why = rests(sim, lambda: self.apply(sim.case, value), self.criterion)
+        if stable:
+            self.at_rest = _keep(sim)
+        return Trial(value, stable, why, sim.step_count - before)
 
 
-def rests(sim: Simulation, prepare: Callable[[], None] | None = None) -> tuple[bool, str]:
-    """Run the last, static stage; return whether it comes to rest, and why or why not.
+class _Cold:
+    """Trials that each build their own model."""
 
-    The rules are those of `find_critical`. `prepare` may change the case as the stage begins.
+    def __init__(self, case: Case, apply: Apply, criterion: Criterion, threads: int | None) -> None:
+        self.case, self.apply, self.criterion, self.threads = case, apply, criterion, threads
+
+    def begin_bisection(self) -> None:
+        """Nothing to do: no state is carried over."""
+
+    def attempt(self, value: float) -> Trial:
+        case = self.case.model_copy(deep=True)
+        self.apply(case, value)
+        sim = Simulation(case, threads=self.threads)
+        stable, why = True, ""
+        for index, stage in enumerate(case.stages):
+            if stage.mode == "static":
+                stable, why = rests(sim, None, self.criterion, index)
+                sim.stage_index, sim.stage = index + 1, None
+            else:
+                sim.run_stage(stage.name)
+            if not stable:
+                why = why if index == len(case.stages) - 1 else f"stage {stage.name}: {why}"
+                break
+        return Trial(value, stable, why, sim.step_count)
+
+
+def rests(
+    sim: Simulation,
+    prepare: Callable[[], None] | None = None,
+    criterion: Criterion | None = None,
+    index: int = -1,
+) -> tuple[bool, str]:
+    """Run a static stage, by default the last; return whether it comes to rest, and why or why not.
+
+    `prepare` may change the case as the stage begins.
     """
-    sim.stage_index = len(sim.case.stages) - 1
+    c = criterion or Criterion()
+    sim.stage_index = range(len(sim.case.stages))[index]
     stage = stages.begin(sim)
     if prepare:
         prepare()
@@ -197,12 +252,13 @@ def rests(sim: Simulation, prepare: Callable[[], None] | None = None) -> tuple[b
         sim.core.renew_step()
     size = float(sim.build.assembly.arrays["face.length"][: sim.audit.counts["faces"]].mean())
     start = sim.fields["position"].copy()
-    most = sim.case.stages[-1].max_steps or MOST_STEPS
-    half_way = 0.0  # kinetic energy when half of TRAVEL was reached
+    most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
+    half_way = 0.0  # kinetic energy when half of the travel was reached
     least, least_step, least_moved = np.inf, 0, 0.0  # unbalance ratio
+    done = 0
     while True:
         try:
-            outcome = sim.advance(stage, 10 * CHECK_INTERVAL)
+            outcome = sim.advance(stage, min(10 * CHECK_INTERVAL, most - done))
         except UnstableError as error:
             return False, str(error)
         done, unbalance = sim.step_count - stage.start_step, sim.core.unbalance_ratio()
@@ -210,13 +266,16 @@ def rests(sim: Simulation, prepare: Callable[[], None] | None = None) -> tuple[b
             return True, f"rests, unbalance ratio {unbalance:.2g}"
         moved = float(np.linalg.norm(sim.fields["position"] - start, axis=1).max()) / size
         kinetic = float(sim.energies["kinetic"])
-        if moved < 0.5 * TRAVEL:
+        if moved < 0.5 * c.travel:
             half_way = kinetic
-        elif moved > FAR or (moved > TRAVEL and kinetic > half_way):
-            return False, f"has moved {moved * size:.3g} m, kinetic energy {kinetic:.3g} J"
+        elif moved > c.far or (moved > c.travel and kinetic > half_way):
+            speed = np.linalg.norm(sim.fields["velocity"], axis=1).max()
+            return False, (
+                f"has moved {moved * size:.3g} m, {speed:.2g} m/s, kinetic energy {kinetic:.3g} J"
+            )
         if unbalance < 0.95 * least:
             least, least_step, least_moved = unbalance, done, moved
-        elif done - least_step >= STALL_STEPS and moved > 2 * least_moved:
+        elif done - least_step >= c.stall_steps and moved > 2 * least_moved:
             return False, f"goes on moving, {moved * size:.3g} m, ratio stays at {unbalance:.2g}"
         if done >= most:
             return False, f"no rest in {done:,} steps, ratio {unbalance:.2g}"

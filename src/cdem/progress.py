@@ -17,11 +17,19 @@ BAR_WIDTH = 20  # characters
 
 @contextmanager
 def watch(*, silent: bool, tty: bool) -> Iterator[Callable[[Progress], None] | None]:
-    """Give the function that a run calls with its progress.
+    """Give the function that a run calls with its progress; see `line`."""
+    with line(silent=silent, tty=tty) as show:
+        yield None if show is None else lambda p: show(p.stage, describe(p), p.fraction)
+
+
+@contextmanager
+def line(*, silent: bool, tty: bool) -> Iterator[Callable[[str, str, float | None], None] | None]:
+    """Give the function that shows (topic, text, part that is done) on stderr.
 
     Args:
         silent: Show nothing.
-        tty: Whether stderr is a terminal, whose line can be redrawn.
+        tty: Whether stderr is a terminal, whose line can be redrawn; else there is a line every
+            few seconds and at each new topic.
     """
     if silent:
         yield None
@@ -33,24 +41,24 @@ def watch(*, silent: bool, tty: bool) -> Iterator[Callable[[Progress], None] | N
 
 
 @contextmanager
-def _live_line() -> Iterator[Callable[[Progress], None]]:
+def _live_line() -> Iterator[Callable[[str, str, float | None], None]]:
     from rich.console import Console
     from rich.live import Live
     from rich.text import Text
 
     with Live(console=Console(stderr=True), auto_refresh=False) as live:
-        yield lambda p: live.update(Text(f"{_bar(p)}{describe(p)}"), refresh=True)
+        yield lambda topic, text, part: live.update(Text(f"{_bar(part)}{text}"), refresh=True)
 
 
-def _plain_lines() -> Callable[[Progress], None]:
-    last_time, last_stage = -LINE_SECONDS, ""
+def _plain_lines() -> Callable[[str, str, float | None], None]:
+    last_time, last_topic = -LINE_SECONDS, ""
 
-    def show(progress: Progress) -> None:
-        nonlocal last_time, last_stage
+    def show(topic: str, text: str, part: float | None) -> None:
+        nonlocal last_time, last_topic
         now = time.monotonic()
-        if now - last_time >= LINE_SECONDS or progress.stage != last_stage:
-            last_time, last_stage = now, progress.stage
-            print(describe(progress), file=sys.stderr, flush=True)
+        if now - last_time >= LINE_SECONDS or topic != last_topic:
+            last_time, last_topic = now, topic
+            print(text, file=sys.stderr, flush=True)
 
     return show
 
@@ -58,7 +66,7 @@ def _plain_lines() -> Callable[[Progress], None]:
 def describe(p: Progress) -> str:
     """One line: stage, time, step, step size, unbalance, energy error, broken, speed, time left."""
     end = "" if p.end_time is None else f" of {p.end_time:.4g}"
-    left = "" if p.time_left is None else f", {_clock(p.time_left)} left"
+    left = "" if p.time_left is None else f", {clock(p.time_left)} left"
     note = f", {p.note}" if p.note else ""
     return (
         f"{p.stage}: t {p.time:.4g}{end} s, step {p.step:,}, dt {p.dt:.3g} s, "
@@ -67,14 +75,15 @@ def describe(p: Progress) -> str:
     )
 
 
-def _bar(p: Progress) -> str:
-    if p.fraction is None:
+def _bar(part: float | None) -> str:
+    if part is None:
         return ""
-    done = round(BAR_WIDTH * min(max(p.fraction, 0.0), 1.0))
-    return f"[{'=' * done}{' ' * (BAR_WIDTH - done)}] {p.fraction:4.0%} "
+    done = round(BAR_WIDTH * min(max(part, 0.0), 1.0))
+    return f"[{'=' * done}{' ' * (BAR_WIDTH - done)}] {part:4.0%} "
 
 
-def _clock(seconds: float) -> str:
+def clock(seconds: float) -> str:
+    """Write a time as minutes:seconds or hours:minutes:seconds."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"

@@ -28,7 +28,7 @@ class Source:
     Attributes:
         file: Name of the case file as the user typed it, or None for a case built in Python.
         places: Line and column, from 1, of each key path in the file.
-        overrides: The ``--set`` text of each key path that was replaced on the command line.
+        overrides: Who replaced the value at a key path: ``--set KEY=VALUE``, or a study.
     """
 
     file: str | None = None
@@ -45,13 +45,13 @@ class Source:
         keys = self._known(path) if isinstance(path, str) else path
         while keys:
             if keys in self.overrides:
-                return f"--set {self.overrides[keys]}"
+                return self.overrides[keys]
             if keys in self.places:
                 line, column = self.places[keys]
                 return f"{self.file}:{line}:{column}"
-            for longer, text in self.overrides.items():  # a mapping that an override has made
+            for longer, label in self.overrides.items():  # a mapping that an override has made
                 if longer[: len(keys)] == keys:
-                    return f"--set {text}"
+                    return label
             keys = keys[:-1]
         return self.file or "case"
 
@@ -88,12 +88,15 @@ class Source:
         return keys
 
 
-def load_case_data(path: Path, overrides: Iterable[str] = ()) -> tuple[dict[str, Any], Source]:
-    """Read a case file as plain dicts and lists.
+def load_case_data(
+    path: Path, overrides: Iterable[str] = (), what: str = "case"
+) -> tuple[dict[str, Any], Source]:
+    """Read a case or study file as plain dicts and lists.
 
     Args:
         path: A YAML file.
         overrides: Texts such as ``"time.safety=0.5"``; the part after ``=`` is read as YAML.
+        what: "case" or "study".
 
     Returns:
         The data and where each of them stands.
@@ -104,15 +107,18 @@ def load_case_data(path: Path, overrides: Iterable[str] = ()) -> tuple[dict[str,
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
-        raise CaseError(f"{path}: cannot read the case file: {error.strerror}") from None
+        raise CaseError(f"{path}: cannot read the {what} file: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise CaseError(f"{path}: not a text file; a case is a YAML file in UTF-8") from None
+        raise CaseError(f"{path}: not a text file; a {what} is a YAML file in UTF-8") from None
     source = Source(file=str(path))
     tree = _parse(text, str(path))
     if tree is None:
-        raise CaseError(f"{path}: the file is empty; 'cdem new incline' writes one to start from")
+        hint = (
+            "'cdem new incline' writes one to start from" if what == "case" else "see docs/sweep.md"
+        )
+        raise CaseError(f"{path}: the file is empty; {hint}")
     if not isinstance(tree, dict):
-        raise CaseError(f"{path}:1:1: a case is a mapping (key: value), got {describe(tree)}")
+        raise CaseError(f"{path}:1:1: a {what} is a mapping (key: value), got {describe(tree)}")
     _note_places(tree, source, ())
     data = plain(tree, source)
     for override in overrides:
@@ -187,20 +193,37 @@ def plain(value: Any, source: Source, keys: Keys = ()) -> Any:
 
 
 def _override(data: dict[str, Any], text: str, source: Source) -> None:
-    """Replace one value of raw data by ``path=value``; mappings on the way are made."""
+    """Replace one value of raw data by ``path=value``."""
     path, equals, value = text.partition("=")
     if not equals or not all(part.strip() for part in path.split(".")):
         raise CaseError(f"--set {text}: write key.path=value, e.g. --set time.safety=0.5")
-    keys = resolve(data, path.strip(), label=f"--set {text}")
+    label = f"--set {text}"
+    put(data, path.strip(), _parse(value, label), source, label)
+
+
+def put(data: dict[str, Any], path: str, value: Any, source: Source, label: str) -> None:
+    """Replace one value of raw data; mappings on the way are made.
+
+    Args:
+        data: Raw data of a case; is changed.
+        path: Where, see `resolve`.
+        value: The new value.
+        source: Learns who replaced the value.
+        label: What to call the replacement in an error.
+
+    Raises:
+        CaseError: The path leads nowhere.
+    """
+    keys = resolve(data, path, label=label)
     node: Any = data
     for number, key in enumerate(keys[:-1]):
         if isinstance(node, dict) and not isinstance(node.get(str(key)), dict | list):
             node[str(key)] = {}
         node = node[key]
         if isinstance(node, list) and not isinstance(keys[number + 1], int):
-            raise CaseError(f"--set {text}: {'.'.join(map(str, keys[: number + 1]))} is a list")
-    source.overrides[keys] = text
-    node[keys[-1]] = plain(_parse(value, f"--set {text}"), source, keys)
+            raise CaseError(f"{label}: {'.'.join(map(str, keys[: number + 1]))} is a list")
+    source.overrides[keys] = label
+    node[keys[-1]] = plain(value, source, keys)
 
 
 def resolve(root: Any, path: str, label: str | None = None) -> Keys:
@@ -287,11 +310,18 @@ def explain(
         root: The model of the whole data.
         within: Path of the part that was validated, if not the whole.
     """
+    return source.error(problems_of(error, root, within))
+
+
+def problems_of(
+    error: ValidationError, root: type[BaseModel], within: Keys = ()
+) -> list[tuple[Keys, str]]:
+    """Path of each error that pydantic found, and what is wrong there in our words."""
     problems = []
     for detail in error.errors(include_url=False):
         keys, model = _real_path(root, (*within, *detail["loc"]))
         problems.append((keys, _words(detail, keys, model)))
-    return source.error(problems)
+    return problems
 
 
 def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] | None]:

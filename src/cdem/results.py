@@ -94,7 +94,7 @@ class Results:
 
     def _open_series(self, sim: Simulation, frames: int | None, rows: int | None) -> None:
         t = sim.build.topology
-        self.tracks = _tracks(sim)
+        self.tracks = tracks(sim)
         columns = [
             "time [s]", "step",
             *(f"{e} energy [J]" for e in ENERGIES), *(f"{w} work [J]" for w in WORKS),
@@ -274,7 +274,7 @@ def visible_faces(sim: Simulation) -> tuple[NDArray[np.intp], NDArray[np.bool_]]
     return shown, bonded[shown]
 
 
-def _tracks(sim: Simulation) -> list[tuple[str, Any]]:
+def tracks(sim: Simulation) -> list[tuple[str, Any]]:
     """Column name and value of everything that the case's histories follow."""
     units = {"centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N"}
     out: list[tuple[str, Any]] = []

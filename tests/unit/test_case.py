@@ -145,6 +145,25 @@ def test_set_changes_one_value(write, path, value, read):
     assert read(case)
 
 
+def test_wrong_names_are_reported_beside_other_mistakes(write):
+    """A key, a value, a group of a pair, a group of a block and a stage's setting, all at once."""
+    text = CASE.replace("law: elastic", "lwa: elastic").replace("fix: [x, y, z]", "fix: x")
+    text = text.replace("between: [bed, block]", "between: [bed, blok]")
+    with pytest.raises(CaseError) as error:
+        Case.load(write(text.replace("{group: block, poly", "{group: blok, poly")))
+    lines = str(error.value).splitlines()
+    assert [line.split(": ")[1] for line in lines] == [
+        "model.blocks.1.group",
+        "materials.granite.lwa",
+        "groups.bed.fix",
+        "interfaces.pairs.0.between.1",
+    ]
+    with pytest.raises(CaseError) as error:
+        text = CASE.replace("between: [bed, block]", "between: [bed, blok]")
+        Case.load(write(text.replace("interfaces.base.cohesion: 0", "interfaces.base.cohesion: x")))
+    assert len(str(error.value).splitlines()) == 2
+
+
 def test_an_override_is_blamed_for_what_it_made(write):
     with pytest.raises(CaseError, match=r"^--set tme.step=3: tme: unknown key; did you mean time"):
         Case.load(write(CASE), ["tme.step=3"])

@@ -201,6 +201,7 @@ def test_schema_is_json(cdem):
     status, out, _ = cdem("schema")
     assert status == 0
     assert "materials" in json.loads(out)["properties"]
+    assert "parameters" in json.loads(cdem("schema", "study")[1])["properties"]
 
 
 def test_doctor_says_what_works(cdem, monkeypatch):

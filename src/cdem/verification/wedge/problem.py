@@ -33,7 +33,7 @@ def run(study):
     case = study.case()
     vertices = np.array(case.model.blocks[0].polyhedron.vertices)
     angles = [pair.friction_angle for pair in case.interfaces.pairs]
-    found = find_critical(case, strength_reduction(case), (0.3, 3.0), tolerance=0.01,
+    found = find_critical(case, strength_reduction(), (0.3, 3.0), tolerance=0.01,
                           threads=study.threads)  # fmt: skip
     study.check("factor of safety", theory=theory(vertices, angles), ours=found.value, within=0.01)
 
