@@ -154,9 +154,8 @@ def plan(study: Study, folder: Path) -> list[Run]:
         CaseError: The case is wrong, or all runs are.
     """
     data, source = load_case_data(study.case_file)
-    model = data.get("model")
-    if isinstance(model, dict) and isinstance(model.get("mesh"), str):
-        model["mesh"] = str((source.folder / model["mesh"]).resolve())
+    for holder, key in _files(data):
+        holder[key] = str((source.folder / holder[key]).resolve())
     drawn = study.sampling is not None
     runs, first_error = [], None
     for row in sampling.rows(study):
@@ -233,19 +232,30 @@ def _computed(study: Study, keys: tuple[str | int, ...], value: Any, row: dict[s
 
 
 def _identity(case: Case, search: dict[str, Any] | None) -> str:
-    """Hash of all that a result depends on; a mesh counts by what it holds."""
+    """Hash of all that a result depends on; a file of the model counts by what it holds."""
     data = case.model_dump(mode="json")
-    if case.model.mesh is not None:
-        mesh = case.path_of(case.model.mesh)
-        data["model"]["mesh"] = _digest(mesh, mesh.stat().st_mtime_ns)
+    for holder, key in _files(data):
+        path = case.path_of(holder[key])
+        holder[key] = _digest(path, path.stat().st_mtime_ns) if path.is_file() else holder[key]
     whole = {"case": data, "critical": search, "version": __version__}
     return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
 
 
-@lru_cache(maxsize=8)
-def _digest(mesh: Path, changed: int) -> str:
-    """Hash of a mesh file; read once, not for every run."""
-    return hashlib.sha256(mesh.read_bytes()).hexdigest()
+def _files(data: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
+    """Where the data of a case name a file: the dictionary and its key."""
+    model = data.get("model")
+    if not isinstance(model, dict):
+        return []
+    blocks = model.get("blocks")
+    bodies = [b for b in blocks if isinstance(b, dict)] if isinstance(blocks, list) else []
+    named = [(model, "mesh"), *((body, "file") for body in bodies)]
+    return [(holder, key) for holder, key in named if isinstance(holder.get(key), str)]
+
+
+@lru_cache(maxsize=64)
+def _digest(path: Path, changed: int) -> str:
+    """Hash of a file of the model; read once, not for every run."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _open(folder: Path, study: Study) -> None:
@@ -289,9 +299,9 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
         return known
     if task["version"] != __version__:
         raise BackendError(f"a worker has cdem {__version__}, the sweep {task['version']}")
-    mesh = task["case"]["model"].get("mesh")
-    if mesh is not None and not Path(mesh).is_file():
-        raise BackendError(f"a worker does not see {mesh}; it must have the same files")
+    for holder, key in _files(task["case"]):
+        if not Path(holder[key]).is_file():
+            raise BackendError(f"a worker does not see {holder[key]}; it must have the same files")
     folder = Path(task["folder"]) / "runs" / task["name"]
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
