@@ -71,6 +71,9 @@ def scenes():
              "groups.right.fix=[]", "loads.velocities.0.components=[x, y, z]",
              "loads.velocities.0.box={min: [-20.01, -1, -1], max: [-19.99, 1, 1]}",
              "stages.0.duration=0.02"]  # fmt: skip
+    arch, slope_of_columns, dominoes = problems(["arch", "goodman_bray", "dominoes"])
+    thin, columns = arch.module.settings(0.45), slope_of_columns.module.settings()
+    row = dominoes.module.settings(0.02, hinged=True)
     tip = resting("vertex", "vertex")
     # how early an automatic step is cut depends on the boxes of the search, which have axes
     tip.settings += ["time.step=10 us", "model.blocks.1.translate=[0.01, 0.004, 0.001]",
@@ -89,6 +92,18 @@ def scenes():
         "shaken block": Scene("../newmark/case.yaml", only(0.65), step=1e-3),
         "pulse across a joint": Scene("../joint_wave/case.yaml", pulse, frame=1e-8, bonds=True,
                                       step=5e-4, quick=False),
+        "tower that is tilted": Scene("../tower/case.yaml", ["loads.gravity=[4.905, 0, -8.496]",
+                                                            *only(0.05)]),
+        # feet that stand on quadrilaterals at a gap of zero: round-off decides which step is the first
+        "arch that is too thin": Scene("../arch/case.yaml", [thin, *only(0.02)], frame=2e-4,
+                                       noise=1e-5, step=2e-3),
+        "columns on a stepped base": Scene("../goodman_bray/case.yaml", [
+            columns, "interfaces.default.friction_angle=30", *only(0.02)], quick=False,
+            frame=5e-8, noise=1e-7),
+        "slide along an apparent dip": Scene("../apparent_dip/case.yaml", [
+            "loads.gravity=[0, 0, -9.81]", "interfaces.bed.friction_angle=10",
+            "interfaces.wall.friction_angle=5", *only(0.05)]),
+        "row of dominoes": Scene("../dominoes/case.yaml", [*row, *only(0.08, 2)], quick=False),
         "face on face": resting("face", "face"),
         "edge on face": resting("face", "edge"),
         "vertex on face": resting("face", "vertex"),
