@@ -165,22 +165,29 @@ def _csv_lines(path: Path, text: str, elevation: str | None) -> Iterator[Floats]
     head = [name.strip().lstrip("#").strip() for name in rows[0]]
     found: dict[str, Any] = {}
     for key, pattern in COLUMNS.items():
-        wanted = [i for i, n in enumerate(head) if (n == elevation if key == "z" and elevation else
-                                                    pattern.match(n))]
+        wanted = [
+            i
+            for i, n in enumerate(head)
+            if (n == elevation if key == "z" and elevation else pattern.match(n))
+        ]
         found[key] = wanted[0] if wanted else None
     if None in found.values():
         raise CaseError(
             f"{path}: the first line must name the columns x, y and z (or elevation), e.g. "
             f"'line,x,y,z'; it says: {', '.join(head)}"
         )
-    line_at = next((i for i, n in enumerate(head) if LINE.match(n) and i not in found.values()), None)
+    line_at = next(
+        (i for i, n in enumerate(head) if LINE.match(n) and i not in found.values()), None
+    )
     points: list[list[float]] = []
     current = None
     for number, row in enumerate(rows[1:], start=2):
         try:
             point = [float(row[found[key]]) for key in "xyz"]
         except (ValueError, IndexError):
-            raise CaseError(f"{path}: row {number} has no numbers x, y, z: {','.join(row)}") from None
+            raise CaseError(
+                f"{path}: row {number} has no numbers x, y, z: {','.join(row)}"
+            ) from None
         # without a column of lines each point stands for itself
         label = row[line_at] if line_at is not None else number
         if points and label != current:
@@ -259,6 +266,8 @@ def _checked(path: Path, grid: Grid) -> Grid:
     rows, columns = grid.values.shape
     x = grid.west + grid.step[0] * np.arange(columns)
     y = grid.south + grid.step[1] * np.arange(rows)
-    corners = np.array([[x[0], y[0], grid.values[known].min()], [x[-1], y[-1], grid.values[known].max()]])
+    corners = np.array(
+        [[x[0], y[0], grid.values[known].min()], [x[-1], y[-1], grid.values[known].max()]]
+    )
     _refuse_degrees(path, corners)
     return grid

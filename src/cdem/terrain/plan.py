@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.errors import CaseError, MeshError
+from cdem.errors import MeshError
 from cdem.terrain.heights import Heights, extra
 from cdem.terrain.landslide import Landslide
 

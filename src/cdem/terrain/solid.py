@@ -102,6 +102,7 @@ def make_solid(landslide: Landslide, plan: Plan) -> Solid:
         list(plan.notes),
     )
     _name_surfaces(solid, plan, columns)
+    _check_conforming(solid, np.concatenate([plan.triangles, base, *sides.values()]))
     return solid
 
 
@@ -203,6 +204,23 @@ def _check_closed(shell: Ints, points: Floats) -> None:
         raise MeshError(
             f"the surface of the bedrock has {len(bad)} edges that are not shared by two faces, "
             f"e.g. at ({x:.6g}, {y:.6g}, {z:.6g}); give another outline or sizes.body"
+        )
+
+
+def _check_conforming(solid: Solid, outside: Ints) -> None:
+    """Bodies and bedrock must share every face between them, and leave the outside alone."""
+    skin = np.sort(_skin(solid.tets), axis=1)
+    wanted = np.sort(outside, axis=1)
+    same = (
+        len(skin) == len(wanted)
+        and (skin[np.lexsort(skin.T)] == wanted[np.lexsort(wanted.T)]).all()
+    )
+    corners = solid.points[solid.tets]
+    volume = np.linalg.det(corners[:, 1:] - corners[:, :1])
+    if not same or volume.min() <= 0:
+        raise MeshError(
+            "the mesher has changed the surface of the bedrock or left an empty tet; give another "
+            "sizes.body or sizes.growth"
         )
 
 
