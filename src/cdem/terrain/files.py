@@ -63,7 +63,7 @@ def read_outline(path: Path) -> Floats:
         CaseError: The file holds no polygon, or its outline is open.
     """
     for geometry, _ in _geometries(path, _text(path)):
-        kind, points = geometry.get("type"), geometry.get("coordinates")
+        kind, points = geometry.get("type"), geometry.get("coordinates", [])
         if kind == "Polygon":
             points = points[0]
         elif kind != "LineString":
@@ -115,7 +115,7 @@ def _refuse_degrees(path: Path, points: Floats) -> None:
 # ------------------------------------------------------------------ GeoJSON and CSV
 
 
-def _geometries(path: Path, text: str) -> Iterator[tuple[dict, dict]]:
+def _geometries(path: Path, text: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:
@@ -130,7 +130,7 @@ def _geometries(path: Path, text: str) -> Iterator[tuple[dict, dict]]:
 
 def _geojson_lines(path: Path, text: str, elevation: str | None) -> Iterator[Floats]:
     for number, (geometry, properties) in enumerate(_geometries(path, text)):
-        kind, points = geometry.get("type"), geometry.get("coordinates")
+        kind, points = geometry.get("type"), geometry.get("coordinates", [])
         if kind not in ("LineString", "MultiLineString"):
             continue
         for part in [points] if kind == "LineString" else points:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -81,7 +82,7 @@ def _known(landslide: Landslide, key: str, heights: Heights, points: Floats) -> 
     """Heights at points, which the data must cover."""
     z = heights(points)
     reach = landslide.sizes.body * 1e-6
-    outside = ((points < heights.low - reach) | (points > heights.high + reach)).any(axis=1)
+    outside = np.any((points < heights.low - reach) | (points > heights.high + reach), axis=1)
     bad = np.flatnonzero(outside | ~np.isfinite(z))
     if len(bad):
         raise landslide.error(
@@ -96,7 +97,7 @@ def _check_extent(landslide: Landslide, ground: Heights) -> None:
     x, y = landslide.extent.x, landslide.extent.y
     low, high = np.array([x[0], y[0]]), np.array([x[1], y[1]])
     slack = 1e-6 * (high - low)
-    if (low < ground.low - slack).any() or (high > ground.high + slack).any():
+    if bool((low < ground.low - slack).any() or (high > ground.high + slack).any()):
         raise landslide.error(
             "extent",
             f"{_at(low)} to {_at(high)} reaches beyond the terrain, which is known from "
@@ -141,7 +142,7 @@ def _cut_at_outcrop(
     for index, outline in enumerate(outlines):
         own = outline.difference(taken)
         taken = taken.union(outline)
-        parts = shapely.get_parts(shapely.set_precision(own.intersection(above), 1e-6 * size))
+        parts = shapely.get_parts(shapely.set_precision(own.intersection(above), 1e-9 * size))
         kept = [p for p in parts if p.geom_type == "Polygon" and p.area >= size**2]
         area = sum(p.area for p in kept)
         path = f"bodies.{index}.outline"
@@ -193,7 +194,7 @@ def _above(landslide: Landslide, outline: Any, ground: Heights, surface: Heights
     filled = zip(*lines.filled(0.0, highest + 1.0), strict=True)
     polygons = []
     for points, starts in filled:
-        rings = [points[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        rings = [points[a:b] for a, b in pairwise(starts)]
         polygons.append(shapely.Polygon(rings[0], rings[1:]).buffer(0))
     return shapely.union_all(polygons)
 
@@ -218,7 +219,7 @@ def _pieces(bodies: list[Any], outlines: list[Any], size: float) -> list[Piece]:
     """Divide the boundaries of the bodies into edges of about one size."""
     shapely = extra("shapely")
     near = 1e-3 * size
-    net = shapely.union_all([body.boundary for body in bodies], grid_size=1e-6 * size)
+    net = shapely.union_all([body.boundary for body in bodies], grid_size=1e-9 * size)
     drawn = shapely.union_all([outline.boundary for outline in outlines])
     shapely.prepare(drawn)
     pieces = []
@@ -234,7 +235,7 @@ def _pieces(bodies: list[Any], outlines: list[Any], size: float) -> list[Piece]:
             for side in sides
         )
         cuts = _cuts(xy, outcrop)
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+        for a, b in pairwise(cuts):
             points = _resampled(xy[a : b + 1], size)
             pieces.append(Piece(points, left, right, bool(outcrop[a])))
     return _without_short(pieces, 0.4 * size)
@@ -289,8 +290,8 @@ def _triangulate(landslide: Landslide, pieces: list[Piece]) -> tuple[Floats, Int
             lines.append((np.array(ends), piece.left + 2, piece.right + 2))
     domain_size = [sizes.far] + [sizes.body] * len(landslide.bodies)
     points, triangles, domain = flat_mesh(lines, domain_size, sizes.growth)
-    ends = {tuple(p) for piece in pieces if piece.outcrop for p in piece.points.tolist()}
-    outcrop = np.array([i for i, p in enumerate(points.tolist()) if tuple(p) in ends], np.int64)
+    bare = {tuple(p) for piece in pieces if piece.outcrop for p in piece.points.tolist()}
+    outcrop = np.array([i for i, p in enumerate(points.tolist()) if tuple(p) in bare], np.int64)
     return points, triangles, domain - 2, outcrop
 
 
@@ -386,21 +387,21 @@ def _split_pinched(plan: Plan, zero: NDArray[np.bool_]) -> None:
     A triangle has at most one such edge, for those with three ends of no thickness are bedrock.
     """
     of_edge: dict[tuple[int, int], list[int]] = {}
-    for t in np.flatnonzero(plan.body >= 0):
+    for t in np.flatnonzero(plan.body >= 0).tolist():
         ends = [int(v) for v in plan.triangles[t] if zero[v]]
         if len(ends) == 2:
-            of_edge.setdefault((min(ends), max(ends)), []).append(int(t))
+            of_edge.setdefault((min(ends), max(ends)), []).append(t)
     points, triangles, body = [plan.points], [plan.triangles], [plan.body]
     count = len(plan.points)
     for (a, b), pair in of_edge.items():
         if len(pair) < 2:
             continue
         points.append((plan.points[[a]] + plan.points[[b]]) / 2)
-        for t in pair:
-            triangle = plan.triangles[t].copy()
-            plan.triangles[t] = np.where(triangle == a, count, triangle)
+        for k in pair:
+            triangle = plan.triangles[k].copy()
+            plan.triangles[k] = np.where(triangle == a, count, triangle)
             triangles.append(np.where(triangle == b, count, triangle)[None])
-            body.append(plan.body[[t]])
+            body.append(plan.body[[k]])
         count += 1
     plan.points = np.concatenate(points)
     plan.triangles = np.concatenate(triangles)

@@ -14,18 +14,16 @@ from numpy.typing import NDArray
 
 from cdem.audit import SLIVER
 from cdem.errors import CaseError
-from cdem.terrain.solid import Solid
+from cdem.terrain.solid import Solid, shape
 
 Floats = NDArray[np.float64]
-EDGES = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
-FACES = [(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)]
 
 
 def measure(solid: Solid) -> dict[str, Any]:
     """Counts, volumes [m3], dip [deg] of the bed and shape of the tets."""
     corners = solid.points[solid.tets]
     volume = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
-    height, ratio, angle = _shape(corners, volume)
+    height, ratio, angle = shape(corners)
     groups = {}
     for index, name in enumerate(solid.groups):
         some = solid.tet_group == index
@@ -46,25 +44,6 @@ def measure(solid: Solid) -> dict[str, Any]:
         "surfaces": {name: len(faces) for name, faces in solid.surfaces.items()},
         "notes": solid.notes,
     }
-
-
-def _shape(corners: Floats, volume: Floats) -> tuple[Floats, Floats, Floats]:
-    """Smallest height [m], its ratio to the longest edge, and smallest dihedral angle [deg]."""
-    normals = np.stack(
-        [
-            np.cross(corners[:, j] - corners[:, i], corners[:, k] - corners[:, i])
-            for i, j, k in FACES
-        ],
-        axis=1,
-    )
-    doubled = np.linalg.norm(normals, axis=2)
-    height = 6 * volume / doubled.max(axis=1)
-    longest = np.max(
-        [np.linalg.norm(corners[:, i] - corners[:, j], axis=1) for i, j in EDGES], axis=0
-    )
-    unit = normals / doubled[:, :, None]
-    cosine = np.max([-np.einsum("ij,ij->i", unit[:, i], unit[:, j]) for i, j in EDGES], axis=0)
-    return height, height / longest, np.degrees(np.arccos(np.clip(cosine, -1, 1)))
 
 
 def _bed(solid: Solid) -> dict[str, float]:

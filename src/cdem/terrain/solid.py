@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,7 @@ from cdem.terrain.plan import Plan, flat_mesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+FLAT = 0.05  # height over longest edge of tets that are taken off the ground
 TET_FACES = np.array([(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)])  # outward, opposite a corner
 
 
@@ -93,6 +96,7 @@ def make_solid(landslide: Landslide, plan: Plan) -> Solid:
     xyz = np.concatenate(points)
     _check_closed(shell, xyz)
     xyz, rock = fill(xyz, shell, landslide.sizes.far, landslide.sizes.growth)
+    rock = _peel(xyz, rock, plan)
     solid = Solid(
         xyz,
         np.concatenate([rock, tets]),
@@ -207,6 +211,26 @@ def _check_closed(shell: Ints, points: Floats) -> None:
         )
 
 
+def shape(corners: Floats) -> tuple[Floats, Floats, Floats]:
+    """Smallest height [m] of tets, its ratio to the longest edge, smallest dihedral angle [deg].
+
+    Args:
+        corners: [m], shape (tets, 4, 3).
+    """
+    volume = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
+    sides = corners[:, TET_FACES]
+    normals = np.cross(sides[:, :, 1] - sides[:, :, 0], sides[:, :, 2] - sides[:, :, 0])
+    doubled = np.linalg.norm(normals, axis=2)
+    height = 6 * volume / doubled.max(axis=1)
+    pairs = list(combinations(range(4), 2))
+    longest = np.max(
+        [np.linalg.norm(corners[:, i] - corners[:, j], axis=1) for i, j in pairs], axis=0
+    )
+    unit = normals / doubled[:, :, None]
+    cosine = np.max([-np.einsum("ij,ij->i", unit[:, i], unit[:, j]) for i, j in pairs], axis=0)
+    return height, height / longest, np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+
+
 def _check_conforming(solid: Solid, outside: Ints) -> None:
     """Bodies and bedrock must share every face between them, and leave the outside alone."""
     skin = np.sort(_skin(solid.tets), axis=1)
@@ -244,10 +268,12 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
     mesh = netgen.Mesh(dim=3)
     used = np.unique(shell)
     ids = {int(i): mesh.Add(netgen.MeshPoint(netgen.Pnt(*points[i].tolist()))) for i in used}
+    for corner in _cube(points[used], size):
+        mesh.Add(netgen.MeshPoint(netgen.Pnt(*corner.tolist())))
     face = mesh.Add(netgen.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1))
     for triangle in shell.tolist():
         mesh.Add(netgen.Element2D(face, [ids[i] for i in triangle]))
-    settings = netgen.MeshingParameters(maxh=size, grading=growth)
+    settings = netgen.MeshingParameters(maxh=1.01 * size, grading=growth)
     try:
         mesh.GenerateVolumeMesh(mp=settings)
         mesh.OptimizeVolumeMesh(settings)
@@ -259,9 +285,66 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
             "the bedrock cannot be filled with tets: its surface crosses itself or is too uneven; "
             "give a larger terrain.smooth or a smaller sizes.body"
         )
-    fresh = np.array(mesh.Coordinates())[len(used) :]
-    number = np.concatenate([used, len(points) + np.arange(len(fresh))])
+    made = np.unique(cells[cells >= len(used)])
+    number = np.full(cells.max() + 1, -1)
+    number[: len(used)] = used
+    number[made] = len(points) + np.arange(len(made))
+    fresh = np.array(mesh.Coordinates())[made]
     return np.concatenate([points, fresh]), number[cells][:, [0, 2, 1, 3]]
+
+
+def _cube(points: Floats, size: float) -> Floats:
+    """Two loose points that make the mesher's cells as large as `size` far from the surface.
+
+    It halves a cube around all points, 1.3637 times as long as they reach, until its cells are no
+    larger than asked: without these points they may come out half as long.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    reach = float((high - low).max())
+    length = size * 2 ** math.ceil(math.log2(1.3637 * 1.01 * reach / size)) * 0.999 / 1.3637
+    middle = (low + high) / 2
+    return np.stack([middle - length / 2, middle + length / 2])
+
+
+def _peel(points: Floats, tets: Ints, plan: Plan) -> Ints:
+    """Take flat tets off the ground of the bedrock: two of its triangles are turned for each.
+
+    Where the ground is nearly plane the mesher lays tets over the edge between two triangles,
+    a few centimetres high. Without them the ground is divided by the other diagonal.
+    """
+    ground = np.flatnonzero(plan.body < 0)
+    number: dict[tuple[int, ...], int] = {
+        tuple(sorted(t)): k
+        for k, t in zip(ground.tolist(), plan.triangles[ground].tolist(), strict=True)
+    }
+    _, ratio, _ = shape(points[tets])
+    flat = np.flatnonzero(ratio < FLAT)
+    flat = flat[np.argsort(ratio[flat], kind="stable")].tolist()
+    gone = np.zeros(len(tets), bool)
+    peeled = True
+    while peeled:  # one may lie under another
+        peeled = False
+        for i in flat:
+            faces = tets[i][TET_FACES].tolist()
+            outer = [number.get(tuple(sorted(face)), -1) for face in faces]
+            inner = [face[::-1] for face, k in zip(faces, outer, strict=True) if k < 0]
+            if gone[i] or len(inner) != 2 or not _sound(points[inner]):
+                continue
+            outer = [k for k in outer if k >= 0]
+            for face, k in zip(inner, outer, strict=True):
+                del number[tuple(sorted(plan.triangles[k].tolist()))]
+                plan.triangles[k] = face
+                number[tuple(sorted(face))] = k
+            gone[i] = peeled = True
+    return tets[~gone]
+
+
+def _sound(triangles: Floats) -> bool:
+    """Whether triangles [m], shape (triangles, 3, 3), look upwards and are no needles."""
+    normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    doubled = np.linalg.norm(normal, axis=1)
+    return bool((normal[:, 2] > 0.01 * doubled).all() and (doubled > FLAT * longest**2).all())
 
 
 def _name_surfaces(solid: Solid, plan: Plan, columns: _Columns) -> None:
