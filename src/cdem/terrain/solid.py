@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -268,12 +267,10 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
     mesh = netgen.Mesh(dim=3)
     used = np.unique(shell)
     ids = {int(i): mesh.Add(netgen.MeshPoint(netgen.Pnt(*points[i].tolist()))) for i in used}
-    for corner in _cube(points[used], size):
-        mesh.Add(netgen.MeshPoint(netgen.Pnt(*corner.tolist())))
-    face = mesh.Add(netgen.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1))
+    face = mesh.Add(netgen.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1))  # codespell:ignore domin
     for triangle in shell.tolist():
         mesh.Add(netgen.Element2D(face, [ids[i] for i in triangle]))
-    settings = netgen.MeshingParameters(maxh=1.01 * size, grading=growth)
+    settings = netgen.MeshingParameters(maxh=size, grading=growth)
     try:
         mesh.GenerateVolumeMesh(mp=settings)
         mesh.OptimizeVolumeMesh(settings)
@@ -291,19 +288,6 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
     number[made] = len(points) + np.arange(len(made))
     fresh = np.array(mesh.Coordinates())[made]
     return np.concatenate([points, fresh]), number[cells][:, [0, 2, 1, 3]]
-
-
-def _cube(points: Floats, size: float) -> Floats:
-    """Two loose points that make the mesher's cells as large as `size` far from the surface.
-
-    It halves a cube around all points, 1.3637 times as long as they reach, until its cells are no
-    larger than asked: without these points they may come out half as long.
-    """
-    low, high = points.min(axis=0), points.max(axis=0)
-    reach = float((high - low).max())
-    length = size * 2 ** math.ceil(math.log2(1.3637 * 1.01 * reach / size)) * 0.999 / 1.3637
-    middle = (low + high) / 2
-    return np.stack([middle - length / 2, middle + length / 2])
 
 
 def _peel(points: Floats, tets: Ints, plan: Plan) -> Ints:
