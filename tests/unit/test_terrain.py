@@ -323,6 +323,21 @@ def test_mistakes_in_a_file_say_where(tmp_path: Path):
         make_mesh(Landslide.load(file))
 
 
+def test_the_verb_writes_a_mesh_and_says_what_it_holds(cdem, tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    data = slope(sizes={"body": 20, "far": 50})
+    (tmp_path / "slope.yaml").write_text(json.dumps(data))
+    status, out, err = cdem("mesh", "slope.yaml")
+    assert (status, err) == (0, "")
+    assert out.startswith("slope.msh: ") and "bed: dip 30.000 deg towards 90.000 deg" in out
+    assert read_mesh("slope.msh").group_names == ["bedrock", "slab"]
+    data["surface"]["plane"]["through"] = [0, 0, 900]
+    (tmp_path / "slope.yaml").write_text(json.dumps(data))
+    status, out, err = cdem("mesh", "slope.yaml")
+    assert status == 1 and out == ""
+    assert "slope.yaml:1:" in err and "bodies.0.outline: holds no rock" in err
+
+
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -16,7 +15,6 @@ from cdem.terrain.plan import Plan, flat_mesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-CELL = 0.75  # spacing of points deep in the rock, in longest edges
 FLAT = 0.05  # height over longest edge of tets that are taken off the ground
 TET_FACES = np.array([(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)])  # outward, opposite a corner
 
@@ -269,15 +267,11 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
     mesh = netgen.Mesh(dim=3)
     used = np.unique(shell)
     ids = {int(i): mesh.Add(netgen.MeshPoint(netgen.Pnt(*points[i].tolist()))) for i in used}
-    cell = CELL * size
-    for corner in _cube(points[used], cell):
-        mesh.Add(netgen.MeshPoint(netgen.Pnt(*corner.tolist())))
-    face = mesh.Add(
-        netgen.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1)
-    )  # codespell:ignore domin
+    rock = netgen.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1)  # codespell:ignore domin
+    face = mesh.Add(rock)
     for triangle in shell.tolist():
         mesh.Add(netgen.Element2D(face, [ids[i] for i in triangle]))
-    settings = netgen.MeshingParameters(maxh=1.05 * cell, grading=growth)
+    settings = netgen.MeshingParameters(maxh=size, grading=growth)
     try:
         mesh.GenerateVolumeMesh(mp=settings)
         mesh.OptimizeVolumeMesh(settings)
@@ -295,20 +289,6 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
     number[made] = len(points) + np.arange(len(made))
     fresh = np.array(mesh.Coordinates())[made]
     return np.concatenate([points, fresh]), number[cells][:, [0, 2, 1, 3]]
-
-
-def _cube(points: Floats, cell: float) -> Floats:
-    """Two loose points that make the mesher's cells `cell` long [m] far from the surface.
-
-    It halves a cube around all points, 1.3637 times as long as they reach, until its cells suit;
-    without the loose points they are anything between half a cell and a cell, and the count of
-    tets jumps with the smallest change.
-    """
-    low, high = points.min(axis=0), points.max(axis=0)
-    halvings = math.ceil(math.log2(1.3637 * float((high - low).max()) / cell))
-    reach = cell * 2**halvings / 1.3637
-    middle = (low + high) / 2
-    return np.stack([middle - reach / 2, middle + reach / 2])
 
 
 def _peel(points: Floats, tets: Ints, plan: Plan) -> Ints:
