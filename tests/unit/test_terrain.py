@@ -18,6 +18,7 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
 from cdem.terrain import Landslide, make_mesh, measure, text, write
 from cdem.terrain.files import read_grid, read_lines, read_outline
 from cdem.terrain.heights import Grid, Lines, Plane, Smooth
+from cdem.terrain.plan import Plan, _split_pinched
 from cdem.terrain.solid import TET_FACES
 
 PLANE = Plane(dip=25.0, dip_direction=200.0, through=(10.0, -5.0, 120.0))
@@ -211,6 +212,23 @@ def test_a_body_ends_at_the_outcrop_and_two_share_a_wall():
     assert "west: ends at the outcrop" in facts["notes"][0]
     shared = solid.points[solid.surfaces["wall_west_east"]]
     assert shared[:, :, 0] == pytest.approx(60.0, abs=1e-6)
+
+
+def test_an_edge_without_thickness_across_a_body_is_divided():
+    points = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4]])
+    none = np.full(4, np.nan)
+    triangles = np.array([[0, 1, 2], [0, 2, 3]])
+    plan = Plan(points, triangles, np.array([0, 0]), none, none, np.arange(4), [])
+    _split_pinched(plan, np.array([True, False, True, False]))
+    assert plan.points[4].tolist() == [2, 2]
+    assert sorted(map(sorted, plan.triangles.tolist())) == [
+        [0, 1, 4],
+        [0, 3, 4],
+        [1, 2, 4],
+        [2, 3, 4],
+    ]
+    sides = plan.points[plan.triangles]
+    assert np.linalg.det(sides[:, 1:] - sides[:, :1]) == pytest.approx(8.0)
 
 
 # no shrinking: each example is a mesh
