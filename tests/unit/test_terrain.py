@@ -9,7 +9,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from cdem.errors import CaseError
+from cdem.errors import BackendError, CaseError
 from cdem.mesh import read_mesh
 
 pytest.importorskip("scipy", reason="needs the extra 'terrain'")
@@ -17,7 +17,7 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
 
 from cdem.terrain import Landslide, make_mesh, measure, text, write
 from cdem.terrain.files import read_grid, read_lines, read_outline
-from cdem.terrain.heights import Grid, Lines, Plane, Smooth
+from cdem.terrain.heights import Grid, Lines, Plane, Smooth, extra
 from cdem.terrain.plan import Plan, _split_pinched
 from cdem.terrain.solid import TET_FACES
 
@@ -189,16 +189,19 @@ def test_coarser_away_from_the_body_and_with_depth():
     assert np.median(edge[deep]) > 2 * np.median(edge[solid.tet_group == 1])
 
 
-def test_a_body_ends_at_the_outcrop_and_two_share_a_wall():
+@pytest.mark.parametrize("corner", [(0.0, 0.0), (500123.4, 3245678.9)])
+def test_a_body_ends_at_the_outcrop_and_two_share_a_wall(corner):
     # ground level, bed dips 20 deg to the south and comes out along y = 60: a wedge in two parts
+    x, y = corner
+    west = np.array([[20, 20], [60, 20], [60, 80], [20, 80]]) + corner
     solid = make_mesh(
         Landslide(
-            terrain={"plane": {"dip": 0, "dip_direction": 0, "through": [0, 0, 0]}},
-            extent={"x": [0, 120], "y": [0, 100], "base": -60},
-            surface={"plane": {"dip": 20, "dip_direction": 180, "through": [0, 60, 0]}},
+            terrain={"plane": {"dip": 0, "dip_direction": 0, "through": [x, y, 0]}},
+            extent={"x": [x, x + 120], "y": [y, y + 100], "base": -60},
+            surface={"plane": {"dip": 20, "dip_direction": 180, "through": [x, y + 60, 0]}},
             bodies=[
-                {"group": "west", "outline": [[20, 20], [60, 20], [60, 80], [20, 80]]},
-                {"group": "east", "outline": [[60, 20], [100, 20], [100, 80], [60, 80]]},
+                {"group": "west", "outline": west},
+                {"group": "east", "outline": west + [40, 0]},
             ],
             sizes={"body": 8, "far": 40},
         )
@@ -211,7 +214,29 @@ def test_a_body_ends_at_the_outcrop_and_two_share_a_wall():
     assert facts["bed"]["dip"] == pytest.approx(20, abs=1e-9)
     assert "west: ends at the outcrop" in facts["notes"][0]
     shared = solid.points[solid.surfaces["wall_west_east"]]
-    assert shared[:, :, 0] == pytest.approx(60.0, abs=1e-6)
+    assert shared[:, :, 0] - x == pytest.approx(60.0, abs=1e-6)
+
+
+def test_a_bowl_under_a_slope_comes_out_all_round():
+    # an elliptic paraboloid 25 m deep, cut off by the ground in an ellipse of 60 m by 50 m
+    x, y = np.meshgrid(np.linspace(20, 180, 17), np.linspace(20, 180, 17))
+    depth = 25 * np.maximum(-1, 1 - ((x - 100) / 60) ** 2 - ((y - 100) / 50) ** 2)
+    bed = 150 - math.tan(math.radians(25)) * x - depth
+    solid = make_mesh(
+        Landslide(
+            terrain={"plane": {"dip": 25, "dip_direction": 90, "through": [0, 0, 150]}},
+            extent={"x": [0, 200], "y": [0, 200], "base": 0},
+            surface={"lines": np.stack([x, y, bed], axis=-1)},
+            bodies=[{"group": "bowl", "outline": [[25, 25], [175, 25], [175, 175], [25, 175]]}],
+            sizes={"body": 8, "far": 40},
+        )
+    )
+    check_conforming(solid)
+    facts = measure(solid)
+    # chords of 8 and 10 m cut off some of it
+    assert facts["groups"]["bowl"]["volume"] == pytest.approx(25 * math.pi * 60 * 50 / 2, rel=0.05)
+    assert facts["slivers"] == 0 and facts["smallest_height"] > 0.1 * 8
+    assert not any(name.startswith("wall_") for name in solid.surfaces)
 
 
 def test_an_edge_without_thickness_across_a_body_is_divided():
@@ -378,6 +403,11 @@ def test_bad_contours_are_refused(tmp_path: Path, name: str, content: str, messa
     path.write_text(content)
     with pytest.raises(CaseError, match=message):
         read_lines(path)
+
+
+def test_a_missing_library_is_named_with_its_cure():
+    with pytest.raises(BackendError, match=r"needs no_such_library: pip install 'cdem\[terrain\]'"):
+        extra("no_such_library.part")
 
 
 def test_bad_grids_are_refused(tmp_path: Path):
