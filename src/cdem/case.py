@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError
 
 from cdem import case_checks
-from cdem.errors import CaseError, CdemError
 from cdem.fields import Part
 from cdem.parts import (
     Contact,
@@ -128,15 +127,9 @@ class Case(Part):
         """Return a path named in the case; a relative one starts at the case file's folder."""
         return self._source.folder / file
 
-    @contextmanager
-    def blame(self, path: str) -> Iterator[None]:
+    def blame(self, path: str) -> AbstractContextManager[None]:
         """Put ``file:line:col: path:`` before the message of a CdemError or ValueError inside."""
-        try:
-            yield
-        except CdemError as error:
-            raise type(error)(f"{self.where(path)}: {path}: {error}") from None
-        except ValueError as error:
-            raise CaseError(f"{self.where(path)}: {path}: {error}") from None
+        return self._source.blame(path)
 
     def set(self, path: str, value: Any) -> None:
         """Change one value, checked like one from a file.

@@ -138,6 +138,25 @@ def check(
 
 
 @app.command()
+def mesh(
+    landslide_file: Annotated[Path, typer.Argument(metavar="LANDSLIDE.yaml", help="Terrain.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Mesh, .msh or .msh.gz; default LANDSLIDE.msh, here."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Mesh a landslide from terrain, a sliding surface and bodies outlined in plan."""
+    from cdem import terrain
+
+    path = output or Path(f"{landslide_file.stem}.msh")
+    solid = terrain.make_mesh(terrain.Landslide.load(landslide_file))
+    terrain.write(solid, path)
+    facts = terrain.measure(solid)
+    print(json.dumps(facts, indent=2) if as_json else f"{path}: {terrain.text(facts)}")
+
+
+@app.command()
 def schema(
     of: Annotated[Literal["case", "study"], typer.Argument(help="Kind of file.")] = "case",
 ) -> None:

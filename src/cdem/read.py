@@ -6,14 +6,15 @@ import difflib
 import io
 import math
 import typing
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from cdem.errors import CaseError
+from cdem.errors import CaseError, CdemError
 from cdem.units import describe
 
 Key = str | int
@@ -66,6 +67,16 @@ class Source:
         if len(some) > MOST_PROBLEMS:
             lines.append(f"... and {len(some) - MOST_PROBLEMS} more")
         return CaseError("\n".join(lines))
+
+    @contextmanager
+    def blame(self, path: str) -> Iterator[None]:
+        """Put ``file:line:col: path:`` before the message of a CdemError or ValueError inside."""
+        try:
+            yield
+        except CdemError as error:
+            raise type(error)(f"{self.where(path)}: {path}: {error}") from None
+        except ValueError as error:
+            raise CaseError(f"{self.where(path)}: {path}: {error}") from None
 
     def _nearest(self, keys: Keys) -> Keys:
         while keys and keys not in self.places:

@@ -1,0 +1,33 @@
+"""From terrain to a mesh: contours or grids, a sliding surface, bodies outlined in plan.
+
+Example:
+    >>> from cdem.terrain import Landslide, make_mesh, write
+    >>> landslide = Landslide(
+    ...     terrain={"plane": {"dip": 30, "dip_direction": 90, "through": [0, 0, 100]}},
+    ...     extent={"x": [0, 100], "y": [0, 100], "base": 0},
+    ...     surface={"plane": {"dip": 30, "dip_direction": 90, "through": [0, 0, 90]}},
+    ...     bodies=[{"group": "slab", "outline": [[30, 30], [70, 30], [70, 70], [30, 70]]}],
+    ...     sizes={"body": 10, "far": 30},
+    ... )
+    >>> solid = make_mesh(landslide)
+    >>> round(measure(solid)["groups"]["slab"]["volume"], 6)
+    16000.0
+"""
+
+from cdem.terrain.landslide import Landslide
+from cdem.terrain.plan import make_plan
+from cdem.terrain.report import measure, text, write
+from cdem.terrain.solid import Solid, make_solid
+
+__all__ = ["Landslide", "Solid", "make_mesh", "measure", "text", "write"]
+
+
+def make_mesh(landslide: Landslide) -> Solid:
+    """Mesh a landslide: bodies and bedrock, conforming, coarser away from the bodies.
+
+    Raises:
+        CaseError: Terrain, surface and outlines do not fit together.
+        MeshError: The space cannot be filled with tets.
+        BackendError: The extra `terrain` is not installed.
+    """
+    return make_solid(landslide, make_plan(landslide))

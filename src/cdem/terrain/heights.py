@@ -1,0 +1,191 @@
+"""Heights over a plan: planes, lines of known height (contours, polylines), grids; all exact on planes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.errors import BackendError, CaseError
+
+Floats = NDArray[np.float64]
+FIT = 24  # triangles whose corners give the plane beyond the outermost lines
+
+
+class Heights(Protocol):
+    """A height [m] for every point of a plan; beyond its data it goes on evenly."""
+
+    low: Floats
+    high: Floats
+
+    def __call__(self, xy: Floats) -> Floats:
+        """Heights [m], shape (points,), at xy [m], shape (points, 2)."""
+
+
+def extra(module: str) -> Any:
+    """Import a library of the extra `terrain`.
+
+    Raises:
+        BackendError: It is not installed.
+    """
+    import importlib
+
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise BackendError(
+            f"meshing terrain needs {module.split('.')[0]}: pip install 'cdem[terrain]' ({error})"
+        ) from None
+
+
+@dataclass
+class Plane:
+    """A plane through a point, falling by `dip` towards `dip_direction` (from north over east).
+
+    Attributes:
+        dip: Angle to the horizontal [deg].
+        dip_direction: Azimuth in which it falls [deg]; y is north, x is east.
+        through: A point on it [m].
+    """
+
+    dip: float
+    dip_direction: float
+    through: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        self.low = np.full(2, -np.inf)
+        self.high = np.full(2, np.inf)
+
+    def __call__(self, xy: Floats) -> Floats:
+        azimuth = math.radians(self.dip_direction)
+        fall = math.tan(math.radians(self.dip))
+        along = (xy - self.through[:2]) @ [math.sin(azimuth), math.cos(azimuth)]
+        return self.through[2] - fall * along
+
+
+class Lines:
+    """Triangles between lines of known height; beyond the outermost, the plane that fits best.
+
+    Args:
+        lines: Points [m] of each line, shape (points, 3).
+        spacing: Largest distance of points along a line [m]; the lines are divided to it, so that
+            no triangle crosses a line that has a neighbour at that distance.
+
+    Raises:
+        CaseError: All points lie on one line.
+    """
+
+    def __init__(self, lines: list[Floats], spacing: float) -> None:
+        points = np.concatenate([_divided(line, spacing) for line in lines])
+        points = points[np.lexsort(points.T[::-1])]
+        fresh = np.ones(len(points), bool)
+        fresh[1:] = np.abs(np.diff(points[:, :2], axis=0)).max(axis=1) > 1e-6 * spacing
+        self.points = points[fresh]
+        self.low, self.high = self.points[:, :2].min(axis=0), self.points[:, :2].max(axis=0)
+        self._middle = self.points[:, :2].mean(axis=0)
+        spatial = extra("scipy.spatial")
+        try:
+            self._net = spatial.Delaunay(self.points[:, :2] - self._middle)
+        except (spatial.QhullError, ValueError):
+            raise CaseError(
+                "the points lie on one straight line; give lines that span an area"
+            ) from None
+        # made once, here; with several threads SciPy takes 200 times longer for its 3 x 3 systems
+        with extra("threadpoolctl").threadpool_limits(1):
+            self._to_local = self._net.transform
+        z = self.points[self._net.simplices, 2]
+        sloping = np.flatnonzero(np.ptp(z, axis=1) > 0)
+        self._corners = self._net.simplices[sloping if len(sloping) else slice(None)]
+        centers = self._net.points[self._corners].mean(axis=1)
+        self._near = spatial.cKDTree(centers)
+
+    def __call__(self, xy: Floats) -> Floats:
+        at = np.asarray(xy, float) - self._middle
+        triangle = self._net.find_simplex(at, tol=1e-9)
+        to_local = self._to_local[triangle]
+        first = np.einsum("ijk,ik->ij", to_local[:, :2], at - to_local[:, 2])
+        weights = np.column_stack([first, 1 - first.sum(axis=1)])
+        z = (self.points[self._net.simplices[triangle], 2] * weights).sum(axis=1)
+        # triangles without area, of three points in line, have no local coordinates
+        for i in np.flatnonzero((triangle < 0) | ~np.isfinite(z)):
+            z[i] = self._beyond(at[i])
+        return z
+
+    def _beyond(self, at: Floats) -> float:
+        count = min(FIT, len(self._corners))
+        nearest = np.atleast_1d(self._near.query(at, count)[1])
+        some = np.unique(self._corners[nearest])
+        xy = self._net.points[some] - at
+        columns = np.column_stack([np.ones(len(some)), xy])
+        return float(np.linalg.lstsq(columns, self.points[some, 2], rcond=None)[0][0])
+
+
+def _divided(line: Floats, spacing: float) -> Floats:
+    """A line with points added so that none are further apart than `spacing` in plan."""
+    steps = np.hypot(*np.diff(line[:, :2], axis=0).T)
+    pieces = [line[-1:]]
+    for a, b, length in zip(line[:-1], line[1:], steps, strict=True):
+        count = max(1, math.ceil(length / spacing))
+        pieces.append(a + (b - a) * (np.arange(count) / count)[:, None])
+    return np.concatenate(pieces)
+
+
+@dataclass
+class Grid:
+    """Heights on a regular grid, bilinear in between.
+
+    Attributes:
+        west: x of the first column of points [m].
+        south: y of the first row of points [m].
+        step: Distances of columns and of rows [m].
+        values: Heights [m], shape (rows, columns), rows from south to north; NaN where unknown.
+    """
+
+    west: float
+    south: float
+    step: tuple[float, float]
+    values: Floats
+
+    def __post_init__(self) -> None:
+        # a value stands for its cell, so the data reach half a cell beyond the outermost points
+        rows, columns = self.values.shape
+        half = np.array(self.step) / 2
+        self.low = np.array([self.west, self.south]) - half
+        self.high = self.low + np.array(self.step) * [columns, rows]
+
+    def __call__(self, xy: Floats) -> Floats:
+        rows, columns = self.values.shape
+        x = (xy[:, 0] - self.west) / self.step[0]
+        y = (xy[:, 1] - self.south) / self.step[1]
+        i = np.clip(np.floor(x).astype(int), 0, columns - 2)
+        j = np.clip(np.floor(y).astype(int), 0, rows - 2)
+        u, v = x - i, y - j
+        z = self.values
+        south = (1 - u) * z[j, i] + u * z[j, i + 1]
+        north = (1 - u) * z[j + 1, i] + u * z[j + 1, i + 1]
+        return (1 - v) * south + v * north
+
+
+class Smooth:
+    """Heights averaged with a normal distribution in plan; a plane stays what it is.
+
+    Args:
+        heights: What to smooth.
+        width: Standard deviation [m].
+    """
+
+    def __init__(self, heights: Heights, width: float) -> None:
+        self._heights = heights
+        self.low, self.high = heights.low, heights.high
+        # five points of Gauss and Hermite along each axis
+        at, weight = np.polynomial.hermite_e.hermegauss(5)
+        weight = weight / weight.sum()
+        self._shifts = width * np.array([(x, y) for x in at for y in at])
+        self._weights = np.outer(weight, weight).ravel()
+
+    def __call__(self, xy: Floats) -> Floats:
+        around = (np.asarray(xy, float)[:, None] + self._shifts).reshape(-1, 2)
+        return self._heights(around).reshape(len(xy), -1) @ self._weights
