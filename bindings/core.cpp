@@ -262,7 +262,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("seconds",
            [](const Core& c) {
              const Real* t = c.state.seconds;
-             return std::make_tuple(t[0], t[1], t[2], t[3]);
+             return std::make_tuple(t[0], t[1], t[2], t[3], t[4]);
            })
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
       .def("step_limit",

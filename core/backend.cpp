@@ -58,17 +58,25 @@ template <class Kernel>
 void launch_one(Queue queue, Index count, const Kernel& kernel) {
   for_each_one(queue, count, kernel);
 }
+template <class Kernel>
+void launch(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  for_each(queue, count, blocks, kernel);
+}
+template <class Kernel>
+void launch_one(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  for_each_one(queue, count, blocks, kernel);
+}
 
-template void launch(Queue, Index, const CorotationalForce<Tet4, FollowRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Pyramid5, FollowRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Wedge6, FollowRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Hex8, FollowRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Hex8OnePoint, FollowRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Tet4, IgnoreRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Pyramid5, IgnoreRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Wedge6, IgnoreRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Hex8, IgnoreRotation>&);
-template void launch(Queue, Index, const CorotationalForce<Hex8OnePoint, IgnoreRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Tet4, FollowRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Pyramid5, FollowRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Wedge6, FollowRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Hex8, FollowRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Hex8OnePoint, FollowRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Tet4, IgnoreRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Pyramid5, IgnoreRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Wedge6, IgnoreRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Hex8, IgnoreRotation>&);
+template void launch(Queue, Index, Blocks, const CorotationalForce<Hex8OnePoint, IgnoreRotation>&);
 template void launch(Queue, Index, const CorotationalReport<Tet4, FollowRotation>&);
 template void launch(Queue, Index, const CorotationalReport<Pyramid5, FollowRotation>&);
 template void launch(Queue, Index, const CorotationalReport<Wedge6, FollowRotation>&);
@@ -79,20 +87,20 @@ template void launch(Queue, Index, const CorotationalReport<Pyramid5, IgnoreRota
 template void launch(Queue, Index, const CorotationalReport<Wedge6, IgnoreRotation>&);
 template void launch(Queue, Index, const CorotationalReport<Hex8, IgnoreRotation>&);
 template void launch(Queue, Index, const CorotationalReport<Hex8OnePoint, IgnoreRotation>&);
-template void launch(Queue, Index, const IncrementalForce<Tet4, TurnByHalves>&);
-template void launch(Queue, Index, const IncrementalForce<Pyramid5, TurnByHalves>&);
-template void launch(Queue, Index, const IncrementalForce<Wedge6, TurnByHalves>&);
-template void launch(Queue, Index, const IncrementalForce<Hex8, TurnByHalves>&);
-template void launch(Queue, Index, const IncrementalForce<Hex8OnePoint, TurnByHalves>&);
-template void launch(Queue, Index, const IncrementalForce<Tet4, NeverTurn>&);
-template void launch(Queue, Index, const IncrementalForce<Pyramid5, NeverTurn>&);
-template void launch(Queue, Index, const IncrementalForce<Wedge6, NeverTurn>&);
-template void launch(Queue, Index, const IncrementalForce<Hex8, NeverTurn>&);
-template void launch(Queue, Index, const IncrementalForce<Hex8OnePoint, NeverTurn>&);
-template void launch(Queue, Index, const ConformingBonds<3>&);
-template void launch(Queue, Index, const ConformingBonds<4>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Tet4, TurnByHalves>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Pyramid5, TurnByHalves>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Wedge6, TurnByHalves>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Hex8, TurnByHalves>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Hex8OnePoint, TurnByHalves>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Tet4, NeverTurn>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Pyramid5, NeverTurn>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Wedge6, NeverTurn>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Hex8, NeverTurn>&);
+template void launch(Queue, Index, Blocks, const IncrementalForce<Hex8OnePoint, NeverTurn>&);
+template void launch(Queue, Index, Blocks, const ConformingBonds<3>&);
+template void launch(Queue, Index, Blocks, const ConformingBonds<4>&);
 
-template void launch_one(Queue, Index, const OverlapBonds&);
+template void launch_one(Queue, Index, Blocks, const OverlapBonds&);
 template void launch_one(Queue, Index, const UpdateFaceGeometry&);
 template void launch_one(Queue, Index, const MarkSharpSides&);
 template void launch_one(Queue, Index, const FindTargetFaces&);
@@ -100,8 +108,8 @@ template void launch_one(Queue, Index, const FindTargetEdges&);
 template void launch_one(Queue, Index, const UpdateSpringForces&);
 template void launch_one(Queue, Index, const UpdateEdgeForces&);
 template void launch_one(Queue, Index, const GatherFaceForces&);
-template void launch_one(Queue, Index, const SumNodeForces&);
-template void launch_one(Queue, Index, const MoveNodes&);
+template void launch_one(Queue, Index, Blocks, const SumNodeForces&);
+template void launch_one(Queue, Index, Blocks, const MoveNodes&);
 template void launch_one(Queue, Index, const NodeMomentum&);
 template void launch_one(Queue, Index, const SampleNodes&);
 

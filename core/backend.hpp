@@ -14,6 +14,12 @@ void launch(Queue queue, Index count, const Kernel& kernel);
 template <class Kernel>
 void launch_one(Queue queue, Index count, const Kernel& kernel);
 
+/// The same for some of the items.
+template <class Kernel>
+void launch(Queue queue, Index count, Blocks blocks, const Kernel& kernel);
+template <class Kernel>
+void launch_one(Queue queue, Index count, Blocks blocks, const Kernel& kernel);
+
 /// Wait until all launches are done; host code may read their columns then.
 void finish(Queue queue);
 

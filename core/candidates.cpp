@@ -31,11 +31,15 @@ void add_rigid_motion(const ElementSet& e, Index corners, InMotion nodes,
   for (Index i = 0; i < e.count; ++i) {
     Index id[8];
     Vec3<Real> center{0, 0, 0}, velocity{0, 0, 0}, spin{0, 0, 0};
+    bool moves = false;
     for (Index k = 0; k < corners; ++k) {
       id[k] = e.nodes[std::size_t(k) * e.stride + i];
       center = center + Real(1.0) / corners * nodes.position(id[k]);
       velocity = velocity + Real(1.0) / corners * nodes.velocity(id[k]);
+      moves = moves || dot(nodes.velocity(id[k]), nodes.velocity(id[k])) > 0;
+      weight[id[k]] += 1;
     }
+    if (!moves) continue;
     Mat3<Real> inertia{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (Index k = 0; k < corners; ++k) {
       const Vec3<Real> arm = nodes.position(id[k]) - center;
@@ -47,7 +51,6 @@ void add_rigid_motion(const ElementSet& e, Index corners, InMotion nodes,
     for (Index k = 0; k < corners; ++k) {
       const Vec3<Real> arm = nodes.position(id[k]) - center;
       sum[id[k]] = sum[id[k]] + velocity + cross(spin, arm);
-      weight[id[k]] += 1;
     }
   }
 }

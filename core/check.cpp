@@ -168,6 +168,7 @@ StepLimit step_limit(const Model& m, const State& s) {
   StepLimit limit;
   Real largest = -1;
   const MassColumns mass = mass_columns(m);
+  const SupportColumns supports = support_columns(m, s);
   for (Index i = 0; i < m.node_count; ++i) {
     Real stiffness = 0;
     const bool dense = mass.row(i) >= 0;
@@ -175,11 +176,14 @@ StepLimit step_limit(const Model& m, const State& s) {
     const Index last = dense ? first + m.block_count[i] : i + 1;
     if (dense && i != first) continue;
     Real element2 = 0;
+    bool free = false;  // what is held or driven in all directions cannot become unstable
     for (Index j = first; j < last; ++j) {
+      for (Index axis = 0; axis < 3; ++axis) free = free || !supports.given(j, axis);
       const Real contact = std::max(s.nodes.force[std::size_t(j) * 4 + 3], s.node_potential[j]);
       stiffness = std::max(stiffness, contact + s.node_bonds[j]);
       element2 = std::max(element2, m.lumped ? m.lumped_frequency2[j] : m.frequency2[j]);
     }
+    if (!free) continue;
     // Gershgorin: a spring between two points adds at most twice its stiffness to a row
     const Real contact2 = 2 * stiffness * (m.lumped ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
     if (element2 + contact2 > largest) {
@@ -189,6 +193,7 @@ StepLimit step_limit(const Model& m, const State& s) {
       limit.contact2 = contact2;
     }
   }
+  if (!(largest > 0)) largest = 1;  // nothing can move: any step will do
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real xi = m.stiffness_damping + m.contact_damping;
   limit.dt =

@@ -111,6 +111,15 @@ struct NumberOf<Lane> {
 template <class Item>
 using Number = typename NumberOf<Item>::type;
 
+/// Blocks of so many consecutive items that a launch may be limited to.
+inline constexpr Index block_size = 8;
+
+/// Numbers of the blocks to run, ascending; all of them where `id` is null.
+struct Blocks {
+  const Index* id = nullptr;
+  Index count = 0;
+};
+
 #if defined(__CUDACC__)
 
 inline constexpr Index worth_threads = 1024;  // of host loops
@@ -135,6 +144,25 @@ void for_each_one(Queue queue, Index count, const Kernel& kernel) {
   for_each(queue, count, kernel);
 }
 
+template <class Kernel>
+__global__ void run_blocks_on_gpu(Index count, Blocks blocks, Kernel kernel) {
+  const Index place = blockIdx.x * blockDim.x + threadIdx.x;
+  if (place >= blocks.count * block_size) return;
+  const Index i = blocks.id[place / block_size] * block_size + place % block_size;
+  if (i < count) kernel(One{i});
+}
+template <class Kernel>
+void for_each(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  if (!blocks.id) return for_each(queue, count, kernel);
+  const Index threads = blocks.count * block_size;
+  if (threads > 0)
+    run_blocks_on_gpu<<<(threads + 127) / 128, 128, 0, queue.stream>>>(count, blocks, kernel);
+}
+template <class Kernel>
+void for_each_one(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  for_each(queue, count, blocks, kernel);
+}
+
 #else
 
 struct Queue {};
@@ -157,6 +185,31 @@ template <class Kernel>
 void for_each_one(Queue, Index count, const Kernel& kernel) {
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index i = 0; i < count; ++i) kernel(One{i});
+}
+
+/// The same for some blocks of items.
+template <class Kernel>
+void for_each(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  static_assert(block_size % lanes == 0);
+  if (!blocks.id) return for_each(queue, count, kernel);
+  const Index whole = count - count % lanes;
+#pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
+  for (Index b = 0; b < blocks.count; ++b) {
+    const Index first = blocks.id[b] * block_size;
+    const Index last = first + block_size < count ? first + block_size : count;
+    Index i = first;
+    for (; i < last && i < whole; i += lanes) kernel(Lane{i});
+    for (; i < last; ++i) kernel(One{i});
+  }
+}
+template <class Kernel>
+void for_each_one(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  if (!blocks.id) return for_each_one(queue, count, kernel);
+#pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
+  for (Index b = 0; b < blocks.count; ++b) {
+    const Index first = blocks.id[b] * block_size;
+    for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
+  }
 }
 
 #endif

@@ -14,18 +14,20 @@ struct NodeState {
   Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
   Column<Real> unbalance;
   Column<Real> relax;  // rows of 8, adaptive relaxation only: force and velocity of the last step
-  Column<Index> glue;
+  Column<Index> glue, awake;  // awake: blocks of nodes, see rest.hpp
 };
 
 struct ElementState {
   Column<Real> stress;        // mean, for output: [6][element]
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
+  Column<Index> awake;  // blocks of elements, see rest.hpp
 };
 
 struct PairState {
   Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> stored, fracture, friction;
+  Column<Index> awake;  // blocks of pairs, see rest.hpp
 };
 
 struct SpringState {
@@ -56,10 +58,10 @@ struct SearchState {
 };
 
 /// What the wall time of steps is counted by.
-enum class Phase { search, contact, element, node };
+enum class Phase { refresh, search, contact, element, node };
 
 struct State {
-  Real seconds[4] = {};  // wall time so far by Phase; no part of the results
+  Real seconds[5] = {};  // wall time so far by Phase; no part of the results
   Real time = 0;
   Real dt = 0, dt_last = 0;  // of the coming and of the last step  [s]
   std::int64_t step = 0, refreshes = 0, built_step = -1;
@@ -70,6 +72,7 @@ struct State {
   Real relax_damping = 0;  // mass damping that adaptive relaxation has found  [1/s]
   Index missed = 0;        // contacts that an all-pairs search found and ours did not
   bool ledger_started = false;
+  bool all_awake = true;  // the coming step computes everything, see rest.hpp
   NodeState nodes;
   ElementState tet4, pyramid5, wedge6, hex8;
   PairState triangles, quads, overlaps;

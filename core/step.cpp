@@ -11,6 +11,7 @@
 #include "core/contact/force.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
+#include "core/rest.hpp"
 
 namespace cdem {
 
@@ -37,7 +38,7 @@ void evaluate_curves(const Model& m, Real time, Column<Real>& values) {
 template <Index count>
 void update_conforming(const Model& m, State& s, Queue q, const PairSet& p, PairState& ps,
                        Real indentation) {
-  launch(q, p.count,
+  launch(q, p.count, awake(s, ps.awake),
          ConformingBonds<count>{{s.nodes.motion.data()},
                                 {p.nodes.data(), p.stride},
                                 pair_columns(m, p, ps),
@@ -50,7 +51,7 @@ void update_bonds(const Model& m, State& s, Queue q) {  // contact/bond.hpp
   update_conforming<3>(m, s, q, m.triangles, s.triangles, m.bond_indentation_triangle);
   update_conforming<4>(m, s, q, m.quads, s.quads, m.bond_indentation_quad);
   const PairSet& p = m.overlaps;
-  launch_one(q, p.count,
+  launch_one(q, p.count, awake(s, s.overlaps.awake),
              OverlapBonds{face_columns(m, s),
                           p.faces.data(),
                           p.point_first.data(),
@@ -111,20 +112,21 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
   const Real damping_time = m.stiffness_damping * s.dt;
+  const Blocks some = awake(s, es.awake);
   switch (m.formulation) {
     case Formulation::corotational:
       return launch(
-          q, e.count,
+          q, e.count, some,
           CorotationalForce<Shape, FollowRotation>{columns, damping_time, s.dt, work, out});
     case Formulation::paper_total:
       return launch(
-          q, e.count,
+          q, e.count, some,
           CorotationalForce<Shape, IgnoreRotation>{columns, damping_time, s.dt, work, out});
     case Formulation::incremental:
-      return launch(q, e.count,
+      return launch(q, e.count, some,
                     IncrementalForce<Shape, TurnByHalves>{columns, s.dt_last, stress, energy, out});
     case Formulation::paper_incremental:
-      return launch(q, e.count,
+      return launch(q, e.count, some,
                     IncrementalForce<Shape, NeverTurn>{columns, s.dt_last, stress, energy, out});
   }
 }
@@ -140,7 +142,7 @@ void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, eleme
 }
 
 void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
-  launch_one(q, m.node_count,
+  launch_one(q, m.node_count, awake(s, s.nodes.awake),
              SumNodeForces{{s.nodes.motion.data()},
                            corner_lists(m, s),
                            load_columns(m, s),
@@ -153,7 +155,7 @@ void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
 }
 
 void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
-  launch_one(q, m.node_count,
+  launch_one(q, m.node_count, awake(s, s.nodes.awake),
              MoveNodes{mass_columns(m), load_columns(m, s), support_columns(m, s),
                        s.nodes.force.data(), s.nodes.damping_force.data(), s.dt_last, s.dt,
                        s.nodes.motion.data(), s.nodes.reaction.data(), s.nodes.work_external.data(),
@@ -178,9 +180,10 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   Stopwatch watch{s};
   if (refresh_is_due(m, s)) {
     refresh_contacts(m, s);
+    s.all_awake = true;
     renew_step(m, s);  // faces that may now touch call for a shorter step before they do
   }
-  watch.lap(Phase::search);
+  watch.lap(Phase::refresh);
   evaluate_curves(m, s.time, s.load_factor);
   evaluate_curves(m, s.time + 0.5 * s.dt, s.velocity_factor);
   update_face_geometry(m, s, q, false);  // contact/face.hpp
@@ -199,6 +202,8 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   if (sampled) sample_before(m, s, q);
   move_nodes(m, s, q);
   if (sampled) sample_after(m, s, q);
+  if (s.all_awake) find_awake(m, s);
+  s.all_awake = false;
   s.dt_last = s.dt;
   s.time += s.dt;
   s.step += 1;
@@ -252,6 +257,7 @@ void relax_adaptively(const Model& m, State& s) {
 Report run(const Model& m, State& s, const Goal& goal) {
   if (goal.relaxation != Relaxation::adaptive) s.relax_damping = 0;
   if (goal.relaxation != Relaxation::kinetic) s.stop_due = false;
+  s.all_awake = true;  // loads, supports or strengths may have been changed
   for (std::int64_t n = 1; n <= goal.steps; ++n) {
     const bool last = n == goal.steps || s.time + s.dt >= goal.end_time;
     const bool scheduled = s.step % goal.check_interval == 0;  // whatever the split into runs

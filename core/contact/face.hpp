@@ -57,27 +57,27 @@ CDEM_HD inline Projection project_on_triangle(const FaceShape& f, const Vec3<Rea
   return {{1.0 - u - v, u, v, 0.0}, dot(n, p)};
 }
 
-/// Newton on the bilinear surface. A plane quadrilateral that is a parallelogram takes one step;
-/// a warped one four or five. Stops when the update is round-off.
+/// Newton on the bilinear surface, seen from its first vertex so that round-off does not grow with
+/// the distance from the origin. A parallelogram takes one step, and one that shows it; the error
+/// falls with the square of the step before, so a small step is the last.
 CDEM_HD inline Projection project_on_quad(const FaceShape& f, const Vec3<Real>& point,
                                           const Vec3<Real>& n) {
   constexpr int most_steps = 20;
-  constexpr Real round_off = 1e-15;
-  Real u = 0.5, v = 0.5, gap = 0;
+  constexpr Real last = 1e-8;
+  const Vec3<Real> p = point - f.x[0], a = f.x[1] - f.x[0], b = f.x[3] - f.x[0];
+  const Vec3<Real> warp = f.x[2] - f.x[3] - a;  // point at u, v: u a + v b + u v warp
+  Real u = 0.5, v = 0.5;
   for (int step = 0; step < most_steps; ++step) {
-    const Vec3<Real> low = f.x[0] + u * (f.x[1] - f.x[0]);
-    const Vec3<Real> high = f.x[3] + u * (f.x[2] - f.x[3]);
-    const Vec3<Real> miss = point - (low + v * (high - low));
-    const Vec3<Real> along_u = (1.0 - v) * (f.x[1] - f.x[0]) + v * (f.x[2] - f.x[3]);
-    const Vec3<Real> along_v = high - low;
-    const Real det = dot(cross(along_u, along_v), n);
-    const Real du = dot(cross(miss, along_v), n) / det;
-    const Real dv = dot(cross(along_u, miss), n) / det;
+    const Vec3<Real> along_u = a + v * warp, along_v = b + u * warp;
+    const Vec3<Real> miss = p - u * along_u - v * b;
+    const Real per_area = 1.0 / dot(cross(along_u, along_v), n);
+    const Real du = dot(cross(miss, along_v), n) * per_area;
+    const Real dv = dot(cross(along_u, miss), n) * per_area;
     u = u + du;
     v = v + dv;
-    gap = dot(n, miss);
-    if (abs_of(du) + abs_of(dv) < round_off) break;
+    if (abs_of(du) + abs_of(dv) < last) break;
   }
+  const Real gap = dot(n, p - u * (a + v * warp) - v * b);
   return {{(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v}, gap};
 }
 

@@ -31,7 +31,7 @@ TRIAD_BYTES = 400_000_000
 ROCK = {"density": 2500, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
 RUBBLE = 4
 """Cells in the width of the bar that is broken to rubble: 3,072 tets."""
-PHASES = ("search", "contact", "element", "node")
+PHASES = ("refresh", "search", "contact", "element", "node")
 
 
 @dataclass
@@ -81,23 +81,29 @@ def machine(threads: int) -> dict[str, Any]:
         "processor": _processor(),
         "cores": os.cpu_count(),
     }
-    for count in sorted({1, threads}):
+    for count in _counts(threads):
         limits[f"bandwidth, {count} threads"] = bandwidth(count)
         native.set_threads(count)
         limits[f"multiply-adds, {count} threads"] = native.measure_flops()
     return limits
 
 
+def _counts(threads: int) -> list[int]:
+    """Numbers of threads to measure with."""
+    return sorted({threads, *(2**k for k in range(threads.bit_length()))} - {0})
+
+
 def run(sizes: list[str], threads: int) -> Iterator[Row]:
-    """Measure everything, row by row, with one and with all threads."""
-    counts = sorted({1, threads})
+    """Measure everything, row by row, with 1, 2, 4 ... and all threads."""
+    counts = _counts(threads)
     for size in sizes:
         for count in counts:
             yield tets_shared(SIZES[size], count)
         for count in counts:
             yield tets_bonded(SIZES[size], count)
-    for count in counts:
-        yield rubble(RUBBLE, count)
+    for m in (RUBBLE, SIZES["1e4"]) if "1e6" in sizes else (RUBBLE,):
+        for count in counts:
+            yield from rubble(m, count)
     for rows in (26, 208) if "1e5" in sizes else (26,):
         for count in counts:
             yield wall(rows, count)
@@ -159,8 +165,8 @@ def tets_bonded(m: int, threads: int) -> Row:
     return row
 
 
-def rubble(m: int, threads: int) -> Row:
-    """P3: the same with every bond cut, while it slides and tumbles on a plate; with its search."""
+def rubble(m: int, threads: int) -> Iterator[Row]:
+    """P3: the same with every bond cut, while it slides and tumbles on a plate; S: its search."""
     case = _bar(
         m,
         "tet4",
@@ -187,7 +193,24 @@ def rubble(m: int, threads: int) -> Row:
     )
     row.more["B/tet resident"] = sim.audit.memory / tets
     row.more["start-up [s]"] = start
-    return row
+    yield row
+    yield _search(row, refreshes, done, sim)
+
+
+def _search(row: Row, refreshes: int, steps: int, sim: Simulation) -> Row:
+    """S: targets of all semi-springs by the lists, and the making of the lists, from a P3 row."""
+    springs = 3 * len(sim.core.fields()["search.exposed_face"])  # all faces are triangles
+    tets = sim.audit.groups["bar"]["elements"]
+    made = int(sim.core.scalars()["refreshes"]) - refreshes
+    per_step = tets / row.rate  # wall time of a step [s]
+    share = row.more["search [%]"] / 100
+    scale = springs / tets / share
+    s = Row("S search of the same", f"{springs:,}", "springs/s", scale * row.rate,
+            scale * row.least, scale * row.most, row.threads)  # fmt: skip
+    spent = row.more["refresh [%]"] / 100 * per_step * steps
+    s.more["lists [us per spring and refresh]"] = 1e6 * spent / max(made, 1) / springs
+    s.more["refreshes per 1000 steps"] = row.more["refreshes per 1000 steps"]
+    return s
 
 
 def wall(rows: int, threads: int) -> Row:

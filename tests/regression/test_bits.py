@@ -126,6 +126,54 @@ def test_split_into_runs():
         assert np.array_equal(one.core.fields()[name], many.core.fields()[name])
 
 
+def sleeping_bed(held):
+    """A block slides over a meshed, bonded bed that is fixed for some time [s], then free."""
+    return case(
+        [
+            {
+                "group": "bed",
+                "box": {"size": [4, 2, 2], "divisions": [4, 2, 2], "shape": "tet4"},
+                "translate": [0, 0, -2],
+            },
+            {"group": "body", "box": {"size": [1, 1, 1], "divisions": [2, 2, 2]},
+             "translate": [2.5, 0.5, 0]},
+        ],
+        {"body": {"velocity": [6, 0, -1]}, "bed": {"fix": ["x", "y", "z"]}},
+        interfaces={
+            "default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6},
+            "pairs": [{"between": ["bed", "body"], "friction_angle": 10, "cohesion": 0,
+                       "tensile_strength": 0}],
+        },
+        rock={"young_modulus": "0.1 GPa"},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=[
+            {"name": "held", "mode": "dynamic", "duration": held},
+            {"name": "free", "mode": "dynamic", "duration": 0.02, "set": {"groups.bed.fix": []}},
+        ],
+        model={"split": {"bed": "elements"}},
+    )  # fmt: skip
+
+
+def test_what_is_fixed_and_not_computed_is_as_if_it_were():
+    """Every call of the core computes everything once; in between what is fixed sleeps."""
+    at_once, stepwise = (cdem.Simulation(sleeping_bed(9.0), threads=1) for _ in range(2))
+    at_once.step(150)
+    for _ in range(150):
+        stepwise.step(1)
+    assert len(at_once.contacts["kind"]) > 0
+    assert digest(at_once) == digest(stepwise)
+    bed = at_once.build.nodes_of("bed")
+    weight = at_once.fields["mass"][bed].sum() * 9.81
+    assert at_once.fields["reaction"][bed, 2].sum() > weight
+
+
+def test_what_slept_wakes_up_when_it_is_freed():
+    sim = cdem.Simulation(sleeping_bed(0.01), threads=1)
+    sim.run()
+    bed = sim.build.nodes_of("bed")
+    assert sim.fields["velocity"][bed, 2].mean() == pytest.approx(-9.81 * 0.02, rel=0.05)
+
+
 @pytest.mark.parametrize("way", ["local", "kinetic", "adaptive"])
 def test_stop_and_resume_on_the_way_to_rest(tmp_path, way):
     def settle(**more):

@@ -38,7 +38,7 @@ def inclined(dip):
 def factor(study, *settings):
     """Factor of safety by strength reduction."""
     case = study.case(*settings)
-    return find_critical(case, strength_reduction(case), (0.7, 3.0), tolerance=5e-4,
+    return find_critical(case, strength_reduction(), (0.7, 3.0), tolerance=5e-4,
                          threads=study.threads).value  # fmt: skip
 
 

@@ -1,0 +1,72 @@
+// rest.cpp - finds what is fixed and stays as it is.
+#include "core/rest.hpp"
+
+#include <vector>
+
+namespace cdem {
+
+namespace {
+
+/// Blocks with an item for which `is_awake` holds.
+template <class Test>
+void list_blocks(Index count, Column<Index>& list, Test&& is_awake) {
+  list.resize(0);
+  for (Index first = 0; first < count; first += block_size) {
+    bool any = false;  // every item must be asked: the test takes notes
+    for (Index i = first; i < first + block_size && i < count; ++i) any = is_awake(i) || any;
+    if (any) list.push(first / block_size);
+  }
+  if (list.size() == 0) list.push(0);  // an empty list would stand for all
+}
+
+bool is_fixed(const Model& m, const State& s, Index node) {
+  const Index row = m.support[node];
+  if (row < 0) return false;
+  for (Index axis = 0; axis < 3; ++axis)
+    if (!m.support_component[3 * row + axis] || m.support_velocity[3 * row + axis] != 0 ||
+        s.nodes.motion[8 * std::size_t(node) + 4 + axis] != 0)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+void find_awake(const Model& m, State& s) {
+  std::vector<Flag> fixed(m.node_count), pulled(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i) fixed[i] = is_fixed(m, s, i);
+  /// Is one of the item's nodes free? Then all are pulled.
+  const auto note = [&](Index corners, auto&& node) {
+    bool moves = false;
+    for (Index k = 0; k < corners; ++k) moves = moves || !fixed[node(k)];
+    for (Index k = 0; moves && k < corners; ++k) pulled[node(k)] = 1;
+    return moves;
+  };
+  const auto elements = [&](const ElementSet& e, ElementState& es, Index corners) {
+    list_blocks(e.count, es.awake, [&](Index i) {
+      return note(corners, [&](Index k) { return e.nodes[std::size_t(k) * e.stride + i]; });
+    });
+  };
+  elements(m.tet4, s.tet4, 4);
+  elements(m.pyramid5, s.pyramid5, 5);
+  elements(m.wedge6, s.wedge6, 6);
+  elements(m.hex8, s.hex8, 8);
+  const auto pairs = [&](const PairSet& p, PairState& ps) {
+    list_blocks(p.count, ps.awake, [&](Index i) {
+      return note(2 * p.points, [&](Index k) { return p.nodes[std::size_t(k) * p.stride + i]; });
+    });
+  };
+  pairs(m.triangles, s.triangles);
+  pairs(m.quads, s.quads);
+  list_blocks(m.overlaps.count, s.overlaps.awake, [&](Index i) {
+    return note(8, [&](Index k) {
+      const Index* nodes = m.face_nodes.data() + 4 * m.overlaps.faces[2 * i + k / 4];
+      return nodes[k % 4] < 0 ? nodes[0] : nodes[k % 4];
+    });
+  });
+  list_blocks(m.node_count, s.nodes.awake, [&](Index i) {
+    return !fixed[i] || pulled[i] || m.load_first[i] < m.load_first[i + 1] ||
+           s.search.contact_first[i] < s.search.contact_first[i + 1];
+  });
+}
+
+}  // namespace cdem

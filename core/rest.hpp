@@ -1,0 +1,20 @@
+// rest.hpp - what is fixed and stays as it is needs no computing. Host code.
+#pragma once
+
+#include "core/model.hpp"
+#include "core/state.hpp"
+
+namespace cdem {
+
+/// List the blocks of elements, bonded pairs and nodes that are awake. Asleep are elements and
+/// pairs of which all nodes are fixed, and fixed nodes at which nothing awake pulls: what the last
+/// step computed for them holds until the model or the lists of contacts change. Computing them
+/// again would give the same bits.
+void find_awake(const Model& model, State& state);
+
+/// The blocks that a step runs.
+inline Blocks awake(const State& s, const Column<Index>& list) {
+  return s.all_awake ? Blocks{} : Blocks{list.data(), Index(list.size())};
+}
+
+}  // namespace cdem
