@@ -20,11 +20,11 @@ from cdem.parts import (
     Interfaces,
     Loads,
     Material,
-    Model,
     Output,
     Stage,
     Time,
 )
+from cdem.parts_model import Model
 from cdem.read import (
     Source,
     explain,

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from cdem import __version__
+from cdem import __version__, cli_results
 from cdem.errors import CaseError, CdemError
 
 if TYPE_CHECKING:
@@ -35,7 +35,6 @@ app = typer.Typer(
 )
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE.yaml", help="Case file.")]
-ResultFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Result folder of a run.")]
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the case; repeatable."),
@@ -288,7 +287,7 @@ def sweep(
     if as_json:
         print(json.dumps(table.as_dict(), indent=2))
     elif not quiet:
-        _print_paths(paths)
+        cli_results.print_paths(paths)
     for run in table.failed:
         print(f"failed: {run.text()}", file=sys.stderr)
     if table.waiting:
@@ -533,98 +532,9 @@ def _resume_command(case: Path, folder: Path, settings: list[str], threads: int 
     return shlex.join(words + ([] if threads is None else ["--threads", str(threads)]))
 
 
-# ------------------------------------------------------------------ looking at results
-
-
-@app.command()
-def info(folder: ResultFolder) -> None:
-    """Say what a run did."""
-    from cdem import view
-
-    print(view.info(_results(folder)).rstrip())
-
-
-@app.command()
-def plot(folder: ResultFolder) -> None:
-    """Draw histories and energies as PNG."""
-    from cdem import view
-
-    _print_paths(view.plot(_results(folder)))
-
-
-@app.command()
-def render(
-    folder: ResultFolder,
-    field: Annotated[str, typer.Option(help="Field that colours the picture.")] = "displacement",
-    movie: Annotated[bool, typer.Option("--movie", help="Make an animation.")] = False,
-) -> None:
-    """Draw the model as pictures or an animation."""
-    from cdem import view
-
-    _print_paths(view.render(_results(folder), field=field, movie=movie))
-
-
-@app.command()
-def runout(
-    folder: ResultFolder,
-    groups: Annotated[
-        str | None, typer.Option(metavar="A,B", help="Moving groups; default those that moved.")
-    ] = None,
-    direction: Annotated[
-        str, typer.Option(metavar="AZIMUTH", help="Degrees clockwise from y, or auto.")
-    ] = "auto",
-    cell: Annotated[
-        float | None, typer.Option(help="Cell of the map [m]; default about an element's size.")
-    ] = None,
-    sections: Annotated[
-        list[str] | None,
-        typer.Option("--section", metavar="X0,Y0,X1,Y1", help="Line to look through; repeatable."),
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print runout.json instead.")] = False,
-) -> None:
-    """Measure front, reach, H/L, deposit, sections and pieces; write maps and tables."""
-    from cdem import runout as measuring
-
-    found = measuring.measure(
-        _results(folder),
-        groups=None if groups is None else [name.strip() for name in groups.split(",")],
-        direction=None if direction == "auto" else _numbers(direction, "--direction", 1)[0],
-        cell=cell,
-        sections=[_numbers(line, "--section", 4) for line in sections or []],
-    )
-    paths = found.write(folder)
-    try:
-        paths.append(found.draw(folder))
-    except CdemError as error:  # without the extra that draws, the numbers are whole
-        print(f"no deposit.png: {error}", file=sys.stderr)
-    if as_json:
-        print((folder / "runout.json").read_text().rstrip())
-        return
-    print(found.text())
-    _print_paths(paths)
-
-
-def _numbers(text: str, option: str, count: int) -> list[float]:
-    """Numbers between commas; wrong usage if they are not numbers, or not so many."""
-    try:
-        numbers = [float(word) for word in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) != count:
-        what = "a number" if count == 1 else f"{count} numbers with commas between"
-        raise typer.BadParameter(f"{option} needs {what}, got {text!r}")
-    return numbers
-
-
-@app.command()
-def export(
-    folder: ResultFolder,
-    to: Annotated[Literal["vtu"], typer.Option("--to", help="File format.")] = "vtu",
-) -> None:
-    """Write the frames as files for ParaView and the like."""
-    from cdem import view
-
-    _print_paths(view.export(_results(folder), to=to))
+for _verb in (cli_results.info, cli_results.plot, cli_results.render, cli_results.runout,
+              cli_results.export):  # fmt: skip
+    app.command()(_verb)
 
 
 @app.command()
@@ -636,18 +546,3 @@ def doctor() -> None:
     print(text)
     if not healthy:
         raise typer.Exit(1)
-
-
-def _results(folder: Path) -> Path:
-    if not folder.is_dir():
-        raise CaseError(f"{folder}: no such folder; name the result folder of a run")
-    from cdem.results import RESULT_FILES
-
-    if not {path.name for path in folder.iterdir()} & RESULT_FILES:
-        raise CaseError(f"{folder}: is not a result folder; 'cdem run CASE.yaml' makes one")
-    return folder
-
-
-def _print_paths(paths: Any) -> None:
-    for path in [paths] if isinstance(paths, str | Path) else paths:
-        print(path)

@@ -17,7 +17,7 @@ from cdem.shapes import NODES
 from cdem.topology import block_labels
 
 if TYPE_CHECKING:
-    from cdem.parts import Joint, Model
+    from cdem.parts_model import Joint, Model
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import cdem
 from cdem import Case, cell_mesh, cells, cli, joints, mesh
-from cdem.parts import Joint, Model
+from cdem.parts_model import Joint, Model
 from cdem.topology import block_labels, build_topology
 from cdem.view import snapshot
 
