@@ -28,16 +28,15 @@ struct FaceShape {
     const Vec3<Real> t1 = unit(side - dot(n, side) * n);
     return {n, t1, cross(n, t1)};
   }
-  /// Smallest distance of a point's projection from the sides [m], positive inside. Eq. 7-8 with a
-  /// length instead of a sign, so that it can be compared with a tolerance.
-  CDEM_HD Real inside_distance(const Vec3<Real>& point, const Vec3<Real>& n) const {
-    Real smallest = 1e300;
+  /// Is a point's projection inside, or outside by no more than `room` [m]? Eq. 7-8 with a length
+  /// instead of a sign; most points are inside, which takes no root to see.
+  CDEM_HD bool inside(const Vec3<Real>& point, const Vec3<Real>& n, Real room) const {
     for (Index k = 0; k < count; ++k) {
       const Vec3<Real> a = x[k], side = x[k + 1 == count ? 0 : k + 1] - a;
-      const Real distance = dot(cross(n, side), point - a) / norm(side);
-      smallest = min_of(smallest, distance);
+      const Real beyond = -dot(cross(n, side), point - a);  // times the length of the side
+      if (beyond > 0 && beyond * beyond > room * room * dot(side, side)) return false;
     }
-    return smallest;
+    return true;
   }
 };
 

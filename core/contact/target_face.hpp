@@ -150,7 +150,7 @@ struct FindTargetFaces {
     return dot(arm, arm) - up * up < reach * reach;
   }
   CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
-    return gap < -depth && faces.shape(exposed_face[t]).inside_distance(p, geometry.normal(t)) > 0;
+    return gap < -depth && faces.shape(exposed_face[t]).inside(p, geometry.normal(t), 0.0);
   }
   /// Gap of the vertex to face t if it is in contact there, no higher than `lifted` and no deeper
   /// than `limit`, else `none`.
@@ -159,7 +159,7 @@ struct FindTargetFaces {
     const Vec3<Real> n = geometry.normal(t);
     if (dot(geometry.normal(m), n) >= -rules.opposing) return none;
     const FaceShape f = faces.shape(exposed_face[t]);
-    if (f.inside_distance(p, n) < -rules.tolerance * smaller_length(m, t)) return none;
+    if (!f.inside(p, n, rules.tolerance * smaller_length(m, t))) return none;
     const Real gap = project(f, v, n).gap;
     if (gap > lifted || gap < -limit) return none;
     for (Index j = 0; j < f.count; ++j)
@@ -171,7 +171,8 @@ struct FindTargetFaces {
     const Index point = faces.node_glue[node];
     for (Index r = faces.ring_first[point]; r < faces.ring_first[point + 1]; ++r) {
       const Vec3<Real> d = faces.nodes.position(faces.ring[r]) - v;
-      if (dot(d, n) < -rules.cone * norm(d)) return false;
+      const Real down = -dot(d, n);
+      if (down > 0 && down * down > rules.cone * rules.cone * dot(d, d)) return false;
     }
     return true;
   }
