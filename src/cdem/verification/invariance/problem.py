@@ -80,7 +80,7 @@ def scenes():
     tip.settings += ["time.step=10 us", "model.blocks.1.translate=[0.01, 0.004, 0.001]",
                      "groups.upper.velocity=[0, 0, -0.5]"]  # fmt: skip
     return {
-        "tumbling tetrahedron": Scene("tumble.yaml", ["time.step=50 us"], step=5e-3),
+        "tumbling tetrahedron": Scene("tumble.yaml", ["time.step=50 us"]),
         "beam that cracks": Scene("beam.yaml", step=2e-3, bonds=True),
         "swinging square": Scene("../swing/case.yaml", ["stages.0.duration=1"], step=2e-4),
         "slide over 160 hexahedra": Scene("../sliding/case.yaml", slope, step=2e-4, quick=False),
