@@ -8,8 +8,9 @@ namespace cdem {
 
 /// List the blocks of elements, bonded pairs and nodes that are awake. Asleep are elements and
 /// pairs of which all nodes are fixed, and fixed nodes at which nothing awake pulls: what the last
-/// step computed for them holds until the model or the lists of contacts change. Computing them
-/// again would give the same bits.
+/// step computed for them holds until the model changes. Computing them again would give the same
+/// bits. (Faces that a broken bond exposes are no reason to wake: bonds with a free side, and nodes
+/// of exposed faces, never sleep.)
 void find_awake(const Model& model, State& state);
 
 /// The blocks that a step runs.

@@ -180,7 +180,6 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   Stopwatch watch{s};
   if (refresh_is_due(m, s)) {
     refresh_contacts(m, s);
-    s.all_awake = true;
     renew_step(m, s);  // faces that may now touch call for a shorter step before they do
   }
   watch.lap(Phase::refresh);

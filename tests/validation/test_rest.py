@@ -108,12 +108,17 @@ def test_what_cannot_rest_is_said(gap):
         assert not any(notes)
 
 
-@pytest.mark.parametrize("damping", [{"local": 0.8}, {"mass": 200.0}])
-def test_damping_leaves_the_force_of_a_driven_end_alone(damping):
-    """A bar that is pressed by v t / 2 presses back with E A v t / 2 l at both ends."""
+@pytest.mark.parametrize(
+    ("damping", "divisions"), [({"local": 0.8}, [2, 2, 4]), ({"mass": 1e4}, [1, 1, 1])]
+)
+def test_damping_leaves_the_force_of_a_driven_end_alone(damping, divisions):
+    """A bar that is pressed by v t presses back with E A v t / l at both ends.
+
+    The bar of one element has no nodes that are free along it, which the mass damping would brake.
+    """
     end = {"group": "slope", "normal": [0, 0, 1]}
     sim = simulate(
-        [{"group": "slope", "box": {"size": [1, 1, 2], "divisions": [2, 2, 4]}}],
+        [{"group": "slope", "box": {"size": [1, 1, 2], "divisions": divisions}}],
         {"slope": {}},
         rock={"poisson_ratio": 0.0, "young_modulus": "10 GPa"},
         loads={
