@@ -195,7 +195,8 @@ StepLimit step_limit(const Model& m, const State& s) {
   }
   if (!(largest > 0)) largest = 1;  // nothing can move: any step will do
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
-  const Real xi = m.stiffness_damping + m.contact_damping;
+  const Real xi =
+      m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);
   limit.dt =
       2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) / std::sqrt(1 + m.damping.local);
   return limit;

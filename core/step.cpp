@@ -148,7 +148,7 @@ void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
                            load_columns(m, s),
                            support_columns(m, s),
                            {m.damping.local, m.damping.mass + s.relax_damping},
-                           m.mass.data(),
+                           mass_columns(m),
                            s.nodes.force.data(),
                            s.nodes.damping_force.data(),
                            s.nodes.unbalance.data()});

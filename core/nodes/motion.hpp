@@ -52,6 +52,31 @@ struct CornerLists {
   const Real* contact_force;  // row of 4: force, stiffness
 };
 
+/// Mass of the nodes: a number each, or for small blocks the inverse of the consistent mass matrix,
+/// which gives them their exact inertia.
+struct MassColumns {
+  bool lumped;               // only the numbers count, whatever the matrices
+  const Real* mass;          // [node] row sum of the mass matrix  [kg]
+  const Index* dense_first;  // [node]: start of the node's row in `dense`, or -1 when lumped
+  const Index* dense_step;   // [node]: from one axis to the next (0 when all three share)
+  const Index* block_first;  // [node]: first node of the block
+  const Index* block_count;  // [node]: nodes of the block
+  const Real* inverse;       // rows of the inverse, supported nodes taken out  [1/kg]
+  const Real* matrix;        // rows of the matrix, in the same places  [kg]
+
+  /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
+  CDEM_HD Index row(Index node) const { return lumped ? -1 : dense_first[node]; }
+  /// Momentum M v of a node  [kg m/s].
+  CDEM_HD Vec3<Real> momentum(const InMotion& nodes, Index i) const {
+    const Index start = row(i);
+    if (start < 0) return mass[i] * nodes.velocity(i);
+    Vec3<Real> p{0.0, 0.0, 0.0};
+    for (Index j = 0; j < block_count[i]; ++j)
+      p = p + matrix[start + j] * nodes.velocity(block_first[i] + j);
+    return p;
+  }
+};
+
 /// Damping of the nodes' motion.
 struct NodeDamping {
   Real local;  // Cundall's, fraction of the unbalanced force, against the velocity
@@ -65,7 +90,7 @@ struct SumNodeForces {
   LoadColumns loads;
   SupportColumns supports;
   NodeDamping damping;
-  const Real* mass;     // [node]  [kg]
+  MassColumns mass;
   Real* force;          // row of 4: x y z [N], stiffness of the contacts [N/m]
   Real* damping_force;  // row of 4  [N]
   Real* unbalance;      // [node] |x| + |y| + |z| of the unbalanced force on free components  [N]
@@ -82,7 +107,10 @@ struct SumNodeForces {
       stiffness += r[3];
     }
     const Vec3<Real> v = nodes.velocity(i);
-    const Vec3<Real> d{drag(i, 0, f.x, v.x), drag(i, 1, f.y, v.y), drag(i, 2, f.z, v.z)};
+    Vec3<Real> p{0.0, 0.0, 0.0};
+    if (damping.mass > 0) p = mass.momentum(nodes, i);
+    const Vec3<Real> d{drag(i, 0, f.x, v.x, p.x), drag(i, 1, f.y, v.y, p.y),
+                       drag(i, 2, f.z, v.z, p.z)};
     unbalance[i] = free(i, 0, f.x) + free(i, 1, f.y) + free(i, 2, f.z);
     Real* r = force + std::size_t(i) * 4;
     r[0] = f.x + d.x, r[1] = f.y + d.y, r[2] = f.z + d.z, r[3] = stiffness;
@@ -93,30 +121,14 @@ struct SumNodeForces {
  private:
   /// Damping of one component. Where a support prescribes the motion there is nothing to damp: it
   /// would only add to the support's force.
-  CDEM_HD Real drag(Index node, Index axis, Real f, Real v) const {
+  CDEM_HD Real drag(Index node, Index axis, Real f, Real v, Real momentum) const {
     if (supports.given(node, axis)) return 0.0;
     const Real size = damping.local * abs_of(f);
-    return (v > 0 ? -size : (v < 0 ? size : 0.0)) - damping.mass * mass[node] * v;
+    return (v > 0 ? -size : (v < 0 ? size : 0.0)) - damping.mass * momentum;
   }
   CDEM_HD Real free(Index node, Index axis, Real f) const {
     return supports.given(node, axis) ? 0.0 : abs_of(f);
   }
-};
-
-/// Mass of the nodes: a number each, or for small blocks the inverse of the consistent mass matrix,
-/// which gives them their exact inertia.
-struct MassColumns {
-  bool lumped;               // only the numbers count, whatever the matrices
-  const Real* mass;          // [node] row sum of the mass matrix  [kg]
-  const Index* dense_first;  // [node]: start of the node's row in `dense`, or -1 when lumped
-  const Index* dense_step;   // [node]: from one axis to the next (0 when all three share)
-  const Index* block_first;  // [node]: first node of the block
-  const Index* block_count;  // [node]: nodes of the block
-  const Real* inverse;       // rows of the inverse, supported nodes taken out  [1/kg]
-  const Real* matrix;        // rows of the matrix, in the same places  [kg]
-
-  /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
-  CDEM_HD Index row(Index node) const { return lumped ? -1 : dense_first[node]; }
 };
 
 /// Advance velocity and position by one step of central differences, and account for the work.
@@ -203,15 +215,8 @@ struct NodeMomentum {
   Real* momentum;  // row of 4  [kg m/s]
 
   CDEM_HD void operator()(One node) const {
-    const Index i = node.i, row = mass.row(i);
-    Vec3<Real> p{0.0, 0.0, 0.0};
-    if (row < 0) {
-      p = mass.mass[i] * nodes.velocity(i);
-    } else {
-      for (Index j = 0; j < mass.block_count[i]; ++j)
-        p = p + mass.matrix[row + j] * nodes.velocity(mass.block_first[i] + j);
-    }
-    Real* r = momentum + std::size_t(i) * 4;
+    const Vec3<Real> p = mass.momentum(nodes, node.i);
+    Real* r = momentum + std::size_t(node.i) * 4;
     r[0] = p.x, r[1] = p.y, r[2] = p.z;
   }
 };

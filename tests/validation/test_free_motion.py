@@ -154,3 +154,20 @@ def test_larger_blocks_have_exact_inertia_too():
     )
     _, angular = momentum(lumped)
     assert angular[2] == pytest.approx(ROCK["density"] / 6 * (1 + 2 / 3**2), rel=1e-9)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("motion", ["velocity", "angular_velocity"])
+def test_mass_damping_slows_flight_and_spin_alike(shape, motion):
+    """Damping C = alpha M: linear and angular momentum fall as exp(-alpha t)."""
+    alpha, time = 2.0, 0.3
+    sim = simulate(
+        [{"group": "block", **SHAPES[shape]}],
+        {"block": {motion: [1, 2, 3]}},
+        stages=[{"name": "fly", "mode": "dynamic", "duration": time, "damping": {"mass": alpha}}],
+    )
+    which = 0 if motion == "velocity" else 1
+    before = momentum(sim)[which]
+    sim.run()
+    expected = np.exp(-alpha * sim.time) * before
+    assert np.allclose(momentum(sim)[which], expected, atol=1e-3 * np.linalg.norm(before))

@@ -109,7 +109,7 @@ def test_what_cannot_rest_is_said(gap):
 
 
 @pytest.mark.parametrize(
-    ("damping", "divisions"), [({"local": 0.8}, [2, 2, 4]), ({"mass": 1e4}, [1, 1, 1])]
+    ("damping", "divisions"), [({"local": 0.8}, [2, 2, 4]), ({"mass": 2e3}, [1, 1, 1])]
 )
 def test_damping_leaves_the_force_of_a_driven_end_alone(damping, divisions):
     """A bar that is pressed by v t presses back with E A v t / l at both ends.
