@@ -104,6 +104,7 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
   s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
   s.relax_damping = real("relax_damping"), s.stop_due = whole("stop_due") != 0;
   s.search.horizon = real("horizon"), s.search.built_time = real("built_time");
+  s.search.skin_least = real("skin_least");
   s.ledger_started = whole("ledger_started") != 0;
   s.edges.slots = Index(whole("edge_slots"));
 }
@@ -117,6 +118,7 @@ nb::dict scalars(const Core& core) {
   d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
   d["relax_damping"] = s.relax_damping, d["stop_due"] = std::int64_t(s.stop_due);
   d["horizon"] = s.search.horizon, d["built_time"] = s.search.built_time;
+  d["skin_least"] = s.search.skin_least;
   d["ledger_started"] = std::int64_t(s.ledger_started);
   d["edge_slots"] = std::int64_t(s.edges.slots);
   return d;

@@ -103,6 +103,7 @@ template void launch(Queue, Index, Blocks, const ConformingBonds<4>&);
 template void launch_one(Queue, Index, Blocks, const OverlapBonds&);
 template void launch_one(Queue, Index, const UpdateFaceGeometry&);
 template void launch_one(Queue, Index, const MarkSharpSides&);
+template void launch(Queue, Index, const MarkNearEdges&);
 template void launch_one(Queue, Index, const FindTargetFaces&);
 template void launch_one(Queue, Index, const FindTargetEdges&);
 template void launch_one(Queue, Index, const UpdateSpringForces&);

@@ -31,7 +31,8 @@ inline Sources source_columns(const State& s) {
 
 inline EdgeCandidates edge_candidate_columns(const State& s) {
   return {s.search.edge_candidate_first.data(), s.search.edge_candidate.data(),
-          s.search.edge_candidate_sides.data()};
+          s.search.edge_candidate_sides.data(), s.search.edge_candidate_edges.data(),
+          s.search.edges_near.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {

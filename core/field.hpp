@@ -123,6 +123,14 @@ struct InIndices {
 #endif
 };
 
+/// Write a flag for every item.
+CDEM_HD inline void set_flags(Flag* flags, One item, bool mask) { flags[item.i] = mask ? 1 : 0; }
+#if !defined(__CUDACC__)
+inline void set_flags(Flag* flags, Lane item, Mask mask) {
+  for (Index j = 0; j < lanes; ++j) flags[item.i + j] = mask.bits[j] ? 1 : 0;
+}
+#endif
+
 /// A small lookup table, read at the item's own key.
 struct InLookup {
   const Real* data;

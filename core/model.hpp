@@ -50,7 +50,7 @@ struct Model {
 
   // exterior faces and edges
   Index face_count = 0, edge_count = 0;
-  Column<Index> face_nodes, face_edges, face_group, face_block;
+  Column<Index> face_nodes, face_edges, face_group, face_block, face_element;
   Column<Real> face_length, face_reach, face_area, face_stiffness;
   Column<Index> edge_nodes, edge_faces, ring_first, ring;
   Column<Flag> face_initially_exposed, face_movable;
@@ -125,6 +125,7 @@ void describe(Model& m, Visit&& field) {
   field("face.edges", m.face_edges);
   field("face.group", m.face_group);
   field("face.block", m.face_block);
+  field("face.element", m.face_element);
   field("face.length", m.face_length);
   field("face.reach", m.face_reach);
   field("face.area", m.face_area);

@@ -11,6 +11,7 @@
 #include "core/check.hpp"
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
+#include "core/proximity.hpp"
 #include "core/surface.hpp"
 
 namespace cdem {
@@ -174,7 +175,8 @@ void sum_stiffness(const Model& m, State& s) {
   }
 }
 
-bool refresh_is_due(const Model& m, const State& s) {
+bool refresh_is_due(const Model& m, State& s) {
+  s.search.strayed = false;
   if (s.built_step < 0) return true;
   if (m.refresh_interval > 0) return s.step - s.built_step >= m.refresh_interval;
   if (release_is_due(m, m.triangles, s.triangles) || release_is_due(m, m.quads, s.quads) ||
@@ -193,7 +195,7 @@ bool refresh_is_due(const Model& m, const State& s) {
                dz = now[2] - then[2] - after * then[6];
     due = due || dx * dx + dy * dy + dz * dz > skin * skin;
   }
-  return due;
+  return s.search.strayed = due;
 }
 
 void refresh_contacts(const Model& m, State& s) {
@@ -222,6 +224,17 @@ void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
              MarkSharpSides{face_columns(m, s), exposed,
                             all ? nullptr : s.search.edge_candidate_first.data(),
                             all ? nullptr : s.search.source_first.data(), s.face_geometry.data()});
+}
+
+void mark_near_edges(const Model& m, State& s, Queue q) {
+  const SearchState& search = s.search;
+  const Index count = Index(search.edges_near.size());
+  launch(q, count,
+         MarkNearEdges{{s.nodes.motion.data()},
+                       {search.edges_ends.data(), padded_stride(count)},
+                       {search.edges_room.data(), padded_stride(count)},
+                       m.rules.approach_steps * s.dt_last,
+                       s.search.edges_near.data()});
 }
 
 void widen_edge_slots(State& s) {
@@ -289,6 +302,7 @@ Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
 }
 
 Index count_missed_contacts(const Model& m, State& s) {
+  mark_near_edges(m, s, {});
   const FindTargetFaces springs = face_search(m, s, m.rules);
   const FindTargetEdges edges{face_columns(m, s),
                               {s.face_geometry.data()},
@@ -340,7 +354,7 @@ Index count_missed_contacts(const Model& m, State& s) {
             continue;
           bool found = false;
           for (Index i = c.first[x]; i < c.first[x + 1]; ++i)
-            found = found || (c.face[i] == t && c.sides[i] == pair.code());
+            found = found || (c.face[i] == t && c.sides[i] == pair.code() && c.near[c.edges[i]]);
           missed += !found;
         }
   }

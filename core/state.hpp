@@ -48,8 +48,13 @@ struct EdgeState {
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
   Real horizon = 0, built_time = 0;          // how long the lists look ahead, and from when  [s]
+  Real skin_least = 0.001;  // of a node, in parts of L; follows how long the lists last
+  bool strayed = false;     // a vertex left its foreseen path: the lists are old
   Column<Index> candidate_first, candidate;  // by vertex
-  Column<Index> edge_candidate_first, edge_candidate, edge_candidate_sides;
+  Column<Index> edge_candidate_first, edge_candidate, edge_candidate_sides, edge_candidate_edges;
+  Column<Index> edges_ends;            // [4][pair] nodes of both
+  Column<Real> edges_room;             // [2][pair] see MarkNearEdges
+  Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
   Column<Index> source_first, source;  // faces whose contacts may act on a face
   Column<Index> across;                // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
@@ -97,6 +102,11 @@ void describe_search(S& search, Visit&& field) {
   field("search.edge_candidate", search.edge_candidate, "exposed face whose side may be crossed");
   field("search.edge_candidate_sides", search.edge_candidate_sides,
         "which sides, which ends shared");
+  field("search.edge_candidate_edges", search.edge_candidate_edges, "pair of edges they are of");
+  field("search.edges_ends", search.edges_ends, "ends of pairs of edges that may touch");
+  field("search.edges_room", search.edges_room,
+        "depth at which they may begin to, indentation [m]");
+  field("search.edges_near", search.edges_near, "1: they may begin to touch in this step");
   field("search.across", search.across, "face beyond a side of an exposed face, or -1");
   field("search.ring_first", search.ring_first, "start of a point's ring");
   field("search.ring", search.ring, "other ends of the edges that leave a point");

@@ -74,6 +74,7 @@ void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact
 
 void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, contact/target_edge.hpp
   if (!m.semi_edges) return;
+  mark_near_edges(m, s, q);
   const Index count = Index(s.search.exposed_face.size());
   while (true) {
     launch_one(q, count,

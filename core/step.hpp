@@ -73,7 +73,7 @@ void change_mass(Model& model, State& state, bool lumped);
 void stop_motion(const Model& model, State& state);
 
 // refresh.cpp
-bool refresh_is_due(const Model& model, const State& state);
+bool refresh_is_due(const Model& model, State& state);
 void refresh_contacts(Model const& model, State& state);
 /// Set the stress-free gap of springs that overlap at the start; returns the deepest overlap [m].
 Real adopt_overlaps(const Model& model, State& state, Index& count, Index& face);

@@ -34,6 +34,8 @@ struct EdgeCandidates {
   const Index* first;  // [exposed + 1]
   const Index* face;   // exposed face to which the target side belongs, ascending in a row
   const Index* sides;  // SidePair::code
+  const Index* edges;  // pair of edges that the sides are of
+  const Flag* near;    // [pair of edges] 0: they cannot begin to touch in this step
 };
 
 /// Side k of the mother and side j of the target. Bit 2 a + b of `shared`: end a of the one and end
@@ -78,6 +80,55 @@ CDEM_HD inline Frame edge_frame(const Vec3<Real>& n, const Vec3<Real>& along_t) 
   const Vec3<Real> t1 = unit(along_t - dot(n, along_t) * n);
   return {n, t1, cross(n, t1)};
 }
+
+/// Mark the pairs of edges that may begin to touch in this step. One test stands for the sides of
+/// all faces at both edges, in either direction, and has room for what distinguishes them: their
+/// indentation and the rate of approach. So what is found in contact does not depend on it.
+struct MarkNearEdges {
+  InMotion nodes;
+  InIndices ends;  // [4][pair]: of one edge, and of the other
+  InTable room;    // [3][pair]: depth at which a contact may begin, indentation  [m]; side on
+                   // which one edge must be of the other, along the cross product: 1, -1, 0: either
+  Real reach_time;  // how far the approach of how long counts as depth  [s]
+  Flag* near;
+
+  static constexpr Real parallel = 0.02;    // sine of the angle between edges that never touch
+  static constexpr Real round_off = 1e-16;  // of a gap, squared, in parts of the depth
+
+  template <class I>
+  CDEM_HD void operator()(I p) const {
+    using T = Number<I>;
+    const auto a0 = ends.at(0, p), a1 = ends.at(1, p), b0 = ends.at(2, p), b1 = ends.at(3, p);
+    const Vec3<T> start_a = nodes.position(a0), start_b = nodes.position(b0);
+    const Vec3<T> along_a = nodes.position(a1) - start_a, along_b = nodes.position(b1) - start_b;
+    const Vec3<T> c = cross(along_a, along_b), apart = start_b - start_a;
+    const T c2 = dot(c, c), a2 = dot(along_a, along_a), b2 = dot(along_b, along_b);
+    const T gap = dot(c, apart);  // times |c|
+    const Vec3<T> va = nodes.velocity(a0), vb = nodes.velocity(b0);
+    const T rate = size(va - vb) + size(nodes.velocity(a1) - va) + size(nodes.velocity(b1) - vb);
+    const T depth = room.at(0, p) + T(reach_time) * rate, shift = room.at(1, p);
+    const T off_a = outside(dot(cross(apart, along_b), c), c2);  // times |c|^2 / |along_a|
+    const T off_b = outside(dot(cross(apart, along_a), c), c2);
+    const T deep2 = gap * gap, depth2 = depth * depth * c2;
+    const auto far = (c2 < T(parallel * parallel) * a2 * b2) | (deep2 > depth2) |
+                     ((room.at(2, p) * gap < T(0.0)) & (deep2 > T(round_off) * depth2)) |
+                     (off_a * off_a > shift * shift * b2 * c2) |
+                     (off_b * off_b > shift * shift * a2 * c2);
+    set_flags(near, p, !far);
+  }
+
+ private:
+  /// Not less than the length of a vector.
+  template <class T>
+  CDEM_HD static T size(const Vec3<T>& v) {
+    return abs_of(v.x) + abs_of(v.y) + abs_of(v.z);
+  }
+  /// By how much a number lies outside 0..most.
+  template <class T>
+  CDEM_HD static T outside(T number, T most) {
+    return max_of(max_of(-number, number - most), T(0.0));
+  }
+};
 
 /// Find the target edges of every semi-edge of one exposed face.
 ///
@@ -200,10 +251,13 @@ struct FindTargetEdges {
   CDEM_HD Index find(Index m, const Held& held, Found* found) const {
     Index used = 0;
     for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c) {
+      const bool near = candidates.near[candidates.edges[c]];
+      if (!near && held.count == 0) continue;
       const Index t = candidates.face[c];
       const SidePair pair = SidePair::of(candidates.sides[c]);
       const Index edge = faces.face_edges[4 * exposed_face[t] + pair.j];
       const Index old = held.find(pair.k, edge);
+      if (!near && old < 0) continue;
       if (!touches(m, t, pair, old >= 0, held.loaded(old), edges.lost + m)) continue;
       if (used < most_slots) found[used] = {pair.k, t, edge, old};
       ++used;
@@ -245,7 +299,7 @@ struct FindTargetEdges {
   /// starts.
   CDEM_HD bool far_apart(const Sides& p, const Vec3<Real>& p0, const Vec3<Real>& nm,
                          const Vec3<Real>& nt, Real slack) const {
-    constexpr Real parallel = 0.02;  // sine of the angle between the edges
+    constexpr Real parallel = MarkNearEdges::parallel;
     const Vec3<Real> c = cross(p.dm, p.dt), apart = p.xt - p0;
     const Real c2 = dot(c, c);
     if (c2 < parallel * parallel * dot(p.dm, p.dm) * dot(p.dt, p.dt)) return true;

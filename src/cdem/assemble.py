@@ -398,6 +398,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.edges": t.face_edges.astype(np.int32).ravel(),
         "face.group": t.face_kind.astype(np.int32),
         "face.block": t.face_block.astype(np.int32),
+        "face.element": t.face_element.astype(np.int32),
         "face.length": distance.sum(axis=1) / corners,
         "face.reach": DEFORMED * distance.max(axis=1),
         "face.area": area,

@@ -1,0 +1,76 @@
+// exposed.hpp - exposed faces as the lists of the search see them: where they are, and how they may
+// move before the lists are renewed. Host code.
+#pragma once
+
+#include <vector>
+
+#include "core/contact/boxes.hpp"
+#include "core/contact/face.hpp"
+#include "core/model.hpp"
+#include "core/state.hpp"
+
+namespace cdem {
+
+/// Velocity that the lists foresee for a node.
+Vec3<Real> foreseen(const State& s, Index node);
+
+/// Foresee where the nodes of exposed faces go, straight on with the rigid motion of their elements
+/// (which leaves the elements' vibrations out), and how far they may stray from there: as far as
+/// they would with the change of velocity that they had since the last refresh.
+void foresee_motion(const Model& model, State& state);
+
+/// An exposed face as the lists see it: where it is, and how it may move before they are old.
+struct ExposedFace {
+  FaceShape shape;
+  Vec3<Real> center, normal;
+  Vec3<Real> drift;  // of all its vertices alike  [m]
+  Real stir;         // of a vertex beyond the drift  [m]
+  Real turn;         // of the normal and of the sides  [rad]
+  Real deepest;      // contact  [m]
+  Real warp;         // of a vertex out of the mean plane  [m]
+  Real length;       // L  [m]
+  Index face, block;
+  bool movable;
+  Box box;  // of the whole way
+};
+
+std::vector<ExposedFace> exposed_faces(const Model& model, const State& state);
+
+/// The exposed faces of one element, with their vertices and edges, each once.
+struct Patch {
+  /// An edge: the faces of the patch that meet there, and which of their sides it is.
+  struct Edge {
+    Index id, faces = 0;
+    Index face[2], side[2];
+  };
+  Index face_count = 0, vertex_count = 0, edge_count = 0;
+  Index face[6];  // exposed
+  Index vertex[8];
+  Edge edge[12];
+  Vec3<Real> drift{0, 0, 0};   // of all its vertices alike  [m]
+  Real stir = 0;               // of a vertex beyond the drift  [m]
+  Real deepest = 0;            // contact  [m]
+  Real length = 0, reach = 0;  // largest of its faces  [m]
+  Index block = -1;
+  bool movable = false;
+  Box box = Box::nothing();  // of the whole way
+};
+
+/// Group the exposed faces by the elements behind them.
+std::vector<Patch> exposed_patches(const Model& model, const State& state,
+                                   const std::vector<ExposedFace>& exposed);
+
+/// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
+/// lie between theirs, which is what `fall` tells (see FindTargetEdges::cones_hold).
+struct ExposedSide {
+  bool sharp = false;  // may be an edge of a contact: its faces are not coplanar
+  Vec3<Real> start, along;
+  Vec3<Real> fall, fall_across;  // normal x side, of the face and of the one across
+  Index across = -1;             // exposed face on the other side, or -1
+  Real length = 0;               // [m]
+  Real turn = 0, turn_face = 0, turn_across = 0;  // of the side and of both faces
+};
+
+std::vector<ExposedSide> exposed_sides(const State& state, const std::vector<ExposedFace>& exposed);
+
+}  // namespace cdem

@@ -1,0 +1,368 @@
+// proximity.cpp - pairs of patches, and what of them may touch before the lists are renewed.
+#include "core/proximity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/columns.hpp"
+#include "core/contact/boxes.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// What the search for one pair of patches needs.
+struct Finder {
+  const Model& m;
+  const State& s;
+  const FaceColumns faces;
+  const std::vector<ExposedFace>& exposed;
+  const std::vector<ExposedSide>& sides;
+  const Bonded& bonded;
+};
+
+constexpr Real last_step = 1.05;  // the last step counts 1.5 times, see SearchRules::entry
+
+/// How far a vertex of one face may move as seen from the other  [m].
+Real motion_between(const ExposedFace& x, const ExposedFace& y) {
+  return norm(x.drift - y.drift) + x.stir + y.stir;
+}
+
+/// How much the gap between anything of x and of y along a normal of y (or of both) may change, at
+/// least and at most  [m].
+struct GapChange {
+  Real least, most;
+  GapChange(const ExposedFace& x, const ExposedFace& y, const Vec3<Real>& n) {
+    const Real approach = dot(n, x.drift - y.drift), stir = x.stir + y.stir;
+    least = std::min(approach, 0.0) - stir;
+    most = std::max(approach, 0.0) + stir;
+  }
+};
+
+/// Farthest that anything of one patch may be from the other when lists are made, if it may be in
+/// contact before they are renewed  [m]; but for the drifts, which have a direction.
+Real farthest_contact(const SearchRules& rules, const Patch& a, const Patch& b) {
+  return last_step * (a.stir + b.stir) + a.deepest + b.deepest + rules.lifted +
+         (rules.entry + 2 * rules.tolerance) * std::min(a.length, b.length) +
+         2 * rules.indentation * std::max(a.reach, b.reach);
+}
+
+/// Does a plane along a face of either patch hold the two apart until the next refresh?
+bool apart(const Model& m, const State& s, const std::vector<ExposedFace>& exposed, const Patch& a,
+           const Patch& b) {
+  const InMotion nodes{s.nodes.motion.data()};
+  const Real room = farthest_contact(m.rules, a, b);
+  const Vec3<Real> closing = last_step * (b.drift - a.drift);
+  const auto range = [&](const Patch& p, const Vec3<Real>& n, const Vec3<Real>& c) {
+    std::pair<Real, Real> r{1e300, -1e300};
+    for (Index i = 0; i < p.vertex_count; ++i) {
+      const Real up = dot(n, nodes.position(p.vertex[i]) - c);
+      r = {std::min(r.first, up), std::max(r.second, up)};
+    }
+    return r;
+  };
+  for (const Patch* p : {&a, &b})
+    for (Index f = 0; f < p->face_count; ++f) {
+      const ExposedFace& face = exposed[p->face[f]];
+      const auto of_a = range(a, face.normal, face.center);
+      const auto of_b = range(b, face.normal, face.center);
+      const Real closer = dot(face.normal, closing);
+      if (of_b.first - of_a.second + std::min(closer, 0.0) > room ||
+          of_a.first - of_b.second - std::max(closer, 0.0) > room)
+        return true;
+    }
+  return false;
+}
+
+/// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
+bool apart(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
+  Real lowest = 1e300, span = 0;
+  for (Index k = 0; k < x.shape.count; ++k) {
+    const Vec3<Real> arm = x.shape.x[k] - y.center;
+    lowest = std::min(lowest, dot(y.normal, arm));
+    span = std::max(span, norm(arm));
+  }
+  const Real turned = y.turn * (span + motion_between(x, y));
+  return lowest + GapChange(x, y, y.normal).least > turned + y.warp + rules.lifted;
+}
+
+/// May anything of the two faces touch before the next refresh?
+bool may_touch(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
+  return x.block != y.block && (x.movable || y.movable) &&
+         dot(x.normal, y.normal) < -rules.opposing + x.turn + y.turn && !apart(rules, x, y) &&
+         !apart(rules, y, x);
+}
+
+/// May a vertex of exposed face x come into contact with exposed face y before the next refresh?
+/// The tests of FindTargetFaces::qualify with room for the motion; `reach` is that of the largest
+/// of the faces at the vertex. A vertex that a bond holds to y has no contact there through its
+/// other faces too.
+bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, Real reach,
+               Index place_y) {
+  const ExposedFace& y = f.exposed[place_y];
+  const SearchRules& rules = f.m.rules;
+  const Real motion = motion_between(x, y);
+  const GapChange change(x, y, y.normal);
+  const Vec3<Real> v = f.faces.nodes.position(node), arm = v - y.center;
+  const Real gap_room = y.turn * (norm(arm) + motion) + y.warp, gap = dot(y.normal, arm);
+  if (gap + change.least > gap_room + rules.lifted ||
+      gap + change.most < -rules.depth * length - gap_room)
+    return false;
+  for (Index j = 0; j < y.shape.count; ++j) {  // beside the face?
+    const Vec3<Real> a = y.shape.x[j], side = y.shape.x[j + 1 == y.shape.count ? 0 : j + 1] - a;
+    const Vec3<Real> from = v - a;
+    const Real room = rules.tolerance * length + rules.indentation * reach + motion +
+                      2 * y.turn * (norm(from) + rules.indentation * reach);
+    if (dot(cross(y.normal, side), from) < -room * norm(side)) return false;
+  }
+  for (Index j = 0; j < y.shape.count; ++j)
+    if (f.faces.node_glue[f.faces.vertex(y.face, j)] == f.faces.node_glue[node]) return false;
+  if (Bonded::among(f.bonded.vertices, node, place_y)) return false;
+  const Index point = f.faces.node_glue[node];  // never the deepest vertex?
+  for (Index r = f.faces.ring_first[point]; r < f.faces.ring_first[point + 1]; ++r) {
+    const Index other = f.faces.ring[r];
+    if (f.s.search.node_skin[other] == 0) continue;  // nothing watches its motion
+    const Vec3<Real> d = f.faces.nodes.position(other) - v;
+    const Real moved = f.s.search.horizon * norm(foreseen(f.s, other) - foreseen(f.s, node)) +
+                       f.s.search.node_skin[other] + f.s.search.node_skin[node];
+    const Real long_d = norm(d), turn = 2 * moved / long_d + y.turn;
+    if (dot(d, y.normal) < -(rules.cone + turn) * long_d) return false;
+  }
+  return true;
+}
+
+/// Shortest vector from the segment b + t e to the segment a + s d, with s and t in 0..1.
+Vec3<Real> between_segments(const Vec3<Real>& a, const Vec3<Real>& d, const Vec3<Real>& b,
+                            const Vec3<Real>& e) {
+  const Vec3<Real> apart = a - b;
+  const Real dd = dot(d, d), ee = dot(e, e), de = dot(d, e);
+  const Real da = dot(d, apart), ea = dot(e, apart), det = dd * ee - de * de;
+  const auto limit = [](Real x) { return std::clamp(x, 0.0, 1.0); };
+  Real s = det > 1e-12 * dd * ee ? limit((de * ea - ee * da) / det) : 0.0;
+  const Real t = limit((de * s + ea) / ee);
+  s = limit((de * t - da) / dd);
+  return apart + s * d - t * e;
+}
+
+/// On which sides of each other two edges may touch before the next refresh, as bits: 1 where the
+/// contact normal is along the cross product of the two, 2 where it is against it. The tests of
+/// FindTargetEdges with room for the motion. `apart` leads from q to p.
+int crossing_sides(const SearchRules& rules, const ExposedFace& x, const ExposedSide& p,
+                   const ExposedFace& y, const ExposedSide& q, const Vec3<Real>& apart) {
+  const Vec3<Real> c = cross(p.along, q.along);
+  const Real size = norm(c), sine = size / (p.length * q.length) - p.turn - q.turn;
+  if (!(sine > 0)) return 3;
+  const Real swing = (p.turn + q.turn) / sine;  // of the contact normal
+  const Real swung = swing * (norm(apart) + motion_between(x, y));
+  const auto beyond = [&](Real sine_of_cone, const ExposedSide& of, Real turn_face) {
+    return sine_of_cone < -(rules.cone + swing + of.turn + turn_face);
+  };
+  int sides = 0;
+  for (const int side : {1, 2}) {
+    const Vec3<Real> n = (side == 1 ? 1 : -1) / size * c;
+    if (dot(n, apart) + GapChange(x, y, n).least > swung ||
+        beyond(dot(n, p.fall), p, p.turn_face) || beyond(-dot(n, q.fall), q, q.turn_face) ||
+        (p.across >= 0 && beyond(dot(n, p.fall_across), p, p.turn_across)) ||
+        (q.across >= 0 && beyond(-dot(n, q.fall_across), q, q.turn_across)))
+      continue;
+    sides |= side;
+  }
+  return sides;
+}
+
+/// Do ends of the two sides that began at one place stay there until the next refresh? Then
+/// FindTargetEdges takes them for no edges on each other.
+bool stay_together(const Model& m, const State& s, const ExposedFace& x, const ExposedFace& y,
+                   const SidePair& pair) {
+  if (!pair.shared) return false;
+  const FaceColumns faces = face_columns(m, s);
+  const Real near = m.rules.indentation * std::min(x.length, y.length);
+  for (Index i = 0; i < 4; ++i) {
+    if (!(pair.shared >> i & 1)) continue;
+    const Index a = faces.vertex(x.face, (pair.k + (i >> 1)) % x.shape.count);
+    const Index b = faces.vertex(y.face, (pair.j + (i & 1)) % y.shape.count);
+    const Real motion = s.search.horizon * norm(foreseen(s, a) - foreseen(s, b)) +
+                        s.search.node_skin[a] + s.search.node_skin[b];
+    if (norm(faces.nodes.position(a) - faces.nodes.position(b)) + motion < near) return true;
+  }
+  return false;
+}
+
+/// Which faces of two patches may touch, bit by bit: row = face of the first.
+struct FacePairs {
+  int row[6] = {};
+  FacePairs(const Finder& f, const Patch& a, const Patch& b) {
+    for (Index i = 0; i < a.face_count; ++i)
+      for (Index j = 0; j < b.face_count; ++j)
+        if (may_touch(f.m.rules, f.exposed[a.face[i]], f.exposed[b.face[j]]) &&
+            !Bonded::among(f.bonded.faces, a.face[i], b.face[j]))
+          row[i] |= 1 << j;
+  }
+  bool any() const { return row[0] || row[1] || row[2] || row[3] || row[4] || row[5]; }
+};
+
+/// Vertices of one patch on faces of another.
+void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
+                  bool reverse, Proximity& found) {
+  const auto met = [&](Index i, Index j) {
+    return (reverse ? pairs.row[j] >> i : pairs.row[i] >> j) & 1;
+  };
+  for (Index j = 0; j < b.face_count; ++j) {
+    int vertices[6] = {};
+    for (Index v = 0; v < a.vertex_count; ++v) {
+      Index corner[6], first = -1;  // of the faces at the vertex
+      for (Index i = 0; i < a.face_count; ++i) {
+        corner[i] = -1;
+        if (!met(i, j)) continue;
+        const Index face = f.exposed[a.face[i]].face;
+        for (Index k = 0; k < f.faces.vertex_count(face); ++k)
+          if (f.faces.vertex(face, k) == a.vertex[v]) corner[i] = k;
+        if (corner[i] >= 0 && first < 0) first = i;
+      }
+      if (first < 0) continue;
+      const Real length = std::min(a.length, f.exposed[b.face[j]].length);
+      if (!may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, b.face[j]))
+        continue;
+      for (Index i = 0; i < a.face_count; ++i)
+        if (corner[i] >= 0) vertices[i] |= 1 << corner[i];
+    }
+    for (Index i = 0; i < a.face_count; ++i)
+      if (vertices[i]) found.touches.push_back({a.face[i], b.face[j], vertices[i]});
+  }
+}
+
+/// Is face y the right face of its side for a mother face x, or may it become so?
+bool may_be_right(const Finder& f, const ExposedFace& x, const ExposedFace& y,
+                  const ExposedSide& q) {
+  const Real turns = 2 * (x.turn + y.turn) + q.turn_across;
+  return q.across < 0 ||
+         !(dot(x.normal, f.exposed[q.across].normal) < dot(x.normal, y.normal) - turns);
+}
+
+/// Sides of exposed face x that may cross those of y there, as the two edges do.
+void list_crossing(const Finder& f, Index x, Index k, Index y, Index j, Index edges,
+                   Proximity& found) {
+  const ExposedFace &face_x = f.exposed[x], &face_y = f.exposed[y];
+  SidePair pair;
+  if (!may_be_right(f, face_x, face_y, f.sides[4 * std::size_t(y) + j]) ||
+      !pair_sides(f.faces, face_x.face, k, face_y.face, j, pair) ||
+      stay_together(f.m, f.s, face_x, face_y, pair))
+    return;
+  found.crossings.push_back({x, y, pair.code(), edges});
+}
+
+/// Edges of one patch across edges of another.
+void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
+                    Proximity& found) {
+  const Real depth = f.m.rules.entry * std::min(a.length, b.length);
+  const Real shift = 1.01 * f.m.rules.indentation * std::max(a.reach, b.reach);
+  const Real room_still = farthest_contact(f.m.rules, a, b) - last_step * (a.stir + b.stir);
+  for (Index e = 0; e < a.edge_count; ++e) {
+    const Patch::Edge& p = a.edge[e];
+    const ExposedFace& x = f.exposed[a.face[p.face[0]]];
+    const ExposedSide& side_p = f.sides[4 * std::size_t(a.face[p.face[0]]) + p.side[0]];
+    if (!side_p.sharp) continue;
+    for (Index g = 0; g < b.edge_count; ++g) {
+      const Patch::Edge& q = b.edge[g];
+      const ExposedFace& y = f.exposed[b.face[q.face[0]]];
+      const ExposedSide& side_q = f.sides[4 * std::size_t(b.face[q.face[0]]) + q.side[0]];
+      if (!side_q.sharp) continue;
+      const Real room = room_still + last_step * motion_between(x, y);
+      const Vec3<Real> normal = cross(side_p.along, side_q.along);
+      const Real off = dot(normal, side_p.start - side_q.start);
+      if (off * off > room * room * dot(normal, normal)) continue;  // so far are even the lines
+      const Vec3<Real> apart =
+          between_segments(side_p.start, side_p.along, side_q.start, side_q.along);
+      if (dot(apart, apart) > room * room) continue;
+      const int on = crossing_sides(f.m.rules, x, side_p, y, side_q, apart);
+      if (!on) continue;
+      const std::size_t before = found.crossings.size();
+      const Index edges = Index(found.edges.size());
+      for (Index i = 0; i < p.faces; ++i)
+        for (Index j = 0; j < q.faces; ++j) {
+          if (!(pairs.row[p.face[i]] >> q.face[j] & 1)) continue;
+          const Index place_x = a.face[p.face[i]], place_y = b.face[q.face[j]];
+          list_crossing(f, place_x, p.side[i], place_y, q.side[j], edges, found);
+          list_crossing(f, place_y, q.side[j], place_x, p.side[i], edges, found);
+        }
+      if (found.crossings.size() == before) continue;
+      const Index* ends_p = f.m.edge_nodes.data() + 2 * std::size_t(p.id);
+      const Index* ends_q = f.m.edge_nodes.data() + 2 * std::size_t(q.id);
+      // seen along the cross product of the two as their ends are listed here
+      const bool turned = (ends_p[0] != f.faces.vertex(x.face, p.side[0])) !=
+                          (ends_q[0] != f.faces.vertex(y.face, q.side[0]));
+      const Real way = on == 3 ? 0 : ((on == 1) != turned ? 1 : -1);
+      found.edges.push_back({{ends_p[0], ends_p[1], ends_q[0], ends_q[1]}, {depth, shift, way}});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Proximity> find_proximity(const Model& m, const State& s) {
+  const std::vector<ExposedFace> exposed = exposed_faces(m, s);
+  const std::vector<ExposedSide> sides = exposed_sides(s, exposed);
+  const Bonded bonded = live_overlaps(m, s);
+  const Finder f{m, s, face_columns(m, s), exposed, sides, bonded};
+  const std::vector<Patch> patches = exposed_patches(m, s, exposed);
+  const Index count = Index(patches.size());
+  std::vector<Box> boxes(count);
+  for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
+  const BoxTree tree(boxes);
+  std::vector<Proximity> found(count);
+#pragma omp parallel for schedule(dynamic, 32) if (count >= worth_threads)
+  for (Index p = 0; p < count; ++p) {
+    const Patch& a = patches[p];
+    std::vector<Index> after;
+    tree.query(boxes[p], [&](Index q) {
+      if (q > p && a.block != patches[q].block && (a.movable || patches[q].movable) &&
+          !apart(m, s, exposed, a, patches[q]))
+        after.push_back(q);
+    });
+    std::sort(after.begin(), after.end());
+    for (const Index q : after) {
+      const Patch& b = patches[q];
+      const FacePairs pairs(f, a, b);
+      if (!pairs.any()) continue;
+      list_touches(f, a, b, pairs, false, found[p]);
+      list_touches(f, b, a, pairs, true, found[p]);
+      if (m.semi_edges) list_crossings(f, a, b, pairs, found[p]);
+    }
+  }
+  return found;
+}
+
+bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,
+                SidePair& pair) {
+  const Index km = k + 1 == faces.vertex_count(face_m) ? 0 : k + 1;
+  const Index jt = j + 1 == faces.vertex_count(face_t) ? 0 : j + 1;
+  const Index mother[2] = {faces.vertex(face_m, k), faces.vertex(face_m, km)};
+  const Index target[2] = {faces.vertex(face_t, j), faces.vertex(face_t, jt)};
+  pair = {k, j, 0};
+  for (Index i = 0; i < 4; ++i) {
+    const Index a = mother[i >> 1], b = target[i & 1];
+    if (faces.node_glue[a] == faces.node_glue[b]) return false;
+    if (faces.node_place[a] == faces.node_place[b]) pair.shared |= 1 << i;
+  }
+  return true;
+}
+
+Bonded live_overlaps(const Model& m, const State& s) {
+  Bonded bonded;
+  for (Index i = 0; i < m.overlaps.count; ++i) {
+    if (!(s.overlaps.live[i] > 0)) continue;
+    for (Index side = 0; side < 2; ++side) {
+      const Index face = m.overlaps.faces[2 * i + side];
+      const Index mate = s.search.face_exposed[m.overlaps.faces[2 * i + 1 - side]];
+      bonded.faces.push_back({s.search.face_exposed[face], mate});
+      for (Index k = 0; k < 4; ++k) bonded.vertices.push_back({m.face_nodes[4 * face + k], mate});
+    }
+  }
+  std::sort(bonded.faces.begin(), bonded.faces.end());
+  std::sort(bonded.vertices.begin(), bonded.vertices.end());
+  return bonded;
+}
+
+}  // namespace cdem

@@ -1,0 +1,63 @@
+// proximity.hpp - what may touch before the lists of the search are renewed. Host code.
+//
+// The lists foresee that every vertex goes straight on at its present velocity for a while, and
+// they are good until one has strayed from there by its skin. So rock that moves as a whole needs
+// no new lists. Every test leaves room for that motion: what it rejects cannot come into contact
+// before.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "core/contact/target_edge.hpp"
+#include "core/exposed.hpp"
+#include "core/model.hpp"
+#include "core/state.hpp"
+
+namespace cdem {
+
+/// What live bonds of overlaps look after, as sorted keys.
+struct Bonded {
+  using Pairs = std::vector<std::pair<Index, Index>>;
+  Pairs faces;     // exposed face and the one it is bonded to
+  Pairs vertices;  // node of a bonded face and exposed face that it is bonded to
+
+  static bool among(const Pairs& pairs, Index a, Index b) {
+    return std::binary_search(pairs.begin(), pairs.end(), std::pair(a, b));
+  }
+};
+Bonded live_overlaps(const Model& m, const State& s);
+
+/// Side k of a face and side j of another as a candidate; false where intact bonds hold them
+/// together.
+bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,
+                SidePair& pair);
+
+/// What of a patch may touch what of the patches after it.
+struct Proximity {
+  /// Vertices of a mother face on another exposed face.
+  struct Touch {
+    Index mother, face;
+    int vertices;  // bit by bit
+  };
+  /// A side of a mother face across one of another exposed face.
+  struct Crossing {
+    Index mother, face;
+    Index sides;  // SidePair::code
+    Index edges;  // place in the list below
+  };
+  /// The pair of edges that crossings are of, see MarkNearEdges.
+  struct Edges {
+    Index ends[4];
+    Real room[3];
+  };
+  std::vector<Touch> touches;
+  std::vector<Crossing> crossings;
+  std::vector<Edges> edges;
+};
+
+/// What may touch before the next refresh: by patch, with the patches after it.
+std::vector<Proximity> find_proximity(const Model& model, const State& state);
+
+}  // namespace cdem
