@@ -12,40 +12,46 @@ namespace cdem {
 
 namespace {
 
-/// What one exposed face may touch before the next refresh.
-struct Row {
-  std::vector<Proximity::Touch> touches;
-  std::vector<Proximity::Crossing> crossings;
+/// Ragged rows, one for each exposed face.
+template <class T>
+struct Rows {
+  std::vector<Index> first;
+  std::vector<T> items;
+  T* begin(Index x) { return items.data() + first[x]; }
+  T* end(Index x) { return items.data() + first[x + 1]; }
+  const T* begin(Index x) const { return items.data() + first[x]; }
+  const T* end(Index x) const { return items.data() + first[x + 1]; }
 };
 
-std::vector<Row> rows_by_face(std::size_t count, const std::vector<Proximity>& found) {
-  std::vector<Row> rows(count);
-  Index edges = 0;  // of the patches before
-  for (const Proximity& f : found) {
-    for (const auto& t : f.touches) rows[t.mother].touches.push_back(t);
-    for (auto c : f.crossings) {
-      c.edges += edges;
-      rows[c.mother].crossings.push_back(c);
-    }
-    edges += Index(f.edges.size());
-  }
+/// Deal out what was found, `list` of each patch, to the mother faces; rows are sorted by `key`.
+template <class T, class Key>
+Rows<T> by_mother(const std::vector<Proximity>& found, std::vector<T> Proximity::* list,
+                  Index count, const Key& key) {
+  Rows<T> rows;
+  rows.first.resize(count + 1);
+  for (const Proximity& f : found)
+    for (const T& item : f.*list) ++rows.first[item.mother + 1];
+  for (Index x = 0; x < count; ++x) rows.first[x + 1] += rows.first[x];
+  rows.items.resize(rows.first[count]);
+  std::vector<Index> next(rows.first.begin(), rows.first.end() - 1);
+  for (const Proximity& f : found)
+    for (const T& item : f.*list) rows.items[next[item.mother]++] = item;
 #pragma omp parallel for schedule(dynamic, 64) if (count >= worth_threads)
-  for (std::size_t x = 0; x < count; ++x) {
-    std::sort(rows[x].touches.begin(), rows[x].touches.end(),
-              [](const auto& a, const auto& b) { return a.face < b.face; });
-    const auto key = [](const Proximity::Crossing& c) {
-      const SidePair pair = SidePair::of(c.sides);
-      return std::tuple(c.face, pair.k, pair.j);
-    };
-    std::sort(rows[x].crossings.begin(), rows[x].crossings.end(),
-              [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  }
+  for (Index x = 0; x < count; ++x)
+    std::sort(rows.begin(x), rows.end(x), [&](const T& a, const T& b) { return key(a) < key(b); });
   return rows;
 }
 
-void list_edges(SearchState& search, const std::vector<Proximity>& found) {
+using Touches = Rows<Proximity::Touch>;
+using Crossings = Rows<Proximity::Crossing>;
+
+/// List the pairs of edges of all patches, and let the crossings know their places there.
+void list_edges(SearchState& search, std::vector<Proximity>& found) {
   Index count = 0;
-  for (const Proximity& f : found) count += Index(f.edges.size());
+  for (Proximity& f : found) {
+    for (Proximity::Crossing& c : f.crossings) c.edges += count;
+    count += Index(f.edges.size());
+  }
   const std::size_t stride = padded_stride(count);
   search.edges_near.resize(count);
   search.edges_ends.resize(4 * stride);
@@ -60,24 +66,23 @@ void list_edges(SearchState& search, const std::vector<Proximity>& found) {
 }
 
 /// For every exposed face the others that list it: their contacts may act on it.
-void list_sources(State& s, const std::vector<Row>& rows) {
-  const Index count = Index(rows.size());
-  Column<Index>&first = s.search.source_first, &source = s.search.source;
+void list_sources(SearchState& search, const Touches& touches, const Crossings& crossings) {
+  const Index count = Index(touches.first.size()) - 1;
+  Column<Index>&first = search.source_first, &source = search.source;
   first.resize(count + 1);
   first.fill(0);
   const auto visit = [&](auto&& at) {
     for (Index x = 0; x < count; ++x) {
-      auto touch = rows[x].touches.begin();
-      auto crossing = rows[x].crossings.begin();
-      while (touch != rows[x].touches.end() || crossing != rows[x].crossings.end()) {
+      const Proximity::Touch* touch = touches.begin(x);
+      const Proximity::Crossing* crossing = crossings.begin(x);
+      while (touch != touches.end(x) || crossing != crossings.end(x)) {
         // both are in ascending order
-        const Index y = touch == rows[x].touches.end() ? crossing->face
-                        : crossing == rows[x].crossings.end()
-                            ? touch->face
-                            : std::min(touch->face, crossing->face);
+        const Index y = touch == touches.end(x)        ? crossing->face
+                        : crossing == crossings.end(x) ? touch->face
+                                                       : std::min(touch->face, crossing->face);
         at(y, x);
-        while (touch != rows[x].touches.end() && touch->face == y) ++touch;
-        while (crossing != rows[x].crossings.end() && crossing->face == y) ++crossing;
+        while (touch != touches.end(x) && touch->face == y) ++touch;
+        while (crossing != crossings.end(x) && crossing->face == y) ++crossing;
       }
     }
   };
@@ -88,44 +93,56 @@ void list_sources(State& s, const std::vector<Row>& rows) {
   visit([&](Index y, Index x) { source[next[y]++] = x; });
 }
 
+void list_touches(SearchState& search, const Touches& touches) {
+  const Index count = Index(touches.first.size()) - 1;
+  Column<Index>&first = search.candidate_first, &other = search.candidate;
+  first.resize(4 * std::size_t(count) + 1);
+  first[0] = 0;
+  for (Index x = 0; x < count; ++x)
+    for (Index k = 0; k < 4; ++k)
+      first[4 * x + k + 1] =
+          first[4 * x + k] + Index(std::count_if(touches.begin(x), touches.end(x),
+                                                 [&](auto& t) { return t.vertices >> k & 1; }));
+  other.resize(first[4 * std::size_t(count)]);
+  for (Index x = 0; x < count; ++x)
+    for (Index k = 0; k < 4; ++k) {
+      Index place = first[4 * x + k];
+      for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
+        if (t->vertices >> k & 1) other[place++] = t->face;
+    }
+}
+
+void list_crossings(SearchState& search, const Crossings& crossings) {
+  search.edge_candidate_first.assign(crossings.first.data(), crossings.first.size());
+  const std::size_t count = crossings.items.size();
+  search.edge_candidate.resize(count);
+  search.edge_candidate_sides.resize(count);
+  search.edge_candidate_edges.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    search.edge_candidate[i] = crossings.items[i].face;
+    search.edge_candidate_sides[i] = crossings.items[i].sides;
+    search.edge_candidate_edges[i] = crossings.items[i].edges;
+  }
+}
+
 }  // namespace
 
 void list_candidates(const Model& m, State& s) {
   foresee_motion(m, s);
-  const std::vector<Proximity> found = find_proximity(m, s);
+  std::vector<Proximity> found = find_proximity(m, s);
   list_edges(s.search, found);
-  const std::vector<Row> rows = rows_by_face(s.search.exposed_face.size(), found);
-  const Index count = Index(rows.size());
-  Column<Index>&first = s.search.candidate_first, &other = s.search.candidate;
-  Column<Index>& crossing_first = s.search.edge_candidate_first;
-  first.resize(4 * std::size_t(count) + 1);
-  crossing_first.resize(count + 1);
-  first[0] = crossing_first[0] = 0;
-  for (Index x = 0; x < count; ++x) {
-    Index touching[4] = {};
-    for (const Proximity::Touch& t : rows[x].touches)
-      for (Index k = 0; k < 4; ++k) touching[k] += t.vertices >> k & 1;
-    for (Index k = 0; k < 4; ++k) first[4 * x + k + 1] = first[4 * x + k] + touching[k];
-    crossing_first[x + 1] = crossing_first[x] + Index(rows[x].crossings.size());
-  }
-  other.resize(first[4 * std::size_t(count)]);
-  s.search.edge_candidate.resize(crossing_first[count]);
-  s.search.edge_candidate_sides.resize(crossing_first[count]);
-  s.search.edge_candidate_edges.resize(crossing_first[count]);
-  for (Index x = 0; x < count; ++x) {
-    for (Index k = 0; k < 4; ++k) {
-      Index place = first[4 * x + k];
-      for (const Proximity::Touch& t : rows[x].touches)
-        if (t.vertices >> k & 1) other[place++] = t.face;
-    }
-    Index place = crossing_first[x];
-    for (const Proximity::Crossing& c : rows[x].crossings) {
-      s.search.edge_candidate[place] = c.face;
-      s.search.edge_candidate_edges[place] = c.edges;
-      s.search.edge_candidate_sides[place++] = c.sides;
-    }
-  }
-  list_sources(s, rows);
+  const Index count = Index(s.search.exposed_face.size());
+  const Touches touches = by_mother(found, &Proximity::touches, count,
+                                    [](const Proximity::Touch& t) { return t.face; });
+  const Crossings crossings =
+      by_mother(found, &Proximity::crossings, count, [](const Proximity::Crossing& c) {
+        const SidePair pair = SidePair::of(c.sides);
+        return std::tuple(c.face, pair.k, pair.j);
+      });
+  list_touches(s.search, touches);
+  list_crossings(s.search, crossings);
+  list_sources(s.search, touches, crossings);
+  s.contact_force.fill(0);  // no other faces are gathered, see GatherFaceForces
 }
 
 void list_contact_corners(const Model& m, State& s) {

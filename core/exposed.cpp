@@ -105,7 +105,12 @@ void complete(const Model& m, const State& s, const std::vector<ExposedFace>& ex
     for (Index k = 0; k < e.shape.count; ++k) {
       Index* end = p.vertex + p.vertex_count;
       const Index node = faces.vertex(e.face, k);
-      if (std::find(p.vertex, end, node) == end) p.vertex[p.vertex_count++] = node;
+      const Index v = Index(std::find(p.vertex, end, node) - p.vertex);
+      if (v == p.vertex_count) {
+        p.vertex[p.vertex_count++] = node;
+        std::fill_n(p.corner[v], 6, -1);
+      }
+      p.corner[v][i] = k;
       const Index id = m.face_edges[4 * e.face + k];
       Patch::Edge* last = p.edge + p.edge_count;
       Patch::Edge* edge = std::find_if(p.edge, last, [&](const auto& o) { return o.id == id; });

@@ -46,6 +46,7 @@ struct Patch {
   Index face_count = 0, vertex_count = 0, edge_count = 0;
   Index face[6];  // exposed
   Index vertex[8];
+  Index corner[8][6];  // which corner of a face a vertex is, or -1
   Edge edge[12];
   Vec3<Real> drift{0, 0, 0};   // of all its vertices alike  [m]
   Real stir = 0;               // of a vertex beyond the drift  [m]

@@ -78,13 +78,14 @@ bool apart(const Model& m, const State& s, const std::vector<ExposedFace>& expos
 
 /// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
 bool apart(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
-  Real lowest = 1e300, span = 0;
+  Real lowest = 1e300, span2 = 0;
   for (Index k = 0; k < x.shape.count; ++k) {
     const Vec3<Real> arm = x.shape.x[k] - y.center;
     lowest = std::min(lowest, dot(y.normal, arm));
-    span = std::max(span, norm(arm));
+    span2 = std::max(span2, dot(arm, arm));
   }
-  const Real turned = y.turn * (span + motion_between(x, y));
+  if (lowest < 0) return false;
+  const Real turned = y.turn * (std::sqrt(span2) + motion_between(x, y));
   return lowest + GapChange(x, y, y.normal).least > turned + y.warp + rules.lifted;
 }
 
@@ -212,21 +213,15 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
   for (Index j = 0; j < b.face_count; ++j) {
     int vertices[6] = {};
     for (Index v = 0; v < a.vertex_count; ++v) {
-      Index corner[6], first = -1;  // of the faces at the vertex
-      for (Index i = 0; i < a.face_count; ++i) {
-        corner[i] = -1;
-        if (!met(i, j)) continue;
-        const Index face = f.exposed[a.face[i]].face;
-        for (Index k = 0; k < f.faces.vertex_count(face); ++k)
-          if (f.faces.vertex(face, k) == a.vertex[v]) corner[i] = k;
-        if (corner[i] >= 0 && first < 0) first = i;
-      }
+      Index first = -1;  // of the faces at the vertex
+      for (Index i = a.face_count - 1; i >= 0; --i)
+        if (a.corner[v][i] >= 0 && met(i, j)) first = i;
       if (first < 0) continue;
       const Real length = std::min(a.length, f.exposed[b.face[j]].length);
       if (!may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, b.face[j]))
         continue;
       for (Index i = 0; i < a.face_count; ++i)
-        if (corner[i] >= 0) vertices[i] |= 1 << corner[i];
+        if (a.corner[v][i] >= 0 && met(i, j)) vertices[i] |= 1 << a.corner[v][i];
     }
     for (Index i = 0; i < a.face_count; ++i)
       if (vertices[i]) found.touches.push_back({a.face[i], b.face[j], vertices[i]});
@@ -258,7 +253,7 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
                     Proximity& found) {
   const Real depth = f.m.rules.entry * std::min(a.length, b.length);
   const Real shift = 1.01 * f.m.rules.indentation * std::max(a.reach, b.reach);
-  const Real room_still = farthest_contact(f.m.rules, a, b) - last_step * (a.stir + b.stir);
+  const Real room = farthest_contact(f.m.rules, a, b) + last_step * norm(b.drift - a.drift);
   for (Index e = 0; e < a.edge_count; ++e) {
     const Patch::Edge& p = a.edge[e];
     const ExposedFace& x = f.exposed[a.face[p.face[0]]];
@@ -269,7 +264,6 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
       const ExposedFace& y = f.exposed[b.face[q.face[0]]];
       const ExposedSide& side_q = f.sides[4 * std::size_t(b.face[q.face[0]]) + q.side[0]];
       if (!side_q.sharp) continue;
-      const Real room = room_still + last_step * motion_between(x, y);
       const Vec3<Real> normal = cross(side_p.along, side_q.along);
       const Real off = dot(normal, side_p.start - side_q.start);
       if (off * off > room * room * dot(normal, normal)) continue;  // so far are even the lines
@@ -316,6 +310,7 @@ std::vector<Proximity> find_proximity(const Model& m, const State& s) {
   for (Index p = 0; p < count; ++p) {
     const Patch& a = patches[p];
     std::vector<Index> after;
+    after.reserve(32);
     tree.query(boxes[p], [&](Index q) {
       if (q > p && a.block != patches[q].block && (a.movable || patches[q].movable) &&
           !apart(m, s, exposed, a, patches[q]))

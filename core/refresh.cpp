@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -34,35 +35,67 @@ bool release_is_due(const Model& m, const PairSet& p, const PairState& s) {
   return due;
 }
 
-void expose(const Model& m, State& s, Index face) {
-  if (s.search.face_exposed[face] >= 0) return;
-  const Index place = Index(s.search.exposed_face.size());
-  s.search.face_exposed[face] = place;
-  s.search.exposed_face.push(face);
-  const std::size_t count = place + 1, slots = std::size_t(s.edges.slots);
+/// Visit all state that belongs to exposed faces: column, numbers a face, what a new one begins
+/// with.
+template <class Visit>
+void visit_faces(State& s, Visit&& visit) {
   SpringState& c = s.springs;
-  c.target.resize(4 * count, -1);
-  c.target_before.resize(4 * count, -1);
+  visit(c.target, 4, Index(-1));
+  visit(c.target_before, 4, Index(-1));
   for (Column<Real>* column : {&c.force_n, &c.shear1, &c.shear2, &c.gap_free, &c.sunk, &c.energy_n,
                                &c.energy_s, &c.friction, &c.dashpot})
-    column->resize(4 * count);
-  c.reaction.resize(4 * 8 * count);
-  c.lost.resize(4 * count);
+    visit(*column, 4, Real(0));
+  visit(c.reaction, 4 * 8, Real(0));
+  visit(c.lost, 4, Flag(0));
   EdgeState& e = s.edges;
   for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
-    column->resize(slots * count, -1);
+    visit(*column, e.slots, Index(-1));
   for (Column<Real>* column :
        {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
-    column->resize(slots * count);
-  e.reaction.resize(8 * slots * count);
-  e.count.resize(count);
-  e.friction.resize(count);
-  e.dashpot.resize(count);
-  e.lost.resize(count);
-  e.overflow.resize(count);
-  s.face_geometry.resize(8 * count);
-  s.contact_force.resize(4 * 4 * count);
-  (void)m;
+    visit(*column, e.slots, Real(0));
+  visit(e.reaction, 8 * e.slots, Real(0));
+  visit(e.count, 1, Index(0));
+  visit(e.friction, 1, Real(0));
+  visit(e.dashpot, 1, Real(0));
+  visit(e.lost, 1, Flag(0));
+  visit(e.overflow, 1, Flag(0));
+  visit(s.face_geometry, 8, Real(0));
+  visit(s.contact_force, 4 * 4, Real(0));
+}
+
+void expose(State& s, Index face) {
+  if (s.search.face_exposed[face] >= 0) return;
+  s.search.face_exposed[face] = Index(s.search.exposed_face.size());
+  s.search.exposed_face.push(face);
+  const std::size_t count = s.search.exposed_face.size();
+  visit_faces(s, [&](auto& column, Index row, auto fill) { column.resize(row * count, fill); });
+}
+
+/// Put exposed faces into the order of the model, in which faces that are near each other mostly
+/// lie together, also in memory.
+void sort_exposed(State& s) {
+  Column<Index>&exposed = s.search.exposed_face, &place = s.search.face_exposed;
+  const std::size_t count = exposed.size();
+  if (std::is_sorted(exposed.data(), exposed.data() + count)) return;
+  std::vector<Index> from(count), to(count);  // places
+  std::iota(from.begin(), from.end(), 0);
+  std::sort(from.begin(), from.end(), [&](Index a, Index b) { return exposed[a] < exposed[b]; });
+  for (std::size_t x = 0; x < count; ++x) to[from[x]] = Index(x);
+  const auto follow = [&](Column<Index>& targets) {
+    for (std::size_t k = 0; k < targets.size(); ++k)
+      if (targets[k] >= 0) targets[k] = to[targets[k]];
+  };
+  follow(s.springs.target);
+  follow(s.springs.target_before);
+  follow(s.edges.target_face);
+  const auto sort_rows = [&](auto& column, std::size_t row, auto) {
+    const auto before = std::vector(column.data(), column.data() + row * count);
+    for (std::size_t x = 0; x < count; ++x)
+      std::copy_n(before.data() + row * from[x], row, column.data() + row * x);
+  };
+  visit_faces(s, sort_rows);
+  sort_rows(exposed, 1, Index(-1));
+  for (std::size_t x = 0; x < count; ++x) place[exposed[x]] = Index(x);
 }
 
 /// Give the springs of a released conforming pair the force that its bond points carried, half to
@@ -106,8 +139,8 @@ void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
   for (Index i = 0; i < p.count; ++i) {
     if (!(ps.live[i] > 0)) continue;
     if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
-    expose(m, s, p.faces[2 * i]);
-    expose(m, s, p.faces[2 * i + 1]);
+    expose(s, p.faces[2 * i]);
+    expose(s, p.faces[2 * i + 1]);
     if (p.point_first.size() == 0) hand_over(m, s, p, ps, i);
     ps.live[i] = ps.jump[i] = ps.stored[i] = 0;
     ps.jump_at_break[i] = -1;
@@ -202,12 +235,13 @@ void refresh_contacts(const Model& m, State& s) {
   if (s.built_step < 0) {
     s.search.face_exposed.resize(m.face_count, -1);
     for (Index f = 0; f < m.face_count; ++f)
-      if (m.face_initially_exposed[f]) expose(m, s, f);
+      if (m.face_initially_exposed[f]) expose(s, f);
     s.nodes.built_motion.assign(s.nodes.motion.data(), s.nodes.motion.size());
   }
   release_pairs(m, s, m.triangles, s.triangles);
   release_pairs(m, s, m.quads, s.quads);
   release_pairs(m, s, m.overlaps, s.overlaps);
+  sort_exposed(s);
   join_surfaces(m, s);
   list_candidates(m, s);
   sum_stiffness(m, s);

@@ -102,7 +102,8 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
       q, count,
       UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m), edge_columns(s)});
   launch_one(q, count,
-             GatherFaceForces{face_columns(m, s), exposed, source_columns(s), m.rules,
+             GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s),
+                              edge_candidate_columns(s), source_columns(s), m.rules,
                               spring_columns(s), edge_columns(s), s.contact_force.data()});
 }
 

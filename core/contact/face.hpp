@@ -137,8 +137,8 @@ struct FaceColumns {
   }
 };
 
-/// Centre, sharp sides and normal of exposed faces, one 64-byte row each: centre, sharp, normal,
-/// pad.
+/// Centre, sharp sides, normal and size of exposed faces, one 64-byte row each: centre, sharp,
+/// normal, L (negative for quadrilaterals).
 struct FaceGeometry {
   const Real* rows;
   CDEM_HD Vec3<Real> center(Index exposed) const {
@@ -153,6 +153,8 @@ struct FaceGeometry {
     const Real* r = rows + std::size_t(exposed) * 8 + 4;
     return {r[0], r[1], r[2]};
   }
+  CDEM_HD Real length(Index exposed) const { return abs_of(rows[std::size_t(exposed) * 8 + 7]); }
+  CDEM_HD bool is_triangle(Index exposed) const { return rows[std::size_t(exposed) * 8 + 7] > 0; }
 };
 
 /// Normal of any face, from its row if it is exposed.
@@ -174,6 +176,7 @@ struct UpdateFaceGeometry {
     Real* r = rows + std::size_t(i.i) * 8;
     r[0] = c.x, r[1] = c.y, r[2] = c.z;
     r[4] = n.x, r[5] = n.y, r[6] = n.z;
+    r[7] = (f.count == 3 ? 1 : -1) * faces.face_length[exposed_face[i.i]];
   }
 };
 

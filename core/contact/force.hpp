@@ -329,10 +329,13 @@ struct UpdateEdgeForces {
 
 /// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions
 /// of all others that have it as target. It looks through its sources in their order instead of
-/// letting contacts add to nodes, so the sum has one order for any number of threads.
+/// letting contacts add to nodes, so the sum has one order for any number of threads. A face that
+/// lists nothing and is on no list keeps the zeros that it has from the making of the lists.
 struct GatherFaceForces {
   FaceColumns faces;
   const Index* exposed_face;
+  Candidates candidates;
+  EdgeCandidates edge_candidates;
   Sources sources;
   SearchRules rules;
   SpringColumns springs;
@@ -340,6 +343,7 @@ struct GatherFaceForces {
   Real* corner_force;  // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
 
   CDEM_HD void operator()(One m) const {
+    if (is_idle(m.i)) return;
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
     Real sum[4][4] = {};
     own(m.i, count, sum);
@@ -350,6 +354,11 @@ struct GatherFaceForces {
   }
 
  private:
+  CDEM_HD bool is_idle(Index m) const {
+    return candidates.first[4 * m] == candidates.first[4 * m + 4] &&
+           edge_candidates.first[m] == edge_candidates.first[m + 1] &&
+           sources.first[m] == sources.first[m + 1];
+  }
   CDEM_HD static void add(Real* corner, Real weight, const Real* row) {
     corner[0] += weight * row[0];
     corner[1] += weight * row[1];

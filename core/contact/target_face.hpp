@@ -123,15 +123,14 @@ struct FindTargetFaces {
     return s;
   }
   CDEM_HD Real smaller_length(Index m, Index t) const {
-    return min_of(faces.face_length[exposed_face[m]], faces.face_length[exposed_face[t]]);
+    return min_of(geometry.length(m), geometry.length(t));
   }
   CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
     return dot(geometry.normal(t), v - geometry.center(t));
   }
   /// A warped face may reach above its mean plane; a plane one does not.
   CDEM_HD Real above(Index t) const {
-    return faces.vertex_count(exposed_face[t]) == 3 ? 0.0
-                                                    : 0.5 * faces.face_length[exposed_face[t]];
+    return geometry.is_triangle(t) ? 0.0 : 0.5 * geometry.length(t);
   }
   CDEM_HD Real approach(Index node, Index t) const {
     const Index face = exposed_face[t];
