@@ -135,3 +135,19 @@ def test_damping_leaves_the_force_of_a_driven_end_alone(damping, divisions):
     pressed = 1e10 * 0.01 * 0.05 / 2
     assert force[height < 0.01].sum() == pytest.approx(pressed, rel=0.01)
     assert force[height > 1.99].sum() == pytest.approx(-pressed, rel=0.01)
+
+
+def test_the_wall_time_foreseen_leaves_out_held_rock():
+    def foreseen(**bed):
+        return simulate(
+            [
+                {"group": "bed", "box": {"size": [8, 8, 8], "divisions": [8, 8, 8]}},
+                {"group": "block", "box": {"size": [1, 1, 1]}, "translate": [3, 3, 8]},
+            ],
+            {"bed": bed, "block": {}},
+            stages=[{"name": "fall", "mode": "dynamic", "duration": 1}],
+            time={"step": 1e-4},
+        ).audit.wall_time()
+
+    held, moved = foreseen(fix=["x", "y", "z"]), foreseen(fix=["x", "y"])
+    assert moved - held == pytest.approx(1e4 * 512 / 2e6, rel=1e-6)
