@@ -99,7 +99,8 @@ void sort_exposed(State& s) {
 }
 
 /// Give the springs of a released conforming pair the force that its bond points carried, half to
-/// either side, so that the change of bookkeeping is no jolt.
+/// either side, so that the change of bookkeeping is no jolt. A point whose vertices have parted, as
+/// those of a hinge do before its last point breaks, carries nothing.
 void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
   const FaceColumns faces = face_columns(m, s);
   const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
@@ -110,6 +111,7 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
     const Index node_b = p.nodes[std::size_t(p.points + k) * p.stride + i];
     const Vec3<Real> jump = faces.nodes.position(node_b) - faces.nodes.position(node_a);
     if (dot(frame_a.n, jump) >= 0) continue;  // open: nothing to carry over
+    if (norm(jump) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
     const std::size_t point = std::size_t(k) * p.point_stride + i;
     const Real area = p.area[i] / p.points, kn = area * p.stiffness[i],
                ks = area * p.stiffness[std::size_t(p.stride) + i];

@@ -106,3 +106,29 @@ def test_a_cube_of_2058_tets_breaks_tumbles_and_settles():
     assert sum(sim.broken.values()) > 500
     assert np.isfinite(sim.fields["position"]).all()
     assert abs(sim.energies["error"]) < 0.01
+
+
+def test_a_hinge_that_breaks_hands_over_no_force():
+    """Vertices that hung far apart on a last bond point bring no force to what they lie on then.
+
+    The second of two bonded cubes is turned by 90 degrees onto the top of the first, all points broken.
+    """
+    sim = simulate(
+        [
+            {"group": "rock", "box": {"size": [1, 1, 1]}},
+            {"group": "rock", "box": {"size": [1, 1, 1]}, "translate": [1, 0, 0]},
+        ],
+        {"rock": {}},
+        model={"split": {"rock": "elements"}},
+        interfaces={"default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}},
+        stages=[{"name": "part", "mode": "dynamic", "duration": 1}],
+    )
+    state, second = sim.core.fields(), sim.build.topology.node_block == 1
+    x, y, z = sim.fields["position"][second].T
+    sim.fields["position"][second] = np.column_stack([0.95 - y, x - 1e-4, z])
+    for name, value in {"bond": 0, "jump": 1, "jump_at_break": 0}.items():
+        state[f"quads.{name}"][:] = value
+    sim.step(5)
+    state = sim.core.fields()
+    assert state["quads.live"][0] == 0 and (state["spring.target"] >= 0).any()
+    assert np.abs(state["spring.friction"]).max() < 1  # found inside, so free of stress
