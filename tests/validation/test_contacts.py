@@ -370,3 +370,29 @@ def test_the_ledger_closes_over_bounces_with_dashpots():
     e = sim.energies
     assert e["damping"] > 0.25 * (e["start"] + e["external"])
     assert abs(e["error"]) < 2e-3
+
+
+def test_no_contact_of_freshly_broken_rock_is_missed():
+    """48 tets that all break at once and fly apart: neighbours share edges, vertices, and faces."""
+    sim = simulate(
+        [
+            {"group": "rock", "box": {"size": [2, 2, 2], "divisions": [2, 2, 2], "shape": "tet4"}},
+            {"group": "bed", "box": {"size": [8, 8, 1]}, "translate": [-3, -3, -1.001]},
+        ],
+        {
+            "rock": {"velocity": [2, 1, -3], "angular_velocity": [1, 2, 3]},
+            "bed": {"fix": ["x", "y", "z"]},
+        },
+        interfaces={"default": {"friction_angle": 20, "cohesion": 10, "tensile_strength": 10}},
+        rock={"young_modulus": "0.1 GPa"},
+        model={"split": {"rock": "elements"}},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=[{"name": "fly", "mode": "dynamic", "duration": 9, "damping": {"contact": 0.1}}],
+    )
+    missed = edges = 0
+    for _ in range(800):
+        sim.step(1)
+        missed += sim.core.count_missed_contacts()
+        edges += int((sim.contacts["kind"] == 1).sum())
+    assert missed == 0
+    assert edges > 100
