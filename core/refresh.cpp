@@ -99,8 +99,8 @@ void sort_exposed(State& s) {
 }
 
 /// Give the springs of a released conforming pair the force that its bond points carried, half to
-/// either side, so that the change of bookkeeping is no jolt. A point whose vertices have parted, as
-/// those of a hinge do before its last point breaks, carries nothing.
+/// either side, so that the change of bookkeeping is no jolt. A point whose vertices have parted,
+/// as those of a hinge do before its last point breaks, carries nothing.
 void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
   const FaceColumns faces = face_columns(m, s);
   const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];

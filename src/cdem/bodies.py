@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cdem.cell_mesh import to_mesh
 from cdem.cells import from_polyhedron, join
-from cdem.errors import MeshError
+from cdem.errors import BodyError, MeshError
 from cdem.mesh import Mesh, outward_faces, read_raw
 from cdem.topology import components
 
@@ -33,7 +33,8 @@ def read_bodies(path: Path, group: str) -> Mesh:
         group: Group of the bodies.
 
     Raises:
-        MeshError: The file cannot be read, or a body is open or not convex; says where.
+        MeshError: The file cannot be read.
+        BodyError: A body is open or not convex; says where.
     """
     if not path.is_file():
         raise MeshError(f"{path}: no such file; give a path relative to the case file")
@@ -48,7 +49,8 @@ def read_bodies(path: Path, group: str) -> Mesh:
             near = ROUNDED * float(np.abs(points).max())
             parts.append(from_polyhedron(points, outward_faces(points, faces, near), 0))
         except MeshError as error:
-            raise MeshError(f"{path}: {name}: {error}") from None
+            error.args = (f"{path}: {name}: {error}",)
+            raise
     if not parts:
         raise MeshError(f"{path}: holds no bodies")
     # meshed like what joints cut: bodies that share a face divide it alike
@@ -70,8 +72,11 @@ def _refuse_open(points: Floats, faces: Loops) -> None:
         ends = (", ".join(f"{x:.6g}" for x in points[v]) for v in edge)
         named.append(" - ".join(f"({end})" for end in ends) + f" has {count[edge]}")
     more = f" and {len(wrong) - SHOWN} more" if len(wrong) > SHOWN else ""
-    raise MeshError(
-        f"the surface is not closed: every edge needs two faces, but {'; '.join(named)}{more}"
+    raise BodyError(
+        f"the surface is not closed: every edge needs two faces, but {'; '.join(named)}{more}",
+        points,
+        faces,
+        wrong,
     )
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from cdem import __version__, cli_results
-from cdem.errors import CaseError, CdemError
+from cdem.errors import BodyError, CaseError, CdemError
 
 if TYPE_CHECKING:
     from cdem.simulation import Simulation
@@ -115,7 +115,9 @@ def check(
     threads: Threads = None,
     picture: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.png", help="Draw groups, supports, loads and interfaces."),
+        typer.Option(
+            metavar="FILE.png", help="Draw groups, supports, loads, interfaces; or a refused body."
+        ),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -127,7 +129,15 @@ def check(
     case = Case.load(case_file, settings or [])
     from cdem.simulation import Simulation
 
-    simulation = Simulation(case, threads=threads)
+    try:
+        simulation = Simulation(case, threads=threads)
+    except BodyError as refused:
+        if picture:
+            from cdem import preview, scene
+
+            scene.write_image(picture, preview.draw_refused(refused))
+            print(f"wrote {picture}: the body, with what is wrong in red")
+        raise
     audit = simulation.audit
     print(json.dumps(audit.as_dict(), indent=2) if as_json else audit.text().rstrip())
     if picture:

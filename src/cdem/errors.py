@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class CdemError(Exception):
     """Base of every error that is shown as one message, without a traceback.
@@ -19,6 +21,20 @@ class CaseError(CdemError):
 
 class MeshError(CdemError):
     """The mesh is wrong: it cannot be read, or has an inverted or empty element."""
+
+
+class BodyError(MeshError):
+    """A body cannot be used: it is open or not convex.
+
+    Attributes:
+        points: Its corners, (corners, 3).
+        faces: Corner numbers of each face.
+        marks: What is wrong: two corner numbers for an edge, one for a corner.
+    """
+
+    def __init__(self, message: str, points: Any, faces: Any, marks: Any) -> None:
+        super().__init__(message)
+        self.points, self.faces, self.marks = points, faces, marks
 
 
 class ModelError(CdemError):

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cdem.errors import MeshError
+from cdem.errors import BodyError, MeshError
 from cdem.shapes import NODES
 
 Floats = NDArray[np.float64]
@@ -331,9 +331,12 @@ def _hull(points: Floats) -> list[list[int]]:
     if len(faces) < 4:
         raise MeshError("a polyhedron has no volume: its vertices lie in a plane")
     if missing:
-        raise MeshError(
+        raise BodyError(
             f"a polyhedron is not convex: vertex {missing[0]} at ({_text(points[missing[0]])}) is no corner of the hull; "
-            "leave it out if it repeats another or lies on a side, else cut the block into convex ones"
+            "leave it out if it repeats another or lies on a side, else cut the block into convex ones",
+            points,
+            faces,
+            [[v] for v in missing],
         )
     return faces
 
@@ -371,16 +374,24 @@ def _outward(points: Floats, faces: Sequence[Sequence[int]], near: float) -> lis
             normal, loop = -normal, loop[::-1]
         out = np.argmax((points - x[0]) @ normal)
         if (points[out] - x[0]) @ normal > near:
-            raise MeshError(
+            raise BodyError(
                 f"a polyhedron is not convex: vertex {out} at ({_text(points[out])}) lies "
                 f"{(points[out] - x[0]) @ normal:.3g} m outside face {number} "
-                f"({'; '.join(map(_text, x[:4]))}); cut the block into convex ones"
+                f"({'; '.join(map(_text, x[:4]))}); cut the block into convex ones",
+                points,
+                faces,
+                [[int(out)], *zip(loop, loop[1:] + loop[:1], strict=True)],
             )
         loops.append(loop)
     sides = [tuple(sorted((t[a], t[a - 1]))) for t in _fans(loops) for a in range(3)]
     open_sides = sorted(s for s in set(sides) if sides.count(s) != 2)
     if open_sides:
-        raise MeshError(f"the faces of a polyhedron leave its edge {open_sides[0]} open")
+        raise BodyError(
+            f"the faces of a polyhedron leave its edge {open_sides[0]} open",
+            points,
+            faces,
+            open_sides,
+        )
     return loops
 
 

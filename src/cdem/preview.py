@@ -11,6 +11,7 @@ from cdem.build import interfaces_of
 from cdem.scene import load_pyvista, snapshot
 
 if TYPE_CHECKING:
+    from cdem.errors import BodyError
     from cdem.simulation import Simulation
 
 SIZE = (1000, 850)
@@ -22,6 +23,8 @@ ROW = 28
 """Height of a row of the legend [pixels]."""
 ARROW = 0.08
 """Length of the arrow of the largest load over the size of the model."""
+_BACK = np.array([0.6, -0.8, 0.75])
+"""Where one looks from."""
 DOTS = ("black", "#d62728", "#9467bd", "#17becf", "#8c564b", "#7f7f7f", "#2ca02c")
 """Colours of the dots, one for each way of being held."""
 
@@ -45,6 +48,36 @@ def draw_model(sim: Simulation) -> NDArray[np.uint8]:
     return np.concatenate(
         [np.concatenate([_legend(panel.legend, rows), panel.image()]) for panel in panels], axis=1
     )
+
+
+def draw_refused(refused: BodyError) -> NDArray[np.uint8]:
+    """The body that was refused, with what is wrong in red, shape (height, width, 3).
+
+    Raises:
+        CdemError: pyvista is not installed, or there is no OpenGL to draw with.
+    """
+    pyvista = load_pyvista()
+    points = np.asarray(refused.points, float)
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
+    plotter.set_background("white")
+    flat = np.concatenate([[len(face), *face] for face in refused.faces])
+    body = pyvista.PolyData(points, faces=flat)
+    plotter.add_mesh(body, color="#bab0ac", opacity=0.6, show_edges=True, edge_color="#444444")
+    for mark in refused.marks:
+        if len(mark) == 1:
+            shape = pyvista.Sphere(radius=0.015 * size, center=points[mark[0]])
+        else:
+            shape = pyvista.Tube(
+                pointa=points[mark[0]], pointb=points[mark[1]], radius=0.006 * size
+            )
+        plotter.add_mesh(shape, color="#d62728")
+    plotter.camera_position = [points.mean(axis=0) + size * _BACK, points.mean(axis=0), (0, 0, 1)]
+    plotter.reset_camera()
+    plotter.add_axes(color="black")
+    image = plotter.screenshot(return_img=True)
+    plotter.close()
+    return image
 
 
 class _Panel:
@@ -74,8 +107,7 @@ class _Panel:
 
     def image(self) -> NDArray[np.uint8]:
         center = 0.5 * (self.low + self.high)
-        back = np.array([0.6, -0.8, 0.75])
-        self.plotter.camera_position = [center + 2 * self.size * back, center, (0, 0, 1)]
+        self.plotter.camera_position = [center + 2 * self.size * _BACK, center, (0, 0, 1)]
         self.plotter.reset_camera(bounds=np.ravel([self.low, self.high], order="F"))
         self.plotter.camera.zoom(1.1)
         self.plotter.add_axes(color="black")

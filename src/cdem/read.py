@@ -74,7 +74,8 @@ class Source:
         try:
             yield
         except CdemError as error:
-            raise type(error)(f"{self.where(path)}: {path}: {error}") from None
+            error.args = (f"{self.where(path)}: {path}: {error}",)
+            raise
         except ValueError as error:
             raise CaseError(f"{self.where(path)}: {path}: {error}") from None
 

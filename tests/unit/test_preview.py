@@ -103,3 +103,32 @@ def test_without_the_extra_one_message_says_so(cdem, folder, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     status, _, err = cdem("check", "model.yaml", "--picture", "model.png")
     assert (status, err) == (1, "pictures need pyvista; pip install 'cdem[viz]'\n")
+
+
+@pytest.mark.parametrize("wrong", ["open", "not convex"])
+def test_a_refused_body_is_drawn(cdem, tmp_path, monkeypatch, wrong):
+    """Red is where an edge lacks its face, or the corner that lies outside of a face."""
+    if not can_draw():
+        pytest.skip("no OpenGL")
+    monkeypatch.chdir(tmp_path)
+    corners = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    faces = ["1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"]
+    if wrong == "open":
+        faces.pop()
+    else:  # a dent in a side of triangles
+        corners.append([0.5, 0.5, 0.7])
+        faces[5:] = ["2 4 9", "4 8 9", "8 6 9", "6 2 9"]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {face}" for face in faces]
+    (tmp_path / "body.obj").write_text("\n".join(lines))
+    (tmp_path / "case.yaml").write_text(
+        "model: {blocks: [{group: a, file: body.obj}]}\n"
+        "materials: {m: {density: 2500, young_modulus: 1e9, poisson_ratio: 0.2}}\n"
+        "groups: {a: {material: m}}\n"
+        "stages: [{name: fall, mode: dynamic, duration: 1}]\n"
+    )
+    status, said, complaint = cdem("check", "case.yaml", "--picture", "refused.png")
+    assert status == 1
+    assert "what is wrong in red" in said
+    image = np.asarray(Image.open("refused.png")).astype(int)
+    assert ((image[..., 0] > 150) & (image[..., 1:].max(axis=2) < 80)).sum() > 200
+    assert ("not closed" if wrong == "open" else "not convex") in complaint
