@@ -65,8 +65,7 @@ void prepare(const Model& m, State& s) {
   const std::size_t exposed = s.search.exposed_face.size();
   s.face_geometry.resize(8 * exposed);
   s.contact_force.resize(16 * exposed);
-  s.contact_force.fill(
-      0);  // a state before this one may have left forces on faces that are idle now
+  s.contact_force.fill(0);  // faces that are idle now may hold forces of a later state
   s.edges.overflow.resize(exposed);
   sum_stiffness(m, s);
 }
