@@ -218,6 +218,55 @@ def test_a_seam_is_not_felt(bed):
     assert largest < 0.09
 
 
+def test_a_bar_rides_a_ridge_that_begins_flat(monkeypatch):
+    """A ridge too flat to be an edge lets a bar sink in; where it steepens it must hold the bar all the same.
+
+    The bar was then deeper than contacts might begin, and its ends, each below the plane of the other side,
+    touched nothing: it fell through the bed.
+    """
+    from cdem import build
+
+    flat = build.read_model
+
+    def ridge(case):
+        model = flat(case)
+        bed = np.unique(model.cells["tet4"])
+        top = bed[np.abs(model.points[bed, 2]) < 1e-9]
+        x, y = model.points[top, :2].T
+        slope = np.radians(np.interp(y, [0, 20], [1.2, 4]))  # of either side
+        model.points[top, 2] -= np.abs(x) * np.tan(slope)
+        return model
+
+    monkeypatch.setattr(build, "read_model", ridge)
+    sim = simulate(
+        [
+            {
+                "group": "bed",
+                "box": {"size": [40, 60, 4], "divisions": [2, 3, 1], "shape": "tet4"},
+                "translate": [-20, -20, -4],
+            },
+            {"group": "bar", "box": {"size": [16, 3, 3]}, "translate": [-8, -2, -0.1]},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "bar": {"velocity": [0, 10, 0]}},
+        loads={"gravity": [0, 0, -GRAVITY]},
+        stages=[
+            {
+                "name": "slide",
+                "mode": "dynamic",
+                "duration": 9,
+                "damping": {"contact": 0.3, "stiffness": 0.2},
+            }
+        ],
+    )
+    nodes = sim.build.nodes_of("bar")
+    while sim.time < 2.8:
+        sim.step(500)
+    centre = sim.fields["position"][nodes].mean(axis=0)
+    assert centre[1] > 24
+    # half its height above the ridge, less what the flattest edge hides: 4 m tan 2.56 degrees
+    assert 1.5 - 8 * np.tan(np.radians(1.28)) - 0.02 < centre[2] < 1.5
+
+
 def test_a_bonded_bed_is_one_surface():
     """A hull with a raised bow slides over separate bonded tets as over one block.
 
