@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.build import interfaces_of
-from cdem.scene import load_pyvista, snapshot
+from cdem.scene import color, legend, load_pyvista, snapshot
 
 if TYPE_CHECKING:
     from cdem.errors import BodyError
@@ -19,8 +19,6 @@ MOST_INNER = 5000
 """More pairs of faces inside one group would hide everything else: they are counted, not drawn."""
 INNER_SIZE = 0.6
 """Faces of pairs inside a group are drawn smaller by this, so that one sees between them."""
-ROW = 28
-"""Height of a row of the legend [pixels]."""
 ARROW = 0.08
 """Length of the arrow of the largest load over the size of the model."""
 _BACK = np.array([0.6, -0.8, 0.75])
@@ -46,7 +44,8 @@ def draw_model(sim: Simulation) -> NDArray[np.uint8]:
     _interfaces(panels[1], sim)
     rows = max(len(panel.legend) for panel in panels)
     return np.concatenate(
-        [np.concatenate([_legend(panel.legend, rows), panel.image()]) for panel in panels], axis=1
+        [np.concatenate([legend(panel.legend, rows, SIZE[0]), panel.image()]) for panel in panels],
+        axis=1,
     )
 
 
@@ -116,28 +115,6 @@ class _Panel:
         return image
 
 
-def _legend(entries: list[tuple[str, str]], rows: int) -> NDArray[np.uint8]:
-    """Labels with their colours, as wide as a panel."""
-    import matplotlib
-    from PIL import Image, ImageDraw, ImageFont
-
-    font = ImageFont.truetype(f"{matplotlib.get_data_path()}/fonts/ttf/DejaVuSans.ttf", 19)
-    image = Image.new("RGB", (SIZE[0], ROW * rows + 10), "white")
-    draw = ImageDraw.Draw(image)
-    for number, (label, color) in enumerate(entries):
-        y = 10 + ROW * number
-        draw.rectangle((20, y + 3, 38, y + 21), fill=color, outline="#888888")
-        draw.text((50, y), label, fill="black", font=font)
-    return np.asarray(image)
-
-
-def _color(index: int) -> str:
-    """One of ten colours that are easy to tell apart (Tableau's), again and again."""
-    colors = ("4e79a7", "f28e2b", "59a14f", "e15759", "76b7b2", "edc948", "b07aa1", "ff9da7",
-              "9c755f", "bab0ac")  # fmt: skip
-    return "#" + colors[index % len(colors)]
-
-
 def _groups(panel: _Panel, sim: Simulation) -> None:
     surface = panel.surface
     mesh = panel.pyvista.PolyData(surface.points, faces=surface.faces)
@@ -146,7 +123,7 @@ def _groups(panel: _Panel, sim: Simulation) -> None:
         if len(some):
             part = mesh.extract_cells(some)
             edges = {"show_edges": mesh.n_cells < 20000, "edge_color": "#444444", "line_width": 0.4}
-            panel.add(part, _color(index), f"{name}", **edges)
+            panel.add(part, color(index), f"{name}", **edges)
 
 
 def _held(panel: _Panel, sim: Simulation) -> None:
@@ -213,4 +190,4 @@ def _interfaces(panel: _Panel, sim: Simulation) -> None:
             middle = np.nanmean(middle, axis=1, keepdims=True)
             points = middle + INNER_SIZE * (points - middle)
         own = np.where(nodes < 0, -1, np.arange(nodes.size).reshape(nodes.shape))
-        panel.add(panel.faces(points.reshape(-1, 3), own), _color(number), label)
+        panel.add(panel.faces(points.reshape(-1, 3), own), color(number), label)

@@ -73,6 +73,11 @@ class _Series:
         """Frames that are whole; a killed run may have left parts of one more."""
         return int(self.root["Steps"].attrs["NSteps"])
 
+    def name_groups(self, names: Sequence[str]) -> None:
+        """Say what the numbers of the field "group" stand for, once it has been recorded."""
+        self.root["CellData/group"].attrs["names"] = list(names)
+        self.file.flush()
+
     def close(self) -> None:
         """Close the file; nothing can be appended any more."""
         self.file.close()
@@ -211,11 +216,6 @@ class FrameWriter(_Series):
         self._put_fields("PointData", point_data)
         self._put_fields("CellData", cell_data, self._static)
         self._finish_frame(time, 0, (start, 0, 0))
-
-    def name_groups(self, names: Sequence[str]) -> None:
-        """Say what the numbers of the field "group" stand for."""
-        self.root["CellData/group"].attrs["names"] = list(names)
-        self.file.flush()
 
     def _cut_geometry(self, frames: int) -> dict[str, int]:
         points = frames * int(self.root["NumberOfPoints"][0]) if frames else 0

@@ -143,6 +143,8 @@ class Results:
                 cells["stress"] = stress_of(sim)
             self._volume.append(sim.time, fields["position"], points, cells)
             self._surface.append(sim.time, *surface_of(sim, points, whole))
+            if self._surface.frames == 1:
+                self._surface.name_groups(sim.build.group_names)
             self.frames += 1
 
     def checkpoint(self, sim: Simulation) -> None:

@@ -30,6 +30,8 @@ UNITS = {
 """Fields that `render` can colour by, with their units."""
 GOLDEN = 0.6180339887
 """Its multiples, modulo 1, lie far from one another."""
+ROW = 28
+"""Height of a row of the legend [pixels]."""
 OPENGL_HINT = "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install libosmesa6 libgl1 libxrender1"
 
 
@@ -43,7 +45,31 @@ def snapshot(sim: Simulation) -> Surface:
     )
     counts = (vertices >= 0).sum(axis=1)
     faces = np.column_stack([counts, vertices])
-    return Surface(sim.time, places, faces[faces >= 0], point_data, cell_data)
+    return Surface(
+        sim.time, places, faces[faces >= 0], point_data, cell_data, sim.build.group_names
+    )
+
+
+def color(index: int) -> str:
+    """One of ten colours that are easy to tell apart (Tableau's), again and again."""
+    colors = ("4e79a7", "f28e2b", "59a14f", "e15759", "76b7b2", "edc948", "b07aa1", "ff9da7",
+              "9c755f", "bab0ac")  # fmt: skip
+    return "#" + colors[index % len(colors)]
+
+
+def legend(entries: Sequence[tuple[str, str]], rows: int, width: int) -> NDArray[np.uint8]:
+    """Labels with their colours under each other, shape (rows * ROW + 10, width, 3)."""
+    import matplotlib
+    from PIL import Image, ImageDraw, ImageFont
+
+    font = ImageFont.truetype(f"{matplotlib.get_data_path()}/fonts/ttf/DejaVuSans.ttf", 19)
+    image = Image.new("RGB", (width, ROW * rows + 10), "white")
+    draw = ImageDraw.Draw(image)
+    for number, (label, fill) in enumerate(entries):
+        y = 10 + ROW * number
+        draw.rectangle((20, y + 3, 38, y + 21), fill=fill, outline="#888888")
+        draw.text((50, y), label, fill="black", font=font)
+    return np.asarray(image)
 
 
 def can_draw() -> bool:
@@ -191,15 +217,24 @@ class _Scene:
         (mesh.point_data if on_points else mesh.cell_data)[name] = values
         plotter = pyvista.Plotter(off_screen=True, window_size=(1100, 800))
         plotter.set_background("white")
+        by_group = self.field == "group" and len(surface.group_names) > 0
+        if by_group:
+            last = len(surface.group_names) - 1
+            look = {"cmap": [color(i) for i in range(last + 1)], "clim": (-0.5, last + 0.5)}
+        else:
+            maps = {"group": "tab10", "joint": "tab10", "piece": "tab20"}
+            look = {
+                "cmap": maps.get(self.field, "YlOrBr"),
+                "clim": (0.0, max(self.high, 1e-12)),
+            }
         plotter.add_mesh(
             mesh,
             scalars=name,
-            cmap={"group": "tab10", "joint": "tab10", "piece": "tab20"}.get(self.field, "YlOrBr"),
-            clim=(0.0, max(self.high, 1e-12)),
+            **look,
             show_edges=mesh.n_cells < 20000,
             edge_color="#444444",
             line_width=0.4,
-            show_scalar_bar=self.field != "piece",  # whose numbers mean nothing
+            show_scalar_bar=self.field != "piece" and not by_group,  # whose numbers mean nothing
             scalar_bar_args={"color": "black", "vertical": False, "fmt": "%.3g"},
         )
         plotter.add_text(f"t = {surface.time:.4g} s", font_size=12, color="black")
@@ -209,4 +244,7 @@ class _Scene:
         plotter.camera.zoom(1.05)
         image = plotter.screenshot(return_img=True)
         plotter.close()
-        return image
+        if not by_group:
+            return image
+        entries = [(label, color(i)) for i, label in enumerate(surface.group_names)]
+        return np.concatenate([image, legend(entries, len(entries), image.shape[1])])

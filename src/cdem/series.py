@@ -60,6 +60,7 @@ class Surface:
         faces: Connectivity with the number of vertices before each face, as pyvista wants it.
         point_data: By name.
         cell_data: By name.
+        group_names: By the numbers of the field "group"; empty where the file does not tell.
     """
 
     time: float
@@ -67,6 +68,7 @@ class Surface:
     faces: NDArray[np.int64]
     point_data: dict[str, NDArray]
     cell_data: dict[str, NDArray]
+    group_names: list[str]
 
 
 def _open(path: Path) -> tuple[Any, NDArray[np.float64]]:
@@ -85,6 +87,10 @@ def _open(path: Path) -> tuple[Any, NDArray[np.float64]]:
     if frames == 0:
         raise CdemError(f"{path}: holds no frames yet")
     return root, root["Steps/Values"][:frames]
+
+
+def _group_names(root: Any) -> list[str]:
+    return [str(name) for name in root["CellData/group"].attrs.get("names", [])]
 
 
 class SurfaceSeries:
@@ -122,6 +128,7 @@ class SurfaceSeries:
             faces,
             fields("PointData", points),
             fields("CellData", cells),
+            _group_names(root),
         )
 
 
@@ -156,10 +163,10 @@ class FrameSeries:
     @property
     def group_names(self) -> list[str]:
         """Names of the groups, by the numbers of the field "group"."""
-        names = self._root["CellData/group"].attrs.get("names")
-        if names is None:
+        names = _group_names(self._root)
+        if not names:
             raise CdemError(f"{self.path}: does not name its groups; run the case again")
-        return [str(name) for name in names]
+        return names
 
     def points(self, frame: int) -> NDArray[np.float64]:
         """Positions of the nodes [m], shape (nodes, 3)."""

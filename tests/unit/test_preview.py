@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cdem import preview
+from cdem import preview, scene
 from cdem.scene import can_draw
+from cdem.series import SurfaceSeries
 
 CASE = """\
 model:
@@ -50,8 +51,8 @@ def test_the_picture_shows_and_names_everything(cdem, folder, monkeypatch):
     if not can_draw():
         pytest.skip("no OpenGL")
     legends = []
-    legend = preview._legend
-    monkeypatch.setattr(preview, "_legend", lambda e, rows: legends.append(e) or legend(e, rows))
+    legend = preview.legend
+    monkeypatch.setattr(preview, "legend", lambda e, *size: legends.append(e) or legend(e, *size))
     status, out, err = cdem("check", "model.yaml", "--picture", "model.png", "--threads", "1")
     assert (status, err) == (0, "")
     assert "bonded interfaces" in out
@@ -80,12 +81,28 @@ def test_many_inner_pairs_are_counted_not_drawn(folder, monkeypatch):
 
     monkeypatch.setattr(preview, "MOST_INNER", 10)
     entries = []
-    monkeypatch.setattr(preview, "_legend", lambda e, rows: entries.extend(e) or white(rows))
+    monkeypatch.setattr(preview, "legend", lambda e, rows, _: entries.extend(e) or white(rows))
     white = lambda rows: np.full((28 * rows, preview.SIZE[0], 3), 255, np.uint8)  # noqa: E731
     preview.draw_model(cdem.Simulation("model.yaml", threads=1))
     assert [label for label, _ in entries if "not drawn" in label] == [
         "wall - wall: 78 pair(s), 30 deg, bonded c 1e+06 T 1e+05 Pa (not drawn)"
     ]
+
+
+def test_pictures_of_results_name_the_groups(folder, monkeypatch):
+    if not can_draw():
+        pytest.skip("no OpenGL")
+    import cdem
+
+    cdem.Simulation("model.yaml", output="r.results", threads=1).run()
+    series = SurfaceSeries(folder / "r.results")
+    legends = []
+    legend = scene.legend
+    monkeypatch.setattr(scene, "legend", lambda e, *size: legends.append(e) or legend(e, *size))
+    image = scene.picture([series[0]], "group")
+    assert [label for label, _ in legends[0]] == ["base", "wall", "loose"]
+    rows = len(image) - 28 * 3 - 10
+    assert all(has(image[rows:], color) for _, color in legends[0])
 
 
 def test_json_stays_json_and_the_file_must_be_png(cdem, folder, monkeypatch):
