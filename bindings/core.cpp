@@ -219,6 +219,7 @@ NB_MODULE(CDEM_MODULE, module) {
               const std::vector<std::vector<Real>>& factors) {
              c.model.curve_time = times;
              c.model.curve_factor = factors;
+             evaluate_curves(c.model, c.state);
            })
       .def("set_gravity",
            [](Core& c, const std::vector<Real>& g) {

@@ -55,6 +55,7 @@ void start(const Model& m, State& s, const Real* position) {
 }
 
 void prepare(const Model& m, State& s) {
+  evaluate_curves(m, s);
   if (s.built_step < 0) {
     refresh_contacts(m, s);
     renew_step(m, s);

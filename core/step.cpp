@@ -17,8 +17,8 @@ namespace cdem {
 
 namespace {
 
-/// Factors of all load and velocity curves at one time; piecewise linear, constant outside.
-void evaluate_curves(const Model& m, Real time, Column<Real>& values) {
+/// Factors of all curves at one time; piecewise linear, constant outside.
+void evaluate_at(const Model& m, Real time, Column<Real>& values) {
   values.resize(m.curve_time.size());
   for (std::size_t c = 0; c < m.curve_time.size(); ++c) {
     const auto& t = m.curve_time[c];
@@ -185,8 +185,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
     renew_step(m, s);  // faces that may now touch call for a shorter step before they do
   }
   watch.lap(Phase::refresh);
-  evaluate_curves(m, s.time, s.load_factor);
-  evaluate_curves(m, s.time + 0.5 * s.dt, s.velocity_factor);
+  evaluate_curves(m, s);
   update_face_geometry(m, s, q, false);  // contact/face.hpp
   update_bonds(m, s, q);
   watch.lap(Phase::contact);
@@ -254,6 +253,11 @@ void relax_adaptively(const Model& m, State& s) {
 }
 
 }  // namespace
+
+void evaluate_curves(const Model& m, State& s) {
+  evaluate_at(m, s.time, s.load_factor);
+  evaluate_at(m, s.time + 0.5 * s.dt, s.velocity_factor);
+}
 
 Report run(const Model& m, State& s, const Goal& goal) {
   if (goal.relaxation != Relaxation::adaptive) s.relax_damping = 0;

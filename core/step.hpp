@@ -56,6 +56,8 @@ struct Report {
 void start(const Model& model, State& state, const Real* position);
 /// Ready a new or a restored state for the loop: lists and stable step.
 void prepare(const Model& model, State& state);
+/// Factors of the load and velocity curves for the step that begins now.
+void evaluate_curves(const Model& model, State& state);
 Report run(const Model& model, State& state, const Goal& goal);
 
 Energies energies(const Model& model, const State& state);
