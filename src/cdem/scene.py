@@ -131,10 +131,26 @@ def render(folder: Path, *, field: str = "displacement", movie: bool = False) ->
     return paths
 
 
-def picture(surfaces: Sequence[Surface], field: str = "displacement") -> NDArray[np.uint8]:
-    """Surfaces of one run side by side, in the same view and colours, shape (height, width, 3)."""
+def picture(
+    surfaces: Sequence[Surface], field: str = "displacement", titles: Sequence[str] = ()
+) -> NDArray[np.uint8]:
+    """Surfaces of one model side by side, in the same view and colours.
+
+    Args:
+        surfaces: Frames of one run, or the same frame of several.
+        field: What to colour by.
+        titles: What to call them; their times if there are none.
+
+    Returns:
+        The picture, shape (height, width, 3).
+
+    Raises:
+        CdemError: The field was not recorded, or there is nothing to draw with.
+    """
     scene = _Scene(load_pyvista(), surfaces, field)
-    return np.concatenate([scene.draw(surface) for surface in surfaces], axis=1)
+    titles = titles or [""] * len(surfaces)
+    images = [scene.draw(s, title) for s, title in zip(surfaces, titles, strict=True)]
+    return np.concatenate(images, axis=1)
 
 
 def write_image(path: Path, image: NDArray) -> None:
@@ -206,8 +222,8 @@ class _Scene:
         center = 0.5 * (self.low_corner + self.high_corner)
         return [center + 2.0 * size * back / np.linalg.norm(back), center, (0, 0, 1)]
 
-    def draw(self, surface: Surface) -> NDArray:
-        """A picture of one frame, shape (height, width, 3)."""
+    def draw(self, surface: Surface, title: str = "") -> NDArray:
+        """A picture of one frame, called by its time if it has no title, shape (height, width, 3)."""
         pyvista = self.pyvista
         mesh = pyvista.PolyData(surface.points, faces=surface.faces)
         values = self._values(surface)
@@ -237,7 +253,7 @@ class _Scene:
             show_scalar_bar=self.field != "piece" and not by_group,  # whose numbers mean nothing
             scalar_bar_args={"color": "black", "vertical": False, "fmt": "%.3g"},
         )
-        plotter.add_text(f"t = {surface.time:.4g} s", font_size=12, color="black")
+        plotter.add_text(title or f"t = {surface.time:.4g} s", font_size=12, color="black")
         plotter.camera_position = self.camera
         box = np.ravel([self.low_corner, self.high_corner], order="F")
         plotter.reset_camera(bounds=box)

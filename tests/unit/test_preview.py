@@ -99,7 +99,7 @@ def test_pictures_of_results_name_the_groups(folder, monkeypatch):
     legends = []
     legend = scene.legend
     monkeypatch.setattr(scene, "legend", lambda e, *size: legends.append(e) or legend(e, *size))
-    image = scene.picture([series[0]], "group")
+    image = scene.picture([series[0]], "group", titles=["before"])
     assert [label for label, _ in legends[0]] == ["base", "wall", "loose"]
     rows = len(image) - 28 * 3 - 10
     assert all(has(image[rows:], color) for _, color in legends[0])
