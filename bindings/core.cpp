@@ -280,7 +280,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("stress",
            [](nb::handle_t<Core> self) {
              Core& c = nb::cast<Core&>(self);
-             report_elements(c.model, c.state, {});
+             report_stress(c.model, c.state);
              nb::dict d;
              d["tet4"] = view(c.state.tet4.stress, self);
              d["pyramid5"] = view(c.state.pyramid5.stress, self);

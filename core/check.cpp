@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "core/backend.hpp"
 #include "core/columns.hpp"
@@ -51,8 +53,7 @@ void report_shape(const Model& m, State& s, Queue q, const ElementSet& e, Elemen
   }
 }
 
-}  // namespace
-
+/// Stress and strain energy of every element where the nodes are now.
 void report_elements(const Model& m, State& s, Queue q) {
   report_shape<Tet4>(m, s, q, m.tet4, s.tet4);
   report_shape<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5);
@@ -62,6 +63,18 @@ void report_elements(const Model& m, State& s, Queue q) {
   else
     report_shape<Hex8>(m, s, q, m.hex8, s.hex8);
   finish(q);
+}
+
+}  // namespace
+
+void report_stress(const Model& m, State& s) {
+  ElementState* sets[] = {&s.tet4, &s.pyramid5, &s.wedge6, &s.hex8};
+  // the ledger's strain energy belongs to the last sampled step, the stress to where nodes are now
+  std::vector<Real> energy[4];
+  for (int k = 0; k < 4; ++k)
+    energy[k].assign(sets[k]->energy.data(), sets[k]->energy.data() + sets[k]->energy.size());
+  report_elements(m, s, {});
+  for (int k = 0; k < 4; ++k) std::copy(energy[k].begin(), energy[k].end(), sets[k]->energy.data());
 }
 
 void sample_before(const Model& m, State& s, Queue q) {
@@ -94,6 +107,21 @@ Real kinetic_energy(const Model& m, const State& s) {
 }
 
 namespace {
+
+/// What the round-off of positions makes where nothing happens.
+struct RoundOff {
+  Real shift;  // of a node  [m]
+  Real force;  // sum over the nodes  [N]
+  RoundOff(const Model& m, const State& s) {
+    Real farthest = 0;  // coordinate
+    for (Index i = 0; i < m.node_count; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        farthest = std::max(farthest, std::abs(s.nodes.motion[8 * std::size_t(i) + axis]));
+    shift = std::numeric_limits<Real>::epsilon() * farthest;
+    force = shift *
+            ordered_sum(m.node_count, [&](Index i) { return m.mass[i] * m.lumped_frequency2[i]; });
+  }
+};
 
 Real largest_term(const Energies& e) {
   Real largest = 0;
@@ -142,7 +170,8 @@ Energies energies(const Model& m, const State& s) {
   const Real open =
       e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture - e.external - e.start;
   const Real scale = std::max(s.energy_scale, largest_term(e));
-  e.error = scale > 0 ? open / scale : 0;
+  const RoundOff nothing(m, s);
+  e.error = scale > 100 * nothing.force * nothing.shift ? open / scale : 0;
   return e;
 }
 
@@ -161,11 +190,13 @@ Real unbalance_ratio(const Model& m, const State& s) {
       const Real* r = s.nodes.reaction.data() + std::size_t(i) * 4;
       return std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]);
     });
-  return applied > 0 ? unbalanced / applied : 0;
+  return unbalanced > RoundOff(m, s).force ? unbalanced / applied : 0;
 }
 
-StepLimit step_limit(const Model& m, const State& s) {
-  StepLimit limit;
+namespace {
+
+/// Node with the highest frequency; `held` counts those that are held or driven in all directions.
+Real highest_frequency2(const Model& m, const State& s, bool held, StepLimit& limit) {
   Real largest = -1;
   const MassColumns mass = mass_columns(m);
   const SupportColumns supports = support_columns(m, s);
@@ -176,7 +207,7 @@ StepLimit step_limit(const Model& m, const State& s) {
     const Index last = dense ? first + m.block_count[i] : i + 1;
     if (dense && i != first) continue;
     Real element2 = 0;
-    bool free = false;  // what is held or driven in all directions cannot become unstable
+    bool free = held;
     for (Index j = first; j < last; ++j) {
       for (Index axis = 0; axis < 3; ++axis) free = free || !supports.given(j, axis);
       const Real contact = std::max(s.nodes.force[std::size_t(j) * 4 + 3], s.node_potential[j]);
@@ -193,7 +224,17 @@ StepLimit step_limit(const Model& m, const State& s) {
       limit.contact2 = contact2;
     }
   }
-  if (!(largest > 0)) largest = 1;  // nothing can move: any step will do
+  return largest;
+}
+
+}  // namespace
+
+StepLimit step_limit(const Model& m, const State& s) {
+  StepLimit limit;
+  // what is held or driven in all directions cannot become unstable; where nothing else is, its
+  // step still is what curves, histories and ends of stages are followed with
+  Real largest = highest_frequency2(m, s, false, limit);
+  if (!(largest > 0)) largest = highest_frequency2(m, s, true, limit);
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real xi =
       m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);

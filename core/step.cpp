@@ -151,6 +151,7 @@ void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
                            support_columns(m, s),
                            {m.damping.local, m.damping.mass + s.relax_damping},
                            mass_columns(m),
+                           0.5 * (s.dt_last + s.dt),
                            s.nodes.force.data(),
                            s.nodes.damping_force.data(),
                            s.nodes.unbalance.data()});

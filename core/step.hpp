@@ -66,7 +66,8 @@ void keep_energy_scale(const Model& model, State& state);
 Real unbalance_ratio(const Model& model, const State& state);
 void renew_step(const Model& model, State& state);
 StepLimit step_limit(const Model& model, const State& state);
-void report_elements(const Model& model, State& state, Queue queue);
+/// Stress of every element where the nodes are now.
+void report_stress(const Model& model, State& state);
 
 /// Change between lumped and exact masses; what kinetic energy that takes is booked as damping.
 void change_mass(Model& model, State& state, bool lumped);

@@ -66,6 +66,24 @@ struct MassColumns {
 
   /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
   CDEM_HD Index row(Index node) const { return lumped ? -1 : dense_first[node]; }
+  /// Part of M a of a node that the given motion of supported nodes of its block makes, row by row
+  /// of the full matrix; nothing where masses are lumped  [N].
+  CDEM_HD Vec3<Real> given_inertia(const SupportColumns& supports, const InMotion& nodes, Index i,
+                                   Real kick) const {
+    Vec3<Real> sum{0.0, 0.0, 0.0};
+    const Index start = row(i);
+    if (start < 0) return sum;
+    for (Index j = 0; j < block_count[i]; ++j) {
+      const Index other = block_first[i] + j;
+      if (supports.support[other] < 0) continue;
+      const Real m = matrix[start + j] / kick;
+      const Vec3<Real> v = nodes.velocity(other);
+      if (supports.given(other, 0)) sum.x += m * (supports.at(other, 0) - v.x);
+      if (supports.given(other, 1)) sum.y += m * (supports.at(other, 1) - v.y);
+      if (supports.given(other, 2)) sum.z += m * (supports.at(other, 2) - v.z);
+    }
+    return sum;
+  }
   /// Momentum M v of a node  [kg m/s].
   CDEM_HD Vec3<Real> momentum(const InMotion& nodes, Index i) const {
     const Index start = row(i);
@@ -91,7 +109,8 @@ struct SumNodeForces {
   SupportColumns supports;
   NodeDamping damping;
   MassColumns mass;
-  Real* force;          // row of 4: x y z [N], stiffness of the contacts [N/m]
+  Real kick;            // time over which the force acts in the coming step  [s]
+  Real* force;          // row of 4: x y z, less given_inertia [N], stiffness of the contacts [N/m]
   Real* damping_force;  // row of 4  [N]
   Real* unbalance;      // [node] |x| + |y| + |z| of the unbalanced force on free components  [N]
 
@@ -113,7 +132,8 @@ struct SumNodeForces {
                        drag(i, 2, f.z, v.z, p.z)};
     unbalance[i] = free(i, 0, f.x) + free(i, 1, f.y) + free(i, 2, f.z);
     Real* r = force + std::size_t(i) * 4;
-    r[0] = f.x + d.x, r[1] = f.y + d.y, r[2] = f.z + d.z, r[3] = stiffness;
+    const Vec3<Real> net = f + d - mass.given_inertia(supports, nodes, i, kick);
+    r[0] = net.x, r[1] = net.y, r[2] = net.z, r[3] = stiffness;
     Real* q = damping_force + std::size_t(i) * 4;
     q[0] = d.x, q[1] = d.y, q[2] = d.z;
   }
@@ -183,15 +203,14 @@ struct MoveNodes {
         a[axis] += inverse[j] * force[std::size_t(first + j) * 4 + axis];
     }
   }
-  /// Force of the support: what is missing for the motion that it imposed. Other supported nodes of
-  /// a block with a full mass matrix count as unaccelerated.
+  /// Force of the support: what is missing for the motion that it imposed. With a full mass matrix
+  /// `force` has the inertia of all given motions of the block already.
   CDEM_HD Vec3<Real> react(Index i, const Vec3<Real>& v0, const Vec3<Real>& v1) const {
     const Vec3<Real> gained = (2.0 / (dt_before + dt)) * (v1 - v0);
     Real need[3] = {mass.mass[i] * gained.x, mass.mass[i] * gained.y, mass.mass[i] * gained.z};
     const Index row = mass.row(i);
     if (row >= 0) {
-      const Real own = mass.matrix[row + i - mass.block_first[i]];
-      need[0] = own * gained.x, need[1] = own * gained.y, need[2] = own * gained.z;
+      need[0] = need[1] = need[2] = 0;
       for (Index j = 0; j < mass.block_count[i]; ++j) {
         Real a[3];
         const Index other = mass.block_first[i] + j;

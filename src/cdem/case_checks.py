@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 Problem = tuple[tuple[str | int, ...], str]  # path, what is wrong
 SETTABLE = ("interfaces.", "loads.", "groups.")  # another mesh or material is another model
+AT_START = ("material", "velocity", "angular_velocity")  # of a group
 
 
 def contradictions(case: Case) -> list[Problem]:
@@ -124,6 +125,15 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
     return rest
 
 
+def _fixed_at_the_start(path: str, value: Any) -> str:
+    """Which entry of a group a setting would change that only the start of a run knows, or ""."""
+    keys = path.split(".")
+    if keys[0] != "groups":
+        return ""
+    inside = value if len(keys) == 2 and isinstance(value, dict) else {}
+    return next((key for key in AT_START if key in keys[2:3] or key in inside), "")
+
+
 def stage_settings(case: Case, known: Sequence[Problem]) -> list[Problem]:
     """Try the ``set`` of all stages in turn on a copy; return what does not work.
 
@@ -140,6 +150,11 @@ def stage_settings(case: Case, known: Sequence[Problem]) -> list[Problem]:
             if not path.startswith(SETTABLE):
                 allowed = ", ".join(f"{start}*" for start in SETTABLE)
                 problems.append((keys, f"a stage can change {allowed} only"))
+                continue
+            if fixed := _fixed_at_the_start(path, value):
+                problems.append(
+                    (keys, f"'{fixed}' of a group holds from the start and cannot change")
+                )
                 continue
             try:
                 trial.set(path, value)

@@ -313,9 +313,9 @@ def _draw_plots(table: Any, folder: Path) -> list[Path]:
 
     try:
         return draw_all(table, folder / "plots")
-    except CaseError:
-        raise
     except CdemError as error:
+        if isinstance(error, CaseError) and not table.failed:
+            raise
         print(f"no plots: {error}", file=sys.stderr)
         return []
 

@@ -95,6 +95,10 @@ def strength_reduction() -> Apply:
     strength: dict[str, tuple[float, float, float]] = {}
 
     def apply(case: Case, factor: float) -> None:
+        if factor <= 0:
+            raise CaseError(
+                f"a factor that strengths are divided by must be above 0, got {factor:g}"
+            )
         if not strength:  # the first trial: nothing is reduced yet
             laws = {"default": case.interfaces.default} | {
                 f"pairs.{i}": law for i, law in enumerate(case.interfaces.pairs)

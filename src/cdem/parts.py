@@ -159,6 +159,12 @@ class FacesOfGroup(Part):
     group: Name = Field(description="Group")
     normal: Direction3 = Field(description="Outward normal of the faces [1]")
 
+    @model_validator(mode="after")
+    def _normal_has_a_direction(self) -> FacesOfGroup:
+        if not any(self.normal):
+            raise ValueError("normal must not be [0, 0, 0]")
+        return self
+
 
 def _surface_kind(value: object) -> str:
     return "faces" if isinstance(value, dict | FacesOfGroup) else "name"
@@ -185,7 +191,9 @@ class Region(Part):
 
 class _Timed(Part):
     history: History | None = Field(
-        None, description="Factor over time, linear between: [[time [s], factor [1]], ...]"
+        None,
+        min_length=1,
+        description="Factor over time, linear between: [[time [s], factor [1]], ...]",
     )
 
     @model_validator(mode="after")

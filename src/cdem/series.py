@@ -28,10 +28,12 @@ def read_summary(folder: Path) -> dict[str, Any]:
     try:
         return json.loads(path.read_text())
     except FileNotFoundError:
-        raise CdemError(
-            f"{folder}: no summary.json; the run has not come to an end yet, or this is no result "
-            "folder"
-        ) from None
+        if (Path(folder) / "checkpoint.h5").is_file():
+            raise CdemError(
+                f"{folder}: the run has not come to an end: it is still going, or was killed (then "
+                "go on with cdem run --resume); its log is run.log, its last state checkpoint.h5"
+            ) from None
+        raise CdemError(f"{folder}: no summary.json; is this a result folder?") from None
     except json.JSONDecodeError as error:
         raise CdemError(f"{path}: not readable ({error})") from None
 

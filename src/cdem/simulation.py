@@ -333,7 +333,9 @@ class Simulation:
         end = stage.end_time
         fraction = left = None
         if end is not None:
-            fraction = (self.time - stage.start_time) / (end - stage.start_time)
+            # a stage shorter than the resolution of the time is over when it begins
+            length = end - stage.start_time
+            fraction = (self.time - stage.start_time) / length if length > 0 else 1.0
             if fraction > 0:
                 left = stage.wall_time * (1 - fraction) / fraction
         return Progress(
@@ -369,6 +371,7 @@ class Simulation:
         if failure:
             raise UnstableError(f"{when}{failure}. A smaller time.safety may help too.{kept}")
         dt = float(self.core.scalars()["dt"])
+        smaller = "time.safety" if self.case.time.step == "auto" else "time.step"
         if outcome == "lost_contact":
             face = int(self.core.fields()["search.exposed_face"][culprit])
             block = int(topology.face_block[face])
@@ -388,11 +391,11 @@ class Simulation:
         if outcome == "not_finite":
             raise UnstableError(
                 f"{when}{where} has no finite position or velocity any more; dt = {dt:.3g} s. "
-                f"Use a smaller time.safety, or look for a bad element there.{kept}"
+                f"Use a smaller {smaller}, or look for a bad element there.{kept}"
             )
         raise UnstableError(
             f"{when}{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "
-            f"dt = {dt:.3g} s. Use a smaller time.safety or a lower stiffness_n.{kept}"
+            f"dt = {dt:.3g} s. Use a smaller {smaller} or a lower stiffness_n.{kept}"
         )
 
     # ------------------------------------------------------------------ keeping

@@ -34,7 +34,8 @@ class StageState:
         start_step: Steps done before it.
         end_time: [s], or None for a static stage.
         row_every: Time between history rows [s].
-        rows: History rows written after the first.
+        rows: Times of history rows that have passed after the first.
+        frame_due: Whether a time of a frame passed with the last of them.
         wall_time: Wall time spent in it [s].
         least_unbalance: Smallest unbalance ratio of a static stage so far, or None.
         least_step: Step at which it was reached.
@@ -47,6 +48,7 @@ class StageState:
     end_time: float | None
     row_every: float
     rows: int = 0
+    frame_due: bool = False
     wall_time: float = 0.0
     least_unbalance: float | None = None
     least_step: int = 0
@@ -166,7 +168,12 @@ def record_is_due(sim: Simulation, stage: StageState, outcome: str) -> bool:
     else:
         assert stage.end_time is not None
         due = sim.time >= min(stage.next_row, stage.end_time)
-    stage.rows += due
+    if due:
+        before, stage.rows = stage.rows, stage.rows + 1
+        if stage.mode == "dynamic":  # a step may be longer than the time between rows
+            passed = int((sim.time - stage.start_time) / stage.row_every)
+            stage.rows = max(stage.rows, passed)
+        stage.frame_due = stage.rows // ROWS_PER_FRAME > before // ROWS_PER_FRAME
     return due
 
 
@@ -174,7 +181,7 @@ def frame_is_due(sim: Simulation, stage: StageState, outcome: str) -> bool:
     """Whether the history row just counted comes with a frame of the fields."""
     if status(sim, stage, outcome) is not None:
         return True
-    return stage.mode == "dynamic" and stage.rows % ROWS_PER_FRAME == 0
+    return stage.mode == "dynamic" and stage.frame_due
 
 
 def status(sim: Simulation, stage: StageState, outcome: str) -> str | None:

@@ -406,6 +406,9 @@ def _surfaces(t: Topology, mesh: Mesh) -> None:
     points = np.where(t.face_nodes >= 0, t.node_point[t.face_nodes], -1)
     key = np.sort(points, axis=1)
     for name, parts in mesh.surfaces.items():
+        if not parts:  # a set of joints that cuts nothing
+            t.surfaces[name] = np.zeros(0, np.int64)
+            continue
         wanted = [np.pad(p, ((0, 0), (0, 4 - p.shape[1])), constant_values=-1) for p in parts]
         sought = np.sort(np.concatenate(wanted), axis=1)
         number = _same_rows(np.concatenate([sought, key]))

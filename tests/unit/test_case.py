@@ -310,6 +310,16 @@ BAD = [  # what is written, what stands there instead, the message
         "loads.tractions.0: history: times must increase",
     ),
     (
+        "history: [[0, 0], [1, 1]]",
+        "history: []",
+        "loads.tractions.0.history: needs at least 1 entry, got 0",
+    ),
+    (
+        "normal: [1, 0, 0]}, traction",
+        "normal: [0, 0, 0]}, traction",
+        "normal must not be [0, 0, 0]",
+    ),
+    (
         "{surface: lid, ",
         "{",
         "loads.velocities.0: give exactly one of group, surface, point, box; got none of them",
@@ -341,6 +351,16 @@ BAD = [  # what is written, what stands there instead, the message
         "interfaces.base.cohesion: 0",
         "time.safety: 0.5",
         "stages.1.set.time.safety: a stage can change interfaces.*, loads.*, groups.* only",
+    ),
+    (
+        "interfaces.base.cohesion: 0",
+        "groups.block.material: rock",
+        "'material' of a group holds from the start and cannot change",
+    ),
+    (
+        "interfaces.base.cohesion: 0",
+        "groups.block.velocity: [1, 0, 0]",
+        "'velocity' of a group holds from the start and cannot change",
     ),
     ("name: slide", "name: settle", "stages.1.name: 'settle' is the name of two entries"),
     ("refresh: 50", "refresh: 0", "contact.refresh: must be at least 1, got 0"),

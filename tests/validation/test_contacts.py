@@ -194,8 +194,9 @@ def test_a_fast_drop_is_never_missed(speed):
     assert mean_velocity(sim, "block")[2] > 0.5 * speed
 
 
-def test_overlapping_blocks_are_reported_and_free_of_stress():
-    depth = 1e-4
+@pytest.mark.parametrize("depth", [1e-4, 0.01, 0.2])
+def test_overlapping_blocks_are_reported_and_free_of_stress(depth):
+    """Deep ones too: a compiler that got their limit wrong let the upper block fall through."""
     sim = simulate(
         [
             {"group": "lower", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},

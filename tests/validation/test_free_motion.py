@@ -171,3 +171,55 @@ def test_mass_damping_slows_flight_and_spin_alike(shape, motion):
     sim.run()
     expected = np.exp(-alpha * sim.time) * before
     assert np.allclose(momentum(sim)[which], expected, atol=1e-3 * np.linalg.norm(before))
+
+
+@pytest.mark.parametrize("divisions", [[1, 1, 1], [2, 2, 2], [4, 1, 1]])
+@pytest.mark.parametrize(
+    "which", [{"group": "block"}, {"surface": {"group": "block", "normal": [-1, 0, 0]}}]
+)
+def test_a_driven_block_takes_the_work_that_moves_it(divisions, which):
+    """W = m v^2 / 2 of a block that is brought to v, by all its nodes or by a face, with exact masses.
+
+    Supports of one block feel each other's inertia through the full mass matrix.
+    """
+    drive = {"components": ["x"], "velocity": [0.1, 0, 0], "history": [[0, 0], [0.02, 1]]}
+    sim = simulate(
+        [{"group": "block", "box": {"size": [1, 1, 1], "divisions": divisions}}],
+        {"block": {}},
+        loads={"velocities": [which | drive]},
+    )
+    sim.run_until(0.03)
+    energy = sim.energies
+    assert energy["external"] == pytest.approx(0.5 * ROCK["density"] * 0.1**2, rel=0.03)
+    assert abs(energy["error"]) < 1e-9
+
+
+def test_what_is_driven_everywhere_follows_its_history():
+    """Nothing limits the step, but the motion must still be that of the curve."""
+    curve = [[0, 0], [0.02, 1], [0.03, 0]]
+    sim = simulate(
+        [{"group": "block", "box": {"size": [1, 1, 1]}}],
+        {"block": {"fix": ["y", "z"]}},
+        loads={"velocities": [
+            {"group": "block", "components": ["x"], "velocity": [0.1, 0, 0], "history": curve}
+        ]},
+        stages=[{"name": "push", "mode": "dynamic", "duration": 0.05}],
+    )  # fmt: skip
+    sim.run()
+    assert sim.time == pytest.approx(0.05, rel=0.01)
+    assert sim.fields["displacement"][:, 0] == pytest.approx(0.5 * 0.03 * 0.1, rel=1e-3)
+
+
+def test_looking_at_stress_leaves_the_ledger_alone():
+    sim = simulate(
+        [{"group": "block", "box": {"size": [1, 1, 1], "divisions": [2, 2, 2]}}],
+        {"block": {"fix": ["x"]}},
+        loads={"gravity": [0, 0, -9.81], "supports": [
+            {"box": {"min": [-1, -1, -1], "max": [2, 2, 0.1]}, "fix": ["z"]}
+        ]},
+    )  # fmt: skip
+    sim.step(300)
+    before = sim.energies
+    assert before["strain"] > 0
+    assert np.abs(sim.core.stress()["hex8"]).max() > 0
+    assert sim.energies == before

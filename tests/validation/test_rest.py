@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from scenes import simulate
+from scenes import case, simulate
 
 import cdem
 from cdem.errors import UnstableError
+from cdem.series import SurfaceSeries
 
 BOND = {"friction_angle": 30, "cohesion": "1 GPa", "tensile_strength": "1 GPa"}
 SLOPE = [{"group": "slope", "box": {"size": [22, 15, 16], "divisions": [22, 15, 16]}}]
@@ -151,3 +152,43 @@ def test_the_wall_time_foreseen_leaves_out_held_rock():
 
     held, moved = foreseen(fix=["x", "y", "z"]), foreseen(fix=["x", "y"])
     assert moved - held == pytest.approx(1e4 * 512 / 2e6, rel=1e-6)
+
+
+def test_where_nothing_acts_a_static_stage_ends_at_once():
+    """Round-off over round-off is no unbalance, and no energy error either."""
+    sim = simulate(
+        [
+            {"group": "bed", "box": {"size": [3, 3, 0.5], "divisions": [2, 2, 1]}, "translate": [0, 0, -0.5]},
+            {"group": "rock", "box": {"size": [1, 1, 1], "divisions": [2, 2, 2]}, "translate": [1, 1, 0]},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "rock": {}},
+        stages=[{"name": "rest", "mode": "static", "max_steps": 5000}],
+    )  # fmt: skip
+    assert sim.run() == "converged"
+    assert sim.step_count < 100
+    sim.step(100)
+    assert abs(sim.energies["error"]) < 1e-6
+
+
+def test_frames_keep_their_times_when_rows_would_be_closer_than_steps(tmp_path):
+    """A tenth of output.every is shorter than a step: frames come by time all the same."""
+    sim = cdem.Simulation(
+        case(
+            [{"group": "block", "box": {"size": [1, 1, 1]}}],
+            {"block": {"velocity": [1, 0, 0]}},
+            stages=[
+                {"name": "fly", "mode": "dynamic", "duration": "6 ms"},
+                {"name": "blink", "mode": "dynamic", "duration": 1e-30},
+            ],
+            time={"step": "0.1 ms"},
+            output={"every": "0.3 ms"},
+        ),
+        output=tmp_path / "r",
+        threads=1,
+    )
+    seen = []
+    sim.run(progress=seen.append)
+    times = SurfaceSeries(tmp_path / "r").times
+    assert len(times) >= 20
+    assert np.abs(times[1:20] - 0.3e-3 * np.arange(1, 20)).max() < 0.11e-3
+    assert {p.stage for p in seen} == {"fly", "blink"}

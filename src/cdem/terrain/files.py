@@ -250,6 +250,11 @@ def _geotiff(path: Path) -> Grid:
             f"{path}: is in degrees ({system.to_string()}); project it to metres first, e.g. with "
             "gdalwarp -t_srs"
         )
+    if system is not None and abs(system.linear_units_factor[1] - 1) > 1e-9:
+        raise CaseError(
+            f"{path}: is in {system.linear_units_factor[0]} ({system.to_string()}), not in metres; "
+            "project it first, e.g. with gdalwarp -t_srs"
+        )
     if place.b or place.d or place.a <= 0 or place.e >= 0:
         raise CaseError(f"{path}: its rows do not run from west to east, north to south")
     west, north = place.c + place.a / 2, place.f + place.e / 2
