@@ -191,6 +191,11 @@ class Audit:
                 f"of group {group}); the overlap counts as free of stress. Mend the mesh if it "
                 "should not be there"
             )
+        if sim.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
+            out.append(
+                f"time.step {self.step['dt']:.4g} s is above the stable {self.step['limit']:.4g} s; "
+                "the run will blow up: give a smaller one, or auto"
+            )
         slivers = self._slivers()
         if slivers:
             out.append(

@@ -138,7 +138,9 @@ class RunOut:
             f"  deposit: {d.volume:.6g} m3 on {d.area:.6g} m2, {d.volume / d.area:.4g} m thick on "
             f"average, {d.thickness.max():.4g} m at most (solid rock; cells of {d.cell:g} m)",
             f"  fastest: centre of mass {np.max(h['speed']):.4g} m/s, an element "
-            f"{np.max(h['speed_most']):.4g} m/s",
+            f"{np.max(h['speed_most']):.4g} m/s"
+            if np.isfinite(h["speed"]).any()
+            else "  fastest: not recorded; add velocity to output.fields",
             f"  broken springs: {h['broken_tension'][-1]:,.0f} tension, "
             f"{h['broken_shear'][-1]:,.0f} shear",
         ]

@@ -304,6 +304,7 @@ def test_runs_without_velocity_and_pieces_are_measured_without(tmp_path):
     assert found.centre_travel == pytest.approx(found.history["time"][-1], rel=1e-6)
     assert np.isnan(found.history["speed"]).all()
     assert "not recorded; add piece to output.fields" in found.text()
+    assert "not recorded; add velocity to output.fields" in found.text()
     assert "fragments.csv" not in {path.name for path in found.write(tmp_path)}
 
 

@@ -192,3 +192,11 @@ def test_frames_keep_their_times_when_rows_would_be_closer_than_steps(tmp_path):
     assert len(times) >= 20
     assert np.abs(times[1:20] - 0.3e-3 * np.arange(1, 20)).max() < 0.11e-3
     assert {p.stage for p in seen} == {"fly", "blink"}
+
+
+@pytest.mark.parametrize("step, warned", [("auto", 0), ("1 us", 0), ("20 ms", 1)])
+def test_a_step_above_the_stable_one_is_warned_of(step, warned):
+    sim = simulate(
+        [{"group": "block", "box": {"size": [1, 1, 1]}}], {"block": {}}, time={"step": step}
+    )
+    assert len([w for w in sim.audit.warnings if "above the stable" in w]) == warned
