@@ -53,8 +53,10 @@ struct SpringColumns {
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
 /// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
 /// into it, v is behind its plane within the limit, and no exterior edge that leaves v goes deeper
-/// (v is the locally deepest point). The current target is kept while it qualifies. A contact that
-/// has dilated acts above the plane, and is kept to twice the height to which it has risen.
+/// (v is the locally deepest point). The current target is kept while it qualifies; meanwhile the
+/// vertex may sink into another block, so that a spring whose target lets go may begin anywhere
+/// inside one. A contact that has dilated acts above the plane, and is kept to twice the height to
+/// which it has risen.
 struct FindTargetFaces {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -81,8 +83,9 @@ struct FindTargetFaces {
       const Real plane = plane_gap(s.v, t);
       if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
       if (!beside(s.p, t, rules.tolerance * length)) continue;
-      const Real entry = rules.entry * length + approach(s.node, t);
-      const Real gap = qualify(m, s.node, s.v, s.p, t, s.lifted, entry + s.hand_over);
+      const Real entry = rules.entry * length + approach(s.node, t) + s.hand_over;
+      const Real depth = s.released && encloses(t, s.v) ? rules.depth * length : 0;
+      const Real gap = qualify(m, s.node, s.v, s.p, t, s.lifted, max_of(entry, depth));
       if (gap < none && gap > s.gap) {
         s.best = t;
         s.gap = gap;
@@ -100,12 +103,13 @@ struct FindTargetFaces {
     Vec3<Real> v, p;  // true vertex, indented point
     Real gap, hand_over;
     Real lifted;  // highest gap of a contact  [m]
-    bool kept;    // the current target still qualifies
+    bool kept;      // the current target still qualifies
+    bool released;  // it does no more
   };
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
     const Index slot = 4 * m + k, current = springs.target_before[slot];
-    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false};
+    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, false};
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;
@@ -118,6 +122,7 @@ struct FindTargetFaces {
       return s;
     }
     const Real old_gap = plane_gap(s.v, current);
+    s.released = true;
     // a loaded spring may enter its next face as deep as it leaves the last
     if (loaded && old_gap < 0) s.hand_over = -1.5 * old_gap;
     if (loaded && sank_below(s.p, current, old_gap, depth)) *lost = 1;
@@ -128,6 +133,17 @@ struct FindTargetFaces {
   }
   CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
     return dot(geometry.normal(t), v - geometry.center(t));
+  }
+  /// Is a point behind face t and behind the faces that bend away across its sides?
+  CDEM_HD bool encloses(Index t, const Vec3<Real>& v) const {
+    for (Index k = 0; k < faces.vertex_count(exposed_face[t]); ++k) {
+      const Index across = faces.across(t, k);
+      if (across < 0) continue;
+      const FaceShape beyond = faces.shape(across);
+      const Vec3<Real> center = beyond.center();
+      if (plane_gap(center, t) < 0 && dot(beyond.normal(), v - center) > 0) return false;
+    }
+    return plane_gap(v, t) < 0;
   }
   /// A warped face may reach above its mean plane; a plane one does not.
   CDEM_HD Real above(Index t) const {

@@ -209,6 +209,53 @@ def test_overlapping_blocks_are_reported_and_free_of_stress(depth):
     assert np.abs(sim.fields["velocity"]).max() < 1e-9
 
 
+def test_a_vertex_let_go_inside_another_block_is_held_there():
+    """A cube stands with a corner on a plate that is pushed into the bed and then drawn away.
+
+    Each semi-spring has one target, the plate, while the corner sinks into the bed, deeper than a contact may
+    begin: it used to fall through.
+    """
+    sim = simulate(
+        [
+            {"group": "bed", "box": {"size": [6, 6, 2]}, "translate": [-3, -3, -2]},
+            {"group": "plate", "box": {"size": [1, 1, 0.05]}, "translate": [-0.5, -0.5, 0]},
+            {
+                "group": "cube",
+                "box": {"size": [0.6, 0.6, 0.6]},
+                "rotate": {"axis": [1, -1, 0], "angle": np.degrees(np.arccos(1 / np.sqrt(3)))},
+                "translate": [0, 0, 0.05],
+            },
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "plate": {}, "cube": {"fix": ["x", "y"]}},
+        loads={
+            "gravity": [0, 0, -20],
+            "velocities": [
+                {
+                    "group": "plate",
+                    "components": ["z"],
+                    "velocity": [0, 0, -0.3],
+                    "history": [[0, 0], [0.1, 1], [0.5, 1], [0.6, 0]],
+                },
+                {
+                    "group": "plate",
+                    "components": ["x", "y"],
+                    "velocity": [5, 0, 0],
+                    "history": [[0, 0], [0.6, 0], [0.61, 1], [1.2, 1]],
+                },
+            ],
+        },
+        stages=[
+            {"name": "go", "mode": "dynamic", "duration": 0.9, "damping": {"contact": 0.1}},
+        ],
+    )
+    sim.run_until(0.6)
+    tip = sim.fields["position"][sim.build.nodes_of("cube"), 2].min()
+    assert tip == pytest.approx(0.05 - 0.3 * 0.5, abs=1e-3)  # on the plate, below the bed
+    sim.run_until(0.9)
+    assert sim.fields["position"][sim.build.nodes_of("plate"), 0].min() > 0.5  # far from the corner
+    assert sim.fields["position"][sim.build.nodes_of("cube"), 2].min() == pytest.approx(tip, abs=1e-3)
+
+
 @pytest.mark.parametrize("axis", [[0, 0, 1], [1, 0, 0], [1, 2, 3]])
 def test_rigid_rotation_of_a_loaded_pair(axis):
     """A pressed, sheared frictional pair is turned by 90 degrees: its forces turn with it.
