@@ -117,6 +117,13 @@ def strength_reduction() -> Apply:
     return apply
 
 
+def check_last_stage(case: Case) -> None:
+    """Refuse a case whose last stage is not static: it decides what comes to rest."""
+    if case.stages[-1].mode != "static":
+        where = case.where(f"stages.{len(case.stages) - 1}.mode")
+        raise CaseError(f"{where}: the last stage must be static: it decides what comes to rest")
+
+
 def find_critical(
     case: Case,
     apply: Apply,
@@ -148,10 +155,7 @@ def find_critical(
     Raises:
         CaseError: The last stage is not static, or both ends rest or fail.
     """
-    last = case.stages[-1]
-    if last.mode != "static":
-        where = case.where(f"stages.{len(case.stages) - 1}.mode")
-        raise CaseError(f"{where}: the last stage must be static: it decides what comes to rest")
+    check_last_stage(case)
     if not tolerance > 0:
         raise CaseError(f"tolerance {tolerance}: must be above zero")
     criterion = criterion or Criterion()

@@ -407,4 +407,7 @@ class HistoryPoint(Part):
         for quantity in ("centroid", "energy"):
             if self.point is not None and quantity in self.quantities:
                 raise ValueError(f"{quantity} needs a group, not a point")
+        for quantity in self.quantities:
+            if self.quantities.count(quantity) > 1:
+                raise ValueError(f"{quantity} is listed twice")
         return self

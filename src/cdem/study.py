@@ -320,6 +320,10 @@ def _contradictions(study: Study) -> Iterator[tuple[Keys, str]]:
         for i, value in enumerate(study.critical.between):
             if not is_formula(value) and not isinstance(value, int | float):
                 yield ("critical", "between", i), f"must be a number or a formula, got '{value}'"
+        sought = study.critical.parameter
+        for field, names in (("parameters", study.parameters), ("set", study.set)):
+            if sought in names:
+                yield ("critical", "parameter"), f"'{sought}' is also given by {field}; vary it once"
 
 
 def _formula(

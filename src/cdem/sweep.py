@@ -191,8 +191,7 @@ def _make(
     if study.critical:
         search = study.critical.model_dump()
         search["between"] = _computed(study, ("critical", "between"), study.critical.between, row)
-        if not study.critical.factor:
-            _check_parameter(study, case, search)
+        _check_search(study, case, search)
     identity = _identity(case, search)
     task = {
         "name": identity[:16],
@@ -207,14 +206,16 @@ def _make(
     return Run(identity[:16], identity, row, task)
 
 
-def _check_parameter(study: Study, case: Case, search: dict[str, Any]) -> None:
-    from cdem.critical import parameter
+def _check_search(study: Study, case: Case, search: dict[str, Any]) -> None:
+    from cdem.critical import check_last_stage, parameter
 
-    where = study._source.where(("critical", "parameter"))
-    try:
-        parameter(search["parameter"])(case.model_copy(deep=True), search["between"][0])
-    except CaseError as error:
-        raise CaseError(f"{where}: {error}") from None
+    if search["parameter"]:  # else the factor of safety is sought
+        where = study._source.where(("critical", "parameter"))
+        try:
+            parameter(search["parameter"])(case.model_copy(deep=True), search["between"][0])
+        except CaseError as error:
+            raise CaseError(f"{where}: {error}") from None
+    check_last_stage(case)
 
 
 def _computed(study: Study, keys: tuple[str | int, ...], value: Any, row: dict[str, Any]) -> Any:

@@ -371,6 +371,11 @@ BAD = [  # what is written, what stands there instead, the message
         "quantities: [energy]",
         "histories.0: energy needs a group, not a point",
     ),
+    (
+        "quantities: [displacement]",
+        "quantities: [velocity, displacement, velocity]",
+        "velocity is listed twice",
+    ),
     ("  blocks:\n", "  mesh: slop.msh\n  blocks:\n", "slope.yaml:5:3: model.mesh: no file "),
     ("cdem: 1\n", "cdem: 2\n", "slope.yaml:1:1: cdem: must be 1, got 2"),
     (

@@ -31,6 +31,9 @@ output: {frames: false}
 """
 
 
+STATIC = CASE.replace('mode: dynamic, duration: "5 ms"', "mode: static")
+
+
 @pytest.fixture
 def study(tmp_path, monkeypatch):
     """Write a study beside its case and load it."""
@@ -68,6 +71,10 @@ FRICTION = "interfaces.default.friction_angle"
         ("parameters: {phi: [1]}\nset: {a.b: = 1 +}", "is no formula"),
         ("parameters: {a.b: [1], c.d: [1, 2]}\ncombine: together", "there are: a.b 1, c.d 2"),
         ("parameters: {a.b: [1]}\ncritical: {between: [1, 2]}", "give either parameter or factor"),
+        (
+            "parameters: {a.b: [1]}\ncritical: {parameter: a.b, between: [1, 2]}",
+            "critical.parameter: 'a.b' is also given by parameters; vary it once",
+        ),
         ("parameters: {a.b: [1]}\nresults: {error: time}", "a column of every table"),
         ("parameters: {a.b: [1]}\nplots: [{lines: x}]", "lines needs x"),
         ("parameters: {a.b: [1]}\nplots: [{lines: f, x: a.c}]", "'a.c' is not known; did you"),
@@ -106,6 +113,14 @@ def test_cases_that_are_wrong_stop_the_study_before_anything_runs(study, text, m
     assert message in str(error.value)
 
 
+def test_a_critical_search_over_a_case_that_ends_in_motion_stops_the_study(study, tmp_path):
+    text = f"parameters: {{{FRICTION}: [20]}}\ncritical: {{factor: true, between: [1, 2]}}"
+    with pytest.raises(CaseError, match="cube.yaml:6.*the last stage must be static"):
+        plan(study(text), tmp_path)
+    (tmp_path / "cube.yaml").write_text(STATIC)
+    assert len(plan(study(text), tmp_path)) == 1
+
+
 def test_drawn_values_that_are_wrong_are_runs_that_failed(study, tmp_path):
     drawn = study(
         "parameters: {interfaces.default.cohesion: {normal: {mean: 0, deviation: 1}}}\n"
@@ -135,6 +150,7 @@ def test_formulas_and_units_reach_the_case(study, tmp_path):
 
 def test_identity_is_that_of_case_and_action(study, tmp_path):
     """The same case by another way is the same run; another title of the study changes nothing."""
+    (tmp_path / "cube.yaml").write_text(STATIC)
     [one] = plan(study(f"parameters: {{{FRICTION}: [20]}}"), tmp_path)
     [same] = plan(
         study(f"title: x\nparameters: {{a: [10]}}\nset: {{{FRICTION}: = 2 * a}}"), tmp_path
