@@ -12,7 +12,8 @@ struct SearchRules {
   Real tolerance = 0.001;     // in-plane tolerance; must stay below the indentation
   Real entry = 0.05;          // a new contact may be this deep, and 1.5 times the step's approach:
                               // not less than what the cones' slack hides
-  Real depth = 0.3;           // a contact in place is kept down to here; deeper is an error
+  Real depth = 0.3;           // a contact in place is kept down to here, from where it is free of
+                              // stress; deeper is an error
   Real opposing = 0.02;       // faces touch only if n_m . n_t < -opposing
   Real cone = 0.05;           // slack of the normal-cone tests (a sine)
   Real approach_steps = 1.5;  // see entry
@@ -33,7 +34,7 @@ struct Sources {
 
 /// State of the semi-springs of exposed faces: slot = 4 * exposed face + vertex.
 struct SpringColumns {
-  Index* target;         // exposed face in contact, or -1
+  Index* target;         // exposed face in contact, -1, or let_go
   Index* target_before;  // the same one step ago
   Real* force_n;         // [N], compression > 0
   Real* shear1;          // [N] in the target's frame
@@ -48,14 +49,17 @@ struct SpringColumns {
   Flag* lost;      // 1: a loaded contact was lost because it sank too deep
 };
 
+/// Stands for the target of a spring whose last one does not qualify any more, for one step.
+constexpr Index let_go = -2;
+
 /// Choose the target face of one semi-spring.
 ///
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
 /// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
 /// into it, v is behind its plane within the limit, and no exterior edge that leaves v goes deeper
 /// (v is the locally deepest point). The current target is kept while it qualifies; meanwhile the
-/// vertex may sink into another block, so that a spring whose target lets go may begin anywhere
-/// inside one. A contact that has dilated acts above the plane, and is kept to twice the height to
+/// vertex may sink into another block, so that a spring that was let go may begin deeper, as a new
+/// contact, if it is inside one. A contact that has dilated acts above the plane, and is kept to twice the height to
 /// which it has risen.
 struct FindTargetFaces {
   FaceColumns faces;
@@ -68,13 +72,13 @@ struct FindTargetFaces {
   CDEM_HD void operator()(One slot) const {
     const Index first = candidates.first[slot.i], last = candidates.first[slot.i + 1];
     springs.target_before[slot.i] = springs.target[slot.i];
-    if (first == last && springs.target[slot.i] < 0) return;
+    if (first == last && springs.target[slot.i] == -1) return;
     springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, candidates.other + first, last - first,
                                     springs.lost + slot.i);
   }
 
-  /// Target of vertex k of exposed face m among `count` others, or -1; `lost` is set where a loaded
-  /// contact sank too deep.
+  /// Target of vertex k of exposed face m among `count` others, or none; `lost` is set where a
+  /// loaded contact sank too deep.
   CDEM_HD Index choose(Index m, Index k, const Index* others, Index count, Flag* lost) const {
     Seeker s = start(m, k, lost);
     for (Index c = 0; c < count && !s.kept; ++c) {
@@ -84,14 +88,14 @@ struct FindTargetFaces {
       if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
       if (!beside(s.p, t, rules.tolerance * length)) continue;
       const Real entry = rules.entry * length + approach(s.node, t) + s.hand_over;
-      const Real depth = s.released && encloses(t, s.v) ? rules.depth * length : 0;
-      const Real gap = qualify(m, s.node, s.v, s.p, t, s.lifted, max_of(entry, depth));
+      const Real deep = s.let_go && encloses(t, s.v) ? rules.depth * length : 0;
+      const Real gap = qualify(m, s.node, s.v, s.p, t, s.lifted, max_of(entry, deep));
       if (gap < none && gap > s.gap) {
         s.best = t;
         s.gap = gap;
       }
     }
-    return s.best;
+    return s.best < 0 && springs.target_before[4 * m + k] >= 0 ? cdem::let_go : s.best;
   }
 
  private:
@@ -103,18 +107,19 @@ struct FindTargetFaces {
     Vec3<Real> v, p;  // true vertex, indented point
     Real gap, hand_over;
     Real lifted;  // highest gap of a contact  [m]
-    bool kept;      // the current target still qualifies
-    bool released;  // it does no more
+    bool kept;    // the current target still qualifies
+    bool let_go;  // the last one ceased to, one step ago
   };
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
     const Index slot = 4 * m + k, current = springs.target_before[slot];
-    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, false};
+    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, current == cdem::let_go};
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;
     const bool loaded = springs.force_n[slot] > 0;
-    const Real depth = rules.depth * smaller_length(m, current);
+    const Real depth =
+        rules.depth * smaller_length(m, current) - min_of(springs.gap_free[slot], 0.0);
     s.lifted = 2 * max_of(springs.gap_free[slot], 0.0);
     if (qualify(m, s.node, s.v, s.p, current, s.lifted, depth) < none) {
       s.best = current;
@@ -122,7 +127,6 @@ struct FindTargetFaces {
       return s;
     }
     const Real old_gap = plane_gap(s.v, current);
-    s.released = true;
     // a loaded spring may enter its next face as deep as it leaves the last
     if (loaded && old_gap < 0) s.hand_over = -1.5 * old_gap;
     if (loaded && sank_below(s.p, current, old_gap, depth)) *lost = 1;
