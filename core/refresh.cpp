@@ -137,13 +137,58 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
   }
 }
 
+/// A pair that holds by some of its points and is this part of its length apart at another is a
+/// hinge: what comes between its faces touches them.
+constexpr Real hinge_part = 0.05;
+
+/// Expose the faces of conforming pairs that have opened as hinges. Their broken points carry
+/// nothing any more; what little those held is lost to friction.
+template <Index count>
+void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real indentation) {
+  const FaceColumns faces = face_columns(m, s);
+  for (Index i = 0; i < p.count; ++i) {
+    const auto point = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
+    const auto holds = [&](Index k) { return ps.bond[point(k)] > 0; };
+    Index holding = 0;
+    for (Index k = 0; k < count; ++k) holding += holds(k);
+    if (ps.live[i] != 1 || holding == 0 || holding == count) continue;
+    Vec3<Real> mean[count], jump[count];
+    for (Index k = 0; k < count; ++k) {
+      const Vec3<Real> a = faces.nodes.position(p.nodes[std::size_t(k) * p.stride + i]);
+      const Vec3<Real> b = faces.nodes.position(p.nodes[std::size_t(count + k) * p.stride + i]);
+      mean[k] = 0.5 * (a + b);
+      jump[k] = b - a;
+    }
+    move_inside<count>(indentation, jump);
+    Real widest = 0;
+    for (Index k = 0; k < count; ++k)
+      if (!holds(k)) widest = std::max(widest, norm(jump[k]));
+    if (!(widest > hinge_part * pair_length(m, p, i))) continue;
+    const PairFrame<Real> frame = pair_frame<count>(mean);
+    const Real area = p.area[i] / count, kn = area * p.stiffness[i],
+               ks = area * p.stiffness[std::size_t(p.stride) + i];
+    for (Index k = 0; k < count; ++k) {
+      const Real opening = dot(frame.n, jump[k]);
+      if (holds(k) || opening >= 0) continue;
+      const Real along1 = dot(frame.t1, jump[k]) - ps.slip1[point(k)],
+                 along2 = dot(frame.t2, jump[k]) - ps.slip2[point(k)];
+      const Real held = 0.5 * (kn * opening * opening + ks * (along1 * along1 + along2 * along2));
+      ps.friction[i] += held;
+      ps.stored[i] -= held;
+    }
+    ps.live[i] = 2;
+    expose(s, p.faces[2 * i]);
+    expose(s, p.faces[2 * i + 1]);
+  }
+}
+
 void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
   for (Index i = 0; i < p.count; ++i) {
     if (!(ps.live[i] > 0)) continue;
     if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
-    if (p.point_first.size() == 0) hand_over(m, s, p, ps, i);
+    if (p.point_first.size() == 0 && ps.live[i] == 1) hand_over(m, s, p, ps, i);
     ps.live[i] = ps.jump[i] = ps.stored[i] = 0;
     ps.jump_at_break[i] = -1;
     Real* rows = s.corner_force.data() + std::size_t(p.corner_first + i * p.corners) * 4;
@@ -240,6 +285,8 @@ void refresh_contacts(const Model& m, State& s) {
       if (m.face_initially_exposed[f]) expose(s, f);
     s.nodes.built_motion.assign(s.nodes.motion.data(), s.nodes.motion.size());
   }
+  open_hinges<3>(m, s, m.triangles, s.triangles, m.bond_indentation_triangle);
+  open_hinges<4>(m, s, m.quads, s.quads, m.bond_indentation_quad);
   release_pairs(m, s, m.triangles, s.triangles);
   release_pairs(m, s, m.quads, s.quads);
   release_pairs(m, s, m.overlaps, s.overlaps);

@@ -140,7 +140,7 @@ void describe(S& s, Visit&& field) {
 
   const auto pairs = [&](const char* kind, auto& p) {
     const std::string name = std::string(kind) + ".";
-    field(name + "live", p.live, "1 until released to the contact search");
+    field(name + "live", p.live, "1 until released to the contact search, 2 as an open hinge");
     field(name + "bond", p.bond, "1 while intact, 0 once broken");
     field(name + "slip1", p.slip1, "plastic slip [m]");
     field(name + "slip2", p.slip2, "plastic slip [m]");

@@ -64,13 +64,14 @@ CDEM_HD inline auto bears(const PairFrame<T>& frame, const Vec3<T>& jump, const 
 ///
 /// The force is total, not incremental: F_n = -K_n n.jump, F_s = -K_s (t.jump - slip), so it cannot
 /// drift and needs no history until it slips. A point that broke but whose pair is not yet released
-/// to the search goes on as a frictional contact at the same place.
+/// to the search goes on as a frictional contact at the same place; in an open hinge (`searched`),
+/// whose faces the search has already, it carries nothing.
 /// `jump_old` is the jump one step ago; it serves only the energy ledger: what is lost is
 /// U_old - U_new + work done on the spring by the mean force.
-template <class T>
+template <class T, class M>
 CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>& jump,
                                        const Vec3<T>& jump_old, const BondLaw<T>& law,
-                                       BondHistory<T>& h) {
+                                       const M& searched, BondHistory<T>& h) {
   const T zero(0.0), one(1.0), half(0.5);
   const T opening = dot(frame.n, jump), along1 = dot(frame.t1, jump), along2 = dot(frame.t2, jump);
   T force_n = -law.stiffness_n * opening;
@@ -81,6 +82,10 @@ CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>&
   const auto pulled = -force_n > before * law.tension_limit;  // else it slipped
   limit_force(law.tension_limit, law.cohesion_limit, law.tan_friction, h.bond, force_n, force_s1,
               force_s2);
+  const auto carries = (h.bond > half) | !searched;
+  force_n = select(carries, force_n, zero);
+  force_s1 = select(carries, force_s1, zero);
+  force_s2 = select(carries, force_s2, zero);
 
   BondForce<T> out;
   const auto broke = before > h.bond;
@@ -111,7 +116,7 @@ CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>&
     const T lost_n =
         flex_n * was_n * was_n - stored_n - half * (was_n + force_n) * (opening - old_n);
     out.fracture = select(broke, lost_n + lost_s, zero);
-    out.friction = select((!broke) & (h.bond < half), lost_s, zero);
+    out.friction = select((!broke) & (h.bond < half) & carries, lost_s, zero);
   }
   h.slip1 = slip1;
   h.slip2 = slip2;
@@ -129,11 +134,21 @@ CDEM_HD inline PairFrame<T> pair_frame(const Vec3<T>* mean) {
   return {n, t1, cross(n, t1)};
 }
 
+/// From values at the vertices to those at the bond points.
+template <Index count, class T>
+CDEM_HD inline void move_inside(Real indentation, Vec3<T>* values) {
+  const T own(1.0 - indentation), shared(indentation / count);
+  Vec3<T> sum{T(0.0), T(0.0), T(0.0)};
+  for (Index k = 0; k < count; ++k) sum = sum + values[k];
+  for (Index k = 0; k < count; ++k) values[k] = own * values[k] + shared * sum;
+}
+
 /// State and properties of bonded pairs that do not depend on their number of vertices.
 struct PairColumns {
   InIndices interface;  // [1][pair]: index of the interface's properties
   InTable area;         // [1][pair] true overlap area  [m2]
-  InTable live;         // [1][pair] 1 until the pair is released to the contact search
+  InTable live;         // [1][pair] 1 until the pair is released to the contact search; 2 while it
+                        // is an open hinge: points hold, but the search has its faces
   InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
   InLookup cohesion, tensile_strength, tan_friction;  // by interface
   InOutTable bond, slip1, slip2;                      // [point][pair]
@@ -202,6 +217,7 @@ struct ConformingBonds {
   CDEM_HD void update_history(I p, const M& live, const PairFrame<T>& frame, const Vec3<T>* jump,
                               const BondLaw<T>& law, Vec3<T>* force) const {
     const T zero(0.0);
+    const auto open = pairs.live.at(0, p) > T(1.5);
     Vec3<T> rate[count];
     gather_rates(p, rate);
     BondForce<T> total{{zero, zero, zero}, zero, zero, zero, zero, zero};
@@ -209,7 +225,7 @@ struct ConformingBonds {
     for (Index k = 0; k < count; ++k) {
       const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
       BondHistory<T> h = old;
-      const BondForce<T> f = bond_force(frame, jump[k], jump[k] - T(dt) * rate[k], law, h);
+      const BondForce<T> f = bond_force(frame, jump[k], jump[k] - T(dt) * rate[k], law, open, h);
       // a released pair beside live ones in a lane keeps its history as it was
       pairs.bond.set(k, p, select(live, h.bond, old.bond));
       pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
@@ -254,21 +270,13 @@ struct ConformingBonds {
       mean[k] = T(0.5) * (xa + xb);
       jump[k] = xb - xa;
     }
-    move_inside(jump);
+    move_inside<count>(indentation, jump);
   }
   template <class I, class T>
   CDEM_HD void gather_rates(I p, Vec3<T>* rate) const {
     for (Index k = 0; k < count; ++k)
       rate[k] = nodes.velocity(pair_nodes.at(count + k, p)) - nodes.velocity(pair_nodes.at(k, p));
-    move_inside(rate);
-  }
-  /// From the vertices to the bond points.
-  template <class T>
-  CDEM_HD void move_inside(Vec3<T>* values) const {
-    const T own(1.0 - indentation), shared(indentation / count);
-    Vec3<T> sum{T(0.0), T(0.0), T(0.0)};
-    for (Index k = 0; k < count; ++k) sum = sum + values[k];
-    for (Index k = 0; k < count; ++k) values[k] = own * values[k] + shared * sum;
+    move_inside<count>(indentation, rate);
   }
   template <class I>
   CDEM_HD BondLaw<Number<I>> law_of(I p) const {
@@ -306,7 +314,7 @@ struct OverlapBonds {
       BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
                           pairs.slip2.at(0, point)};
       const BondForce<Real> f =
-          bond_force(frame, jump, jump - faces.dt * rate, law_of(p, point_area[c]), h);
+          bond_force(frame, jump, jump - faces.dt * rate, law_of(p, point_area[c]), false, h);
       pairs.bond.set(0, point, h.bond);
       pairs.slip1.set(0, point, h.slip1);
       pairs.slip2.set(0, point, h.slip2);

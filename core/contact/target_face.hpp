@@ -59,8 +59,8 @@ constexpr Index let_go = -2;
 /// into it, v is behind its plane within the limit, and no exterior edge that leaves v goes deeper
 /// (v is the locally deepest point). The current target is kept while it qualifies; meanwhile the
 /// vertex may sink into another block, so that a spring that was let go may begin deeper, as a new
-/// contact, if it is inside one. A contact that has dilated acts above the plane, and is kept to twice the height to
-/// which it has risen.
+/// contact, if it is inside one. A contact that has dilated acts above the plane, and is kept to
+/// twice the height to which it has risen.
 struct FindTargetFaces {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -113,7 +113,8 @@ struct FindTargetFaces {
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
     const Index slot = 4 * m + k, current = springs.target_before[slot];
-    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, current == cdem::let_go};
+    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false,
+             current == cdem::let_go};
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;

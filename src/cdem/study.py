@@ -323,7 +323,10 @@ def _contradictions(study: Study) -> Iterator[tuple[Keys, str]]:
         sought = study.critical.parameter
         for field, names in (("parameters", study.parameters), ("set", study.set)):
             if sought in names:
-                yield ("critical", "parameter"), f"'{sought}' is also given by {field}; vary it once"
+                yield (
+                    ("critical", "parameter"),
+                    f"'{sought}' is also given by {field}; vary it once",
+                )
 
 
 def _formula(

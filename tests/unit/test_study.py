@@ -115,7 +115,7 @@ def test_cases_that_are_wrong_stop_the_study_before_anything_runs(study, text, m
 
 def test_a_critical_search_over_a_case_that_ends_in_motion_stops_the_study(study, tmp_path):
     text = f"parameters: {{{FRICTION}: [20]}}\ncritical: {{factor: true, between: [1, 2]}}"
-    with pytest.raises(CaseError, match="cube.yaml:6.*the last stage must be static"):
+    with pytest.raises(CaseError, match=r"cube.yaml:6.*the last stage must be static"):
         plan(study(text), tmp_path)
     (tmp_path / "cube.yaml").write_text(STATIC)
     assert len(plan(study(text), tmp_path)) == 1

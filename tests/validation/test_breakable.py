@@ -132,3 +132,41 @@ def test_a_hinge_that_breaks_hands_over_no_force():
     state = sim.core.fields()
     assert state["quads.live"][0] == 0 and (state["spring.target"] >= 0).any()
     assert np.abs(state["spring.friction"]).max() < 1  # found inside, so free of stress
+
+
+def test_an_open_hinge_stops_what_falls_into_it():
+    """A lid that stands open by two of its bond points: a stone thrown in must meet both faces.
+
+    They belong to a pair that still holds, and were hidden from the search.
+    """
+    sim = simulate(
+        [
+            {"group": "base", "box": {"size": [1, 1, 0.5]}, "translate": [0, 0, -0.5]},
+            {"group": "lid", "box": {"size": [1, 1, 0.2]}},
+            {"group": "stone", "box": {"size": [0.3, 0.3, 0.3]}, "translate": [0.3, 0.35, 0.3]},
+        ],
+        {
+            "base": {"fix": ["x", "y", "z"]},
+            "lid": {"fix": ["x", "y", "z"]},
+            "stone": {"velocity": [-2, 0, 0]},
+        },
+        loads={"gravity": [0, 0, -9.81]},
+        interfaces={"default": {"friction_angle": 0, "cohesion": 1e15, "tensile_strength": 1e15}},
+        stages=[{"name": "throw", "mode": "dynamic", "duration": 1, "damping": {"contact": 0.1}}],
+    )
+    state, lid = sim.core.fields(), sim.build.nodes_of("lid")
+    x, y, z = sim.fields["position"][lid].T
+    sim.fields["position"][lid] = np.column_stack([-z, y, x])
+    nodes = np.reshape(sim.build.assembly.arrays["quads.nodes"], (8, -1))[:, 0]
+    jump = sim.fields["position"][nodes[4:]] - sim.fields["position"][nodes[:4]]
+    apart = np.linalg.norm(jump, axis=1) > 0.5
+    assert apart.sum() == 2
+    np.reshape(state["quads.bond"], (4, -1))[apart, 0] = 0
+    least = np.full(3, np.inf)
+    while sim.time < 0.6:
+        sim.step(50)
+        stone = sim.fields["position"][sim.build.nodes_of("stone")]
+        least = np.minimum(least, stone.min(axis=0))
+    assert least[2] == pytest.approx(0, abs=1e-3)  # met the base
+    assert least[0] == pytest.approx(0, abs=1e-3)  # and the lid
+    assert sim.core.fields()["quads.live"][0] == 2
