@@ -96,7 +96,7 @@ def _group_names(root: Any) -> list[str]:
 
 
 class SurfaceSeries:
-    """Frames of surface.vtkhdf, read one at a time."""
+    """Frames of surface.vtkhdf, read one at a time; those below 0 count from the end."""
 
     def __init__(self, folder: Path) -> None:
         self._root, self.times = _open(Path(folder) / "surface.vtkhdf")
@@ -106,6 +106,7 @@ class SurfaceSeries:
 
     def __getitem__(self, frame: int) -> Surface:
         root, steps = self._root, self._root["Steps"]
+        frame = range(len(self))[frame]
         points, cells, ids = (
             int(root[n][frame])
             for n in ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")

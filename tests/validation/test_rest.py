@@ -188,7 +188,13 @@ def test_frames_keep_their_times_when_rows_would_be_closer_than_steps(tmp_path):
     )
     seen = []
     sim.run(progress=seen.append)
-    times = SurfaceSeries(tmp_path / "r").times
+    series = SurfaceSeries(tmp_path / "r")
+    times = series.times
+    last, again = series[-1], series[len(series) - 1]
+    assert last.time == times[-1] and (last.points == again.points).all()
+    assert (last.faces == again.faces).all()
+    with pytest.raises(IndexError):
+        series[len(series)]
     assert len(times) >= 20
     assert np.abs(times[1:20] - 0.3e-3 * np.arange(1, 20)).max() < 0.11e-3
     assert {p.stage for p in seen} == {"fly", "blink"}
