@@ -190,7 +190,7 @@ def test_a_driven_block_takes_the_work_that_moves_it(divisions, which):
     )
     sim.run_until(0.03)
     energy = sim.energies
-    assert energy["external"] == pytest.approx(0.5 * ROCK["density"] * 0.1**2, rel=0.03)
+    assert energy["external"] == pytest.approx(0.5 * ROCK["density"] * 0.1**2, rel=0.02)
     assert abs(energy["error"]) < 1e-9
 
 
