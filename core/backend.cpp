@@ -108,6 +108,7 @@ template void launch_one(Queue, Index, const FindTargetFaces&);
 template void launch_one(Queue, Index, const FindTargetEdges&);
 template void launch_one(Queue, Index, const UpdateSpringForces&);
 template void launch_one(Queue, Index, const UpdateEdgeForces&);
+template void launch_one(Queue, Index, const MarkTouching&);
 template void launch_one(Queue, Index, const GatherFaceForces&);
 template void launch_one(Queue, Index, Blocks, const SumNodeForces&);
 template void launch_one(Queue, Index, Blocks, const MoveNodes&);

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/columns.hpp"
 #include "core/exposed.hpp"
 #include "core/proximity.hpp"
 
@@ -142,7 +143,27 @@ void list_candidates(const Model& m, State& s) {
   list_touches(s.search, touches);
   list_crossings(s.search, crossings);
   list_sources(s.search, touches, crossings);
-  s.contact_force.fill(0);  // no other faces are gathered, see GatherFaceForces
+}
+
+void list_corners(const Model& m, State& s) {
+  std::vector<Flag> released(m.corner_rows);
+  const auto mark = [&](const PairSet& p, const PairState& ps) {
+    for (Index i = 0; i < p.count; ++i)
+      if (!(ps.live[i] > 0))
+        std::fill_n(released.begin() + p.corner_first + i * p.corners, p.corners, Flag(1));
+  };
+  mark(m.triangles, s.triangles);
+  mark(m.quads, s.quads);
+  mark(m.overlaps, s.overlaps);
+  Column<Index>&first = s.nodes.corner_first, &corner = s.nodes.corner;
+  first.resize(m.node_count + 1);
+  corner.resize(0);
+  first[0] = 0;
+  for (Index i = 0; i < m.node_count; ++i) {
+    for (Index c = m.corner_first[i]; c < m.corner_first[i + 1]; ++c)
+      if (!released[m.corner[c]]) corner.push(m.corner[c]);
+    first[i + 1] = Index(corner.size());
+  }
 }
 
 void list_contact_corners(const Model& m, State& s) {
@@ -150,10 +171,11 @@ void list_contact_corners(const Model& m, State& s) {
   first.resize(m.node_count + 1);
   first.fill(0);
   const auto visit = [&](auto&& at) {
-    for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
+    for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x) {
+      if (is_idle(candidate_columns(s), edge_candidate_columns(s), source_columns(s), x)) continue;
       const Index face = s.search.exposed_face[x];
       for (Index k = 0; k < 4; ++k)
-        if (m.face_nodes[4 * face + k] >= 0) at(m.face_nodes[4 * face + k], Index(4 * x) + k);
+        if (m.face_nodes[4 * face + k] >= 0) at(m.face_nodes[4 * face + k], 4 * x + k);
     }
   };
   visit([&](Index node, Index) { ++first[node + 1]; });

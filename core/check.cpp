@@ -181,7 +181,7 @@ Real unbalance_ratio(const Model& m, const State& s) {
   const SupportColumns supports = support_columns(m, s);
   // what acts on supports needs no balance: a heavy fixed bed must not hide a block that slides
   Real applied = ordered_sum(m.node_count, [&](Index i) {
-    const Vec3<Real> f = loads.at(i);
+    const Vec3<Real> f = loads.at(i).vector();
     return (supports.given(i, 0) ? 0 : std::abs(f.x)) + (supports.given(i, 1) ? 0 : std::abs(f.y)) +
            (supports.given(i, 2) ? 0 : std::abs(f.z));
   });
@@ -298,7 +298,7 @@ void stop_motion(const Model& m, State& s) {
                                    *d = s.nodes.damping_force.data() + std::size_t(i) * 4;
                         Real* v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
                         const Vec3<Real> way = 0.5 * s.dt_last * Vec3<Real>{v[0], v[1], v[2]};
-                        s.nodes.work_external[i] += dot(loads.at(i), way);
+                        s.nodes.work_external[i] += dot(loads.at(i).vector(), way);
                         s.nodes.work_damping[i] -= dot(Vec3<Real>{d[0], d[1], d[2]}, way);
                         v[0] = v[1] = v[2] = 0;
                         return dot(Vec3<Real>{f[0], f[1], f[2]}, way);

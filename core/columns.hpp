@@ -11,14 +11,23 @@
 namespace cdem {
 
 inline FaceColumns face_columns(const Model& m, const State& s) {
-  return {{s.nodes.motion.data()},      m.face_nodes.data(),
-          m.face_edges.data(),          m.face_group.data(),
-          m.face_length.data(),         m.face_reach.data(),
-          m.face_area.data(),           m.face_stiffness.data(),
-          m.edge_nodes.data(),          s.search.across.data(),
-          s.search.ring_first.data(),   s.search.ring.data(),
-          s.nodes.glue.data(),          m.node_place.data(),
-          s.search.face_exposed.data(), s.dt_last};
+  return {{s.nodes.motion.data()},
+          m.face_nodes.data(),
+          m.face_edges.data(),
+          m.face_group.data(),
+          m.face_length.data(),
+          m.face_reach.data(),
+          m.face_area.data(),
+          m.face_height.data(),
+          m.face_stiffness.data(),
+          m.edge_nodes.data(),
+          s.search.across.data(),
+          s.search.ring_first.data(),
+          s.search.ring.data(),
+          s.nodes.glue.data(),
+          m.node_place.data(),
+          s.search.face_exposed.data(),
+          s.dt_last};
 }
 
 inline Candidates candidate_columns(const State& s) {
@@ -121,10 +130,9 @@ inline LoadColumns load_columns(const Model& m, const State& s) {
           m.load_curve.data(), m.load_force.data(),   s.load_factor.data()};
 }
 
-inline CornerLists corner_lists(const Model& m, const State& s) {
-  return {m.corner_first.data(),          m.corner.data(),
-          {s.corner_force.data()},        s.search.contact_first.data(),
-          s.search.contact_corner.data(), s.contact_force.data()};
+inline CornerLists corner_lists(const State& s) {
+  return {s.nodes.corner_first.data(),   s.nodes.corner.data(),          {s.corner_force.data()},
+          s.search.contact_first.data(), s.search.contact_corner.data(), {s.contact_force.data()}};
 }
 
 }  // namespace cdem

@@ -155,6 +155,7 @@ struct InMotion {
     const Real* r = rows + std::size_t(node) * 8 + 4;
     return {r[0], r[1], r[2]};
   }
+  CDEM_HD Row velocity_row(Index node) const { return Row::at(rows + std::size_t(node) * 8 + 4); }
 #if !defined(__CUDACC__)
   Vec3<Pack> position(const IndexPack& node) const { return gather(node, 0); }
   Vec3<Pack> velocity(const IndexPack& node) const { return gather(node, 4); }
@@ -196,10 +197,7 @@ struct OutForces {
 
 struct InForces {
   const Real* rows;
-  CDEM_HD Vec3<Real> at(std::size_t row) const {
-    const Real* r = rows + row * 4;
-    return {r[0], r[1], r[2]};
-  }
+  CDEM_HD Row at(std::size_t row) const { return Row::at(rows + row * 4); }
 };
 
 }  // namespace cdem

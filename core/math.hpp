@@ -1,6 +1,8 @@
 // math.hpp - small vectors and matrices over a number or a pack of numbers.
 #pragma once
 
+#include <cstring>
+
 #include "core/launch.hpp"
 
 namespace cdem {
@@ -42,6 +44,47 @@ template <class T>
 CDEM_HD inline Vec3<T> unit(const Vec3<T>& a) {
   return (T(1.0) / norm(a)) * a;
 }
+
+/// Four numbers that lie together in memory: x y z and one more. The arithmetic is that of Real,
+/// number by number, in one register where there is one.
+struct Row {
+#if defined(__CUDACC__)
+  struct Numbers {
+    Real n[4];
+    CDEM_HD Real& operator[](int k) { return n[k]; }
+    CDEM_HD Real operator[](int k) const { return n[k]; }
+  };
+#else
+  using Numbers = Real __attribute__((vector_size(32)));
+#endif
+  Numbers n;
+
+  CDEM_HD static Row of(Real x, Real y, Real z) { return {Numbers{x, y, z, 0.0}}; }
+  CDEM_HD static Row zero() { return of(0.0, 0.0, 0.0); }
+  CDEM_HD static Row at(const Real* memory) {
+    Row r;
+    std::memcpy(&r.n, memory, sizeof r.n);
+    return r;
+  }
+  CDEM_HD void store(Real* memory) const { std::memcpy(memory, &n, sizeof n); }
+  CDEM_HD Vec3<Real> vector() const { return {n[0], n[1], n[2]}; }
+};
+
+#if defined(__CUDACC__)
+CDEM_HD inline Row operator+(const Row& a, const Row& b) {
+  return {{a.n[0] + b.n[0], a.n[1] + b.n[1], a.n[2] + b.n[2], a.n[3] + b.n[3]}};
+}
+CDEM_HD inline Row operator-(const Row& a, const Row& b) {
+  return {{a.n[0] - b.n[0], a.n[1] - b.n[1], a.n[2] - b.n[2], a.n[3] - b.n[3]}};
+}
+CDEM_HD inline Row operator*(Real s, const Row& a) {
+  return {{s * a.n[0], s * a.n[1], s * a.n[2], s * a.n[3]}};
+}
+#else
+inline Row operator+(const Row& a, const Row& b) { return {a.n + b.n}; }
+inline Row operator-(const Row& a, const Row& b) { return {a.n - b.n}; }
+inline Row operator*(Real s, const Row& a) { return {s * a.n}; }
+#endif
 
 /// Rows r0, r1, r2.
 template <class T>

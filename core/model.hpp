@@ -51,7 +51,7 @@ struct Model {
   // exterior faces and edges
   Index face_count = 0, edge_count = 0;
   Column<Index> face_nodes, face_edges, face_group, face_block, face_element;
-  Column<Real> face_length, face_reach, face_area, face_stiffness;
+  Column<Real> face_length, face_reach, face_area, face_height, face_stiffness;
   Column<Index> edge_nodes, edge_faces, ring_first, ring;
   Column<Flag> face_initially_exposed, face_movable;
 
@@ -62,7 +62,7 @@ struct Model {
   Column<Interface> interfaces;
   Column<Real> cohesion, tensile_strength, tan_friction;
 
-  // which corner rows a node sums
+  // corner rows of each node
   Index corner_rows = 0;
   Column<Index> corner_first, corner;
 
@@ -129,6 +129,7 @@ void describe(Model& m, Visit&& field) {
   field("face.length", m.face_length);
   field("face.reach", m.face_reach);
   field("face.area", m.face_area);
+  field("face.height", m.face_height);
   field("face.stiffness", m.face_stiffness);
   field("face.initially_exposed", m.face_initially_exposed);
   field("face.movable", m.face_movable);

@@ -96,12 +96,21 @@ bool may_touch(const SearchRules& rules, const ExposedFace& x, const ExposedFace
          !apart(rules, y, x);
 }
 
+/// Does the surface rise beyond side j of exposed face y, or may it before the next refresh? Then a
+/// contact may go on behind the corner.
+bool may_rise(const Finder& f, const ExposedFace& y, Index place, Index j, Real turn) {
+  const Index across = f.faces.across(place, j);
+  if (across < 0) return false;
+  const Vec3<Real> arm = f.faces.shape(across).center() - y.shape.x[j];
+  return dot(y.normal, arm) > -turn * norm(arm);
+}
+
 /// May a vertex of exposed face x come into contact with exposed face y before the next refresh?
 /// The tests of FindTargetFaces::qualify with room for the motion; `reach` is that of the largest
-/// of the faces at the vertex. A vertex that a bond holds to y has no contact there through its
-/// other faces too.
+/// of the faces at the vertex, `least` the L of the smallest. A vertex that a bond holds to y has
+/// no contact there through its other faces too.
 bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, Real reach,
-               Index place_y) {
+               Real least, Index place_y) {
   const ExposedFace& y = f.exposed[place_y];
   const SearchRules& rules = f.m.rules;
   const Real motion = motion_between(x, y);
@@ -116,11 +125,15 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
     const Vec3<Real> from = v - a;
     const Real room = rules.tolerance * length + rules.indentation * reach + motion +
                       2 * y.turn * (norm(from) + rules.indentation * reach);
-    if (dot(cross(y.normal, side), from) < -room * norm(side)) return false;
+    if (dot(cross(y.normal, side), from) < -room * norm(side) &&
+        !may_rise(f, y, place_y, j, 2 * y.turn))
+      return false;
   }
   for (Index j = 0; j < y.shape.count; ++j)
     if (f.faces.node_glue[f.faces.vertex(y.face, j)] == f.faces.node_glue[node]) return false;
   if (Bonded::among(f.bonded.vertices, node, place_y)) return false;
+  if (gap + change.least - gap_room < -rules.entry * std::min(least, y.length))
+    return true;                                // sunk
   const Index point = f.faces.node_glue[node];  // never the deepest vertex?
   for (Index r = f.faces.ring_first[point]; r < f.faces.ring_first[point + 1]; ++r) {
     const Index other = f.faces.ring[r];
@@ -214,11 +227,19 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
     int vertices[6] = {};
     for (Index v = 0; v < a.vertex_count; ++v) {
       Index first = -1;  // of the faces at the vertex
+      Real least = 1e300;
+      bool touches = false;  // already
       for (Index i = a.face_count - 1; i >= 0; --i)
-        if (a.corner[v][i] >= 0 && met(i, j)) first = i;
+        if (a.corner[v][i] >= 0 && met(i, j)) {
+          first = i;
+          least = std::min(least, f.exposed[a.face[i]].length);
+          const std::size_t slot = 4 * std::size_t(a.face[i]) + a.corner[v][i];
+          touches = touches || f.s.springs.target[slot] == b.face[j];
+        }
       if (first < 0) continue;
       const Real length = std::min(a.length, f.exposed[b.face[j]].length);
-      if (!may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, b.face[j]))
+      if (!touches &&
+          !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
         continue;
       for (Index i = 0; i < a.face_count; ++i)
         if (a.corner[v][i] >= 0 && met(i, j)) vertices[i] |= 1 << a.corner[v][i];
@@ -309,15 +330,16 @@ std::vector<Proximity> find_proximity(const Model& m, const State& s) {
 #pragma omp parallel for schedule(dynamic, 32) if (count >= worth_threads)
   for (Index p = 0; p < count; ++p) {
     const Patch& a = patches[p];
-    std::vector<Index> after;
-    after.reserve(32);
+    if (!a.movable) continue;  // those that are near it find it
+    std::vector<Index> others;
+    others.reserve(32);
     tree.query(boxes[p], [&](Index q) {
-      if (q > p && a.block != patches[q].block && (a.movable || patches[q].movable) &&
+      if ((q > p || !patches[q].movable) && a.block != patches[q].block &&
           !apart(m, s, exposed, a, patches[q]))
-        after.push_back(q);
+        others.push_back(q);
     });
-    std::sort(after.begin(), after.end());
-    for (const Index q : after) {
+    std::sort(others.begin(), others.end());
+    for (const Index q : others) {
       const Patch& b = patches[q];
       const FacePairs pairs(f, a, b);
       if (!pairs.any()) continue;

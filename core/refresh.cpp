@@ -13,6 +13,7 @@
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
 #include "core/proximity.hpp"
+#include "core/rest.hpp"
 #include "core/surface.hpp"
 
 namespace cdem {
@@ -191,8 +192,6 @@ void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     if (p.point_first.size() == 0 && ps.live[i] == 1) hand_over(m, s, p, ps, i);
     ps.live[i] = ps.jump[i] = ps.stored[i] = 0;
     ps.jump_at_break[i] = -1;
-    Real* rows = s.corner_force.data() + std::size_t(p.corner_first + i * p.corners) * 4;
-    std::fill(rows, rows + std::size_t(p.corners) * 4, 0.0);
   }
 }
 
@@ -294,7 +293,9 @@ void refresh_contacts(const Model& m, State& s) {
   join_surfaces(m, s);
   list_candidates(m, s);
   sum_stiffness(m, s);
+  list_corners(m, s);
   list_contact_corners(m, s);
+  if (!s.all_awake) list_awake_nodes(m, s);
   s.built_step = s.step;
   ++s.refreshes;
 }

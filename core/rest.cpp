@@ -63,9 +63,19 @@ void find_awake(const Model& m, State& s) {
       return nodes[k % 4] < 0 ? nodes[0] : nodes[k % 4];
     });
   });
+  s.nodes.rests.resize(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i)
+    s.nodes.rests[i] = fixed[i] && !pulled[i] && m.load_first[i] == m.load_first[i + 1];
+  list_awake_nodes(m, s);
+}
+
+void list_awake_nodes(const Model& m, State& s) {
+  s.nodes.listed.resize(m.node_count);
+  const Index* first = s.search.contact_first.data();
   list_blocks(m.node_count, s.nodes.awake, [&](Index i) {
-    return !fixed[i] || pulled[i] || m.load_first[i] < m.load_first[i + 1] ||
-           s.search.contact_first[i] < s.search.contact_first[i + 1];
+    const bool was = s.nodes.listed[i], is = first[i] < first[i + 1];
+    s.nodes.listed[i] = is;
+    return !s.nodes.rests[i] || is || was;
   });
 }
 

@@ -1,5 +1,6 @@
 // start.cpp - size a state for its model, and make it ready for the first step.
 #include "core/backend.hpp"
+#include "core/candidates.hpp"
 #include "core/check.hpp"
 #include "core/elements/shapes.hpp"
 
@@ -66,9 +67,9 @@ void prepare(const Model& m, State& s) {
   const std::size_t exposed = s.search.exposed_face.size();
   s.face_geometry.resize(8 * exposed);
   s.contact_force.resize(16 * exposed);
-  s.contact_force.fill(0);  // faces that are idle now may hold forces of a later state
   s.edges.overflow.resize(exposed);
   sum_stiffness(m, s);
+  list_corners(m, s);
 }
 
 }  // namespace cdem

@@ -14,7 +14,9 @@ struct NodeState {
   Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
   Column<Real> unbalance;
   Column<Real> relax;  // rows of 8, adaptive relaxation only: force and velocity of the last step
-  Column<Index> glue, awake;  // awake: blocks of nodes, see rest.hpp
+  Column<Index> glue, awake;           // awake: blocks of nodes, see rest.hpp
+  Column<Flag> rests, listed;          // see rest.hpp
+  Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };
 
 struct ElementState {
@@ -55,6 +57,7 @@ struct SearchState {
   Column<Index> edges_ends;            // [4][pair] nodes of both
   Column<Real> edges_room;             // [2][pair] see MarkNearEdges
   Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
+  Column<Flag> touching;               // [exposed] has it contacts of its own in this step?
   Column<Index> source_first, source;  // faces whose contacts may act on a face
   Column<Index> across;                // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
@@ -111,7 +114,8 @@ void describe_search(S& search, Visit&& field) {
   field("search.ring_first", search.ring_first, "start of a point's ring");
   field("search.ring", search.ring, "other ends of the edges that leave a point");
   field("search.contact_first", search.contact_first, "start of a node's contact rows");
-  field("search.contact_corner", search.contact_corner, "contact rows of a node");
+  field("search.contact_corner", search.contact_corner,
+        "contact rows of a node, of faces that are not idle");
   field("search.node_skin", search.node_skin, "straying that calls for a refresh [m]");
 }
 

@@ -101,10 +101,13 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
   launch_one(
       q, count,
       UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m), edge_columns(s)});
-  launch_one(q, count,
-             GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s),
-                              edge_candidate_columns(s), source_columns(s), m.rules,
-                              spring_columns(s), edge_columns(s), s.contact_force.data()});
+  s.search.touching.resize(count);
+  launch_one(q, count, MarkTouching{spring_columns(s), edge_columns(s), s.search.touching.data()});
+  launch_one(
+      q, count,
+      GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s), edge_candidate_columns(s),
+                       source_columns(s), m.rules, spring_columns(s), edge_columns(s),
+                       s.search.touching.data(), s.contact_force.data()});
 }
 
 template <class Shape>
@@ -146,7 +149,7 @@ void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, eleme
 void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
   launch_one(q, m.node_count, awake(s, s.nodes.awake),
              SumNodeForces{{s.nodes.motion.data()},
-                           corner_lists(m, s),
+                           corner_lists(s),
                            load_columns(m, s),
                            support_columns(m, s),
                            {m.damping.local, m.damping.mass + s.relax_damping},

@@ -94,6 +94,7 @@ struct FaceColumns {
   const Real* face_length;     // L: mean distance from the centre to the vertices, Eq. 3  [m]
   const Real* face_reach;      // a little more than the farthest vertex from the centre  [m]
   const Real* face_area;       // [m2]
+  const Real* face_height;     // of the element behind  [m]
   const Real* face_stiffness;  // modulus of the element behind over its height  [Pa/m]
   const Index* edge_nodes;     // [edge][2]
   const Index* beyond;         // [exposed][4]: face on the other side of side k, or -1

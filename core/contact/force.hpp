@@ -327,10 +327,31 @@ struct UpdateEdgeForces {
   }
 };
 
+/// Does an exposed face list nothing, and is on no list? Then it has no contacts.
+CDEM_HD inline bool is_idle(const Candidates& candidates, const EdgeCandidates& edge_candidates,
+                            const Sources& sources, Index m) {
+  return candidates.first[4 * m] == candidates.first[4 * m + 4] &&
+         edge_candidates.first[m] == edge_candidates.first[m + 1] &&
+         sources.first[m] == sources.first[m + 1];
+}
+
+/// Mark the exposed faces that have contacts of their own in this step.
+struct MarkTouching {
+  SpringColumns springs;
+  EdgeColumns edges;
+  Flag* touching;  // [exposed]
+
+  CDEM_HD void operator()(One m) const {
+    bool any = edges.count[m.i] > 0;
+    for (Index k = 0; k < 4; ++k) any = any || springs.target[4 * m.i + k] >= 0;
+    touching[m.i] = any;
+  }
+};
+
 /// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions
 /// of all others that have it as target. It looks through its sources in their order instead of
-/// letting contacts add to nodes, so the sum has one order for any number of threads. A face that
-/// lists nothing and is on no list keeps the zeros that it has from the making of the lists.
+/// letting contacts add to nodes, so the sum has one order for any number of threads. An idle face
+/// keeps what it has: no node sums it.
 struct GatherFaceForces {
   FaceColumns faces;
   const Index* exposed_face;
@@ -340,25 +361,21 @@ struct GatherFaceForces {
   SearchRules rules;
   SpringColumns springs;
   EdgeColumns edges;
-  Real* corner_force;  // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
+  const Flag* touching;  // [exposed] see MarkTouching: most sources are not
+  Real* corner_force;    // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
 
   CDEM_HD void operator()(One m) const {
-    if (is_idle(m.i)) return;
+    if (is_idle(candidates, edge_candidates, sources, m.i)) return;
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
     Real sum[4][4] = {};
-    own(m.i, count, sum);
+    if (touching[m.i]) own(m.i, count, sum);
     for (Index c = sources.first[m.i]; c < sources.first[m.i + 1]; ++c)
-      reactions(m.i, face, count, sources.other[c], sum);
+      if (touching[sources.other[c]]) reactions(m.i, face, count, sources.other[c], sum);
     for (Index k = 0; k < count; ++k)
       for (Index j = 0; j < 4; ++j) corner_force[(std::size_t(m.i) * 4 + k) * 4 + j] = sum[k][j];
   }
 
  private:
-  CDEM_HD bool is_idle(Index m) const {
-    return candidates.first[4 * m] == candidates.first[4 * m + 4] &&
-           edge_candidates.first[m] == edge_candidates.first[m + 1] &&
-           sources.first[m] == sources.first[m + 1];
-  }
   CDEM_HD static void add(Real* corner, Real weight, const Real* row) {
     corner[0] += weight * row[0];
     corner[1] += weight * row[1];

@@ -147,12 +147,15 @@ struct FindTargetEdges {
   static constexpr Index most_slots = 64;
 
   CDEM_HD void operator()(One m) const {
+    edges.overflow[m.i] = 0;
+    if (edges.count[m.i] == 0 && !any_near(m.i)) return;
     Held held(*this, m.i);
     Found found[most_slots];
     const Index used = find(m.i, held, found);
-    edges.overflow[m.i] = used > edges.slots ? 1 : 0;
-    if (used > edges.slots)
-      return;  // nothing is written: the caller makes room and runs this again
+    if (used > edges.slots) {  // nothing else is written: the caller makes room and runs this again
+      edges.overflow[m.i] = 1;
+      return;
+    }
     for (Index j = 0; j < used; ++j) {
       const Found& f = found[j];
       const Index place = edges.slots * m.i + j;
@@ -209,6 +212,11 @@ struct FindTargetEdges {
     return in_cones;
   }
 
+  CDEM_HD bool any_near(Index m) const {
+    for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c)
+      if (candidates.near[candidates.edges[c]]) return true;
+    return false;
+  }
   /// A contact found in this step; `old` is its place among those of the step before, or -1.
   struct Found {
     Index side, face, edge, old;

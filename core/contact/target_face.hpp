@@ -34,7 +34,7 @@ struct Sources {
 
 /// State of the semi-springs of exposed faces: slot = 4 * exposed face + vertex.
 struct SpringColumns {
-  Index* target;         // exposed face in contact, -1, or let_go
+  Index* target;         // exposed face in contact, or -1
   Index* target_before;  // the same one step ago
   Real* force_n;         // [N], compression > 0
   Real* shear1;          // [N] in the target's frame
@@ -49,18 +49,19 @@ struct SpringColumns {
   Flag* lost;      // 1: a loaded contact was lost because it sank too deep
 };
 
-/// Stands for the target of a spring whose last one does not qualify any more, for one step.
-constexpr Index let_go = -2;
-
 /// Choose the target face of one semi-spring.
 ///
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
 /// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
 /// into it, v is behind its plane within the limit, and no exterior edge that leaves v goes deeper
-/// (v is the locally deepest point). The current target is kept while it qualifies; meanwhile the
-/// vertex may sink into another block, so that a spring that was let go may begin deeper, as a new
-/// contact, if it is inside one. A contact that has dilated acts above the plane, and is kept to
-/// twice the height to which it has risen.
+/// (v is the locally deepest point). The current target is kept while the vertex is behind it,
+/// whatever its edges do. A contact that has dilated acts above the plane, and is kept to twice the
+/// height to which it has risen.
+///
+/// Some vertices sink past the limit for new contacts all the same: while another target keeps
+/// their spring, or beside a rim where an edge that leaves them reaches deeper, in free air. One
+/// that is truly inside a block may begin as deep as a contact is kept, at the nearest face and
+/// whatever its edges do; like all that begins inside it is free of stress there.
 struct FindTargetFaces {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -72,7 +73,7 @@ struct FindTargetFaces {
   CDEM_HD void operator()(One slot) const {
     const Index first = candidates.first[slot.i], last = candidates.first[slot.i + 1];
     springs.target_before[slot.i] = springs.target[slot.i];
-    if (first == last && springs.target[slot.i] == -1) return;
+    if (first == last && springs.target[slot.i] < 0) return;
     springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, candidates.other + first, last - first,
                                     springs.lost + slot.i);
   }
@@ -88,14 +89,15 @@ struct FindTargetFaces {
       if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
       if (!beside(s.p, t, rules.tolerance * length)) continue;
       const Real entry = rules.entry * length + approach(s.node, t) + s.hand_over;
-      const Real deep = s.let_go && encloses(t, s.v) ? rules.depth * length : 0;
-      const Real gap = qualify(m, s.node, s.v, s.p, t, s.lifted, max_of(entry, deep));
+      const bool sunk = s.free && plane < -entry && encloses(t, s.v, plane);
+      const Real limit = sunk ? deepest_inside(t, length) : entry;
+      const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, sunk});
       if (gap < none && gap > s.gap) {
         s.best = t;
         s.gap = gap;
       }
     }
-    return s.best < 0 && springs.target_before[4 * m + k] >= 0 ? cdem::let_go : s.best;
+    return s.best;
   }
 
  private:
@@ -108,21 +110,27 @@ struct FindTargetFaces {
     Real gap, hand_over;
     Real lifted;  // highest gap of a contact  [m]
     bool kept;    // the current target still qualifies
-    bool let_go;  // the last one ceased to, one step ago
+    bool free;    // there was none
+  };
+
+  /// What is asked of a contact.
+  struct Terms {
+    Real lifted, limit;  // highest gap, and lowest below zero  [m]
+    bool inside;  // it is inside the block: need not be the deepest point, and may lie behind
+                  // a corner, beside neither face
   };
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
     const Index slot = 4 * m + k, current = springs.target_before[slot];
-    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false,
-             current == cdem::let_go};
+    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, current < 0};
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;
     const bool loaded = springs.force_n[slot] > 0;
-    const Real depth =
-        rules.depth * smaller_length(m, current) - min_of(springs.gap_free[slot], 0.0);
-    s.lifted = 2 * max_of(springs.gap_free[slot], 0.0);
-    if (qualify(m, s.node, s.v, s.p, current, s.lifted, depth) < none) {
+    const Real length = smaller_length(m, current), gap_free = springs.gap_free[slot];
+    const Real depth = rules.depth * length - min_of(gap_free, 0.0);
+    s.lifted = 2 * max_of(gap_free, 0.0);
+    if (qualify(m, s.node, s.v, s.p, current, {s.lifted, depth, true}) < none) {
       s.best = current;
       s.kept = true;
       return s;
@@ -139,16 +147,21 @@ struct FindTargetFaces {
   CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
     return dot(geometry.normal(t), v - geometry.center(t));
   }
-  /// Is a point behind face t and behind the faces that bend away across its sides?
-  CDEM_HD bool encloses(Index t, const Vec3<Real>& v) const {
+  /// Down to here what is behind a face is not yet beyond the other side of its block.
+  CDEM_HD Real deepest_inside(Index t, Real length) const {
+    return min_of(rules.depth * length, 0.5 * faces.face_height[exposed_face[t]]);
+  }
+  /// Is a point that lies behind face t by `plane` < 0 at least as far behind the faces that bend
+  /// away across its sides? Then t is where the way out of the block is shortest.
+  CDEM_HD bool encloses(Index t, const Vec3<Real>& v, Real plane) const {
     for (Index k = 0; k < faces.vertex_count(exposed_face[t]); ++k) {
       const Index across = faces.across(t, k);
       if (across < 0) continue;
       const FaceShape beyond = faces.shape(across);
       const Vec3<Real> center = beyond.center();
-      if (plane_gap(center, t) < 0 && dot(beyond.normal(), v - center) > 0) return false;
+      if (plane_gap(center, t) < 0 && dot(beyond.normal(), v - center) > plane) return false;
     }
-    return plane_gap(v, t) < 0;
+    return true;
   }
   /// A warped face may reach above its mean plane; a plane one does not.
   CDEM_HD Real above(Index t) const {
@@ -173,19 +186,37 @@ struct FindTargetFaces {
   CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
     return gap < -depth && faces.shape(exposed_face[t]).inside(p, geometry.normal(t), 0.0);
   }
-  /// Gap of the vertex to face t if it is in contact there, no higher than `lifted` and no deeper
-  /// than `limit`, else `none`.
+  /// Is a point that is not beside face t behind it all the same, between the normals of t and of
+  /// the faces that rise beyond its sides, where it is beside none of them? A vertex that is
+  /// pressed into a corner from inside comes there.
+  CDEM_HD bool behind_corner(Index t, const FaceShape& f, const Vec3<Real>& v, const Vec3<Real>& p,
+                             const Vec3<Real>& n, Real room) const {
+    for (Index k = 0; k < f.count; ++k) {
+      const Vec3<Real> a = f.x[k], side = f.x[k + 1 == f.count ? 0 : k + 1] - a;
+      const Real beyond = -dot(cross(n, side), p - a);  // times the length of the side
+      if (!(beyond > 0 && beyond * beyond > room * room * dot(side, side))) continue;
+      const Index across = faces.across(t, k);
+      if (across < 0) return false;
+      const FaceShape beyond_it = faces.shape(across);
+      const Vec3<Real> u = beyond_it.normal();
+      const bool rises = dot(n, beyond_it.center() - a) > 0 && !(dot(n, u) > coplanar_faces);
+      if (!rises || dot(u, v - a) > 0 || dot(cross(u, side), p - a) < 0) return false;
+    }
+    return true;
+  }
+  /// Gap of the vertex to face t if it is in contact there on the given terms, else `none`.
   CDEM_HD Real qualify(Index m, Index node, const Vec3<Real>& v, const Vec3<Real>& p, Index t,
-                       Real lifted, Real limit) const {
+                       const Terms& terms) const {
     const Vec3<Real> n = geometry.normal(t);
     if (dot(geometry.normal(m), n) >= -rules.opposing) return none;
     const FaceShape f = faces.shape(exposed_face[t]);
-    if (!f.inside(p, n, rules.tolerance * smaller_length(m, t))) return none;
+    const Real room = rules.tolerance * smaller_length(m, t);
+    if (!f.inside(p, n, room) && !(terms.inside && behind_corner(t, f, v, p, n, room))) return none;
     const Real gap = project(f, v, n).gap;
-    if (gap > lifted || gap < -limit) return none;
+    if (gap > terms.lifted || gap < -terms.limit) return none;
     for (Index j = 0; j < f.count; ++j)
       if (faces.node_glue[faces.vertex(exposed_face[t], j)] == faces.node_glue[node]) return none;
-    return deepest(node, v, n) ? gap : none;
+    return terms.inside || deepest(node, v, n) ? gap : none;
   }
   /// No edge that leaves v, or what is bonded to it there, goes below the plane through v.
   CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {

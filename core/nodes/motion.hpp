@@ -14,13 +14,10 @@ struct LoadColumns {
   const Real* load_force;    // row of 4  [N]
   const Real* curve_value;   // [curve] factors at the time of this step
 
-  CDEM_HD Vec3<Real> at(Index node) const {
-    Vec3<Real> f = gravity_mass[node] * gravity;
-    for (Index l = load_first[node]; l < load_first[node + 1]; ++l) {
-      const Real factor = curve_value[load_curve[l]];
-      const Real* r = load_force + std::size_t(l) * 4;
-      f = f + factor * Vec3<Real>{r[0], r[1], r[2]};
-    }
+  CDEM_HD Row at(Index node) const {
+    Row f = gravity_mass[node] * Row::of(gravity.x, gravity.y, gravity.z);
+    for (Index l = load_first[node]; l < load_first[node + 1]; ++l)
+      f = f + curve_value[load_curve[l]] * Row::at(load_force + std::size_t(l) * 4);
     return f;
   }
 };
@@ -47,9 +44,9 @@ struct CornerLists {
   const Index* first;  // [node + 1], rows of elements and bonded pairs
   const Index* corner;
   InForces corner_force;
-  const Index* contact_first;  // [node + 1], rows of exposed faces
+  const Index* contact_first;  // [node + 1], rows of exposed faces that may have contacts
   const Index* contact_corner;
-  const Real* contact_force;  // row of 4: force, stiffness
+  InForces contact_force;  // rows: force, stiffness
 };
 
 /// Mass of the nodes: a number each, or for small blocks the inverse of the consistent mass matrix,
@@ -66,13 +63,14 @@ struct MassColumns {
 
   /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
   CDEM_HD Index row(Index node) const { return lumped ? -1 : dense_first[node]; }
+  /// Is a node of the block supported, so that the inverse differs from axis to axis?
+  CDEM_HD bool held(Index node) const { return row(node) >= 0 && dense_step[node] > 0; }
   /// Part of M a of a node that the given motion of supported nodes of its block makes, row by row
-  /// of the full matrix; nothing where masses are lumped  [N].
-  CDEM_HD Vec3<Real> given_inertia(const SupportColumns& supports, const InMotion& nodes, Index i,
-                                   Real kick) const {
+  /// of the full matrix  [N].
+  CDEM_HD Row given_inertia(const SupportColumns& supports, const InMotion& nodes, Index i,
+                            Real kick) const {
     Vec3<Real> sum{0.0, 0.0, 0.0};
     const Index start = row(i);
-    if (start < 0) return sum;
     for (Index j = 0; j < block_count[i]; ++j) {
       const Index other = block_first[i] + j;
       if (supports.support[other] < 0) continue;
@@ -82,15 +80,15 @@ struct MassColumns {
       if (supports.given(other, 1)) sum.y += m * (supports.at(other, 1) - v.y);
       if (supports.given(other, 2)) sum.z += m * (supports.at(other, 2) - v.z);
     }
-    return sum;
+    return Row::of(sum.x, sum.y, sum.z);
   }
   /// Momentum M v of a node  [kg m/s].
-  CDEM_HD Vec3<Real> momentum(const InMotion& nodes, Index i) const {
+  CDEM_HD Row momentum(const InMotion& nodes, Index i) const {
     const Index start = row(i);
-    if (start < 0) return mass[i] * nodes.velocity(i);
-    Vec3<Real> p{0.0, 0.0, 0.0};
+    if (start < 0) return mass[i] * nodes.velocity_row(i);
+    Row p = Row::zero();
     for (Index j = 0; j < block_count[i]; ++j)
-      p = p + matrix[start + j] * nodes.velocity(block_first[i] + j);
+      p = p + matrix[start + j] * nodes.velocity_row(block_first[i] + j);
     return p;
   }
 };
@@ -116,38 +114,35 @@ struct SumNodeForces {
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
-    Vec3<Real> f = loads.at(i);
+    Row f = loads.at(i);
     for (Index c = corners.first[i]; c < corners.first[i + 1]; ++c)
       f = f + corners.corner_force.at(corners.corner[c]);
-    Real stiffness = 0;
-    for (Index c = corners.contact_first[i]; c < corners.contact_first[i + 1]; ++c) {
-      const Real* r = corners.contact_force + std::size_t(corners.contact_corner[c]) * 4;
-      f = f + Vec3<Real>{r[0], r[1], r[2]};
-      stiffness += r[3];
-    }
-    const Vec3<Real> v = nodes.velocity(i);
-    Vec3<Real> p{0.0, 0.0, 0.0};
-    if (damping.mass > 0) p = mass.momentum(nodes, i);
-    const Vec3<Real> d{drag(i, 0, f.x, v.x, p.x), drag(i, 1, f.y, v.y, p.y),
-                       drag(i, 2, f.z, v.z, p.z)};
-    unbalance[i] = free(i, 0, f.x) + free(i, 1, f.y) + free(i, 2, f.z);
-    Real* r = force + std::size_t(i) * 4;
-    const Vec3<Real> net = f + d - mass.given_inertia(supports, nodes, i, kick);
-    r[0] = net.x, r[1] = net.y, r[2] = net.z, r[3] = stiffness;
-    Real* q = damping_force + std::size_t(i) * 4;
-    q[0] = d.x, q[1] = d.y, q[2] = d.z;
+    for (Index c = corners.contact_first[i]; c < corners.contact_first[i + 1]; ++c)
+      f = f + corners.contact_force.at(corners.contact_corner[c]);
+    Row free = f, d = drag(i, f);
+    for (Index axis = 0; supports.support[i] >= 0 && axis < 3; ++axis)
+      if (supports.given(i, axis)) free.n[axis] = d.n[axis] = 0;
+    unbalance[i] = abs_of(free.n[0]) + abs_of(free.n[1]) + abs_of(free.n[2]);
+    d.store(damping_force + std::size_t(i) * 4);
+    Row net = f + d;
+    if (mass.held(i)) net = net - mass.given_inertia(supports, nodes, i, kick);
+    net.store(force + std::size_t(i) * 4);
   }
 
  private:
-  /// Damping of one component. Where a support prescribes the motion there is nothing to damp: it
-  /// would only add to the support's force.
-  CDEM_HD Real drag(Index node, Index axis, Real f, Real v, Real momentum) const {
-    if (supports.given(node, axis)) return 0.0;
-    const Real size = damping.local * abs_of(f);
-    return (v > 0 ? -size : (v < 0 ? size : 0.0)) - damping.mass * momentum;
-  }
-  CDEM_HD Real free(Index node, Index axis, Real f) const {
-    return supports.given(node, axis) ? 0.0 : abs_of(f);
+  /// Damping force. Where a support prescribes the motion there is nothing to damp: it would only
+  /// add to the support's force.
+  CDEM_HD Row drag(Index i, const Row& f) const {
+    Row d = Row::zero();
+    if (damping.local > 0) {
+      const Row v = nodes.velocity_row(i);
+      for (Index axis = 0; axis < 3; ++axis) {
+        const Real size = damping.local * abs_of(f.n[axis]);
+        d.n[axis] = v.n[axis] > 0 ? -size : (v.n[axis] < 0 ? size : 0.0);
+      }
+    }
+    if (damping.mass > 0) d = d - damping.mass * mass.momentum(nodes, i);
+    return d;
   }
 };
 
@@ -170,60 +165,64 @@ struct MoveNodes {
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
-    Real a[3];
-    acceleration(i, a);
     Real* r = motion + std::size_t(i) * 8;
-    const Vec3<Real> v0{r[4], r[5], r[6]};
+    const Row v0 = Row::at(r + 4);
     const Real kick = 0.5 * (dt_before + dt);
-    for (Index axis = 0; axis < 3; ++axis) {
-      r[4 + axis] = supports.given(i, axis) ? supports.at(i, axis) : r[4 + axis] + kick * a[axis];
-      r[axis] += dt * r[4 + axis];
-    }
-    const Vec3<Real> v1{r[4], r[5], r[6]}, way = 0.5 * (dt_before * v0 + dt * v1);
-    Vec3<Real> external = loads.at(i);
+    Row v1 = v0 + kick * acceleration(i);
+    for (Index axis = 0; supports.support[i] >= 0 && axis < 3; ++axis)
+      if (supports.given(i, axis)) v1.n[axis] = supports.at(i, axis);
+    v1.store(r + 4);
+    (Row::at(r) + dt * v1).store(r);
+    const Row way = 0.5 * (dt_before * v0 + dt * v1);
+    Row external = loads.at(i);
     if (supports.support[i] >= 0) external = external + react(i, v0, v1);
-    const Real* d = damping_force + std::size_t(i) * 4;
-    work_external[i] += dot(external, way);
-    work_damping[i] -= dot(Vec3<Real>{d[0], d[1], d[2]}, way);
+    work_external[i] += dot(external.vector(), way.vector());
+    work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way.vector());
   }
 
  private:
-  CDEM_HD void acceleration(Index i, Real* a) const {
+  CDEM_HD Row acceleration(Index i) const {
     const Index row = mass.row(i);
+    Row a = Row::zero();
     if (row < 0) {
-      for (Index axis = 0; axis < 3; ++axis)
-        a[axis] = force[std::size_t(i) * 4 + axis] / mass.mass[i];
-      return;
+      a = Row::at(force + std::size_t(i) * 4);
+      for (Index axis = 0; axis < 3; ++axis) a.n[axis] = a.n[axis] / mass.mass[i];
+    } else {
+      const Index first = mass.block_first[i], count = mass.block_count[i];
+      const Real* inverse = mass.inverse + row;
+      if (mass.held(i)) {
+        for (Index axis = 0; axis < 3; ++axis)
+          for (Index j = 0; j < count; ++j)
+            a.n[axis] +=
+                inverse[axis * mass.dense_step[i] + j] * force[std::size_t(first + j) * 4 + axis];
+      } else {
+        for (Index j = 0; j < count; ++j)
+          a = a + inverse[j] * Row::at(force + std::size_t(first + j) * 4);
+      }
     }
-    const Index first = mass.block_first[i], count = mass.block_count[i];
-    for (Index axis = 0; axis < 3; ++axis) {
-      const Real* inverse = mass.inverse + row + axis * mass.dense_step[i];
-      a[axis] = 0;
-      for (Index j = 0; j < count; ++j)
-        a[axis] += inverse[j] * force[std::size_t(first + j) * 4 + axis];
-    }
+    a.n[3] = 0;
+    return a;
   }
   /// Force of the support: what is missing for the motion that it imposed. With a full mass matrix
   /// `force` has the inertia of all given motions of the block already.
-  CDEM_HD Vec3<Real> react(Index i, const Vec3<Real>& v0, const Vec3<Real>& v1) const {
-    const Vec3<Real> gained = (2.0 / (dt_before + dt)) * (v1 - v0);
-    Real need[3] = {mass.mass[i] * gained.x, mass.mass[i] * gained.y, mass.mass[i] * gained.z};
+  CDEM_HD Row react(Index i, const Row& v0, const Row& v1) const {
+    Row need = mass.mass[i] * ((2.0 / (dt_before + dt)) * (v1 - v0));
     const Index row = mass.row(i);
     if (row >= 0) {
-      need[0] = need[1] = need[2] = 0;
+      need = Row::zero();
       for (Index j = 0; j < mass.block_count[i]; ++j) {
-        Real a[3];
         const Index other = mass.block_first[i] + j;
-        acceleration(other, a);
+        const Row a = acceleration(other);
         for (Index axis = 0; axis < 3; ++axis)
           if (other != i && !supports.given(other, axis))
-            need[axis] += mass.matrix[row + j] * a[axis];
+            need.n[axis] += mass.matrix[row + j] * a.n[axis];
       }
     }
-    Real* r = reaction + std::size_t(i) * 4;
+    Row r = Row::zero();
     for (Index axis = 0; axis < 3; ++axis)
-      r[axis] = supports.given(i, axis) ? need[axis] - force[std::size_t(i) * 4 + axis] : 0.0;
-    return {r[0], r[1], r[2]};
+      if (supports.given(i, axis)) r.n[axis] = need.n[axis] - force[std::size_t(i) * 4 + axis];
+    r.store(reaction + std::size_t(i) * 4);
+    return r;
   }
 };
 
@@ -234,9 +233,7 @@ struct NodeMomentum {
   Real* momentum;  // row of 4  [kg m/s]
 
   CDEM_HD void operator()(One node) const {
-    const Vec3<Real> p = mass.momentum(nodes, node.i);
-    Real* r = momentum + std::size_t(node.i) * 4;
-    r[0] = p.x, r[1] = p.y, r[2] = p.z;
+    mass.momentum(nodes, node.i).store(momentum + std::size_t(node.i) * 4);
   }
 };
 
@@ -255,18 +252,12 @@ struct SampleNodes {
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
     const Vec3<Real> v1 = nodes.velocity(i);
-    Vec3<Real> external = loads.at(i);
-    if (supports.support[i] >= 0) external = external + row(reaction, i);
+    Row external = loads.at(i);
+    if (supports.support[i] >= 0) external = external + Row::at(reaction + std::size_t(i) * 4);
     Real* r = sample + std::size_t(i) * 4;
-    r[0] = 0.5 * dot(row(momentum, i), v1);
-    r[1] = 0.5 * dt * dot(external, v1);
-    r[2] = -0.5 * dt * dot(row(damping_force, i), v1);
-  }
-
- private:
-  CDEM_HD static Vec3<Real> row(const Real* rows, Index i) {
-    const Real* r = rows + std::size_t(i) * 4;
-    return {r[0], r[1], r[2]};
+    r[0] = 0.5 * dot(Row::at(momentum + std::size_t(i) * 4).vector(), v1);
+    r[1] = 0.5 * dt * dot(external.vector(), v1);
+    r[2] = -0.5 * dt * dot(Row::at(damping_force + std::size_t(i) * 4).vector(), v1);
   }
 };
 

@@ -393,6 +393,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
     distance = np.linalg.norm(x - center[:, None], axis=2) * inside[..., 0]
     area = face_areas(t.node_position, nodes)
     young = p.young_modulus[t.face_group]
+    height = face_heights(t, out.element_volume, area)
     out.arrays |= {
         "face.nodes": nodes.astype(np.int32).ravel(),
         "face.edges": t.face_edges.astype(np.int32).ravel(),
@@ -402,7 +403,8 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.length": distance.sum(axis=1) / corners,
         "face.reach": DEFORMED * distance.max(axis=1),
         "face.area": area,
-        "face.stiffness": young / face_heights(t, out.element_volume, area),
+        "face.height": height,
+        "face.stiffness": young / height,
         "face.movable": _movable(t, p),
         "edge.nodes": t.edge_nodes.astype(np.int32).ravel(),
         "edge.faces": t.edge_faces.astype(np.int32).ravel(),

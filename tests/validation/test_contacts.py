@@ -258,6 +258,37 @@ def test_a_vertex_let_go_inside_another_block_is_held_there():
     )
 
 
+@pytest.mark.parametrize("angle", [0.0, 40.0])
+def test_a_vertex_that_has_sunk_beside_a_rim_is_held(angle):
+    """A tet lies 0.2 m deep in a block with one vertex; an edge that leaves it reaches deeper, in the air beyond
+    the rim. So the vertex is not the deepest point, and the edge crosses the rim deeper than a contact may begin:
+    nothing held the tet. Now the vertex is held where it is, at the nearest face.
+    """
+    axis = [1, 2, 3]
+    up = turn(axis, angle) @ [0, 0, 1]
+    sim = simulate(
+        [
+            {"group": "rock", "box": {"size": [6, 6, 2]}, "translate": [-3, -3, -2]},
+            {
+                "group": "tet",
+                "polyhedron": {
+                    "vertices": [[2.5, 0, -0.2], [4, 0, -0.8], [3.3, 1, 0.6], [3.3, -1, 0.6]],
+                    "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+                },
+            },
+        ],
+        {"rock": {"fix": ["x", "y", "z"]}, "tet": {}},
+        model={"rotate": {"axis": axis, "angle": angle}},
+        loads={"gravity": (-10 * up).tolist()},
+        stages=[{"name": "go", "mode": "dynamic", "duration": 0.05}],
+    )
+    tet = sim.build.nodes_of("tet")
+    corner = tet[np.argmin(np.abs(sim.fields["position"][tet] @ up + 0.2))]
+    sim.run_until(0.05)
+    sunk = sim.fields["position"][corner] @ up
+    assert sunk == pytest.approx(-0.2, abs=1e-3)  # in free fall it would be 12.5 mm lower
+
+
 @pytest.mark.parametrize("axis", [[0, 0, 1], [1, 0, 0], [1, 2, 3]])
 def test_rigid_rotation_of_a_loaded_pair(axis):
     """A pressed, sheared frictional pair is turned by 90 degrees: its forces turn with it.
