@@ -146,7 +146,12 @@ constexpr Real hinge_part = 0.05;
 /// nothing any more; what little those held is lost to friction.
 template <Index count>
 void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real indentation) {
-  const FaceColumns faces = face_columns(m, s);
+  const ConformingBonds<count> bonds{{s.nodes.motion.data()},
+                                     {p.nodes.data(), p.stride},
+                                     pair_columns(m, p, ps),
+                                     indentation,
+                                     0,
+                                     {}};
   for (Index i = 0; i < p.count; ++i) {
     const auto point = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
     const auto holds = [&](Index k) { return ps.bond[point(k)] > 0; };
@@ -154,26 +159,20 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
     for (Index k = 0; k < count; ++k) holding += holds(k);
     if (ps.live[i] != 1 || holding == 0 || holding == count) continue;
     Vec3<Real> mean[count], jump[count];
-    for (Index k = 0; k < count; ++k) {
-      const Vec3<Real> a = faces.nodes.position(p.nodes[std::size_t(k) * p.stride + i]);
-      const Vec3<Real> b = faces.nodes.position(p.nodes[std::size_t(count + k) * p.stride + i]);
-      mean[k] = 0.5 * (a + b);
-      jump[k] = b - a;
-    }
-    move_inside<count>(indentation, jump);
+    bonds.gather_jumps(One{i}, mean, jump);
     Real widest = 0;
     for (Index k = 0; k < count; ++k)
       if (!holds(k)) widest = std::max(widest, norm(jump[k]));
     if (!(widest > hinge_part * pair_length(m, p, i))) continue;
     const PairFrame<Real> frame = pair_frame<count>(mean);
-    const Real area = p.area[i] / count, kn = area * p.stiffness[i],
-               ks = area * p.stiffness[std::size_t(p.stride) + i];
+    const BondLaw<Real> law = bonds.law_of(One{i});
     for (Index k = 0; k < count; ++k) {
       const Real opening = dot(frame.n, jump[k]);
       if (holds(k) || opening >= 0) continue;
-      const Real along1 = dot(frame.t1, jump[k]) - ps.slip1[point(k)],
-                 along2 = dot(frame.t2, jump[k]) - ps.slip2[point(k)];
-      const Real held = 0.5 * (kn * opening * opening + ks * (along1 * along1 + along2 * along2));
+      const Real held =
+          stored_energy(law, law.stiffness_n * opening,
+                        law.stiffness_s * (dot(frame.t1, jump[k]) - ps.slip1[point(k)]),
+                        law.stiffness_s * (dot(frame.t2, jump[k]) - ps.slip2[point(k)]));
       ps.friction[i] += held;
       ps.stored[i] -= held;
     }

@@ -199,6 +199,27 @@ struct ConformingBonds {
     write_forces(p, live, force);
   }
 
+  /// Mean positions of mated vertices, and the jumps at the bond points.
+  template <class I, class T>
+  CDEM_HD void gather_jumps(I p, Vec3<T>* mean, Vec3<T>* jump) const {
+    for (Index k = 0; k < count; ++k) {
+      const Vec3<T> xa = nodes.position(pair_nodes.at(k, p));
+      const Vec3<T> xb = nodes.position(pair_nodes.at(count + k, p));
+      mean[k] = T(0.5) * (xa + xb);
+      jump[k] = xb - xa;
+    }
+    move_inside<count>(indentation, jump);
+  }
+  template <class I>
+  CDEM_HD BondLaw<Number<I>> law_of(I p) const {
+    using T = Number<I>;
+    const auto interface = pairs.interface.at(0, p);
+    const T area = pairs.area.at(0, p) / T(Real(count));
+    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
+            area * pairs.tensile_strength.at(interface), area * pairs.cohesion.at(interface),
+            pairs.tan_friction.at(interface)};
+  }
+
  private:
   /// The common case: all points of the pair were intact and stay so.
   template <class I, class T>
@@ -263,29 +284,10 @@ struct ConformingBonds {
     table.set(0, p, table.at(0, p) + more);
   }
   template <class I, class T>
-  CDEM_HD void gather_jumps(I p, Vec3<T>* mean, Vec3<T>* jump) const {
-    for (Index k = 0; k < count; ++k) {
-      const Vec3<T> xa = nodes.position(pair_nodes.at(k, p));
-      const Vec3<T> xb = nodes.position(pair_nodes.at(count + k, p));
-      mean[k] = T(0.5) * (xa + xb);
-      jump[k] = xb - xa;
-    }
-    move_inside<count>(indentation, jump);
-  }
-  template <class I, class T>
   CDEM_HD void gather_rates(I p, Vec3<T>* rate) const {
     for (Index k = 0; k < count; ++k)
       rate[k] = nodes.velocity(pair_nodes.at(count + k, p)) - nodes.velocity(pair_nodes.at(k, p));
     move_inside<count>(indentation, rate);
-  }
-  template <class I>
-  CDEM_HD BondLaw<Number<I>> law_of(I p) const {
-    using T = Number<I>;
-    const auto interface = pairs.interface.at(0, p);
-    const T area = pairs.area.at(0, p) / T(Real(count));
-    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
-            area * pairs.tensile_strength.at(interface), area * pairs.cohesion.at(interface),
-            pairs.tan_friction.at(interface)};
   }
 };
 

@@ -153,13 +153,17 @@ def mesh(
         Path | None,
         typer.Option("--output", "-o", help="Mesh, .msh or .msh.gz; default LANDSLIDE.msh, here."),
     ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Replace a value; repeatable."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Mesh a landslide from terrain, a sliding surface and bodies outlined in plan."""
     from cdem import terrain
 
     path = output or Path(f"{landslide_file.stem}.msh")
-    solid = terrain.make_mesh(terrain.Landslide.load(landslide_file))
+    solid = terrain.make_mesh(terrain.Landslide.load(landslide_file, settings or []))
     terrain.write(solid, path)
     facts = terrain.measure(solid)
     print(json.dumps(facts, indent=2) if as_json else f"{path}: {terrain.text(facts)}")

@@ -373,7 +373,13 @@ def test_the_verb_writes_a_mesh_and_says_what_it_holds(cdem, tmp_path: Path, mon
     status, out, err = cdem("mesh", "slope.yaml")
     assert (status, err) == (0, "")
     assert out.startswith("slope.msh: ") and "bed: dip 30.000 deg towards 90.000 deg" in out
-    assert read_mesh("slope.msh").group_names == ["bedrock", "slab"]
+    mesh = read_mesh("slope.msh")
+    assert mesh.group_names == ["bedrock", "slab"]
+    status, out, err = cdem("mesh", "slope.yaml", "-o", "fine.msh", "--set", "sizes.body=12")
+    assert (status, err) == (0, "")
+    assert len(read_mesh("fine.msh").cells["tet4"]) > 1.5 * len(mesh.cells["tet4"])
+    status, out, err = cdem("mesh", "slope.yaml", "--set", "sizes.bodies=40")
+    assert status == 1 and "sizes.bodies" in err and "Traceback" not in err
     data["surface"]["plane"]["through"] = [0, 0, 900]
     (tmp_path / "slope.yaml").write_text(json.dumps(data))
     status, out, err = cdem("mesh", "slope.yaml")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -137,13 +138,17 @@ class Landslide(Part):
                 raise self.error(f"bodies.{index}.group", f"the name '{body.group}' is taken")
 
     @classmethod
-    def load(cls, path: str | Path) -> Landslide:
+    def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Landslide:
         """Read a landslide file.
+
+        Args:
+            path: A YAML file.
+            overrides: Texts ``"sizes.body=30"`` that replace values.
 
         Raises:
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
-        data, source = load_case_data(Path(path))
+        data, source = load_case_data(Path(path), overrides)
         return cls(_source=source, **data)
 
     def error(self, path: str, what: str) -> CaseError:
