@@ -96,13 +96,46 @@ bool may_touch(const SearchRules& rules, const ExposedFace& x, const ExposedFace
          !apart(rules, y, x);
 }
 
-/// Does the surface rise beyond side j of exposed face y, or may it before the next refresh? Then a
-/// contact may go on behind the corner.
-bool may_rise(const Finder& f, const ExposedFace& y, Index place, Index j, Real turn) {
-  const Index across = f.faces.across(place, j);
-  if (across < 0) return false;
-  const Vec3<Real> arm = f.faces.shape(across).center() - y.shape.x[j];
-  return dot(y.normal, arm) > -turn * norm(arm);
+/// Gap that a vertex of exposed face x at `v` may have to exposed face y until the next refresh.
+struct GapRange {
+  Real least, most;
+  GapRange(const ExposedFace& x, const ExposedFace& y, const Vec3<Real>& v) {
+    const Vec3<Real> arm = v - y.center;
+    const GapChange change(x, y, y.normal);
+    const Real gap = dot(y.normal, arm);
+    const Real room = y.turn * (norm(arm) + motion_between(x, y)) + y.warp;
+    least = gap + change.least - room;
+    most = gap + change.most + room;
+  }
+};
+
+/// May a contact with exposed face y go on behind the corner at its side j, where the surface rises
+/// (see FindTargetFaces::behind_corner)?
+bool may_go_behind(const Finder& f, const Vec3<Real>& v, const ExposedFace& x, const ExposedFace& y,
+                   const ExposedSide& side) {
+  if (side.across < 0 || !side.sharp) return false;
+  const ExposedFace& u = f.exposed[side.across];
+  const Vec3<Real> arm = u.center - side.start;
+  const bool rises = dot(y.normal, arm) > -(y.turn + u.turn) * norm(arm);
+  return rises && GapRange(x, u, v).least <= 0;
+}
+
+/// May a vertex sink past the depth at which contacts with exposed face y begin, and be held there
+/// (see FindTargetFaces::encloses)? `entry` is that depth, `length` L.
+bool may_sink(const Finder& f, const Vec3<Real>& v, const ExposedFace& x, const ExposedFace& y,
+              Index place_y, Real entry, Real length) {
+  const GapRange gap(x, y, v);
+  const Real deepest = std::min(f.m.rules.depth * length, 0.5 * f.m.face_height[y.face]);
+  if (gap.least > -entry || gap.most < -deepest) return false;
+  for (Index j = 0; j < y.shape.count; ++j) {
+    const ExposedSide& side = f.sides[4 * std::size_t(place_y) + j];
+    if (side.across < 0) continue;
+    const ExposedFace& u = f.exposed[side.across];
+    const Vec3<Real> arm = u.center - y.center;
+    const bool falls = dot(y.normal, arm) < -(y.turn + u.turn) * norm(arm);
+    if (falls && GapRange(x, u, v).least > gap.most) return false;
+  }
+  return true;
 }
 
 /// May a vertex of exposed face x come into contact with exposed face y before the next refresh?
@@ -126,14 +159,13 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
     const Real room = rules.tolerance * length + rules.indentation * reach + motion +
                       2 * y.turn * (norm(from) + rules.indentation * reach);
     if (dot(cross(y.normal, side), from) < -room * norm(side) &&
-        !may_rise(f, y, place_y, j, 2 * y.turn))
+        !may_go_behind(f, v, x, y, f.sides[4 * std::size_t(place_y) + j]))
       return false;
   }
   for (Index j = 0; j < y.shape.count; ++j)
     if (f.faces.node_glue[f.faces.vertex(y.face, j)] == f.faces.node_glue[node]) return false;
   if (Bonded::among(f.bonded.vertices, node, place_y)) return false;
-  if (gap + change.least - gap_room < -rules.entry * std::min(least, y.length))
-    return true;                                // sunk
+  if (may_sink(f, v, x, y, place_y, rules.entry * std::min(least, y.length), length)) return true;
   const Index point = f.faces.node_glue[node];  // never the deepest vertex?
   for (Index r = f.faces.ring_first[point]; r < f.faces.ring_first[point + 1]; ++r) {
     const Index other = f.faces.ring[r];
