@@ -106,7 +106,6 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
   s.search.horizon = real("horizon"), s.search.built_time = real("built_time");
   s.search.skin_least = real("skin_least");
   s.ledger_started = whole("ledger_started") != 0;
-  s.edges.slots = Index(whole("edge_slots"));
 }
 
 nb::dict scalars(const Core& core) {
@@ -120,7 +119,6 @@ nb::dict scalars(const Core& core) {
   d["horizon"] = s.search.horizon, d["built_time"] = s.search.built_time;
   d["skin_least"] = s.search.skin_least;
   d["ledger_started"] = std::int64_t(s.ledger_started);
-  d["edge_slots"] = std::int64_t(s.edges.slots);
   return d;
 }
 

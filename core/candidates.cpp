@@ -46,6 +46,26 @@ Rows<T> by_mother(const std::vector<Proximity>& found, std::vector<T> Proximity:
 using Touches = Rows<Proximity::Touch>;
 using Crossings = Rows<Proximity::Crossing>;
 
+/// List the pairs of vertex and face of all patches, and let the touches know their places there.
+void list_faces(SearchState& search, std::vector<Proximity>& found) {
+  Index count = 0;
+  for (Proximity& f : found) {
+    for (Proximity::Touch& t : f.touches) t.pair += count;
+    count += Index(f.faces.size());
+  }
+  const std::size_t stride = padded_stride(count);
+  search.faces_near.resize(count);
+  search.faces_corners.resize(5 * stride);
+  search.faces_room.resize(5 * stride);
+  std::size_t place = 0;
+  for (const Proximity& f : found)
+    for (const Proximity::VertexFace& v : f.faces) {
+      for (std::size_t k = 0; k < 5; ++k) search.faces_corners[k * stride + place] = v.corners[k];
+      for (std::size_t k = 0; k < 5; ++k) search.faces_room[k * stride + place] = v.room[k];
+      ++place;
+    }
+}
+
 /// List the pairs of edges of all patches, and let the crossings know their places there.
 void list_edges(SearchState& search, std::vector<Proximity>& found) {
   Index count = 0;
@@ -103,26 +123,34 @@ void list_touches(SearchState& search, const Touches& touches) {
     for (Index k = 0; k < 4; ++k)
       first[4 * x + k + 1] =
           first[4 * x + k] + Index(std::count_if(touches.begin(x), touches.end(x),
-                                                 [&](auto& t) { return t.vertices >> k & 1; }));
+                                                 [&](auto& t) { return t.vertex == k; }));
   other.resize(first[4 * std::size_t(count)]);
+  search.candidate_pair.resize(other.size());
   for (Index x = 0; x < count; ++x)
     for (Index k = 0; k < 4; ++k) {
       Index place = first[4 * x + k];
       for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
-        if (t->vertices >> k & 1) other[place++] = t->face;
+        if (t->vertex == k) {
+          search.candidate_pair[place] = t->pair;
+          other[place++] = t->face;
+        }
     }
 }
 
-void list_crossings(SearchState& search, const Crossings& crossings) {
+void list_crossings(const Model& m, SearchState& search, const Crossings& crossings) {
   search.edge_candidate_first.assign(crossings.first.data(), crossings.first.size());
   const std::size_t count = crossings.items.size();
   search.edge_candidate.resize(count);
+  search.edge_candidate_edge.resize(count);
   search.edge_candidate_sides.resize(count);
   search.edge_candidate_edges.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    search.edge_candidate[i] = crossings.items[i].face;
-    search.edge_candidate_sides[i] = crossings.items[i].sides;
-    search.edge_candidate_edges[i] = crossings.items[i].edges;
+    const Proximity::Crossing& c = crossings.items[i];
+    search.edge_candidate[i] = c.face;
+    search.edge_candidate_edge[i] =
+        m.face_edges[4 * search.exposed_face[c.face] + SidePair::of(c.sides).j];
+    search.edge_candidate_sides[i] = c.sides;
+    search.edge_candidate_edges[i] = c.edges;
   }
 }
 
@@ -131,17 +159,19 @@ void list_crossings(SearchState& search, const Crossings& crossings) {
 void list_candidates(const Model& m, State& s) {
   foresee_motion(m, s);
   std::vector<Proximity> found = find_proximity(m, s);
+  list_faces(s.search, found);
   list_edges(s.search, found);
   const Index count = Index(s.search.exposed_face.size());
-  const Touches touches = by_mother(found, &Proximity::touches, count,
-                                    [](const Proximity::Touch& t) { return t.face; });
+  const Touches touches =
+      by_mother(found, &Proximity::touches, count,
+                [](const Proximity::Touch& t) { return std::pair(t.face, t.vertex); });
   const Crossings crossings =
       by_mother(found, &Proximity::crossings, count, [](const Proximity::Crossing& c) {
         const SidePair pair = SidePair::of(c.sides);
         return std::tuple(c.face, pair.k, pair.j);
       });
   list_touches(s.search, touches);
-  list_crossings(s.search, crossings);
+  list_crossings(m, s.search, crossings);
   list_sources(s.search, touches, crossings);
 }
 

@@ -151,13 +151,16 @@ Energies energies(const Model& m, const State& s) {
     e.strain += column_sum(es->energy);
     e.damping += column_sum(es->damping_work);
   }
-  e.contact = column_sum(s.springs.energy_n) + column_sum(s.springs.energy_s);
   const Index exposed = Index(s.search.exposed_face.size());
+  const auto spring = [&](Index slot) { return ContactState::at(s.springs.state.data(), slot); };
+  e.contact = ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_n; }) +
+              ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_s; });
   e.contact += ordered_sum(exposed, [&](Index i) {
     Real sum = 0;
-    for (Index j = 0; j < s.edges.count[i]; ++j)
-      sum += s.edges.energy_n[std::size_t(s.edges.slots) * i + j] +
-             s.edges.energy_s[std::size_t(s.edges.slots) * i + j];
+    for (Index c = s.edges.first[i]; c < s.edges.first[i + 1]; ++c) {
+      const ContactState edge = ContactState::at(s.edges.state.data(), c);
+      sum += edge.energy_n + edge.energy_s;
+    }
     return sum;
   });
   e.friction = column_sum(s.springs.friction) + column_sum(s.edges.friction);

@@ -33,9 +33,10 @@ Report check_health(const Model& model, const State& state);
 /// Renew centre, normal and sharp sides of every exposed face; those sides only where there are
 /// candidates, unless `all`.
 void update_face_geometry(const Model& model, State& state, Queue queue, bool all);
+/// Mark which pairs of vertex and face may be in contact in this step.
+void mark_near_faces(const Model& model, State& state, Queue queue);
 /// Mark which pairs of edges may begin to touch in this step.
 void mark_near_edges(const Model& model, State& state, Queue queue);
-void widen_edge_slots(State& state);
 /// Stiffness that bonds and possible contacts put on each node.
 void sum_stiffness(const Model& model, State& state);
 

@@ -31,7 +31,8 @@ inline FaceColumns face_columns(const Model& m, const State& s) {
 }
 
 inline Candidates candidate_columns(const State& s) {
-  return {s.search.candidate_first.data(), s.search.candidate.data()};
+  return {s.search.candidate_first.data(), s.search.candidate.data(),
+          s.search.candidate_pair.data(), s.search.faces_near.data()};
 }
 
 inline Sources source_columns(const State& s) {
@@ -40,37 +41,28 @@ inline Sources source_columns(const State& s) {
 
 inline EdgeCandidates edge_candidate_columns(const State& s) {
   return {s.search.edge_candidate_first.data(), s.search.edge_candidate.data(),
-          s.search.edge_candidate_sides.data(), s.search.edge_candidate_edges.data(),
-          s.search.edges_near.data()};
+          s.search.edge_candidate_edge.data(),  s.search.edge_candidate_sides.data(),
+          s.search.edge_candidate_edges.data(), s.search.edges_near.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {
   SpringState& c = s.springs;
-  return {c.target.data(),   c.target_before.data(), c.force_n.data(), c.shear1.data(),
-          c.shear2.data(),   c.gap_free.data(),      c.sunk.data(),    c.energy_n.data(),
-          c.energy_s.data(), c.friction.data(),      c.dashpot.data(), c.reaction.data(),
-          c.lost.data()};
+  return {c.target.data(),  c.target_before.data(), c.state.data(), c.friction.data(),
+          c.dashpot.data(), c.reaction.data(),      c.lost.data()};
 }
 
 inline EdgeColumns edge_columns(State& s) {
   EdgeState& c = s.edges;
-  return {c.slots,
-          c.count.data(),
-          c.side.data(),
-          c.target_face.data(),
-          c.target_edge.data(),
-          c.gap_free.data(),
-          c.sunk.data(),
-          c.shear1.data(),
-          c.shear2.data(),
-          c.force_n.data(),
-          c.energy_n.data(),
-          c.energy_s.data(),
-          c.reaction.data(),
-          c.friction.data(),
-          c.dashpot.data(),
-          c.lost.data(),
-          c.overflow.data()};
+  return {c.first.data(), c.contact.data(), c.state.data(), c.reaction.data()};
+}
+
+inline EdgesBefore edges_before(const State& s) {
+  const EdgeState& c = s.edges;
+  return {c.old_first.data(), c.old_contact.data(), c.old_state.data()};
+}
+
+inline FoundEdges found_edges(State& s) {
+  return {s.edges.slots, s.edges.found_count.data(), s.edges.found.data()};
 }
 
 inline ContactLaws contact_laws(const Model& m) {

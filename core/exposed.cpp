@@ -44,11 +44,13 @@ void add_rigid_motion(const ElementSet& e, Index corners, InMotion nodes,
 Real deepest_gap(const State& s, Index place) {
   Real deepest = 0;
   for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
-    if (s.springs.target[k] >= 0)
-      deepest = std::max(deepest, s.springs.sunk[k] - s.springs.gap_free[k]);
-  for (Index j = 0; j < s.edges.count[place]; ++j) {
-    const std::size_t c = std::size_t(s.edges.slots) * place + j;
-    deepest = std::max(deepest, s.edges.sunk[c] - s.edges.gap_free[c]);
+    if (s.springs.target[k] >= 0) {
+      const ContactState spring = ContactState::at(s.springs.state.data(), k);
+      deepest = std::max(deepest, spring.sunk - spring.gap_free);
+    }
+  for (Index c = s.edges.first[place]; c < s.edges.first[place + 1]; ++c) {
+    const ContactState edge = ContactState::at(s.edges.state.data(), c);
+    deepest = std::max(deepest, edge.sunk - edge.gap_free);
   }
   return 2 * deepest;
 }

@@ -249,6 +249,20 @@ struct FacePairs {
   bool any() const { return row[0] || row[1] || row[2] || row[3] || row[4] || row[5]; }
 };
 
+/// Corners and room of a vertex and a face that may touch; `length`, `reach` and `least` as above.
+Proximity::VertexFace vertex_face(const Finder& f, Index node, const ExposedFace& y, Real length,
+                                  Real reach, Real least) {
+  const SearchRules& rules = f.m.rules;
+  const Real slack = 1e-6 * y.length;  // for round-off
+  const Real above = (y.shape.count == 3 ? 0 : 0.5 * y.length) + y.warp + slack;
+  const Real aside = rules.tolerance * length + 1.01 * rules.indentation * reach + slack;
+  const Index last = y.shape.count == 3 ? 2 : 3;
+  return {{node, f.faces.vertex(y.face, 0), f.faces.vertex(y.face, 1), f.faces.vertex(y.face, 2),
+           f.faces.vertex(y.face, last)},
+          {above + rules.lifted, above + rules.depth * length, aside,
+           rules.entry * std::min(least, y.length) - slack, 1.34 * f.m.face_reach[y.face] + aside}};
+}
+
 /// Vertices of one patch on faces of another.
 void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
                   bool reverse, Proximity& found) {
@@ -256,7 +270,6 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
     return (reverse ? pairs.row[j] >> i : pairs.row[i] >> j) & 1;
   };
   for (Index j = 0; j < b.face_count; ++j) {
-    int vertices[6] = {};
     for (Index v = 0; v < a.vertex_count; ++v) {
       Index first = -1;  // of the faces at the vertex
       Real least = 1e300;
@@ -274,10 +287,12 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
           !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
         continue;
       for (Index i = 0; i < a.face_count; ++i)
-        if (a.corner[v][i] >= 0 && met(i, j)) vertices[i] |= 1 << a.corner[v][i];
+        if (a.corner[v][i] >= 0 && met(i, j))
+          found.touches.push_back(
+              {a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
+      found.faces.push_back(
+          vertex_face(f, a.vertex[v], f.exposed[b.face[j]], length, a.reach, least));
     }
-    for (Index i = 0; i < a.face_count; ++i)
-      if (vertices[i]) found.touches.push_back({a.face[i], b.face[j], vertices[i]});
   }
 }
 

@@ -36,10 +36,15 @@ bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, I
 
 /// What of a patch may touch what of the patches after it.
 struct Proximity {
-  /// Vertices of a mother face on another exposed face.
+  /// A vertex of a mother face on another exposed face.
   struct Touch {
-    Index mother, face;
-    int vertices;  // bit by bit
+    Index mother, vertex, face;
+    Index pair;  // place in the list below
+  };
+  /// The pair of vertex and face that touches are of, see MarkNearFaces.
+  struct VertexFace {
+    Index corners[5];
+    Real room[5];
   };
   /// A side of a mother face across one of another exposed face.
   struct Crossing {
@@ -53,6 +58,7 @@ struct Proximity {
     Real room[3];
   };
   std::vector<Touch> touches;
+  std::vector<VertexFace> faces;
   std::vector<Crossing> crossings;
   std::vector<Edges> edges;
 };

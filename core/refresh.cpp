@@ -12,6 +12,7 @@
 #include "core/check.hpp"
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
+#include "core/edge_list.hpp"
 #include "core/proximity.hpp"
 #include "core/rest.hpp"
 #include "core/surface.hpp"
@@ -43,23 +44,12 @@ void visit_faces(State& s, Visit&& visit) {
   SpringState& c = s.springs;
   visit(c.target, 4, Index(-1));
   visit(c.target_before, 4, Index(-1));
-  for (Column<Real>* column : {&c.force_n, &c.shear1, &c.shear2, &c.gap_free, &c.sunk, &c.energy_n,
-                               &c.energy_s, &c.friction, &c.dashpot})
-    visit(*column, 4, Real(0));
-  visit(c.reaction, 4 * 8, Real(0));
+  for (Column<Real>* column : {&c.friction, &c.dashpot}) visit(*column, 4, Real(0));
+  for (Column<Real>* column : {&c.state, &c.reaction}) visit(*column, 4 * 8, Real(0));
   visit(c.lost, 4, Flag(0));
-  EdgeState& e = s.edges;
-  for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
-    visit(*column, e.slots, Index(-1));
-  for (Column<Real>* column :
-       {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
-    visit(*column, e.slots, Real(0));
-  visit(e.reaction, 8 * e.slots, Real(0));
-  visit(e.count, 1, Index(0));
-  visit(e.friction, 1, Real(0));
-  visit(e.dashpot, 1, Real(0));
-  visit(e.lost, 1, Flag(0));
-  visit(e.overflow, 1, Flag(0));
+  visit(s.edges.friction, 1, Real(0));
+  visit(s.edges.dashpot, 1, Real(0));
+  visit(s.edges.lost, 1, Flag(0));
   visit(s.face_geometry, 8, Real(0));
   visit(s.contact_force, 4 * 4, Real(0));
 }
@@ -70,6 +60,7 @@ void expose(State& s, Index face) {
   s.search.exposed_face.push(face);
   const std::size_t count = s.search.exposed_face.size();
   visit_faces(s, [&](auto& column, Index row, auto fill) { column.resize(row * count, fill); });
+  s.edges.first.resize(count + 1, Index(s.edges.contact.size() / 4));
 }
 
 /// Put exposed faces into the order of the model, in which faces that are near each other mostly
@@ -88,7 +79,7 @@ void sort_exposed(State& s) {
   };
   follow(s.springs.target);
   follow(s.springs.target_before);
-  follow(s.edges.target_face);
+  sort_edges(s, from, to);
   const auto sort_rows = [&](auto& column, std::size_t row, auto) {
     const auto before = std::vector(column.data(), column.data() + row * count);
     for (std::size_t x = 0; x < count; ++x)
@@ -125,12 +116,13 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
         if (faces.vertex(face, v) != node) continue;
         const Index slot = 4 * place + v;
         s.springs.target[slot] = s.springs.target_before[slot] = target;
-        s.springs.shear1[slot] = dot(force, frame.t1);
-        s.springs.shear2[slot] = dot(force, frame.t2);
-        const Real sunk = -dot(frame_a.n, jump);
-        s.springs.sunk[slot] = sunk;
-        s.springs.force_n[slot] = 0.5 * kn * sunk;
-        s.springs.energy_n[slot] = 0.25 * kn * sunk * sunk;
+        ContactState spring = ContactState::at(s.springs.state.data(), slot);
+        spring.shear1 = dot(force, frame.t1);
+        spring.shear2 = dot(force, frame.t2);
+        spring.sunk = -dot(frame_a.n, jump);
+        spring.force_n = 0.5 * kn * spring.sunk;
+        spring.energy_n = 0.25 * kn * spring.sunk * spring.sunk;
+        spring.store(s.springs.state.data(), slot);
       }
     };
     give(place_a, a, node_a, place_b, frame_b, -on_b);
@@ -309,6 +301,15 @@ void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
                             all ? nullptr : s.search.source_first.data(), s.face_geometry.data()});
 }
 
+void mark_near_faces(const Model&, State& s, Queue q) {
+  const Index count = Index(s.search.faces_near.size());
+  launch(q, count,
+         MarkNearFaces{{s.nodes.motion.data()},
+                       {s.search.faces_corners.data(), padded_stride(count)},
+                       {s.search.faces_room.data(), padded_stride(count)},
+                       s.search.faces_near.data()});
+}
+
 void mark_near_edges(const Model& m, State& s, Queue q) {
   const SearchState& search = s.search;
   const Index count = Index(search.edges_near.size());
@@ -320,31 +321,11 @@ void mark_near_edges(const Model& m, State& s, Queue q) {
                        s.search.edges_near.data()});
 }
 
-void widen_edge_slots(State& s) {
-  EdgeState& e = s.edges;
-  const std::size_t count = s.search.exposed_face.size(), old = e.slots, wide = 2 * old;
-  if (wide > std::size_t(FindTargetEdges::most_slots))
-    throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
-  const auto widen = [&](auto& column, std::size_t row, auto fill) {
-    auto moved = std::move(column);
-    column = {};
-    column.resize(wide * row * count, fill);
-    for (std::size_t x = 0; x < count; ++x)
-      std::copy_n(moved.data() + x * old * row, old * row, column.data() + x * wide * row);
-  };
-  for (Column<Index>* column : {&e.side, &e.target_face, &e.target_edge})
-    widen(*column, 1, Index(-1));
-  for (Column<Real>* column :
-       {&e.gap_free, &e.sunk, &e.shear1, &e.shear2, &e.force_n, &e.energy_n, &e.energy_s})
-    widen(*column, 1, Real(0));
-  widen(e.reaction, 8, Real(0));
-  e.slots = Index(wide);
-}
-
 namespace {
 
 FindTargetFaces face_search(const Model& m, State& s, const SearchRules& rules) {
   update_face_geometry(m, s, {}, true);
+  mark_near_faces(m, s, {});
   finish({});
   return {face_columns(m, s),
           {s.face_geometry.data()},
@@ -374,7 +355,9 @@ Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
       const FaceShape shape = search.faces.shape(s.search.exposed_face[t]);
       const Vec3<Real> v = search.faces.nodes.position(search.faces.vertex(mother, k));
       const Real gap = project(shape, v, shape.normal()).gap;
-      s.springs.gap_free[4 * x + k] = gap;
+      ContactState spring{};
+      spring.gap_free = gap;
+      spring.store(s.springs.state.data(), 4 * x + k);
       s.springs.target_before[4 * x + k] = t;
       if (gap > -reported * m.face_length[mother]) continue;
       ++count;
@@ -392,7 +375,9 @@ Index count_missed_contacts(const Model& m, State& s) {
                               s.search.exposed_face.data(),
                               edge_candidate_columns(s),
                               m.rules,
-                              edge_columns(s)};
+                              edges_before(s),
+                              s.edges.lost.data(),
+                              found_edges(s)};
   const Index count = Index(s.search.exposed_face.size());
   const Bonded bonded = live_overlaps(m, s);
   const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };
@@ -408,7 +393,6 @@ Index count_missed_contacts(const Model& m, State& s) {
   Index missed = 0;
 #pragma omp parallel for schedule(dynamic, 8) reduction(+ : missed)
   for (Index x = 0; x < count; ++x) {
-    const Index* listed = s.search.candidate.data();
     std::vector<Index> all, open;
     for (Index t = 0; t < count; ++t)
       if (block(t) != block(x) && (movable(t) || movable(x)) && near(x, t) &&
@@ -416,14 +400,12 @@ Index count_missed_contacts(const Model& m, State& s) {
         all.push_back(t);
     Flag ignored = 0;
     for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k) {
-      const Index first = s.search.candidate_first[4 * x + k];
-      const Index count_listed = s.search.candidate_first[4 * x + k + 1] - first;
       const Index node = springs.faces.vertex(s.search.exposed_face[x], k);
       open.clear();
       std::copy_if(all.begin(), all.end(), std::back_inserter(open),
                    [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
-      missed += springs.choose(x, k, listed + first, count_listed, &ignored) !=
-                springs.choose(x, k, open.data(), Index(open.size()), &ignored);
+      missed += springs.choose(x, k, springs.listed_for(4 * x + k), &ignored) !=
+                springs.choose(x, k, {open.data(), nullptr, nullptr, Index(open.size())}, &ignored);
     }
     if (!m.semi_edges) continue;
     const EdgeCandidates& c = edges.candidates;

@@ -67,7 +67,6 @@ void prepare(const Model& m, State& s) {
   const std::size_t exposed = s.search.exposed_face.size();
   s.face_geometry.resize(8 * exposed);
   s.contact_force.resize(16 * exposed);
-  s.edges.overflow.resize(exposed);
   sum_stiffness(m, s);
   list_corners(m, s);
 }

@@ -34,17 +34,21 @@ struct PairState {
 
 struct SpringState {
   Column<Index> target, target_before;
-  Column<Real> force_n, shear1, shear2, gap_free, sunk, energy_n, energy_s;
-  Column<Real> friction, dashpot, reaction;
+  Column<Real> state, reaction;  // rows of 8
+  Column<Real> friction, dashpot;
   Column<Flag> lost;
 };
 
+/// Contacts of semi-edges, see EdgeColumns; a step makes the list anew from the one before.
 struct EdgeState {
-  Index slots = 8;
-  Column<Index> count, side, target_face, target_edge;
-  Column<Real> gap_free, sunk, shear1, shear2, force_n, energy_n, energy_s, reaction, friction,
-      dashpot;
-  Column<Flag> lost, overflow;
+  Column<Index> first, contact;    // [exposed + 1], rows of 4
+  Column<Real> state, reaction;    // rows of 8
+  Column<Real> friction, dashpot;  // [exposed]
+  Column<Flag> lost;               // [exposed]
+  Column<Index> old_first, old_contact;
+  Column<Real> old_state;
+  Index slots = 8;  // of the search in a step: places a face, see FoundEdges
+  Column<Index> found_count, found;
 };
 
 struct SearchState {
@@ -52,13 +56,17 @@ struct SearchState {
   Real horizon = 0, built_time = 0;          // how long the lists look ahead, and from when  [s]
   Real skin_least = 0.001;  // of a node, in parts of L; follows how long the lists last
   bool strayed = false;     // a vertex left its foreseen path: the lists are old
-  Column<Index> candidate_first, candidate;  // by vertex
-  Column<Index> edge_candidate_first, edge_candidate, edge_candidate_sides, edge_candidate_edges;
+  Column<Index> candidate_first, candidate, candidate_pair;  // by vertex
+  Column<Index> faces_corners;                               // [5][pair] vertex, corners of a face
+  Column<Real> faces_room;                                   // [5][pair] see MarkNearFaces
+  Column<Flag> faces_near;  // [pair] may they be in contact in this step?
+  Column<Index> edge_candidate_first, edge_candidate;  // by face
+  Column<Index> edge_candidate_edge, edge_candidate_sides, edge_candidate_edges;
   Column<Index> edges_ends;            // [4][pair] nodes of both
-  Column<Real> edges_room;             // [2][pair] see MarkNearEdges
+  Column<Real> edges_room;             // [3][pair] see MarkNearEdges
   Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
-  Column<Flag> touching;               // [exposed] has it contacts of its own in this step?
   Column<Index> source_first, source;  // faces whose contacts may act on a face
+  Column<Flag> acting;                 // [source] do they in this step? All 0 between steps
   Column<Index> across;                // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
@@ -99,10 +107,15 @@ void describe_search(S& search, Visit&& field) {
   field("search.face_exposed", search.face_exposed, "place of a face among them, or -1");
   field("search.candidate_first", search.candidate_first, "start of a vertex's candidates");
   field("search.candidate", search.candidate, "exposed faces that it may touch");
+  field("search.candidate_pair", search.candidate_pair, "pairs of vertex and face they are of");
+  field("search.faces_corners", search.faces_corners, "vertex and corners of the face of a pair");
+  field("search.faces_room", search.faces_room, "how far apart they may be in contact [m]");
+  field("search.faces_near", search.faces_near, "1: they may be in contact in this step");
   field("search.source_first", search.source_first, "start of a face's sources");
   field("search.source", search.source, "exposed faces whose contacts may act on it");
   field("search.edge_candidate_first", search.edge_candidate_first, "start of a face's sides");
   field("search.edge_candidate", search.edge_candidate, "exposed face whose side may be crossed");
+  field("search.edge_candidate_edge", search.edge_candidate_edge, "edge that may be crossed");
   field("search.edge_candidate_sides", search.edge_candidate_sides,
         "which sides, which ends shared");
   field("search.edge_candidate_edges", search.edge_candidate_edges, "pair of edges they are of");
@@ -162,30 +175,20 @@ void describe(S& s, Visit&& field) {
 
   field("spring.target", s.springs.target, "exposed face in contact, or -1");
   field("spring.target_before", s.springs.target_before, "the same, one step ago");
-  field("spring.force_n", s.springs.force_n, "normal force, compression > 0 [N]");
-  field("spring.shear1", s.springs.shear1, "first shear force [N]");
-  field("spring.shear2", s.springs.shear2, "second shear force [N]");
-  field("spring.gap_free", s.springs.gap_free, "gap without stress [m]");
-  field("spring.sunk", s.springs.sunk, "effective penetration [m]");
-  field("spring.energy_n", s.springs.energy_n, "stored in the normal spring [J]");
-  field("spring.energy_s", s.springs.energy_s, "stored in the shear spring [J]");
+  field("spring.state", s.springs.state,
+        "normal force, penetration, shear forces, gap without stress, stored energies");
   field("spring.friction", s.springs.friction, "frictional work [J]");
   field("spring.dashpot", s.springs.dashpot, "work of the contact dashpot [J]");
   field("spring.reaction", s.springs.reaction, "force, stiffness, weights on the target");
   field("spring.lost", s.springs.lost, "1: lost by depth");
 
-  field("edge.count", s.edges.count, "contacts of the face's semi-edges");
-  field("edge.side", s.edges.side, "side of the mother face");
-  field("edge.target_face", s.edges.target_face, "exposed face of the target edge");
-  field("edge.target_edge", s.edges.target_edge, "target edge");
-  field("edge.shear1", s.edges.shear1, "first shear force [N]");
-  field("edge.shear2", s.edges.shear2, "second shear force [N]");
-  field("edge.force_n", s.edges.force_n, "normal force, compression > 0 [N]");
-  field("edge.gap_free", s.edges.gap_free, "gap without stress [m]");
-  field("edge.sunk", s.edges.sunk, "effective penetration [m]");
-  field("edge.energy_n", s.edges.energy_n, "stored in the normal spring [J]");
-  field("edge.energy_s", s.edges.energy_s, "stored in the shear spring [J]");
-  field("edge.reaction", s.edges.reaction, "force, stiffness, places on the edges");
+  field("edge.first", s.edges.first, "place of a face's first contact");
+  field("edge.contact", s.edges.contact,
+        "4 * mother face + side, target face, target edge, place one step ago");
+  field("edge.state", s.edges.state,
+        "normal force, penetration, shear forces, gap without stress, stored energies");
+  field("edge.reaction", s.edges.reaction,
+        "force, stiffness, places on the edges, lost in the step");
   field("edge.friction", s.edges.friction, "frictional work [J]");
   field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");
   field("edge.lost", s.edges.lost, "1: lost by depth");

@@ -9,6 +9,7 @@
 #include "core/check.hpp"
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
+#include "core/edge_list.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
 #include "core/rest.hpp"
@@ -63,6 +64,7 @@ void update_bonds(const Model& m, State& s, Queue q) {  // contact/bond.hpp
 }
 
 void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact/target_face.hpp
+  mark_near_faces(m, s, q);
   launch_one(q, 4 * Index(s.search.exposed_face.size()),
              FindTargetFaces{face_columns(m, s),
                              {s.face_geometry.data()},
@@ -75,20 +77,23 @@ void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact
 void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, contact/target_edge.hpp
   if (!m.semi_edges) return;
   mark_near_edges(m, s, q);
+  begin_edges(s);
   const Index count = Index(s.search.exposed_face.size());
-  while (true) {
+  do {
     launch_one(q, count,
                FindTargetEdges{face_columns(m, s),
                                {s.face_geometry.data()},
                                s.search.exposed_face.data(),
                                edge_candidate_columns(s),
                                m.rules,
-                               edge_columns(s)});
+                               edges_before(s),
+                               s.edges.lost.data(),
+                               found_edges(s)});
     finish(q);
-    const Flag* overflow = s.edges.overflow.data();
-    if (std::none_of(overflow, overflow + count, [](Flag f) { return f != 0; })) return;
-    widen_edge_slots(s);
-  }
+  } while (!make_room_for_edges(s));
+  launch_one(q, count,
+             ListEdges{edges_before(s), found_edges(s), s.edges.first.data(),
+                       s.edges.contact.data(), s.edges.friction.data(), s.edges.dashpot.data()});
 }
 
 void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, contact/force.hpp
@@ -98,16 +103,17 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
   launch_one(q, 4 * count,
              UpdateSpringForces{face_columns(m, s), geometry, exposed, m.rules, contact_laws(m),
                                 spring_columns(s)});
-  launch_one(
-      q, count,
-      UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m), edge_columns(s)});
-  s.search.touching.resize(count);
-  launch_one(q, count, MarkTouching{spring_columns(s), edge_columns(s), s.search.touching.data()});
-  launch_one(
-      q, count,
-      GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s), edge_candidate_columns(s),
-                       source_columns(s), m.rules, spring_columns(s), edge_columns(s),
-                       s.search.touching.data(), s.contact_force.data()});
+  launch_one(q, Index(s.edges.contact.size() / 4),
+             UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m),
+                              s.edges.old_state.data(), edge_columns(s)});
+  s.search.acting.resize(s.search.source.size());
+  Flag* acting = s.search.acting.data();
+  launch_one(q, count, MarkActing{source_columns(s), spring_columns(s), edge_columns(s), acting});
+  launch_one(q, count,
+             GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s),
+                              edge_candidate_columns(s), source_columns(s), m.rules,
+                              spring_columns(s), edge_columns(s), s.edges.friction.data(),
+                              s.edges.dashpot.data(), acting, s.contact_force.data()});
 }
 
 template <class Shape>

@@ -112,6 +112,13 @@ CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Re
   return f;
 }
 
+/// What a contact remembers of its force.
+CDEM_HD inline void keep(ContactState& s, const ContactForce& f) {
+  s.force_n = f.force_n, s.sunk = f.sunk;
+  s.shear1 = f.shear1, s.shear2 = f.shear2;
+  s.energy_n = f.energy_n, s.energy_s = f.energy_s;
+}
+
 /// Force of every semi-spring in contact; slot = 4 * exposed face + vertex.
 struct UpdateSpringForces {
   FaceColumns faces;
@@ -129,7 +136,8 @@ struct UpdateSpringForces {
       return;
     }
     const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    if (before != t) carry_shear(slot.i, before, face_t);
+    ContactState s = before >= 0 ? ContactState::at(springs.state, slot.i) : ContactState{};
+    if (before >= 0 && before != t) carry_shear(s, before, face_t);
 
     const FaceShape shape = faces.shape(face_t);
     const Frame frame = shape.frame(geometry.normal(t));
@@ -152,20 +160,20 @@ struct UpdateSpringForces {
     const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
     const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
     const Real gap_rate = dot(frame.n, rate);
-    Real& free = springs.gap_free[slot.i];
-    free = before == t ? lifted_gap_free(free, foot.gap)
-                       : starting_gap_free(foot.gap, gap_rate, faces.dt, springs.sunk[slot.i],
-                                           max_of(free, 0.0));
+    s.gap_free = before == t ? lifted_gap_free(s.gap_free, foot.gap)
+                             : starting_gap_free(foot.gap, gap_rate, faces.dt, s.sunk,
+                                                 max_of(s.gap_free, 0.0));
     const Dilation dilation{min_of(law.tan_dilation, law.tan_friction),
-                            max_of(law.dilation_most - free, 0.0)};
-    ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - free, gap_rate, dashpot,
-                                   -dot(old.t1, apart), -dot(old.t2, apart),
-                                   {springs.force_n[slot.i], springs.sunk[slot.i],
-                                    springs.shear1[slot.i], springs.shear2[slot.i]},
-                                   dilation, faces.dt);
-    free += f.rise;
+                            max_of(law.dilation_most - s.gap_free, 0.0)};
+    ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - s.gap_free, gap_rate,
+                                   dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
+                                   {s.force_n, s.sunk, s.shear1, s.shear2}, dilation, faces.dt);
+    s.gap_free += f.rise;
     if (before >= 0 && before != t) f.dashpot = 0;  // a change of face is no work of the dashpot
-    keep(slot.i, f);
+    keep(s, f);
+    s.store(springs.state, slot.i);
+    springs.friction[slot.i] += f.friction;
+    springs.dashpot[slot.i] += f.dashpot;
 
     const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
     // the target takes the force where its line of action meets the face: no couple is left over
@@ -198,76 +206,49 @@ struct UpdateSpringForces {
     }
     return p;
   }
-  /// A contact that begins: without shear force, or with that of the face it comes from, turned
-  /// into the new plane with its length kept (hand-over).
-  CDEM_HD void carry_shear(Index slot, Index before, Index face_t) const {
-    if (before < 0) {
-      springs.shear1[slot] = springs.shear2[slot] = 0;
-      springs.energy_s[slot] = springs.sunk[slot] = 0;
-      return;
-    }
+  /// A contact that changes its face keeps the shear force, turned into the new plane with its
+  /// length kept (hand-over).
+  CDEM_HD void carry_shear(ContactState& s, Index before, Index face_t) const {
     const Frame from = faces.shape(exposed_face[before]).frame();
     const Frame to = faces.shape(face_t).frame();
-    const Real s1 = springs.shear1[slot], s2 = springs.shear2[slot];
+    const Real s1 = s.shear1, s2 = s.shear2;
     const Vec3<Real> shear = s1 * from.t1 + s2 * from.t2;
     const Real a = dot(shear, to.t1), b = dot(shear, to.t2);
     const Real in_plane = sqrt_of(a * a + b * b);
     const Real scale = in_plane > 0 ? sqrt_of(s1 * s1 + s2 * s2) / in_plane : 0.0;
-    springs.shear1[slot] = scale * a;
-    springs.shear2[slot] = scale * b;
+    s.shear1 = scale * a;
+    s.shear2 = scale * b;
   }
   /// A contact that opened forgets its shear force; what that spring held is lost to friction, and
   /// what the normal spring held and did not give back to the dashpot.
   CDEM_HD void end(Index slot) const {
-    springs.friction[slot] += springs.energy_s[slot];
-    springs.dashpot[slot] +=
-        springs.energy_n[slot] - 0.5 * springs.force_n[slot] * springs.sunk[slot];
-    springs.energy_n[slot] = springs.energy_s[slot] = 0;
-    springs.force_n[slot] = springs.shear1[slot] = springs.shear2[slot] = 0;
-    springs.sunk[slot] = springs.gap_free[slot] = 0;
+    const ContactState s = ContactState::at(springs.state, slot);
+    springs.friction[slot] += s.energy_s;
+    springs.dashpot[slot] += s.energy_n - 0.5 * s.force_n * s.sunk;
+    ContactState{}.store(springs.state, slot);
     Real* row = springs.reaction + std::size_t(slot) * 8;
     row[0] = row[1] = row[2] = row[3] = 0;
   }
-  CDEM_HD void keep(Index slot, const ContactForce& f) const {
-    springs.force_n[slot] = f.force_n;
-    springs.sunk[slot] = f.sunk;
-    springs.shear1[slot] = f.shear1;
-    springs.shear2[slot] = f.shear2;
-    springs.energy_n[slot] = f.energy_n;
-    springs.energy_s[slot] = f.energy_s;
-    springs.friction[slot] += f.friction;
-    springs.dashpot[slot] += f.dashpot;
-  }
 };
 
-/// Force of every semi-edge contact of one exposed face.
+/// Force of every semi-edge contact.
 struct UpdateEdgeForces {
   FaceColumns faces;
   FaceGeometry geometry;
   const Index* exposed_face;
   ContactLaws laws;
+  const Real* state_before;  // rows of ContactState, one step ago
   EdgeColumns edges;
 
-  CDEM_HD void operator()(One m) const {
-    for (Index j = 0; j < edges.count[m.i]; ++j) update(m.i, edges.slots * m.i + j);
-  }
-
- private:
-  struct Side {
-    Index a, b;  // nodes at its ends
-  };
-  CDEM_HD Side side_of(Index face, Index k) const {
-    return {faces.vertex(face, k),
-            faces.vertex(face, k + 1 == faces.vertex_count(face) ? 0 : k + 1)};
-  }
-  CDEM_HD void update(Index m, Index place) const {
-    const Index t = edges.target_face[place];
+  CDEM_HD void operator()(One place) const {
+    const EdgeContact contact = EdgeContact::at(edges.contact, place.i);
+    const Index m = contact.mother / 4, t = contact.face;
     const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    const Index edge = edges.target_edge[place];
-    const Side sm = side_of(face_m, edges.side[place]);
+    const Side sm = side_of(face_m, contact.mother % 4);
     // the frame belongs to the edge, whichever of its faces is the right one just now
-    const Side st{faces.edge_nodes[2 * edge], faces.edge_nodes[2 * edge + 1]};
-
+    const Side st{faces.edge_nodes[2 * contact.edge], faces.edge_nodes[2 * contact.edge + 1]};
+    ContactState s = contact.before >= 0 ? ContactState::at(state_before, contact.before)
+                                         : ContactState{0, -1, 0, 0, 0, 0, 0};
     const Vec3<Real> xm = faces.nodes.position(sm.a), xt = faces.nodes.position(st.a);
     const Vec3<Real> dm = faces.nodes.position(sm.b) - xm, dt = faces.nodes.position(st.b) - xt;
     const Vec3<Real> out = geometry.normal(t) - geometry.normal(m);
@@ -291,31 +272,33 @@ struct UpdateEdgeForces {
     const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
     const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
     const Real gap_rate = dot(frame.n, rate);
-    Real& free = edges.gap_free[place];
-    free = edges.sunk[place] >= 0 ? lifted_gap_free(free, c.gap)
-                                  : starting_gap_free(c.gap, gap_rate, faces.dt, 0.0, 0.0);
-    const ContactForce f = contact_force(kn, ks, law.tan_friction, c.gap - free, gap_rate, dashpot,
-                                         -dot(old.t1, apart), -dot(old.t2, apart),
-                                         {edges.force_n[place], max_of(edges.sunk[place], 0.0),
-                                          edges.shear1[place], edges.shear2[place]},
-                                         {0.0, 0.0}, faces.dt);
-    edges.force_n[place] = f.force_n;
-    edges.sunk[place] = f.sunk;
-    edges.shear1[place] = f.shear1;
-    edges.shear2[place] = f.shear2;
-    edges.energy_n[place] = f.energy_n;
-    edges.energy_s[place] = f.energy_s;
-    edges.friction[m] += f.friction;
-    edges.dashpot[m] += f.dashpot;
+    s.gap_free = s.sunk >= 0 ? lifted_gap_free(s.gap_free, c.gap)
+                             : starting_gap_free(c.gap, gap_rate, faces.dt, 0.0, 0.0);
+    const ContactForce f =
+        contact_force(kn, ks, law.tan_friction, c.gap - s.gap_free, gap_rate, dashpot,
+                      -dot(old.t1, apart), -dot(old.t2, apart),
+                      {s.force_n, max_of(s.sunk, 0.0), s.shear1, s.shear2}, {0.0, 0.0}, faces.dt);
+    keep(s, f);
+    s.store(edges.state, place.i);
 
     const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
     // both edges take the force on one line of action: no couple is left over
     const Crossing line = f.force_n > 0 ? cross_edges(xm, dm, xt, dt, force) : c;
-    Real* row = edges.reaction + std::size_t(place) * 8;
+    Real* row = edges.reaction + std::size_t(place.i) * 8;
     row[0] = force.x, row[1] = force.y, row[2] = force.z;
     row[3] = f.force_n > 0 ? max_of(kn, ks) : 0.0;
     row[4] = line.s;
-    row[5] = faces.vertex(face_t, side_on(face_t, edge)) == st.a ? line.t : 1.0 - line.t;
+    row[5] = faces.vertex(face_t, side_on(face_t, contact.edge)) == st.a ? line.t : 1.0 - line.t;
+    row[6] = f.friction, row[7] = f.dashpot;
+  }
+
+ private:
+  struct Side {
+    Index a, b;  // nodes at its ends
+  };
+  CDEM_HD Side side_of(Index face, Index k) const {
+    return {faces.vertex(face, k),
+            faces.vertex(face, k + 1 == faces.vertex_count(face) ? 0 : k + 1)};
   }
   CDEM_HD Real flexibility(const Side& side, Real s) const {
     return (1.0 - s) * (1.0 - s) / laws.node_mass[side.a] + s * s / laws.node_mass[side.b];
@@ -335,23 +318,39 @@ CDEM_HD inline bool is_idle(const Candidates& candidates, const EdgeCandidates& 
          sources.first[m] == sources.first[m + 1];
 }
 
-/// Mark the exposed faces that have contacts of their own in this step.
-struct MarkTouching {
+/// Mark, among the sources of every exposed face, those whose contacts act on it in this step: most
+/// do not. Each face marks where its own contacts act.
+struct MarkActing {
+  Sources sources;
   SpringColumns springs;
   EdgeColumns edges;
-  Flag* touching;  // [exposed]
+  Flag* acting;  // [source]
 
   CDEM_HD void operator()(One m) const {
-    bool any = edges.count[m.i] > 0;
-    for (Index k = 0; k < 4; ++k) any = any || springs.target[4 * m.i + k] >= 0;
-    touching[m.i] = any;
+    for (Index k = 0; k < 4; ++k) mark(springs.target[4 * m.i + k], m.i);
+    for (Index c = edges.first[m.i]; c < edges.first[m.i + 1]; ++c)
+      mark(EdgeContact::at(edges.contact, c).face, m.i);
+  }
+
+ private:
+  CDEM_HD void mark(Index target, Index source) const {
+    if (target < 0) return;
+    Index first = sources.first[target], last = sources.first[target + 1];
+    while (first < last) {  // the row is in ascending order
+      const Index middle = first + (last - first) / 2;
+      if (sources.other[middle] < source)
+        first = middle + 1;
+      else
+        last = middle;
+    }
+    if (first < sources.first[target + 1] && sources.other[first] == source) acting[first] = 1;
   }
 };
 
 /// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions
 /// of all others that have it as target. It looks through its sources in their order instead of
 /// letting contacts add to nodes, so the sum has one order for any number of threads. An idle face
-/// keeps what it has: no node sums it.
+/// keeps what it has: no node sums it. The marks of its sources are taken back for the next step.
 struct GatherFaceForces {
   FaceColumns faces;
   const Index* exposed_face;
@@ -361,16 +360,21 @@ struct GatherFaceForces {
   SearchRules rules;
   SpringColumns springs;
   EdgeColumns edges;
-  const Flag* touching;  // [exposed] see MarkTouching: most sources are not
-  Real* corner_force;    // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
+  Real* edge_friction;  // [exposed] lost so far in its semi-edges  [J]
+  Real* edge_dashpot;   // [exposed] lost so far in their dashpots  [J]
+  Flag* acting;         // [source] see MarkActing
+  Real* corner_force;   // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
 
   CDEM_HD void operator()(One m) const {
     if (is_idle(candidates, edge_candidates, sources, m.i)) return;
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
     Real sum[4][4] = {};
-    if (touching[m.i]) own(m.i, count, sum);
-    for (Index c = sources.first[m.i]; c < sources.first[m.i + 1]; ++c)
-      if (touching[sources.other[c]]) reactions(m.i, face, count, sources.other[c], sum);
+    own(m.i, count, sum);
+    for (Index c = sources.first[m.i]; c < sources.first[m.i + 1]; ++c) {
+      if (!acting[c]) continue;
+      reactions(m.i, face, count, sources.other[c], sum);
+      acting[c] = 0;
+    }
     for (Index k = 0; k < count; ++k)
       for (Index j = 0; j < 4; ++j) corner_force[(std::size_t(m.i) * 4 + k) * 4 + j] = sum[k][j];
   }
@@ -397,12 +401,13 @@ struct GatherFaceForces {
       if (shared > 0)
         for (Index j = 0; j < count; ++j) add(sum[j], shared, row);
     }
-    for (Index j = 0; j < edges.count[m]; ++j) {
-      const Index place = edges.slots * m + j;
-      const Real* row = edges.reaction + std::size_t(place) * 8;
-      const Index k = edges.side[place];
+    for (Index c = edges.first[m]; c < edges.first[m + 1]; ++c) {
+      const Real* row = edges.reaction + std::size_t(c) * 8;
+      const Index k = EdgeContact::at(edges.contact, c).mother % 4;
       add(sum[k], 1.0 - row[4], row);
       add(sum[k + 1 == count ? 0 : k + 1], row[4], row);
+      edge_friction[m] += row[6];
+      edge_dashpot[m] += row[7];
     }
   }
   CDEM_HD void reactions(Index m, Index face, Index count, Index other, Real sum[4][4]) const {
@@ -411,11 +416,11 @@ struct GatherFaceForces {
       const Real* row = springs.reaction + (std::size_t(other) * 4 + k) * 8;
       for (Index j = 0; j < count; ++j) take(sum[j], row[4 + j], row);
     }
-    for (Index j = 0; j < edges.count[other]; ++j) {
-      const Index place = edges.slots * other + j;
-      if (edges.target_face[place] != m) continue;
-      const Real* row = edges.reaction + std::size_t(place) * 8;
-      const Index k = side_on(face, edges.target_edge[place]);
+    for (Index c = edges.first[other]; c < edges.first[other + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(edges.contact, c);
+      if (contact.face != m) continue;
+      const Real* row = edges.reaction + std::size_t(c) * 8;
+      const Index k = side_on(face, contact.edge);
       take(sum[k], 1.0 - row[5], row);
       take(sum[k + 1 == count ? 0 : k + 1], row[5], row);
     }

@@ -5,34 +5,54 @@
 
 namespace cdem {
 
-/// State of the semi-edge contacts of exposed faces. A semi-edge may cross several target edges, so
-/// a face has `slots` places for those of all its sides; running out of them is reported, never
-/// silent. Place = slots * exposed face + j; the used ones come first.
+/// A contact of a semi-edge, as it is kept: a row of 4.
+struct EdgeContact {
+  Index mother;  // 4 * exposed face + side
+  Index face;    // exposed face to which the target edge belongs
+  Index edge;    // target edge
+  Index before;  // place of this contact one step ago, or -1
+
+  CDEM_HD static EdgeContact at(const Index* rows, std::size_t place) {
+    const Index* r = rows + 4 * place;
+    return {r[0], r[1], r[2], r[3]};
+  }
+  CDEM_HD void store(Index* rows, std::size_t place) const {
+    Index* r = rows + 4 * place;
+    r[0] = mother, r[1] = face, r[2] = edge, r[3] = before;
+  }
+};
+
+/// The semi-edge contacts, in the order of their mother faces: first[m] to first[m + 1] are those
+/// of exposed face m.
 struct EdgeColumns {
+  const Index* first;    // [exposed + 1]
+  const Index* contact;  // rows of EdgeContact
+  Real* state;           // rows of ContactState
+  Real* reaction;  // rows of 8: force on the mother x y z, stiffness, place on the mother side
+                   // (0..1), place on the target's side (0..1), what friction and dashpot
+                   // took in the step  [J]
+};
+
+/// The same one step ago.
+struct EdgesBefore {
+  const Index* first;
+  const Index* contact;
+  const Real* state;
+};
+
+/// What the search finds in a step: `slots` places a face. A face may cross more edges than that;
+/// its count says so, and the caller makes room.
+struct FoundEdges {
   Index slots;
-  Index* count;        // [exposed] places in use
-  Index* side;         // side of the mother face
-  Index* target_face;  // exposed face to which the target edge belongs
-  Index* target_edge;  // edge
-  Real* gap_free;      // gap at which the contact is free of stress  [m]
-  Real* sunk;          // effective penetration: gap_free - gap, or 0; -1 in a new contact  [m]
-  Real* shear1;        // [N] in the frame of the edge pair
-  Real* shear2;
-  Real* force_n;   // [N], compression > 0
-  Real* energy_n;  // stored in the normal spring  [J]
-  Real* energy_s;  // stored in the shear spring  [J]
-  Real* reaction;  // row of 8: force on the mother x y z, stiffness, place on the mother
-                   // side (0..1), place on the target's side (0..1)
-  Real* friction;  // [exposed] lost so far  [J]
-  Real* dashpot;   // [exposed] lost in the contact dashpot so far  [J]
-  Flag* lost;      // [exposed] 1: a loaded contact was lost because it sank too deep
-  Flag* overflow;  // [exposed] 1: more contacts than places
+  Index* count;  // [exposed]
+  Index* rows;   // [exposed][slots] of EdgeContact
 };
 
 /// Pairs of sides of exposed faces that may cross before the next refresh, in both directions.
 struct EdgeCandidates {
   const Index* first;  // [exposed + 1]
   const Index* face;   // exposed face to which the target side belongs, ascending in a row
+  const Index* edge;   // target edge
   const Index* sides;  // SidePair::code
   const Index* edges;  // pair of edges that the sides are of
   const Flag* near;    // [pair of edges] 0: they cannot begin to touch in this step
@@ -141,56 +161,42 @@ struct FindTargetEdges {
   const Index* exposed_face;
   EdgeCandidates candidates;
   SearchRules rules;
-  EdgeColumns edges;
+  EdgesBefore held;
+  Flag* lost;  // [exposed] 1: a loaded contact was lost because it sank too deep
+  FoundEdges found;
 
   /// More contacts than this on one face stop the run.
   static constexpr Index most_slots = 64;
 
   CDEM_HD void operator()(One m) const {
-    edges.overflow[m.i] = 0;
-    if (edges.count[m.i] == 0 && !any_near(m.i)) return;
-    Held held(*this, m.i);
-    Found found[most_slots];
-    const Index used = find(m.i, held, found);
-    if (used > edges.slots) {  // nothing else is written: the caller makes room and runs this again
-      edges.overflow[m.i] = 1;
-      return;
+    Index used = 0;
+    for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c) {
+      const bool near = candidates.near[candidates.edges[c]];
+      if (!near && held.first[m.i] == held.first[m.i + 1]) continue;
+      const SidePair pair = SidePair::of(candidates.sides[c]);
+      const Index edge = candidates.edge[c], old = held_place(m.i, pair.k, edge);
+      if (!near && old < 0) continue;
+      const Index t = candidates.face[c];
+      if (!touches(m.i, t, pair, old >= 0, loaded(old), lost + m.i)) continue;
+      if (used < found.slots)
+        EdgeContact{4 * m.i + pair.k, t, edge, old}.store(found.rows,
+                                                          std::size_t(m.i) * found.slots + used);
+      ++used;
     }
-    for (Index j = 0; j < used; ++j) {
-      const Found& f = found[j];
-      const Index place = edges.slots * m.i + j;
-      edges.side[place] = f.side;
-      edges.target_face[place] = f.face;
-      edges.target_edge[place] = f.edge;
-      edges.gap_free[place] = f.old >= 0 ? held.gap_free[f.old] : 0.0;
-      edges.sunk[place] = f.old >= 0 ? held.sunk[f.old] : -1.0;
-      edges.shear1[place] = held.shear1(f.old);
-      edges.shear2[place] = held.shear2(f.old);
-      edges.force_n[place] = f.old >= 0 ? held.force_n[f.old] : 0.0;
-      edges.energy_n[place] = f.old >= 0 ? held.energy_n[f.old] : 0.0;
-      edges.energy_s[place] = f.old >= 0 ? held.energy_s[f.old] : 0.0;
-      if (f.old >= 0) held.goes_on[f.old] = true;
-    }
-    for (Index j = 0; j < held.count;
-         ++j) {  // what springs of contacts that ended did not give back
-      if (held.goes_on[j]) continue;
-      edges.friction[m.i] += held.energy_s[j];
-      edges.dashpot[m.i] += held.energy_n[j] - 0.5 * held.force_n[j] * max_of(held.sunk[j], 0.0);
-    }
-    edges.count[m.i] = used;
+    found.count[m.i] = used;
   }
 
   /// Does a side of exposed face m touch one of exposed face t?
-  CDEM_HD bool touches(Index m, Index target, const SidePair& pair, bool held, bool loaded,
-                       Flag* lost) const {
+  CDEM_HD bool touches(Index m, Index target, const SidePair& pair, bool goes_on, bool loaded,
+                       Flag* sank) const {
     const Index k = pair.k, j = pair.j;
     if (!geometry.sharp(m, k) || !geometry.sharp(target, j)) return false;
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(target);
-    if (dot(nm, nt) >= -rules.opposing) return false;
+    if (dot(nm, nt) >= -rules.opposing || !is_right(m, target, j)) return false;
     const Sides p = sides(m, k, target, j);
     if (pair.shared && together(p, pair.shared)) return false;
     const Vec3<Real> p0 = p.xm + rules.indentation * (geometry.center(m) - p.xm);
-    const Real slack = held ? 0.5 * rules.indentation : 0.0;
+    const Real slack = goes_on ? 0.5 * rules.indentation : 0.0;
     if (far_apart(p, p0, nm, nt, slack)) return false;
 
     const Vec3<Real> n = edge_normal(p.dm, p.dt, nt - nm);
@@ -203,77 +209,27 @@ struct FindTargetEdges {
     const Real approach = rules.approach_steps * faces.dt *
                           abs_of(dot(n, velocity_at(p.m0, p.m1, true_edges.s) -
                                             velocity_at(p.t0, p.t1, true_edges.t)));
-    const Real limit = held ? rules.depth * p.length : rules.entry * p.length + approach;
+    const Real limit = goes_on ? rules.depth * p.length : rules.entry * p.length + approach;
     const bool in_cones = cones_hold(m, k, target, j, p.dm, p.dt, n);
     if (true_edges.gap < -limit) {
-      if (held && loaded && in_cones) *lost = 1;
+      if (goes_on && loaded && in_cones) *sank = 1;
       return false;
     }
     return in_cones;
   }
 
-  CDEM_HD bool any_near(Index m) const {
-    for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c)
-      if (candidates.near[candidates.edges[c]]) return true;
-    return false;
-  }
-  /// A contact found in this step; `old` is its place among those of the step before, or -1.
-  struct Found {
-    Index side, face, edge, old;
-  };
-  /// The contacts of the step before, so that shear force and hysteresis carry over.
-  struct Held {
-    const EdgeColumns& edges;
-    Index first, count;
-    Index side[most_slots], edge[most_slots];
-    Real s1[most_slots], s2[most_slots], energy_s[most_slots];
-    Real gap_free[most_slots], sunk[most_slots], force_n[most_slots], energy_n[most_slots];
-    bool goes_on[most_slots];
-
-    CDEM_HD Held(const FindTargetEdges& k, Index m)
-        : edges(k.edges), first(k.edges.slots * m), count(k.edges.count[m]) {
-      for (Index j = 0; j < count; ++j) {
-        side[j] = edges.side[first + j];
-        edge[j] = edges.target_edge[first + j];
-        gap_free[j] = edges.gap_free[first + j];
-        sunk[j] = edges.sunk[first + j];
-        s1[j] = edges.shear1[first + j];
-        s2[j] = edges.shear2[first + j];
-        energy_s[j] = edges.energy_s[first + j];
-        force_n[j] = edges.force_n[first + j];
-        energy_n[j] = edges.energy_n[first + j];
-        goes_on[j] = false;
-      }
-    }
-    CDEM_HD Index find(Index k, Index e) const {
-      for (Index j = 0; j < count; ++j)
-        if (side[j] == k && edge[j] == e) return j;
-      return -1;
-    }
-    CDEM_HD bool loaded(Index j) const { return j >= 0 && force_n[j] > 0; }
-    CDEM_HD Real shear1(Index j) const { return j >= 0 ? s1[j] : 0.0; }
-    CDEM_HD Real shear2(Index j) const { return j >= 0 ? s2[j] : 0.0; }
-  };
-
-  /// All contacts of one exposed face in candidate order; returns their number.
-  CDEM_HD Index find(Index m, const Held& held, Found* found) const {
-    Index used = 0;
-    for (Index c = candidates.first[m]; c < candidates.first[m + 1]; ++c) {
-      const bool near = candidates.near[candidates.edges[c]];
-      if (!near && held.count == 0) continue;
-      const Index t = candidates.face[c];
-      const SidePair pair = SidePair::of(candidates.sides[c]);
-      const Index edge = faces.face_edges[4 * exposed_face[t] + pair.j];
-      const Index old = held.find(pair.k, edge);
-      if (!near && old < 0) continue;
-      if (!touches(m, t, pair, old >= 0, held.loaded(old), edges.lost + m)) continue;
-      if (used < most_slots) found[used] = {pair.k, t, edge, old};
-      ++used;
-    }
-    return used;
-  }
-
  private:
+  /// Place of the contact that side k of exposed face m had with an edge one step ago, or -1.
+  CDEM_HD Index held_place(Index m, Index k, Index edge) const {
+    for (Index c = held.first[m]; c < held.first[m + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(held.contact, c);
+      if (contact.edge == edge && contact.mother == 4 * m + k) return c;
+    }
+    return -1;
+  }
+  CDEM_HD bool loaded(Index place) const {
+    return place >= 0 && ContactState::at(held.state, place).force_n > 0;
+  }
   /// A side of the mother and one of the target: nodes, start, vector; L of the smaller face.
   struct Sides {
     Index m0, m1, t0, t1;
@@ -324,11 +280,10 @@ struct FindTargetEdges {
     const Vec3<Real> va = faces.nodes.velocity(a);
     return va + s * (faces.nodes.velocity(b) - va);
   }
-  /// Right face, and -n in the mother edge's normal cone,
-  /// n in the target edge's: the faces at an edge fall away from the contact plane.
+  /// -n in the mother edge's normal cone, n in the target edge's: the faces at an edge fall away
+  /// from the contact plane.
   CDEM_HD bool cones_hold(Index m, Index k, Index t, Index j, const Vec3<Real>& dm,
                           const Vec3<Real>& dt, const Vec3<Real>& n) const {
-    const Index face_t = exposed_face[t];
     const Index across_m = faces.across(m, k), across_t = faces.across(t, j);
     const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(t);
     if (dot(n, unit(cross(nm, dm))) < -rules.cone) return false;
@@ -340,12 +295,44 @@ struct FindTargetEdges {
     if (across_t >= 0) {
       const Vec3<Real> n2 = normal_of(faces, geometry, across_t);
       if (dot(n, unit(cross(n2, -dt))) > rules.cone) return false;
-      if (faces.face_exposed[across_t] >= 0) {
-        const Real here = dot(nm, nt), there = dot(nm, n2);
-        if (there < here || (there == here && across_t < face_t)) return false;
-      }
     }
     return true;
+  }
+  /// Is exposed face t the right face of its side j for mother face m: does the one across that
+  /// side oppose m less?
+  CDEM_HD bool is_right(Index m, Index t, Index j) const {
+    const Index across = faces.across(t, j);
+    const Index other = across >= 0 ? faces.face_exposed[across] : -1;
+    if (other < 0) return true;
+    const Vec3<Real> nm = geometry.normal(m);
+    const Real here = dot(nm, geometry.normal(t)), there = dot(nm, geometry.normal(other));
+    return here < there || (here == there && exposed_face[t] < across);
+  }
+};
+
+/// List what was found for one exposed face: its contacts go on or begin, and what the springs of
+/// those that ended did not give back is lost to friction and dashpot.
+struct ListEdges {
+  EdgesBefore held;
+  FoundEdges found;
+  const Index* first;  // [exposed + 1] of the list
+  Index* contact;      // rows of EdgeContact
+  Real* friction;      // [exposed] lost so far  [J]
+  Real* dashpot;       // [exposed] lost so far  [J]
+
+  CDEM_HD void operator()(One m) const {
+    const std::size_t row = std::size_t(m.i) * found.slots;
+    for (Index j = 0; j < found.count[m.i]; ++j)
+      EdgeContact::at(found.rows, row + j).store(contact, first[m.i] + j);
+    for (Index c = held.first[m.i]; c < held.first[m.i + 1]; ++c) {
+      bool goes_on = false;
+      for (Index j = 0; j < found.count[m.i]; ++j)
+        goes_on = goes_on || EdgeContact::at(found.rows, row + j).before == c;
+      if (goes_on) continue;
+      const ContactState s = ContactState::at(held.state, c);
+      friction[m.i] += s.energy_s;
+      dashpot[m.i] += s.energy_n - 0.5 * s.force_n * max_of(s.sunk, 0.0);
+    }
   }
 };
 

@@ -24,6 +24,17 @@ struct SearchRules {
 struct Candidates {
   const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
   const Index* other;  // exposed face, ascending in a row
+  const Index* pair;   // pair of vertex and face
+  const Flag* near;    // [pair] 0: they cannot be in contact in this step
+};
+
+/// Some of them.
+struct FaceList {
+  const Index* other;
+  const Index* pair;  // null: all are near
+  const Flag* near;
+  Index count;
+  CDEM_HD bool is_near(Index c) const { return !pair || near[pair[c]]; }
 };
 
 /// Exposed faces whose semi-springs and semi-edges may act on an exposed face: ragged rows.
@@ -32,21 +43,76 @@ struct Sources {
   const Index* other;  // exposed face, ascending in a row
 };
 
+/// What a contact remembers from step to step: a row of 8 numbers.
+struct ContactState {
+  Real force_n;             // compression > 0  [N]
+  Real sunk;                // effective penetration: gap_free - gap, or 0; -1 before it begins  [m]
+  Real shear1, shear2;      // in the frame of target face or edge pair  [N]
+  Real gap_free;            // gap at which the contact is free of stress  [m]
+  Real energy_n, energy_s;  // stored in the normal and in the shear spring  [J]
+
+  CDEM_HD static ContactState at(const Real* rows, std::size_t place) {
+    const Real* r = rows + 8 * place;
+    return {r[0], r[1], r[2], r[3], r[4], r[5], r[6]};
+  }
+  CDEM_HD void store(Real* rows, std::size_t place) const {
+    Real* r = rows + 8 * place;
+    r[0] = force_n, r[1] = sunk, r[2] = shear1, r[3] = shear2;
+    r[4] = gap_free, r[5] = energy_n, r[6] = energy_s;
+  }
+};
+
 /// State of the semi-springs of exposed faces: slot = 4 * exposed face + vertex.
 struct SpringColumns {
   Index* target;         // exposed face in contact, or -1
   Index* target_before;  // the same one step ago
-  Real* force_n;         // [N], compression > 0
-  Real* shear1;          // [N] in the target's frame
-  Real* shear2;
-  Real* gap_free;  // gap at which the contact is free of stress  [m]
-  Real* sunk;      // effective penetration: gap_free - gap, or 0  [m]
-  Real* energy_n;  // stored in the normal spring  [J]
-  Real* energy_s;  // stored in the shear spring  [J]
-  Real* friction;  // lost so far  [J]
-  Real* dashpot;   // lost in the contact dashpot so far  [J]
-  Real* reaction;  // row of 8: force on the mother x y z, stiffness, weights on the target
-  Flag* lost;      // 1: a loaded contact was lost because it sank too deep
+  Real* state;           // rows of ContactState
+  Real* friction;        // lost so far  [J]
+  Real* dashpot;         // lost in the contact dashpot so far  [J]
+  Real* reaction;        // row of 8: force on the mother x y z, stiffness, weights on the target
+  Flag* lost;            // 1: a loaded contact was lost because it sank too deep
+};
+
+/// Mark the pairs of vertex and face that may be in contact in this step. One test stands for the
+/// semi-springs in all faces at the vertex, and has room for what distinguishes them. So what is
+/// found in contact does not depend on it.
+struct MarkNearFaces {
+  InMotion nodes;
+  InIndices corners;  // [5][pair]: the vertex; the corners of the face, a triangle's last one twice
+  InTable room;       // [5][pair]: highest above the face and lowest below it, farthest outside a
+                      // side; depth from which it may lie outside, and distance from the centre of
+                      // three corners that it has then at most  [m]
+  Flag* near;
+
+  template <class I>
+  CDEM_HD void operator()(I p) const {
+    using T = Number<I>;
+    const Vec3<T> v = nodes.position(corners.at(0, p));
+    const Vec3<T> x[4] = {nodes.position(corners.at(1, p)), nodes.position(corners.at(2, p)),
+                          nodes.position(corners.at(3, p)), nodes.position(corners.at(4, p))};
+    const Vec3<T> n = cross(x[2] - x[0], x[3] - x[1]);
+    const T n2 = dot(n, n), gap = dot(n, v - x[0]);  // times |n|
+    const T gap2 = gap * gap;
+    const auto below = gap < T(0.0);
+    const T most = select(below, room.at(1, p), room.at(0, p));
+    const T aside = room.at(2, p), sunk = room.at(3, p), reach = room.at(4, p);
+    auto outside = beyond(x[0], x[1], n, n2, v, aside) | beyond(x[1], x[2], n, n2, v, aside);
+    outside = outside | beyond(x[2], x[3], n, n2, v, aside) | beyond(x[3], x[0], n, n2, v, aside);
+    const Vec3<T> arm = v - T(1.0 / 3.0) * (x[0] + x[1] + x[2]);
+    const auto beside = dot(arm, arm) * n2 - gap2 > reach * reach * n2;
+    const auto deep = below & (gap2 > sunk * sunk * n2);
+    set_flags(near, p, !((gap2 > most * most * n2) | beside | (outside & !deep)));
+  }
+
+ private:
+  /// Is a point farther outside the side from a to b than `room`?
+  template <class T>
+  CDEM_HD static auto beyond(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& n, const T& n2,
+                             const Vec3<T>& point, const T& room) {
+    const Vec3<T> side = b - a;
+    const T out = dot(cross(side, n), point - a);  // times |n| and the length of the side
+    return (out > T(0.0)) & (out * out > room * room * n2 * dot(side, side));
+  }
 };
 
 /// Choose the target face of one semi-spring.
@@ -71,24 +137,34 @@ struct FindTargetFaces {
   SpringColumns springs;
 
   CDEM_HD void operator()(One slot) const {
-    const Index first = candidates.first[slot.i], last = candidates.first[slot.i + 1];
     springs.target_before[slot.i] = springs.target[slot.i];
-    if (first == last && springs.target[slot.i] < 0) return;
-    springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, candidates.other + first, last - first,
-                                    springs.lost + slot.i);
+    const FaceList listed = listed_for(slot.i);
+    bool any = springs.target[slot.i] >= 0;
+    for (Index c = 0; c < listed.count && !any; ++c) any = listed.is_near(c);
+    if (!any) return;
+    springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, listed, springs.lost + slot.i);
   }
 
-  /// Target of vertex k of exposed face m among `count` others, or none; `lost` is set where a
-  /// loaded contact sank too deep.
-  CDEM_HD Index choose(Index m, Index k, const Index* others, Index count, Flag* lost) const {
+  CDEM_HD FaceList listed_for(Index slot) const {
+    const Index first = candidates.first[slot];
+    return {candidates.other + first, candidates.pair + first, candidates.near,
+            candidates.first[slot + 1] - first};
+  }
+  /// Target of vertex k of exposed face m among others, or none; `lost` is set where a loaded
+  /// contact sank too deep.
+  CDEM_HD Index choose(Index m, Index k, const FaceList& others, Flag* lost) const {
     Seeker s = start(m, k, lost);
-    for (Index c = 0; c < count && !s.kept; ++c) {
-      const Index t = others[c];
+    for (Index c = 0; c < others.count && !s.kept; ++c) {
+      if (!others.is_near(c)) continue;
+      const Index t = others.other[c];
+      if (!opposes(m, t)) continue;
       const Real near = above(t), length = smaller_length(m, t);
       const Real plane = plane_gap(s.v, t);
       if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
       if (!beside(s.p, t, rules.tolerance * length)) continue;
-      const Real entry = rules.entry * length + approach(s.node, t) + s.hand_over;
+      // what lies flatter may begin whatever the approach
+      const bool flat = geometry.is_triangle(t) && plane > -0.9 * rules.entry * length;
+      const Real entry = rules.entry * length + (flat ? 0.0 : approach(s.node, t)) + s.hand_over;
       const bool sunk = s.free && plane < -entry && encloses(t, s.v, plane);
       const Real limit = sunk ? deepest_inside(t, length) : entry;
       const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, sunk});
@@ -126,8 +202,9 @@ struct FindTargetFaces {
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;
-    const bool loaded = springs.force_n[slot] > 0;
-    const Real length = smaller_length(m, current), gap_free = springs.gap_free[slot];
+    const ContactState state = ContactState::at(springs.state, slot);
+    const bool loaded = state.force_n > 0;
+    const Real length = smaller_length(m, current), gap_free = state.gap_free;
     const Real depth = rules.depth * length - min_of(gap_free, 0.0);
     s.lifted = 2 * max_of(gap_free, 0.0);
     if (qualify(m, s.node, s.v, s.p, current, {s.lifted, depth, true}) < none) {
@@ -140,6 +217,9 @@ struct FindTargetFaces {
     if (loaded && old_gap < 0) s.hand_over = -1.5 * old_gap;
     if (loaded && sank_below(s.p, current, old_gap, depth)) *lost = 1;
     return s;
+  }
+  CDEM_HD bool opposes(Index m, Index t) const {
+    return dot(geometry.normal(m), geometry.normal(t)) < -rules.opposing;
   }
   CDEM_HD Real smaller_length(Index m, Index t) const {
     return min_of(geometry.length(m), geometry.length(t));
@@ -157,9 +237,11 @@ struct FindTargetFaces {
     for (Index k = 0; k < faces.vertex_count(exposed_face[t]); ++k) {
       const Index across = faces.across(t, k);
       if (across < 0) continue;
-      const FaceShape beyond = faces.shape(across);
-      const Vec3<Real> center = beyond.center();
-      if (plane_gap(center, t) < 0 && dot(beyond.normal(), v - center) > plane) return false;
+      const Index exposed = faces.face_exposed[across];
+      const Vec3<Real> center =
+          exposed >= 0 ? geometry.center(exposed) : faces.shape(across).center();
+      if (plane_gap(center, t) < 0 && dot(normal_of(faces, geometry, across), v - center) > plane)
+        return false;
     }
     return true;
   }
@@ -207,8 +289,8 @@ struct FindTargetFaces {
   /// Gap of the vertex to face t if it is in contact there on the given terms, else `none`.
   CDEM_HD Real qualify(Index m, Index node, const Vec3<Real>& v, const Vec3<Real>& p, Index t,
                        const Terms& terms) const {
+    if (!opposes(m, t)) return none;
     const Vec3<Real> n = geometry.normal(t);
-    if (dot(geometry.normal(m), n) >= -rules.opposing) return none;
     const FaceShape f = faces.shape(exposed_face[t]);
     const Real room = rules.tolerance * smaller_length(m, t);
     if (!f.inside(p, n, room) && !(terms.inside && behind_corner(t, f, v, p, n, room))) return none;

@@ -176,20 +176,21 @@ class Simulation:
         exposed = s["search.exposed_face"]
         target = s["spring.target"]
         slots = np.flatnonzero(target >= 0)
-        used = s["edge.count"]
-        wide = len(s["edge.side"]) // max(len(exposed), 1)
-        mothers = np.repeat(np.arange(len(exposed)), used)
-        rank = np.arange(len(mothers)) - np.repeat(np.cumsum(used) - used, used)
-        places = mothers * wide + rank
+        edges = s["edge.contact"].reshape(-1, 4)
         return {
-            "kind": np.repeat([0, 1], [len(slots), len(places)]),
-            "mother_face": exposed[np.concatenate([slots // 4, mothers])],
-            "target_face": exposed[np.concatenate([target[slots], s["edge.target_face"][places]])],
-            "force_n": np.concatenate([s["spring.force_n"][slots], s["edge.force_n"][places]]),
+            "kind": np.repeat([0, 1], [len(slots), len(edges)]),
+            "mother_face": exposed[np.concatenate([slots, edges[:, 0]]) // 4],
+            "target_face": exposed[np.concatenate([target[slots], edges[:, 1]])],
+            "force_n": np.concatenate(
+                [
+                    s["spring.state"].reshape(-1, 8)[slots, 0],
+                    s["edge.state"].reshape(-1, 8)[:, 0],
+                ]
+            ),
             "force": np.concatenate(
                 [
                     s["spring.reaction"].reshape(-1, 8)[slots, :3],
-                    s["edge.reaction"].reshape(-1, 8)[places, :3],
+                    s["edge.reaction"].reshape(-1, 8)[:, :3],
                 ]
             ),
         }

@@ -71,10 +71,9 @@ def test_contact_types_carry_the_weight(lower, upper, seed):
     area, exposed = sim.build.assembly.arrays["face.area"], state["search.exposed_face"]
     share = area / (t.face_nodes >= 0).sum(axis=1) * K_N  # k_n A / N
     slots = np.flatnonzero(state["spring.target"] >= 0)
-    forces = 0.5 * share[exposed[slots // 4]] * state["spring.sunk"][slots]
-    wide = len(state["edge.side"]) // len(exposed)
-    places = [wide * x + j for x, n in enumerate(state["edge.count"]) for j in range(n)]
-    crossing = share[exposed[np.array(places, int) // wide]] * state["edge.sunk"][places]
+    forces = 0.5 * share[exposed[slots // 4]] * state["spring.state"].reshape(-1, 8)[slots, 1]
+    mothers = state["edge.contact"].reshape(-1, 4)[:, 0] // 4
+    crossing = share[exposed[mothers]] * state["edge.state"].reshape(-1, 8)[:, 1]
     predicted = np.concatenate([forces, crossing])
     np.testing.assert_allclose(sim.contacts["force_n"], predicted, rtol=1e-9)
     if "edge" not in (lower, upper):  # one normal for all: the weight itself

@@ -57,8 +57,10 @@ def run(study):
         study.check(f"{upper} on {lower}: semi-edges", theory=edges, ours=counts[1], within=0,
                     absolute=True)  # fmt: skip
         state = simulation.core.fields()
-        acting = (state["spring.sunk"][np.flatnonzero(state["spring.target"] >= 0)] if springs
-                  else state["edge.sunk"][state["edge.force_n"] > 0])  # fmt: skip
+        spring_sunk = state["spring.state"].reshape(-1, 8)[:, 1]
+        edge_force, edge_sunk = state["edge.state"].reshape(-1, 8)[:, :2].T
+        acting = (spring_sunk[state["spring.target"] >= 0] if springs
+                  else edge_sunk[edge_force > 0])  # fmt: skip
         study.check(f"{upper} on {lower}: penetration", unit="m", theory=depth, ours=acting.mean(),
                     within=1e-3)  # fmt: skip
     simulation = study.simulate(*LOWER["vertex"], *UPPER["vertex"], "loads.gravity=[0, 0, 0]",
