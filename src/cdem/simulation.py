@@ -410,6 +410,13 @@ class Simulation:
         assert self.results is not None
         arrays, attributes = self.results.read_checkpoint(self)
         self.reference = arrays.pop("simulation.reference")
+        if other := sorted(set(arrays) ^ set(self.core.fields())):
+            raise CdemError(
+                f"{self.results.folder}: its checkpoint was written by another version of cdem "
+                f"({attributes['version']}; this is {__version__}) and holds other arrays "
+                f"({', '.join(other[:3])}, ...). Go on with the cdem that wrote it, or run the case "
+                f"anew in another folder (-o)"
+            )
         self.core.restore(arrays, attributes["core"])
         self.overlap = tuple(attributes["overlap"])
         self.stage_index = int(attributes["stage_index"])

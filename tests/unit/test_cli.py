@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import h5py
 import pytest
 
 from cdem import Case, __version__, cli, doctor
@@ -141,6 +142,16 @@ def test_resuming_with_another_case_is_said(cdem):
     status, _, err = cdem("run", "cube.yaml", "--resume", "--set", "title=Other")
     assert status == 0
     assert "warning: this is not the case that cube.results was begun with: - title: A cube" in err
+
+
+def test_a_checkpoint_of_another_version_is_refused_in_one_line(cdem, folder):
+    assert cdem("run", "cube.yaml", "--quiet")[0] == 0
+    with h5py.File(folder / "cube.results/checkpoint.h5", "r+") as file:
+        del file["spring/state"]
+    status, out, err = cdem("run", "cube.yaml", "--resume")
+    assert (status, out) == (1, "")
+    assert "written by another version of cdem" in err and "spring.state" in err
+    assert "Traceback" not in err
 
 
 def test_a_failed_run_is_status_3(cdem, folder):
