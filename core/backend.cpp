@@ -107,7 +107,7 @@ template void launch(Queue, Index, const MarkNearEdges&);
 template void launch_one(Queue, Index, const FindTargetFaces&);
 template void launch_one(Queue, Index, const FindTargetEdges&);
 template void launch_one(Queue, Index, const UpdateSpringForces&);
-template void launch_one(Queue, Index, const UpdateEdgeForces&);
+template void launch(Queue, Index, const UpdateEdgeForces&);
 template void launch_one(Queue, Index, const ListEdges&);
 template void launch(Queue, Index, const MarkNearFaces&);
 template void launch_one(Queue, Index, const MarkActing&);

@@ -46,44 +46,51 @@ Rows<T> by_mother(const std::vector<Proximity>& found, std::vector<T> Proximity:
 using Touches = Rows<Proximity::Touch>;
 using Crossings = Rows<Proximity::Crossing>;
 
+/// Where the items that each patch has found begin in one list of all; the last is their number.
+template <class T>
+std::vector<Index> places(const std::vector<Proximity>& found, std::vector<T> Proximity::* list) {
+  std::vector<Index> first(found.size() + 1);
+  for (std::size_t p = 0; p < found.size(); ++p)
+    first[p + 1] = first[p] + Index((found[p].*list).size());
+  return first;
+}
+
 /// List the pairs of vertex and face of all patches, and let the touches know their places there.
 void list_faces(SearchState& search, std::vector<Proximity>& found) {
-  Index count = 0;
-  for (Proximity& f : found) {
-    for (Proximity::Touch& t : f.touches) t.pair += count;
-    count += Index(f.faces.size());
-  }
-  const std::size_t stride = padded_stride(count);
-  search.faces_near.resize(count);
+  const std::vector<Index> first = places(found, &Proximity::faces);
+  const std::size_t stride = padded_stride(first.back());
+  search.faces_near.resize(first.back());
   search.faces_corners.resize(5 * stride);
   search.faces_room.resize(5 * stride);
-  std::size_t place = 0;
-  for (const Proximity& f : found)
-    for (const Proximity::VertexFace& v : f.faces) {
+#pragma omp parallel for schedule(static) if (first.back() >= worth_threads)
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    for (Proximity::Touch& t : found[p].touches) t.pair += first[p];
+    std::size_t place = first[p];
+    for (const Proximity::VertexFace& v : found[p].faces) {
       for (std::size_t k = 0; k < 5; ++k) search.faces_corners[k * stride + place] = v.corners[k];
       for (std::size_t k = 0; k < 5; ++k) search.faces_room[k * stride + place] = v.room[k];
       ++place;
     }
+  }
 }
 
 /// List the pairs of edges of all patches, and let the crossings know their places there.
 void list_edges(SearchState& search, std::vector<Proximity>& found) {
-  Index count = 0;
-  for (Proximity& f : found) {
-    for (Proximity::Crossing& c : f.crossings) c.edges += count;
-    count += Index(f.edges.size());
-  }
-  const std::size_t stride = padded_stride(count);
-  search.edges_near.resize(count);
+  const std::vector<Index> first = places(found, &Proximity::edges);
+  const std::size_t stride = padded_stride(first.back());
+  search.edges_near.resize(first.back());
   search.edges_ends.resize(4 * stride);
   search.edges_room.resize(3 * stride);
-  std::size_t place = 0;
-  for (const Proximity& f : found)
-    for (const Proximity::Edges& e : f.edges) {
+#pragma omp parallel for schedule(static) if (first.back() >= worth_threads)
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    for (Proximity::Crossing& c : found[p].crossings) c.edges += first[p];
+    std::size_t place = first[p];
+    for (const Proximity::Edges& e : found[p].edges) {
       for (std::size_t k = 0; k < 4; ++k) search.edges_ends[k * stride + place] = e.ends[k];
       for (std::size_t k = 0; k < 3; ++k) search.edges_room[k * stride + place] = e.room[k];
       ++place;
     }
+  }
 }
 
 /// For every exposed face the others that list it: their contacts may act on it.
@@ -118,14 +125,15 @@ void list_touches(SearchState& search, const Touches& touches) {
   const Index count = Index(touches.first.size()) - 1;
   Column<Index>&first = search.candidate_first, &other = search.candidate;
   first.resize(4 * std::size_t(count) + 1);
-  first[0] = 0;
+  first.fill(0);
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x)
-    for (Index k = 0; k < 4; ++k)
-      first[4 * x + k + 1] =
-          first[4 * x + k] + Index(std::count_if(touches.begin(x), touches.end(x),
-                                                 [&](auto& t) { return t.vertex == k; }));
+    for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
+      ++first[4 * std::size_t(x) + t->vertex + 1];
+  for (std::size_t slot = 0; slot < 4 * std::size_t(count); ++slot) first[slot + 1] += first[slot];
   other.resize(first[4 * std::size_t(count)]);
   search.candidate_pair.resize(other.size());
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x)
     for (Index k = 0; k < 4; ++k) {
       Index place = first[4 * x + k];
@@ -144,6 +152,7 @@ void list_crossings(const Model& m, SearchState& search, const Crossings& crossi
   search.edge_candidate_edge.resize(count);
   search.edge_candidate_sides.resize(count);
   search.edge_candidate_edges.resize(count);
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (std::size_t i = 0; i < count; ++i) {
     const Proximity::Crossing& c = crossings.items[i];
     search.edge_candidate[i] = c.face;

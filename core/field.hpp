@@ -131,6 +131,17 @@ inline void set_flags(Flag* flags, Lane item, Mask mask) {
 }
 #endif
 
+/// Write one row of 8 numbers for every item.
+CDEM_HD inline void set_rows(Real* rows, One item, const Real* numbers) {
+  for (Index k = 0; k < 8; ++k) rows[std::size_t(item.i) * 8 + k] = numbers[k];
+}
+#if !defined(__CUDACC__)
+inline void set_rows(Real* rows, Lane item, const Pack* numbers) {
+  for (Index j = 0; j < lanes; ++j)
+    for (Index k = 0; k < 8; ++k) rows[std::size_t(item.i + j) * 8 + k] = numbers[k].n[j];
+}
+#endif
+
 /// A small lookup table, read at the item's own key.
 struct InLookup {
   const Real* data;

@@ -111,6 +111,32 @@ struct NumberOf<Lane> {
 template <class Item>
 using Number = typename NumberOf<Item>::type;
 
+/// The index type of a kernel for an item type: Index for One, IndexPack for Lane.
+template <class Item>
+struct IndexOf {
+  using type = Index;
+};
+
+/// Do something for every lane of an item, with the number of the lane and the item's own.
+template <class Do>
+CDEM_HD inline void for_lanes(One item, const Do& act) {
+  act(0, item.i);
+}
+CDEM_HD inline Real& lane_of(Real& number, Index) { return number; }
+CDEM_HD inline Index& lane_of(Index& index, Index) { return index; }
+#if !defined(__CUDACC__)
+template <>
+struct IndexOf<Lane> {
+  using type = IndexPack;
+};
+template <class Do>
+inline void for_lanes(Lane item, const Do& act) {
+  for (Index j = 0; j < lanes; ++j) act(j, item.i + j);
+}
+inline auto& lane_of(Pack& pack, Index lane) { return reinterpret_cast<Real*>(&pack.n)[lane]; }
+inline Index& lane_of(IndexPack& pack, Index lane) { return pack.id[lane]; }
+#endif
+
 /// Blocks of so many consecutive items that a launch may be limited to.
 inline constexpr Index block_size = 8;
 

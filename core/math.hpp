@@ -36,6 +36,10 @@ template <class T>
 CDEM_HD inline Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+template <class M, class T>
+CDEM_HD inline Vec3<T> select(const M& mask, const Vec3<T>& yes, const Vec3<T>& no) {
+  return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
+}
 template <class T>
 CDEM_HD inline T norm(const Vec3<T>& a) {
   return sqrt_of(dot(a, a));

@@ -97,7 +97,7 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
   const FaceColumns faces = face_columns(m, s);
   const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
   const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
-  const Frame frame_a = faces.shape(a).frame(), frame_b = faces.shape(b).frame();
+  const Frame<Real> frame_a = faces.shape(a).frame(), frame_b = faces.shape(b).frame();
   for (Index k = 0; k < p.points; ++k) {
     const Index node_a = p.nodes[std::size_t(k) * p.stride + i];
     const Index node_b = p.nodes[std::size_t(p.points + k) * p.stride + i];
@@ -110,8 +110,8 @@ void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
     const Vec3<Real> slip = ps.slip1[point] * frame_a.t1 + ps.slip2[point] * frame_a.t2;
     const Vec3<Real> along = jump - dot(frame_a.n, jump) * frame_a.n;
     const Vec3<Real> on_b = (-0.5 * ks) * (along - slip);
-    const auto give = [&](Index place, Index face, Index node, Index target, const Frame& frame,
-                          const Vec3<Real>& force) {
+    const auto give = [&](Index place, Index face, Index node, Index target,
+                          const Frame<Real>& frame, const Vec3<Real>& force) {
       for (Index v = 0; v < faces.vertex_count(face); ++v) {
         if (faces.vertex(face, v) != node) continue;
         const Index slot = 4 * place + v;
@@ -156,7 +156,7 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
     for (Index k = 0; k < count; ++k)
       if (!holds(k)) widest = std::max(widest, norm(jump[k]));
     if (!(widest > hinge_part * pair_length(m, p, i))) continue;
-    const PairFrame<Real> frame = pair_frame<count>(mean);
+    const Frame<Real> frame = pair_frame<count>(mean);
     const BondLaw<Real> law = bonds.law_of(One{i});
     for (Index k = 0; k < count; ++k) {
       const Real opening = dot(frame.n, jump[k]);
@@ -174,7 +174,9 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
   }
 }
 
-void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
+/// Returns whether any was released.
+bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
+  bool any = false;
   for (Index i = 0; i < p.count; ++i) {
     if (!(ps.live[i] > 0)) continue;
     if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
@@ -183,7 +185,9 @@ void release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     if (p.point_first.size() == 0 && ps.live[i] == 1) hand_over(m, s, p, ps, i);
     ps.live[i] = ps.jump[i] = ps.stored[i] = 0;
     ps.jump_at_break[i] = -1;
+    any = true;
   }
+  return any;
 }
 
 }  // namespace
@@ -220,7 +224,10 @@ void sum_stiffness(const Model& m, State& s) {
   s.node_potential.fill(0);
   const FaceColumns faces = face_columns(m, s);
   const ContactLaws laws = contact_laws(m);
-  for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
+  const Index exposed = Index(s.search.exposed_face.size());
+  std::vector<Real> stiffest_of(exposed);  // contact that a face may have  [N/m]
+#pragma omp parallel for schedule(static, 128) if (exposed >= worth_threads)
+  for (Index x = 0; x < exposed; ++x) {
     const Index face = s.search.exposed_face[x];
     Real stiffest = 0;
     // the law is that of mother and target, in this order: joints may differ from their groups
@@ -239,9 +246,12 @@ void sum_stiffness(const Model& m, State& s) {
       meet(s.search.edge_candidate[c], true);
     for (Index c = s.search.source_first[x]; c < s.search.source_first[x + 1]; ++c)
       meet(s.search.source[c], false);
-    // semi-springs of either side, and as much again for semi-edges
+    stiffest_of[x] = stiffest;
+  }
+  for (Index x = 0; x < exposed; ++x) {  // either side's semi-springs, as much again for semi-edges
+    const Index face = s.search.exposed_face[x];
     for (Index v = 0; v < faces.vertex_count(face); ++v)
-      s.node_potential[faces.vertex(face, v)] += 2 * stiffest;
+      s.node_potential[faces.vertex(face, v)] += 2 * stiffest_of[x];
   }
 }
 
@@ -277,14 +287,15 @@ void refresh_contacts(const Model& m, State& s) {
   }
   open_hinges<3>(m, s, m.triangles, s.triangles, m.bond_indentation_triangle);
   open_hinges<4>(m, s, m.quads, s.quads, m.bond_indentation_quad);
-  release_pairs(m, s, m.triangles, s.triangles);
-  release_pairs(m, s, m.quads, s.quads);
-  release_pairs(m, s, m.overlaps, s.overlaps);
+  bool released = s.built_step < 0;
+  released = release_pairs(m, s, m.triangles, s.triangles) || released;
+  released = release_pairs(m, s, m.quads, s.quads) || released;
+  released = release_pairs(m, s, m.overlaps, s.overlaps) || released;
   sort_exposed(s);
   join_surfaces(m, s);
   list_candidates(m, s);
   sum_stiffness(m, s);
-  list_corners(m, s);
+  if (released) list_corners(m, s);
   list_contact_corners(m, s);
   if (!s.all_awake) list_awake_nodes(m, s);
   s.built_step = s.step;

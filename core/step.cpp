@@ -103,9 +103,9 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
   launch_one(q, 4 * count,
              UpdateSpringForces{face_columns(m, s), geometry, exposed, m.rules, contact_laws(m),
                                 spring_columns(s)});
-  launch_one(q, Index(s.edges.contact.size() / 4),
-             UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m),
-                              s.edges.old_state.data(), edge_columns(s)});
+  launch(q, Index(s.edges.contact.size() / 4),
+         UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m),
+                          s.edges.old_state.data(), edge_columns(s)});
   s.search.acting.resize(s.search.source.size());
   Flag* acting = s.search.acting.data();
   launch_one(q, count, MarkActing{source_columns(s), spring_columns(s), edge_columns(s), acting});

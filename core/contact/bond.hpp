@@ -31,11 +31,6 @@ struct BondForce {
   T tension, shear;      // 1 when the bond broke in this step, by that cause
 };
 
-template <class T>
-struct PairFrame {
-  Vec3<T> n, t1, t2;  // n points from the first face into the second
-};
-
 /// Elastic energy of a bond point  [J].
 template <class T>
 CDEM_HD inline T stored_energy(const BondLaw<T>& law, const T& force_n, const T& force_s1,
@@ -47,7 +42,7 @@ CDEM_HD inline T stored_energy(const BondLaw<T>& law, const T& force_n, const T&
 /// Does an intact bond point bear this jump? Then `on_b` and `stored` are what bond_force gives,
 /// without the history that an intact point does not have.
 template <class T>
-CDEM_HD inline auto bears(const PairFrame<T>& frame, const Vec3<T>& jump, const BondLaw<T>& law,
+CDEM_HD inline auto bears(const Frame<T>& frame, const Vec3<T>& jump, const BondLaw<T>& law,
                           Vec3<T>& on_b, T& stored) {
   T force_n = -law.stiffness_n * dot(frame.n, jump);
   T force_s1 = -law.stiffness_s * dot(frame.t1, jump);
@@ -69,7 +64,7 @@ CDEM_HD inline auto bears(const PairFrame<T>& frame, const Vec3<T>& jump, const 
 /// `jump_old` is the jump one step ago; it serves only the energy ledger: what is lost is
 /// U_old - U_new + work done on the spring by the mean force.
 template <class T, class M>
-CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>& jump,
+CDEM_HD inline BondForce<T> bond_force(const Frame<T>& frame, const Vec3<T>& jump,
                                        const Vec3<T>& jump_old, const BondLaw<T>& law,
                                        const M& searched, BondHistory<T>& h) {
   const T zero(0.0), one(1.0), half(0.5);
@@ -124,9 +119,10 @@ CDEM_HD inline BondForce<T> bond_force(const PairFrame<T>& frame, const Vec3<T>&
   return out;
 }
 
-/// Frame of a pair of faces from the mean of both sides' vertices.
+/// Frame of a pair of faces from the mean of both sides' vertices; n points from the first face
+/// into the second.
 template <Index count, class T>
-CDEM_HD inline PairFrame<T> pair_frame(const Vec3<T>* mean) {
+CDEM_HD inline Frame<T> pair_frame(const Vec3<T>* mean) {
   const Vec3<T> last = mean[count - 1];
   const Vec3<T> n = unit(cross(mean[2] - mean[0], last - mean[1]));
   const Vec3<T> side = mean[1] - mean[0];
@@ -188,7 +184,7 @@ struct ConformingBonds {
     if (!any_of(live)) return;
     Vec3<T> mean[count], jump[count], force[count];
     gather_jumps(p, mean, jump);
-    const PairFrame<T> frame = pair_frame<count>(mean);
+    const Frame<T> frame = pair_frame<count>(mean);
     const BondLaw<T> law = law_of(p);
     T stored(0.0);
     if (any_of(live & !all_bear(p, frame, jump, law, force, stored))) {
@@ -223,7 +219,7 @@ struct ConformingBonds {
  private:
   /// The common case: all points of the pair were intact and stay so.
   template <class I, class T>
-  CDEM_HD auto all_bear(I p, const PairFrame<T>& frame, const Vec3<T>* jump, const BondLaw<T>& law,
+  CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, const BondLaw<T>& law,
                         Vec3<T>* force, T& stored) const {
     auto all = pairs.bond.at(0, p) > T(0.5);
     for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
@@ -235,7 +231,7 @@ struct ConformingBonds {
     return all;
   }
   template <class I, class M, class T>
-  CDEM_HD void update_history(I p, const M& live, const PairFrame<T>& frame, const Vec3<T>* jump,
+  CDEM_HD void update_history(I p, const M& live, const Frame<T>& frame, const Vec3<T>* jump,
                               const BondLaw<T>& law, Vec3<T>* force) const {
     const T zero(0.0);
     const auto open = pairs.live.at(0, p) > T(1.5);
@@ -307,7 +303,7 @@ struct OverlapBonds {
     const Index a = pair_faces[2 * p.i], b = pair_faces[2 * p.i + 1];
     const Vec3<Real> none{0.0, 0.0, 0.0};
     Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};
-    const PairFrame<Real> frame = frame_of(a, b);
+    const Frame<Real> frame = frame_of(a, b);
     Real widest = 0, intact = 0, stored = 0, fracture = 0, friction = 0, tension = 0, shear = 0;
     for (Index c = point_first[p.i]; c < point_first[p.i + 1]; ++c) {
       const One point{c};
@@ -339,8 +335,8 @@ struct OverlapBonds {
   }
 
  private:
-  CDEM_HD PairFrame<Real> frame_of(Index a, Index b) const {
-    const Frame f = faces.shape(a).frame();
+  CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
+    const Frame<Real> f = faces.shape(a).frame();
     const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
     const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
     return {n, t1, cross(n, t1)};

@@ -5,9 +5,10 @@
 
 namespace cdem {
 
-/// Orthonormal frame of a face: outward normal n, and t1, t2 in the plane.
+/// Orthonormal frame: normal n (of a face: outward), and t1, t2 in the plane.
+template <class T>
 struct Frame {
-  Vec3<Real> n, t1, t2;
+  Vec3<T> n, t1, t2;
 };
 
 /// A face at one instant. A triangle has count = 3; its fourth vertex repeats the third, so that
@@ -22,8 +23,8 @@ struct FaceShape {
     return Real(1.0) / Real(count) * sum;
   }
   CDEM_HD Vec3<Real> normal() const { return unit(cross(x[2] - x[0], x[3] - x[1])); }
-  CDEM_HD Frame frame() const { return frame(normal()); }
-  CDEM_HD Frame frame(const Vec3<Real>& n) const {
+  CDEM_HD Frame<Real> frame() const { return frame(normal()); }
+  CDEM_HD Frame<Real> frame(const Vec3<Real>& n) const {
     const Vec3<Real> side = x[1] - x[0];
     const Vec3<Real> t1 = unit(side - dot(n, side) * n);
     return {n, t1, cross(n, t1)};
@@ -108,6 +109,12 @@ struct FaceColumns {
   CDEM_HD Index vertex_count(Index face) const { return face_nodes[4 * face + 3] < 0 ? 3 : 4; }
   CDEM_HD Index vertex(Index face, Index k) const { return face_nodes[4 * face + k]; }
 
+  /// Which side of a face an edge of its own is.
+  CDEM_HD Index side_on(Index face, Index edge) const {
+    for (Index k = 0; k < 3; ++k)
+      if (face_edges[4 * face + k] == edge) return k;
+    return 3;
+  }
   /// Characteristic area of a contact: a vertex's share of its face (Eq. 4-5), but not more than
   /// that of the face it meets; else a large face gives a small block a spring that no step can
   /// follow.

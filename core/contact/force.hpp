@@ -26,39 +26,44 @@ struct ContactLaws {
 /// other, a vertex turns a corner): it may begin as deep as the contact it takes over from; what is
 /// deeper counts as free of stress.
 /// `dilated` is how far that contact had opened by dilation.
-CDEM_HD inline Real starting_gap_free(Real gap, Real gap_rate, Real dt, Real sunk_before,
-                                      Real dilated) {
-  const Real gap_before = gap - gap_rate * dt;
+template <class T>
+CDEM_HD inline T starting_gap_free(T gap, T gap_rate, T dt, T sunk_before, T dilated) {
+  const T gap_before = gap - gap_rate * dt;
   return min_of(gap_before + sunk_before, dilated);
 }
 
 /// Once a contact is lifted past its stress-free gap, that gap follows it back towards zero; one
 /// that has dilated stays on top of its asperities.
-CDEM_HD inline Real lifted_gap_free(Real gap_free, Real gap) {
-  return gap_free > 0 ? gap_free : min_of(max_of(gap_free, gap), 0.0);
+template <class T>
+CDEM_HD inline T lifted_gap_free(T gap_free, T gap) {
+  const T zero(0.0);
+  return select(gap_free > zero, gap_free, min_of(max_of(gap_free, gap), zero));
 }
 
 /// Elastic and frictional part of one contact's force.
+template <class T>
 struct ContactForce {
-  Real force_n;             // compression > 0  [N]
-  Real sunk;                // effective penetration  [m]
-  Real shear1, shear2;      // on the mother  [N]
-  Real energy_n, energy_s;  // stored  [J]
-  Real friction;            // lost in this step  [J]
-  Real dashpot;             // lost in this step  [J]
-  Real rise;                // of the stress-free gap, by dilation in this step  [m]
+  T force_n;             // compression > 0  [N]
+  T sunk;                // effective penetration  [m]
+  T shear1, shear2;      // on the mother  [N]
+  T energy_n, energy_s;  // stored  [J]
+  T friction;            // lost in this step  [J]
+  T dashpot;             // lost in this step  [J]
+  T rise;                // of the stress-free gap, by dilation in this step  [m]
 };
 
 /// What a sliding contact needs to know of its asperities.
+template <class T>
 struct Dilation {
-  Real tangent;  // tan(psi)
-  Real room;     // opening that is left before it dilates no more  [m]
+  T tangent;  // tan(psi)
+  T room;     // opening that is left before it dilates no more  [m]
 };
 
 /// What a contact had one step ago; all zero for one that begins.
+template <class T>
 struct ContactBefore {
-  Real force_n, sunk;   // [N], [m]
-  Real shear1, shear2;  // [N]
+  T force_n, sunk;   // [N], [m]
+  T shear1, shear2;  // [N]
 };
 
 /// Normal force from the total gap, shear force from the step's slip, then Coulomb's limit.
@@ -75,45 +80,48 @@ struct ContactBefore {
 /// A joint that slips by ds lifts by tan(psi) ds (dilation): its stress-free gap rises, which
 /// presses it harder and so raises the limit. Both are solved for at once; friction pays for the
 /// lift.
-CDEM_HD inline ContactForce contact_force(Real stiffness_n, Real stiffness_s, Real tan_friction,
-                                          Real gap, Real gap_rate, Real dashpot_constant,
-                                          Real slip1, Real slip2, const ContactBefore& before,
-                                          const Dilation& dilation, Real dt) {
-  ContactForce f;
-  Real elastic = max_of(-stiffness_n * gap, 0.0);
-  f.force_n = max_of(elastic - dashpot_constant * gap_rate, 0.0);
-  if (gap >= 0) f.force_n = 0;
-  f.sunk = max_of(-gap, 0.0);
-  const Real old1 = before.shear1, old2 = before.shear2;
-  const Real try1 = old1 - stiffness_s * slip1, try2 = old2 - stiffness_s * slip2;
-  const Real shear = sqrt_of(try1 * try1 + try2 * try2);
-  Real limit = f.force_n * tan_friction;
-  f.rise = 0;
-  if (dilation.tangent > 0 && f.force_n > 0 && shear > limit) {
-    const Real stiffer = stiffness_s + stiffness_n * dilation.tangent * tan_friction;
-    f.rise = min_of(dilation.tangent * (shear - limit) / stiffer, dilation.room);
+template <class T>
+CDEM_HD inline ContactForce<T> contact_force(T stiffness_n, T stiffness_s, T tan_friction, T gap,
+                                             T gap_rate, T dashpot_constant, T slip1, T slip2,
+                                             const ContactBefore<T>& before,
+                                             const Dilation<T>& dilation, T dt) {
+  const T zero(0.0), half(0.5), one(1.0);
+  ContactForce<T> f;
+  T elastic = max_of(-stiffness_n * gap, zero);
+  f.force_n = select(gap < zero, max_of(elastic - dashpot_constant * gap_rate, zero), zero);
+  f.sunk = max_of(-gap, zero);
+  const T old1 = before.shear1, old2 = before.shear2;
+  const T try1 = old1 - stiffness_s * slip1, try2 = old2 - stiffness_s * slip2;
+  const T shear = sqrt_of(try1 * try1 + try2 * try2);
+  T limit = f.force_n * tan_friction;
+  f.rise = zero;
+  const auto dilates = (dilation.tangent > zero) & (f.force_n > zero) & (shear > limit);
+  if (any_of(dilates)) {
+    const T stiffer = stiffness_s + stiffness_n * dilation.tangent * tan_friction;
+    const T rise = min_of(dilation.tangent * (shear - limit) / stiffer, dilation.room);
+    f.rise = select(dilates, rise, zero);
     f.sunk += f.rise;
     f.force_n += stiffness_n * f.rise;
     elastic += stiffness_n * f.rise;
     limit = f.force_n * tan_friction;
   }
-  const Real keep = shear > limit ? limit / shear : 1.0;
+  const T keep = select(shear > limit, limit / shear, one);
   f.shear1 = keep * try1;
   f.shear2 = keep * try2;
-  const Real flex_s = 0.5 / stiffness_s;
-  const Real stored_s = flex_s * (f.shear1 * f.shear1 + f.shear2 * f.shear2);
+  const T flex_s = half / stiffness_s;
+  const T stored_s = flex_s * (f.shear1 * f.shear1 + f.shear2 * f.shear2);
   f.friction = flex_s * (old1 * old1 + old2 * old2) - stored_s -
-               0.5 * ((old1 + f.shear1) * slip1 + (old2 + f.shear2) * slip2) -
-               0.5 * (stiffness_n * before.sunk + elastic) * f.rise;
-  f.energy_n = 0.5 / stiffness_n * elastic * elastic;
+               half * ((old1 + f.shear1) * slip1 + (old2 + f.shear2) * slip2) -
+               half * (stiffness_n * before.sunk + elastic) * f.rise;
+  f.energy_n = half / stiffness_n * elastic * elastic;
   f.energy_s = stored_s;
-  const Real braked = before.force_n - stiffness_n * before.sunk + f.force_n - elastic;
-  f.dashpot = -0.5 * braked * gap_rate * dt;
+  const T braked = before.force_n - stiffness_n * before.sunk + f.force_n - elastic;
+  f.dashpot = -half * braked * gap_rate * dt;
   return f;
 }
 
 /// What a contact remembers of its force.
-CDEM_HD inline void keep(ContactState& s, const ContactForce& f) {
+CDEM_HD inline void keep(ContactState& s, const ContactForce<Real>& f) {
   s.force_n = f.force_n, s.sunk = f.sunk;
   s.shear1 = f.shear1, s.shear2 = f.shear2;
   s.energy_n = f.energy_n, s.energy_s = f.energy_s;
@@ -140,12 +148,12 @@ struct UpdateSpringForces {
     if (before >= 0 && before != t) carry_shear(s, before, face_t);
 
     const FaceShape shape = faces.shape(face_t);
-    const Frame frame = shape.frame(geometry.normal(t));
+    const Frame<Real> frame = shape.frame(geometry.normal(t));
     const Mother mother = mother_point(face_m, k);
     const Projection foot = project(shape, mother.x, frame.n);
 
     const FaceShape old_shape = faces.old_shape(face_t);
-    const Frame old = old_shape.frame();
+    const Frame<Real> old = old_shape.frame();
     Vec3<Real> apart = mother.x_old, rate = mother.v;
     Real flex = mother.flex;
     for (Index j = 0; j < shape.count; ++j) {
@@ -163,8 +171,8 @@ struct UpdateSpringForces {
     s.gap_free = before == t ? lifted_gap_free(s.gap_free, foot.gap)
                              : starting_gap_free(foot.gap, gap_rate, faces.dt, s.sunk,
                                                  max_of(s.gap_free, 0.0));
-    const Dilation dilation{min_of(law.tan_dilation, law.tan_friction),
-                            max_of(law.dilation_most - s.gap_free, 0.0)};
+    const Dilation<Real> dilation{min_of(law.tan_dilation, law.tan_friction),
+                                  max_of(law.dilation_most - s.gap_free, 0.0)};
     ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - s.gap_free, gap_rate,
                                    dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
                                    {s.force_n, s.sunk, s.shear1, s.shear2}, dilation, faces.dt);
@@ -209,8 +217,8 @@ struct UpdateSpringForces {
   /// A contact that changes its face keeps the shear force, turned into the new plane with its
   /// length kept (hand-over).
   CDEM_HD void carry_shear(ContactState& s, Index before, Index face_t) const {
-    const Frame from = faces.shape(exposed_face[before]).frame();
-    const Frame to = faces.shape(face_t).frame();
+    const Frame<Real> from = faces.shape(exposed_face[before]).frame();
+    const Frame<Real> to = faces.shape(face_t).frame();
     const Real s1 = s.shear1, s2 = s.shear2;
     const Vec3<Real> shear = s1 * from.t1 + s2 * from.t2;
     const Real a = dot(shear, to.t1), b = dot(shear, to.t2);
@@ -240,73 +248,101 @@ struct UpdateEdgeForces {
   const Real* state_before;  // rows of ContactState, one step ago
   EdgeColumns edges;
 
-  CDEM_HD void operator()(One place) const {
-    const EdgeContact contact = EdgeContact::at(edges.contact, place.i);
-    const Index m = contact.mother / 4, t = contact.face;
-    const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    const Side sm = side_of(face_m, contact.mother % 4);
+  template <class I>
+  CDEM_HD void operator()(I item) const {
+    using T = Number<I>;
+    Known<I> k;
+    for_lanes(item, [&](Index lane, Index place) { look_up(k, lane, place); });
+
+    const InMotion& nodes = faces.nodes;
+    const T dt(faces.dt), zero(0.0), one(1.0);
+    const Vec3<T> xm = nodes.position(k.m0), xt = nodes.position(k.t0);
+    const Vec3<T> xm1 = nodes.position(k.m1), xt1 = nodes.position(k.t1);
+    const Vec3<T> dm = xm1 - xm, along_t = xt1 - xt;
+    const Frame<T> frame = edge_frame(edge_normal(dm, along_t, k.out), along_t);
+    const Crossing<T> c = cross_edges(xm, dm, xt, along_t, frame.n);
+
+    const Vec3<T> vm = nodes.velocity(k.m0), vt = nodes.velocity(k.t0);
+    const Vec3<T> vm1 = nodes.velocity(k.m1), vt1 = nodes.velocity(k.t1);
+    const Vec3<T> om = xm - dt * vm, ot = xt - dt * vt;  // one step ago
+    const Vec3<T> old_dm = (xm1 - dt * vm1) - om, old_along = (xt1 - dt * vt1) - ot;
+    const Frame<T> old = edge_frame(edge_normal(old_dm, old_along, k.out), old_along);
+    const Vec3<T> apart = (om + c.s * old_dm) - (ot + c.t * old_along);
+    const Vec3<T> rate = (vm + c.s * (vm1 - vm)) - (vt + c.t * (vt1 - vt));
+    const T flex = flexibility(k.m0, k.m1, c.s) + flexibility(k.t0, k.t1, c.t);
+
+    const T dashpot = T(2.0) * T(laws.damping_ratio) * sqrt_of(k.kn / flex);
+    const T gap_rate = dot(frame.n, rate);
+    const T free = select(k.sunk < zero, starting_gap_free(c.gap, gap_rate, dt, zero, zero),
+                          lifted_gap_free(k.gap_free, c.gap));
+    const ContactForce<T> f = contact_force(
+        k.kn, k.ks, k.tan_friction, c.gap - free, gap_rate, dashpot, -dot(old.t1, apart),
+        -dot(old.t2, apart), ContactBefore<T>{k.force_n, max_of(k.sunk, zero), k.shear1, k.shear2},
+        Dilation<T>{zero, zero}, dt);
+
+    const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
+    // both edges take the force on one line of action: no couple is left over
+    const Crossing<T> line = cross_edges(xm, dm, xt, along_t, force);
+    const auto pressed = f.force_n > zero;
+    const T on_m = select(pressed, line.s, c.s), on_t = select(pressed, line.t, c.t);
+    const T state[8] = {f.force_n, f.sunk, f.shear1, f.shear2, free, f.energy_n, f.energy_s, zero};
+    const T reaction[8] = {force.x,    force.y,
+                           force.z,    select(pressed, max_of(k.kn, k.ks), zero),
+                           on_m,       select(k.forward > zero, on_t, one - on_t),
+                           f.friction, f.dashpot};
+    set_rows(edges.state, item, state);
+    set_rows(edges.reaction, item, reaction);
+  }
+
+ private:
+  /// What the tables know of a contact, or of a lane of them.
+  template <class I>
+  struct Known {
+    using T = Number<I>;
+    typename IndexOf<I>::type m0, m1, t0, t1;  // ends of mother side and target edge
+    Vec3<T> out;  // from the mother face to the target's: difference of the normals
+    T kn, ks, tan_friction;
+    T force_n, sunk, shear1, shear2, gap_free;  // one step ago
+    T forward;  // 1 where the target face's side goes the way of the edge, else 0
+  };
+  template <class I>
+  CDEM_HD void look_up(Known<I>& k, Index lane, Index place) const {
+    const EdgeContact contact = EdgeContact::at(edges.contact, place);
+    const Index m = contact.mother / 4, side = contact.mother % 4;
+    const Index face_m = exposed_face[m], face_t = exposed_face[contact.face];
+    const Index next = side + 1 == faces.vertex_count(face_m) ? 0 : side + 1;
+    lane_of(k.m0, lane) = faces.vertex(face_m, side);
+    lane_of(k.m1, lane) = faces.vertex(face_m, next);
     // the frame belongs to the edge, whichever of its faces is the right one just now
-    const Side st{faces.edge_nodes[2 * contact.edge], faces.edge_nodes[2 * contact.edge + 1]};
-    ContactState s = contact.before >= 0 ? ContactState::at(state_before, contact.before)
-                                         : ContactState{0, -1, 0, 0, 0, 0, 0};
-    const Vec3<Real> xm = faces.nodes.position(sm.a), xt = faces.nodes.position(st.a);
-    const Vec3<Real> dm = faces.nodes.position(sm.b) - xm, dt = faces.nodes.position(st.b) - xt;
-    const Vec3<Real> out = geometry.normal(t) - geometry.normal(m);
-    const Frame frame = edge_frame(edge_normal(dm, dt, out), dt);
-    const Crossing c = cross_edges(xm, dm, xt, dt, frame.n);
-
-    const Vec3<Real> om = faces.old_position(sm.a), ot = faces.old_position(st.a);
-    const Vec3<Real> old_dm = faces.old_position(sm.b) - om, old_dt = faces.old_position(st.b) - ot;
-    const Frame old = edge_frame(edge_normal(old_dm, old_dt, out), old_dt);
-    const Vec3<Real> apart = (om + c.s * old_dm) - (ot + c.t * old_dt);
-
-    const Vec3<Real> vm = faces.nodes.velocity(sm.a), vt = faces.nodes.velocity(st.a);
-    const Vec3<Real> rate = (vm + c.s * (faces.nodes.velocity(sm.b) - vm)) -
-                            (vt + c.t * (faces.nodes.velocity(st.b) - vt));
-    const Real flex = flexibility(sm, c.s) + flexibility(st, c.t);
+    const Index t0 = lane_of(k.t0, lane) = faces.edge_nodes[2 * contact.edge];
+    lane_of(k.t1, lane) = faces.edge_nodes[2 * contact.edge + 1];
+    lane_of(k.forward, lane) = faces.vertex(face_t, faces.side_on(face_t, contact.edge)) == t0;
+    const Vec3<Real> out = geometry.normal(contact.face) - geometry.normal(m);
+    lane_of(k.out.x, lane) = out.x;
+    lane_of(k.out.y, lane) = out.y;
+    lane_of(k.out.z, lane) = out.z;
 
     const Interface& law = laws.between(faces.face_group[face_m], faces.face_group[face_t]);
     const Real stiffer = max_of(faces.face_stiffness[face_m], faces.face_stiffness[face_t]);
     // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
     const Real area = faces.contact_area(face_m, face_t);
-    const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
-    const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
-    const Real gap_rate = dot(frame.n, rate);
-    s.gap_free = s.sunk >= 0 ? lifted_gap_free(s.gap_free, c.gap)
-                             : starting_gap_free(c.gap, gap_rate, faces.dt, 0.0, 0.0);
-    const ContactForce f =
-        contact_force(kn, ks, law.tan_friction, c.gap - s.gap_free, gap_rate, dashpot,
-                      -dot(old.t1, apart), -dot(old.t2, apart),
-                      {s.force_n, max_of(s.sunk, 0.0), s.shear1, s.shear2}, {0.0, 0.0}, faces.dt);
-    keep(s, f);
-    s.store(edges.state, place.i);
+    lane_of(k.kn, lane) = area * law.stiffness_n(stiffer);
+    lane_of(k.ks, lane) = area * law.stiffness_s(stiffer);
+    lane_of(k.tan_friction, lane) = law.tan_friction;
 
-    const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
-    // both edges take the force on one line of action: no couple is left over
-    const Crossing line = f.force_n > 0 ? cross_edges(xm, dm, xt, dt, force) : c;
-    Real* row = edges.reaction + std::size_t(place.i) * 8;
-    row[0] = force.x, row[1] = force.y, row[2] = force.z;
-    row[3] = f.force_n > 0 ? max_of(kn, ks) : 0.0;
-    row[4] = line.s;
-    row[5] = faces.vertex(face_t, side_on(face_t, contact.edge)) == st.a ? line.t : 1.0 - line.t;
-    row[6] = f.friction, row[7] = f.dashpot;
+    const ContactState s = contact.before >= 0 ? ContactState::at(state_before, contact.before)
+                                               : ContactState{0, -1, 0, 0, 0, 0, 0};
+    lane_of(k.force_n, lane) = s.force_n;
+    lane_of(k.sunk, lane) = s.sunk;
+    lane_of(k.shear1, lane) = s.shear1;
+    lane_of(k.shear2, lane) = s.shear2;
+    lane_of(k.gap_free, lane) = s.gap_free;
   }
-
- private:
-  struct Side {
-    Index a, b;  // nodes at its ends
-  };
-  CDEM_HD Side side_of(Index face, Index k) const {
-    return {faces.vertex(face, k),
-            faces.vertex(face, k + 1 == faces.vertex_count(face) ? 0 : k + 1)};
-  }
-  CDEM_HD Real flexibility(const Side& side, Real s) const {
-    return (1.0 - s) * (1.0 - s) / laws.node_mass[side.a] + s * s / laws.node_mass[side.b];
-  }
-  CDEM_HD Index side_on(Index face, Index edge) const {
-    for (Index k = 0; k < 3; ++k)
-      if (faces.face_edges[4 * face + k] == edge) return k;
-    return 3;
+  template <class Ids, class T>
+  CDEM_HD T flexibility(const Ids& a, const Ids& b, const T& s) const {
+    const InLookup mass{laws.node_mass};
+    const T rest = T(1.0) - s;
+    return rest * rest / mass.at(a) + s * s / mass.at(b);
   }
 };
 
@@ -420,15 +456,10 @@ struct GatherFaceForces {
       const EdgeContact contact = EdgeContact::at(edges.contact, c);
       if (contact.face != m) continue;
       const Real* row = edges.reaction + std::size_t(c) * 8;
-      const Index k = side_on(face, contact.edge);
+      const Index k = faces.side_on(face, contact.edge);
       take(sum[k], 1.0 - row[5], row);
       take(sum[k + 1 == count ? 0 : k + 1], row[5], row);
     }
-  }
-  CDEM_HD Index side_on(Index face, Index edge) const {
-    for (Index k = 0; k < 3; ++k)
-      if (faces.face_edges[4 * face + k] == edge) return k;
-    return 3;
   }
 };
 

@@ -66,22 +66,19 @@ struct SidePair {
   CDEM_HD static SidePair of(Index code) { return {code >> 2 & 3, code & 3, code >> 4}; }
 };
 
-/// Two edges at one instant: start point and vector along either, and the contact normal.
-struct EdgePair {
-  Vec3<Real> start_m, along_m, start_t, along_t, n;
-};
-
 /// Where x_m + s d_m and x_t + t d_t are closest along a direction: x_m(s) - x_t(t) = gap * way.
+template <class T>
 struct Crossing {
-  Real s, t, gap;
+  T s, t, gap;
 };
 
-CDEM_HD inline Crossing cross_edges(const Vec3<Real>& start_m, const Vec3<Real>& along_m,
-                                    const Vec3<Real>& start_t, const Vec3<Real>& along_t,
-                                    const Vec3<Real>& way) {
-  const Vec3<Real> apart = start_t - start_m;
-  const Vec3<Real> c = cross(along_m, along_t);
-  const Real det = dot(c, way);
+template <class T>
+CDEM_HD inline Crossing<T> cross_edges(const Vec3<T>& start_m, const Vec3<T>& along_m,
+                                       const Vec3<T>& start_t, const Vec3<T>& along_t,
+                                       const Vec3<T>& way) {
+  const Vec3<T> apart = start_t - start_m;
+  const Vec3<T> c = cross(along_m, along_t);
+  const T det = dot(c, way);
   return {dot(cross(apart, along_t), way) / det, dot(cross(apart, along_m), way) / det,
           -dot(c, apart) / det};
 }
@@ -89,15 +86,17 @@ CDEM_HD inline Crossing cross_edges(const Vec3<Real>& start_m, const Vec3<Real>&
 /// Normal of an edge pair, V_mm x V_tt of Eq. 12, on the side of `out`. Any other, e.g. the normal
 /// of faces that are nearly flush, makes or loses energy: only along the common perpendicular is
 /// the gap's rate the velocity of the two points of the crossing.
-CDEM_HD inline Vec3<Real> edge_normal(const Vec3<Real>& along_m, const Vec3<Real>& along_t,
-                                      const Vec3<Real>& out) {
-  const Vec3<Real> c = unit(cross(along_m, along_t));
-  return dot(c, out) < 0 ? -c : c;
+template <class T>
+CDEM_HD inline Vec3<T> edge_normal(const Vec3<T>& along_m, const Vec3<T>& along_t,
+                                   const Vec3<T>& out) {
+  const Vec3<T> c = unit(cross(along_m, along_t));
+  return select(dot(c, out) < T(0.0), -c, c);
 }
 
 /// Tangents of an edge pair: along the target edge, and across.
-CDEM_HD inline Frame edge_frame(const Vec3<Real>& n, const Vec3<Real>& along_t) {
-  const Vec3<Real> t1 = unit(along_t - dot(n, along_t) * n);
+template <class T>
+CDEM_HD inline Frame<T> edge_frame(const Vec3<T>& n, const Vec3<T>& along_t) {
+  const Vec3<T> t1 = unit(along_t - dot(n, along_t) * n);
   return {n, t1, cross(n, t1)};
 }
 
@@ -200,11 +199,11 @@ struct FindTargetEdges {
     if (far_apart(p, p0, nm, nt, slack)) return false;
 
     const Vec3<Real> n = edge_normal(p.dm, p.dt, nt - nm);
-    const Crossing inner = cross_edges(p0, (1.0 - rules.indentation) * p.dm, p.xt, p.dt, n);
+    const Crossing<Real> inner = cross_edges(p0, (1.0 - rules.indentation) * p.dm, p.xt, p.dt, n);
     if (inner.s < -slack || inner.s > 1.0 + slack) return false;
     if (inner.t < -slack || inner.t > 1.0 + slack) return false;
 
-    const Crossing true_edges = cross_edges(p.xm, p.dm, p.xt, p.dt, n);
+    const Crossing<Real> true_edges = cross_edges(p.xm, p.dm, p.xt, p.dt, n);
     if (true_edges.gap > 0) return false;
     const Real approach = rules.approach_steps * faces.dt *
                           abs_of(dot(n, velocity_at(p.m0, p.m1, true_edges.s) -

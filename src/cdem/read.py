@@ -208,9 +208,22 @@ def _override(data: dict[str, Any], text: str, source: Source) -> None:
     """Replace one value of raw data by ``path=value``."""
     path, equals, value = text.partition("=")
     if not equals or not all(part.strip() for part in path.split(".")):
-        raise CaseError(f"--set {text}: write key.path=value, e.g. --set time.safety=0.5")
+        known = _first_number(data)
+        raise CaseError(
+            f"--set {text}: write key.path=value" + (f", e.g. --set {known}" if known else "")
+        )
     label = f"--set {text}"
     put(data, path.strip(), _parse(value, label), source, label)
+
+
+def _first_number(data: dict[str, Any], path: str = "") -> str:
+    """The first number below the top level, as ``path=value``; empty where there is none."""
+    for key, value in data.items():
+        if isinstance(value, dict) and (found := _first_number(value, f"{path}{key}.")):
+            return found
+        if path and isinstance(value, int | float) and not isinstance(value, bool):
+            return f"{path}{key}={value}"
+    return ""
 
 
 def put(data: dict[str, Any], path: str, value: Any, source: Source, label: str) -> None:
