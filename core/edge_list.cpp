@@ -8,12 +8,20 @@
 
 namespace cdem {
 
-void begin_edges(State& s) {
-  EdgeState& e = s.edges;
-  const std::size_t count = s.search.exposed_face.size();
+namespace {
+
+void swap_with_old(EdgeState& e) {
   e.first.swap(e.old_first);
   e.contact.swap(e.old_contact);
   e.state.swap(e.old_state);
+}
+
+}  // namespace
+
+void begin_edges(State& s) {
+  EdgeState& e = s.edges;
+  const std::size_t count = s.search.exposed_face.size();
+  swap_with_old(e);
   e.first.resize(count + 1);
   e.found_count.resize(count);
   e.found.resize(4 * std::size_t(e.slots) * count);
@@ -28,8 +36,10 @@ bool make_room_for_edges(State& s) {
     most = std::max(most, e.found_count[x]);
     e.first[x + 1] = e.first[x] + e.found_count[x];
   }
-  if (most > FindTargetEdges::most_slots)
+  if (most > FindTargetEdges::most_slots) {
+    swap_with_old(e);  // what is reported of the run is that of the step before
     throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
+  }
   if (most > e.slots) {
     e.slots = most;
     e.found.resize(4 * std::size_t(e.slots) * count);

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from scenes import mean_velocity, momentum, simulate, turn
+from scenes import case, mean_velocity, momentum, simulate, turn
+
+import cdem
 
 TIP = np.degrees(np.arctan(np.sqrt(2)))
 
@@ -331,6 +333,31 @@ def test_rigid_rotation_of_a_loaded_pair(axis):
     np.testing.assert_allclose(
         contact_force(), turn(axis, 90) @ before, atol=1e-9 * np.linalg.norm(before)
     )
+
+
+def test_a_face_that_crosses_too_many_edges_stops_the_run_with_a_reason(tmp_path):
+    """A blade comes down across 40 small blocks, 80 edges. The run ends; what it did so far is kept."""
+    blade = [[x, y, z + 0.002] for x in (0, 4.2) for y, z in ((0, 0), (-0.3, 0.5), (0.3, 0.5))]
+    row = [
+        {
+            "group": "row",
+            "box": {"size": [0.09, 0.4, 0.1]},
+            "translate": [0.1 + 0.1 * i, -0.2, -0.1],
+        }
+        for i in range(40)
+    ]
+    sim = cdem.Simulation(
+        case(
+            [*row, {"group": "blade", "polyhedron": {"vertices": blade}}],
+            {"row": {"fix": ["x", "y", "z"]}, "blade": {"velocity": [0, 0, -1]}},
+        ),
+        output=tmp_path / "blade.results",
+        threads=1,
+    )
+    with pytest.raises(cdem.UnstableError, match="more than 64 edges; mesh the larger block finer"):
+        sim.run()
+    assert abs(sim.energies["error"]) < 1e-6
+    assert np.isfinite(sim.fields["position"]).all() and len(sim.contacts["kind"]) == 0
 
 
 def tumble(steps, blocks_per_side):
