@@ -121,3 +121,83 @@ def test_a_vertex_on_a_thin_plate_is_not_held_by_its_far_side(angle):
     scene.put(tip - [0, 0, 0.004] + arms)
     normal, force = scene.springs()
     assert len(force) > 0 and (normal == [0, 0, 1]).all()
+
+
+def test_a_vertex_let_go_inside_another_block_is_held_there():
+    """A cube stands with a corner on a plate that is pushed into the bed and then drawn away.
+
+    Each semi-spring has one target, the plate, while the corner sinks into the bed, deeper than a contact may
+    begin: it used to fall through.
+    """
+    sim = simulate(
+        [
+            {"group": "bed", "box": {"size": [6, 6, 2]}, "translate": [-3, -3, -2]},
+            {"group": "plate", "box": {"size": [1, 1, 0.05]}, "translate": [-0.5, -0.5, 0]},
+            {
+                "group": "cube",
+                "box": {"size": [0.6, 0.6, 0.6]},
+                "rotate": {"axis": [1, -1, 0], "angle": np.degrees(np.arccos(1 / np.sqrt(3)))},
+                "translate": [0, 0, 0.05],
+            },
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "plate": {}, "cube": {"fix": ["x", "y"]}},
+        loads={
+            "gravity": [0, 0, -20],
+            "velocities": [
+                {
+                    "group": "plate",
+                    "components": ["z"],
+                    "velocity": [0, 0, -0.3],
+                    "history": [[0, 0], [0.1, 1], [0.5, 1], [0.6, 0]],
+                },
+                {
+                    "group": "plate",
+                    "components": ["x", "y"],
+                    "velocity": [5, 0, 0],
+                    "history": [[0, 0], [0.6, 0], [0.61, 1], [1.2, 1]],
+                },
+            ],
+        },
+        stages=[
+            {"name": "go", "mode": "dynamic", "duration": 0.9, "damping": {"contact": 0.1}},
+        ],
+    )
+    sim.run_until(0.6)
+    tip = sim.fields["position"][sim.build.nodes_of("cube"), 2].min()
+    assert tip == pytest.approx(0.05 - 0.3 * 0.5, abs=2e-4)  # on the plate, below the bed
+    sim.run_until(0.9)
+    assert sim.fields["position"][sim.build.nodes_of("plate"), 0].min() > 0.5  # far from the corner
+    assert sim.fields["position"][sim.build.nodes_of("cube"), 2].min() == pytest.approx(
+        tip, abs=2e-4
+    )
+
+
+@pytest.mark.parametrize("angle", [0.0, 40.0])
+def test_a_vertex_that_has_sunk_beside_a_rim_is_held(angle):
+    """A tet lies 0.2 m deep in a block with one vertex; an edge that leaves it reaches deeper, in the air beyond
+    the rim. So the vertex is not the deepest point, and the edge crosses the rim deeper than a contact may begin:
+    nothing held the tet. Now the vertex is held where it is, at the nearest face.
+    """
+    axis = [1, 2, 3]
+    up = turn(axis, angle) @ [0, 0, 1]
+    sim = simulate(
+        [
+            {"group": "rock", "box": {"size": [6, 6, 2]}, "translate": [-3, -3, -2]},
+            {
+                "group": "tet",
+                "polyhedron": {
+                    "vertices": [[2.5, 0, -0.2], [4, 0, -0.8], [3.3, 1, 0.6], [3.3, -1, 0.6]],
+                    "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+                },
+            },
+        ],
+        {"rock": {"fix": ["x", "y", "z"]}, "tet": {}},
+        model={"rotate": {"axis": axis, "angle": angle}},
+        loads={"gravity": (-10 * up).tolist()},
+        stages=[{"name": "go", "mode": "dynamic", "duration": 0.05}],
+    )
+    tet = sim.build.nodes_of("tet")
+    corner = tet[np.argmin(np.abs(sim.fields["position"][tet] @ up + 0.2))]
+    sim.run_until(0.05)
+    sunk = sim.fields["position"][corner] @ up
+    assert sunk == pytest.approx(-0.2, abs=1e-3)  # in free fall it would be 12.5 mm lower
