@@ -2,6 +2,7 @@
 #include "core/candidates.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 #include <vector>
 
@@ -46,48 +47,29 @@ Rows<T> by_mother(const std::vector<Proximity>& found, std::vector<T> Proximity:
 using Touches = Rows<Proximity::Touch>;
 using Crossings = Rows<Proximity::Crossing>;
 
-/// Where the items that each patch has found begin in one list of all; the last is their number.
-template <class T>
-std::vector<Index> places(const std::vector<Proximity>& found, std::vector<T> Proximity::* list) {
+/// List the pairs that all patches have found, with their nodes and room, and let the items that
+/// are of them know their places there.
+template <class Pair, class Item>
+void list_pairs(std::vector<Proximity>& found, std::vector<Pair> Proximity::* pairs,
+                std::vector<Item> Proximity::* items, Column<Index>& nodes, Column<Real>& room,
+                Column<Flag>& near) {
   std::vector<Index> first(found.size() + 1);
   for (std::size_t p = 0; p < found.size(); ++p)
-    first[p + 1] = first[p] + Index((found[p].*list).size());
-  return first;
-}
-
-/// List the pairs of vertex and face of all patches, and let the touches know their places there.
-void list_faces(SearchState& search, std::vector<Proximity>& found) {
-  const std::vector<Index> first = places(found, &Proximity::faces);
-  const std::size_t stride = padded_stride(first.back());
-  search.faces_near.resize(first.back());
-  search.faces_corners.resize(5 * stride);
-  search.faces_room.resize(5 * stride);
-#pragma omp parallel for schedule(static) if (first.back() >= worth_threads)
+    first[p + 1] = first[p] + Index((found[p].*pairs).size());
+  const Index count = first.back();
+  const std::size_t stride = padded_stride(count);
+  near.resize(count);
+  nodes.resize(std::size(Pair{}.nodes) * stride);
+  room.resize(std::size(Pair{}.room) * stride);
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (std::size_t p = 0; p < found.size(); ++p) {
-    for (Proximity::Touch& t : found[p].touches) t.pair += first[p];
+    for (Item& item : found[p].*items) item.pair += first[p];
     std::size_t place = first[p];
-    for (const Proximity::VertexFace& v : found[p].faces) {
-      for (std::size_t k = 0; k < 5; ++k) search.faces_corners[k * stride + place] = v.corners[k];
-      for (std::size_t k = 0; k < 5; ++k) search.faces_room[k * stride + place] = v.room[k];
-      ++place;
-    }
-  }
-}
-
-/// List the pairs of edges of all patches, and let the crossings know their places there.
-void list_edges(SearchState& search, std::vector<Proximity>& found) {
-  const std::vector<Index> first = places(found, &Proximity::edges);
-  const std::size_t stride = padded_stride(first.back());
-  search.edges_near.resize(first.back());
-  search.edges_ends.resize(4 * stride);
-  search.edges_room.resize(3 * stride);
-#pragma omp parallel for schedule(static) if (first.back() >= worth_threads)
-  for (std::size_t p = 0; p < found.size(); ++p) {
-    for (Proximity::Crossing& c : found[p].crossings) c.edges += first[p];
-    std::size_t place = first[p];
-    for (const Proximity::Edges& e : found[p].edges) {
-      for (std::size_t k = 0; k < 4; ++k) search.edges_ends[k * stride + place] = e.ends[k];
-      for (std::size_t k = 0; k < 3; ++k) search.edges_room[k * stride + place] = e.room[k];
+    for (const Pair& pair : found[p].*pairs) {
+      for (std::size_t k = 0; k < std::size(pair.nodes); ++k)
+        nodes[k * stride + place] = pair.nodes[k];
+      for (std::size_t k = 0; k < std::size(pair.room); ++k)
+        room[k * stride + place] = pair.room[k];
       ++place;
     }
   }
@@ -159,7 +141,7 @@ void list_crossings(const Model& m, SearchState& search, const Crossings& crossi
     search.edge_candidate_edge[i] =
         m.face_edges[4 * search.exposed_face[c.face] + SidePair::of(c.sides).j];
     search.edge_candidate_sides[i] = c.sides;
-    search.edge_candidate_edges[i] = c.edges;
+    search.edge_candidate_edges[i] = c.pair;
   }
 }
 
@@ -168,8 +150,10 @@ void list_crossings(const Model& m, SearchState& search, const Crossings& crossi
 void list_candidates(const Model& m, State& s) {
   foresee_motion(m, s);
   std::vector<Proximity> found = find_proximity(m, s);
-  list_faces(s.search, found);
-  list_edges(s.search, found);
+  list_pairs(found, &Proximity::faces, &Proximity::touches, s.search.faces_corners,
+             s.search.faces_room, s.search.faces_near);
+  list_pairs(found, &Proximity::edges, &Proximity::crossings, s.search.edges_ends,
+             s.search.edges_room, s.search.edges_near);
   const Index count = Index(s.search.exposed_face.size());
   const Touches touches =
       by_mother(found, &Proximity::touches, count,

@@ -43,18 +43,18 @@ struct Proximity {
   };
   /// The pair of vertex and face that touches are of, see MarkNearFaces.
   struct VertexFace {
-    Index corners[5];
+    Index nodes[5];
     Real room[5];
   };
   /// A side of a mother face across one of another exposed face.
   struct Crossing {
     Index mother, face;
     Index sides;  // SidePair::code
-    Index edges;  // place in the list below
+    Index pair;   // place in the list below
   };
   /// The pair of edges that crossings are of, see MarkNearEdges.
   struct Edges {
-    Index ends[4];
+    Index nodes[4];
     Real room[3];
   };
   std::vector<Touch> touches;
