@@ -114,6 +114,7 @@ template void launch_one(Queue, Index, const MarkActing&);
 template void launch_one(Queue, Index, const GatherFaceForces&);
 template void launch_one(Queue, Index, Blocks, const SumNodeForces&);
 template void launch_one(Queue, Index, Blocks, const MoveNodes&);
+template void launch_one(Queue, Index, Blocks, const AdvanceNodes&);
 template void launch_one(Queue, Index, const NodeMomentum&);
 template void launch_one(Queue, Index, const SampleNodes&);
 

@@ -123,6 +123,68 @@ struct InIndices {
 #endif
 };
 
+#if !defined(__CUDACC__)
+/// Rows of four numbers, one a lane at row(lane), turned into packs of their first three. In
+/// registers: a pack that is put together in memory, number by number, is slow to read.
+template <class Rows>
+CDEM_HD inline Vec3<Pack> load_rows(const Rows& row) {
+#if CDEM_LANES == 8
+  Pack::Numbers r[4];
+  for (Index j = 0; j < 4; ++j)
+    r[j] = (Pack::Numbers)_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(row(j))),
+                                             _mm256_loadu_pd(row(4 + j)), 1);
+  const auto xz01 = pick<0, 8, 2, 10, 4, 12, 6, 14>(r[0], r[1]);
+  const auto xz23 = pick<0, 8, 2, 10, 4, 12, 6, 14>(r[2], r[3]);
+  const auto y01 = pick<1, 9, 3, 11, 5, 13, 7, 15>(r[0], r[1]);
+  const auto y23 = pick<1, 9, 3, 11, 5, 13, 7, 15>(r[2], r[3]);
+  return {{pick<0, 1, 8, 9, 4, 5, 12, 13>(xz01, xz23)},
+          {pick<0, 1, 8, 9, 4, 5, 12, 13>(y01, y23)},
+          {pick<2, 3, 10, 11, 6, 7, 14, 15>(xz01, xz23)}};
+#elif CDEM_LANES == 4
+  const auto r0 = Row::at(row(0)).n, r1 = Row::at(row(1)).n, r2 = Row::at(row(2)).n, r3 = Row::at(row(3)).n;
+  const auto xz01 = pick<0, 4, 2, 6>(r0, r1), xz23 = pick<0, 4, 2, 6>(r2, r3);
+  const auto y01 = pick<1, 5, 3, 7>(r0, r1), y23 = pick<1, 5, 3, 7>(r2, r3);
+  return {{pick<0, 1, 4, 5>(xz01, xz23)},
+          {pick<0, 1, 4, 5>(y01, y23)},
+          {pick<2, 3, 6, 7>(xz01, xz23)}};
+#else
+  return {pack_of([&](Index j) { return row(j)[0]; }), pack_of([&](Index j) { return row(j)[1]; }),
+          pack_of([&](Index j) { return row(j)[2]; })};
+#endif
+}
+/// And back; the fourth numbers become 0.
+template <class Rows>
+CDEM_HD inline void store_rows(const Vec3<Pack>& v, const Rows& row) {
+#if CDEM_LANES == 8
+  const Pack::Numbers zero{};
+  const auto xy02 = pick<0, 8, 2, 10, 4, 12, 6, 14>(v.x.n, v.y.n);
+  const auto xy13 = pick<1, 9, 3, 11, 5, 13, 7, 15>(v.x.n, v.y.n);
+  const auto z02 = pick<0, 8, 2, 10, 4, 12, 6, 14>(v.z.n, zero);
+  const auto z13 = pick<1, 9, 3, 11, 5, 13, 7, 15>(v.z.n, zero);
+  const Pack::Numbers r[4] = {
+      pick<0, 1, 8, 9, 4, 5, 12, 13>(xy02, z02), pick<0, 1, 8, 9, 4, 5, 12, 13>(xy13, z13),
+      pick<2, 3, 10, 11, 6, 7, 14, 15>(xy02, z02), pick<2, 3, 10, 11, 6, 7, 14, 15>(xy13, z13)};
+  for (Index j = 0; j < 4; ++j) {
+    _mm256_storeu_pd(row(j), _mm512_castpd512_pd256((__m512d)r[j]));
+    _mm256_storeu_pd(row(4 + j), _mm512_extractf64x4_pd((__m512d)r[j], 1));
+  }
+#elif CDEM_LANES == 4
+  const Pack::Numbers zero{};
+  const auto xy02 = pick<0, 4, 2, 6>(v.x.n, v.y.n), xy13 = pick<1, 5, 3, 7>(v.x.n, v.y.n);
+  const auto z02 = pick<0, 4, 2, 6>(v.z.n, zero), z13 = pick<1, 5, 3, 7>(v.z.n, zero);
+  Row{pick<0, 1, 4, 5>(xy02, z02)}.store(row(0));
+  Row{pick<0, 1, 4, 5>(xy13, z13)}.store(row(1));
+  Row{pick<2, 3, 6, 7>(xy02, z02)}.store(row(2));
+  Row{pick<2, 3, 6, 7>(xy13, z13)}.store(row(3));
+#else
+  for (Index j = 0; j < lanes; ++j) {
+    Real* r = row(j);
+    r[0] = v.x.n[j], r[1] = v.y.n[j], r[2] = v.z.n[j];
+  }
+#endif
+}
+#endif
+
 /// Write a flag for every item.
 CDEM_HD inline void set_flags(Flag* flags, One item, bool mask) { flags[item.i] = mask ? 1 : 0; }
 #if !defined(__CUDACC__)
@@ -148,9 +210,7 @@ struct InLookup {
   CDEM_HD Real at(Index key) const { return data[key]; }
 #if !defined(__CUDACC__)
   Pack at(const IndexPack& key) const {
-    Pack p;
-    for (Index j = 0; j < lanes; ++j) p.n[j] = data[key.id[j]];
-    return p;
+    return pack_of([&](Index j) { return data[key.id[j]]; });
   }
 #endif
 };
@@ -173,14 +233,7 @@ struct InMotion {
 
  private:
   Vec3<Pack> gather(const IndexPack& node, int from) const {
-    Vec3<Pack> a;
-    for (Index j = 0; j < lanes; ++j) {
-      const Real* r = rows + std::size_t(node.id[j]) * 8 + from;
-      a.x.n[j] = r[0];
-      a.y.n[j] = r[1];
-      a.z.n[j] = r[2];
-    }
-    return a;
+    return load_rows([&](Index j) { return rows + std::size_t(node.id[j]) * 8 + from; });
   }
 #endif
 };
@@ -196,12 +249,9 @@ struct OutForces {
   }
 #if !defined(__CUDACC__)
   void set(Lane item, Index corners_per_item, Index corner, const Vec3<Pack>& f) const {
-    for (Index j = 0; j < lanes; ++j) {
-      Real* r = rows + (std::size_t(item.i + j) * corners_per_item + corner) * 4;
-      r[0] = f.x.n[j];
-      r[1] = f.y.n[j];
-      r[2] = f.z.n[j];
-    }
+    store_rows(f, [&](Index j) {
+      return rows + (std::size_t(item.i + j) * corners_per_item + corner) * 4;
+    });
   }
 #endif
 };

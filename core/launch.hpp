@@ -4,12 +4,18 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
 #if defined(__CUDACC__)
 #include <cuda_runtime.h>
 #define CDEM_HD __host__ __device__
 #else
-#define CDEM_HD
+// Kernels are small functions over packs of numbers; one that is called and not inlined takes its
+// packs through memory.
+#define CDEM_HD __attribute__((always_inline))
 #endif
 
 namespace cdem {
@@ -86,6 +92,22 @@ inline bool any_of(Mask mask) {
   for (Index j = 0; j < lanes; ++j)
     if (mask.bits[j]) return true;
   return false;
+}
+
+/// A pack of what `number` gives for each lane.
+template <class Of, Index... lane>
+CDEM_HD inline Pack pack_of(const Of& number, std::integer_sequence<Index, lane...>) {
+  return {Pack::Numbers{number(lane)...}};
+}
+template <class Of>
+CDEM_HD inline Pack pack_of(const Of& number) {
+  return pack_of(number, std::make_integer_sequence<Index, lanes>{});
+}
+
+/// The numbers at these places of two packs, one after the other.
+template <int... places>
+CDEM_HD inline Pack::Numbers pick(const Pack::Numbers& a, const Pack::Numbers& b) {
+  return __builtin_shufflevector(a, b, places...);
 }
 
 /// One index per lane, as read from a connectivity table.

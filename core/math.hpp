@@ -72,6 +72,15 @@ struct Row {
   }
   CDEM_HD void store(Real* memory) const { std::memcpy(memory, &n, sizeof n); }
   CDEM_HD Vec3<Real> vector() const { return {n[0], n[1], n[2]}; }
+  /// The same with 0 in the fourth place.
+  CDEM_HD Row xyz() const {
+#if defined(__CUDACC__)
+    return of(n[0], n[1], n[2]);
+#else
+    using Bits = std::int64_t __attribute__((vector_size(32)));
+    return {(Numbers)((Bits)n & Bits{-1, -1, -1, 0})};
+#endif
+  }
 };
 
 #if defined(__CUDACC__)
@@ -84,10 +93,14 @@ CDEM_HD inline Row operator-(const Row& a, const Row& b) {
 CDEM_HD inline Row operator*(Real s, const Row& a) {
   return {{s * a.n[0], s * a.n[1], s * a.n[2], s * a.n[3]}};
 }
+CDEM_HD inline Row operator/(const Row& a, Real s) {
+  return {{a.n[0] / s, a.n[1] / s, a.n[2] / s, a.n[3] / s}};
+}
 #else
 inline Row operator+(const Row& a, const Row& b) { return {a.n + b.n}; }
 inline Row operator-(const Row& a, const Row& b) { return {a.n - b.n}; }
 inline Row operator*(Real s, const Row& a) { return {s * a.n}; }
+inline Row operator/(const Row& a, Real s) { return {a.n / s}; }
 #endif
 
 /// Rows r0, r1, r2.

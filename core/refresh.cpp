@@ -33,7 +33,7 @@ bool release_is_due(const Model& m, const PairSet& p, const PairState& s) {
   bool due = false;
 #pragma omp parallel for schedule(static) reduction(|| : due) if (p.count >= worth_threads)
   for (Index i = 0; i < p.count; ++i)
-    due = due || s.jump[i] > m.rules.indentation * pair_length(m, p, i);
+    due = due || (s.jump[i] > 0 && s.jump[i] > m.rules.indentation * pair_length(m, p, i));
   return due;
 }
 
@@ -143,6 +143,7 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
                                      pair_columns(m, p, ps),
                                      indentation,
                                      0,
+                                     false,
                                      {}};
   for (Index i = 0; i < p.count; ++i) {
     const auto point = [&](Index k) { return std::size_t(k) * p.point_stride + i; };

@@ -1,6 +1,7 @@
 // rest.cpp - finds what is fixed and stays as it is.
 #include "core/rest.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace cdem {
@@ -72,11 +73,18 @@ void find_awake(const Model& m, State& s) {
 void list_awake_nodes(const Model& m, State& s) {
   s.nodes.listed.resize(m.node_count);
   const Index* first = s.search.contact_first.data();
-  list_blocks(m.node_count, s.nodes.awake, [&](Index i) {
+  std::vector<Flag> wakes(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i) {
     const bool was = s.nodes.listed[i], is = first[i] < first[i + 1];
     s.nodes.listed[i] = is;
-    return !s.nodes.rests[i] || is || was;
-  });
+    wakes[i] = !s.nodes.rests[i] || is || was;
+  }
+  for (Index i = 0; i < m.node_count; ++i) {  // nodes that share a mass matrix move together
+    if (m.lumped || m.dense_first[i] < 0 || m.block_first[i] != i) continue;
+    const auto begin = wakes.begin() + i, end = begin + m.block_count[i];
+    if (std::any_of(begin, end, [](Flag f) { return f; })) std::fill(begin, end, Flag(1));
+  }
+  list_blocks(m.node_count, s.nodes.awake, [&](Index i) { return wakes[i]; });
 }
 
 }  // namespace cdem

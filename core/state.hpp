@@ -16,6 +16,7 @@ struct NodeState {
   Column<Real> relax;  // rows of 8, adaptive relaxation only: force and velocity of the last step
   Column<Index> glue, awake;           // awake: blocks of nodes, see rest.hpp
   Column<Flag> rests, listed;          // see rest.hpp
+  bool damped = false;                 // in the last step: damping_force is not zero
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };
 

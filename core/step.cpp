@@ -38,19 +38,20 @@ void evaluate_at(const Model& m, Real time, Column<Real>& values) {
 
 template <Index count>
 void update_conforming(const Model& m, State& s, Queue q, const PairSet& p, PairState& ps,
-                       Real indentation) {
+                       Real indentation, bool sampled) {
   launch(q, p.count, awake(s, ps.awake),
          ConformingBonds<count>{{s.nodes.motion.data()},
                                 {p.nodes.data(), p.stride},
                                 pair_columns(m, p, ps),
                                 indentation,
                                 s.dt_last,
+                                sampled,
                                 {s.corner_force.data() + std::size_t(p.corner_first) * 4}});
 }
 
-void update_bonds(const Model& m, State& s, Queue q) {  // contact/bond.hpp
-  update_conforming<3>(m, s, q, m.triangles, s.triangles, m.bond_indentation_triangle);
-  update_conforming<4>(m, s, q, m.quads, s.quads, m.bond_indentation_quad);
+void update_bonds(const Model& m, State& s, Queue q, bool sampled) {  // contact/bond.hpp
+  update_conforming<3>(m, s, q, m.triangles, s.triangles, m.bond_indentation_triangle, sampled);
+  update_conforming<4>(m, s, q, m.quads, s.quads, m.bond_indentation_quad, sampled);
   const PairSet& p = m.overlaps;
   launch_one(q, p.count, awake(s, s.overlaps.awake),
              OverlapBonds{face_columns(m, s),
@@ -152,26 +153,49 @@ void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, eleme
     update_elements<Hex8>(m, s, q, m.hex8, s.hex8);
 }
 
+SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
+  const NodeDamping damping{m.damping.local, m.damping.mass + s.relax_damping};
+  const bool damps = damping.local > 0 || damping.mass > 0;
+  if (s.nodes.damped && !damps) s.nodes.damping_force.fill(0);
+  s.nodes.damped = damps;
+  return {{s.nodes.motion.data()},
+          corner_lists(s),
+          load_columns(m, s),
+          support_columns(m, s),
+          damping,
+          mass_columns(m),
+          0.5 * (s.dt_last + s.dt),
+          s.nodes.force.data(),
+          damps ? s.nodes.damping_force.data() : nullptr,
+          sampled ? s.nodes.unbalance.data() : nullptr};
+}
+
+MoveNodes node_motion(const Model& m, State& s) {
+  return {mass_columns(m),
+          load_columns(m, s),
+          support_columns(m, s),
+          s.nodes.force.data(),
+          s.nodes.damped ? s.nodes.damping_force.data() : nullptr,
+          s.dt_last,
+          s.dt,
+          s.nodes.motion.data(),
+          s.nodes.reaction.data(),
+          s.nodes.work_external.data(),
+          s.nodes.work_damping.data()};
+}
+
 void sum_node_forces(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
-  launch_one(q, m.node_count, awake(s, s.nodes.awake),
-             SumNodeForces{{s.nodes.motion.data()},
-                           corner_lists(s),
-                           load_columns(m, s),
-                           support_columns(m, s),
-                           {m.damping.local, m.damping.mass + s.relax_damping},
-                           mass_columns(m),
-                           0.5 * (s.dt_last + s.dt),
-                           s.nodes.force.data(),
-                           s.nodes.damping_force.data(),
-                           s.nodes.unbalance.data()});
+  launch_one(q, m.node_count, awake(s, s.nodes.awake), node_forces(m, s, true));
 }
 
 void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
-  launch_one(q, m.node_count, awake(s, s.nodes.awake),
-             MoveNodes{mass_columns(m), load_columns(m, s), support_columns(m, s),
-                       s.nodes.force.data(), s.nodes.damping_force.data(), s.dt_last, s.dt,
-                       s.nodes.motion.data(), s.nodes.reaction.data(), s.nodes.work_external.data(),
-                       s.nodes.work_damping.data()});
+  launch_one(q, m.node_count, awake(s, s.nodes.awake), node_motion(m, s));
+  finish(q);
+}
+
+void advance_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
+  const SumNodeForces sum = node_forces(m, s, s.all_awake);
+  launch_one(q, m.node_count, awake(s, s.nodes.awake), AdvanceNodes{sum, node_motion(m, s)});
   finish(q);
 }
 
@@ -197,7 +221,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   watch.lap(Phase::refresh);
   evaluate_curves(m, s);
   update_face_geometry(m, s, q, false);  // contact/face.hpp
-  update_bonds(m, s, q);
+  update_bonds(m, s, q, sampled || s.all_awake);
   watch.lap(Phase::contact);
   if (m.check_search) s.missed += count_missed_contacts(m, s);
   find_target_faces(m, s, q);
@@ -207,11 +231,15 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   watch.lap(Phase::contact);
   update_element_forces(m, s, q);
   watch.lap(Phase::element);
-  sum_node_forces(m, s, q);
-  if (s.stop_due) stop_motion(m, s);
-  if (sampled) sample_before(m, s, q);
-  move_nodes(m, s, q);
-  if (sampled) sample_after(m, s, q);
+  if (sampled || s.stop_due) {
+    sum_node_forces(m, s, q);
+    if (s.stop_due) stop_motion(m, s);
+    if (sampled) sample_before(m, s, q);
+    move_nodes(m, s, q);
+    if (sampled) sample_after(m, s, q);
+  } else {
+    advance_nodes(m, s, q);
+  }
   if (s.all_awake) find_awake(m, s);
   s.all_awake = false;
   s.dt_last = s.dt;

@@ -39,20 +39,26 @@ CDEM_HD inline T stored_energy(const BondLaw<T>& law, const T& force_n, const T&
   return flex_n * force_n * force_n + flex_s * (force_s1 * force_s1 + force_s2 * force_s2);
 }
 
-/// Does an intact bond point bear this jump? Then `on_b` and `stored` are what bond_force gives,
-/// without the history that an intact point does not have.
+/// Does an intact bond point bear this jump? Then `on_b` is what bond_force gives, without the
+/// history that an intact point does not have.
 template <class T>
 CDEM_HD inline auto bears(const Frame<T>& frame, const Vec3<T>& jump, const BondLaw<T>& law,
-                          Vec3<T>& on_b, T& stored) {
-  T force_n = -law.stiffness_n * dot(frame.n, jump);
-  T force_s1 = -law.stiffness_s * dot(frame.t1, jump);
-  T force_s2 = -law.stiffness_s * dot(frame.t2, jump);
-  T bond(1.0);
-  limit_force(law.tension_limit, law.cohesion_limit, law.tan_friction, bond, force_n, force_s1,
-              force_s2);
+                          Vec3<T>& on_b) {
+  const T force_n = -law.stiffness_n * dot(frame.n, jump);
+  const T force_s1 = -law.stiffness_s * dot(frame.t1, jump);
+  const T force_s2 = -law.stiffness_s * dot(frame.t2, jump);
   on_b = force_n * frame.n + force_s1 * frame.t1 + force_s2 * frame.t2;
-  stored = stored_energy(law, force_n, force_s1, force_s2);
-  return bond > T(0.5);
+  const ForceLimit<T> limit(law.tension_limit, law.cohesion_limit, law.tan_friction, T(1.0),
+                            force_n);
+  return !(limit.opens(force_n) | limit.slips(force_s1 * force_s1 + force_s2 * force_s2));
+}
+
+/// Elastic energy of an intact bond point  [J].
+template <class T>
+CDEM_HD inline T intact_energy(const Frame<T>& frame, const Vec3<T>& jump, const BondLaw<T>& law) {
+  return stored_energy(law, law.stiffness_n * dot(frame.n, jump),
+                       law.stiffness_s * dot(frame.t1, jump),
+                       law.stiffness_s * dot(frame.t2, jump));
 }
 
 /// Force of one bond point from the jump of displacement x_b - x_a across it, Eq. 13-14.
@@ -175,6 +181,7 @@ struct ConformingBonds {
   PairColumns pairs;
   Real indentation;  // a: 0 at the vertices, 1/2 (3) or 1 - 1/sqrt(3) (4) as quadrature points
   Real dt;
+  bool sampled;  // does anything ask for the energy of intact pairs?
   OutForces corner_force;
 
   template <class I>
@@ -186,10 +193,11 @@ struct ConformingBonds {
     gather_jumps(p, mean, jump);
     const Frame<T> frame = pair_frame<count>(mean);
     const BondLaw<T> law = law_of(p);
-    T stored(0.0);
-    if (any_of(live & !all_bear(p, frame, jump, law, force, stored))) {
+    if (any_of(live & !all_bear(p, frame, jump, law, force))) {
       update_history(p, live, frame, jump, law, force);
-    } else {
+    } else if (sampled) {
+      T stored(0.0);
+      for (Index k = 0; k < count; ++k) stored += intact_energy(frame, jump[k], law);
       pairs.stored.set(0, p, select(live, stored, T(0.0)));
     }
     write_forces(p, live, force);
@@ -220,14 +228,10 @@ struct ConformingBonds {
   /// The common case: all points of the pair were intact and stay so.
   template <class I, class T>
   CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, const BondLaw<T>& law,
-                        Vec3<T>* force, T& stored) const {
+                        Vec3<T>* force) const {
     auto all = pairs.bond.at(0, p) > T(0.5);
     for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
-    for (Index k = 0; k < count; ++k) {
-      T part;
-      all = all & bears(frame, jump[k], law, force[k], part);
-      stored += part;
-    }
+    for (Index k = 0; k < count; ++k) all = all & bears(frame, jump[k], law, force[k]);
     return all;
   }
   template <class I, class M, class T>

@@ -37,6 +37,17 @@ struct SupportColumns {
     const Index row = 3 * support[node] + axis;
     return velocity[row] * curve_velocity[curve[row]];
   }
+  /// A row of the node with the given components put in, or with zeros in their places.
+  CDEM_HD Row with_given(Index node, const Row& free) const {
+    if (support[node] < 0) return free;
+    const auto part = [&](Index axis) { return given(node, axis) ? at(node, axis) : free.n[axis]; };
+    return Row::of(part(0), part(1), part(2));
+  }
+  CDEM_HD Row without_given(Index node, const Row& row) const {
+    if (support[node] < 0) return row;
+    const auto part = [&](Index axis) { return given(node, axis) ? 0.0 : row.n[axis]; };
+    return Row::of(part(0), part(1), part(2));
+  }
 };
 
 /// Which corner rows belong to a node.
@@ -109,8 +120,9 @@ struct SumNodeForces {
   MassColumns mass;
   Real kick;            // time over which the force acts in the coming step  [s]
   Real* force;          // row of 4: x y z, less given_inertia [N], stiffness of the contacts [N/m]
-  Real* damping_force;  // row of 4  [N]
-  Real* unbalance;      // [node] |x| + |y| + |z| of the unbalanced force on free components  [N]
+  Real* damping_force;  // row of 4  [N]; null where nothing damps
+  Real* unbalance;      // [node] |x| + |y| + |z| of the unbalanced force on free components  [N];
+                        // null where nothing asks for it
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
@@ -119,27 +131,30 @@ struct SumNodeForces {
       f = f + corners.corner_force.at(corners.corner[c]);
     for (Index c = corners.contact_first[i]; c < corners.contact_first[i + 1]; ++c)
       f = f + corners.contact_force.at(corners.contact_corner[c]);
-    Row free = f, d = drag(i, f);
-    for (Index axis = 0; supports.support[i] >= 0 && axis < 3; ++axis)
-      if (supports.given(i, axis)) free.n[axis] = d.n[axis] = 0;
-    unbalance[i] = abs_of(free.n[0]) + abs_of(free.n[1]) + abs_of(free.n[2]);
-    d.store(damping_force + std::size_t(i) * 4);
-    Row net = f + d;
-    if (mass.held(i)) net = net - mass.given_inertia(supports, nodes, i, kick);
-    net.store(force + std::size_t(i) * 4);
+    if (unbalance) {
+      const Row free = supports.without_given(i, f);
+      unbalance[i] = abs_of(free.n[0]) + abs_of(free.n[1]) + abs_of(free.n[2]);
+    }
+    if (damping_force) {
+      // where a support prescribes the motion there is nothing to damp
+      const Row d = supports.without_given(i, drag(i, f));
+      d.store(damping_force + std::size_t(i) * 4);
+      f = f + d;
+    }
+    if (mass.held(i)) f = f - mass.given_inertia(supports, nodes, i, kick);
+    f.store(force + std::size_t(i) * 4);
   }
 
  private:
-  /// Damping force. Where a support prescribes the motion there is nothing to damp: it would only
-  /// add to the support's force.
   CDEM_HD Row drag(Index i, const Row& f) const {
     Row d = Row::zero();
     if (damping.local > 0) {
       const Row v = nodes.velocity_row(i);
-      for (Index axis = 0; axis < 3; ++axis) {
+      const auto against = [&](Index axis) {
         const Real size = damping.local * abs_of(f.n[axis]);
-        d.n[axis] = v.n[axis] > 0 ? -size : (v.n[axis] < 0 ? size : 0.0);
-      }
+        return v.n[axis] > 0 ? -size : (v.n[axis] < 0 ? size : 0.0);
+      };
+      d = Row::of(against(0), against(1), against(2));
     }
     if (damping.mass > 0) d = d - damping.mass * mass.momentum(nodes, i);
     return d;
@@ -156,7 +171,7 @@ struct MoveNodes {
   LoadColumns loads;
   SupportColumns supports;
   const Real* force;          // row of 4  [N]
-  const Real* damping_force;  // row of 4  [N]
+  const Real* damping_force;  // row of 4  [N]; null where nothing damps
   Real dt_before, dt;         // of the last step and of this one  [s]
   Real* motion;               // row of 8
   Real* reaction;             // row of 4: force of the support  [N]
@@ -168,40 +183,32 @@ struct MoveNodes {
     Real* r = motion + std::size_t(i) * 8;
     const Row v0 = Row::at(r + 4);
     const Real kick = 0.5 * (dt_before + dt);
-    Row v1 = v0 + kick * acceleration(i);
-    for (Index axis = 0; supports.support[i] >= 0 && axis < 3; ++axis)
-      if (supports.given(i, axis)) v1.n[axis] = supports.at(i, axis);
+    const Row v1 = supports.with_given(i, v0 + kick * acceleration(i));
     v1.store(r + 4);
     (Row::at(r) + dt * v1).store(r);
     const Row way = 0.5 * (dt_before * v0 + dt * v1);
     Row external = loads.at(i);
     if (supports.support[i] >= 0) external = external + react(i, v0, v1);
     work_external[i] += dot(external.vector(), way.vector());
-    work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way.vector());
+    if (damping_force)
+      work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way.vector());
   }
 
  private:
   CDEM_HD Row acceleration(Index i) const {
     const Index row = mass.row(i);
+    if (row < 0) return (Row::at(force + std::size_t(i) * 4) / mass.mass[i]).xyz();
+    const Index count = mass.block_count[i];
+    const Real *inverse = mass.inverse + row, *forces = force + std::size_t(mass.block_first[i]) * 4;
     Row a = Row::zero();
-    if (row < 0) {
-      a = Row::at(force + std::size_t(i) * 4);
-      for (Index axis = 0; axis < 3; ++axis) a.n[axis] = a.n[axis] / mass.mass[i];
+    if (mass.held(i)) {  // another matrix for each axis
+      const Real *x = inverse, *y = x + mass.dense_step[i], *z = y + mass.dense_step[i];
+      for (Index j = 0; j < count; ++j, forces += 4)
+        a = a + Row::of(x[j] * forces[0], y[j] * forces[1], z[j] * forces[2]);
     } else {
-      const Index first = mass.block_first[i], count = mass.block_count[i];
-      const Real* inverse = mass.inverse + row;
-      if (mass.held(i)) {
-        for (Index axis = 0; axis < 3; ++axis)
-          for (Index j = 0; j < count; ++j)
-            a.n[axis] +=
-                inverse[axis * mass.dense_step[i] + j] * force[std::size_t(first + j) * 4 + axis];
-      } else {
-        for (Index j = 0; j < count; ++j)
-          a = a + inverse[j] * Row::at(force + std::size_t(first + j) * 4);
-      }
+      for (Index j = 0; j < count; ++j, forces += 4) a = a + inverse[j] * Row::at(forces);
     }
-    a.n[3] = 0;
-    return a;
+    return a.xyz();
   }
   /// Force of the support: what is missing for the motion that it imposed. With a full mass matrix
   /// `force` has the inertia of all given motions of the block already.
@@ -223,6 +230,23 @@ struct MoveNodes {
       if (supports.given(i, axis)) r.n[axis] = need.n[axis] - force[std::size_t(i) * 4 + axis];
     r.store(reaction + std::size_t(i) * 4);
     return r;
+  }
+};
+
+/// Both at once, for a step in which nothing looks at the forces in between: what the sum leaves is
+/// still in cache when the motion wants it. Nodes that share a mass matrix go together, with the
+/// first of them.
+struct AdvanceNodes {
+  SumNodeForces sum;
+  MoveNodes move;
+
+  CDEM_HD void operator()(One node) const {
+    const Index i = node.i;
+    const bool shared = move.mass.row(i) >= 0;
+    if (shared && move.mass.block_first[i] != i) return;
+    const Index last = shared ? i + move.mass.block_count[i] : i + 1;
+    for (Index j = i; j < last; ++j) sum(One{j});
+    for (Index j = i; j < last; ++j) move(One{j});
   }
 };
 
