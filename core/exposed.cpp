@@ -183,6 +183,13 @@ void foresee_motion(const Model& m, State& s) {
     row[4] = v.x, row[5] = v.y, row[6] = v.z;
     if (skin[i] > 0) skin[i] = std::clamp(stray, least * skin[i], most * skin[i]);
   }
+  list_watched(s);
+}
+
+void list_watched(State& s) {
+  s.search.watched.resize(0);
+  for (Index i = 0; i < Index(s.search.node_skin.size()); ++i)
+    if (s.search.node_skin[i] > 0) s.search.watched.push(i);
 }
 
 std::vector<ExposedFace> exposed_faces(const Model& m, const State& s) {

@@ -19,6 +19,9 @@ Vec3<Real> foreseen(const State& s, Index node);
 /// they would with the change of velocity that they had since the last refresh.
 void foresee_motion(const Model& model, State& state);
 
+/// List the nodes whose straying makes the lists old.
+void list_watched(State& state);
+
 /// An exposed face as the lists see it: where it is, and how it may move before they are old.
 struct ExposedFace {
   FaceShape shape;

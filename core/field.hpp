@@ -124,15 +124,27 @@ struct InIndices {
 };
 
 #if !defined(__CUDACC__)
-/// Rows of four numbers, one a lane at row(lane), turned into packs of their first three. In
-/// registers: a pack that is put together in memory, number by number, is slow to read.
+// What lies in memory as rows of numbers is turned into packs, and back, in registers by shuffles:
+// a pack that is put together in memory, number by number, stalls the core when it is read.
+
+/// The numbers at these places of two packs, one after the other.
+template <int... places>
+inline Pack::Numbers pick(const Pack::Numbers& a, const Pack::Numbers& b) {
+#if defined(__clang__)
+  return __builtin_shufflevector(a, b, places...);
+#else
+  return __builtin_shuffle(a, b, Mask::Bits{places...});
+#endif
+}
+
+/// Rows of four numbers, one a lane at row(lane): their first three as packs.
 template <class Rows>
 CDEM_HD inline Vec3<Pack> load_rows(const Rows& row) {
 #if CDEM_LANES == 8
   Pack::Numbers r[4];
   for (Index j = 0; j < 4; ++j)
-    r[j] = (Pack::Numbers)_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(row(j))),
-                                             _mm256_loadu_pd(row(4 + j)), 1);
+    r[j] = (Pack::Numbers)_mm512_maskz_insertf64x4(
+        0xff, _mm512_castpd256_pd512(_mm256_loadu_pd(row(j))), _mm256_loadu_pd(row(4 + j)), 1);
   const auto xz01 = pick<0, 8, 2, 10, 4, 12, 6, 14>(r[0], r[1]);
   const auto xz23 = pick<0, 8, 2, 10, 4, 12, 6, 14>(r[2], r[3]);
   const auto y01 = pick<1, 9, 3, 11, 5, 13, 7, 15>(r[0], r[1]);
@@ -141,18 +153,18 @@ CDEM_HD inline Vec3<Pack> load_rows(const Rows& row) {
           {pick<0, 1, 8, 9, 4, 5, 12, 13>(y01, y23)},
           {pick<2, 3, 10, 11, 6, 7, 14, 15>(xz01, xz23)}};
 #elif CDEM_LANES == 4
-  const auto r0 = Row::at(row(0)).n, r1 = Row::at(row(1)).n, r2 = Row::at(row(2)).n, r3 = Row::at(row(3)).n;
+  const auto r0 = Row::at(row(0)).n, r1 = Row::at(row(1)).n, r2 = Row::at(row(2)).n,
+             r3 = Row::at(row(3)).n;
   const auto xz01 = pick<0, 4, 2, 6>(r0, r1), xz23 = pick<0, 4, 2, 6>(r2, r3);
   const auto y01 = pick<1, 5, 3, 7>(r0, r1), y23 = pick<1, 5, 3, 7>(r2, r3);
-  return {{pick<0, 1, 4, 5>(xz01, xz23)},
-          {pick<0, 1, 4, 5>(y01, y23)},
-          {pick<2, 3, 6, 7>(xz01, xz23)}};
+  return {
+      {pick<0, 1, 4, 5>(xz01, xz23)}, {pick<0, 1, 4, 5>(y01, y23)}, {pick<2, 3, 6, 7>(xz01, xz23)}};
 #else
   return {pack_of([&](Index j) { return row(j)[0]; }), pack_of([&](Index j) { return row(j)[1]; }),
           pack_of([&](Index j) { return row(j)[2]; })};
 #endif
 }
-/// And back; the fourth numbers become 0.
+/// The same back; the fourth numbers become 0.
 template <class Rows>
 CDEM_HD inline void store_rows(const Vec3<Pack>& v, const Rows& row) {
 #if CDEM_LANES == 8
@@ -165,8 +177,8 @@ CDEM_HD inline void store_rows(const Vec3<Pack>& v, const Rows& row) {
       pick<0, 1, 8, 9, 4, 5, 12, 13>(xy02, z02), pick<0, 1, 8, 9, 4, 5, 12, 13>(xy13, z13),
       pick<2, 3, 10, 11, 6, 7, 14, 15>(xy02, z02), pick<2, 3, 10, 11, 6, 7, 14, 15>(xy13, z13)};
   for (Index j = 0; j < 4; ++j) {
-    _mm256_storeu_pd(row(j), _mm512_castpd512_pd256((__m512d)r[j]));
-    _mm256_storeu_pd(row(4 + j), _mm512_extractf64x4_pd((__m512d)r[j], 1));
+    _mm256_storeu_pd(row(j), _mm512_maskz_extractf64x4_pd(0xff, (__m512d)r[j], 0));
+    _mm256_storeu_pd(row(4 + j), _mm512_maskz_extractf64x4_pd(0xff, (__m512d)r[j], 1));
   }
 #elif CDEM_LANES == 4
   const Pack::Numbers zero{};

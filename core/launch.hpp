@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#if defined(__AVX512F__)
+#if defined(__AVX__)
 #include <immintrin.h>
 #endif
 #if defined(__CUDACC__)
@@ -88,11 +88,19 @@ inline Pack sqrt_of(Pack a) {
   for (Index j = 0; j < lanes; ++j) root.n[j] = std::sqrt(a.n[j]);
   return root;
 }
-inline bool any_of(Mask mask) {
-  for (Index j = 0; j < lanes; ++j)
-    if (mask.bits[j]) return true;
-  return false;
+/// The lanes for which a comparison holds, as bits.
+inline unsigned lane_bits(Mask mask) {
+#if CDEM_LANES == 8
+  return _mm512_movepi64_mask((__m512i)mask.bits);
+#elif CDEM_LANES == 4
+  return unsigned(_mm256_movemask_pd((__m256d)mask.bits));
+#else
+  unsigned bits = 0;
+  for (Index j = 0; j < lanes; ++j) bits |= unsigned(mask.bits[j] & 1) << j;
+  return bits;
+#endif
 }
+inline bool any_of(Mask mask) { return lane_bits(mask) != 0; }
 
 /// A pack of what `number` gives for each lane.
 template <class Of, Index... lane>
@@ -102,12 +110,6 @@ CDEM_HD inline Pack pack_of(const Of& number, std::integer_sequence<Index, lane.
 template <class Of>
 CDEM_HD inline Pack pack_of(const Of& number) {
   return pack_of(number, std::make_integer_sequence<Index, lanes>{});
-}
-
-/// The numbers at these places of two packs, one after the other.
-template <int... places>
-CDEM_HD inline Pack::Numbers pick(const Pack::Numbers& a, const Pack::Numbers& b) {
-  return __builtin_shufflevector(a, b, places...);
 }
 
 /// One index per lane, as read from a connectivity table.

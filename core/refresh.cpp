@@ -266,10 +266,11 @@ bool refresh_is_due(const Model& m, State& s) {
   bool due = false;
   // beyond the horizon the lists take every vertex to stand still: what rests needs no new ones
   const Real after = std::min(s.time - s.search.built_time, s.search.horizon);
-#pragma omp parallel for schedule(static) reduction(|| : due) if (m.node_count >= worth_threads)
-  for (Index i = 0; i < m.node_count; ++i) {
+  const Index watched = Index(s.search.watched.size());
+#pragma omp parallel for schedule(static) reduction(|| : due) if (watched >= worth_threads)
+  for (Index w = 0; w < watched; ++w) {
+    const Index i = s.search.watched[w];
     const Real skin = s.search.node_skin[i];
-    if (skin == 0) continue;
     const Real* now = s.nodes.motion.data() + std::size_t(i) * 8;
     const Real* then = s.nodes.built_motion.data() + std::size_t(i) * 8;
     const Real dx = now[0] - then[0] - after * then[4], dy = now[1] - then[1] - after * then[5],
@@ -304,6 +305,7 @@ void refresh_contacts(const Model& m, State& s) {
 }
 
 void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
+  if (!all && s.search.candidate.size() == 0 && s.search.edge_candidate.size() == 0) return;
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
   launch_one(q, count, UpdateFaceGeometry{face_columns(m, s), exposed, s.face_geometry.data()});

@@ -3,6 +3,7 @@
 #include "core/candidates.hpp"
 #include "core/check.hpp"
 #include "core/elements/shapes.hpp"
+#include "core/exposed.hpp"
 
 namespace cdem {
 
@@ -69,6 +70,7 @@ void prepare(const Model& m, State& s) {
   s.contact_force.resize(16 * exposed);
   sum_stiffness(m, s);
   list_corners(m, s);
+  list_watched(s);
 }
 
 }  // namespace cdem

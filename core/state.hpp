@@ -72,6 +72,7 @@ struct SearchState {
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
+  Column<Index> watched;                        // the other nodes
 };
 
 /// What the wall time of steps is counted by.

@@ -5,10 +5,12 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
-#include "core/math.hpp"
+#include "core/field.hpp"
 
 namespace cdem {
 
@@ -30,11 +32,6 @@ struct Box {
   }
   void inflate(Real by) {
     for (int d = 0; d < 3; ++d) low[d] -= by, high[d] += by;
-  }
-  bool overlaps(const Box& b) const {
-    for (int d = 0; d < 3; ++d)
-      if (low[d] > b.high[d] || high[d] < b.low[d]) return false;
-    return true;
   }
   static Box nothing() { return {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}}; }
 };
@@ -58,18 +55,23 @@ class BoxTree {
  public:
   explicit BoxTree(const std::vector<Box>& boxes) {
     sort(boxes);
-    level_first_.push_back(0);
-    for (const Index i : order_) nodes_.push_back(boxes[i]);
-    std::size_t first = 0;
-    while (nodes_.size() - first > 1) {
-      const std::size_t last = nodes_.size();
-      level_first_.push_back(last);
-      for (std::size_t i = first; i < last; i += fan) {
-        Box sum = Box::nothing();
-        for (std::size_t j = i; j < std::min(i + fan, last); ++j) sum.include(nodes_[j]);
-        nodes_.push_back(sum);
+    std::vector<Box> level;
+    for (const Index i : order_) level.push_back(boxes[i]);
+    while (!level.empty()) {
+      level_first_.push_back(groups_.size());
+      std::vector<Box> above;
+      for (std::size_t i = 0; i < level.size(); i += fan) {
+        Group group;
+        above.push_back(Box::nothing());
+        for (std::size_t j = 0; j < fan; ++j) {
+          const Box box = i + j < level.size() ? level[i + j] : Box::nothing();
+          for (int d = 0; d < 3; ++d) group.low[d][j] = box.low[d], group.high[d][j] = box.high[d];
+          above.back().include(box);
+        }
+        groups_.push_back(group);
       }
-      first = last;
+      if (above.size() == 1) break;
+      level = std::move(above);
     }
   }
 
@@ -81,6 +83,25 @@ class BoxTree {
 
  private:
   static constexpr std::size_t fan = 8;
+
+  /// Eight boxes, each bound of theirs side by side.
+  struct Group {
+    alignas(64) Real low[3][fan], high[3][fan];
+
+    /// Which of them overlap a box, as bits.
+    unsigned overlaps(const Box& box) const {
+      unsigned bits = 0;
+      for (Index j = 0; j < Index(fan); j += lanes) {
+        Mask apart{};
+        for (int d = 0; d < 3; ++d) {
+          apart = apart | (InTable{low[d], 0}.at(0, Lane{j}) > Pack(box.high[d])) |
+                  (InTable{high[d], 0}.at(0, Lane{j}) < Pack(box.low[d]));
+        }
+        bits |= lane_bits(!apart) << j;
+      }
+      return bits;
+    }
+  };
 
   void sort(const std::vector<Box>& boxes) {
     Box all = Box::nothing();
@@ -100,18 +121,18 @@ class BoxTree {
   }
   template <class Visit>
   void descend(const Box& box, std::size_t level, std::size_t i, Visit& visit) const {
-    if (!nodes_[level_first_[level] + i].overlaps(box)) return;
-    if (level == 0) {
-      visit(order_[i]);
-      return;
+    unsigned bits = groups_[level_first_[level] + i].overlaps(box);
+    for (; bits; bits &= bits - 1) {
+      const std::size_t j = fan * i + std::size_t(std::countr_zero(bits));
+      if (level == 0)
+        visit(order_[j]);
+      else
+        descend(box, level - 1, j, visit);
     }
-    const std::size_t below = level_first_[level] - level_first_[level - 1];
-    for (std::size_t j = fan * i; j < std::min(fan * (i + 1), below); ++j)
-      descend(box, level - 1, j, visit);
   }
 
   std::vector<Index> order_;
-  std::vector<Box> nodes_;
+  std::vector<Group> groups_;
   std::vector<std::size_t> level_first_;
 };
 

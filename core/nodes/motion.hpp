@@ -199,7 +199,8 @@ struct MoveNodes {
     const Index row = mass.row(i);
     if (row < 0) return (Row::at(force + std::size_t(i) * 4) / mass.mass[i]).xyz();
     const Index count = mass.block_count[i];
-    const Real *inverse = mass.inverse + row, *forces = force + std::size_t(mass.block_first[i]) * 4;
+    const Real *inverse = mass.inverse + row,
+               *forces = force + std::size_t(mass.block_first[i]) * 4;
     Row a = Row::zero();
     if (mass.held(i)) {  // another matrix for each axis
       const Real *x = inverse, *y = x + mass.dense_step[i], *z = y + mass.dense_step[i];
