@@ -63,9 +63,10 @@ class BoxTree {
       for (std::size_t i = 0; i < level.size(); i += fan) {
         Group group;
         above.push_back(Box::nothing());
-        for (std::size_t j = 0; j < fan; ++j) {
-          const Box box = i + j < level.size() ? level[i + j] : Box::nothing();
+        for (std::size_t j = 0; j < fan && i + j < level.size(); ++j) {
+          const Box& box = level[i + j];
           for (int d = 0; d < 3; ++d) group.low[d][j] = box.low[d], group.high[d][j] = box.high[d];
+          group.used |= 1u << j;
           above.back().include(box);
         }
         groups_.push_back(group);
@@ -86,9 +87,10 @@ class BoxTree {
 
   /// Eight boxes, each bound of theirs side by side.
   struct Group {
-    alignas(64) Real low[3][fan], high[3][fan];
+    alignas(64) Real low[3][fan] = {}, high[3][fan] = {};
+    unsigned used = 0;  // places, as bits
 
-    /// Which of them overlap a box, as bits.
+    /// Which of them overlap a box, as bits. What is no number any more overlaps everything.
     unsigned overlaps(const Box& box) const {
       unsigned bits = 0;
       for (Index j = 0; j < Index(fan); j += lanes) {
@@ -99,7 +101,7 @@ class BoxTree {
         }
         bits |= lane_bits(!apart) << j;
       }
-      return bits;
+      return bits & used;
     }
   };
 
