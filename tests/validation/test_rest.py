@@ -206,3 +206,19 @@ def test_a_step_above_the_stable_one_is_warned_of(step, warned):
         [{"group": "block", "box": {"size": [1, 1, 1]}}], {"block": {}}, time={"step": step}
     )
     assert len([w for w in sim.audit.warnings if "above the stable" in w]) == warned
+
+
+def test_damping_that_ends_leaves_nothing_behind():
+    """A block falls, first with local damping, then without: the ledger stays closed."""
+    sim = simulate(
+        [{"group": "a", "box": {"size": [1, 1, 1]}}],
+        {"a": {}},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=[
+            {"name": "one", "mode": "dynamic", "duration": 0.01, "damping": {"local": 0.5}},
+            {"name": "two", "mode": "dynamic", "duration": 0.01},
+        ],
+    )
+    sim.run()
+    assert sim.energies["damping"] > 0
+    assert abs(sim.energies["error"]) < 1e-4  # 5e-3 where the last damping force is still counted
