@@ -251,8 +251,8 @@ class _Scene:
             edge_color="#444444",
             line_width=0.4,
             show_scalar_bar=self.field != "piece" and not by_group,  # whose numbers mean nothing
-            # an even number of labels leaves room for the title in the middle
-            scalar_bar_args={"color": "black", "vertical": False, "fmt": "%.3g", "n_labels": 6},
+            # labels that leave room for the title in the middle
+            scalar_bar_args={"color": "black", "vertical": False, "fmt": "%.3g", "n_labels": 4},
         )
         plotter.add_text(title or f"t = {surface.time:.4g} s", font_size=12, color="black")
         plotter.camera_position = self.camera
