@@ -305,7 +305,9 @@ void refresh_contacts(const Model& m, State& s) {
 }
 
 void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
-  if (!all && s.search.candidate.size() == 0 && s.search.edge_candidate.size() == 0) return;
+  // without candidates nothing asks for it but contacts that end in the first step with these lists
+  const bool listed = s.search.candidate.size() > 0 || s.search.edge_candidate.size() > 0;
+  if (!all && !listed && s.built_step < s.step) return;
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
   launch_one(q, count, UpdateFaceGeometry{face_columns(m, s), exposed, s.face_geometry.data()});

@@ -146,6 +146,7 @@ struct SumNodeForces {
   }
 
  private:
+  /// Damping force on a node that is free to move.
   CDEM_HD Row drag(Index i, const Row& f) const {
     Row d = Row::zero();
     if (damping.local > 0) {
