@@ -74,8 +74,8 @@ void take_counts(Core& core, const nb::dict& c) {
     p.corner_first = number((name + ".corner_first").c_str());
     p.point_stride = p.stride;
   };
-  pairs("triangles", m.triangles, 3, 6);
-  pairs("quads", m.quads, 4, 8);
+  pairs("triangles", m.triangles, 3, 3);
+  pairs("quads", m.quads, 4, 4);
   pairs("overlaps", m.overlaps, 1, 8);
   m.overlaps.point_stride = padded_stride(number("overlaps.points"));
 }

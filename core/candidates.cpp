@@ -184,7 +184,7 @@ void list_corners(const Model& m, State& s) {
   first[0] = 0;
   for (Index i = 0; i < m.node_count; ++i) {
     for (Index c = m.corner_first[i]; c < m.corner_first[i + 1]; ++c)
-      if (!released[m.corner[c]]) corner.push(m.corner[c]);
+      if (!released[m.corner[c] < 0 ? ~m.corner[c] : m.corner[c]]) corner.push(m.corner[c]);
     first[i + 1] = Index(corner.size());
   }
 }

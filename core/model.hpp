@@ -62,7 +62,7 @@ struct Model {
   Column<Interface> interfaces;
   Column<Real> cohesion, tensile_strength, tan_friction;
 
-  // corner rows of each node
+  // corner rows of each node; ~row where it takes the opposite of what stands there
   Index corner_rows = 0;
   Column<Index> corner_first, corner;
 

@@ -181,8 +181,8 @@ struct ConformingBonds {
   PairColumns pairs;
   Real indentation;  // a: 0 at the vertices, 1/2 (3) or 1 - 1/sqrt(3) (4) as quadrature points
   Real dt;
-  bool sampled;  // does anything ask for the energy of intact pairs?
-  OutForces corner_force;
+  bool sampled;            // does anything ask for the energy of intact pairs?
+  OutForces corner_force;  // [pair][count]: on the mates; on the first face's vertices the opposite
 
   template <class I>
   CDEM_HD void operator()(I p) const {
@@ -275,8 +275,7 @@ struct ConformingBonds {
     for (Index k = 0; k < count; ++k) {
       Vec3<T> fk = own * force[k] + shared * sum;
       fk = {select(live, fk.x, zero), select(live, fk.y, zero), select(live, fk.z, zero)};
-      corner_force.set(p, 2 * count, k, -fk);
-      corner_force.set(p, 2 * count, count + k, fk);
+      corner_force.set(p, count, k, fk);
     }
   }
   template <class I>

@@ -52,12 +52,25 @@ struct SupportColumns {
 
 /// Which corner rows belong to a node.
 struct CornerLists {
-  const Index* first;  // [node + 1], rows of elements and bonded pairs
-  const Index* corner;
+  const Index* first;   // [node + 1], rows of elements and bonded pairs
+  const Index* corner;  // ~row where the node takes the opposite of what stands there
   InForces corner_force;
   const Index* contact_first;  // [node + 1], rows of exposed faces that may have contacts
   const Index* contact_corner;
   InForces contact_force;  // rows: force, stiffness
+
+  /// Sum of a node's rows, in the order of its list: those of elements come first, and have no
+  /// sign.
+  CDEM_HD Row sum(Index node, Row f) const {
+    Index c = first[node];
+    const Index last = first[node + 1];
+    for (; c < last && corner[c] >= 0; ++c) f = f + corner_force.at(corner[c]);
+    for (; c < last; ++c) {  // no branch: which sign comes next cannot be foreseen
+      const Index opposite = corner[c] >> 31;  // 0 or -1
+      f = f + Real(2 * opposite + 1) * corner_force.at(corner[c] ^ opposite);
+    }
+    return f;
+  }
 };
 
 /// Mass of the nodes: a number each, or for small blocks the inverse of the consistent mass matrix,
@@ -126,9 +139,7 @@ struct SumNodeForces {
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
-    Row f = loads.at(i);
-    for (Index c = corners.first[i]; c < corners.first[i + 1]; ++c)
-      f = f + corners.corner_force.at(corners.corner[c]);
+    Row f = corners.sum(i, loads.at(i));
     for (Index c = corners.contact_first[i]; c < corners.contact_first[i + 1]; ++c)
       f = f + corners.contact_force.at(corners.contact_corner[c]);
     if (unbalance) {

@@ -444,7 +444,7 @@ def _pairs(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
             out.arrays[f"{kind}.{name}"] = empty_real
         out.counts[f"{kind}.count"] = count
         out.counts[f"{kind}.corner_first"] = out.counts["corner_rows"]
-        out.counts["corner_rows"] += count * 2 * n
+        out.counts["corner_rows"] += count * n
 
     faces = t.overlap_faces
     count, stride = len(faces), padded_stride(len(faces))
@@ -492,16 +492,17 @@ def _corners(t: Topology, out: Assembly) -> None:
         row.append(out.counts[f"{shape}.corner_first"] + np.arange(len(nodes)))
     for kind, n in (("triangles", 3), ("quads", 4)):
         count = out.counts[f"{kind}.count"]
-        nodes = out.arrays[f"{kind}.nodes"].reshape(2 * n, -1)[:, :count].T.ravel()
-        owner.append(nodes)
-        row.append(out.counts[f"{kind}.corner_first"] + np.arange(len(nodes)))
+        nodes = out.arrays[f"{kind}.nodes"].reshape(2, n, -1)[..., :count]
+        rows = out.counts[f"{kind}.corner_first"] + np.arange(count * n).reshape(count, n).T
+        owner.append(nodes.transpose(2, 0, 1).ravel())
+        row.append(np.stack([~rows, rows]).transpose(2, 0, 1).ravel())  # force and reaction
     nodes = t.face_nodes[t.overlap_faces].reshape(-1)
     used = nodes >= 0
     owner.append(nodes[used])
     row.append(out.counts["overlaps.corner_first"] + np.flatnonzero(used))
-    first, rows = ragged(
+    first, listed = ragged(
         np.concatenate(owner).astype(np.int64), np.concatenate(row).astype(np.int32),
         len(t.node_position),
     )  # fmt: skip
     out.arrays["corner.first"] = first
-    out.arrays["corner.row"] = rows
+    out.arrays["corner.row"] = listed
