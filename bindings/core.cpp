@@ -40,6 +40,15 @@ void take_model(Core& core, const nb::dict& arrays) {
   });
 }
 
+/// Views of the model's arrays; only until one of them is changed.
+nb::object model_arrays(nb::handle_t<Core> self) {
+  nb::dict arrays;
+  describe(nb::cast<Core&>(self).model, [&]<class T>(const std::string& name, Column<T>& column) {
+    arrays[name.c_str()] = view(column, self);
+  });
+  return arrays;
+}
+
 /// Copy those arrays of the model that the dict holds: what a stage may change.
 void update_model(Core& core, const nb::dict& arrays) {
   describe(core.model, [&]<class T>(const std::string& name, Column<T>& column) {
@@ -210,6 +219,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("take_counts", &take_counts, "counts"_a)
       .def("take_model", &take_model, "arrays"_a)
       .def("update_model", &update_model, "arrays"_a)
+      .def("model", &model_arrays)
       .def("set_options", &set_options, "options"_a)
       .def("set_interfaces", &set_interfaces, "rows"_a)
       .def("set_curves",

@@ -39,7 +39,7 @@ def simulate(blocks, groups, **more):
 
 def momentum(sim):
     """Linear and angular momentum with the mass matrices that the core uses."""
-    arrays, motion = sim.build.assembly.arrays, sim.fields
+    arrays, motion = sim.build.arrays, sim.fields
     v, x = motion["velocity"], motion["position"]
     p = arrays["node.mass"][:, None] * v
     for i in np.flatnonzero(arrays["node.dense_first"] >= 0):

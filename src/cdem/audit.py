@@ -85,9 +85,9 @@ class Audit:
             if count == 0:
                 continue
             faces = a.pair_faces[kind]
-            stride = len(a.arrays[f"{kind}.interface"])
-            normal, shear = a.arrays[f"{kind}.stiffness"].reshape(2, stride)[:, :count]
-            area = a.arrays[f"{kind}.area"][:count]
+            stride = len(b.arrays[f"{kind}.interface"])
+            normal, shear = b.arrays[f"{kind}.stiffness"].reshape(2, stride)[:, :count]
+            area = b.arrays[f"{kind}.area"][:count]
             # strain per stress that the interfaces add, averaged over directions: a joint of normal
             # n adds A (n_z^4 / k_n + n_z^2 (1 - n_z^2) / k_s); the means are 1/5 and 2/15
             young = sim_young[t.face_group[faces]].mean(axis=1)
@@ -151,7 +151,8 @@ class Audit:
 
     def _free_blocks(self) -> dict[str, int]:
         """Blocks of each group that neither supports nor bonds nor contacts hold at the start."""
-        t, a = self._sim.build.topology, self._sim.build.assembly
+        b = self._sim.build
+        t, a = b.topology, b.assembly
         core = self._sim.core.fields()
         exposed = core["search.exposed_face"]
         vertices, sides = core["search.candidate_first"], core["search.edge_candidate_first"]
@@ -163,7 +164,7 @@ class Audit:
         ]
         joined = t.face_block[np.concatenate(pairs)]
         held = np.zeros(len(t.block_group), bool)
-        held[t.node_block[a.arrays["support.row"][: len(t.node_block)] >= 0]] = True
+        held[t.node_block[b.arrays["support.row"][: len(t.node_block)] >= 0]] = True
         while True:  # as many rounds as blocks lie one behind another
             reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
             if not reached.any():
@@ -225,9 +226,10 @@ class Audit:
 
     @property
     def memory(self) -> int:
-        """Bytes that model and state take."""
-        state = sum(a.nbytes for a in self._sim.core.fields().values())
-        return state + sum(a.nbytes for a in self._sim.build.assembly.arrays.values())
+        """Bytes that the arrays of model and state take in the core; without what a step writes for
+        itself, and what Python knows of the mesh."""
+        arrays = [*self._sim.core.fields().values(), *self._sim.build.arrays.values()]
+        return sum(a.nbytes for a in arrays)
 
     def as_dict(self) -> dict[str, Any]:
         """The whole report, ready for JSON."""
@@ -253,7 +255,7 @@ class Audit:
 
     def _moving_elements(self) -> int:
         """Elements that are not held still: what is held is not computed."""
-        t, a = self._sim.build.topology, self._sim.build.assembly.arrays
+        t, a = self._sim.build.topology, self._sim.build.arrays
         row = a["support.row"][: len(t.node_block)]
         still = a["support.component"].reshape(-1, 3).astype(bool) & (
             a["support.velocity"].reshape(-1, 3) == 0

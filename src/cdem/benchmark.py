@@ -101,7 +101,9 @@ def run(sizes: list[str], threads: int) -> Iterator[Row]:
             yield tets_shared(SIZES[size], count)
         for count in counts:
             yield tets_bonded(SIZES[size], count)
-    for m in (RUBBLE, SIZES["1e4"]) if "1e6" in sizes else (RUBBLE,):
+        for count in counts:
+            yield tets_broken(SIZES[size], count)
+    for m in (RUBBLE, SIZES["1e4"], SIZES["1e5"]) if "1e6" in sizes else (RUBBLE,):
         for count in counts:
             yield from rubble(m, count)
     for rows in (26, 208) if "1e5" in sizes else (26,):
@@ -109,6 +111,7 @@ def run(sizes: list[str], threads: int) -> Iterator[Row]:
             yield wall(rows, count)
     for hexahedra in ("full", "one-point"):
         yield hexes(threads, hexahedra)
+    yield mixed(threads)
 
 
 def _bar(m: int, shape: str, **more: Any) -> dict[str, Any]:
@@ -149,20 +152,38 @@ def tets_shared(m: int, threads: int) -> Row:
 
 def tets_bonded(m: int, threads: int) -> Row:
     """P2: every interior face a breakable interface, all intact."""
-    bonded = {
+    row, _ = _bonded("P2 tets, all faces bonded", "1 GPa", m, threads)
+    if m == SIZES["1e4"]:
+        row.more["wave speed error [%]"] = 100 * _wave_error(m, _breakable("1 GPa"))
+    return row
+
+
+def tets_broken(m: int, threads: int) -> Row:
+    """P2 on the path that keeps a history: every interface broken, and still where it was."""
+    row, sim = _bonded("P2 tets, all faces broken", "0.001 Pa", m, threads)
+    bonds = 3 * sim.audit.counts["bonded_pairs"]
+    row.more["broken [%]"] = 100 * sum(sim.broken.values()) / bonds
+    return row
+
+
+def _breakable(strength: str) -> dict[str, Any]:
+    """Every element a block of its own, bonded to the others by interfaces of one strength."""
+    return {
         "model": {"split": {"bar": "elements"}},
-        "interface": {"cohesion": "1 GPa", "tensile_strength": "1 GPa"},
+        "interface": {"cohesion": strength, "tensile_strength": strength},
     }
-    sim, start = _start(_bar(m, "tet4", **bonded), threads)
+
+
+def _bonded(name: str, strength: str, m: int, threads: int) -> tuple[Row, Simulation]:
+    sim, start = _start(_bar(m, "tet4", **_breakable(strength)), threads)
     counts = sim.audit.counts
     tets = counts["elements"]
-    row = _time("P2 tets, all faces bonded", f"{tets:,}", "tets/s", sim, tets)
+    row = _time(name, f"{tets:,}", "tets/s", sim, tets)
     row.more["interfaces/s"] = row.rate * counts["bonded_pairs"] / tets
-    row.more["B/tet resident"] = sim.audit.memory / tets
+    row.more["semi-springs/s"] = 6 * row.more["interfaces/s"]  # of two triangles
+    row.more["B/tet of model and state"] = sim.audit.memory / tets
     row.more["start-up [s]"] = start
-    if m == SIZES["1e4"]:
-        row.more["wave speed error [%]"] = 100 * _wave_error(m, bonded)
-    return row
+    return row, sim
 
 
 def rubble(m: int, threads: int) -> Iterator[Row]:
@@ -191,7 +212,7 @@ def rubble(m: int, threads: int) -> Iterator[Row]:
     row.more["refreshes per 1000 steps"] = (
         1000 * (int(sim.core.scalars()["refreshes"]) - refreshes) / done
     )
-    row.more["B/tet resident"] = sim.audit.memory / tets
+    row.more["B/tet of model and state"] = sim.audit.memory / tets
     row.more["start-up [s]"] = start
     yield row
     yield _search(row, refreshes, done, sim)
@@ -250,6 +271,22 @@ def hexes(threads: int, hexahedra: str) -> Row:
     sim, start = _start(_bar(m, "hex8", elements={"hexahedra": hexahedra}), threads)
     count = sim.audit.counts["elements"]
     row = _time(f"hexahedra, {hexahedra}", f"{count:,}", "hexes/s", sim, count)
+    row.more["start-up [s]"] = start
+    return row
+
+
+def mixed(threads: int) -> Row:
+    """A quarter each of the bar in hexahedra, wedges, pyramids and tets, bonded where they meet."""
+    m = 15
+    case = _bar(m, "hex8", interface={"cohesion": "1 GPa", "tensile_strength": "1 GPa"})
+    case["model"]["blocks"] = [
+        {"group": "bar", "translate": [2 * m * i, 0, 0],
+         "box": {"size": [2 * m, m, m], "divisions": [2 * m, m, m], "shape": shape}}
+        for i, shape in enumerate(("hex8", "wedge6", "pyramid5", "tet4"))
+    ]  # fmt: skip
+    sim, start = _start(case, threads)
+    count = sim.audit.counts["elements"]
+    row = _time("mixed mesh", f"{count:,}", "elements/s", sim, count)
     row.more["start-up [s]"] = start
     return row
 

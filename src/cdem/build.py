@@ -35,7 +35,7 @@ class Build:
         case: The case it was made from.
         mesh: The mesh, all pieces merged.
         topology: Blocks, faces and pairs.
-        assembly: Flat arrays that the core was given.
+        assembly: Counts and sums of what the core was given, which holds the arrays now.
         core: The compiled core, holding model and state.
         curves: Times and factors of load and velocity histories; the first is constant.
         start_position: Positions at the start [m], shape (nodes, 3).
@@ -51,6 +51,11 @@ class Build:
     curves: list[tuple[list[float], list[float]]]
     start_position: Floats
     bonded: NDArray[np.bool_]
+
+    @property
+    def arrays(self) -> dict[str, NDArray]:
+        """Flat arrays of the model by name: views of the core's, until a stage changes them."""
+        return self.core.model()
 
     @property
     def group_names(self) -> list[str]:
@@ -127,6 +132,7 @@ def build(case: Case) -> Build:
     parts.arrays |= _loads(case, topology, names, curves)
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
+    parts.arrays.clear()  # the core has its own
     core.set_curves([c[0] for c in curves], [c[1] for c in curves])
     core.set_interfaces([interface_row(law) for law in laws])
     core.set_options(_options(case, [case.materials[case.groups[n].material] for n in names]))
@@ -454,7 +460,7 @@ def _options(case: Case, materials) -> dict:
 
 def _initial_velocities(built: Build) -> None:
     motion = built.core.fields()["node.motion"].reshape(-1, 8)
-    mass = built.assembly.arrays["node.mass"]
+    mass = built.arrays["node.mass"]
     for name, group in built.case.groups.items():
         nodes = built.nodes_of(name)
         x = built.start_position[nodes]

@@ -258,7 +258,7 @@ def rests(
         prepare()
         stages.update_core(sim, sim.stage_index)
         sim.core.renew_step()
-    size = float(sim.build.assembly.arrays["face.length"][: sim.audit.counts["faces"]].mean())
+    size = float(sim.build.arrays["face.length"][: sim.audit.counts["faces"]].mean())
     start = sim.fields["position"].copy()
     most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
     half_way = 0.0  # kinetic energy when half of the travel was reached

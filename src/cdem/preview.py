@@ -128,7 +128,7 @@ def _groups(panel: _Panel, sim: Simulation) -> None:
 
 def _held(panel: _Panel, sim: Simulation) -> None:
     """Dots at the nodes of outer faces that are held or driven, one colour for each way."""
-    arrays = sim.build.assembly.arrays
+    arrays = sim.build.arrays
     row = arrays["support.row"]
     component = arrays["support.component"].reshape(-1, 3)
     driven = (arrays["support.velocity"].reshape(-1, 3) != 0).any(axis=1)
@@ -147,7 +147,7 @@ def _held(panel: _Panel, sim: Simulation) -> None:
 
 def _loads(panel: _Panel, sim: Simulation) -> None:
     """Arrows of the nodal forces that come from tractions, the largest at full length."""
-    arrays = sim.build.assembly.arrays
+    arrays = sim.build.arrays
     first = arrays["load.first"]
     nodes = np.repeat(np.arange(len(first) - 1), np.diff(first))
     if len(nodes) == 0:

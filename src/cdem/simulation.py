@@ -162,7 +162,7 @@ class Simulation:
             "displacement": motion[:, :3] - self.reference,
             "force": self.core.node_force().reshape(-1, 4)[:, :3],
             "reaction": state["node.reaction"].reshape(-1, 4)[:, :3],
-            "mass": self.build.assembly.arrays["node.mass"],
+            "mass": self.build.arrays["node.mass"],
         }
 
     @property

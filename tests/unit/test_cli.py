@@ -246,7 +246,9 @@ def test_benchmark_rows_say_what_was_measured(monkeypatch):
     monkeypatch.setattr(benchmark, "SECONDS", 1e-4)
     monkeypatch.setattr(benchmark, "TRIAD_BYTES", 3_000_000)
     rubble, search = benchmark.rubble(1, 1)
-    for row in (benchmark.tets_shared(2, 1), benchmark.tets_bonded(2, 1), rubble):
+    broken = benchmark.tets_broken(2, 1)
+    assert broken.more["broken [%]"] > 0
+    for row in (benchmark.tets_shared(2, 1), benchmark.tets_bonded(2, 1), broken, rubble):
         assert 0 < row.least <= row.rate <= row.most
         assert sum(v for k, v in row.more.items() if k.split()[0] in benchmark.PHASES) == (
             pytest.approx(100)

@@ -312,11 +312,11 @@ def test_interfaces_follow_the_joint_then_the_groups():
         }), threads=1,
     ).build  # fmt: skip
     t, a = b.topology, b.assembly
-    law = a.arrays["triangles.interface"][: a.counts["triangles.count"]]
+    law = b.arrays["triangles.interface"][: a.counts["triangles.count"]]
     kind = t.face_kind[a.pair_faces["triangles"]]
     assert (kind[:, 0] == kind[:, 1]).all() and set(kind[:, 0]) == {1, 2, 3}
     assert ((kind[:, 0] == 2) == (law == 0)).all() and set(law) == {0, 1}
-    table = a.arrays["interface.of"].reshape(4, 4)
+    table = b.arrays["interface.of"].reshape(4, 4)
     assert (table == [[1, 1, 0, 1]] * 4).all()  # what touches a face of set b has its law
 
 
@@ -346,9 +346,9 @@ def test_all_of_every_joint_is_bonded(persistence, fisher):
         threads=1,
     ).build
     a = b.assembly
-    made = a.arrays["face.area"][b.topology.face_kind > 0].sum() / 2
+    made = b.arrays["face.area"][b.topology.face_kind > 0].sum() / 2
     kinds = ("triangles", "overlaps")
-    bonded = [a.arrays[f"{k}.area"][: a.counts[f"{k}.count"]].sum() for k in kinds]
+    bonded = [b.arrays[f"{k}.area"][: a.counts[f"{k}.count"]].sum() for k in kinds]
     assert sum(bonded) == pytest.approx(made, rel=1e-9)
     assert bonded[1] > 0.1 * made or persistence == 1
 

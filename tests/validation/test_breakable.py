@@ -157,7 +157,7 @@ def test_an_open_hinge_stops_what_falls_into_it():
     state, lid = sim.core.fields(), sim.build.nodes_of("lid")
     x, y, z = sim.fields["position"][lid].T
     sim.fields["position"][lid] = np.column_stack([-z, y, x])
-    nodes = np.reshape(sim.build.assembly.arrays["quads.nodes"], (8, -1))[:, 0]
+    nodes = np.reshape(sim.build.arrays["quads.nodes"], (8, -1))[:, 0]
     jump = sim.fields["position"][nodes[4:]] - sim.fields["position"][nodes[:4]]
     apart = np.linalg.norm(jump, axis=1) > 0.5
     assert apart.sum() == 2

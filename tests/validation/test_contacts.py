@@ -70,7 +70,7 @@ def test_contact_types_carry_the_weight(lower, upper, seed):
     )
     sim.step(4000)
     t, state = sim.build.topology, sim.core.fields()
-    area, exposed = sim.build.assembly.arrays["face.area"], state["search.exposed_face"]
+    area, exposed = sim.build.arrays["face.area"], state["search.exposed_face"]
     share = area / (t.face_nodes >= 0).sum(axis=1) * K_N  # k_n A / N
     slots = np.flatnonzero(state["spring.target"] >= 0)
     forces = 0.5 * share[exposed[slots // 4]] * state["spring.state"].reshape(-1, 8)[slots, 1]

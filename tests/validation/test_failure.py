@@ -189,7 +189,7 @@ def test_non_conforming_interface(low, high):
         },
         stages=[{"name": "pull", "mode": "static", "tolerance": 1e-8}],
     )
-    assert sim.build.assembly.arrays["overlaps.point_area"].sum() == pytest.approx(1, rel=1e-12)
+    assert sim.build.arrays["overlaps.point_area"].sum() == pytest.approx(1, rel=1e-12)
     assert sim.run() == "converged"
     nodes = sim.build.nodes_of("block")
     bottom = nodes[sim.build.start_position[nodes, 2] < 1e-9]
