@@ -269,7 +269,12 @@ def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
         element_nodes[shape] = cells[sort]
         keys.append(element_block[shape][:, None].astype(np.int64) * len(mesh.points) + cells[sort])
     flat = np.concatenate([k.ravel() for k in keys])
-    unique, inverse = np.unique(flat, return_inverse=True)
+    unique, first, inverse = np.unique(flat, return_index=True, return_inverse=True)
+    # nodes of a block in the order in which its elements come to them: what is near lies together
+    order = np.lexsort((first, unique // len(mesh.points)))
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    unique, inverse = unique[order], rank[inverse]
     start = 0
     for shape in NODES:
         size = element_nodes[shape].size
