@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem import __version__
 from cdem.build import bonded_pairs, interfaces_of
 from cdem.errors import CdemError
 from cdem.record import (
@@ -163,6 +164,12 @@ class Results:
                 f"{self.folder / 'checkpoint.h5'}: belongs to another model "
                 f"({len(arrays['simulation.reference'])} nodes, this one has {nodes}); "
                 "resume with the case that was run"
+            )
+        if attributes.get("nodes") != sim.build.fingerprint():
+            raise CdemError(
+                f"{self.folder / 'checkpoint.h5'}: belongs to another model, whose nodes begin at "
+                "other places or are numbered otherwise; resume with the case, the mesh and the "
+                f"cdem that were run ({attributes['version']}; this is {__version__})"
             )
         return arrays, attributes
 

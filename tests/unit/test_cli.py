@@ -144,6 +144,17 @@ def test_resuming_with_another_case_is_said(cdem):
     assert "warning: this is not the case that cube.results was begun with: - title: A cube" in err
 
 
+def test_a_checkpoint_of_another_mesh_is_refused(cdem):
+    """As many nodes, at other places."""
+    assert cdem("run", "cube.yaml", "--quiet")[0] == 0
+    status, _, err = cdem(
+        "run", "cube.yaml", "--resume", "--set", "model.blocks.0.box.size=[1, 1, 1.5]"
+    )
+    assert status == 1
+    assert "belongs to another model, whose nodes begin at other places" in err
+    assert cdem("run", "cube.yaml", "--resume", "--quiet")[0] == 0
+
+
 def test_a_checkpoint_of_another_version_is_refused_in_one_line(cdem, folder):
     assert cdem("run", "cube.yaml", "--quiet")[0] == 0
     with h5py.File(folder / "cube.results/checkpoint.h5", "r+") as file:
