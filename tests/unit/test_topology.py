@@ -101,3 +101,19 @@ def test_overlap_shares_area_and_centroid_exactly(dx, dy, angle, size):
     center = np.array([((x + x1) * cross).sum(), ((y + y1) * cross).sum()]) / (3 * cross.sum())
     assert weights.sum() == pytest.approx(area, rel=1e-9)
     np.testing.assert_allclose(weights @ polygon[:, :2] / area, center, atol=1e-9)
+
+
+def test_nodes_of_a_large_block_lie_as_its_elements_come_to_them(monkeypatch):
+    box = mesh.box("a", (2, 1, 1), (4, 3, 3), shape="tet4")
+    small = build_topology(box, {})
+    monkeypatch.setattr("cdem.topology.LARGE_BLOCK", 10)
+    large = build_topology(box, {})
+    seen = large.element_nodes["tet4"].ravel()
+    _, first = np.unique(seen, return_index=True)
+    assert (np.diff(first) > 0).all()
+    assert (np.diff(small.node_point) > 0).all()
+    for t in (small, large):
+        assert np.array_equal(
+            t.node_position[t.element_nodes["tet4"]],
+            box.points[box.cells["tet4"][t.element_cell["tet4"]]],
+        )
