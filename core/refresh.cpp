@@ -32,14 +32,8 @@ constexpr Real release_part = 0.1;
 bool release_is_due(const Model& m, const PairSet& p, const PairState& s) {
   bool due = false;
 #pragma omp parallel for schedule(static) reduction(|| : due) if (p.count >= worth_threads)
-  for (Index first = 0; first < p.count; first += block_size) {
-    const Index last = std::min(first + block_size, p.count);
-    Real widest = 0;  // of most blocks, whose pairs all hold
-    for (Index i = first; i < last; ++i) widest = std::max(widest, s.jump[i]);
-    if (!(widest > 0)) continue;
-    for (Index i = first; i < last; ++i)
-      due = due || s.jump[i] > m.rules.indentation * pair_length(m, p, i);
-  }
+  for (Index i = 0; i < p.count; ++i)
+    due = due || (s.jump[i] > 0 && s.jump[i] > m.rules.indentation * pair_length(m, p, i));
   return due;
 }
 

@@ -33,6 +33,8 @@ TRIAD_BYTES = 400_000_000
 ROCK = {"density": 2500, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
 RUBBLE = 4
 """Cells in the width of the bar that is broken to rubble: 3,072 tets."""
+MIXED = 15
+"""Cells in the width of the bar of all shapes: 101,250 elements."""
 PHASES = ("refresh", "search", "contact", "element", "node")
 
 
@@ -113,7 +115,7 @@ def run(sizes: list[str], threads: int) -> Iterator[Row]:
             yield wall(rows, count)
     for hexahedra in ("full", "one-point"):
         yield hexes(threads, hexahedra)
-    yield mixed(threads)
+    yield mixed(MIXED, threads)
 
 
 def _bar(m: int, shape: str, **more: Any) -> dict[str, Any]:
@@ -277,9 +279,8 @@ def hexes(threads: int, hexahedra: str) -> Row:
     return row
 
 
-def mixed(threads: int) -> Row:
+def mixed(m: int, threads: int) -> Row:
     """A quarter each of the bar in hexahedra, wedges, pyramids and tets, bonded where they meet."""
-    m = 15
     case = _bar(m, "hex8", interface={"cohesion": "1 GPa", "tensile_strength": "1 GPa"})
     case["model"]["blocks"] = [
         {"group": "bar", "translate": [2 * m * i, 0, 0],

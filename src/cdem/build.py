@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,7 @@ class Build:
         """Flat arrays of the model by name: views of the core's, until a stage changes them."""
         return self.core.model()
 
+    @cached_property
     def fingerprint(self) -> str:
         """The same for models whose nodes begin at the same places, in the same order."""
         return hashlib.sha256(self.start_position.tobytes()).hexdigest()

@@ -165,7 +165,7 @@ class Results:
                 f"({len(arrays['simulation.reference'])} nodes, this one has {nodes}); "
                 "resume with the case that was run"
             )
-        if attributes.get("nodes") != sim.build.fingerprint():
+        if attributes.get("nodes") != sim.build.fingerprint:
             raise CdemError(
                 f"{self.folder / 'checkpoint.h5'}: belongs to another model, whose nodes begin at "
                 "other places or are numbered otherwise; resume with the case, the mesh and the "

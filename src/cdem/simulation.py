@@ -433,7 +433,7 @@ class Simulation:
         """What a checkpoint keeps besides arrays."""
         return {
             "version": __version__,
-            "nodes": self.build.fingerprint(),
+            "nodes": self.build.fingerprint,
             "core": self.core.scalars(),
             "overlap": list(self.overlap),
             "stage_index": self.stage_index,

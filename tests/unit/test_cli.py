@@ -259,7 +259,8 @@ def test_benchmark_rows_say_what_was_measured(monkeypatch):
     rubble, search = benchmark.rubble(1, 1)
     broken = benchmark.tets_broken(2, 1)
     assert broken.more["broken [%]"] > 0
-    for row in (benchmark.tets_shared(2, 1), benchmark.tets_bonded(2, 1), broken, rubble):
+    shared, bonded = benchmark.tets_shared(2, 1), benchmark.tets_bonded(2, 1)
+    for row in (shared, bonded, broken, benchmark.mixed(1, 1), rubble):
         assert 0 < row.least <= row.rate <= row.most
         assert sum(v for k, v in row.more.items() if k.split()[0] in benchmark.PHASES) == (
             pytest.approx(100)
