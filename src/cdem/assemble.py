@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem import shapes
+from cdem.rows import in_pieces, lengths
 from cdem.topology import Topology
 
 Floats = NDArray[np.float64]
@@ -316,19 +317,22 @@ def _dense_blocks(t: Topology, p: Properties, scaled, dense_block, out: Assembly
         for some, axes in ((~held[blocks], 1), (held[blocks], 3)):
             if not some.any():
                 continue
-            inverses = np.repeat(m[some][:, None], axes, axis=1)
+            matrices = m[some]
             if axes == 3:
-                for i, b in enumerate(blocks[some]):
-                    inverses[i] = _supported_inverse(m[some][i], p.supported[first[b] :][: int(n)])
+                inverses = np.array([
+                    _supported_inverse(matrix, p.supported[first[b] : first[b + 1]])
+                    for matrix, b in zip(matrices, blocks[some], strict=True)
+                ])  # fmt: skip
+                matrices = np.repeat(matrices[:, None], 3, axis=1)
             else:
-                inverses[:] = np.linalg.inv(inverses)
-            k = int(some.sum())
+                inverses = np.linalg.inv(matrices)
+            k = len(matrices)
             rows = place + n * n * axes * np.arange(k)[:, None] + n * np.arange(n)
             nodes = start[some][:, None] + np.arange(n)
             dense_first[nodes] = rows
             dense_step[nodes] = n * n if axes == 3 else 0
             inverse.append(inverses.ravel())
-            matrix.append(np.repeat(m[some][:, None], axes, axis=1).ravel())
+            matrix.append(matrices.ravel())
             place += int(n * n * axes * k)
     out.arrays["node.dense_first"] = dense_first
     out.arrays["node.dense_step"] = dense_step
@@ -368,48 +372,54 @@ def face_heights(t: Topology, volumes: dict[str, Floats], area: Floats) -> Float
     """Height of the element behind each face above it [m]: the h of k_n = factor E / h."""
     # volume = area * height / divisor, for a prism 1 and for a pyramid 3; the sides of a wedge stand
     # across from an edge (2), those of a pyramid between the two cases
-    corners = (t.face_nodes >= 0).sum(axis=1)
-    volume = np.concatenate([volumes[s] for s in shapes.NODES])[t.face_element]
-    shape = np.repeat(np.arange(4), [len(volumes[s]) for s in shapes.NODES])[t.face_element]
-    divisor = np.choose(
-        shape, [np.full(len(area), 3.0), np.full(len(area), 3.0), np.where(corners == 3, 1.0, 2.0),
-                np.ones(len(area))]
-    )  # fmt: skip
-    return divisor * volume / area
+    by_sides = {
+        "tet4": (3.0, 3.0),
+        "pyramid5": (3.0, 3.0),
+        "wedge6": (1.0, 2.0),
+        "hex8": (1.0, 1.0),
+    }
+    triangle, quad = (
+        np.concatenate([by_sides[s][k] * volumes[s] for s in shapes.NODES]) for k in (0, 1)
+    )
+    return np.where(t.face_nodes[:, 3] < 0, triangle[t.face_element], quad[t.face_element]) / area
 
 
 def face_areas(position: Floats, face_nodes: NDArray) -> Floats:
     """Area of triangles and (mean-plane) quadrilaterals [m2], shape (faces,)."""
     x = position[np.where(face_nodes < 0, face_nodes[:, 2:3], face_nodes)]
-    return 0.5 * np.linalg.norm(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]), axis=1)
+    return 0.5 * lengths(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]))
 
 
 def _faces(t: Topology, p: Properties, out: Assembly) -> None:
-    nodes = t.face_nodes
-    corners = (nodes >= 0).sum(axis=1)
-    x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
-    inside = (np.arange(4) < corners[:, None])[..., None]
-    center = (x * inside).sum(axis=1) / corners[:, None]
-    distance = np.linalg.norm(x - center[:, None], axis=2) * inside[..., 0]
-    area = face_areas(t.node_position, nodes)
+    def geometry(nodes: NDArray) -> Floats:
+        """Area, mean and largest distance of the vertices from their middle."""
+        x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+        inside = (nodes >= 0).astype(float)
+        corners = inside.sum(axis=1)
+        center = np.einsum("fkx,fk->fx", x, inside) / corners[:, None]
+        distance = lengths(x - center[:, None]) * inside
+        area = face_areas(t.node_position, nodes)
+        return np.stack([area, distance.sum(axis=1) / corners, distance.max(axis=1)], axis=1)
+
+    area, length, reach = in_pieces(geometry, t.face_nodes).T.copy()
     young = p.young_modulus[t.face_group]
     height = face_heights(t, out.element_volume, area)
     out.arrays |= {
-        "face.nodes": nodes.astype(np.int32).ravel(),
-        "face.edges": t.face_edges.astype(np.int32).ravel(),
-        "face.group": t.face_kind.astype(np.int32),
-        "face.block": t.face_block.astype(np.int32),
-        "face.element": t.face_element.astype(np.int32),
-        "face.length": distance.sum(axis=1) / corners,
-        "face.reach": DEFORMED * distance.max(axis=1),
+        "face.nodes": t.face_nodes.ravel(),
+        "face.edges": t.face_edges.ravel(),
+        "face.group": t.face_kind,
+        "face.block": t.face_block,
+        "face.element": t.face_element,
+        "face.length": length,
+        "face.reach": DEFORMED * reach,
         "face.area": area,
         "face.height": height,
         "face.stiffness": young / height,
         "face.movable": _movable(t, p),
-        "edge.nodes": t.edge_nodes.astype(np.int32).ravel(),
-        "edge.faces": t.edge_faces.astype(np.int32).ravel(),
-        "ring.first": t.node_ring_first.astype(np.int32),
-        "ring.node": t.node_ring.astype(np.int32),
+        "edge.nodes": t.edge_nodes.ravel(),
+        "edge.faces": t.edge_faces.ravel(),
+        "ring.first": t.node_ring_first,
+        "ring.node": t.node_ring,
         "interface.of": p.interface_of.astype(np.int32).ravel(),
     }
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem import shapes
+from cdem.rows import in_pieces, lengths
 
 if TYPE_CHECKING:
     from cdem.simulation import Simulation
@@ -95,9 +96,11 @@ class Audit:
             group = np.sort(t.face_group[faces], axis=1)
             joint = (t.face_kind // len(b.group_names))[faces]
             joint = np.where(joint[:, 0] == joint[:, 1], joint[:, 0], 0)
-            where = np.column_stack([group, joint])
-            for i, j, k in np.unique(where, axis=0):
-                some = (where == (i, j, k)).all(axis=1)
+            groups = len(b.group_names)
+            where = (joint.astype(np.int64) * groups + group[:, 0]) * groups + group[:, 1]
+            for number in np.unique(where):
+                some = where == number
+                k, i, j = number // groups**2, number // groups % groups, number % groups
                 key = (b.group_names[i], b.group_names[j], sets[k])
                 row = rows.setdefault(key, {"pairs": 0, "area": 0.0, "soft": 0.0, "k": [], "e": []})
                 row["pairs"] += int(some.sum())
@@ -135,19 +138,17 @@ class Audit:
 
     def _slivers(self) -> int:
         t = self._sim.build.topology
-        tets = t.node_position[t.element_nodes["tet4"]]
-        if len(tets) == 0:
-            return 0
+
+        def thin(nodes: NDArray, volume: NDArray) -> NDArray[np.bool_]:
+            tets = t.node_position[nodes]
+            sides = tets[:, [1, 2, 3, 2, 3, 3]] - tets[:, [0, 0, 0, 1, 1, 2]]
+            longest = lengths(sides).max(axis=1)
+            # two sides of each face, from the corner that it does not share with the first
+            area = lengths(np.cross(sides[:, [0, 0, 1, 3]], sides[:, [1, 2, 2, 4]])).max(axis=1)
+            return 6 * volume / area < SLIVER * longest
+
         volume = self._sim.build.assembly.element_volume["tet4"]
-        sides = tets[:, [1, 2, 3, 2, 3, 3]] - tets[:, [0, 0, 0, 1, 1, 2]]
-        longest = np.linalg.norm(sides, axis=2).max(axis=1)
-        area = np.stack(
-            [
-                np.linalg.norm(np.cross(tets[:, j] - tets[:, i], tets[:, k] - tets[:, i]), axis=1)
-                for i, j, k in ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3))
-            ]
-        ).max(axis=0)
-        return int((6 * volume / area < SLIVER * longest).sum())
+        return int(in_pieces(thin, t.element_nodes["tet4"], volume).sum())
 
     def _free_blocks(self) -> dict[str, int]:
         """Blocks of each group that neither supports nor bonds nor contacts hold at the start."""

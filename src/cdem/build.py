@@ -25,6 +25,13 @@ BOND_INDENTATION = {"vertex": (0.0, 0.0), "quadrature": (0.5, 1 - 1 / np.sqrt(3)
 integrate a linear stress exactly (method of the theory page on bonds)."""
 
 
+SHARED = {
+    "node_block": "node.block", "node_place": "node.place", "face_nodes": "face.nodes",
+    "face_edges": "face.edges", "face_kind": "face.group", "face_block": "face.block",
+    "face_element": "face.element", "edge_nodes": "edge.nodes", "edge_faces": "edge.faces",
+    "node_ring_first": "ring.first", "node_ring": "ring.node",
+}  # fmt: skip
+"""Arrays of the topology that the core has too, under its name."""
 LOOKS_ALONG = 1e-3
 """Faces whose normal is within about 2.5 degrees of a wanted direction look along it."""
 
@@ -140,14 +147,21 @@ def build(case: Case) -> Build:
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
+    _share(topology, core.model())
     core.set_curves([c[0] for c in curves], [c[1] for c in curves])
     core.set_interfaces([interface_row(law) for law in laws])
     core.set_options(_options(case, [case.materials[case.groups[n].material] for n in names]))
-    position = topology.node_position
-    core.start(np.ascontiguousarray(position))
-    built = Build(case, merged, topology, parts, core, curves, position.copy(), bonds)
+    core.start(topology.node_position)
+    built = Build(case, merged, topology, parts, core, curves, topology.node_position, bonds)
     _initial_velocities(built)
     return built
+
+
+def _share(topology: Topology, arrays: dict[str, NDArray]) -> None:
+    """Let the topology see the core's arrays where it has the same, so that they are kept once."""
+    for name, column in SHARED.items():
+        own = getattr(topology, name)
+        setattr(topology, name, arrays[column][: own.size].reshape(own.shape))
 
 
 def _properties(case: Case, names, laws, interface_of, bonds, supports) -> assemble.Properties:
@@ -354,15 +368,15 @@ def _surface(case: Case, topology: Topology, names: list[str], surface, path: st
             f"{case.where(path)}: {path}.group: no group {surface.group!r} in the model; it has: "
             f"{', '.join(names)}"
         )
-    nodes = topology.face_nodes
+    free = topology.face_group == names.index(surface.group)
+    free[topology.pair_faces.ravel()] = False  # what touches another block is inside the rock
+    faces = np.flatnonzero(free)
+    nodes = topology.face_nodes[faces]
     x = topology.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
     normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     wanted = np.asarray(surface.normal, float)
-    along = normal @ (wanted / np.linalg.norm(wanted)) > 1 - LOOKS_ALONG
-    free = np.ones(len(nodes), bool)  # faces that touch another block are inside the rock
-    free[topology.pair_faces.ravel()] = False
-    faces = np.flatnonzero(along & free & (topology.face_group == names.index(surface.group)))
+    faces = faces[normal @ (wanted / np.linalg.norm(wanted)) > 1 - LOOKS_ALONG]
     if len(faces) == 0:
         raise CaseError(f"{case.where(path)}: {path}: no free face of the group looks that way")
     return faces
@@ -417,13 +431,12 @@ def _drop_gravity(case: Case, topology: Topology, names: list[str], parts) -> No
 def _loads(case: Case, topology: Topology, names: list[str], curves: list) -> dict:
     """Nodal forces of tractions: the area of each vertex of the loaded faces times the traction."""
     nodes, forces, of_curve = [], [], []
-    area = assemble.face_areas(topology.node_position, topology.face_nodes)
-    corners = (topology.face_nodes >= 0).sum(axis=1)
     for index, item in enumerate(case.loads.tractions):
         faces = _surface(case, topology, names, item.surface, f"loads.tractions.{index}")
         vertex = topology.face_nodes[faces]
         used = vertex >= 0
-        share = np.broadcast_to((area[faces] / corners[faces])[:, None], vertex.shape)[used]
+        area = assemble.face_areas(topology.node_position, vertex)
+        share = np.broadcast_to((area / used.sum(axis=1))[:, None], vertex.shape)[used]
         nodes.append(vertex[used])
         forces.append(share[:, None] * np.asarray(item.traction, float))
         of_curve.append(np.full(used.sum(), _curve(item.history, curves), np.int32))

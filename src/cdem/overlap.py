@@ -26,6 +26,8 @@ COPLANAR = 1e-6
 """Faces touch if their planes are closer than this times their size, and as parallel (a sine)."""
 LEAST_AREA = 1e-9
 """Overlaps smaller than this part of the smaller face are sides that merely touch."""
+AT_ONCE = 1_000_000
+"""Pairs of boxes that are compared at once."""
 
 
 @dataclass
@@ -66,14 +68,14 @@ def _corners(t: Topology, face: int) -> Floats:
     return t.node_position[nodes[nodes >= 0]]
 
 
-def _candidates(t: Topology, bonded: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Pairs of free faces of different blocks whose boxes meet and whose planes agree."""
+def _candidates(t: Topology, bonded: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Pairs of free faces of different blocks whose boxes meet and whose planes agree, (pairs, 2)."""
     free = np.ones(len(t.face_nodes), bool)
     free[t.pair_faces.ravel()] = False
     free &= np.asarray(bonded.any(axis=1))[t.face_kind]
     ids = np.flatnonzero(free)
     if len(ids) < 2:
-        return []
+        return np.zeros((0, 2), np.int64)
     nodes = t.face_nodes[ids]
     x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
     normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
@@ -88,17 +90,25 @@ def _candidates(t: Topology, bonded: NDArray[np.bool_]) -> list[tuple[int, int]]
     low, high, normal = low[order], high[order], normal[order]
     x, size, ids = x[order], size[order], ids[order]
     end = np.searchsorted(low[:, axis], high[:, axis], side="right")
-    found = []
-    for i in range(len(ids)):
-        j = np.arange(i + 1, end[i])
-        j = j[((low[j] <= high[i]) & (high[j] >= low[i])).all(axis=1)]
-        j = j[normal[j] @ normal[i] < -1 + COPLANAR]
-        j = j[t.face_block[ids[j]] != t.face_block[ids[i]]]
-        j = j[bonded[t.face_kind[ids[i]], t.face_kind[ids[j]]]]
-        gap = np.abs((x[j].mean(axis=1) - x[i].mean(axis=0)) @ normal[i])
-        j = j[gap < COPLANAR * np.minimum(size[i], size[j])]
-        found += [(min(a, b), max(a, b)) for a, b in ((int(ids[i]), int(k)) for k in ids[j])]
-    return sorted(found)
+    count = end - np.arange(len(ids)) - 1
+    middle = x.mean(axis=1)
+    found = [np.zeros((0, 2), np.int64)]
+    for some in np.array_split(np.arange(len(ids)), 1 + int(count.sum()) // AT_ONCE):
+        i = np.repeat(some, count[some])
+        j = i + 1 + np.arange(len(i)) - np.repeat(np.cumsum(count[some]) - count[some], count[some])
+        for axis in range(3):
+            meet = (low[j, axis] <= high[i, axis]) & (high[j, axis] >= low[i, axis])
+            i, j = i[meet], j[meet]
+        facing = np.einsum("px,px->p", normal[i], normal[j]) < -1 + COPLANAR
+        i, j = i[facing], j[facing]
+        gap = np.abs(np.einsum("px,px->p", middle[j] - middle[i], normal[i]))
+        a, b = ids[i], ids[j]
+        touch = gap < COPLANAR * np.minimum(size[i], size[j])
+        touch &= t.face_block[a] != t.face_block[b]
+        touch &= bonded[t.face_kind[a], t.face_kind[b]]
+        found.append(np.sort(np.stack([a, b], axis=1)[touch], axis=1))
+    pairs = np.concatenate(found)
+    return pairs[np.lexsort(pairs.T[::-1])]
 
 
 def clip(a: Floats, b: Floats) -> Floats | None:

@@ -10,6 +10,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.rows import determinant, in_pieces
+
 Array = NDArray[np.float64]
 
 NODES = {"tet4": 4, "pyramid5": 5, "wedge6": 6, "hex8": 8}
@@ -159,11 +161,25 @@ def reference_gradients(shape: str, corners: Array) -> tuple[Array, Array]:
     Returns:
         dN/dX [1/m], shape (elements, points, nodes, 3), and w J [m3], shape (elements, points).
     """
+    jacobian, slopes, weights = _jacobians(shape, corners)
+    a, b, c = (jacobian[:, :, row] for row in range(3))
+    cofactors = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=2)
+    whole = determinant(jacobian)
+    gradient = slopes @ (cofactors / whole[..., None, None])
+    return gradient, weights * whole
+
+
+def volumes(shape: str, corners: Array) -> Array:
+    """Volume of each Gauss point as in `reference_gradients` [m3], also of folded elements."""
+    jacobian, _, weights = _jacobians(shape, corners)
+    return weights * determinant(jacobian)
+
+
+def _jacobians(shape: str, corners: Array) -> tuple[Array, Array, Array]:
+    """dX_x / dr_r at the Gauss points, row r; slopes of the shape functions; weights."""
     points, weights = _stiffness_rule(shape)
     _, slopes = _FUNCTIONS[shape](points)
-    jacobian = np.einsum("enx,pnr->eprx", corners, slopes)  # dX_x / dr_r, row r
-    gradient = np.einsum("eprx,pnr->epnx", np.linalg.inv(jacobian).transpose(0, 1, 3, 2), slopes)
-    return gradient, weights * np.linalg.det(jacobian)
+    return slopes.transpose(0, 2, 1) @ corners[:, None], slopes, weights
 
 
 def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
@@ -172,11 +188,15 @@ def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
     Its total mass, centre and inertia tensor are those of the solid, because positions are a
     combination of the shape functions.
     """
+    if shape == "tet4":
+        edges = corners[:, 1:] - corners[:, :1]
+        return (density * determinant(edges) / 120)[:, None, None] * (np.ones((4, 4)) + np.eye(4))
     points, weights = _box_rule(3) if shape == "hex8" else _collapsed(shape, 4)
     values, slopes = _FUNCTIONS[shape](points)
     volume = np.empty((len(corners), len(points)))
     for p in range(len(points)):
-        volume[:, p] = weights[p] * np.linalg.det(np.einsum("enx,nr->erx", corners, slopes[p]))
+        jacobian = corners.transpose(0, 2, 1) @ slopes[p]
+        volume[:, p] = weights[p] * determinant(jacobian)
     return np.einsum("e,ep,pi,pj->eij", density, volume, values, values, optimize=True)
 
 
@@ -231,6 +251,10 @@ def squared_frequencies(
         mass: Lumped masses (elements, nodes) or mass matrices (elements, nodes, nodes) [kg].
         hourglass: As from `one_point`, or of shape (elements, 0).
     """
+    if shape == "tet4":
+        inertia = mass[:, 0] if mass.ndim == 2 else mass[:, 0, 0] - mass[:, 0, 1]
+        largest = in_pieces(_largest_of_tets, gradient[:, 0], lame, shear)
+        return volume[:, 0] / inertia * largest
     keys = np.concatenate(
         [a.reshape(len(volume), -1) for a in (gradient, volume, lame, shear, mass, hourglass)],
         axis=1,
@@ -251,6 +275,33 @@ def squared_frequencies(
             _hourglass_rows(gradient[some], hourglass[some]),
         )
     return largest[kind.reshape(-1)]
+
+
+def _largest_of_tets(gradient: Array, lame: Array, shear: Array) -> Array:
+    """Largest eigenvalue of B^T D B of tets of unit volume [Pa/m2], in closed form.
+
+    Seen along the principal axes of G = sum g g^T, with squares g_1 >= g_2 >= g_3, shear strains
+    stand alone, with mu (g_i + g_j), and axial ones have lambda sqrt(g_i g_j) + 2 mu g_i delta_ij.
+    All four masses of a tet are equal, lumped or not, and its gradients add up to nothing.
+    """
+    squares = _eigenvalues(gradient.transpose(0, 2, 1) @ gradient)
+    root = np.sqrt(np.maximum(squares, 0.0))
+    axial = lame[:, None, None] * root[:, :, None] * root[:, None]
+    for axis in range(3):
+        axial[:, axis, axis] += 2 * shear * squares[:, axis]
+    return np.maximum(shear * (squares[:, 0] + squares[:, 1]), _eigenvalues(axial)[:, 0])
+
+
+def _eigenvalues(m: Array) -> Array:
+    """Eigenvalues of symmetric 3 x 3 matrices, largest first (Smith 1961), shape (count, 3)."""
+    mean = (m[:, 0, 0] + m[:, 1, 1] + m[:, 2, 2]) / 3
+    rest = m - mean[:, None, None] * np.eye(3)
+    size = np.sqrt(np.einsum("eij,eij->e", rest, rest) / 6)
+    cosine = determinant(rest) / np.maximum(2 * size**3, 1e-300)
+    angle = np.arccos(np.clip(cosine, -1, 1)) / 3
+    first = mean + 2 * size * np.cos(angle)
+    last = mean + 2 * size * np.cos(angle + 2 * np.pi / 3)
+    return np.stack([first, 3 * mean - first - last, last], axis=1)
 
 
 def _hourglass_rows(gradient: Array, hourglass: Array) -> Array:

@@ -120,7 +120,7 @@ class Simulation:
         self.stage_index = 0
         self.stage: stages.StageState | None = None
         self.finished_stages: list[dict[str, Any]] = []
-        self.reference = self.build.start_position.copy()
+        self.reference = self.build.start_position
         self.wall_time = 0.0
         if self.case.stages:  # so that it can be stepped before any stage begins
             self.core.set_damping(*stages.damping_of(self.case.stages[0]))

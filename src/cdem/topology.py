@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from cdem.errors import MeshError
 from cdem.mesh import Mesh
 from cdem.overlap import Overlaps, find_overlaps
-from cdem.shapes import NODES, reference_gradients
+from cdem.rows import in_pieces, order_of_rows, same_rows
+from cdem.shapes import NODES, volumes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -149,35 +150,26 @@ def check_elements(mesh: Mesh) -> None:
     for shape, cells in mesh.cells.items():
         if len(cells) == 0:
             continue
-        corners = mesh.points[cells]
-        size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=1)
-        least, total = _volumes(shape, corners)
+
+        def measure(cells: NDArray, shape: str = shape) -> Floats:
+            """Size, least volume at a Gauss point, and volume."""
+            corners = mesh.points[cells]
+            size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=1)
+            volume = volumes(shape, corners)
+            return np.stack([size, volume.min(axis=1), volume.sum(axis=1)], axis=1)
+
+        size, least, total = in_pieces(measure, cells).T
         flat = np.flatnonzero(~(least > 1e-12 * size**3))
         if len(flat):
             cell = flat[0]
             group = mesh.group_names[mesh.cell_group[shape][cell]]
-            center = ", ".join(f"{x:.6g}" for x in corners[cell].mean(axis=0))
+            center = ", ".join(f"{x:.6g}" for x in mesh.points[cells[cell]].mean(axis=0))
             what = "is inverted" if total[cell] < 0 else "has no volume or is folded"
             raise MeshError(
                 f"{shape} element {cell} of group {group!r}, centred at ({center}), {what} "
                 f"(volume {total[cell]:.3g} m3); {len(flat)} such element(s). Mend the mesh: nodes must be "
                 "in gmsh/VTK order and no element may be flat"
             )
-
-
-def _volumes(shape: str, corners: Floats) -> tuple[Floats, Floats]:
-    """Least volume at a Gauss point and whole volume of each element [m3]; singular ones are 0."""
-    try:
-        volume = reference_gradients(shape, corners)[1]
-        return volume.min(axis=1), volume.sum(axis=1)
-    except np.linalg.LinAlgError:  # one singular element refuses them all: halve until it is alone
-        if len(corners) == 1:
-            return np.zeros(1), np.zeros(1)
-        half = len(corners) // 2
-        (least, total), (least2, total2) = (
-            _volumes(shape, part) for part in (corners[:half], corners[half:])
-        )
-        return np.concatenate([least, least2]), np.concatenate([total, total2])
 
 
 def components(count: int, a: NDArray, b: NDArray) -> NDArray:
@@ -305,72 +297,70 @@ def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
     )
 
 
-def _same_rows(key: NDArray) -> NDArray:
-    """A number for every row, equal for equal rows."""
-    order = np.lexsort(key.T[::-1])
-    new = np.r_[True, (key[order][1:] != key[order][:-1]).any(axis=1)]
-    number = np.empty(len(key), np.int64)
-    number[order] = np.cumsum(new) - 1
-    return number
-
-
 def _faces(t: Topology) -> None:
-    rows = []
+    nodes, block, group, element = [], [], [], []
     first = 0
     for shape, faces in FACES.items():
-        nodes = t.element_nodes[shape]
-        for face in faces:
-            row = np.full((len(nodes), 7), -1, np.int64)
-            row[:, : len(face)] = nodes[:, face]
-            row[:, 4] = t.element_block[shape]
-            row[:, 5] = t.element_group[shape]
-            row[:, 6] = first + np.arange(len(nodes))
-            rows.append(row)
-        first += len(nodes)
-    every = np.concatenate(rows)
-    every = every[np.argsort(every[:, 6], kind="stable")]
-    number = _same_rows(np.sort(every[:, :4], axis=1))
-    outer = every[np.bincount(number)[number] == 1].astype(np.int32)
-    outer = outer[np.argsort(outer[:, 4], kind="stable")]
-    t.face_nodes = np.ascontiguousarray(outer[:, :4])
-    t.face_block, t.face_group, t.face_element = (
-        np.ascontiguousarray(outer[:, k]) for k in (4, 5, 6)
-    )
+        corners = t.element_nodes[shape]
+        every = np.full((len(corners), len(faces), 4), -1, np.int32)
+        for k, face in enumerate(faces):
+            every[:, k, : len(face)] = corners[:, face]
+        nodes.append(every.reshape(-1, 4))
+        block.append(np.repeat(t.element_block[shape], len(faces)))
+        group.append(np.repeat(t.element_group[shape], len(faces)))
+        element.append(np.repeat(np.arange(first, first + len(corners)), len(faces)))
+        first += len(corners)
+    face_nodes, face_block = np.concatenate(nodes), np.concatenate(block)
+    # two elements of a block share an inner face; one that is a block of its own has none
+    members = np.bincount(np.concatenate([*t.element_block.values()]))
+    some = np.flatnonzero((members > 1)[face_block])
+    number = same_rows(np.sort(face_nodes[some], axis=1))
+    outer = np.ones(len(face_nodes), bool)
+    outer[some] = np.bincount(number)[number] == 1
+    ids = np.flatnonzero(outer)
+    ids = ids[np.argsort(face_block[ids], kind="stable")]
+    t.face_nodes, t.face_block = face_nodes[ids], face_block[ids]
+    t.face_group = np.concatenate(group)[ids]
+    t.face_element = np.concatenate(element)[ids].astype(np.int32)
 
 
 def _edges(t: Topology) -> None:
-    count = (t.face_nodes >= 0).sum(axis=1)
-    sides = []
-    for k in range(4):
-        start = t.face_nodes[:, k]
-        end = np.where(k + 1 < count, t.face_nodes[:, (k + 1) % 4], t.face_nodes[:, 0])
-        faces = np.flatnonzero(k < count)
-        sides.append(
-            np.column_stack([start, end, np.arange(len(count)), np.full(len(count), k)])[faces]
-        )
-    side = np.concatenate(sides)
-    side = side[np.lexsort((side[:, 3], side[:, 2]))]
-    ends = np.sort(side[:, :2], axis=1)
-    number = _same_rows(ends)
-    edges = number.max() + 1
-    t.edge_nodes = np.zeros((edges, 2), np.int32)
-    t.edge_nodes[number] = ends
-    t.face_edges = np.full((len(count), 4), -1, np.int32)
-    t.face_edges[side[:, 2], side[:, 3]] = number
-    t.edge_faces = np.full((edges, 2), -1, np.int32)
-    order = np.argsort(number, kind="stable")
-    sorted_number = number[order]
-    rank = np.arange(len(order)) - np.searchsorted(sorted_number, sorted_number)
+    start, nodes = t.face_nodes, len(t.node_position)
+    end = np.roll(start, -1, axis=1)
+    end[:, 3] = start[:, 0]
+    end[:, 2] = np.where(start[:, 3] < 0, start[:, 0], start[:, 3])
+    used = start >= 0
+    a, b = start[used].astype(np.int64), end[used]  # sides, face by face
+    key = np.minimum(a, b) * nodes + np.maximum(a, b)
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+    new = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
+    edge = np.repeat(np.arange(len(new)), np.diff(new, append=len(key)))
+    ends = key[new]
+    t.edge_nodes = np.stack([ends // nodes, ends % nodes], axis=1).astype(np.int32)
+    number = np.empty(len(key), np.int32)
+    number[order] = edge
+    t.face_edges = np.full(start.shape, -1, np.int32)
+    t.face_edges[used] = number
+    t.edge_faces = np.full((len(new), 2), -1, np.int32)
+    face = np.nonzero(used)[0][order]
+    rank = np.arange(len(key)) - new[edge]
     # where more than two faces of a block meet at an edge, the first two stand for it
     use = rank < 2
-    t.edge_faces[sorted_number[use], rank[use]] = side[order][use, 2]
+    t.edge_faces[edge[use], rank[use]] = face[use]
 
-    owner = t.edge_nodes.T.ravel()
-    other = t.edge_nodes[:, ::-1].T.ravel()
-    order = np.lexsort((other, owner))
-    nodes = len(t.node_position)
-    t.node_ring_first = np.searchsorted(owner[order], np.arange(nodes + 1)).astype(np.int32)
-    t.node_ring = np.ascontiguousarray(other[order])
+    low, high = t.edge_nodes.T.astype(np.int64)
+    ring = np.sort(np.concatenate([low * nodes + high, high * nodes + low]))
+    owner = ring // nodes
+    t.node_ring_first = _first_of_each(owner, nodes)
+    t.node_ring = (ring % nodes).astype(np.int32)
+
+
+def _first_of_each(owner: NDArray, count: int) -> Ints:
+    """Where each owner's items start in a list in the order of owners, and its end, (count + 1,)."""
+    first = np.zeros(count + 1, np.int32)
+    np.cumsum(np.bincount(owner, minlength=count), out=first[1:])
+    return first
 
 
 def _places(mesh: Mesh) -> NDArray:
@@ -395,8 +385,9 @@ def _places(mesh: Mesh) -> NDArray:
 def _pairs(t: Topology, place: NDArray) -> None:
     at = np.where(t.face_nodes >= 0, place[t.node_point[t.face_nodes]], -1)
     key = np.sort(at, axis=1)
-    order = np.lexsort(key.T[::-1])
-    same = (key[order][1:] == key[order][:-1]).all(axis=1)
+    order = order_of_rows(key)
+    key = key[order]
+    same = (key[1:] == key[:-1]).all(axis=1)
     i = np.flatnonzero(same)
     pairs = np.sort(np.stack([order[i], order[i + 1]], axis=1), axis=1)
     pairs = pairs[t.face_block[pairs[:, 0]] != t.face_block[pairs[:, 1]]]
@@ -421,7 +412,7 @@ def _surfaces(t: Topology, mesh: Mesh) -> None:
             continue
         wanted = [np.pad(p, ((0, 0), (0, 4 - p.shape[1])), constant_values=-1) for p in parts]
         sought = np.sort(np.concatenate(wanted), axis=1)
-        number = _same_rows(np.concatenate([sought, key]))
+        number = same_rows(np.concatenate([sought, key]))
         hit = np.isin(number[len(sought) :], number[: len(sought)])
         t.surfaces[name] = np.flatnonzero(hit)
 
@@ -429,5 +420,7 @@ def _surfaces(t: Topology, mesh: Mesh) -> None:
 def group_touching(t: Topology) -> set[tuple[str, str]]:
     """Pairs of group names (sorted) that touch through conforming faces or overlaps."""
     faces = np.concatenate([t.pair_faces, t.overlap_faces])
-    groups = np.unique(np.sort(t.face_group[faces].reshape(-1, 2), axis=1), axis=0)
-    return {tuple(sorted((t.group_names[a], t.group_names[b]))) for a, b in groups}
+    a, b = t.face_group[faces].reshape(-1, 2).astype(np.int64).T
+    count = len(t.group_names)
+    met = np.unique(a * count + b)
+    return {tuple(sorted((t.group_names[k // count], t.group_names[k % count]))) for k in met}
