@@ -80,7 +80,7 @@ void report_stress(const Model& m, State& s) {
 void sample_before(const Model& m, State& s, Queue q) {
   report_elements(m, s, q);
   launch_one(q, m.node_count,
-             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m), s.nodes.momentum.data()});
+             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m, s), s.nodes.momentum.data()});
 }
 
 void sample_after(const Model& m, State& s, Queue q) {
@@ -198,10 +198,15 @@ Real unbalance_ratio(const Model& m, const State& s) {
 
 namespace {
 
+/// Stiffness of bonds and contacts, those that may begin included, on a node  [N/m].
+Real stiffness_at(const State& s, Index i) {
+  return std::max(s.nodes.force[std::size_t(i) * 4 + 3], s.node_potential[i]) + s.node_bonds[i];
+}
+
 /// Node with the highest frequency; `held` counts those that are held or driven in all directions.
 Real highest_frequency2(const Model& m, const State& s, bool held, StepLimit& limit) {
   Real largest = -1;
-  const MassColumns mass = mass_columns(m);
+  const MassColumns mass = mass_columns(m, s);
   const SupportColumns supports = support_columns(m, s);
   for (Index i = 0; i < m.node_count; ++i) {
     Real stiffness = 0;
@@ -213,8 +218,7 @@ Real highest_frequency2(const Model& m, const State& s, bool held, StepLimit& li
     bool free = held;
     for (Index j = first; j < last; ++j) {
       for (Index axis = 0; axis < 3; ++axis) free = free || !supports.given(j, axis);
-      const Real contact = std::max(s.nodes.force[std::size_t(j) * 4 + 3], s.node_potential[j]);
-      stiffness = std::max(stiffness, contact + s.node_bonds[j]);
+      stiffness = std::max(stiffness, stiffness_at(s, j));
       element2 = std::max(element2, m.lumped ? m.lumped_frequency2[j] : m.frequency2[j]);
     }
     if (!free) continue;
@@ -248,6 +252,7 @@ StepLimit step_limit(const Model& m, const State& s) {
 
 void renew_step(const Model& m, State& s) {
   s.dt = m.step_given > 0 ? m.step_given : m.step_safety * step_limit(m, s).dt;
+  if (s.nodes.relax_mass.size() > 0) scale_masses(m, s);
 }
 
 Report check_health(const Model& m, const State& s) {
@@ -275,7 +280,7 @@ namespace {
 /// Half of momentum times velocity, with the present masses  [J].
 Real energy_of_motion(const Model& m, State& s) {
   launch_one({}, m.node_count,
-             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m), s.nodes.momentum.data()});
+             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m, s), s.nodes.momentum.data()});
   finish({});
   return ordered_sum(m.node_count, [&](Index i) {
     const Real *p = s.nodes.momentum.data() + std::size_t(i) * 4,
@@ -287,9 +292,21 @@ Real energy_of_motion(const Model& m, State& s) {
 }  // namespace
 
 void change_mass(Model& m, State& s, bool lumped) {
-  if (m.lumped == lumped) return;
   const Real before = energy_of_motion(m, s);
   m.lumped = lumped;
+  s.nodes.relax_mass.resize(0);
+  s.nodes.relax.resize(0);
+  s.stopped_energy += before - energy_of_motion(m, s);
+}
+
+void scale_masses(const Model& m, State& s) {
+  const StepLimit limit = step_limit(m, s);
+  const Real part = s.dt / (relax_safety * limit.dt);
+  const Real squared = (limit.element2 + limit.contact2) / (part * part);
+  const Real before = energy_of_motion(m, s);
+  s.nodes.relax_mass.resize(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i)
+    s.nodes.relax_mass[i] = (m.mass[i] * m.lumped_frequency2[i] + 2 * stiffness_at(s, i)) / squared;
   s.stopped_energy += before - energy_of_motion(m, s);
 }
 

@@ -8,6 +8,10 @@ namespace cdem {
 /// The stable step is found anew every so many steps, and after every refresh of the search.
 inline constexpr std::int64_t step_check_interval = 100;
 
+/// Step of adaptive relaxation, as a part of the stable one: its masses are made for it, from
+/// bounds that hold.
+inline constexpr Real relax_safety = 0.9;
+
 /// Sum in a fixed order whatever the number of threads: fixed chunks, then the chunks in turn.
 template <class Term>
 Real ordered_sum(Index count, Term&& term) {

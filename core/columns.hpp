@@ -65,9 +65,14 @@ inline FoundEdges found_edges(State& s) {
   return {s.edges.slots, s.edges.found_count.data(), s.edges.found.data()};
 }
 
-inline ContactLaws contact_laws(const Model& m) {
+/// Lumped masses that move: those of adaptive relaxation while it lasts.
+inline const Column<Real>& lumped_masses(const Model& m, const State& s) {
+  return s.nodes.relax_mass.size() > 0 ? s.nodes.relax_mass : m.mass;
+}
+
+inline ContactLaws contact_laws(const Model& m, const State& s) {
   return {m.interface_of.data(), m.interfaces.data(), m.group_count, m.contact_damping,
-          m.mass.data()};
+          lumped_masses(m, s).data()};
 }
 
 template <class Shape>
@@ -101,9 +106,9 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           inout(s.friction)};
 }
 
-inline MassColumns mass_columns(const Model& m) {
+inline MassColumns mass_columns(const Model& m, const State& s) {
   return {m.lumped,
-          m.mass.data(),
+          lumped_masses(m, s).data(),
           m.dense_first.data(),
           m.dense_step.data(),
           m.block_first.data(),

@@ -42,7 +42,7 @@ struct Model {
   Column<Index> dense_first, dense_step, block_first, block_count;
   Column<Real> mass_inverse, mass_matrix;
   Column<Real> inverse_mass_bound;  // largest eigenvalue of the inverse mass matrix  [1/kg]
-  Column<Real> frequency2;          // largest of the node's elements, squared  [1/s2]
+  Column<Real> frequency2;          // bound from the node's elements, squared  [1/s2]
   Column<Real> lumped_frequency2;   // the same with lumped masses
 
   ElementSet tet4, pyramid5, wedge6, hex8;

@@ -224,7 +224,7 @@ void sum_stiffness(const Model& m, State& s) {
   s.node_potential.resize(m.node_count);
   s.node_potential.fill(0);
   const FaceColumns faces = face_columns(m, s);
-  const ContactLaws laws = contact_laws(m);
+  const ContactLaws laws = contact_laws(m, s);
   const Index exposed = Index(s.search.exposed_face.size());
   std::vector<Real> stiffest_of(exposed);  // contact that a face may have  [N/m]
 #pragma omp parallel for schedule(static, 128) if (exposed >= worth_threads)

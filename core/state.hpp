@@ -13,7 +13,8 @@ struct NodeState {
   Column<Real> work_external, work_damping;
   Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
   Column<Real> unbalance;
-  Column<Real> relax;  // rows of 8, adaptive relaxation only: force and velocity of the last step
+  Column<Real> relax;       // adaptive relaxation only, rows of 8: force, velocity of the last step
+  Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
   Column<Index> glue, awake;           // awake: blocks of nodes, see rest.hpp
   Column<Flag> rests, listed;          // see rest.hpp
   bool damped = false;                 // in the last step: damping_force is not zero
@@ -144,6 +145,7 @@ void describe(S& s, Visit&& field) {
   field("node.work_damping", s.nodes.work_damping, "work taken out by damping [J]");
   field("node.reaction", s.nodes.reaction, "force of supports [N]");
   field("node.relax", s.nodes.relax, "force and velocity of the last step, adaptive relaxation");
+  field("node.relax_mass", s.nodes.relax_mass, "scaled masses of adaptive relaxation [kg]");
   field("node.glue", s.nodes.glue, "label shared by nodes that intact bonds hold together");
 
   const auto elements = [&](const char* shape, auto& e) {

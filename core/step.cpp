@@ -102,10 +102,10 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
   const Index* exposed = s.search.exposed_face.data();
   const FaceGeometry geometry{s.face_geometry.data()};
   launch_one(q, 4 * count,
-             UpdateSpringForces{face_columns(m, s), geometry, exposed, m.rules, contact_laws(m),
+             UpdateSpringForces{face_columns(m, s), geometry, exposed, m.rules, contact_laws(m, s),
                                 spring_columns(s)});
   launch(q, Index(s.edges.contact.size() / 4),
-         UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m),
+         UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m, s),
                           s.edges.old_state.data(), edge_columns(s)});
   s.search.acting.resize(s.search.source.size());
   Flag* acting = s.search.acting.data();
@@ -163,7 +163,7 @@ SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
           load_columns(m, s),
           support_columns(m, s),
           damping,
-          mass_columns(m),
+          mass_columns(m, s),
           0.5 * (s.dt_last + s.dt),
           s.nodes.force.data(),
           damps ? s.nodes.damping_force.data() : nullptr,
@@ -171,7 +171,7 @@ SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
 }
 
 MoveNodes node_motion(const Model& m, State& s) {
-  return {mass_columns(m),
+  return {mass_columns(m, s),
           load_columns(m, s),
           support_columns(m, s),
           s.nodes.force.data(),
@@ -272,13 +272,14 @@ void relax_adaptively(const Model& m, State& s) {
         sum -= before[8 * i + 4 + k] * (force[4 * i + k] - damping[4 * i + k] - before[8 * i + k]);
       return sum;
     });
+    const Column<Real>& mass = lumped_masses(m, s);
     const Real heavy = ordered_sum(m.node_count, [&](std::size_t i) {
       const Real* v = before + 8 * i + 4;
-      return m.mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      return mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     });
     // the damping force lags by half a step, so w dt < sqrt(4 - 2 c dt) must hold for the fastest
     // mode
-    const Real most = 1.8 * (1 - m.step_safety * m.step_safety) / s.dt_last;
+    const Real most = 1.8 * (1 - relax_safety * relax_safety) / s.dt_last;
     const Real critical = heavy > 0 && stiff > 0 ? 2 * std::sqrt(stiff / (s.dt_last * heavy)) : 0;
     s.relax_damping = std::min(critical, most);
   }
@@ -300,6 +301,7 @@ void evaluate_curves(const Model& m, State& s) {
 Report run(const Model& m, State& s, const Goal& goal) {
   if (goal.relaxation != Relaxation::adaptive) s.relax_damping = 0;
   if (goal.relaxation != Relaxation::kinetic) s.stop_due = false;
+  if (goal.relaxation == Relaxation::adaptive && s.nodes.relax_mass.size() == 0) scale_masses(m, s);
   s.all_awake = true;  // loads, supports or strengths may have been changed
   for (std::int64_t n = 1; n <= goal.steps; ++n) {
     const bool last = n == goal.steps || s.time + s.dt >= goal.end_time;

@@ -69,8 +69,13 @@ StepLimit step_limit(const Model& model, const State& state);
 /// Stress of every element where the nodes are now.
 void report_stress(const Model& model, State& state);
 
-/// Change between lumped and exact masses; what kinetic energy that takes is booked as damping.
+/// Move lumped or exact masses from now on, unscaled; what kinetic energy that takes is booked as
+/// damping.
 void change_mass(Model& model, State& state, bool lumped);
+/// Adaptive relaxation: give every node the least mass that its stiffness allows in the present
+/// step (Gershgorin), so that stiff and small parts hold up no others. What kinetic energy that
+/// takes is booked as damping. It lasts until `change_mass`.
+void scale_masses(const Model& model, State& state);
 /// Between forces and motion: zero all velocities; their energy is booked as damping. The step that
 /// follows starts from rest with half a kick, as a central difference must.
 void stop_motion(const Model& model, State& state);

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import meshio
 import numpy as np
 
 import cdem
+from cdem import mesh
 
 ROCK = {"density": 2500, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
 
@@ -35,6 +37,17 @@ def case(blocks, groups, *, interfaces=None, rock=None, stages=None, **more):
 def simulate(blocks, groups, **more):
     """A simulation on one thread, its first stage's damping set, ready to step."""
     return cdem.Simulation(case(blocks, groups, **more), threads=1)
+
+
+def irregular_tets(path, size, divisions):
+    """Write a box of tets whose inner points are shaken by almost half a cell; group "default"."""
+    box = mesh.box("default", size, divisions, shape="tet4")
+    points, cell = box.points, np.divide(size, divisions)
+    inner = (points > 1e-9) & (points < np.asarray(size) - 1e-9)
+    rng = np.random.default_rng(1)
+    points = points + inner * rng.uniform(-0.25, 0.25, points.shape) * cell
+    meshio.write_points_cells(path, points, [("tetra", box.cells["tet4"])], file_format="vtk")
+    return {"mesh": str(path)}
 
 
 def momentum(sim):

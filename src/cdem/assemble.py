@@ -173,7 +173,7 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
     dense_block &= ~held  # a block that cannot move needs no inverse
 
     while True:
-        scaled, lumped, frequency2, lumped_frequency2 = _scaled_masses(
+        scaled, lumped, stiffness, frequency2 = _scaled_masses(
             t, p, matrices, geometry, dense_block, out
         )
         mass = lumped.copy()
@@ -183,15 +183,13 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
         if len(without) == 0:
             break
         dense_block[without] = True  # a full matrix has other frequencies: once more
-    # a node made lighter than its elements' share raises their frequency by as much
-    lighter = lumped / mass
-    worst = np.ones(len(size))
-    np.maximum.at(worst, t.node_block, np.where(dense_block[t.node_block], 1.0, lighter))
-    frequency2 *= worst[t.node_block]
-    lumped_frequency2 *= worst[t.node_block]
-
+    # u K u <= sum_e w_e^2 u_e M_e u_e: with lumped masses that is a sum over the nodes, and no
+    # frequency of the mesh exceeds the largest sum_e w_e^2 m_e / m of a node
+    lumped_frequency2 = stiffness / mass
     out.arrays["node.mass"] = mass
-    out.arrays["node.frequency2"] = frequency2
+    out.arrays["node.frequency2"] = np.where(
+        dense_block[t.node_block], frequency2, lumped_frequency2
+    )
     out.arrays["node.lumped_frequency2"] = lumped_frequency2
     out.arrays["node.block_first"] = first[t.node_block].astype(np.int32)
     out.arrays["node.block_count"] = block_nodes.astype(np.int32)
@@ -199,14 +197,15 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
 
 
 def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, out: Assembly):
-    """Mass matrices after mass scaling, the nodes' lumped masses, and their elements' frequencies.
+    """Mass matrices after mass scaling; for each node its lumped mass, the sum of w_e^2 m_e over its
+    elements, with the frequencies of lumped masses, and their largest w_e^2.
 
-    Elements of blocks with a full mass matrix vibrate with theirs, all others with lumped masses;
-    the second frequencies are those of lumped masses for all.
+    The last counts elements of blocks with a full mass matrix with that, all others with lumped
+    masses.
     """
     lumped = np.zeros(len(t.node_position))
+    stiffness = np.zeros(len(t.node_position))
     frequency2 = np.zeros(len(t.node_position))
-    lumped_frequency2 = np.zeros(len(t.node_position))
     scaled = {}
     out.element_frequency, out.added_mass = {}, 0.0
     for shape in shapes.NODES:
@@ -219,8 +218,9 @@ def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, 
         dense = dense_block[t.element_block[shape]]
         rock = (p.lame[group], p.shear[group])
         gradient, volume, hourglass = geometry[shape]
+        row_sums = m.sum(axis=2)
         lumped_square = shapes.squared_frequencies(
-            shape, gradient, volume, rock[0], rock[1], m.sum(axis=2), hourglass
+            shape, gradient, volume, rock[0], rock[1], row_sums, hourglass
         )
         square = lumped_square.copy()
         if dense.any():
@@ -239,9 +239,9 @@ def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, 
         square /= heavier
         out.element_frequency[shape] = np.sqrt(square)
         np.maximum.at(frequency2, connectivity, square[:, None])
-        np.maximum.at(lumped_frequency2, connectivity, (lumped_square / heavier)[:, None])
-        np.add.at(lumped, connectivity, scaled[shape].sum(axis=2))
-    return scaled, lumped, frequency2, lumped_frequency2
+        np.add.at(stiffness, connectivity, lumped_square[:, None] * row_sums)
+        np.add.at(lumped, connectivity, row_sums * heavier[:, None])
+    return scaled, lumped, stiffness, frequency2
 
 
 def _second_moments(t: Topology, scaled, blocks: NDArray[np.bool_]) -> tuple[Floats, Floats]:

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from scenes import simulate
+from scenes import irregular_tets, simulate
 
 from cdem.errors import UnstableError
+from cdem.shapes import reference_gradients
 
 TET = [[0, 0, 0], [1, 0, 0], [0.2, 1.1, 0], [0.1, 0.2, 0.9]]
 SCENES = {
@@ -77,3 +78,24 @@ def test_the_step_is_stable_and_not_needlessly_short(name, stiffness, least):
             (middle, high) if is_stable(name, stiffness, middle * estimate) else (low, middle)
         )
     assert not is_stable(name, stiffness, 1.05 * high * estimate)
+
+
+def test_the_step_of_an_irregular_mesh_is_bounded_by_its_nodes(tmp_path):
+    """2 / sqrt(max_i sum_e w_e^2 m_e / m_i) is below the exact limit 2 / sqrt(max eig M^-1 K), and
+    above half of it, where the frequency of the worst element alone gives less than that."""
+    mesh = irregular_tets(tmp_path / "a.vtk", [4, 4, 4], [4, 4, 4])
+    sim = simulate([], {"default": {}}, model=mesh, elements={"mass": "lumped"})
+    t, mass = sim.build.topology, sim.fields["mass"]
+    count = len(mass)
+    gradient, volume = reference_gradients("tet4", t.node_position[t.element_nodes["tet4"]])
+    stiffness = np.zeros((count, 3, count, 3))
+    lame = shear = 10e9 / 2 / 1.25  # nu = 0.25
+    for nodes, g, v in zip(t.element_nodes["tet4"], gradient[:, 0], volume[:, 0], strict=True):
+        block = lame * np.einsum("ia,jb->iajb", g, g) + shear * np.einsum("ib,ja->iajb", g, g)
+        block += shear * np.einsum("ix,jx,ab->iajb", g, g, np.eye(3))
+        stiffness[nodes[:, None], :, nodes[None, :], :] += v * block.transpose(0, 2, 1, 3)
+    root = 1 / np.sqrt(np.repeat(mass, 3))
+    full = root[:, None] * stiffness.reshape(3 * count, 3 * count) * root
+    exact = 2 / np.sqrt(np.linalg.eigvalsh(full)[-1])
+    worst_element = 2 / sim.build.assembly.element_frequency["tet4"].max()
+    assert worst_element < 0.5 * exact < sim.core.step_limit()[0] < exact
