@@ -58,7 +58,8 @@ def momentum(sim):
     for i in np.flatnonzero(arrays["node.dense_first"] >= 0):
         first, count = arrays["node.block_first"][i], arrays["node.block_count"][i]
         row = arrays["node.dense_first"][i]
-        p[i] = arrays["mass.matrix"][row : row + count] @ v[first : first + count]
+        matrix = arrays["node.mass"][i] * arrays["mass.matrix"][row : row + count]
+        p[i] = matrix @ v[first : first + count]
     return p.sum(axis=0), np.cross(x, p).sum(axis=0)
 
 

@@ -74,7 +74,8 @@ struct CornerLists {
 };
 
 /// Mass of the nodes: a number each, or for small blocks the inverse of the consistent mass matrix,
-/// which gives them their exact inertia.
+/// which gives them their exact inertia. Matrices are kept without the mass, so that all tets share
+/// one.
 struct MassColumns {
   bool lumped;               // only the numbers count, whatever the matrices
   const Real* mass;          // [node] row sum of the mass matrix  [kg]
@@ -82,8 +83,8 @@ struct MassColumns {
   const Index* dense_step;   // [node]: from one axis to the next (0 when all three share)
   const Index* block_first;  // [node]: first node of the block
   const Index* block_count;  // [node]: nodes of the block
-  const Real* inverse;       // rows of the inverse, supported nodes taken out  [1/kg]
-  const Real* matrix;        // rows of the matrix, in the same places  [kg]
+  const Real* inverse;       // rows of the inverse times `mass`, supported nodes taken out
+  const Real* matrix;        // rows of the matrix over `mass`, in the same places
 
   /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
   CDEM_HD Index row(Index node) const { return lumped ? -1 : dense_first[node]; }
@@ -98,7 +99,7 @@ struct MassColumns {
     for (Index j = 0; j < block_count[i]; ++j) {
       const Index other = block_first[i] + j;
       if (supports.support[other] < 0) continue;
-      const Real m = matrix[start + j] / kick;
+      const Real m = mass[i] * matrix[start + j] / kick;
       const Vec3<Real> v = nodes.velocity(other);
       if (supports.given(other, 0)) sum.x += m * (supports.at(other, 0) - v.x);
       if (supports.given(other, 1)) sum.y += m * (supports.at(other, 1) - v.y);
@@ -113,7 +114,7 @@ struct MassColumns {
     Row p = Row::zero();
     for (Index j = 0; j < block_count[i]; ++j)
       p = p + matrix[start + j] * nodes.velocity_row(block_first[i] + j);
-    return p;
+    return mass[i] * p;
   }
 };
 
@@ -221,7 +222,7 @@ struct MoveNodes {
     } else {
       for (Index j = 0; j < count; ++j, forces += 4) a = a + inverse[j] * Row::at(forces);
     }
-    return a.xyz();
+    return (a / mass.mass[i]).xyz();
   }
   /// Force of the support: what is missing for the motion that it imposed. With a full mass matrix
   /// `force` has the inertia of all given motions of the block already.
@@ -237,6 +238,7 @@ struct MoveNodes {
           if (other != i && !supports.given(other, axis))
             need.n[axis] += mass.matrix[row + j] * a.n[axis];
       }
+      need = mass.mass[i] * need;
     }
     Row r = Row::zero();
     for (Index axis = 0; axis < 3; ++axis)

@@ -299,46 +299,60 @@ def _correct_lumps(
 
 
 def _dense_blocks(t: Topology, p: Properties, scaled, dense_block, out: Assembly) -> None:
-    """Mass matrices of small blocks and their inverses, with supported nodes taken out."""
-    count = len(t.node_position)
+    """Mass matrices of small blocks, each row over its node's mass, and their inverses, each row
+    times its node's mass, with supported nodes taken out."""
+    mass = out.arrays["node.mass"]
     first, size = t.block_first_node, np.diff(t.block_first_node)
-    dense_first = np.full(count, -1, np.int32)
-    dense_step = np.zeros(count, np.int32)
-    bound = 1 / out.arrays["node.mass"]
+    dense_first = np.full(len(mass), -1, np.int32)
+    dense_step = np.zeros(len(mass), np.int32)
+    bound = 1 / mass
     held = np.zeros(len(size), bool)
     held[t.node_block[p.supported.any(axis=1)]] = True
 
-    inverse, matrix, place = [], [], 0
+    inverse, matrix, place = [np.zeros(0)], [np.zeros(0)], 0
+
+    def keep(nodes: NDArray, inverses: Floats, matrices: Floats) -> None:
+        """Nodes of blocks, (blocks, n), with a matrix for each or for all, or one for each axis."""
+        nonlocal place
+        n = nodes.shape[1]
+        step = matrices[0].size
+        rows = place + step * np.arange(len(matrices))[:, None] + n * np.arange(n)
+        dense_first[nodes] = rows
+        dense_step[nodes] = n * n if matrices.ndim == 4 else 0
+        inverse.append(inverses.ravel())
+        matrix.append(matrices.ravel())
+        place += matrices.size
+
     for n in np.unique(size[dense_block]):
-        blocks = np.flatnonzero(dense_block & (size == n))
-        m = _block_matrices(t, scaled, blocks, int(n))
-        start = first[blocks]
-        bound[start[:, None] + np.arange(n)] = (1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
-        for some, axes in ((~held[blocks], 1), (held[blocks], 3)):
-            if not some.any():
+        free = np.flatnonzero(dense_block & ~held & (size == n))
+        bound_to = np.flatnonzero(dense_block & held & (size == n))
+        if n == 4 and len(free):  # tets: all have the same over their mass
+            nodes = first[free][:, None] + np.arange(n)
+            bound[nodes] = 5 / mass[nodes]
+            keep(nodes, (5 * np.eye(4) - 1)[None], ((1 + np.eye(4)) / 5)[None])
+            free = free[:0]
+        for blocks in (free, bound_to):
+            if len(blocks) == 0:
                 continue
-            matrices = m[some]
-            if axes == 3:
+            nodes = first[blocks][:, None] + np.arange(n)
+            m = _block_matrices(t, scaled, blocks, int(n))
+            bound[nodes] = (1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
+            if blocks is bound_to:
                 inverses = np.array([
-                    _supported_inverse(matrix, p.supported[first[b] : first[b + 1]])
-                    for matrix, b in zip(matrices, blocks[some], strict=True)
+                    _supported_inverse(one, p.supported[first[b] : first[b + 1]])
+                    for one, b in zip(m, blocks, strict=True)
                 ])  # fmt: skip
-                matrices = np.repeat(matrices[:, None], 3, axis=1)
+                m = np.repeat(m[:, None], 3, axis=1)
+                per_row = mass[nodes][:, None, :, None]
             else:
-                inverses = np.linalg.inv(matrices)
-            k = len(matrices)
-            rows = place + n * n * axes * np.arange(k)[:, None] + n * np.arange(n)
-            nodes = start[some][:, None] + np.arange(n)
-            dense_first[nodes] = rows
-            dense_step[nodes] = n * n if axes == 3 else 0
-            inverse.append(inverses.ravel())
-            matrix.append(matrices.ravel())
-            place += int(n * n * axes * k)
+                inverses = np.linalg.inv(m)
+                per_row = mass[nodes][:, :, None]
+            keep(nodes, inverses * per_row, m / per_row)
     out.arrays["node.dense_first"] = dense_first
     out.arrays["node.dense_step"] = dense_step
     out.arrays["node.inverse_mass_bound"] = bound
-    out.arrays["mass.inverse"] = np.concatenate([*inverse, np.zeros(0)])
-    out.arrays["mass.matrix"] = np.concatenate([*matrix, np.zeros(0)])
+    out.arrays["mass.inverse"] = np.concatenate(inverse)
+    out.arrays["mass.matrix"] = np.concatenate(matrix)
 
 
 def _block_matrices(t: Topology, scaled, blocks: NDArray, n: int) -> Floats:
