@@ -80,17 +80,16 @@ void report_stress(const Model& m, State& s) {
 void sample_before(const Model& m, State& s, Queue q) {
   report_elements(m, s, q);
   launch_one(q, m.node_count,
-             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m, s), s.nodes.momentum.data()});
+             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m, s), s.nodes.sample.data()});
 }
 
 void sample_after(const Model& m, State& s, Queue q) {
   launch_one(q, m.node_count,
              SampleNodes{{s.nodes.motion.data()},
-                         s.nodes.momentum.data(),
                          load_columns(m, s),
                          support_columns(m, s),
                          s.nodes.reaction.data(),
-                         s.nodes.damping_force.data(),
+                         damping_forces(s),
                          s.dt,
                          s.nodes.sample.data()});
   finish(q);
@@ -278,14 +277,11 @@ Report check_health(const Model& m, const State& s) {
 namespace {
 
 /// Half of momentum times velocity, with the present masses  [J].
-Real energy_of_motion(const Model& m, State& s) {
-  launch_one({}, m.node_count,
-             NodeMomentum{{s.nodes.motion.data()}, mass_columns(m, s), s.nodes.momentum.data()});
-  finish({});
+Real energy_of_motion(const Model& m, const State& s) {
+  const MassColumns mass = mass_columns(m, s);
+  const InMotion nodes{s.nodes.motion.data()};
   return ordered_sum(m.node_count, [&](Index i) {
-    const Real *p = s.nodes.momentum.data() + std::size_t(i) * 4,
-               *v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
-    return 0.5 * (p[0] * v[0] + p[1] * v[1] + p[2] * v[2]);
+    return 0.5 * dot(mass.momentum(nodes, i).vector(), nodes.velocity(i));
   });
 }
 
@@ -312,17 +308,18 @@ void scale_masses(const Model& m, State& s) {
 
 void stop_motion(const Model& m, State& s) {
   const LoadColumns loads = load_columns(m, s);
+  const Real* damping = damping_forces(s);
+  s.stopped_energy += energy_of_motion(m, s);
   // the forces of this moment have worked since the middle of the last step
-  s.stopped_energy += energy_of_motion(m, s) + ordered_sum(m.node_count, [&](Index i) {
-                        const Real *f = s.nodes.force.data() + std::size_t(i) * 4,
-                                   *d = s.nodes.damping_force.data() + std::size_t(i) * 4;
-                        Real* v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
-                        const Vec3<Real> way = 0.5 * s.dt_last * Vec3<Real>{v[0], v[1], v[2]};
-                        s.nodes.work_external[i] += dot(loads.at(i).vector(), way);
-                        s.nodes.work_damping[i] -= dot(Vec3<Real>{d[0], d[1], d[2]}, way);
-                        v[0] = v[1] = v[2] = 0;
-                        return dot(Vec3<Real>{f[0], f[1], f[2]}, way);
-                      });
+  s.stopped_energy += ordered_sum(m.node_count, [&](Index i) {
+    Real* v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
+    const Vec3<Real> way = 0.5 * s.dt_last * Vec3<Real>{v[0], v[1], v[2]};
+    s.nodes.work_external[i] += dot(loads.at(i).vector(), way);
+    if (damping)
+      s.nodes.work_damping[i] -= dot(Row::at(damping + std::size_t(i) * 4).vector(), way);
+    v[0] = v[1] = v[2] = 0;
+    return dot(Row::at(s.nodes.force.data() + std::size_t(i) * 4).vector(), way);
+  });
   s.dt_last = 0;
 }
 

@@ -117,6 +117,11 @@ inline MassColumns mass_columns(const Model& m, const State& s) {
           m.mass_matrix.data()};
 }
 
+/// Damping forces of the last step, or null if nothing damped.
+inline const Real* damping_forces(const State& s) {
+  return s.nodes.damped ? s.nodes.damping_force.data() : nullptr;
+}
+
 inline SupportColumns support_columns(const Model& m, const State& s) {
   return {m.support.data(), m.support_component.data(), m.support_curve.data(),
           m.support_velocity.data(), s.velocity_factor.data()};

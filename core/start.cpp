@@ -41,8 +41,7 @@ void start(const Model& m, State& s, const Real* position) {
   n.motion.resize(8 * count);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) n.motion[8 * i + axis] = position[3 * i + axis];
-  for (Column<Real>* column : {&n.force, &n.damping_force, &n.reaction, &n.momentum, &n.sample})
-    column->resize(4 * count);
+  for (Column<Real>* column : {&n.force, &n.reaction, &n.sample}) column->resize(4 * count);
   for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
     column->resize(count);
   n.glue.resize(count);

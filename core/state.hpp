@@ -11,13 +11,14 @@ struct NodeState {
   Column<Real> motion;        // rows of 8: position, velocity
   Column<Real> built_motion;  // rows of 8: position and velocity at the last refresh
   Column<Real> work_external, work_damping;
-  Column<Real> force, damping_force, reaction, momentum, sample;  // rows of 4
+  Column<Real> force, reaction, sample;  // rows of 4
+  Column<Real> damping_force;            // rows of 4, empty until something damps
   Column<Real> unbalance;
   Column<Real> relax;       // adaptive relaxation only, rows of 8: force, velocity of the last step
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
   Column<Index> glue, awake;           // awake: blocks of nodes, see rest.hpp
   Column<Flag> rests, listed;          // see rest.hpp
-  bool damped = false;                 // in the last step: damping_force is not zero
+  bool damped = false;                 // in the last step, else damping_force does not count
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };
 

@@ -156,7 +156,7 @@ void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, eleme
 SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
   const NodeDamping damping{m.damping.local, m.damping.mass + s.relax_damping};
   const bool damps = damping.local > 0 || damping.mass > 0;
-  if (s.nodes.damped && !damps) s.nodes.damping_force.fill(0);
+  if (damps) s.nodes.damping_force.resize(s.nodes.force.size());
   s.nodes.damped = damps;
   return {{s.nodes.motion.data()},
           corner_lists(s),
@@ -175,7 +175,7 @@ MoveNodes node_motion(const Model& m, State& s) {
           load_columns(m, s),
           support_columns(m, s),
           s.nodes.force.data(),
-          s.nodes.damped ? s.nodes.damping_force.data() : nullptr,
+          damping_forces(s),
           s.dt_last,
           s.dt,
           s.nodes.motion.data(),
@@ -263,13 +263,16 @@ void relax_adaptively(const Model& m, State& s) {
   const bool known = s.nodes.relax.size() == rows;
   s.nodes.relax.resize(rows);
   Real* before = s.nodes.relax.data();
-  const Real *force = s.nodes.force.data(), *damping = s.nodes.damping_force.data(),
+  const Real *force = s.nodes.force.data(), *damping = damping_forces(s),
              *motion = s.nodes.motion.data();
+  const auto undamped = [&](std::size_t i, std::size_t k) {
+    return damping ? force[4 * i + k] - damping[4 * i + k] : force[4 * i + k];
+  };
   if (known) {
     const Real stiff = ordered_sum(m.node_count, [&](std::size_t i) {
       Real sum = 0;
       for (std::size_t k = 0; k < 3; ++k)
-        sum -= before[8 * i + 4 + k] * (force[4 * i + k] - damping[4 * i + k] - before[8 * i + k]);
+        sum -= before[8 * i + 4 + k] * (undamped(i, k) - before[8 * i + k]);
       return sum;
     });
     const Column<Real>& mass = lumped_masses(m, s);
@@ -286,7 +289,7 @@ void relax_adaptively(const Model& m, State& s) {
 #pragma omp parallel for schedule(static) if (m.node_count >= worth_threads)
   for (std::size_t i = 0; i < std::size_t(m.node_count); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
-      before[8 * i + k] = force[4 * i + k] - damping[4 * i + k];
+      before[8 * i + k] = undamped(i, k);
       before[8 * i + 4 + k] = motion[8 * i + 4 + k];
     }
 }
