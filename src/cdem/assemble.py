@@ -193,7 +193,7 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
     out.arrays["node.lumped_frequency2"] = lumped_frequency2
     out.arrays["node.block_first"] = first[t.node_block].astype(np.int32)
     out.arrays["node.block_count"] = block_nodes.astype(np.int32)
-    _dense_blocks(t, p, scaled, dense_block, out)
+    _dense_blocks(t, p, scaled, stiffness, dense_block, out)
 
 
 def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, out: Assembly):
@@ -298,10 +298,12 @@ def _correct_lumps(
     return np.array(without, np.intp)
 
 
-def _dense_blocks(t: Topology, p: Properties, scaled, dense_block, out: Assembly) -> None:
+def _dense_blocks(
+    t: Topology, p: Properties, scaled, stiffness: Floats, dense_block, out: Assembly
+) -> None:
     """Mass matrices of small blocks, each row over its node's mass, and their inverses, each row
     times its node's mass, with supported nodes taken out."""
-    mass = out.arrays["node.mass"]
+    mass, frequency2 = out.arrays["node.mass"], out.arrays["node.frequency2"]
     first, size = t.block_first_node, np.diff(t.block_first_node)
     dense_first = np.full(len(mass), -1, np.int32)
     dense_step = np.zeros(len(mass), np.int32)
@@ -337,6 +339,10 @@ def _dense_blocks(t: Topology, p: Properties, scaled, dense_block, out: Assembly
             nodes = first[blocks][:, None] + np.arange(n)
             m = _block_matrices(t, scaled, blocks, int(n))
             bound[nodes] = (1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
+            # K <= diag(stiffness) as well, which the worst element alone often exceeds
+            root = np.sqrt(stiffness[nodes])
+            least = np.linalg.eigvalsh(m / root[:, :, None] / root[:, None])[:, 0]
+            frequency2[nodes] = np.minimum(frequency2[nodes], 1 / least[:, None])
             if blocks is bound_to:
                 inverses = np.array([
                     _supported_inverse(one, p.supported[first[b] : first[b + 1]])
