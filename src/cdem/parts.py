@@ -291,7 +291,9 @@ class Stage(Part):
     )
     damping: Damping = Field(Damping(), description="Damping")
     relax: Literal["local", "kinetic", "adaptive"] | None = Field(
-        None, description="Static only: the way to rest; default local"
+        None,
+        description="Static only: the way to rest: local damping (default), kinetic (stop at peaks of "
+        "the kinetic energy), or adaptive (critical damping and scaled masses: the fewest steps)",
     )
     set: dict[str, Any] = Field(
         {}, description="Values that change when the stage begins: {path in the case: value}"
