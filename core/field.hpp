@@ -36,7 +36,7 @@ class Column {
   }
   void assign(const T* from, std::size_t size) {
     resize(size);
-    if (size) std::memcpy(data_, from, size * sizeof(T));
+    if (size && from != data_) std::memcpy(data_, from, size * sizeof(T));  // may be its own view
   }
   void fill(T value) {
     for (std::size_t i = 0; i < size_; ++i) data_[i] = value;

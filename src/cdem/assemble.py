@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem import shapes
-from cdem.rows import in_pieces, lengths
+from cdem.rows import first_of_each, in_pieces, lengths
 from cdem.topology import Topology
 
 Floats = NDArray[np.float64]
@@ -93,9 +93,7 @@ def table(rows: NDArray, stride: int) -> NDArray:
 def ragged(owner: NDArray, value: NDArray, count: int) -> tuple[Ints, NDArray]:
     """Values listed by owner in the given order: starts (count + 1,) and values."""
     order = np.argsort(owner, kind="stable")
-    first = np.zeros(count + 1, np.int32)
-    np.cumsum(np.bincount(owner, minlength=count), out=first[1:])
-    return first, np.ascontiguousarray(value[order])
+    return first_of_each(owner, count), np.ascontiguousarray(value[order])
 
 
 def assemble(topology: Topology, properties: Properties, padded_stride) -> Assembly:

@@ -20,6 +20,13 @@ def in_pieces(function: Callable[..., NDArray], *arrays: NDArray) -> NDArray:
     return np.concatenate([function(*(a[i : i + PIECE] for a in arrays)) for i in starts])
 
 
+def first_of_each(owner: NDArray, count: int) -> NDArray[np.int32]:
+    """Where each owner's items start in a list in the order of owners, and its end, (count + 1,)."""
+    first = np.zeros(count + 1, np.int32)
+    np.cumsum(np.bincount(owner, minlength=count), out=first[1:])
+    return first
+
+
 def lengths(vectors: Floats) -> Floats:
     """Lengths along the last axis; several times faster than `np.linalg.norm` on short vectors."""
     return np.sqrt(np.einsum("...x,...x->...", vectors, vectors))

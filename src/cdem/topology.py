@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cdem.errors import MeshError
 from cdem.mesh import Mesh
 from cdem.overlap import Overlaps, find_overlaps
-from cdem.rows import in_pieces, order_of_rows, same_rows
+from cdem.rows import first_of_each, in_pieces, order_of_rows, same_rows
 from cdem.shapes import NODES, volumes
 
 Floats = NDArray[np.float64]
@@ -352,15 +352,8 @@ def _edges(t: Topology) -> None:
     low, high = t.edge_nodes.T.astype(np.int64)
     ring = np.sort(np.concatenate([low * nodes + high, high * nodes + low]))
     owner = ring // nodes
-    t.node_ring_first = _first_of_each(owner, nodes)
+    t.node_ring_first = first_of_each(owner, nodes)
     t.node_ring = (ring % nodes).astype(np.int32)
-
-
-def _first_of_each(owner: NDArray, count: int) -> Ints:
-    """Where each owner's items start in a list in the order of owners, and its end, (count + 1,)."""
-    first = np.zeros(count + 1, np.int32)
-    np.cumsum(np.bincount(owner, minlength=count), out=first[1:])
-    return first
 
 
 def _places(mesh: Mesh) -> NDArray:
