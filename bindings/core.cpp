@@ -302,8 +302,5 @@ NB_MODULE(CDEM_MODULE, module) {
              const Real deepest = adopt_overlaps(c.model, c.state, count, face);
              return std::make_tuple(deepest, count, face);
            })
-      .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); })
-      .def("refresh", [](Core& c) { refresh_contacts(c.model, c.state); })
-      .def("count_missed_contacts",
-           [](Core& c) { return count_missed_contacts(c.model, c.state); });
+      .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
 }

@@ -59,6 +59,10 @@ void launch_one(Queue queue, Index count, const Kernel& kernel) {
   for_each_one(queue, count, kernel);
 }
 template <class Kernel>
+void launch_picked(Queue queue, Index count, const Kernel& kernel) {
+  for_each_picked(queue, count, kernel);
+}
+template <class Kernel>
 void launch(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
   for_each(queue, count, blocks, kernel);
 }
@@ -104,9 +108,12 @@ template void launch_one(Queue, Index, Blocks, const OverlapBonds&);
 template void launch_one(Queue, Index, const UpdateFaceGeometry&);
 template void launch_one(Queue, Index, const MarkSharpSides&);
 template void launch(Queue, Index, const MarkNearEdges&);
+template void launch_picked(Queue, Index, const KeepTargetFaces&);
+template void launch_picked(Queue, Index, const SiftTargetFaces&);
 template void launch_one(Queue, Index, const FindTargetFaces&);
+template void launch_picked(Queue, Index, const TouchTargetEdges&);
 template void launch_one(Queue, Index, const FindTargetEdges&);
-template void launch_one(Queue, Index, const UpdateSpringForces&);
+template void launch_picked(Queue, Index, const UpdateSpringForces&);
 template void launch(Queue, Index, const UpdateEdgeForces&);
 template void launch_one(Queue, Index, const ListEdges&);
 template void launch(Queue, Index, const MarkNearFaces&);

@@ -14,6 +14,11 @@ void launch(Queue queue, Index count, const Kernel& kernel);
 template <class Kernel>
 void launch_one(Queue queue, Index count, const Kernel& kernel);
 
+/// The same for kernels that pick what they run for: of the `items(row)` of each of `count` rows
+/// those that it `picks(row, id)`. What is picked goes lane by lane.
+template <class Kernel>
+void launch_picked(Queue queue, Index count, const Kernel& kernel);
+
 /// The same for some of the items.
 template <class Kernel>
 void launch(Queue queue, Index count, Blocks blocks, const Kernel& kernel);

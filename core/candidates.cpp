@@ -153,7 +153,7 @@ void list_candidates(const Model& m, State& s) {
   list_pairs(found, &Proximity::faces, &Proximity::touches, s.search.faces_corners,
              s.search.faces_room, s.search.faces_near);
   list_pairs(found, &Proximity::edges, &Proximity::crossings, s.search.edges_ends,
-             s.search.edges_room, s.search.edges_near);
+             s.search.edges_bounds, s.search.edges_near);
   const Index count = Index(s.search.exposed_face.size());
   const Touches touches =
       by_mother(found, &Proximity::touches, count,

@@ -11,38 +11,36 @@
 namespace cdem {
 
 inline FaceColumns face_columns(const Model& m, const State& s) {
-  return {{s.nodes.motion.data()},
-          m.face_nodes.data(),
-          m.face_edges.data(),
-          m.face_group.data(),
-          m.face_length.data(),
-          m.face_reach.data(),
-          m.face_area.data(),
-          m.face_height.data(),
-          m.face_stiffness.data(),
-          m.edge_nodes.data(),
-          s.search.across.data(),
-          s.search.ring_first.data(),
-          s.search.ring.data(),
-          s.nodes.glue.data(),
-          m.node_place.data(),
-          s.search.face_exposed.data(),
-          s.dt_last};
+  return {{s.nodes.motion.data()},      m.face_nodes.data(),
+          m.face_edges.data(),          m.face_length.data(),
+          m.face_reach.data(),          m.face_height.data(),
+          m.edge_nodes.data(),          s.search.across.data(),
+          s.search.ring_first.data(),   s.search.ring.data(),
+          s.nodes.glue.data(),          m.node_place.data(),
+          s.search.face_exposed.data(), s.dt_last};
 }
 
-inline Candidates candidate_columns(const State& s) {
+inline FaceGeometry face_geometry(const State& s) {
+  return {s.face_geometry.data(), s.search.exposed.data()};
+}
+
+inline Candidates candidate_columns(State& s) {
   return {s.search.candidate_first.data(), s.search.candidate.data(),
-          s.search.candidate_pair.data(), s.search.faces_near.data()};
+          s.search.candidate_pair.data(), s.search.faces_near.data(), s.search.may_begin.data()};
 }
 
 inline Sources source_columns(const State& s) {
   return {s.search.source_first.data(), s.search.source.data()};
 }
 
-inline EdgeCandidates edge_candidate_columns(const State& s) {
-  return {s.search.edge_candidate_first.data(), s.search.edge_candidate.data(),
-          s.search.edge_candidate_edge.data(),  s.search.edge_candidate_sides.data(),
-          s.search.edge_candidate_edges.data(), s.search.edges_near.data()};
+inline EdgeCandidates edge_candidate_columns(State& s) {
+  return {s.search.edge_candidate_first.data(),
+          s.search.edge_candidate.data(),
+          s.search.edge_candidate_edge.data(),
+          s.search.edge_candidate_sides.data(),
+          s.search.edge_candidate_edges.data(),
+          s.search.edges_near.data(),
+          s.search.edge_touch.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {
@@ -59,6 +57,16 @@ inline EdgeColumns edge_columns(State& s) {
 inline EdgesBefore edges_before(const State& s) {
   const EdgeState& c = s.edges;
   return {c.old_first.data(), c.old_contact.data(), c.old_state.data()};
+}
+
+inline FaceSearch face_search(const Model& m, State& s) {
+  return {face_columns(m, s),   face_geometry(s), s.search.exposed_face.data(),
+          candidate_columns(s), m.rules,          spring_columns(s)};
+}
+
+inline TouchTargetEdges edge_search(const Model& m, State& s) {
+  return {face_columns(m, s), face_geometry(s), edge_candidate_columns(s), m.rules,
+          edges_before(s)};
 }
 
 inline FoundEdges found_edges(State& s) {
@@ -79,7 +87,7 @@ template <class Shape>
 ElementColumns<Shape> element_columns(const Model& m, const State& s, const ElementSet& e) {
   return {{s.nodes.motion.data()},       {e.nodes.data(), e.stride},
           {e.gradient.data(), e.stride}, {e.volume.data(), e.stride},
-          {e.material.data(), e.stride}, {{m.material_lambda.data()}, {m.material_mu.data()}},
+          {e.material.data(), e.stride}, {m.material_lambda.data(), m.material_mu.data()},
           {e.hourglass.data(), e.stride}};
 }
 
@@ -91,9 +99,9 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           in(p.area),
           in(s.live),
           in(p.stiffness),
-          {m.cohesion.data()},
-          {m.tensile_strength.data()},
-          {m.tan_friction.data()},
+          m.cohesion.data(),
+          m.tensile_strength.data(),
+          m.tan_friction.data(),
           point(s.bond),
           point(s.slip1),
           point(s.slip2),

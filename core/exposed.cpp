@@ -64,7 +64,7 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   e.shape = face_columns(m, s).shape(e.face);
   e.center = e.shape.center();
   e.normal = e.shape.normal();
-  const Index count = e.shape.count;
+  const Index count = e.shape.count();
   Vec3<Real> path[4], sum{0, 0, 0};
   for (Index k = 0; k < count; ++k) {
     path[k] = s.search.horizon * foreseen(s, m.face_nodes[4 * e.face + k]);
@@ -104,7 +104,7 @@ void complete(const Model& m, const State& s, const std::vector<ExposedFace>& ex
     p.block = e.block;
     p.movable = e.movable;
     p.box.include(e.box);
-    for (Index k = 0; k < e.shape.count; ++k) {
+    for (Index k = 0; k < e.shape.count(); ++k) {
       Index* end = p.vertex + p.vertex_count;
       const Index node = faces.vertex(e.face, k);
       const Index v = Index(std::find(p.vertex, end, node) - p.vertex);
@@ -224,10 +224,10 @@ std::vector<ExposedSide> exposed_sides(const State& s, const std::vector<Exposed
 #pragma omp parallel for schedule(static, 128) if (exposed.size() >= worth_threads)
   for (std::size_t x = 0; x < exposed.size(); ++x) {
     const ExposedFace& e = exposed[x];
-    for (Index k = 0; k < e.shape.count; ++k) {
+    for (Index k = 0; k < e.shape.count(); ++k) {
       ExposedSide& side = sides[4 * x + k];
       side.start = e.shape.x[k];
-      side.along = e.shape.x[k + 1 == e.shape.count ? 0 : k + 1] - side.start;
+      side.along = e.shape.x[k + 1 == e.shape.count() ? 0 : k + 1] - side.start;
       side.length = norm(side.along);
       side.turn = 2 * e.stir / side.length;
       side.turn_face = e.turn;

@@ -24,7 +24,7 @@ void list_watched(State& state);
 
 /// An exposed face as the lists see it: where it is, and how it may move before they are old.
 struct ExposedFace {
-  FaceShape shape;
+  FaceShape<Real> shape;
   Vec3<Real> center, normal;
   Vec3<Real> drift;  // of all its vertices alike  [m]
   Real stir;         // of a vertex beyond the drift  [m]

@@ -123,6 +123,13 @@ struct InIndices {
 #endif
 };
 
+/// Four numbers that lie together in a row.
+template <class T>
+struct Four {
+  T x, y, z, w;
+  CDEM_HD Vec3<T> vector() const { return {x, y, z}; }
+};
+
 #if !defined(__CUDACC__)
 // What lies in memory as rows of numbers is turned into packs, and back, in registers by shuffles:
 // a pack that is put together in memory, number by number, stalls the core when it is read.
@@ -137,9 +144,9 @@ inline Pack::Numbers pick(const Pack::Numbers& a, const Pack::Numbers& b) {
 #endif
 }
 
-/// Rows of four numbers, one a lane at row(lane): their first three as packs.
+/// Rows of four numbers, one a lane at row(lane).
 template <class Rows>
-CDEM_HD inline Vec3<Pack> load_rows(const Rows& row) {
+CDEM_HD inline Four<Pack> load_fours(const Rows& row) {
 #if CDEM_LANES == 8
   Pack::Numbers r[4];
   for (Index j = 0; j < 4; ++j)
@@ -151,18 +158,27 @@ CDEM_HD inline Vec3<Pack> load_rows(const Rows& row) {
   const auto y23 = pick<1, 9, 3, 11, 5, 13, 7, 15>(r[2], r[3]);
   return {{pick<0, 1, 8, 9, 4, 5, 12, 13>(xz01, xz23)},
           {pick<0, 1, 8, 9, 4, 5, 12, 13>(y01, y23)},
-          {pick<2, 3, 10, 11, 6, 7, 14, 15>(xz01, xz23)}};
+          {pick<2, 3, 10, 11, 6, 7, 14, 15>(xz01, xz23)},
+          {pick<2, 3, 10, 11, 6, 7, 14, 15>(y01, y23)}};
 #elif CDEM_LANES == 4
   const auto r0 = Row::at(row(0)).n, r1 = Row::at(row(1)).n, r2 = Row::at(row(2)).n,
              r3 = Row::at(row(3)).n;
   const auto xz01 = pick<0, 4, 2, 6>(r0, r1), xz23 = pick<0, 4, 2, 6>(r2, r3);
   const auto y01 = pick<1, 5, 3, 7>(r0, r1), y23 = pick<1, 5, 3, 7>(r2, r3);
-  return {
-      {pick<0, 1, 4, 5>(xz01, xz23)}, {pick<0, 1, 4, 5>(y01, y23)}, {pick<2, 3, 6, 7>(xz01, xz23)}};
+  return {{pick<0, 1, 4, 5>(xz01, xz23)},
+          {pick<0, 1, 4, 5>(y01, y23)},
+          {pick<2, 3, 6, 7>(xz01, xz23)},
+          {pick<2, 3, 6, 7>(y01, y23)}};
 #else
   return {pack_of([&](Index j) { return row(j)[0]; }), pack_of([&](Index j) { return row(j)[1]; }),
-          pack_of([&](Index j) { return row(j)[2]; })};
+          pack_of([&](Index j) { return row(j)[2]; }), pack_of([&](Index j) { return row(j)[3]; })};
 #endif
+}
+/// Their first three.
+template <class Rows>
+CDEM_HD inline Vec3<Pack> load_rows(const Rows& row) {
+  const Four<Pack> r = load_fours(row);
+  return {r.x, r.y, r.z};
 }
 /// The same back; the fourth numbers become 0.
 template <class Rows>
@@ -197,6 +213,20 @@ CDEM_HD inline void store_rows(const Vec3<Pack>& v, const Rows& row) {
 }
 #endif
 
+/// Rows of 8 numbers, read four at a time from place `from`, and written.
+struct InRows {
+  const Real* rows;
+  CDEM_HD Four<Real> at(Index row, Index from) const {
+    const Real* r = rows + std::size_t(row) * 8 + from;
+    return {r[0], r[1], r[2], r[3]};
+  }
+#if !defined(__CUDACC__)
+  Four<Pack> at(const IndexPack& row, Index from) const {
+    return load_fours([&](Index j) { return rows + std::size_t(row.id[j]) * 8 + from; });
+  }
+#endif
+};
+
 /// Write a flag for every item.
 CDEM_HD inline void set_flags(Flag* flags, One item, bool mask) { flags[item.i] = mask ? 1 : 0; }
 #if !defined(__CUDACC__)
@@ -206,26 +236,38 @@ inline void set_flags(Flag* flags, Lane item, Mask mask) {
 #endif
 
 /// Write one row of 8 numbers for every item.
+CDEM_HD inline void set_rows(Real* rows, Index item, const Real* numbers) {
+  for (Index k = 0; k < 8; ++k) rows[std::size_t(item) * 8 + k] = numbers[k];
+}
 CDEM_HD inline void set_rows(Real* rows, One item, const Real* numbers) {
-  for (Index k = 0; k < 8; ++k) rows[std::size_t(item.i) * 8 + k] = numbers[k];
+  set_rows(rows, item.i, numbers);
 }
 #if !defined(__CUDACC__)
+inline void set_rows(Real* rows, const IndexPack& item, const Pack* numbers) {
+  for (Index j = 0; j < lanes; ++j)
+    for (Index k = 0; k < 8; ++k) rows[std::size_t(item.id[j]) * 8 + k] = numbers[k].n[j];
+}
 inline void set_rows(Real* rows, Lane item, const Pack* numbers) {
   for (Index j = 0; j < lanes; ++j)
     for (Index k = 0; k < 8; ++k) rows[std::size_t(item.i + j) * 8 + k] = numbers[k].n[j];
 }
 #endif
 
-/// A small lookup table, read at the item's own key.
-struct InLookup {
-  const Real* data;
-  CDEM_HD Real at(Index key) const { return data[key]; }
+/// Numbers or indices of a list, looked up for an index or for one a lane; numbers added to it.
+template <class Ids>
+CDEM_HD inline auto look_up(const Real* list, const Ids& place) {
+  return numbers_of([&](Index i) { return list[i]; }, place);
+}
+template <class Ids>
+CDEM_HD inline auto look_up(const Index* list, const Ids& place) {
+  return indices_of([&](Index i) { return list[i]; }, place);
+}
+CDEM_HD inline void add_to(Real* list, Index place, Real number) { list[place] += number; }
 #if !defined(__CUDACC__)
-  Pack at(const IndexPack& key) const {
-    return pack_of([&](Index j) { return data[key.id[j]]; });
-  }
+inline void add_to(Real* list, const IndexPack& place, Pack number) {
+  for (Index j = 0; j < lanes; ++j) list[place.id[j]] += number.n[j];
+}
 #endif
-};
 
 /// Motion of the nodes, one 64-byte row each: position x y z, pad, velocity x y z, pad.
 struct InMotion {

@@ -43,6 +43,16 @@ CDEM_HD inline Real abs_of(Real a) { return a < 0 ? -a : a; }
 CDEM_HD inline Real sqrt_of(Real a) { return std::sqrt(a); }
 CDEM_HD inline bool any_of(bool mask) { return mask; }
 
+/// Item of a kernel that picks what it runs for: an item of a row.
+struct Picked {
+  Index row, id;
+};
+
+/// Items of a row: from `first` to before `last`.
+struct Range {
+  Index first, last;
+};
+
 #if !defined(__CUDACC__)
 
 /// Item of a kernel that runs for `lanes` consecutive numbers at once.
@@ -117,6 +127,11 @@ struct IndexPack {
   Index id[CDEM_LANES];
 };
 
+/// As many picked items as there are lanes, whatever rows they are of.
+struct PickedLane {
+  IndexPack row, id;
+};
+
 #endif
 
 /// The number type that a kernel computes with for an item type: Real for One, Pack for Lane.
@@ -126,9 +141,17 @@ template <>
 struct NumberOf<One> {
   using type = Real;
 };
+template <>
+struct NumberOf<Picked> {
+  using type = Real;
+};
 #if !defined(__CUDACC__)
 template <>
 struct NumberOf<Lane> {
+  using type = Pack;
+};
+template <>
+struct NumberOf<PickedLane> {
   using type = Pack;
 };
 #endif
@@ -153,12 +176,64 @@ template <>
 struct IndexOf<Lane> {
   using type = IndexPack;
 };
+template <>
+struct IndexOf<PickedLane> {
+  using type = IndexPack;
+};
 template <class Do>
 inline void for_lanes(Lane item, const Do& act) {
   for (Index j = 0; j < lanes; ++j) act(j, item.i + j);
 }
 inline auto& lane_of(Pack& pack, Index lane) { return reinterpret_cast<Real*>(&pack.n)[lane]; }
 inline Index& lane_of(IndexPack& pack, Index lane) { return pack.id[lane]; }
+#endif
+
+/// What comparisons of a number type give: bool, Mask.
+template <class T>
+using Truth = decltype(T() < T());
+
+/// Does a comparison hold for a lane?
+CDEM_HD inline bool holds(bool outcome, Index) { return outcome; }
+/// Do something for every lane of a picked item, with the number of the lane, row and item.
+template <class Do>
+CDEM_HD inline void for_lanes(const Picked& item, const Do& act) {
+  act(0, item.row, item.id);
+}
+#if !defined(__CUDACC__)
+CDEM_HD inline bool holds(const Mask& outcome, Index lane) { return outcome.bits[lane] != 0; }
+template <class Do>
+CDEM_HD inline void for_lanes(const PickedLane& item, const Do& act) {
+  for (Index j = 0; j < lanes; ++j) act(j, item.row.id[j], item.id.id[j]);
+}
+#endif
+
+/// Indices made of indices, lane by lane.
+template <class Of, class... Rest>
+CDEM_HD inline Index indices_of(const Of& of, Index first, Rest... rest) {
+  return of(first, rest...);
+}
+/// Numbers made of indices, lane by lane.
+template <class Of, class... Rest>
+CDEM_HD inline Real numbers_of(const Of& of, Index first, Rest... rest) {
+  return of(first, rest...);
+}
+CDEM_HD inline bool differ(Index a, Index b) { return a != b; }
+#if !defined(__CUDACC__)
+template <class Of, class... Rest>
+CDEM_HD inline IndexPack indices_of(const Of& of, const IndexPack& first, const Rest&... rest) {
+  IndexPack pack;
+  for (Index j = 0; j < lanes; ++j) pack.id[j] = of(first.id[j], rest.id[j]...);
+  return pack;
+}
+template <class Of, class... Rest>
+CDEM_HD inline Pack numbers_of(const Of& of, const IndexPack& first, const Rest&... rest) {
+  return pack_of([&](Index j) { return Real(of(first.id[j], rest.id[j]...)); });
+}
+CDEM_HD inline Mask differ(const IndexPack& a, const IndexPack& b) {
+  Mask mask;
+  for (Index j = 0; j < lanes; ++j) mask.bits[j] = -std::int64_t(a.id[j] != b.id[j]);
+  return mask;
+}
 #endif
 
 /// Blocks of so many consecutive items that a launch may be limited to.
@@ -192,6 +267,19 @@ void for_each(Queue queue, Index count, const Kernel& kernel) {
 template <class Kernel>
 void for_each_one(Queue queue, Index count, const Kernel& kernel) {
   for_each(queue, count, kernel);
+}
+
+template <class Kernel>
+__global__ void run_picked_on_gpu(Index count, Kernel kernel) {
+  const Index row = blockIdx.x * blockDim.x + threadIdx.x;
+  if (row >= count) return;
+  const Range all = kernel.items(row);
+  for (Index id = all.first; id < all.last; ++id)
+    if (kernel.picks(row, id)) kernel(Picked{row, id});
+}
+template <class Kernel>
+void for_each_picked(Queue queue, Index count, const Kernel& kernel) {
+  if (count > 0) run_picked_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
 }
 
 template <class Kernel>
@@ -235,6 +323,34 @@ template <class Kernel>
 void for_each_one(Queue, Index count, const Kernel& kernel) {
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index i = 0; i < count; ++i) kernel(One{i});
+}
+
+/// Run a kernel for what it picks of each of `count` rows: whole lanes, whatever rows their items
+/// are of, then each thread's remainder one by one. Picking takes no branch, for none could be
+/// foreseen.
+template <class Kernel>
+void for_each_picked(Queue, Index count, const Kernel& kernel) {
+#pragma omp parallel if (count >= worth_threads)
+  {
+    constexpr Index most = 8 * lanes;
+    PickedLane some[most / lanes];
+    Index picked = 0;
+#pragma omp for schedule(static, 128) nowait
+    for (Index row = 0; row < count; ++row) {
+      const Range all = kernel.items(row);
+      for (Index id = all.first; id < all.last; ++id) {
+        some[picked / lanes].row.id[picked % lanes] = row;
+        some[picked / lanes].id.id[picked % lanes] = id;
+        picked += kernel.picks(row, id) ? 1 : 0;
+        if (picked < most) continue;
+        for (const PickedLane& lane : some) kernel(lane);
+        picked = 0;
+      }
+    }
+    for (Index j = 0; j < picked / lanes; ++j) kernel(some[j]);
+    for (Index j = picked - picked % lanes; j < picked; ++j)
+      kernel(Picked{some[j / lanes].row.id[j % lanes], some[j / lanes].id.id[j % lanes]});
+  }
 }
 
 /// The same for some blocks of items.

@@ -79,7 +79,7 @@ bool apart(const Model& m, const State& s, const std::vector<ExposedFace>& expos
 /// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
 bool apart(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
   Real lowest = 1e300, span2 = 0;
-  for (Index k = 0; k < x.shape.count; ++k) {
+  for (Index k = 0; k < x.shape.count(); ++k) {
     const Vec3<Real> arm = x.shape.x[k] - y.center;
     lowest = std::min(lowest, dot(y.normal, arm));
     span2 = std::max(span2, dot(arm, arm));
@@ -127,7 +127,7 @@ bool may_sink(const Finder& f, const Vec3<Real>& v, const ExposedFace& x, const 
   const GapRange gap(x, y, v);
   const Real deepest = std::min(f.m.rules.depth * length, 0.5 * f.m.face_height[y.face]);
   if (gap.least > -entry || gap.most < -deepest) return false;
-  for (Index j = 0; j < y.shape.count; ++j) {
+  for (Index j = 0; j < y.shape.count(); ++j) {
     const ExposedSide& side = f.sides[4 * std::size_t(place_y) + j];
     if (side.across < 0) continue;
     const ExposedFace& u = f.exposed[side.across];
@@ -153,8 +153,8 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
   if (gap + change.least > gap_room + rules.lifted ||
       gap + change.most < -rules.depth * length - gap_room)
     return false;
-  for (Index j = 0; j < y.shape.count; ++j) {  // beside the face?
-    const Vec3<Real> a = y.shape.x[j], side = y.shape.x[j + 1 == y.shape.count ? 0 : j + 1] - a;
+  for (Index j = 0; j < y.shape.count(); ++j) {  // beside the face?
+    const Vec3<Real> a = y.shape.x[j], side = y.shape.x[j + 1 == y.shape.count() ? 0 : j + 1] - a;
     const Vec3<Real> from = v - a;
     const Real room = rules.tolerance * length + rules.indentation * reach + motion +
                       2 * y.turn * (norm(from) + rules.indentation * reach);
@@ -162,7 +162,7 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
         !may_go_behind(f, v, x, y, f.sides[4 * std::size_t(place_y) + j]))
       return false;
   }
-  for (Index j = 0; j < y.shape.count; ++j)
+  for (Index j = 0; j < y.shape.count(); ++j)
     if (f.faces.node_glue[f.faces.vertex(y.face, j)] == f.faces.node_glue[node]) return false;
   if (Bonded::among(f.bonded.vertices, node, place_y)) return false;
   if (may_sink(f, v, x, y, place_y, rules.entry * std::min(least, y.length), length)) return true;
@@ -227,8 +227,8 @@ bool stay_together(const Model& m, const State& s, const ExposedFace& x, const E
   const Real near = m.rules.indentation * std::min(x.length, y.length);
   for (Index i = 0; i < 4; ++i) {
     if (!(pair.shared >> i & 1)) continue;
-    const Index a = faces.vertex(x.face, (pair.k + (i >> 1)) % x.shape.count);
-    const Index b = faces.vertex(y.face, (pair.j + (i & 1)) % y.shape.count);
+    const Index a = faces.vertex(x.face, (pair.k + (i >> 1)) % x.shape.count());
+    const Index b = faces.vertex(y.face, (pair.j + (i & 1)) % y.shape.count());
     const Real motion = s.search.horizon * norm(foreseen(s, a) - foreseen(s, b)) +
                         s.search.node_skin[a] + s.search.node_skin[b];
     if (norm(faces.nodes.position(a) - faces.nodes.position(b)) + motion < near) return true;
@@ -254,9 +254,9 @@ Proximity::VertexFace vertex_face(const Finder& f, Index node, const ExposedFace
                                   Real reach, Real least) {
   const SearchRules& rules = f.m.rules;
   const Real slack = 1e-6 * y.length;  // for round-off
-  const Real above = (y.shape.count == 3 ? 0 : 0.5 * y.length) + y.warp + slack;
+  const Real above = (y.shape.count() == 3 ? 0 : 0.5 * y.length) + y.warp + slack;
   const Real aside = rules.tolerance * length + 1.01 * rules.indentation * reach + slack;
-  const Index last = y.shape.count == 3 ? 2 : 3;
+  const Index last = y.shape.count() == 3 ? 2 : 3;
   return {{node, f.faces.vertex(y.face, 0), f.faces.vertex(y.face, 1), f.faces.vertex(y.face, 2),
            f.faces.vertex(y.face, last)},
           {above + rules.lifted, above + rules.depth * length, aside,
@@ -316,11 +316,57 @@ void list_crossing(const Finder& f, Index x, Index k, Index y, Index j, Index ed
   found.crossings.push_back({x, y, pair.code(), edges});
 }
 
+/// What the indentation of the faces at some edges takes from the ends of the edges, at least, and
+/// how far it moves them aside, at most, with room for what faces are strained; least L  [m].
+struct Indented {
+  Real inset = 1e300, shift = 0, length = 1e300;
+
+  void meet(const Finder& f, const Patch& a, const Patch::Edge& edge) {
+    const Real part = f.m.rules.indentation;
+    for (Index i = 0; i < edge.faces; ++i) {
+      const Index place = a.face[edge.face[i]];
+      const ExposedFace& face = f.exposed[place];
+      const ExposedSide& side = f.sides[4 * std::size_t(place) + edge.side[i]];
+      const Vec3<Real> arm = face.center - side.start;
+      const Real along = dot(arm, side.along) / side.length;
+      const Real off = norm(cross(arm, side.along)) / side.length;
+      inset = std::min(inset, 0.99 * part * std::min(along, side.length - along));
+      shift = std::max(shift, 1.01 * part * off);
+      length = std::min(length, face.length);
+    }
+  }
+};
+
+/// Two edges as MarkNearEdges sees them, on sides `on` of each other: those of their ends first
+/// that began at the same place, if any.
+Proximity::Edges two_edges(const Finder& f, const Patch& a, const Patch::Edge& p, const Patch& b,
+                           const Patch::Edge& q, int on) {
+  const SearchRules& rules = f.m.rules;
+  const auto corner = [&](const Patch& patch, const Patch::Edge& edge) {
+    return f.faces.vertex(f.exposed[patch.face[edge.face[0]]].face, edge.side[0]);
+  };
+  const Index* ends_p = f.m.edge_nodes.data() + 2 * std::size_t(p.id);
+  const Index* ends_q = f.m.edge_nodes.data() + 2 * std::size_t(q.id);
+  Index first_p = 0, first_q = 0;
+  bool shared = false;
+  for (Index i = 0; i < 4 && !shared; ++i) {
+    shared = f.faces.node_place[ends_p[i >> 1]] == f.faces.node_place[ends_q[i & 1]];
+    if (shared) first_p = i >> 1, first_q = i & 1;
+  }
+  // seen along the cross product of the two as their ends are listed here
+  const bool turned = (ends_p[first_p] != corner(a, p)) != (ends_q[first_q] != corner(b, q));
+  const Real way = on == 3 ? 0 : ((on == 1) != turned ? 1 : -1);
+  Indented edges;
+  edges.meet(f, a, p);
+  edges.meet(f, b, q);
+  return {{ends_p[first_p], ends_p[1 - first_p], ends_q[first_q], ends_q[1 - first_q]},
+          {rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
+           shared ? 0.999999 * rules.indentation * edges.length : 0}};
+}
+
 /// Edges of one patch across edges of another.
 void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
                     Proximity& found) {
-  const Real depth = f.m.rules.entry * std::min(a.length, b.length);
-  const Real shift = 1.01 * f.m.rules.indentation * std::max(a.reach, b.reach);
   const Real room = farthest_contact(f.m.rules, a, b) + last_step * norm(b.drift - a.drift);
   for (Index e = 0; e < a.edge_count; ++e) {
     const Patch::Edge& p = a.edge[e];
@@ -350,13 +396,7 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
           list_crossing(f, place_y, q.side[j], place_x, p.side[i], edges, found);
         }
       if (found.crossings.size() == before) continue;
-      const Index* ends_p = f.m.edge_nodes.data() + 2 * std::size_t(p.id);
-      const Index* ends_q = f.m.edge_nodes.data() + 2 * std::size_t(q.id);
-      // seen along the cross product of the two as their ends are listed here
-      const bool turned = (ends_p[0] != f.faces.vertex(x.face, p.side[0])) !=
-                          (ends_q[0] != f.faces.vertex(y.face, q.side[0]));
-      const Real way = on == 3 ? 0 : ((on == 1) != turned ? 1 : -1);
-      found.edges.push_back({{ends_p[0], ends_p[1], ends_q[0], ends_q[1]}, {depth, shift, way}});
+      found.edges.push_back(two_edges(f, a, p, b, q, on));
     }
   }
 }

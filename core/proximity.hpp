@@ -55,7 +55,7 @@ struct Proximity {
   /// The pair of edges that crossings are of, see MarkNearEdges.
   struct Edges {
     Index nodes[4];
-    Real room[3];
+    Real room[5];
   };
   std::vector<Touch> touches;
   std::vector<VertexFace> faces;

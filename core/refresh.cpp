@@ -225,20 +225,19 @@ void sum_stiffness(const Model& m, State& s) {
   s.node_potential.fill(0);
   const FaceColumns faces = face_columns(m, s);
   const ContactLaws laws = contact_laws(m, s);
+  const FaceGeometry geometry = face_geometry(s);
   const Index exposed = Index(s.search.exposed_face.size());
   std::vector<Real> stiffest_of(exposed);  // contact that a face may have  [N/m]
 #pragma omp parallel for schedule(static, 128) if (exposed >= worth_threads)
   for (Index x = 0; x < exposed; ++x) {
-    const Index face = s.search.exposed_face[x];
     Real stiffest = 0;
     // the law is that of mother and target, in this order: joints may differ from their groups
     const auto meet = [&](Index y, bool is_target) {
-      const Index other = s.search.exposed_face[y];
-      const Interface& law = is_target ? laws.between(m.face_group[face], m.face_group[other])
-                                       : laws.between(m.face_group[other], m.face_group[face]);
-      const Real stiffer = std::max(m.face_stiffness[face], m.face_stiffness[other]);
+      const Interface& law =
+          laws.interfaces[is_target ? laws.between(geometry, x, y) : laws.between(geometry, y, x)];
+      const Real stiffer = geometry.stiffer(x, y);
       stiffest =
-          std::max(stiffest, faces.contact_area(face, other) *
+          std::max(stiffest, geometry.contact_area(x, y) *
                                  std::max(law.stiffness_n(stiffer), law.stiffness_s(stiffer)));
     };
     for (Index c = s.search.candidate_first[4 * x]; c < s.search.candidate_first[4 * x + 4]; ++c)
@@ -280,6 +279,26 @@ bool refresh_is_due(const Model& m, State& s) {
   return s.search.strayed = due;
 }
 
+void list_exposed(const Model& m, State& s) {
+  const SearchState& search = s.search;
+  const std::size_t count = search.exposed_face.size();
+  s.search.exposed.resize(count);
+  for (std::size_t x = 0; x < count; ++x) {
+    const Index face = search.exposed_face[x];
+    ExposedRow& row = s.search.exposed[x];
+    const Index* nodes = m.face_nodes.data() + 4 * std::size_t(face);
+    for (Index k = 0; k < 4; ++k) {
+      const Index across = search.across[4 * x + k];
+      row.corner[k] = nodes[k] < 0 ? nodes[2] : nodes[k];
+      row.beside[k] = across < 0 ? -1 : search.face_exposed[across];
+    }
+    row.reach = m.face_reach[face];
+    row.area = m.face_area[face] / row.count();
+    row.stiffness = m.face_stiffness[face];
+    row.group = m.face_group[face];
+  }
+}
+
 void refresh_contacts(const Model& m, State& s) {
   if (s.built_step < 0) {
     s.search.face_exposed.resize(m.face_count, -1);
@@ -295,6 +314,7 @@ void refresh_contacts(const Model& m, State& s) {
   released = release_pairs(m, s, m.overlaps, s.overlaps) || released;
   sort_exposed(s);
   join_surfaces(m, s);
+  list_exposed(m, s);
   list_candidates(m, s);
   sum_stiffness(m, s);
   if (released) list_corners(m, s);
@@ -310,11 +330,14 @@ void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
   if (!all && !listed && s.built_step < s.step) return;
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
-  launch_one(q, count, UpdateFaceGeometry{face_columns(m, s), exposed, s.face_geometry.data()});
+  launch_one(q, count,
+             UpdateFaceGeometry{face_columns(m, s), exposed, s.search.exposed.data(),
+                                s.face_geometry.data()});
   launch_one(q, count,
              MarkSharpSides{face_columns(m, s), exposed,
                             all ? nullptr : s.search.edge_candidate_first.data(),
-                            all ? nullptr : s.search.source_first.data(), s.face_geometry.data()});
+                            all ? nullptr : s.search.source_first.data(), s.search.exposed.data(),
+                            s.face_geometry.data()});
 }
 
 void mark_near_faces(const Model&, State& s, Queue q) {
@@ -332,43 +355,32 @@ void mark_near_edges(const Model& m, State& s, Queue q) {
   launch(q, count,
          MarkNearEdges{{s.nodes.motion.data()},
                        {search.edges_ends.data(), padded_stride(count)},
-                       {search.edges_room.data(), padded_stride(count)},
+                       {search.edges_bounds.data(), padded_stride(count)},
                        m.rules.approach_steps * s.dt_last,
                        s.search.edges_near.data()});
 }
-
-namespace {
-
-FindTargetFaces face_search(const Model& m, State& s, const SearchRules& rules) {
-  update_face_geometry(m, s, {}, true);
-  mark_near_faces(m, s, {});
-  finish({});
-  return {face_columns(m, s),
-          {s.face_geometry.data()},
-          s.search.exposed_face.data(),
-          candidate_columns(s),
-          rules,
-          spring_columns(s)};
-}
-
-}  // namespace
 
 Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
   constexpr Real reported = 1e-6;  // of L: shallower overlaps are round-off of the mesh
   SearchRules deep = m.rules;
   deep.entry = deep.depth;
-  const FindTargetFaces search = face_search(m, s, deep);
+  update_face_geometry(m, s, {}, true);
+  mark_near_faces(m, s, {});
+  finish({});
+  FindTargetFaces search{face_search(m, s)};
+  search.rules = deep;
   const Index exposed = Index(s.search.exposed_face.size());
   Real deepest = 0;
   count = 0;
   face = -1;
   for (Index x = 0; x < exposed; ++x) {
-    for (Index k = 0; k < 4; ++k) search(One{4 * x + k});
     const Index mother = s.search.exposed_face[x];
     for (Index k = 0; k < search.faces.vertex_count(mother); ++k) {
-      const Index t = s.springs.target[4 * x + k];
+      Index& t = s.springs.target[4 * x + k];
+      s.springs.target_before[4 * x + k] = t;
+      t = search.choose(x, k, search.listed_for(4 * x + k), &s.springs.lost[4 * x + k]);
       if (t < 0) continue;
-      const FaceShape shape = search.faces.shape(s.search.exposed_face[t]);
+      const FaceShape<Real> shape = search.faces.shape(s.search.exposed_face[t]);
       const Vec3<Real> v = search.faces.nodes.position(search.faces.vertex(mother, k));
       const Real gap = project(shape, v, shape.normal()).gap;
       ContactState spring{};
@@ -384,16 +396,8 @@ Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
 }
 
 Index count_missed_contacts(const Model& m, State& s) {
-  mark_near_edges(m, s, {});
-  const FindTargetFaces springs = face_search(m, s, m.rules);
-  const FindTargetEdges edges{face_columns(m, s),
-                              {s.face_geometry.data()},
-                              s.search.exposed_face.data(),
-                              edge_candidate_columns(s),
-                              m.rules,
-                              edges_before(s),
-                              s.edges.lost.data(),
-                              found_edges(s)};
+  const FindTargetFaces springs{face_search(m, s)};
+  const TouchTargetEdges edges = edge_search(m, s);
   const Index count = Index(s.search.exposed_face.size());
   const Bonded bonded = live_overlaps(m, s);
   const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };
@@ -420,24 +424,30 @@ Index count_missed_contacts(const Model& m, State& s) {
       open.clear();
       std::copy_if(all.begin(), all.end(), std::back_inserter(open),
                    [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
-      missed += springs.choose(x, k, springs.listed_for(4 * x + k), &ignored) !=
-                springs.choose(x, k, {open.data(), nullptr, nullptr, Index(open.size())}, &ignored);
+      const FaceList list{open.data(), nullptr, nullptr, nullptr, Index(open.size())};
+      missed += s.springs.target[4 * x + k] != springs.choose(x, k, list, &ignored);
     }
     if (!m.semi_edges) continue;
-    const EdgeCandidates& c = edges.candidates;
+    const auto touch = [&](Index t, Index k, Index j) {
+      SidePair pair;
+      const Index face = s.search.exposed_face[x], other = s.search.exposed_face[t];
+      if (!pair_sides(edges.faces, face, k, other, j, pair)) return false;
+      const Index edge = m.face_edges[4 * other + j];
+      return edges.test(TwoSides<Index>{x, t, pair.code(), edges.held_place(x, k, edge)}).touches;
+    };
+    const auto found = [&](Index t, Index k, Index j) {
+      for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
+        const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
+        if (contact.mother == 4 * x + k && contact.face == t &&
+            contact.edge == m.face_edges[4 * s.search.exposed_face[t] + j])
+          return true;
+      }
+      return false;
+    };
     for (const Index t : all)
-      for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k)
-        for (Index j = 0; j < springs.faces.vertex_count(s.search.exposed_face[t]); ++j) {
-          SidePair pair;
-          if (!pair_sides(springs.faces, s.search.exposed_face[x], k, s.search.exposed_face[t], j,
-                          pair) ||
-              !edges.touches(x, t, pair, false, false, &ignored))
-            continue;
-          bool found = false;
-          for (Index i = c.first[x]; i < c.first[x + 1]; ++i)
-            found = found || (c.face[i] == t && c.sides[i] == pair.code() && c.near[c.edges[i]]);
-          missed += !found;
-        }
+      for (Index k = 0; k < edges.faces.vertex_count(s.search.exposed_face[x]); ++k)
+        for (Index j = 0; j < edges.faces.vertex_count(s.search.exposed_face[t]); ++j)
+          missed += touch(t, k, j) != found(t, k, j);
   }
   return missed;
 }

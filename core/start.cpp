@@ -67,6 +67,7 @@ void prepare(const Model& m, State& s) {
   const std::size_t exposed = s.search.exposed_face.size();
   s.face_geometry.resize(8 * exposed);
   s.contact_force.resize(16 * exposed);
+  list_exposed(m, s);
   sum_stiffness(m, s);
   list_corners(m, s);
   list_watched(s);

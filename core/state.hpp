@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/field.hpp"
+#include "core/contact/face.hpp"
 
 namespace cdem {
 
@@ -56,6 +56,7 @@ struct EdgeState {
 
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
+  Column<ExposedRow> exposed;                // what follows from them, see list_exposed
   Real horizon = 0, built_time = 0;          // how long the lists look ahead, and from when  [s]
   Real skin_least = 0.001;  // of a node, in parts of L; follows how long the lists last
   bool strayed = false;     // a vertex left its foreseen path: the lists are old
@@ -63,11 +64,13 @@ struct SearchState {
   Column<Index> faces_corners;                               // [5][pair] vertex, corners of a face
   Column<Real> faces_room;                                   // [5][pair] see MarkNearFaces
   Column<Flag> faces_near;  // [pair] may they be in contact in this step?
+  Column<Flag> may_begin;   // [candidate] see SiftTargetFaces; made in every step
   Column<Index> edge_candidate_first, edge_candidate;  // by face
   Column<Index> edge_candidate_edge, edge_candidate_sides, edge_candidate_edges;
   Column<Index> edges_ends;            // [4][pair] nodes of both
-  Column<Real> edges_room;             // [3][pair] see MarkNearEdges
+  Column<Real> edges_bounds;           // [5][pair] see MarkNearEdges
   Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
+  Column<Flag> edge_touch;             // [candidate] see TouchTargetEdges; made in every step
   Column<Index> source_first, source;  // faces whose contacts may act on a face
   Column<Flag> acting;                 // [source] do they in this step? All 0 between steps
   Column<Index> across;                // side of an exposed face -> face beyond it, or -1
@@ -124,8 +127,8 @@ void describe_search(S& search, Visit&& field) {
         "which sides, which ends shared");
   field("search.edge_candidate_edges", search.edge_candidate_edges, "pair of edges they are of");
   field("search.edges_ends", search.edges_ends, "ends of pairs of edges that may touch");
-  field("search.edges_room", search.edges_room,
-        "depth at which they may begin to, indentation [m]");
+  field("search.edges_bounds", search.edges_bounds,
+        "how far apart they may begin to, see MarkNearEdges [m]");
   field("search.edges_near", search.edges_near, "1: they may begin to touch in this step");
   field("search.across", search.across, "face beyond a side of an exposed face, or -1");
   field("search.ring_first", search.ring_first, "start of a point's ring");

@@ -65,14 +65,13 @@ void update_bonds(const Model& m, State& s, Queue q, bool sampled) {  // contact
 }
 
 void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact/target_face.hpp
+  const Index count = Index(s.search.exposed_face.size());
+  s.search.may_begin.resize(s.search.candidate.size());
+  const FaceSearch search = face_search(m, s);
   mark_near_faces(m, s, q);
-  launch_one(q, 4 * Index(s.search.exposed_face.size()),
-             FindTargetFaces{face_columns(m, s),
-                             {s.face_geometry.data()},
-                             s.search.exposed_face.data(),
-                             candidate_columns(s),
-                             m.rules,
-                             spring_columns(s)});
+  launch_picked(q, count, KeepTargetFaces{search});
+  launch_picked(q, count, SiftTargetFaces{search});
+  launch_one(q, 4 * count, FindTargetFaces{search});
 }
 
 void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, contact/target_edge.hpp
@@ -80,16 +79,12 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   mark_near_edges(m, s, q);
   begin_edges(s);
   const Index count = Index(s.search.exposed_face.size());
+  s.search.edge_touch.resize(s.search.edge_candidate.size());
+  const TouchTargetEdges touch = edge_search(m, s);
+  launch_picked(q, count, touch);
   do {
     launch_one(q, count,
-               FindTargetEdges{face_columns(m, s),
-                               {s.face_geometry.data()},
-                               s.search.exposed_face.data(),
-                               edge_candidate_columns(s),
-                               m.rules,
-                               edges_before(s),
-                               s.edges.lost.data(),
-                               found_edges(s)});
+               FindTargetEdges{touch.candidates, touch, s.edges.lost.data(), found_edges(s)});
     finish(q);
   } while (!make_room_for_edges(s));
   launch_one(q, count,
@@ -100,10 +95,10 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
 void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, contact/force.hpp
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
-  const FaceGeometry geometry{s.face_geometry.data()};
-  launch_one(q, 4 * count,
-             UpdateSpringForces{face_columns(m, s), geometry, exposed, m.rules, contact_laws(m, s),
-                                spring_columns(s)});
+  const FaceGeometry geometry = face_geometry(s);
+  launch_picked(q, count,
+                UpdateSpringForces{face_columns(m, s), geometry, m.rules, contact_laws(m, s),
+                                   spring_columns(s)});
   launch(q, Index(s.edges.contact.size() / 4),
          UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m, s),
                           s.edges.old_state.data(), edge_columns(s)});
@@ -223,9 +218,9 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   update_face_geometry(m, s, q, false);  // contact/face.hpp
   update_bonds(m, s, q, sampled || s.all_awake);
   watch.lap(Phase::contact);
-  if (m.check_search) s.missed += count_missed_contacts(m, s);
   find_target_faces(m, s, q);
   find_target_edges(m, s, q);
+  if (m.check_search) s.missed += count_missed_contacts(m, s);
   watch.lap(Phase::search);
   update_contact_forces(m, s, q);
   watch.lap(Phase::contact);

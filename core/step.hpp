@@ -83,9 +83,11 @@ void stop_motion(const Model& model, State& state);
 // refresh.cpp
 bool refresh_is_due(const Model& model, State& state);
 void refresh_contacts(Model const& model, State& state);
+/// Make the table of exposed faces anew, after a refresh or a restart.
+void list_exposed(const Model& model, State& state);
 /// Set the stress-free gap of springs that overlap at the start; returns the deepest overlap [m].
 Real adopt_overlaps(const Model& model, State& state, Index& count, Index& face);
-/// Compare the contacts found through the candidate lists with an all-pairs search.
+/// Compare the contacts that the step has just found with an all-pairs search.
 Index count_missed_contacts(const Model& model, State& state);
 
 }  // namespace cdem

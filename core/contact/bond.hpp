@@ -152,9 +152,9 @@ struct PairColumns {
   InTable live;         // [1][pair] 1 until the pair is released to the contact search; 2 while it
                         // is an open hinge: points hold, but the search has its faces
   InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
-  InLookup cohesion, tensile_strength, tan_friction;  // by interface
-  InOutTable bond, slip1, slip2;                      // [point][pair]
-  InOutTable broken_tension, broken_shear;            // [1][pair] springs broken so far, by cause
+  const Real *cohesion, *tensile_strength, *tan_friction;  // by interface
+  InOutTable bond, slip1, slip2;                           // [point][pair]
+  InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
   InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
   InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
   InOutTable stored, fracture, friction;  // [1][pair]  [J]
@@ -220,8 +220,8 @@ struct ConformingBonds {
     const auto interface = pairs.interface.at(0, p);
     const T area = pairs.area.at(0, p) / T(Real(count));
     return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
-            area * pairs.tensile_strength.at(interface), area * pairs.cohesion.at(interface),
-            pairs.tan_friction.at(interface)};
+            area * look_up(pairs.tensile_strength, interface),
+            area * look_up(pairs.cohesion, interface), look_up(pairs.tan_friction, interface)};
   }
 
  private:
@@ -359,8 +359,8 @@ struct OverlapBonds {
   CDEM_HD BondLaw<Real> law_of(One p, Real area) const {
     const Index interface = pairs.interface.at(0, p);
     return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
-            area * pairs.tensile_strength.at(interface), area * pairs.cohesion.at(interface),
-            pairs.tan_friction.at(interface)};
+            area * look_up(pairs.tensile_strength, interface),
+            area * look_up(pairs.cohesion, interface), look_up(pairs.tan_friction, interface)};
   }
 };
 

@@ -11,100 +11,121 @@ struct Frame {
   Vec3<T> n, t1, t2;
 };
 
-/// A face at one instant. A triangle has count = 3; its fourth vertex repeats the third, so that
-/// the normal is the cross product of the diagonals for both kinds.
-struct FaceShape {
-  Vec3<Real> x[4];
-  Index count;
+/// Is a point's projection outside a side of a face by more than `room` [m]? Eq. 7-8 with a length
+/// instead of a sign, without a root.
+template <class T>
+CDEM_HD inline Truth<T> outside(const Vec3<T>& start, const Vec3<T>& side, const Vec3<T>& n,
+                                const Vec3<T>& point, const T& room) {
+  const T out = -dot(cross(n, side), point - start);  // times the length of the side
+  return (out > T(0.0)) & (out * out > room * room * dot(side, side));
+}
 
-  CDEM_HD Vec3<Real> center() const {
-    Vec3<Real> sum = x[0] + x[1] + x[2];
-    if (count == 4) sum = sum + x[3];
-    return Real(1.0) / Real(count) * sum;
+/// A face at one instant, or one a lane. The fourth vertex of a triangle repeats its third, so that
+/// the normal is the cross product of the diagonals for both kinds, and both have four sides.
+template <class T>
+struct FaceShape {
+  Vec3<T> x[4];
+  Truth<T> quad;
+
+  CDEM_HD Index count() const { return quad ? 4 : 3; }
+  CDEM_HD Vec3<T> center() const {
+    const Vec3<T> sum = x[0] + x[1] + x[2];
+    return select(quad, T(1.0 / 4.0) * (sum + x[3]), T(1.0 / 3.0) * sum);
   }
-  CDEM_HD Vec3<Real> normal() const { return unit(cross(x[2] - x[0], x[3] - x[1])); }
-  CDEM_HD Frame<Real> frame() const { return frame(normal()); }
-  CDEM_HD Frame<Real> frame(const Vec3<Real>& n) const {
-    const Vec3<Real> side = x[1] - x[0];
-    const Vec3<Real> t1 = unit(side - dot(n, side) * n);
+  CDEM_HD Vec3<T> normal() const { return unit(cross(x[2] - x[0], x[3] - x[1])); }
+  CDEM_HD Frame<T> frame() const { return frame(normal()); }
+  CDEM_HD Frame<T> frame(const Vec3<T>& n) const {
+    const Vec3<T> side = x[1] - x[0];
+    const Vec3<T> t1 = unit(side - dot(n, side) * n);
     return {n, t1, cross(n, t1)};
   }
-  /// Is a point's projection inside, or outside by no more than `room` [m]? Eq. 7-8 with a length
-  /// instead of a sign; most points are inside, which takes no root to see.
-  CDEM_HD bool inside(const Vec3<Real>& point, const Vec3<Real>& n, Real room) const {
-    for (Index k = 0; k < count; ++k) {
-      const Vec3<Real> a = x[k], side = x[k + 1 == count ? 0 : k + 1] - a;
-      const Real beyond = -dot(cross(n, side), point - a);  // times the length of the side
-      if (beyond > 0 && beyond * beyond > room * room * dot(side, side)) return false;
-    }
-    return true;
+  /// Is a point's projection inside, or outside by no more than `room` [m]?
+  CDEM_HD Truth<T> inside(const Vec3<T>& point, const Vec3<T>& n, const T& room) const {
+    return !(
+        outside(x[0], x[1] - x[0], n, point, room) | outside(x[1], x[2] - x[1], n, point, room) |
+        outside(x[2], x[3] - x[2], n, point, room) | outside(x[3], x[0] - x[3], n, point, room));
   }
 };
 
 /// A point seen from a face: weights on the face's vertices and distance along the normal, so that
 /// point = sum_j weight_j x_j + gap n.
+template <class T>
 struct Projection {
-  Real weight[4];
-  Real gap;
+  T weight[4];
+  T gap;
 };
 
-CDEM_HD inline Projection project_on_triangle(const FaceShape& f, const Vec3<Real>& point,
-                                              const Vec3<Real>& n) {
-  const Vec3<Real> a = f.x[1] - f.x[0], b = f.x[2] - f.x[0], p = point - f.x[0];
-  const Real twice_area = dot(cross(a, b), n);
-  const Real u = dot(cross(p, b), n) / twice_area;
-  const Real v = dot(cross(a, p), n) / twice_area;
-  return {{1.0 - u - v, u, v, 0.0}, dot(n, p)};
+template <class T>
+CDEM_HD inline Projection<T> project_on_triangle(const FaceShape<T>& f, const Vec3<T>& point,
+                                                 const Vec3<T>& n) {
+  const Vec3<T> a = f.x[1] - f.x[0], b = f.x[2] - f.x[0], p = point - f.x[0];
+  const T twice_area = dot(cross(a, b), n);
+  const T u = dot(cross(p, b), n) / twice_area;
+  const T v = dot(cross(a, p), n) / twice_area;
+  return {{T(1.0) - u - v, u, v, T(0.0)}, dot(n, p)};
 }
 
 /// Newton on the bilinear surface, seen from its first vertex so that round-off does not grow with
 /// the distance from the origin. A parallelogram takes one step, and one that shows it; the error
 /// falls with the square of the step before, so a small step is the last.
-CDEM_HD inline Projection project_on_quad(const FaceShape& f, const Vec3<Real>& point,
-                                          const Vec3<Real>& n) {
+template <class T>
+CDEM_HD inline Projection<T> project_on_quad(const FaceShape<T>& f, const Vec3<T>& point,
+                                             const Vec3<T>& n) {
   constexpr int most_steps = 20;
-  constexpr Real last = 1e-8;
-  const Vec3<Real> p = point - f.x[0], a = f.x[1] - f.x[0], b = f.x[3] - f.x[0];
-  const Vec3<Real> warp = f.x[2] - f.x[3] - a;  // point at u, v: u a + v b + u v warp
-  Real u = 0.5, v = 0.5;
-  for (int step = 0; step < most_steps; ++step) {
-    const Vec3<Real> along_u = a + v * warp, along_v = b + u * warp;
-    const Vec3<Real> miss = p - u * along_u - v * b;
-    const Real per_area = 1.0 / dot(cross(along_u, along_v), n);
-    const Real du = dot(cross(miss, along_v), n) * per_area;
-    const Real dv = dot(cross(along_u, miss), n) * per_area;
-    u = u + du;
-    v = v + dv;
-    if (abs_of(du) + abs_of(dv) < last) break;
+  const T last(1e-8), one(1.0);
+  const Vec3<T> p = point - f.x[0], a = f.x[1] - f.x[0], b = f.x[3] - f.x[0];
+  const Vec3<T> warp = f.x[2] - f.x[3] - a;  // point at u, v: u a + v b + u v warp
+  T u(0.5), v(0.5);
+  Truth<T> goes_on = f.quad;
+  for (int step = 0; step < most_steps && any_of(goes_on); ++step) {
+    const Vec3<T> along_u = a + v * warp, along_v = b + u * warp;
+    const Vec3<T> miss = p - u * along_u - v * b;
+    const T per_area = one / dot(cross(along_u, along_v), n);
+    const T du = dot(cross(miss, along_v), n) * per_area;
+    const T dv = dot(cross(along_u, miss), n) * per_area;
+    u = select(goes_on, u + du, u);
+    v = select(goes_on, v + dv, v);
+    goes_on = goes_on & !(abs_of(du) + abs_of(dv) < last);
   }
-  const Real gap = dot(n, p - u * (a + v * warp) - v * b);
-  return {{(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v}, gap};
+  const T gap = dot(n, p - u * (a + v * warp) - v * b);
+  return {{(one - u) * (one - v), u * (one - v), u * v, (one - u) * v}, gap};
 }
 
-CDEM_HD inline Projection project(const FaceShape& f, const Vec3<Real>& point,
-                                  const Vec3<Real>& n) {
-  return f.count == 4 ? project_on_quad(f, point, n) : project_on_triangle(f, point, n);
+template <class T>
+CDEM_HD inline Projection<T> project(const FaceShape<T>& f, const Vec3<T>& point,
+                                     const Vec3<T>& n) {
+  if (!any_of(f.quad)) return project_on_triangle(f, point, n);
+  const Projection<T> on_quad = project_on_quad(f, point, n);
+  if (!any_of(!f.quad)) return on_quad;
+  Projection<T> p = project_on_triangle(f, point, n);
+  for (Index j = 0; j < 4; ++j) p.weight[j] = select(f.quad, on_quad.weight[j], p.weight[j]);
+  p.gap = select(f.quad, on_quad.gap, p.gap);
+  return p;
 }
+
+/// Vertices of a face, or of one a lane; the fourth of a triangle repeats its third.
+template <class Ids>
+struct FaceVertices {
+  Ids node[4];
+  CDEM_HD auto quad() const { return differ(node[2], node[3]); }
+};
 
 /// The exterior faces and edges of all blocks: what never changes, and the nodes' motion.
 struct FaceColumns {
   InMotion nodes;
-  const Index* face_nodes;     // [face][4], the fourth is -1 for a triangle
-  const Index* face_edges;     // [face][4]: the edge from vertex k to k + 1
-  const Index* face_group;     // [face]
-  const Real* face_length;     // L: mean distance from the centre to the vertices, Eq. 3  [m]
-  const Real* face_reach;      // a little more than the farthest vertex from the centre  [m]
-  const Real* face_area;       // [m2]
-  const Real* face_height;     // of the element behind  [m]
-  const Real* face_stiffness;  // modulus of the element behind over its height  [Pa/m]
-  const Index* edge_nodes;     // [edge][2]
-  const Index* beyond;         // [exposed][4]: face on the other side of side k, or -1
-  const Index* ring_first;     // [label + 1]
-  const Index* ring;           // other ends of the edges that leave a point
-  const Index* node_glue;      // label shared by nodes that intact bonds hold together
-  const Index* node_place;     // label shared by nodes that began at the same place
-  const Index* face_exposed;   // [face]: place in the list of exposed faces, or -1
-  Real dt;                     // [s]
+  const Index* face_nodes;    // [face][4], the fourth is -1 for a triangle
+  const Index* face_edges;    // [face][4]: the edge from vertex k to k + 1
+  const Real* face_length;    // L: mean distance from the centre to the vertices, Eq. 3  [m]
+  const Real* face_reach;     // a little more than the farthest vertex from the centre  [m]
+  const Real* face_height;    // of the element behind  [m]
+  const Index* edge_nodes;    // [edge][2]
+  const Index* beyond;        // [exposed][4]: face on the other side of side k, or -1
+  const Index* ring_first;    // [label + 1]
+  const Index* ring;          // other ends of the edges that leave a point
+  const Index* node_glue;     // label shared by nodes that intact bonds hold together
+  const Index* node_place;    // label shared by nodes that began at the same place
+  const Index* face_exposed;  // [face]: place in the list of exposed faces, or -1
+  Real dt;                    // [s]
 
   CDEM_HD Index vertex_count(Index face) const { return face_nodes[4 * face + 3] < 0 ? 3 : 4; }
   CDEM_HD Index vertex(Index face, Index k) const { return face_nodes[4 * face + k]; }
@@ -115,76 +136,133 @@ struct FaceColumns {
       if (face_edges[4 * face + k] == edge) return k;
     return 3;
   }
-  /// Characteristic area of a contact: a vertex's share of its face (Eq. 4-5), but not more than
-  /// that of the face it meets; else a large face gives a small block a spring that no step can
-  /// follow.
-  CDEM_HD Real contact_area(Index face_m, Index face_t) const {
-    return min_of(face_area[face_m] / Real(vertex_count(face_m)),
-                  face_area[face_t] / Real(vertex_count(face_t)));
+  template <class Ids>
+  CDEM_HD FaceVertices<Ids> vertices(const Ids& face) const {
+    const auto at = [&](Index k) {
+      return indices_of([&](Index f) { return face_nodes[4 * f + k]; }, face);
+    };
+    const auto last = [&](Index f) {
+      return face_nodes[4 * f + 3] < 0 ? face_nodes[4 * f + 2] : face_nodes[4 * f + 3];
+    };
+    return {{at(0), at(1), at(2), indices_of(last, face)}};
   }
-  CDEM_HD FaceShape shape(Index face) const {
-    FaceShape f;
-    f.count = vertex_count(face);
-    for (Index k = 0; k < f.count; ++k) f.x[k] = nodes.position(vertex(face, k));
-    if (f.count == 3) f.x[3] = f.x[2];
-    return f;
+  template <class Ids>
+  CDEM_HD auto shape(const FaceVertices<Ids>& of) const {
+    return FaceShape<decltype(nodes.position(of.node[0]).x)>{
+        {nodes.position(of.node[0]), nodes.position(of.node[1]), nodes.position(of.node[2]),
+         nodes.position(of.node[3])},
+        of.quad()};
   }
+  CDEM_HD FaceShape<Real> shape(Index face) const { return shape(vertices(face)); }
   /// The face on the other side of side k of an exposed face, or -1: of the same block or of one
   /// that is bonded to it there.
   CDEM_HD Index across(Index exposed, Index k) const { return beyond[4 * exposed + k]; }
-  /// Where a node was one step ago.
-  CDEM_HD Vec3<Real> old_position(Index node) const {
-    return nodes.position(node) - dt * nodes.velocity(node);
-  }
-  CDEM_HD FaceShape old_shape(Index face) const {
-    FaceShape f;
-    f.count = vertex_count(face);
-    for (Index k = 0; k < f.count; ++k) f.x[k] = old_position(vertex(face, k));
-    if (f.count == 3) f.x[3] = f.x[2];
-    return f;
-  }
+};
+
+/// What the search and the forces ask of an exposed face and never changes between two refreshes:
+/// one cache line.
+struct ExposedRow {
+  Index corner[4];  // nodes; the fourth of a triangle repeats its third
+  Index beside[4];  // exposed face across side k, or -1
+  Real reach;       // a little more than the farthest vertex from the centre  [m]
+  Real area;        // a vertex's share of the face, Eq. 4-5  [m2]
+  Real stiffness;   // modulus of the element behind over its height  [Pa/m]
+  Index group;
+  Index unused = 0;
+
+  CDEM_HD Index count() const { return corner[3] == corner[2] ? 3 : 4; }
+  /// The vertex at the end of side k.
+  CDEM_HD Index end(Index k) const { return corner[k + 1 == count() ? 0 : k + 1]; }
 };
 
 /// Centre, sharp sides, normal and size of exposed faces, one 64-byte row each: centre, sharp,
-/// normal, L (negative for quadrilaterals).
+/// normal, L (negative for quadrilaterals); and the rows of what does not move.
 struct FaceGeometry {
   const Real* rows;
-  CDEM_HD Vec3<Real> center(Index exposed) const {
-    const Real* r = rows + std::size_t(exposed) * 8;
-    return {r[0], r[1], r[2]};
+  const ExposedRow* table;
+
+  /// Vertices of exposed faces.
+  template <class Ids>
+  CDEM_HD FaceVertices<Ids> vertices(const Ids& exposed) const {
+    const auto at = [&](Index k) {
+      return indices_of([&](Index x) { return table[x].corner[k]; }, exposed);
+    };
+    return {{at(0), at(1), at(2), at(3)}};
+  }
+  /// Characteristic area of a contact: a vertex's share of its face (Eq. 4-5), but not more than
+  /// that of the face it meets; else a large face gives a small block a spring that no step can
+  /// follow.
+  CDEM_HD Real contact_area(Index m, Index t) const { return min_of(table[m].area, table[t].area); }
+  /// Stiffness of the stiffer of two faces' elements  [Pa/m].
+  CDEM_HD Real stiffer(Index m, Index t) const {
+    return max_of(table[m].stiffness, table[t].stiffness);
+  }
+  template <class Ids>
+  CDEM_HD auto center(const Ids& exposed) const {
+    return InRows{rows}.at(exposed, 0).vector();
+  }
+  /// A row as a whole.
+  template <class T>
+  struct Face {
+    Vec3<T> center, normal;
+    T length;
+  };
+  template <class Ids>
+  CDEM_HD auto row(const Ids& exposed) const {
+    const auto first = InRows{rows}.at(exposed, 0), last = InRows{rows}.at(exposed, 4);
+    return Face<decltype(last.w)>{first.vector(), last.vector(), last.w};
   }
   /// Is side k an edge, or does the block's surface go on flat beyond it?
   CDEM_HD bool sharp(Index exposed, Index k) const {
     return Index(rows[std::size_t(exposed) * 8 + 3]) & (1 << k);
   }
-  CDEM_HD Vec3<Real> normal(Index exposed) const {
-    const Real* r = rows + std::size_t(exposed) * 8 + 4;
-    return {r[0], r[1], r[2]};
+  template <class Ids>
+  CDEM_HD auto normal(const Ids& exposed) const {
+    return InRows{rows}.at(exposed, 4).vector();
   }
   CDEM_HD Real length(Index exposed) const { return abs_of(rows[std::size_t(exposed) * 8 + 7]); }
   CDEM_HD bool is_triangle(Index exposed) const { return rows[std::size_t(exposed) * 8 + 7] > 0; }
 };
 
-/// Normal of any face, from its row if it is exposed.
-CDEM_HD inline Vec3<Real> normal_of(const FaceColumns& faces, const FaceGeometry& geometry,
-                                    Index face) {
-  const Index exposed = faces.face_exposed[face];
-  return exposed >= 0 ? geometry.normal(exposed) : faces.shape(face).normal();
+/// Normal of the face across side k of an exposed face, from its row if it is exposed; 0 if there
+/// is none.
+CDEM_HD inline Vec3<Real> normal_across(const FaceColumns& faces, const FaceGeometry& geometry,
+                                        Index exposed, Index k) {
+  const Index beside = geometry.table[exposed].beside[k];
+  if (beside >= 0) return geometry.normal(beside);
+  const Index across = faces.across(exposed, k);
+  return across >= 0 ? faces.shape(across).normal() : Vec3<Real>{0.0, 0.0, 0.0};
 }
+#if !defined(__CUDACC__)
+inline Vec3<Pack> normal_across(const FaceColumns& faces, const FaceGeometry& geometry,
+                                const IndexPack& exposed, const IndexPack& k) {
+  Real hidden[lanes][4];  // of faces that have no row
+  const Real* row[lanes];
+  for (Index j = 0; j < lanes; ++j) {
+    const Index beside = geometry.table[exposed.id[j]].beside[k.id[j]];
+    row[j] = beside >= 0 ? geometry.rows + std::size_t(beside) * 8 + 4 : hidden[j];
+    if (beside >= 0) continue;
+    const Vec3<Real> n = normal_across(faces, geometry, exposed.id[j], k.id[j]);
+    hidden[j][0] = n.x, hidden[j][1] = n.y, hidden[j][2] = n.z, hidden[j][3] = 0;
+  }
+  return load_rows([&](Index j) { return row[j]; });
+}
+#endif
 
 /// Renew centre and normal of every exposed face.
 struct UpdateFaceGeometry {
   FaceColumns faces;
   const Index* exposed_face;
+  const ExposedRow* table;
   Real* rows;
 
   CDEM_HD void operator()(One i) const {
-    const FaceShape f = faces.shape(exposed_face[i.i]);
+    const FaceShape<Real> f = faces.shape(FaceGeometry{rows, table}.vertices(i.i));
     const Vec3<Real> c = f.center(), n = f.normal();
     Real* r = rows + std::size_t(i.i) * 8;
     r[0] = c.x, r[1] = c.y, r[2] = c.z;
     r[4] = n.x, r[5] = n.y, r[6] = n.z;
-    r[7] = (f.count == 3 ? 1 : -1) * faces.face_length[exposed_face[i.i]];
+    r[7] = (f.quad ? -1 : 1) * faces.face_length[exposed_face[i.i]];
   }
 };
 
@@ -197,21 +275,19 @@ struct MarkSharpSides {
   const Index* exposed_face;
   // faces whose sides nobody may cross need no marks; null: mark all
   const Index *edge_candidate_first, *source_first;
+  const ExposedRow* table;
   Real* rows;
 
   CDEM_HD void operator()(One i) const {
     if (source_first && source_first[i.i] == source_first[i.i + 1] &&
         edge_candidate_first[i.i] == edge_candidate_first[i.i + 1])
       return;
-    const FaceGeometry geometry{rows};
-    const Index face = exposed_face[i.i];
+    const FaceGeometry geometry{rows, table};
     int sharp = 0;
-    for (Index k = 0; k < faces.vertex_count(face); ++k) {
-      const Index across = faces.across(i.i, k);
-      if (across < 0 ||
-          !(dot(geometry.normal(i.i), normal_of(faces, geometry, across)) > coplanar_faces))
+    for (Index k = 0; k < table[i.i].count(); ++k)
+      if (faces.across(i.i, k) < 0 ||
+          !(dot(geometry.normal(i.i), normal_across(faces, geometry, i.i, k)) > coplanar_faces))
         sharp |= 1 << k;
-    }
     rows[std::size_t(i.i) * 8 + 3] = Real(sharp);
   }
 };

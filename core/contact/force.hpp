@@ -14,8 +14,9 @@ struct ContactLaws {
   Real damping_ratio;     // of critical, on the effective mass of the two points
   const Real* node_mass;  // [kg]
 
-  CDEM_HD const Interface& between(Index group_m, Index group_t) const {
-    return interfaces[interface_of[group_m * group_count + group_t]];
+  /// The interface between two exposed faces.
+  CDEM_HD Index between(const FaceGeometry& geometry, Index m, Index t) const {
+    return interface_of[geometry.table[m].group * group_count + geometry.table[t].group];
   }
 };
 
@@ -120,105 +121,155 @@ CDEM_HD inline ContactForce<T> contact_force(T stiffness_n, T stiffness_s, T tan
   return f;
 }
 
-/// What a contact remembers of its force.
-CDEM_HD inline void keep(ContactState& s, const ContactForce<Real>& f) {
-  s.force_n = f.force_n, s.sunk = f.sunk;
-  s.shear1 = f.shear1, s.shear2 = f.shear2;
-  s.energy_n = f.energy_n, s.energy_s = f.energy_s;
-}
-
 /// Force of every semi-spring in contact; slot = 4 * exposed face + vertex.
 struct UpdateSpringForces {
   FaceColumns faces;
   FaceGeometry geometry;
-  const Index* exposed_face;
   SearchRules rules;
   ContactLaws laws;
   SpringColumns springs;
 
-  CDEM_HD void operator()(One slot) const {
-    const Index m = slot.i / 4, k = slot.i % 4, t = springs.target[slot.i];
-    const Index before = springs.target_before[slot.i];
-    if (t < 0) {
-      if (before >= 0) end(slot.i);
-      return;
+  CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
+  /// Slots that are in contact; those that no longer are end here.
+  CDEM_HD bool picks(Index, Index slot) const {
+    const Index t = springs.target[slot], before = springs.target_before[slot];
+    if (before >= 0 && t != before) {
+      if (t < 0)
+        end(slot);
+      else
+        carry_shear(slot, before, t);
     }
-    const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    ContactState s = before >= 0 ? ContactState::at(springs.state, slot.i) : ContactState{};
-    if (before >= 0 && before != t) carry_shear(s, before, face_t);
+    return t >= 0;
+  }
 
-    const FaceShape shape = faces.shape(face_t);
-    const Frame<Real> frame = shape.frame(geometry.normal(t));
-    const Mother mother = mother_point(face_m, k);
-    const Projection foot = project(shape, mother.x, frame.n);
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    using T = Number<I>;
+    const T dt(faces.dt), zero(0.0);
+    const auto& slot = item.id;
+    const auto t = look_up(springs.target, slot), before = look_up(springs.target_before, slot);
+    const auto moves = differ(t, before);  // it begins, or changes its face
+    const auto begins = numbers_of([](Index b) { return b < 0; }, before) > zero;
+    const Four<T> forces = InRows{springs.state}.at(slot, 0);
+    const ContactBefore<T> old{select(begins, zero, forces.x), select(begins, zero, forces.y),
+                               select(begins, zero, forces.z), select(begins, zero, forces.w)};
+    const T free_before = select(begins, zero, InRows{springs.state}.at(slot, 4).x);
 
-    const FaceShape old_shape = faces.old_shape(face_t);
-    const Frame<Real> old = old_shape.frame();
-    Vec3<Real> apart = mother.x_old, rate = mother.v;
-    Real flex = mother.flex;
-    for (Index j = 0; j < shape.count; ++j) {
-      const Index node = faces.vertex(face_t, j);
+    const auto corners = geometry.vertices(t);
+    const FaceShape<T> shape = faces.shape(corners);
+    const Frame<T> frame = shape.frame(geometry.normal(t));
+    const Point<T> mother = mother_point(item.row, slot);
+    const Projection<T> foot = project(shape, mother.x, frame.n);
+
+    // where the target was one step ago
+    FaceShape<T> old_shape = shape;
+    Vec3<T> velocity[4];
+    for (Index j = 0; j < 4; ++j) {
+      velocity[j] = faces.nodes.velocity(corners.node[j]);
+      old_shape.x[j] = shape.x[j] - dt * velocity[j];
+    }
+    const Frame<T> old_frame = old_shape.frame();
+    Vec3<T> apart = mother.x_old, rate = mother.v;
+    T flex = mother.flex;
+    for (Index j = 0; j < 4; ++j) {
       apart = apart - foot.weight[j] * old_shape.x[j];
-      rate = rate - foot.weight[j] * faces.nodes.velocity(node);
-      flex += foot.weight[j] * foot.weight[j] / laws.node_mass[node];
+      rate = rate - foot.weight[j] * velocity[j];
+      flex += foot.weight[j] * foot.weight[j] / look_up(laws.node_mass, corners.node[j]);
     }
-    const Interface& law = laws.between(faces.face_group[face_m], faces.face_group[face_t]);
-    const Real stiffer = max_of(faces.face_stiffness[face_m], faces.face_stiffness[face_t]);
-    const Real area = 0.5 * faces.contact_area(face_m, face_t);
-    const Real kn = area * law.stiffness_n(stiffer), ks = area * law.stiffness_s(stiffer);
-    const Real dashpot = 2.0 * laws.damping_ratio * sqrt_of(kn / flex);
-    const Real gap_rate = dot(frame.n, rate);
-    s.gap_free = before == t ? lifted_gap_free(s.gap_free, foot.gap)
-                             : starting_gap_free(foot.gap, gap_rate, faces.dt, s.sunk,
-                                                 max_of(s.gap_free, 0.0));
-    const Dilation<Real> dilation{min_of(law.tan_dilation, law.tan_friction),
-                                  max_of(law.dilation_most - s.gap_free, 0.0)};
-    ContactForce f = contact_force(kn, ks, law.tan_friction, foot.gap - s.gap_free, gap_rate,
-                                   dashpot, -dot(old.t1, apart), -dot(old.t2, apart),
-                                   {s.force_n, s.sunk, s.shear1, s.shear2}, dilation, faces.dt);
-    s.gap_free += f.rise;
-    if (before >= 0 && before != t) f.dashpot = 0;  // a change of face is no work of the dashpot
-    keep(s, f);
-    s.store(springs.state, slot.i);
-    springs.friction[slot.i] += f.friction;
-    springs.dashpot[slot.i] += f.dashpot;
+    const auto law =
+        indices_of([&](Index a, Index b) { return laws.between(geometry, a, b); }, item.row, t);
+    const auto property = [&](auto of) {
+      return numbers_of([&](Index l) { return of(laws.interfaces[l]); }, law);
+    };
+    const T kn = numbers_of([&](Index l, Index a, Index b) { return stiffness_n(l, a, b); }, law,
+                            item.row, t);
+    const T ks = numbers_of([&](Index l, Index a, Index b) { return stiffness_s(l, a, b); }, law,
+                            item.row, t);
+    const T tan_friction = property([](const Interface& l) { return l.tan_friction; });
+    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / flex);
+    const T gap_rate = dot(frame.n, rate);
+    const T free = select(
+        moves, starting_gap_free(foot.gap, gap_rate, dt, old.sunk, max_of(free_before, zero)),
+        lifted_gap_free(free_before, foot.gap));
+    const Dilation<T> dilation{
+        min_of(property([](const Interface& l) { return l.tan_dilation; }), tan_friction),
+        max_of(property([](const Interface& l) { return l.dilation_most; }) - free, zero)};
+    const ContactForce<T> f =
+        contact_force(kn, ks, tan_friction, foot.gap - free, gap_rate, dashpot,
+                      -dot(old_frame.t1, apart), -dot(old_frame.t2, apart), old, dilation, dt);
+    const T state[8] = {f.force_n,     f.sunk,     f.shear1,   f.shear2,
+                        free + f.rise, f.energy_n, f.energy_s, zero};
+    set_rows(springs.state, slot, state);
+    add_to(springs.friction, slot, f.friction);
+    // a change of face is no work of the dashpot
+    add_to(springs.dashpot, slot, select(moves & !begins, zero, f.dashpot));
 
-    const Vec3<Real> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
+    const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
     // the target takes the force where its line of action meets the face: no couple is left over
-    const Projection meet =
-        f.force_n > 0 ? project(shape, mother.x - (foot.gap / f.force_n) * force, frame.n) : foot;
-    Real* row = springs.reaction + std::size_t(slot.i) * 8;
-    row[0] = force.x, row[1] = force.y, row[2] = force.z;
-    row[3] = f.force_n > 0 ? max_of(kn, ks) : 0.0;
-    for (Index j = 0; j < 4; ++j) row[4 + j] = meet.weight[j];
+    const auto pressed = f.force_n > zero;
+    const T lever = select(pressed, foot.gap / f.force_n, zero);
+    const Projection<T> meet = project(shape, mother.x - lever * force, frame.n);
+    const T reaction[8] = {force.x,
+                           force.y,
+                           force.z,
+                           select(pressed, max_of(kn, ks), zero),
+                           select(pressed, meet.weight[0], foot.weight[0]),
+                           select(pressed, meet.weight[1], foot.weight[1]),
+                           select(pressed, meet.weight[2], foot.weight[2]),
+                           select(pressed, meet.weight[3], foot.weight[3])};
+    set_rows(springs.reaction, slot, reaction);
   }
 
  private:
-  struct Mother {
-    Vec3<Real> x, x_old, v;
-    Real flex;  // of the point under a force: sum w^2 / m  [1/kg]
+  template <class T>
+  struct Point {
+    Vec3<T> x, x_old, v;
+    T flex;  // under a force: sum w^2 / m  [1/kg]
   };
   /// The acting point: the vertex, moved towards the face's centre by the action coefficient.
-  CDEM_HD Mother mother_point(Index face, Index k) const {
-    const Index count = faces.vertex_count(face);
-    const Real shared = rules.action / Real(count);
-    Mother p{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0};
-    for (Index j = 0; j < count; ++j) {
-      const Real w = shared + (j == k ? 1.0 - rules.action : 0.0);
-      if (w == 0) continue;
-      const Index node = faces.vertex(face, j);
-      p.x = p.x + w * faces.nodes.position(node);
-      p.x_old = p.x_old + w * faces.old_position(node);
-      p.v = p.v + w * faces.nodes.velocity(node);
-      p.flex += w * w / laws.node_mass[node];
+  template <class Ids>
+  CDEM_HD auto mother_point(const Ids& m, const Ids& slot) const {
+    using T = decltype(look_up(laws.node_mass, m));
+    const T dt(faces.dt), zero(0.0);
+    Point<T> p{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero};
+    const auto add = [&](const Ids& node, const T& w) {
+      const Vec3<T> x = faces.nodes.position(node), v = faces.nodes.velocity(node);
+      p.x = p.x + w * x;
+      p.x_old = p.x_old + w * (x - dt * v);
+      p.v = p.v + w * v;
+      p.flex += w * w / look_up(laws.node_mass, node);
+    };
+    if (!(rules.action > 0)) {
+      const auto corner = [&](Index x, Index s) { return geometry.table[x].corner[s % 4]; };
+      add(indices_of(corner, m, slot), T(1.0));
+      return p;
     }
+    const FaceVertices<Ids> corners = geometry.vertices(m);
+    for (Index j = 0; j < 4; ++j)
+      add(corners.node[j],
+          numbers_of([&](Index x, Index s) { return share(x, s % 4, j); }, m, slot));
     return p;
+  }
+  /// What the acting point of vertex k takes of vertex j.
+  CDEM_HD Real share(Index m, Index k, Index j) const {
+    const Index count = geometry.table[m].count();
+    if (j >= count) return 0.0;
+    return rules.action / Real(count) + (j == k ? 1.0 - rules.action : 0.0);
+  }
+  /// Half of the contact's: the other block's semi-springs see it too.
+  CDEM_HD Real area(Index m, Index t) const { return 0.5 * geometry.contact_area(m, t); }
+  CDEM_HD Real stiffness_n(Index law, Index m, Index t) const {
+    return area(m, t) * laws.interfaces[law].stiffness_n(geometry.stiffer(m, t));
+  }
+  CDEM_HD Real stiffness_s(Index law, Index m, Index t) const {
+    return area(m, t) * laws.interfaces[law].stiffness_s(geometry.stiffer(m, t));
   }
   /// A contact that changes its face keeps the shear force, turned into the new plane with its
   /// length kept (hand-over).
-  CDEM_HD void carry_shear(ContactState& s, Index before, Index face_t) const {
-    const Frame<Real> from = faces.shape(exposed_face[before]).frame();
-    const Frame<Real> to = faces.shape(face_t).frame();
+  CDEM_HD void carry_shear(Index slot, Index before, Index t) const {
+    ContactState s = ContactState::at(springs.state, slot);
+    const Frame<Real> from = faces.shape(geometry.vertices(before)).frame();
+    const Frame<Real> to = faces.shape(geometry.vertices(t)).frame();
     const Real s1 = s.shear1, s2 = s.shear2;
     const Vec3<Real> shear = s1 * from.t1 + s2 * from.t2;
     const Real a = dot(shear, to.t1), b = dot(shear, to.t2);
@@ -226,6 +277,7 @@ struct UpdateSpringForces {
     const Real scale = in_plane > 0 ? sqrt_of(s1 * s1 + s2 * s2) / in_plane : 0.0;
     s.shear1 = scale * a;
     s.shear2 = scale * b;
+    s.store(springs.state, slot);
   }
   /// A contact that opened forgets its shear force; what that spring held is lost to friction, and
   /// what the normal spring held and did not give back to the dashpot.
@@ -252,7 +304,7 @@ struct UpdateEdgeForces {
   CDEM_HD void operator()(I item) const {
     using T = Number<I>;
     Known<I> k;
-    for_lanes(item, [&](Index lane, Index place) { look_up(k, lane, place); });
+    for_lanes(item, [&](Index lane, Index place) { read(k, lane, place); });
 
     const InMotion& nodes = faces.nodes;
     const T dt(faces.dt), zero(0.0), one(1.0);
@@ -306,26 +358,25 @@ struct UpdateEdgeForces {
     T forward;  // 1 where the target face's side goes the way of the edge, else 0
   };
   template <class I>
-  CDEM_HD void look_up(Known<I>& k, Index lane, Index place) const {
+  CDEM_HD void read(Known<I>& k, Index lane, Index place) const {
     const EdgeContact contact = EdgeContact::at(edges.contact, place);
     const Index m = contact.mother / 4, side = contact.mother % 4;
-    const Index face_m = exposed_face[m], face_t = exposed_face[contact.face];
-    const Index next = side + 1 == faces.vertex_count(face_m) ? 0 : side + 1;
-    lane_of(k.m0, lane) = faces.vertex(face_m, side);
-    lane_of(k.m1, lane) = faces.vertex(face_m, next);
+    lane_of(k.m0, lane) = geometry.table[m].corner[side];
+    lane_of(k.m1, lane) = geometry.table[m].end(side);
     // the frame belongs to the edge, whichever of its faces is the right one just now
     const Index t0 = lane_of(k.t0, lane) = faces.edge_nodes[2 * contact.edge];
     lane_of(k.t1, lane) = faces.edge_nodes[2 * contact.edge + 1];
+    const Index face_t = exposed_face[contact.face];
     lane_of(k.forward, lane) = faces.vertex(face_t, faces.side_on(face_t, contact.edge)) == t0;
     const Vec3<Real> out = geometry.normal(contact.face) - geometry.normal(m);
     lane_of(k.out.x, lane) = out.x;
     lane_of(k.out.y, lane) = out.y;
     lane_of(k.out.z, lane) = out.z;
 
-    const Interface& law = laws.between(faces.face_group[face_m], faces.face_group[face_t]);
-    const Real stiffer = max_of(faces.face_stiffness[face_m], faces.face_stiffness[face_t]);
+    const Interface& law = laws.interfaces[laws.between(geometry, m, contact.face)];
+    const Real stiffer = geometry.stiffer(m, contact.face);
     // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
-    const Real area = faces.contact_area(face_m, face_t);
+    const Real area = geometry.contact_area(m, contact.face);
     lane_of(k.kn, lane) = area * law.stiffness_n(stiffer);
     lane_of(k.ks, lane) = area * law.stiffness_s(stiffer);
     lane_of(k.tan_friction, lane) = law.tan_friction;
@@ -340,9 +391,8 @@ struct UpdateEdgeForces {
   }
   template <class Ids, class T>
   CDEM_HD T flexibility(const Ids& a, const Ids& b, const T& s) const {
-    const InLookup mass{laws.node_mass};
     const T rest = T(1.0) - s;
-    return rest * rest / mass.at(a) + s * s / mass.at(b);
+    return rest * rest / look_up(laws.node_mass, a) + s * s / look_up(laws.node_mass, b);
   }
 };
 

@@ -56,6 +56,7 @@ struct EdgeCandidates {
   const Index* sides;  // SidePair::code
   const Index* edges;  // pair of edges that the sides are of
   const Flag* near;    // [pair of edges] 0: they cannot begin to touch in this step
+  Flag* touch;         // do they? See TouchTargetEdges
 };
 
 /// Side k of the mother and side j of the target. Bit 2 a + b of `shared`: end a of the one and end
@@ -105,9 +106,12 @@ CDEM_HD inline Frame<T> edge_frame(const Vec3<T>& n, const Vec3<T>& along_t) {
 /// indentation and the rate of approach. So what is found in contact does not depend on it.
 struct MarkNearEdges {
   InMotion nodes;
-  InIndices ends;  // [4][pair]: of one edge, and of the other
-  InTable room;    // [3][pair]: depth at which a contact may begin, indentation  [m]; side on
-                   // which one edge must be of the other, along the cross product: 1, -1, 0: either
+  InIndices ends;  // [4][pair]: of one edge, and of the other; if any of them began at the same
+                   // place in the mesh, then the first of both
+  InTable room;    // [5][pair]: depth at which a contact may begin, indentation  [m]; side on
+                 // which one edge must be of the other, along the cross product: 1, -1, 0: either;
+                 // what the indentation takes from the ends of the mother edge at least; distance
+                 // of the first ends at which the edges are still together  [m]
   Real reach_time;  // how far the approach of how long counts as depth  [s]
   Flag* near;
 
@@ -126,14 +130,22 @@ struct MarkNearEdges {
     const Vec3<T> va = nodes.velocity(a0), vb = nodes.velocity(b0);
     const T rate = size(va - vb) + size(nodes.velocity(a1) - va) + size(nodes.velocity(b1) - vb);
     const T depth = room.at(0, p) + T(reach_time) * rate, shift = room.at(1, p);
-    const T off_a = outside(dot(cross(apart, along_b), c), c2);  // times |c|^2 / |along_a|
-    const T off_b = outside(dot(cross(apart, along_a), c), c2);
-    const T deep2 = gap * gap, depth2 = depth * depth * c2;
+    const T deep2 = gap * gap, depth2 = depth * depth * c2, together = room.at(4, p);
     const auto far = (c2 < T(parallel * parallel) * a2 * b2) | (deep2 > depth2) |
                      ((room.at(2, p) * gap < T(0.0)) & (deep2 > T(round_off) * depth2)) |
-                     (off_a * off_a > shift * shift * b2 * c2) |
-                     (off_b * off_b > shift * shift * a2 * c2);
-    set_flags(near, p, !far);
+                     (dot(apart, apart) < together * together);
+    if (!any_of(!far)) return set_flags(near, p, !far);
+    // where the lines cross, from the starts of the edges [m]. An indented edge lies beside the
+    // true one by `shift` at most, so that the crossing with the target moves by shift / sin of the
+    // angle between the two on the target, and by shift * cot on the edge itself.
+    const T long_a = sqrt_of(a2), long_b = sqrt_of(b2), per_c = T(1.0) / sqrt_of(c2);
+    const T on_a = dot(cross(apart, along_b), c) * per_c * per_c * long_a;
+    const T on_b = dot(cross(apart, along_a), c) * per_c * per_c * long_b;
+    const T inset = room.at(3, p) - shift * abs_of(dot(along_a, along_b)) * per_c;
+    const T beside = -shift * long_a * long_b * per_c;
+    set_flags(near, p,
+              !far & ((within(on_a, inset, long_a) & within(on_b, beside, long_b)) |
+                      (within(on_b, inset, long_b) & within(on_a, beside, long_a))));
   }
 
  private:
@@ -142,25 +154,217 @@ struct MarkNearEdges {
   CDEM_HD static T size(const Vec3<T>& v) {
     return abs_of(v.x) + abs_of(v.y) + abs_of(v.z);
   }
-  /// By how much a number lies outside 0..most.
+  /// Does a place on an edge lie at least `from_ends` from both ends?
   template <class T>
-  CDEM_HD static T outside(T number, T most) {
-    return max_of(max_of(-number, number - most), T(0.0));
+  CDEM_HD static auto within(const T& place, const T& from_ends, const T& length) {
+    return !((place < from_ends) | (place > length - from_ends));
   }
 };
 
-/// Find the target edges of every semi-edge of one exposed face.
+/// A side of an exposed face and one of another, or such a pair a lane.
+template <class Ids>
+struct TwoSides {
+  Ids m, t;    // exposed faces
+  Ids sides;   // SidePair::code
+  Ids before;  // place of their contact one step ago, or -1
+};
+
+/// Find which semi-edges touch.
 ///
 /// The indented semi-edge decides which edges it crosses; the true edges give gap and force. Of the
 /// two faces at a target edge the one that opposes the mother face more is the right face (Eq. 10).
 /// Edges between nearly coplanar faces are no edges; the normal must lie in both edges' cones.
-struct FindTargetEdges {
+struct TouchTargetEdges {
   FaceColumns faces;
   FaceGeometry geometry;
-  const Index* exposed_face;
   EdgeCandidates candidates;
   SearchRules rules;
   EdgesBefore held;
+
+  CDEM_HD Range items(Index m) const { return {candidates.first[m], candidates.first[m + 1]}; }
+  /// Sides of edges that are near, and those that were in contact one step ago.
+  CDEM_HD bool picks(Index m, Index c) const {
+    candidates.touch[c] = no_touch;
+    if (held.first[m] == held.first[m + 1]) return candidates.near[candidates.edges[c]];
+    return candidates.near[candidates.edges[c]] || held_place(m, c) >= 0;
+  }
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    const auto touch = test(TwoSides<typename IndexOf<I>::type>{
+        item.row, look_up(candidates.face, item.id), look_up(candidates.sides, item.id),
+        indices_of([&](Index m, Index c) { return held_place(m, c); }, item.row, item.id)});
+    for_lanes(item, [&](Index lane, Index, Index c) {
+      if (holds(touch.sank, lane)) candidates.touch[c] = has_sunk;
+      if (holds(touch.touches, lane)) candidates.touch[c] = touches;
+    });
+  }
+
+  /// Place of the contact that the sides of a candidate had one step ago, or -1.
+  CDEM_HD Index held_place(Index m, Index c) const {
+    return held_place(m, SidePair::of(candidates.sides[c]).k, candidates.edge[c]);
+  }
+  CDEM_HD Index held_place(Index m, Index k, Index edge) const {
+    for (Index c = held.first[m]; c < held.first[m + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(held.contact, c);
+      if (contact.edge == edge && contact.mother == 4 * m + k) return c;
+    }
+    return -1;
+  }
+
+  template <class M>
+  struct Touch {
+    M touches, sank;  // or else: they did, under load, and went too deep
+  };
+  /// Do two sides touch?
+  template <class Ids>
+  CDEM_HD auto test(const TwoSides<Ids>& pair) const {
+    using T = decltype(look_up(faces.face_length, pair.m));
+    using Outcome = Touch<Truth<T>>;
+    const T zero(0.0), one(1.0), alpha(rules.indentation);
+    const auto of_m = geometry.row(pair.m), of_t = geometry.row(pair.t);
+    const Vec3<T> nm = of_m.normal, nt = of_t.normal;
+    const Corners<Ids> at = corners(pair);
+    const Vec3<T> xm = faces.nodes.position(at.m0), xt = faces.nodes.position(at.t0);
+    const Vec3<T> dm = faces.nodes.position(at.m1) - xm, dt = faces.nodes.position(at.t1) - xt;
+    const Vec3<T> p0 = xm + alpha * (of_m.center - xm);
+    const auto goes_on = numbers_of([](Index before) { return before >= 0; }, pair.before) > zero;
+    const T slack = select(goes_on, T(0.5) * alpha, zero);
+    const T length = min_of(abs_of(of_m.length), abs_of(of_t.length));
+    auto may = (dot(nm, nt) < T(-rules.opposing)) & are_sharp<T>(pair) &
+               !far_apart(xm, dm, p0, xt, dt, nt - nm, slack) & !together(pair, at, length);
+    if (!any_of(may)) return Outcome{may, may};
+    may = may & is_right(pair, dot(nm, nt), nm);
+
+    const Vec3<T> n = edge_normal(dm, dt, nt - nm);
+    const Crossing<T> inner = cross_edges(p0, (one - alpha) * dm, xt, dt, n);
+    const auto crosses = [&](const T& place) {
+      return !((place < -slack) | (place > one + slack));
+    };
+    const Crossing<T> edges = cross_edges(xm, dm, xt, dt, n);
+    may = may & crosses(inner.s) & crosses(inner.t) & !(edges.gap > zero) &
+          cones_hold(pair, nm, nt, dm, dt, n);
+    const Vec3<T> rate = velocity_at(at.m0, at.m1, edges.s) - velocity_at(at.t0, at.t1, edges.t);
+    const T approach = T(rules.approach_steps * faces.dt) * abs_of(dot(n, rate));
+    const T limit = select(goes_on, T(rules.depth) * length, T(rules.entry) * length + approach);
+    const auto deep = edges.gap < -limit;
+    const auto loaded = numbers_of(
+        [&](Index before) {
+          return before >= 0 && ContactState::at(held.state, before).force_n > 0;
+        },
+        pair.before);
+    return Outcome{may & !deep, may & deep & (loaded > zero)};
+  }
+
+  static constexpr Flag no_touch = 0, touches = 1, has_sunk = 2;
+
+ private:
+  /// Ends of both sides.
+  template <class Ids>
+  struct Corners {
+    Ids m0, m1, t0, t1;
+  };
+  template <class Ids>
+  CDEM_HD Corners<Ids> corners(const TwoSides<Ids>& pair) const {
+    const auto start = [&](Index x, Index k) { return geometry.table[x].corner[k]; };
+    const auto end = [&](Index x, Index k) { return geometry.table[x].end(k); };
+    const auto m = [&](auto of) {
+      return indices_of([&](Index x, Index code) { return of(x, SidePair::of(code).k); }, pair.m,
+                        pair.sides);
+    };
+    const auto t = [&](auto of) {
+      return indices_of([&](Index x, Index code) { return of(x, SidePair::of(code).j); }, pair.t,
+                        pair.sides);
+    };
+    return {m(start), m(end), t(start), t(end)};
+  }
+  template <class T, class Ids>
+  CDEM_HD auto are_sharp(const TwoSides<Ids>& pair) const {
+    return numbers_of(
+               [&](Index m, Index t, Index code) {
+                 const SidePair sides = SidePair::of(code);
+                 return geometry.sharp(m, sides.k) && geometry.sharp(t, sides.j);
+               },
+               pair.m, pair.t, pair.sides) > T(0.0);
+  }
+  /// Sides that start from one place in the mesh, and are still there, are not edges on each other.
+  template <class T, class Ids>
+  CDEM_HD Truth<T> together(const TwoSides<Ids>& pair, const Corners<Ids>& at,
+                            const T& length) const {
+    const Ids* mother[2] = {&at.m0, &at.m1};
+    const Ids* target[2] = {&at.t0, &at.t1};
+    const T near = T(rules.indentation) * length;
+    Truth<T> found = near < T(0.0);
+    for (Index ends = 0; ends < 4; ++ends) {
+      const auto shared =
+          numbers_of([&](Index code) { return SidePair::of(code).shared >> ends & 1; }, pair.sides);
+      const auto share = shared > T(0.0);
+      if (!any_of(share)) continue;
+      const Vec3<T> d =
+          faces.nodes.position(*mother[ends >> 1]) - faces.nodes.position(*target[ends & 1]);
+      found = found | (share & (dot(d, d) < near * near));
+    }
+    return found;
+  }
+  /// Most pairs are parallel, pass each other far off or have not met yet: see it from the common
+  /// perpendicular, without a root or a division, before all else. `p0` is where the indented side
+  /// starts, `out` leads from the mother face to the target's.
+  template <class T>
+  CDEM_HD Truth<T> far_apart(const Vec3<T>& xm, const Vec3<T>& dm, const Vec3<T>& p0,
+                             const Vec3<T>& xt, const Vec3<T>& dt, const Vec3<T>& out,
+                             const T& slack) const {
+    constexpr Real parallel = MarkNearEdges::parallel;
+    const Vec3<T> c = cross(dm, dt), apart = xt - p0;
+    const T c2 = dot(c, c), one(1.0);
+    const T room = slack + T(1e-9);  // for round-off
+    const T s = dot(cross(apart, dt), c), t = dot(cross(apart, dm), c);
+    const T longest = T(1.0 - rules.indentation) * c2;
+    return (c2 < T(parallel * parallel) * dot(dm, dm) * dot(dt, dt)) |
+           (dot(xt - xm, c) * dot(c, out) < T(0.0)) | (s < -room * c2) | (s > longest + room * c2) |
+           (t < -room * c2) | (t > (one + room) * c2);
+  }
+  template <class Ids, class T>
+  CDEM_HD Vec3<T> velocity_at(const Ids& a, const Ids& b, const T& s) const {
+    const Vec3<T> va = faces.nodes.velocity(a);
+    return va + s * (faces.nodes.velocity(b) - va);
+  }
+  /// -n in the mother edge's normal cone, n in the target edge's: the faces at an edge fall away
+  /// from the contact plane.
+  template <class Ids, class T>
+  CDEM_HD Truth<T> cones_hold(const TwoSides<Ids>& pair, const Vec3<T>& nm, const Vec3<T>& nt,
+                              const Vec3<T>& dm, const Vec3<T>& dt, const Vec3<T>& n) const {
+    const auto k = indices_of([](Index code) { return SidePair::of(code).k; }, pair.sides);
+    const auto j = indices_of([](Index code) { return SidePair::of(code).j; }, pair.sides);
+    const T zero(0.0), slack(rules.cone);
+    // a plane that leaves the edge along `along`, on the side of the face with this normal
+    const auto up = [&](const Vec3<T>& normal, const Vec3<T>& along) {
+      return dot(n, unit(cross(normal, along)));
+    };
+    // 0, then nan, where there is no face across: no comparison holds
+    const Vec3<T> beyond_m = normal_across(faces, geometry, pair.m, k);
+    const Vec3<T> beyond_t = normal_across(faces, geometry, pair.t, j);
+    return !((up(nm, dm) < -slack) | (up(nt, dt) > slack) | (up(beyond_m, -dm) < -slack) |
+             (up(beyond_t, -dt) > slack));
+  }
+  /// Is exposed face t the right face of its side for the mother face: does the one across that
+  /// side oppose it less? `here` is the product of their normals.
+  template <class Ids, class T>
+  CDEM_HD Truth<T> is_right(const TwoSides<Ids>& pair, const T& here, const Vec3<T>& nm) const {
+    const auto other = indices_of(
+        [&](Index x, Index code) {
+          const Index beside = geometry.table[x].beside[SidePair::of(code).j];
+          return beside >= 0 ? beside : x;
+        },
+        pair.t, pair.sides);
+    const auto first = numbers_of([](Index y, Index x) { return x <= y; }, other, pair.t);
+    const T there = dot(nm, geometry.normal(other));
+    return (here < there) | (!(here > there) & (first > T(0.0)));
+  }
+};
+
+/// Collect what touches for one exposed face.
+struct FindTargetEdges {
+  EdgeCandidates candidates;
+  TouchTargetEdges touch;
   Flag* lost;  // [exposed] 1: a loaded contact was lost because it sank too deep
   FoundEdges found;
 
@@ -170,142 +374,17 @@ struct FindTargetEdges {
   CDEM_HD void operator()(One m) const {
     Index used = 0;
     for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c) {
-      const bool near = candidates.near[candidates.edges[c]];
-      if (!near && held.first[m.i] == held.first[m.i + 1]) continue;
-      const SidePair pair = SidePair::of(candidates.sides[c]);
-      const Index edge = candidates.edge[c], old = held_place(m.i, pair.k, edge);
-      if (!near && old < 0) continue;
-      const Index t = candidates.face[c];
-      if (!touches(m.i, t, pair, old >= 0, loaded(old), lost + m.i)) continue;
-      if (used < found.slots)
-        EdgeContact{4 * m.i + pair.k, t, edge, old}.store(found.rows,
-                                                          std::size_t(m.i) * found.slots + used);
+      if (candidates.touch[c] == TouchTargetEdges::no_touch) continue;
+      if (candidates.touch[c] == TouchTargetEdges::has_sunk) {
+        lost[m.i] = 1;
+        continue;
+      }
+      const EdgeContact contact{4 * m.i + SidePair::of(candidates.sides[c]).k, candidates.face[c],
+                                candidates.edge[c], touch.held_place(m.i, c)};
+      if (used < found.slots) contact.store(found.rows, std::size_t(m.i) * found.slots + used);
       ++used;
     }
     found.count[m.i] = used;
-  }
-
-  /// Does a side of exposed face m touch one of exposed face t?
-  CDEM_HD bool touches(Index m, Index target, const SidePair& pair, bool goes_on, bool loaded,
-                       Flag* sank) const {
-    const Index k = pair.k, j = pair.j;
-    if (!geometry.sharp(m, k) || !geometry.sharp(target, j)) return false;
-    const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(target);
-    if (dot(nm, nt) >= -rules.opposing || !is_right(m, target, j)) return false;
-    const Sides p = sides(m, k, target, j);
-    if (pair.shared && together(p, pair.shared)) return false;
-    const Vec3<Real> p0 = p.xm + rules.indentation * (geometry.center(m) - p.xm);
-    const Real slack = goes_on ? 0.5 * rules.indentation : 0.0;
-    if (far_apart(p, p0, nm, nt, slack)) return false;
-
-    const Vec3<Real> n = edge_normal(p.dm, p.dt, nt - nm);
-    const Crossing<Real> inner = cross_edges(p0, (1.0 - rules.indentation) * p.dm, p.xt, p.dt, n);
-    if (inner.s < -slack || inner.s > 1.0 + slack) return false;
-    if (inner.t < -slack || inner.t > 1.0 + slack) return false;
-
-    const Crossing<Real> true_edges = cross_edges(p.xm, p.dm, p.xt, p.dt, n);
-    if (true_edges.gap > 0) return false;
-    const Real approach = rules.approach_steps * faces.dt *
-                          abs_of(dot(n, velocity_at(p.m0, p.m1, true_edges.s) -
-                                            velocity_at(p.t0, p.t1, true_edges.t)));
-    const Real limit = goes_on ? rules.depth * p.length : rules.entry * p.length + approach;
-    const bool in_cones = cones_hold(m, k, target, j, p.dm, p.dt, n);
-    if (true_edges.gap < -limit) {
-      if (goes_on && loaded && in_cones) *sank = 1;
-      return false;
-    }
-    return in_cones;
-  }
-
- private:
-  /// Place of the contact that side k of exposed face m had with an edge one step ago, or -1.
-  CDEM_HD Index held_place(Index m, Index k, Index edge) const {
-    for (Index c = held.first[m]; c < held.first[m + 1]; ++c) {
-      const EdgeContact contact = EdgeContact::at(held.contact, c);
-      if (contact.edge == edge && contact.mother == 4 * m + k) return c;
-    }
-    return -1;
-  }
-  CDEM_HD bool loaded(Index place) const {
-    return place >= 0 && ContactState::at(held.state, place).force_n > 0;
-  }
-  /// A side of the mother and one of the target: nodes, start, vector; L of the smaller face.
-  struct Sides {
-    Index m0, m1, t0, t1;
-    Vec3<Real> xm, dm, xt, dt;
-    Real length;
-  };
-  CDEM_HD Sides sides(Index m, Index k, Index t, Index j) const {
-    const Index face_m = exposed_face[m], face_t = exposed_face[t];
-    Sides p;
-    p.m0 = faces.vertex(face_m, k), p.m1 = faces.vertex(face_m, next(face_m, k));
-    p.t0 = faces.vertex(face_t, j), p.t1 = faces.vertex(face_t, next(face_t, j));
-    p.xm = faces.nodes.position(p.m0), p.xt = faces.nodes.position(p.t0);
-    p.dm = faces.nodes.position(p.m1) - p.xm, p.dt = faces.nodes.position(p.t1) - p.xt;
-    p.length = min_of(faces.face_length[face_m], faces.face_length[face_t]);
-    return p;
-  }
-  /// Sides that start from one place in the mesh, and are still there, are not edges on each other.
-  CDEM_HD bool together(const Sides& p, Index shared) const {
-    const Real near = rules.indentation * p.length;
-    const Index mother[2] = {p.m0, p.m1}, target[2] = {p.t0, p.t1};
-    for (Index pair = 0; pair < 4; ++pair) {
-      if (!(shared >> pair & 1)) continue;
-      const Vec3<Real> d =
-          faces.nodes.position(mother[pair >> 1]) - faces.nodes.position(target[pair & 1]);
-      if (dot(d, d) < near * near) return true;
-    }
-    return false;
-  }
-  /// Most pairs are parallel, pass each other far off or have not met yet: see it from the common
-  /// perpendicular, without a root or a division, before all else. `p0` is where the indented side
-  /// starts.
-  CDEM_HD bool far_apart(const Sides& p, const Vec3<Real>& p0, const Vec3<Real>& nm,
-                         const Vec3<Real>& nt, Real slack) const {
-    constexpr Real parallel = MarkNearEdges::parallel;
-    const Vec3<Real> c = cross(p.dm, p.dt), apart = p.xt - p0;
-    const Real c2 = dot(c, c);
-    if (c2 < parallel * parallel * dot(p.dm, p.dm) * dot(p.dt, p.dt)) return true;
-    if (dot(p.xt - p.xm, c) * dot(c, nt - nm) < 0) return true;
-    const Real room = slack + 1e-9;  // for round-off
-    const Real s = dot(cross(apart, p.dt), c), t = dot(cross(apart, p.dm), c);
-    const Real longest = (1.0 - rules.indentation) * c2;
-    return s < -room * c2 || s > longest + room * c2 || t < -room * c2 || t > (1.0 + room) * c2;
-  }
-  CDEM_HD Index next(Index face, Index k) const {
-    return k + 1 == faces.vertex_count(face) ? 0 : k + 1;
-  }
-  CDEM_HD Vec3<Real> velocity_at(Index a, Index b, Real s) const {
-    const Vec3<Real> va = faces.nodes.velocity(a);
-    return va + s * (faces.nodes.velocity(b) - va);
-  }
-  /// -n in the mother edge's normal cone, n in the target edge's: the faces at an edge fall away
-  /// from the contact plane.
-  CDEM_HD bool cones_hold(Index m, Index k, Index t, Index j, const Vec3<Real>& dm,
-                          const Vec3<Real>& dt, const Vec3<Real>& n) const {
-    const Index across_m = faces.across(m, k), across_t = faces.across(t, j);
-    const Vec3<Real> nm = geometry.normal(m), nt = geometry.normal(t);
-    if (dot(n, unit(cross(nm, dm))) < -rules.cone) return false;
-    if (dot(n, unit(cross(nt, dt))) > rules.cone) return false;
-    if (across_m >= 0) {
-      const Vec3<Real> n2 = normal_of(faces, geometry, across_m);
-      if (dot(n, unit(cross(n2, -dm))) < -rules.cone) return false;
-    }
-    if (across_t >= 0) {
-      const Vec3<Real> n2 = normal_of(faces, geometry, across_t);
-      if (dot(n, unit(cross(n2, -dt))) > rules.cone) return false;
-    }
-    return true;
-  }
-  /// Is exposed face t the right face of its side j for mother face m: does the one across that
-  /// side oppose m less?
-  CDEM_HD bool is_right(Index m, Index t, Index j) const {
-    const Index across = faces.across(t, j);
-    const Index other = across >= 0 ? faces.face_exposed[across] : -1;
-    if (other < 0) return true;
-    const Vec3<Real> nm = geometry.normal(m);
-    const Real here = dot(nm, geometry.normal(t)), there = dot(nm, geometry.normal(other));
-    return here < there || (here == there && exposed_face[t] < across);
   }
 };
 

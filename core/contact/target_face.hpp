@@ -26,15 +26,19 @@ struct Candidates {
   const Index* other;  // exposed face, ascending in a row
   const Index* pair;   // pair of vertex and face
   const Flag* near;    // [pair] 0: they cannot be in contact in this step
+  Flag* may_begin;     // of those that are near, see SiftTargetFaces
 };
 
 /// Some of them.
 struct FaceList {
   const Index* other;
-  const Index* pair;  // null: all are near
+  const Index* pair;  // null: all are to be looked at
   const Flag* near;
+  const Flag* may_begin;  // null: all that are near
   Index count;
-  CDEM_HD bool is_near(Index c) const { return !pair || near[pair[c]]; }
+  CDEM_HD bool takes(Index c) const {
+    return !pair || (near[pair[c]] && (!may_begin || may_begin[c]));
+  }
 };
 
 /// Exposed faces whose semi-springs and semi-edges may act on an exposed face: ragged rows.
@@ -64,6 +68,9 @@ struct ContactState {
 
 /// State of the semi-springs of exposed faces: slot = 4 * exposed face + vertex.
 struct SpringColumns {
+  /// Target of a semi-spring that the step has still to look for.
+  static constexpr Index sought = -2;
+
   Index* target;         // exposed face in contact, or -1
   Index* target_before;  // the same one step ago
   Real* state;           // rows of ContactState
@@ -115,6 +122,165 @@ struct MarkNearFaces {
   }
 };
 
+/// A vertex of an exposed face and a face that it may touch, or one a lane.
+template <class T>
+struct VertexFace {
+  Vec3<T> v, p;             // true vertex; indented point v + alpha (C - v), Eq. 3  [m]
+  Vec3<T> center, normal;   // of the target
+  T length, target_length;  // L: the smaller of both; the target's, < 0 for a quadrilateral  [m]
+  Truth<T> opposes;
+
+  template <class Ids>
+  CDEM_HD static VertexFace at(const FaceColumns& faces, const FaceGeometry& geometry,
+                               const SearchRules& rules, const Ids& m, const Ids& node,
+                               const Ids& t) {
+    const auto of_m = geometry.row(m), of_t = geometry.row(t);
+    VertexFace pair;
+    pair.v = faces.nodes.position(node);
+    pair.p = pair.v + T(rules.indentation) * (of_m.center - pair.v);
+    pair.center = of_t.center;
+    pair.normal = of_t.normal;
+    pair.target_length = of_t.length;
+    pair.length = min_of(abs_of(of_m.length), abs_of(of_t.length));
+    pair.opposes = dot(of_m.normal, of_t.normal) < T(-rules.opposing);
+    return pair;
+  }
+};
+
+/// What the search for target faces looks at.
+struct FaceSearch {
+  FaceColumns faces;
+  FaceGeometry geometry;
+  const Index* exposed_face;
+  Candidates candidates;
+  SearchRules rules;
+  SpringColumns springs;
+};
+
+/// Keep the target of a semi-spring that is in contact, as most go on: see FindTargetFaces. What
+/// takes a closer look is left to it.
+struct KeepTargetFaces : FaceSearch {
+  CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
+  CDEM_HD bool picks(Index, Index slot) const {
+    springs.target_before[slot] = springs.target[slot];
+    return springs.target[slot] >= 0;
+  }
+
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    using T = Number<I>;
+    const auto& slot = item.id;
+    const auto t = look_up(springs.target_before, slot);
+    const auto node = indices_of([&](Index m, Index s) { return geometry.table[m].corner[s % 4]; },
+                                 item.row, slot);
+    const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
+    const auto corners = geometry.vertices(t);
+    const FaceShape<T> shape = faces.shape(corners);
+    const T gap = project(shape, c.v, c.normal).gap;
+    const T gap_free = InRows{springs.state}.at(slot, 4).x, zero(0.0);
+    const T lifted = T(2.0) * max_of(gap_free, zero);
+    const T depth = T(rules.depth) * c.length - min_of(gap_free, zero);
+    const auto glued = [&](Index j) {
+      return differ(look_up(faces.node_glue, corners.node[j]), look_up(faces.node_glue, node));
+    };
+    const auto kept = c.opposes & shape.inside(c.p, c.normal, T(rules.tolerance) * c.length) &
+                      !((gap > lifted) | (gap < -depth)) & glued(0) & glued(1) & glued(2) &
+                      glued(3);
+    for_lanes(item, [&](Index lane, Index, Index id) {
+      if (!holds(kept, lane)) springs.target[id] = SpringColumns::sought;
+    });
+  }
+};
+
+/// Sift the faces that semi-springs without contact may touch: most cannot, for reasons that are
+/// seen in SIMD lanes. Those that may are left to FindTargetFaces; that their tests are the same
+/// but for some room in the depth, nothing found depends on it.
+struct SiftTargetFaces : FaceSearch {
+  CDEM_HD Range items(Index m) const {
+    return {candidates.first[4 * m], candidates.first[4 * m + 4]};
+  }
+  CDEM_HD bool picks(Index, Index c) const { return candidates.near[candidates.pair[c]]; }
+
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    using T = Number<I>;
+    const auto t = look_up(candidates.other, item.id);
+    const auto node =
+        indices_of([&](Index m, Index c) { return geometry.table[m].corner[vertex_of(m, c)]; },
+                   item.row, item.id);
+    const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
+    const T zero(0.0), plane = dot(c.normal, c.v - c.center);
+    const T above = select(c.target_length > zero, zero, T(-0.5) * c.target_length);
+    const T room = T(rules.tolerance) * c.length;
+    const Vec3<T> arm = c.p - c.center;
+    const T up = dot(c.normal, arm),
+            reach = numbers_of([&](Index x) { return geometry.table[x].reach; }, t) + room;
+    const auto may = c.opposes & !(plane > above) & !(plane < T(-rules.depth) * c.length - above) &
+                     (dot(arm, arm) - up * up < reach * reach);
+    if (!any_of(may)) return mark(item, may);
+    const auto corners = geometry.vertices(t);
+    const FaceShape<T> shape = faces.shape(corners);
+    const auto inside = may & shape.inside(c.p, c.normal, room);
+    const auto deep = may & (plane < T(-rules.entry) * c.length);
+    auto begins = inside;
+    if (any_of(inside)) {
+      const T gap = project(shape, c.v, c.normal).gap;
+      const T entry = T(1.000001 * rules.entry) * c.length;  // and room for round-off
+      begins = begins & !(gap > zero);
+      if (any_of(begins & (gap < -entry)))
+        begins = begins & !(gap < -entry - T(1.000001) * approach(c, node, corners));
+    }
+    if (!any_of(deep)) return mark(item, begins);
+    // what lies deeper than a contact may begin must be inside the block
+    mark(item, begins | (deep & !escapes(c, t, plane)));
+  }
+
+ private:
+  template <class I, class M>
+  CDEM_HD void mark(const I& item, const M& may) const {
+    for_lanes(item, [&](Index lane, Index m, Index c) {
+      candidates.may_begin[c] = holds(may, lane);
+      const Index slot = 4 * m + vertex_of(m, c);
+      if (holds(may, lane) && springs.target[slot] < 0)
+        springs.target[slot] = SpringColumns::sought;
+    });
+  }
+  /// The vertex of exposed face m that a candidate is of.
+  CDEM_HD Index vertex_of(Index m, Index c) const {
+    const Index* first = candidates.first + 4 * m;
+    return (c >= first[1]) + (c >= first[2]) + (c >= first[3]);
+  }
+  template <class T, class Ids>
+  CDEM_HD T approach(const VertexFace<T>& c, const Ids& node,
+                     const FaceVertices<Ids>& corners) const {
+    const Vec3<T> v0 = faces.nodes.velocity(corners.node[0]),
+                  v1 = faces.nodes.velocity(corners.node[1]),
+                  v2 = faces.nodes.velocity(corners.node[2]),
+                  v3 = faces.nodes.velocity(corners.node[3]), sum = v0 + v1 + v2;
+    const Vec3<T> mean = select(corners.quad(), T(1.0 / 4.0) * (sum + v3), T(1.0 / 3.0) * sum);
+    return T(rules.approach_steps * faces.dt) *
+           abs_of(dot(c.normal, faces.nodes.velocity(node) - mean));
+  }
+  /// Is the way out of the block shorter through a face beside t? See FindTargetFaces::encloses.
+  /// Faces that are not exposed are left to it.
+  template <class T, class Ids>
+  CDEM_HD Truth<T> escapes(const VertexFace<T>& c, const Ids& t, const T& plane) const {
+    Truth<T> found = plane > plane;
+    for (Index k = 0; k < 4; ++k) {
+      const auto beside = indices_of(
+          [&](Index y) {
+            const Index other = geometry.table[y].beside[k];
+            return other >= 0 ? other : y;
+          },
+          t);
+      const auto row = geometry.row(beside);
+      found = found | ((dot(c.normal, row.center - c.center) < T(0.0)) &
+                       (dot(row.normal, c.v - row.center) > plane));
+    }
+    return found;
+  }
+};
+
 /// Choose the target face of one semi-spring.
 ///
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
@@ -128,26 +294,19 @@ struct MarkNearFaces {
 /// their spring, or beside a rim where an edge that leaves them reaches deeper, in free air. One
 /// that is truly inside a block may begin as deep as a contact is kept, at the nearest face and
 /// whatever its edges do; like all that begins inside it is free of stress there.
-struct FindTargetFaces {
-  FaceColumns faces;
-  FaceGeometry geometry;
-  const Index* exposed_face;
-  Candidates candidates;
-  SearchRules rules;
-  SpringColumns springs;
-
+struct FindTargetFaces : FaceSearch {
   CDEM_HD void operator()(One slot) const {
-    springs.target_before[slot.i] = springs.target[slot.i];
-    const FaceList listed = listed_for(slot.i);
-    bool any = springs.target[slot.i] >= 0;
-    for (Index c = 0; c < listed.count && !any; ++c) any = listed.is_near(c);
-    if (!any) return;
+    if (springs.target[slot.i] != SpringColumns::sought) return;
+    FaceList listed = listed_for(slot.i);
+    if (springs.target_before[slot.i] < 0)
+      listed.may_begin = candidates.may_begin + candidates.first[slot.i];
     springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, listed, springs.lost + slot.i);
   }
 
+  /// The faces near the vertex of a slot.
   CDEM_HD FaceList listed_for(Index slot) const {
     const Index first = candidates.first[slot];
-    return {candidates.other + first, candidates.pair + first, candidates.near,
+    return {candidates.other + first, candidates.pair + first, candidates.near, nullptr,
             candidates.first[slot + 1] - first};
   }
   /// Target of vertex k of exposed face m among others, or none; `lost` is set where a loaded
@@ -155,7 +314,7 @@ struct FindTargetFaces {
   CDEM_HD Index choose(Index m, Index k, const FaceList& others, Flag* lost) const {
     Seeker s = start(m, k, lost);
     for (Index c = 0; c < others.count && !s.kept; ++c) {
-      if (!others.is_near(c)) continue;
+      if (!others.takes(c)) continue;
       const Index t = others.other[c];
       if (!opposes(m, t)) continue;
       const Real near = above(t), length = smaller_length(m, t);
@@ -240,7 +399,7 @@ struct FindTargetFaces {
       const Index exposed = faces.face_exposed[across];
       const Vec3<Real> center =
           exposed >= 0 ? geometry.center(exposed) : faces.shape(across).center();
-      if (plane_gap(center, t) < 0 && dot(normal_of(faces, geometry, across), v - center) > plane)
+      if (plane_gap(center, t) < 0 && dot(normal_across(faces, geometry, t, k), v - center) > plane)
         return false;
     }
     return true;
@@ -262,7 +421,7 @@ struct FindTargetFaces {
   /// Cheap part of the inside test: P lies within reach of the face's centre.
   CDEM_HD bool beside(const Vec3<Real>& p, Index t, Real tolerance) const {
     const Vec3<Real> n = geometry.normal(t), arm = p - geometry.center(t);
-    const Real up = dot(n, arm), reach = faces.face_reach[exposed_face[t]] + tolerance;
+    const Real up = dot(n, arm), reach = geometry.table[t].reach + tolerance;
     return dot(arm, arm) - up * up < reach * reach;
   }
   CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
@@ -271,15 +430,14 @@ struct FindTargetFaces {
   /// Is a point that is not beside face t behind it all the same, between the normals of t and of
   /// the faces that rise beyond its sides, where it is beside none of them? A vertex that is
   /// pressed into a corner from inside comes there.
-  CDEM_HD bool behind_corner(Index t, const FaceShape& f, const Vec3<Real>& v, const Vec3<Real>& p,
-                             const Vec3<Real>& n, Real room) const {
-    for (Index k = 0; k < f.count; ++k) {
-      const Vec3<Real> a = f.x[k], side = f.x[k + 1 == f.count ? 0 : k + 1] - a;
-      const Real beyond = -dot(cross(n, side), p - a);  // times the length of the side
-      if (!(beyond > 0 && beyond * beyond > room * room * dot(side, side))) continue;
+  CDEM_HD bool behind_corner(Index t, const FaceShape<Real>& f, const Vec3<Real>& v,
+                             const Vec3<Real>& p, const Vec3<Real>& n, Real room) const {
+    for (Index k = 0; k < f.count(); ++k) {
+      const Vec3<Real> a = f.x[k], side = f.x[k + 1 == f.count() ? 0 : k + 1] - a;
+      if (!outside(a, side, n, p, room)) continue;
       const Index across = faces.across(t, k);
       if (across < 0) return false;
-      const FaceShape beyond_it = faces.shape(across);
+      const FaceShape<Real> beyond_it = faces.shape(across);
       const Vec3<Real> u = beyond_it.normal();
       const bool rises = dot(n, beyond_it.center() - a) > 0 && !(dot(n, u) > coplanar_faces);
       if (!rises || dot(u, v - a) > 0 || dot(cross(u, side), p - a) < 0) return false;
@@ -291,12 +449,12 @@ struct FindTargetFaces {
                        const Terms& terms) const {
     if (!opposes(m, t)) return none;
     const Vec3<Real> n = geometry.normal(t);
-    const FaceShape f = faces.shape(exposed_face[t]);
+    const FaceShape<Real> f = faces.shape(exposed_face[t]);
     const Real room = rules.tolerance * smaller_length(m, t);
     if (!f.inside(p, n, room) && !(terms.inside && behind_corner(t, f, v, p, n, room))) return none;
     const Real gap = project(f, v, n).gap;
     if (gap > terms.lifted || gap < -terms.limit) return none;
-    for (Index j = 0; j < f.count; ++j)
+    for (Index j = 0; j < f.count(); ++j)
       if (faces.node_glue[faces.vertex(exposed_face[t], j)] == faces.node_glue[node]) return none;
     return terms.inside || deepest(node, v, n) ? gap : none;
   }

@@ -26,12 +26,12 @@ struct LinearElastic {
 
 /// The materials of the model, one entry each; an element holds the index of its own.
 struct MaterialTable {
-  InLookup lambda, mu;  // [Pa]
+  const Real *lambda, *mu;  // [Pa]
 
   template <class Key>
   CDEM_HD auto at(const Key& key) const {
-    auto l = lambda.at(key);
-    return LinearElastic<decltype(l)>{l, mu.at(key)};
+    auto l = look_up(lambda, key);
+    return LinearElastic<decltype(l)>{l, look_up(mu, key)};
   }
 };
 
