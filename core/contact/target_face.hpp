@@ -196,8 +196,12 @@ struct KeepTargetFaces : FaceSearch {
 /// seen in SIMD lanes. Those that may are left to FindTargetFaces; that their tests are the same
 /// but for some room in the depth, nothing found depends on it.
 struct SiftTargetFaces : FaceSearch {
+  /// Nothing where all vertices are in contact, as at rest.
   CDEM_HD Range items(Index m) const {
-    return {candidates.first[4 * m], candidates.first[4 * m + 4]};
+    const Index first = candidates.first[4 * m], *before = springs.target_before + 4 * m;
+    const bool held = before[0] >= 0 && before[1] >= 0 && before[2] >= 0 &&
+                      (before[3] >= 0 || geometry.table[m].count() == 3);
+    return {first, held ? first : candidates.first[4 * m + 4]};
   }
   CDEM_HD bool picks(Index, Index c) const { return candidates.near[candidates.pair[c]]; }
 
