@@ -190,6 +190,15 @@ void list_watched(State& s) {
   s.search.watched.resize(0);
   for (Index i = 0; i < Index(s.search.node_skin.size()); ++i)
     if (s.search.node_skin[i] > 0) s.search.watched.push(i);
+  const Index count = Index(s.search.watched.size());
+  s.search.watch.resize(8 * std::size_t(count));
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index w = 0; w < count; ++w) {
+    const std::size_t i = s.search.watched[w];
+    Real* row = s.search.watch.data() + 8 * std::size_t(w);
+    std::copy_n(s.nodes.built_motion.data() + 8 * i, 8, row);
+    row[3] = s.search.node_skin[i] * s.search.node_skin[i];
+  }
 }
 
 std::vector<ExposedFace> exposed_faces(const Model& m, const State& s) {

@@ -220,9 +220,13 @@ struct InRows {
     const Real* r = rows + std::size_t(row) * 8 + from;
     return {r[0], r[1], r[2], r[3]};
   }
+  CDEM_HD Four<Real> at(One item, Index from) const { return at(item.i, from); }
 #if !defined(__CUDACC__)
   Four<Pack> at(const IndexPack& row, Index from) const {
     return load_fours([&](Index j) { return rows + std::size_t(row.id[j]) * 8 + from; });
+  }
+  Four<Pack> at(Lane item, Index from) const {
+    return load_fours([&](Index j) { return rows + std::size_t(item.i + j) * 8 + from; });
   }
 #endif
 };

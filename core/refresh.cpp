@@ -255,6 +255,32 @@ void sum_stiffness(const Model& m, State& s) {
   }
 }
 
+namespace {
+
+/// Has any watched node left its foreseen way by more than its skin?
+bool any_strayed(const State& s) {
+  const InMotion nodes{s.nodes.motion.data()};
+  const InRows rows{s.search.watch.data()};
+  const Index count = Index(s.search.watched.size()), whole = count - count % lanes;
+  const InIndices watched{s.search.watched.data(), count};
+  // beyond the horizon the lists take every vertex to stand still: what rests needs no new ones
+  const Real after = std::min(s.time - s.search.built_time, s.search.horizon);
+  const auto strayed = [&](auto item) {
+    using T = Number<decltype(item)>;
+    const Four<T> then = rows.at(item, 0), way = rows.at(item, 4);
+    const Vec3<T> now = nodes.position(watched.at(0, item));
+    const Vec3<T> off = now - then.vector() - T(after) * way.vector();
+    return any_of(dot(off, off) > then.w);
+  };
+  bool found = false;
+#pragma omp parallel for schedule(static) reduction(|| : found) if (count >= worth_threads)
+  for (Index w = 0; w < whole; w += lanes) found = strayed(Lane{w}) || found;
+  for (Index w = whole; w < count; ++w) found = strayed(One{w}) || found;
+  return found;
+}
+
+}  // namespace
+
 bool refresh_is_due(const Model& m, State& s) {
   s.search.strayed = false;
   if (s.built_step < 0) return true;
@@ -262,21 +288,7 @@ bool refresh_is_due(const Model& m, State& s) {
   if (release_is_due(m, m.triangles, s.triangles) || release_is_due(m, m.quads, s.quads) ||
       release_is_due(m, m.overlaps, s.overlaps))
     return true;
-  bool due = false;
-  // beyond the horizon the lists take every vertex to stand still: what rests needs no new ones
-  const Real after = std::min(s.time - s.search.built_time, s.search.horizon);
-  const Index watched = Index(s.search.watched.size());
-#pragma omp parallel for schedule(static) reduction(|| : due) if (watched >= worth_threads)
-  for (Index w = 0; w < watched; ++w) {
-    const Index i = s.search.watched[w];
-    const Real skin = s.search.node_skin[i];
-    const Real* now = s.nodes.motion.data() + std::size_t(i) * 8;
-    const Real* then = s.nodes.built_motion.data() + std::size_t(i) * 8;
-    const Real dx = now[0] - then[0] - after * then[4], dy = now[1] - then[1] - after * then[5],
-               dz = now[2] - then[2] - after * then[6];
-    due = due || dx * dx + dy * dy + dz * dz > skin * skin;
-  }
-  return s.search.strayed = due;
+  return s.search.strayed = any_strayed(s);
 }
 
 void list_exposed(const Model& m, State& s) {

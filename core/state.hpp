@@ -78,6 +78,7 @@ struct SearchState {
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
   Column<Index> watched;                        // the other nodes
+  Column<Real> watch;  // rows of 8 of theirs: position then, skin squared; velocity foreseen
 };
 
 /// What the wall time of steps is counted by.
