@@ -134,7 +134,8 @@ struct PickedLane {
 
 #endif
 
-/// The number type that a kernel computes with for an item type: Real for One, Pack for Lane.
+/// The number type that a kernel computes with for a type of items or indices: Real for One, Pack
+/// for Lane.
 template <class Item>
 struct NumberOf;
 template <>
@@ -145,6 +146,10 @@ template <>
 struct NumberOf<Picked> {
   using type = Real;
 };
+template <>
+struct NumberOf<Index> {
+  using type = Real;
+};
 #if !defined(__CUDACC__)
 template <>
 struct NumberOf<Lane> {
@@ -152,6 +157,10 @@ struct NumberOf<Lane> {
 };
 template <>
 struct NumberOf<PickedLane> {
+  using type = Pack;
+};
+template <>
+struct NumberOf<IndexPack> {
   using type = Pack;
 };
 #endif

@@ -83,8 +83,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   const TouchTargetEdges touch = edge_search(m, s);
   launch_picked(q, count, touch);
   do {
-    launch_one(q, count,
-               FindTargetEdges{touch.candidates, touch, s.edges.lost.data(), found_edges(s)});
+    launch_one(q, count, FindTargetEdges{touch, s.edges.lost.data(), found_edges(s)});
     finish(q);
   } while (!make_room_for_edges(s));
   launch_one(q, count,

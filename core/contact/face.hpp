@@ -116,7 +116,6 @@ struct FaceColumns {
   const Index* face_nodes;    // [face][4], the fourth is -1 for a triangle
   const Index* face_edges;    // [face][4]: the edge from vertex k to k + 1
   const Real* face_length;    // L: mean distance from the centre to the vertices, Eq. 3  [m]
-  const Real* face_reach;     // a little more than the farthest vertex from the centre  [m]
   const Real* face_height;    // of the element behind  [m]
   const Index* edge_nodes;    // [edge][2]
   const Index* beyond;        // [exposed][4]: face on the other side of side k, or -1
@@ -137,23 +136,15 @@ struct FaceColumns {
     return 3;
   }
   template <class Ids>
-  CDEM_HD FaceVertices<Ids> vertices(const Ids& face) const {
-    const auto at = [&](Index k) {
-      return indices_of([&](Index f) { return face_nodes[4 * f + k]; }, face);
-    };
-    const auto last = [&](Index f) {
-      return face_nodes[4 * f + 3] < 0 ? face_nodes[4 * f + 2] : face_nodes[4 * f + 3];
-    };
-    return {{at(0), at(1), at(2), indices_of(last, face)}};
-  }
-  template <class Ids>
   CDEM_HD auto shape(const FaceVertices<Ids>& of) const {
-    return FaceShape<decltype(nodes.position(of.node[0]).x)>{
-        {nodes.position(of.node[0]), nodes.position(of.node[1]), nodes.position(of.node[2]),
-         nodes.position(of.node[3])},
-        of.quad()};
+    return FaceShape<Number<Ids>>{{nodes.position(of.node[0]), nodes.position(of.node[1]),
+                                   nodes.position(of.node[2]), nodes.position(of.node[3])},
+                                  of.quad()};
   }
-  CDEM_HD FaceShape<Real> shape(Index face) const { return shape(vertices(face)); }
+  CDEM_HD FaceShape<Real> shape(Index face) const {
+    const Index* v = face_nodes + 4 * face;
+    return shape(FaceVertices<Index>{{v[0], v[1], v[2], v[3] < 0 ? v[2] : v[3]}});
+  }
   /// The face on the other side of side k of an exposed face, or -1: of the same block or of one
   /// that is bonded to it there.
   CDEM_HD Index across(Index exposed, Index k) const { return beyond[4 * exposed + k]; }
@@ -210,7 +201,7 @@ struct FaceGeometry {
   template <class Ids>
   CDEM_HD auto row(const Ids& exposed) const {
     const auto first = InRows{rows}.at(exposed, 0), last = InRows{rows}.at(exposed, 4);
-    return Face<decltype(last.w)>{first.vector(), last.vector(), last.w};
+    return Face<Number<Ids>>{first.vector(), last.vector(), last.w};
   }
   /// Is side k an edge, or does the block's surface go on flat beyond it?
   CDEM_HD bool sharp(Index exposed, Index k) const {

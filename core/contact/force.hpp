@@ -229,7 +229,7 @@ struct UpdateSpringForces {
   /// The acting point: the vertex, moved towards the face's centre by the action coefficient.
   template <class Ids>
   CDEM_HD auto mother_point(const Ids& m, const Ids& slot) const {
-    using T = decltype(look_up(laws.node_mass, m));
+    using T = Number<Ids>;
     const T dt(faces.dt), zero(0.0);
     Point<T> p{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero};
     const auto add = [&](const Ids& node, const T& w) {

@@ -106,12 +106,12 @@ CDEM_HD inline Frame<T> edge_frame(const Vec3<T>& n, const Vec3<T>& along_t) {
 /// indentation and the rate of approach. So what is found in contact does not depend on it.
 struct MarkNearEdges {
   InMotion nodes;
-  InIndices ends;  // [4][pair]: of one edge, and of the other; if any of them began at the same
-                   // place in the mesh, then the first of both
-  InTable room;    // [5][pair]: depth at which a contact may begin, indentation  [m]; side on
-                 // which one edge must be of the other, along the cross product: 1, -1, 0: either;
-                 // what the indentation takes from the ends of the mother edge at least; distance
-                 // of the first ends at which the edges are still together  [m]
+  InIndices ends;   // [4][pair]: of one edge, and of the other; if any of them began at the same
+                    // place in the mesh, then the first of both
+  InTable room;     // [5][pair]: depth at which a contact may begin; how far the indentation moves
+                    // an edge aside, at most  [m]; side on which one edge must be of the other,
+                    // along the cross product: 1, -1, 0: either; what it takes from the ends of an
+                    // edge, at least; distance of the first ends at which edges are together  [m]
   Real reach_time;  // how far the approach of how long counts as depth  [s]
   Flag* near;
 
@@ -218,7 +218,7 @@ struct TouchTargetEdges {
   /// Do two sides touch?
   template <class Ids>
   CDEM_HD auto test(const TwoSides<Ids>& pair) const {
-    using T = decltype(look_up(faces.face_length, pair.m));
+    using T = Number<Ids>;
     using Outcome = Touch<Truth<T>>;
     const T zero(0.0), one(1.0), alpha(rules.indentation);
     const auto of_m = geometry.row(pair.m), of_t = geometry.row(pair.t);
@@ -363,7 +363,6 @@ struct TouchTargetEdges {
 
 /// Collect what touches for one exposed face.
 struct FindTargetEdges {
-  EdgeCandidates candidates;
   TouchTargetEdges touch;
   Flag* lost;  // [exposed] 1: a loaded contact was lost because it sank too deep
   FoundEdges found;
@@ -372,6 +371,7 @@ struct FindTargetEdges {
   static constexpr Index most_slots = 64;
 
   CDEM_HD void operator()(One m) const {
+    const EdgeCandidates& candidates = touch.candidates;
     Index used = 0;
     for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c) {
       if (candidates.touch[c] == TouchTargetEdges::no_touch) continue;
