@@ -65,7 +65,7 @@ std::vector<Patch> exposed_patches(const Model& model, const State& state,
                                    const std::vector<ExposedFace>& exposed);
 
 /// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
-/// lie between theirs, which is what `fall` tells (see FindTargetEdges::cones_hold).
+/// lie between theirs, which is what `fall` tells (see TouchTargetEdges::cones_hold).
 struct ExposedSide {
   bool sharp = false;  // may be an edge of a contact: its faces are not coplanar
   Vec3<Real> start, along;

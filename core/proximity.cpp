@@ -194,7 +194,7 @@ Vec3<Real> between_segments(const Vec3<Real>& a, const Vec3<Real>& d, const Vec3
 
 /// On which sides of each other two edges may touch before the next refresh, as bits: 1 where the
 /// contact normal is along the cross product of the two, 2 where it is against it. The tests of
-/// FindTargetEdges with room for the motion. `apart` leads from q to p.
+/// TouchTargetEdges with room for the motion. `apart` leads from q to p.
 int crossing_sides(const SearchRules& rules, const ExposedFace& x, const ExposedSide& p,
                    const ExposedFace& y, const ExposedSide& q, const Vec3<Real>& apart) {
   const Vec3<Real> c = cross(p.along, q.along);
@@ -219,7 +219,7 @@ int crossing_sides(const SearchRules& rules, const ExposedFace& x, const Exposed
 }
 
 /// Do ends of the two sides that began at one place stay there until the next refresh? Then
-/// FindTargetEdges takes them for no edges on each other.
+/// TouchTargetEdges takes them for no edges on each other.
 bool stay_together(const Model& m, const State& s, const ExposedFace& x, const ExposedFace& y,
                    const SidePair& pair) {
   if (!pair.shared) return false;

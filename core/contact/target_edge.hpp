@@ -230,8 +230,8 @@ struct TouchTargetEdges {
     const auto goes_on = numbers_of([](Index before) { return before >= 0; }, pair.before) > zero;
     const T slack = select(goes_on, T(0.5) * alpha, zero);
     const T length = min_of(abs_of(of_m.length), abs_of(of_t.length));
-    auto may = (dot(nm, nt) < T(-rules.opposing)) & are_sharp<T>(pair) &
-               !far_apart(xm, dm, p0, xt, dt, nt - nm, slack) & !together(pair, at, length);
+    Truth<T> may = (dot(nm, nt) < T(-rules.opposing)) & are_sharp<T>(pair) &
+                   !far_apart(xm, dm, p0, xt, dt, nt - nm, slack) & !together(pair, at, length);
     if (!any_of(may)) return Outcome{may, may};
     may = may & is_right(pair, dot(nm, nt), nm);
 
@@ -246,13 +246,13 @@ struct TouchTargetEdges {
     const Vec3<T> rate = velocity_at(at.m0, at.m1, edges.s) - velocity_at(at.t0, at.t1, edges.t);
     const T approach = T(rules.approach_steps * faces.dt) * abs_of(dot(n, rate));
     const T limit = select(goes_on, T(rules.depth) * length, T(rules.entry) * length + approach);
-    const auto deep = edges.gap < -limit;
+    const Truth<T> deep = edges.gap < -limit;
     const auto loaded = numbers_of(
         [&](Index before) {
           return before >= 0 && ContactState::at(held.state, before).force_n > 0;
         },
         pair.before);
-    return Outcome{may & !deep, may & deep & (loaded > zero)};
+    return Outcome{Truth<T>(may & !deep), Truth<T>(may & deep & (loaded > zero))};
   }
 
   static constexpr Flag no_touch = 0, touches = 1, has_sunk = 2;
