@@ -37,6 +37,8 @@ Report check_health(const Model& model, const State& state);
 /// Renew centre, normal and sharp sides of every exposed face; those sides only where there are
 /// candidates, unless `all`.
 void update_face_geometry(const Model& model, State& state, Queue queue, bool all);
+/// Do the lists name anything? Without it contacts only end, in the first step with these lists.
+bool may_have_contacts(const State& state);
 /// Mark which pairs of vertex and face may be in contact in this step.
 void mark_near_faces(const Model& model, State& state, Queue queue);
 /// Mark which pairs of edges may begin to touch in this step.

@@ -336,10 +336,13 @@ void refresh_contacts(const Model& m, State& s) {
   ++s.refreshes;
 }
 
+bool may_have_contacts(const State& s) {
+  return s.search.candidate.size() > 0 || s.search.edge_candidate.size() > 0 ||
+         s.built_step == s.step;
+}
+
 void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
-  // without candidates nothing asks for it but contacts that end in the first step with these lists
-  const bool listed = s.search.candidate.size() > 0 || s.search.edge_candidate.size() > 0;
-  if (!all && !listed && s.built_step < s.step) return;
+  if (!all && !may_have_contacts(s)) return;
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
   launch_one(q, count,
@@ -408,6 +411,8 @@ Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
 }
 
 Index count_missed_contacts(const Model& m, State& s) {
+  update_face_geometry(m, s, {}, true);
+  finish({});
   const FindTargetFaces springs{face_search(m, s)};
   const TouchTargetEdges edges = edge_search(m, s);
   const Index count = Index(s.search.exposed_face.size());

@@ -217,11 +217,12 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   update_face_geometry(m, s, q, false);  // contact/face.hpp
   update_bonds(m, s, q, sampled || s.all_awake);
   watch.lap(Phase::contact);
-  find_target_faces(m, s, q);
-  find_target_edges(m, s, q);
+  const bool contacts = may_have_contacts(s);
+  if (contacts) find_target_faces(m, s, q);
+  if (contacts) find_target_edges(m, s, q);
   if (m.check_search) s.missed += count_missed_contacts(m, s);
   watch.lap(Phase::search);
-  update_contact_forces(m, s, q);
+  if (contacts) update_contact_forces(m, s, q);
   watch.lap(Phase::contact);
   update_element_forces(m, s, q);
   watch.lap(Phase::element);
