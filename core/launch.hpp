@@ -137,17 +137,7 @@ struct PickedLane {
 /// The number type that a kernel computes with for a type of items or indices: Real for One, Pack
 /// for Lane.
 template <class Item>
-struct NumberOf;
-template <>
-struct NumberOf<One> {
-  using type = Real;
-};
-template <>
-struct NumberOf<Picked> {
-  using type = Real;
-};
-template <>
-struct NumberOf<Index> {
+struct NumberOf {
   using type = Real;
 };
 #if !defined(__CUDACC__)

@@ -348,11 +348,11 @@ void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
   launch_one(q, count,
              UpdateFaceGeometry{face_columns(m, s), exposed, s.search.exposed.data(),
                                 s.face_geometry.data()});
-  launch_one(q, count,
-             MarkSharpSides{face_columns(m, s), exposed,
-                            all ? nullptr : s.search.edge_candidate_first.data(),
-                            all ? nullptr : s.search.source_first.data(), s.search.exposed.data(),
-                            s.face_geometry.data()});
+  launch_one(
+      q, count,
+      MarkSharpSides{face_columns(m, s), all ? nullptr : s.search.edge_candidate_first.data(),
+                     all ? nullptr : s.search.source_first.data(), s.search.exposed.data(),
+                     s.face_geometry.data()});
 }
 
 void mark_near_faces(const Model&, State& s, Queue q) {

@@ -263,7 +263,6 @@ inline constexpr Real coplanar_faces = 0.999;
 /// Renew which sides of every exposed face are sharp; runs after UpdateFaceGeometry.
 struct MarkSharpSides {
   FaceColumns faces;
-  const Index* exposed_face;
   // faces whose sides nobody may cross need no marks; null: mark all
   const Index *edge_candidate_first, *source_first;
   const ExposedRow* table;
