@@ -251,6 +251,8 @@ std::vector<ExposedSide> exposed_sides(const State& s, const std::vector<Exposed
       // the angle between the faces may change by what both may turn
       const Real angle = std::acos(std::min(1.0, dot(e.normal, beyond.normal)));
       side.sharp = angle + e.turn + beyond.turn > std::acos(coplanar_faces);
+      const Vec3<Real> arm = beyond.center - side.start;
+      side.rises = side.sharp && dot(e.normal, arm) > -(e.turn + beyond.turn) * norm(arm);
     }
   }
   return sides;

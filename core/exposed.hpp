@@ -68,6 +68,7 @@ std::vector<Patch> exposed_patches(const Model& model, const State& state,
 /// lie between theirs, which is what `fall` tells (see TouchTargetEdges::cones_hold).
 struct ExposedSide {
   bool sharp = false;  // may be an edge of a contact: its faces are not coplanar
+  bool rises = false;  // may be where the surface bends towards its outside
   Vec3<Real> start, along;
   Vec3<Real> fall, fall_across;  // normal x side, of the face and of the one across
   Index across = -1;             // exposed face on the other side, or -1

@@ -109,15 +109,11 @@ struct GapRange {
   }
 };
 
-/// May a contact with exposed face y go on behind the corner at its side j, where the surface rises
-/// (see FindTargetFaces::behind_corner)?
-bool may_go_behind(const Finder& f, const Vec3<Real>& v, const ExposedFace& x, const ExposedFace& y,
+/// May a contact with a face go on behind the corner at its side, where the surface rises (see
+/// FindTargetFaces::behind_corner)?
+bool may_go_behind(const Finder& f, const Vec3<Real>& v, const ExposedFace& x,
                    const ExposedSide& side) {
-  if (side.across < 0 || !side.sharp) return false;
-  const ExposedFace& u = f.exposed[side.across];
-  const Vec3<Real> arm = u.center - side.start;
-  const bool rises = dot(y.normal, arm) > -(y.turn + u.turn) * norm(arm);
-  return rises && GapRange(x, u, v).least <= 0;
+  return side.rises && GapRange(x, f.exposed[side.across], v).least <= 0;
 }
 
 /// May a vertex sink past the depth at which contacts with exposed face y begin, and be held there
@@ -159,7 +155,7 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
     const Real room = rules.tolerance * length + rules.indentation * reach + motion +
                       2 * y.turn * (norm(from) + rules.indentation * reach);
     if (dot(cross(y.normal, side), from) < -room * norm(side) &&
-        !may_go_behind(f, v, x, y, f.sides[4 * std::size_t(place_y) + j]))
+        !may_go_behind(f, v, x, f.sides[4 * std::size_t(place_y) + j]))
       return false;
   }
   for (Index j = 0; j < y.shape.count(); ++j)
@@ -250,17 +246,22 @@ struct FacePairs {
 };
 
 /// Corners and room of a vertex and a face that may touch; `length`, `reach` and `least` as above.
-Proximity::VertexFace vertex_face(const Finder& f, Index node, const ExposedFace& y, Real length,
+Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Real length,
                                   Real reach, Real least) {
   const SearchRules& rules = f.m.rules;
+  const ExposedFace& y = f.exposed[place_y];
   const Real slack = 1e-6 * y.length;  // for round-off
   const Real above = (y.shape.count() == 3 ? 0 : 0.5 * y.length) + y.warp + slack;
   const Real aside = rules.tolerance * length + 1.01 * rules.indentation * reach + slack;
   const Index last = y.shape.count() == 3 ? 2 : 3;
+  const ExposedSide* sides = f.sides.data() + 4 * std::size_t(place_y);
+  const bool behind = std::any_of(sides, sides + y.shape.count(),
+                                  [](const ExposedSide& side) { return side.rises; });
   return {{node, f.faces.vertex(y.face, 0), f.faces.vertex(y.face, 1), f.faces.vertex(y.face, 2),
            f.faces.vertex(y.face, last)},
           {above + rules.lifted, above + rules.depth * length, aside,
-           rules.entry * std::min(least, y.length) - slack, 1.34 * f.m.face_reach[y.face] + aside}};
+           behind ? rules.entry * std::min(least, y.length) - slack : 1e300,
+           1.34 * f.m.face_reach[y.face] + aside}};
 }
 
 /// Vertices of one patch on faces of another.
@@ -290,8 +291,7 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
         if (a.corner[v][i] >= 0 && met(i, j))
           found.touches.push_back(
               {a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
-      found.faces.push_back(
-          vertex_face(f, a.vertex[v], f.exposed[b.face[j]], length, a.reach, least));
+      found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, a.reach, least));
     }
   }
 }
