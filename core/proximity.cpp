@@ -214,23 +214,35 @@ int crossing_sides(const SearchRules& rules, const ExposedFace& x, const Exposed
   return sides;
 }
 
-/// Do ends of the two sides that began at one place stay there until the next refresh? Then
-/// TouchTargetEdges takes them for no edges on each other.
-bool stay_together(const Model& m, const State& s, const ExposedFace& x, const ExposedFace& y,
-                   const SidePair& pair) {
-  if (!pair.shared) return false;
-  const FaceColumns faces = face_columns(m, s);
-  const Real near = m.rules.indentation * std::min(x.length, y.length);
-  for (Index i = 0; i < 4; ++i) {
-    if (!(pair.shared >> i & 1)) continue;
-    const Index a = faces.vertex(x.face, (pair.k + (i >> 1)) % x.shape.count());
-    const Index b = faces.vertex(y.face, (pair.j + (i & 1)) % y.shape.count());
-    const Real motion = s.search.horizon * norm(foreseen(s, a) - foreseen(s, b)) +
-                        s.search.node_skin[a] + s.search.node_skin[b];
-    if (norm(faces.nodes.position(a) - faces.nodes.position(b)) + motion < near) return true;
+/// Ends of two edges, and which of them began at the same place in the mesh: bit 2 a + b of
+/// `shared` for end a of the one and end b of the other.
+struct TwoEdges {
+  const Index *p, *q;
+  Index shared = 0;
+  bool glued = false;   // intact bonds hold ends together
+  Real parted = 1e300;  // how far the closest of the shared ends may part before the next refresh
+
+  TwoEdges(const Finder& f, Index edge_p, Index edge_q)
+      : p(f.m.edge_nodes.data() + 2 * std::size_t(edge_p)),
+        q(f.m.edge_nodes.data() + 2 * std::size_t(edge_q)) {
+    for (Index i = 0; i < 4; ++i) {
+      const Index a = p[i >> 1], b = q[i & 1];
+      glued = glued || f.faces.node_glue[a] == f.faces.node_glue[b];
+      if (f.faces.node_place[a] != f.faces.node_place[b]) continue;
+      shared |= 1 << i;
+      const Real motion = f.s.search.horizon * norm(foreseen(f.s, a) - foreseen(f.s, b)) +
+                          f.s.search.node_skin[a] + f.s.search.node_skin[b];
+      parted =
+          std::min(parted, norm(f.faces.nodes.position(a) - f.faces.nodes.position(b)) + motion);
+    }
   }
-  return false;
-}
+  /// `shared` for sides that run against their edges.
+  Index seen(bool against_p, bool against_q) const {
+    Index seen = 0;
+    for (Index i = 0; i < 4; ++i) seen |= (shared >> i & 1) << (i ^ (against_p << 1 | against_q));
+    return seen;
+  }
+};
 
 /// Which faces of two patches may touch, bit by bit: row = face of the first.
 struct FacePairs {
@@ -304,16 +316,29 @@ bool may_be_right(const Finder& f, const ExposedFace& x, const ExposedFace& y,
          !(dot(x.normal, f.exposed[q.across].normal) < dot(x.normal, y.normal) - turns);
 }
 
-/// Sides of exposed face x that may cross those of y there, as the two edges do.
-void list_crossing(const Finder& f, Index x, Index k, Index y, Index j, Index edges,
-                   Proximity& found) {
-  const ExposedFace &face_x = f.exposed[x], &face_y = f.exposed[y];
-  SidePair pair;
-  if (!may_be_right(f, face_x, face_y, f.sides[4 * std::size_t(y) + j]) ||
-      !pair_sides(f.faces, face_x.face, k, face_y.face, j, pair) ||
-      stay_together(f.m, f.s, face_x, face_y, pair))
-    return;
-  found.crossings.push_back({x, y, pair.code(), edges});
+/// A side of an exposed face, and does it run against its edge?
+struct SideOfEdge {
+  Index face, k;
+  bool against;
+  SideOfEdge(const Finder& f, const Patch& a, const Patch::Edge& e, Index i, Index start)
+      : face(a.face[e.face[i]]),
+        k(e.side[i]),
+        against(f.faces.vertex(f.exposed[face].face, k) != start) {}
+};
+
+/// Sides at two edges that may cross, in both directions.
+void list_crossing(const Finder& f, const SideOfEdge& p, const SideOfEdge& q, Index edges,
+                   const TwoEdges& ends, Proximity& found) {
+  const ExposedFace &x = f.exposed[p.face], &y = f.exposed[q.face];
+  // ends that stay together are no edges on each other, see TouchTargetEdges
+  if (ends.parted < f.m.rules.indentation * std::min(x.length, y.length)) return;
+  const Index shared = ends.seen(p.against, q.against);
+  if (may_be_right(f, x, y, f.sides[4 * std::size_t(q.face) + q.k]))
+    found.crossings.push_back({p.face, q.face, SidePair{p.k, q.k, shared}.code(), edges});
+  if (may_be_right(f, y, x, f.sides[4 * std::size_t(p.face) + p.k])) {
+    const Index swapped = (shared & 9) | (shared & 2) << 1 | (shared & 4) >> 1;
+    found.crossings.push_back({q.face, p.face, SidePair{q.k, p.k, swapped}.code(), edges});
+  }
 }
 
 /// What the indentation of the faces at some edges takes from the ends of the edges, at least, and
@@ -339,29 +364,22 @@ struct Indented {
 
 /// Two edges as MarkNearEdges sees them, on sides `on` of each other: those of their ends first
 /// that began at the same place, if any.
-Proximity::Edges two_edges(const Finder& f, const Patch& a, const Patch::Edge& p, const Patch& b,
-                           const Patch::Edge& q, int on) {
+Proximity::Edges near_edges(const Finder& f, const TwoEdges& ends, const Patch& a,
+                            const Patch::Edge& p, const Patch& b, const Patch::Edge& q, int on) {
   const SearchRules& rules = f.m.rules;
-  const auto corner = [&](const Patch& patch, const Patch::Edge& edge) {
-    return f.faces.vertex(f.exposed[patch.face[edge.face[0]]].face, edge.side[0]);
-  };
-  const Index* ends_p = f.m.edge_nodes.data() + 2 * std::size_t(p.id);
-  const Index* ends_q = f.m.edge_nodes.data() + 2 * std::size_t(q.id);
-  Index first_p = 0, first_q = 0;
-  bool shared = false;
-  for (Index i = 0; i < 4 && !shared; ++i) {
-    shared = f.faces.node_place[ends_p[i >> 1]] == f.faces.node_place[ends_q[i & 1]];
-    if (shared) first_p = i >> 1, first_q = i & 1;
-  }
+  Index first = 0;
+  while (ends.shared && !(ends.shared >> first & 1)) ++first;
+  const Index first_p = first >> 1, first_q = first & 1;
   // seen along the cross product of the two as their ends are listed here
-  const bool turned = (ends_p[first_p] != corner(a, p)) != (ends_q[first_q] != corner(b, q));
+  const bool turned = SideOfEdge(f, a, p, 0, ends.p[first_p]).against !=
+                      SideOfEdge(f, b, q, 0, ends.q[first_q]).against;
   const Real way = on == 3 ? 0 : ((on == 1) != turned ? 1 : -1);
   Indented edges;
   edges.meet(f, a, p);
   edges.meet(f, b, q);
-  return {{ends_p[first_p], ends_p[1 - first_p], ends_q[first_q], ends_q[1 - first_q]},
+  return {{ends.p[first_p], ends.p[1 - first_p], ends.q[first_q], ends.q[1 - first_q]},
           {rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
-           shared ? 0.999999 * rules.indentation * edges.length : 0}};
+           ends.shared ? 0.999999 * rules.indentation * edges.length : 0}};
 }
 
 /// Edges of one patch across edges of another.
@@ -386,17 +404,16 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
       if (dot(apart, apart) > room * room) continue;
       const int on = crossing_sides(f.m.rules, x, side_p, y, side_q, apart);
       if (!on) continue;
+      const TwoEdges ends(f, p.id, q.id);
+      if (ends.glued) continue;
       const std::size_t before = found.crossings.size();
       const Index edges = Index(found.edges.size());
       for (Index i = 0; i < p.faces; ++i)
-        for (Index j = 0; j < q.faces; ++j) {
-          if (!(pairs.row[p.face[i]] >> q.face[j] & 1)) continue;
-          const Index place_x = a.face[p.face[i]], place_y = b.face[q.face[j]];
-          list_crossing(f, place_x, p.side[i], place_y, q.side[j], edges, found);
-          list_crossing(f, place_y, q.side[j], place_x, p.side[i], edges, found);
-        }
+        for (Index j = 0; j < q.faces; ++j)
+          if (pairs.row[p.face[i]] >> q.face[j] & 1)
+            list_crossing(f, {f, a, p, i, ends.p[0]}, {f, b, q, j, ends.q[0]}, edges, ends, found);
       if (found.crossings.size() == before) continue;
-      found.edges.push_back(two_edges(f, a, p, b, q, on));
+      found.edges.push_back(near_edges(f, ends, a, p, b, q, on));
     }
   }
 }
