@@ -180,34 +180,32 @@ CDEM_HD inline Vec3<Pack> load_rows(const Rows& row) {
   const Four<Pack> r = load_fours(row);
   return {r.x, r.y, r.z};
 }
-/// The same back; the fourth numbers become 0.
+/// The same back.
 template <class Rows>
-CDEM_HD inline void store_rows(const Vec3<Pack>& v, const Rows& row) {
+CDEM_HD inline void store_fours(const Four<Pack>& v, const Rows& row) {
 #if CDEM_LANES == 8
-  const Pack::Numbers zero{};
   const auto xy02 = pick<0, 8, 2, 10, 4, 12, 6, 14>(v.x.n, v.y.n);
   const auto xy13 = pick<1, 9, 3, 11, 5, 13, 7, 15>(v.x.n, v.y.n);
-  const auto z02 = pick<0, 8, 2, 10, 4, 12, 6, 14>(v.z.n, zero);
-  const auto z13 = pick<1, 9, 3, 11, 5, 13, 7, 15>(v.z.n, zero);
+  const auto zw02 = pick<0, 8, 2, 10, 4, 12, 6, 14>(v.z.n, v.w.n);
+  const auto zw13 = pick<1, 9, 3, 11, 5, 13, 7, 15>(v.z.n, v.w.n);
   const Pack::Numbers r[4] = {
-      pick<0, 1, 8, 9, 4, 5, 12, 13>(xy02, z02), pick<0, 1, 8, 9, 4, 5, 12, 13>(xy13, z13),
-      pick<2, 3, 10, 11, 6, 7, 14, 15>(xy02, z02), pick<2, 3, 10, 11, 6, 7, 14, 15>(xy13, z13)};
+      pick<0, 1, 8, 9, 4, 5, 12, 13>(xy02, zw02), pick<0, 1, 8, 9, 4, 5, 12, 13>(xy13, zw13),
+      pick<2, 3, 10, 11, 6, 7, 14, 15>(xy02, zw02), pick<2, 3, 10, 11, 6, 7, 14, 15>(xy13, zw13)};
   for (Index j = 0; j < 4; ++j) {
     _mm256_storeu_pd(row(j), _mm512_maskz_extractf64x4_pd(0xff, (__m512d)r[j], 0));
     _mm256_storeu_pd(row(4 + j), _mm512_maskz_extractf64x4_pd(0xff, (__m512d)r[j], 1));
   }
 #elif CDEM_LANES == 4
-  const Pack::Numbers zero{};
   const auto xy02 = pick<0, 4, 2, 6>(v.x.n, v.y.n), xy13 = pick<1, 5, 3, 7>(v.x.n, v.y.n);
-  const auto z02 = pick<0, 4, 2, 6>(v.z.n, zero), z13 = pick<1, 5, 3, 7>(v.z.n, zero);
-  Row{pick<0, 1, 4, 5>(xy02, z02)}.store(row(0));
-  Row{pick<0, 1, 4, 5>(xy13, z13)}.store(row(1));
-  Row{pick<2, 3, 6, 7>(xy02, z02)}.store(row(2));
-  Row{pick<2, 3, 6, 7>(xy13, z13)}.store(row(3));
+  const auto zw02 = pick<0, 4, 2, 6>(v.z.n, v.w.n), zw13 = pick<1, 5, 3, 7>(v.z.n, v.w.n);
+  Row{pick<0, 1, 4, 5>(xy02, zw02)}.store(row(0));
+  Row{pick<0, 1, 4, 5>(xy13, zw13)}.store(row(1));
+  Row{pick<2, 3, 6, 7>(xy02, zw02)}.store(row(2));
+  Row{pick<2, 3, 6, 7>(xy13, zw13)}.store(row(3));
 #else
   for (Index j = 0; j < lanes; ++j) {
     Real* r = row(j);
-    r[0] = v.x.n[j], r[1] = v.y.n[j], r[2] = v.z.n[j];
+    r[0] = v.x.n[j], r[1] = v.y.n[j], r[2] = v.z.n[j], r[3] = v.w.n[j];
   }
 #endif
 }
@@ -247,13 +245,15 @@ CDEM_HD inline void set_rows(Real* rows, One item, const Real* numbers) {
   set_rows(rows, item.i, numbers);
 }
 #if !defined(__CUDACC__)
-inline void set_rows(Real* rows, const IndexPack& item, const Pack* numbers) {
-  for (Index j = 0; j < lanes; ++j)
-    for (Index k = 0; k < 8; ++k) rows[std::size_t(item.id[j]) * 8 + k] = numbers[k].n[j];
+inline void set_rows(Real* rows, const IndexPack& item, const Pack* n) {
+  const auto row = [&](Index j) { return rows + std::size_t(item.id[j]) * 8; };
+  store_fours({n[0], n[1], n[2], n[3]}, row);
+  store_fours({n[4], n[5], n[6], n[7]}, [&](Index j) { return row(j) + 4; });
 }
-inline void set_rows(Real* rows, Lane item, const Pack* numbers) {
-  for (Index j = 0; j < lanes; ++j)
-    for (Index k = 0; k < 8; ++k) rows[std::size_t(item.i + j) * 8 + k] = numbers[k].n[j];
+inline void set_rows(Real* rows, Lane item, const Pack* n) {
+  IndexPack places;
+  for (Index j = 0; j < lanes; ++j) places.id[j] = item.i + j;
+  set_rows(rows, places, n);
 }
 #endif
 
@@ -307,7 +307,7 @@ struct OutForces {
   }
 #if !defined(__CUDACC__)
   void set(Lane item, Index corners_per_item, Index corner, const Vec3<Pack>& f) const {
-    store_rows(f, [&](Index j) {
+    store_fours({f.x, f.y, f.z, Pack(0.0)}, [&](Index j) {
       return rows + (std::size_t(item.i + j) * corners_per_item + corner) * 4;
     });
   }

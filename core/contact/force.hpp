@@ -421,15 +421,15 @@ struct MarkActing {
  private:
   CDEM_HD void mark(Index target, Index source) const {
     if (target < 0) return;
-    Index first = sources.first[target], last = sources.first[target + 1];
-    while (first < last) {  // the row is in ascending order
-      const Index middle = first + (last - first) / 2;
-      if (sources.other[middle] < source)
-        first = middle + 1;
-      else
-        last = middle;
+    // the row is in ascending order; no branch: which half comes next cannot be foreseen
+    Index first = sources.first[target];
+    const Index last = sources.first[target + 1];
+    for (Index count = last - first; count > 1;) {
+      const Index half = count / 2;
+      first += (sources.other[first + half] > source ? 0 : 1) * half;
+      count -= half;
     }
-    if (first < sources.first[target + 1] && sources.other[first] == source) acting[first] = 1;
+    if (first < last && sources.other[first] == source) acting[first] = 1;
   }
 };
 
