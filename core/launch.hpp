@@ -163,13 +163,6 @@ struct IndexOf {
   using type = Index;
 };
 
-/// Do something for every lane of an item, with the number of the lane and the item's own.
-template <class Do>
-CDEM_HD inline void for_lanes(One item, const Do& act) {
-  act(0, item.i);
-}
-CDEM_HD inline Real& lane_of(Real& number, Index) { return number; }
-CDEM_HD inline Index& lane_of(Index& index, Index) { return index; }
 #if !defined(__CUDACC__)
 template <>
 struct IndexOf<Lane> {
@@ -179,12 +172,6 @@ template <>
 struct IndexOf<PickedLane> {
   using type = IndexPack;
 };
-template <class Do>
-inline void for_lanes(Lane item, const Do& act) {
-  for (Index j = 0; j < lanes; ++j) act(j, item.i + j);
-}
-inline auto& lane_of(Pack& pack, Index lane) { return reinterpret_cast<Real*>(&pack.n)[lane]; }
-inline Index& lane_of(IndexPack& pack, Index lane) { return pack.id[lane]; }
 #endif
 
 /// What comparisons of a number type give: bool, Mask.
@@ -211,6 +198,10 @@ template <class Of, class... Rest>
 CDEM_HD inline Index indices_of(const Of& of, Index first, Rest... rest) {
   return of(first, rest...);
 }
+template <class Of>
+CDEM_HD inline Index indices_of(const Of& of, One item) {
+  return of(item.i);
+}
 /// Numbers made of indices, lane by lane.
 template <class Of, class... Rest>
 CDEM_HD inline Real numbers_of(const Of& of, Index first, Rest... rest) {
@@ -222,6 +213,12 @@ template <class Of, class... Rest>
 CDEM_HD inline IndexPack indices_of(const Of& of, const IndexPack& first, const Rest&... rest) {
   IndexPack pack;
   for (Index j = 0; j < lanes; ++j) pack.id[j] = of(first.id[j], rest.id[j]...);
+  return pack;
+}
+template <class Of>
+CDEM_HD inline IndexPack indices_of(const Of& of, Lane item) {
+  IndexPack pack;
+  for (Index j = 0; j < lanes; ++j) pack.id[j] = of(item.i + j);
   return pack;
 }
 template <class Of, class... Rest>

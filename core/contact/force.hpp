@@ -14,9 +14,33 @@ struct ContactLaws {
   Real damping_ratio;     // of critical, on the effective mass of the two points
   const Real* node_mass;  // [kg]
 
-  /// The interface between two exposed faces.
-  CDEM_HD Index between(const FaceGeometry& geometry, Index m, Index t) const {
-    return interface_of[geometry.table[m].group * group_count + geometry.table[t].group];
+  /// The interface between two exposed faces, or between one and another a lane.
+  template <class Ids>
+  CDEM_HD auto between(const FaceGeometry& geometry, const Ids& m, const Ids& t) const {
+    return indices_of(
+        [&](Index a, Index b) {
+          return interface_of[geometry.table[a].group * group_count + geometry.table[b].group];
+        },
+        m, t);
+  }
+  /// Stiffness of a contact of theirs on its characteristic area  [N/m].
+  template <class Ids>
+  CDEM_HD auto stiffness_n(const FaceGeometry& geometry, const Ids& law, const Ids& m,
+                           const Ids& t) const {
+    return numbers_of(
+        [&](Index l, Index a, Index b) {
+          return geometry.contact_area(a, b) * interfaces[l].stiffness_n(geometry.stiffer(a, b));
+        },
+        law, m, t);
+  }
+  template <class Ids>
+  CDEM_HD auto stiffness_s(const FaceGeometry& geometry, const Ids& law, const Ids& m,
+                           const Ids& t) const {
+    return numbers_of(
+        [&](Index l, Index a, Index b) {
+          return geometry.contact_area(a, b) * interfaces[l].stiffness_s(geometry.stiffer(a, b));
+        },
+        law, m, t);
   }
 };
 
@@ -176,15 +200,13 @@ struct UpdateSpringForces {
       rate = rate - foot.weight[j] * velocity[j];
       flex += foot.weight[j] * foot.weight[j] / look_up(laws.node_mass, corners.node[j]);
     }
-    const auto law =
-        indices_of([&](Index a, Index b) { return laws.between(geometry, a, b); }, item.row, t);
+    const auto law = laws.between(geometry, item.row, t);
     const auto property = [&](auto of) {
       return numbers_of([&](Index l) { return of(laws.interfaces[l]); }, law);
     };
-    const T kn = numbers_of([&](Index l, Index a, Index b) { return stiffness_n(l, a, b); }, law,
-                            item.row, t);
-    const T ks = numbers_of([&](Index l, Index a, Index b) { return stiffness_s(l, a, b); }, law,
-                            item.row, t);
+    // half of it: the other block's semi-springs see the contact too
+    const T kn = T(0.5) * laws.stiffness_n(geometry, law, item.row, t);
+    const T ks = T(0.5) * laws.stiffness_s(geometry, law, item.row, t);
     const T tan_friction = property([](const Interface& l) { return l.tan_friction; });
     const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / flex);
     const T gap_rate = dot(frame.n, rate);
@@ -256,14 +278,6 @@ struct UpdateSpringForces {
     if (j >= count) return 0.0;
     return rules.action / Real(count) + (j == k ? 1.0 - rules.action : 0.0);
   }
-  /// Half of the contact's: the other block's semi-springs see it too.
-  CDEM_HD Real area(Index m, Index t) const { return 0.5 * geometry.contact_area(m, t); }
-  CDEM_HD Real stiffness_n(Index law, Index m, Index t) const {
-    return area(m, t) * laws.interfaces[law].stiffness_n(geometry.stiffer(m, t));
-  }
-  CDEM_HD Real stiffness_s(Index law, Index m, Index t) const {
-    return area(m, t) * laws.interfaces[law].stiffness_s(geometry.stiffer(m, t));
-  }
   /// A contact that changes its face keeps the shear force, turned into the new plane with its
   /// length kept (hand-over).
   CDEM_HD void carry_shear(Index slot, Index before, Index t) const {
@@ -303,92 +317,86 @@ struct UpdateEdgeForces {
   template <class I>
   CDEM_HD void operator()(I item) const {
     using T = Number<I>;
-    Known<I> k;
-    for_lanes(item, [&](Index lane, Index place) { read(k, lane, place); });
+    const auto kept = [&](auto of) {
+      return indices_of([&](Index p) { return of(EdgeContact::at(edges.contact, p)); }, item);
+    };
+    const auto mother = kept([](const EdgeContact& c) { return c.mother; });
+    const auto t = kept([](const EdgeContact& c) { return c.face; });
+    const auto edge = kept([](const EdgeContact& c) { return c.edge; });
+    const auto before = kept([](const EdgeContact& c) { return c.before; });
+    const auto m = indices_of([](Index side) { return side / 4; }, mother);
+    const auto m0 =
+        indices_of([&](Index s) { return geometry.table[s / 4].corner[s % 4]; }, mother);
+    const auto m1 = indices_of([&](Index s) { return geometry.table[s / 4].end(s % 4); }, mother);
+    // the frame belongs to the edge, whichever of its faces is the right one just now
+    const auto t0 = indices_of([&](Index e) { return faces.edge_nodes[2 * e]; }, edge);
+    const auto t1 = indices_of([&](Index e) { return faces.edge_nodes[2 * e + 1]; }, edge);
+    const Vec3<T> out = geometry.normal(t) - geometry.normal(m);
+    const auto was = [&](auto of) {  // one step ago
+      return numbers_of(
+          [&](Index b) {
+            return of(b >= 0 ? ContactState::at(state_before, b)
+                             : ContactState{0, -1, 0, 0, 0, 0, 0});
+          },
+          before);
+    };
+    const T sunk = was([](const ContactState& s) { return s.sunk; });
+    const T gap_free = was([](const ContactState& s) { return s.gap_free; });
+    const auto law = laws.between(geometry, m, t);
+    // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
+    const T kn = laws.stiffness_n(geometry, law, m, t), ks = laws.stiffness_s(geometry, law, m, t);
+    const T tan_friction =
+        numbers_of([&](Index l) { return laws.interfaces[l].tan_friction; }, law);
 
     const InMotion& nodes = faces.nodes;
     const T dt(faces.dt), zero(0.0), one(1.0);
-    const Vec3<T> xm = nodes.position(k.m0), xt = nodes.position(k.t0);
-    const Vec3<T> xm1 = nodes.position(k.m1), xt1 = nodes.position(k.t1);
+    const Vec3<T> xm = nodes.position(m0), xt = nodes.position(t0);
+    const Vec3<T> xm1 = nodes.position(m1), xt1 = nodes.position(t1);
     const Vec3<T> dm = xm1 - xm, along_t = xt1 - xt;
-    const Frame<T> frame = edge_frame(edge_normal(dm, along_t, k.out), along_t);
+    const Frame<T> frame = edge_frame(edge_normal(dm, along_t, out), along_t);
     const Crossing<T> c = cross_edges(xm, dm, xt, along_t, frame.n);
 
-    const Vec3<T> vm = nodes.velocity(k.m0), vt = nodes.velocity(k.t0);
-    const Vec3<T> vm1 = nodes.velocity(k.m1), vt1 = nodes.velocity(k.t1);
+    const Vec3<T> vm = nodes.velocity(m0), vt = nodes.velocity(t0);
+    const Vec3<T> vm1 = nodes.velocity(m1), vt1 = nodes.velocity(t1);
     const Vec3<T> om = xm - dt * vm, ot = xt - dt * vt;  // one step ago
     const Vec3<T> old_dm = (xm1 - dt * vm1) - om, old_along = (xt1 - dt * vt1) - ot;
-    const Frame<T> old = edge_frame(edge_normal(old_dm, old_along, k.out), old_along);
+    const Frame<T> old = edge_frame(edge_normal(old_dm, old_along, out), old_along);
     const Vec3<T> apart = (om + c.s * old_dm) - (ot + c.t * old_along);
     const Vec3<T> rate = (vm + c.s * (vm1 - vm)) - (vt + c.t * (vt1 - vt));
-    const T flex = flexibility(k.m0, k.m1, c.s) + flexibility(k.t0, k.t1, c.t);
-
-    const T dashpot = T(2.0) * T(laws.damping_ratio) * sqrt_of(k.kn / flex);
+    const T flex = flexibility(m0, m1, c.s) + flexibility(t0, t1, c.t);
+    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / flex);
     const T gap_rate = dot(frame.n, rate);
-    const T free = select(k.sunk < zero, starting_gap_free(c.gap, gap_rate, dt, zero, zero),
-                          lifted_gap_free(k.gap_free, c.gap));
-    const ContactForce<T> f = contact_force(
-        k.kn, k.ks, k.tan_friction, c.gap - free, gap_rate, dashpot, -dot(old.t1, apart),
-        -dot(old.t2, apart), ContactBefore<T>{k.force_n, max_of(k.sunk, zero), k.shear1, k.shear2},
-        Dilation<T>{zero, zero}, dt);
+    const T free = select(sunk < zero, starting_gap_free(c.gap, gap_rate, dt, zero, zero),
+                          lifted_gap_free(gap_free, c.gap));
+    const ContactBefore<T> old_force{was([](const ContactState& s) { return s.force_n; }),
+                                     max_of(sunk, zero),
+                                     was([](const ContactState& s) { return s.shear1; }),
+                                     was([](const ContactState& s) { return s.shear2; })};
+    const ContactForce<T> f =
+        contact_force(kn, ks, tan_friction, c.gap - free, gap_rate, dashpot, -dot(old.t1, apart),
+                      -dot(old.t2, apart), old_force, Dilation<T>{zero, zero}, dt);
 
     const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
     // both edges take the force on one line of action: no couple is left over
     const Crossing<T> line = cross_edges(xm, dm, xt, along_t, force);
     const auto pressed = f.force_n > zero;
     const T on_m = select(pressed, line.s, c.s), on_t = select(pressed, line.t, c.t);
+    const T forward = numbers_of(  // does the target face's side go the way of the edge?
+        [&](Index x, Index e, Index start) {
+          const Index face = exposed_face[x];
+          return faces.vertex(face, faces.side_on(face, e)) == start;
+        },
+        t, edge, t0);
     const T state[8] = {f.force_n, f.sunk, f.shear1, f.shear2, free, f.energy_n, f.energy_s, zero};
     const T reaction[8] = {force.x,    force.y,
-                           force.z,    select(pressed, max_of(k.kn, k.ks), zero),
-                           on_m,       select(k.forward > zero, on_t, one - on_t),
+                           force.z,    select(pressed, max_of(kn, ks), zero),
+                           on_m,       select(forward > zero, on_t, one - on_t),
                            f.friction, f.dashpot};
     set_rows(edges.state, item, state);
     set_rows(edges.reaction, item, reaction);
   }
 
  private:
-  /// What the tables know of a contact, or of a lane of them.
-  template <class I>
-  struct Known {
-    using T = Number<I>;
-    typename IndexOf<I>::type m0, m1, t0, t1;  // ends of mother side and target edge
-    Vec3<T> out;  // from the mother face to the target's: difference of the normals
-    T kn, ks, tan_friction;
-    T force_n, sunk, shear1, shear2, gap_free;  // one step ago
-    T forward;  // 1 where the target face's side goes the way of the edge, else 0
-  };
-  template <class I>
-  CDEM_HD void read(Known<I>& k, Index lane, Index place) const {
-    const EdgeContact contact = EdgeContact::at(edges.contact, place);
-    const Index m = contact.mother / 4, side = contact.mother % 4;
-    lane_of(k.m0, lane) = geometry.table[m].corner[side];
-    lane_of(k.m1, lane) = geometry.table[m].end(side);
-    // the frame belongs to the edge, whichever of its faces is the right one just now
-    const Index t0 = lane_of(k.t0, lane) = faces.edge_nodes[2 * contact.edge];
-    lane_of(k.t1, lane) = faces.edge_nodes[2 * contact.edge + 1];
-    const Index face_t = exposed_face[contact.face];
-    lane_of(k.forward, lane) = faces.vertex(face_t, faces.side_on(face_t, contact.edge)) == t0;
-    const Vec3<Real> out = geometry.normal(contact.face) - geometry.normal(m);
-    lane_of(k.out.x, lane) = out.x;
-    lane_of(k.out.y, lane) = out.y;
-    lane_of(k.out.z, lane) = out.z;
-
-    const Interface& law = laws.interfaces[laws.between(geometry, m, contact.face)];
-    const Real stiffer = geometry.stiffer(m, contact.face);
-    // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
-    const Real area = geometry.contact_area(m, contact.face);
-    lane_of(k.kn, lane) = area * law.stiffness_n(stiffer);
-    lane_of(k.ks, lane) = area * law.stiffness_s(stiffer);
-    lane_of(k.tan_friction, lane) = law.tan_friction;
-
-    const ContactState s = contact.before >= 0 ? ContactState::at(state_before, contact.before)
-                                               : ContactState{0, -1, 0, 0, 0, 0, 0};
-    lane_of(k.force_n, lane) = s.force_n;
-    lane_of(k.sunk, lane) = s.sunk;
-    lane_of(k.shear1, lane) = s.shear1;
-    lane_of(k.shear2, lane) = s.shear2;
-    lane_of(k.gap_free, lane) = s.gap_free;
-  }
   template <class Ids, class T>
   CDEM_HD T flexibility(const Ids& a, const Ids& b, const T& s) const {
     const T rest = T(1.0) - s;
