@@ -10,35 +10,56 @@ namespace cdem {
 
 namespace {
 
-/// Add to its nodes how every element of a set moves as a rigid body.
-void add_rigid_motion(const ElementSet& e, Index corners, InMotion nodes,
-                      std::vector<Vec3<Real>>& sum, std::vector<Real>& weight) {
-  for (Index i = 0; i < e.count; ++i) {
-    Index id[8];
-    Vec3<Real> center{0, 0, 0}, velocity{0, 0, 0}, spin{0, 0, 0};
-    bool moves = false;
-    for (Index k = 0; k < corners; ++k) {
-      id[k] = e.nodes[std::size_t(k) * e.stride + i];
-      center = center + Real(1.0) / corners * nodes.position(id[k]);
-      velocity = velocity + Real(1.0) / corners * nodes.velocity(id[k]);
-      moves = moves || dot(nodes.velocity(id[k]), nodes.velocity(id[k])) > 0;
-      weight[id[k]] += 1;
-    }
-    if (!moves) continue;
-    Mat3<Real> inertia{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    for (Index k = 0; k < corners; ++k) {
-      const Vec3<Real> arm = nodes.position(id[k]) - center;
-      inertia = inertia + dot(arm, arm) * identity<Real>();
-      add_outer(inertia, -arm, arm);
-      spin = spin + cross(arm, nodes.velocity(id[k]));
-    }
-    spin = inverse(inertia) * spin;
-    for (Index k = 0; k < corners; ++k) {
-      const Vec3<Real> arm = nodes.position(id[k]) - center;
-      sum[id[k]] = sum[id[k]] + velocity + cross(spin, arm);
+/// Mean velocity of the elements at every watched node, as rigid bodies.
+struct RigidMotion {
+  const State& s;
+  std::vector<Vec3<Real>> sum;  // [watched]
+  std::vector<Real> weight;
+
+  RigidMotion(const Model& m, const State& state)
+      : s(state), sum(s.search.watched.size(), Vec3<Real>{0, 0, 0}), weight(sum.size()) {
+    add(m.tet4, 4);
+    add(m.pyramid5, 5);
+    add(m.wedge6, 6);
+    add(m.hex8, 8);
+  }
+  Vec3<Real> at(std::size_t place) const { return Real(1.0) / weight[place] * sum[place]; }
+
+ private:
+  void add(const ElementSet& e, Index corners) {
+    const InMotion nodes{s.nodes.motion.data()};
+    for (Index i = 0; i < e.count; ++i) {
+      Index id[8], place[8];
+      bool watched = false;
+      for (Index k = 0; k < corners; ++k) {
+        id[k] = e.nodes[std::size_t(k) * e.stride + i];
+        place[k] = s.search.node_watch[id[k]];
+        watched = watched || place[k] >= 0;
+        if (place[k] >= 0) weight[place[k]] += 1;
+      }
+      if (!watched) continue;
+      Vec3<Real> center{0, 0, 0}, velocity{0, 0, 0}, spin{0, 0, 0};
+      bool moves = false;
+      for (Index k = 0; k < corners; ++k) {
+        center = center + Real(1.0) / corners * nodes.position(id[k]);
+        velocity = velocity + Real(1.0) / corners * nodes.velocity(id[k]);
+        moves = moves || dot(nodes.velocity(id[k]), nodes.velocity(id[k])) > 0;
+      }
+      if (!moves) continue;
+      Mat3<Real> inertia{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+      for (Index k = 0; k < corners; ++k) {
+        const Vec3<Real> arm = nodes.position(id[k]) - center;
+        inertia = inertia + dot(arm, arm) * identity<Real>();
+        add_outer(inertia, -arm, arm);
+        spin = spin + cross(arm, nodes.velocity(id[k]));
+      }
+      spin = inverse(inertia) * spin;
+      for (Index k = 0; k < corners; ++k)
+        if (place[k] >= 0)
+          sum[place[k]] = sum[place[k]] + velocity + cross(spin, nodes.position(id[k]) - center);
     }
   }
-}
+};
 
 /// Deepest contact of a face: its targets may lie this far outside its path  [m].
 Real deepest_gap(const State& s, Index place) {
@@ -66,8 +87,11 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   e.normal = e.shape.normal();
   const Index count = e.shape.count();
   Vec3<Real> path[4], sum{0, 0, 0};
+  Real node_skin[4];
   for (Index k = 0; k < count; ++k) {
-    path[k] = s.search.horizon * foreseen(s, m.face_nodes[4 * e.face + k]);
+    const WatchedNode node = WatchedNode::of(s, m.face_nodes[4 * e.face + k]);
+    path[k] = s.search.horizon * node.velocity;
+    node_skin[k] = node.skin;
     sum = sum + path[k];
   }
   e.drift = Real(1.0) / Real(count) * sum;
@@ -75,9 +99,8 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   Real longest = 0, skin = 0;
   e.box = Box::nothing();
   for (Index k = 0; k < count; ++k) {
-    const Real node_skin = s.search.node_skin[m.face_nodes[4 * e.face + k]];
-    skin = std::max(skin, node_skin);
-    e.stir = std::max(e.stir, norm(path[k] - e.drift) + node_skin);
+    skin = std::max(skin, node_skin[k]);
+    e.stir = std::max(e.stir, norm(path[k] - e.drift) + node_skin[k]);
     e.warp = std::max(e.warp, std::abs(dot(e.normal, e.shape.x[k] - e.center)));
     longest = std::max(longest, norm(e.shape.x[k + 1 == count ? 0 : k + 1] - e.shape.x[k]));
     e.box.include(e.shape.x[k]);
@@ -127,13 +150,6 @@ void complete(const Model& m, const State& s, const std::vector<ExposedFace>& ex
   }
 }
 
-}  // namespace
-
-Vec3<Real> foreseen(const State& s, Index node) {
-  const Real* v = s.nodes.built_motion.data() + std::size_t(node) * 8 + 4;
-  return {v[0], v[1], v[2]};
-}
-
 /// Smallest skin of a node, in parts of the smallest L of its faces: wide skins make long lists,
 /// thin ones lists that do not last. Both cost about the same where lists last some twenty steps.
 Real least_skin(const State& s, std::int64_t lasted) {
@@ -143,6 +159,40 @@ Real least_skin(const State& s, std::int64_t lasted) {
     return std::min(change * s.search.skin_least, widest);
   if (lasted > long_lived) return std::max(s.search.skin_least / change, thinnest);
   return s.search.skin_least;
+}
+
+/// List the nodes of exposed faces; the smallest L of their faces stands for their skins.
+void list_watched(const Model& m, State& s) {
+  SearchState& search = s.search;
+  search.node_watch.resize(m.node_count);
+  search.node_watch.fill(-1);
+  const auto visit = [&](auto&& at) {
+    for (std::size_t x = 0; x < search.exposed_face.size(); ++x)
+      for (Index k = 0; k < 4; ++k) {
+        const Index face = search.exposed_face[x], node = m.face_nodes[4 * face + k];
+        if (node >= 0) at(node, m.face_length[face]);
+      }
+  };
+  visit([&](Index node, Real) { search.node_watch[node] = 0; });
+  search.watched.resize(0);
+  for (Index i = 0; i < m.node_count; ++i)
+    if (search.node_watch[i] >= 0) search.watched.push(i);
+  place_watched(m, s);
+  search.watch.resize(8 * search.watched.size());
+  search.watch.fill(0);
+  visit([&](Index node, Real length) {
+    Real& least = search.watch[8 * std::size_t(search.node_watch[node]) + 7];
+    least = least > 0 ? std::min(least, length) : length;
+  });
+}
+
+}  // namespace
+
+void place_watched(const Model& m, State& s) {
+  s.search.node_watch.resize(m.node_count);
+  s.search.node_watch.fill(-1);
+  for (std::size_t w = 0; w < s.search.watched.size(); ++w)
+    s.search.node_watch[s.search.watched[w]] = Index(w);
 }
 
 void foresee_motion(const Model& m, State& s) {
@@ -155,49 +205,29 @@ void foresee_motion(const Model& m, State& s) {
   const Index ahead = std::clamp<std::int64_t>(2 * lasted, fewest, steps);
   s.search.horizon = s.dt * (m.refresh_interval > 0 ? m.refresh_interval : ahead);
   s.search.built_time = s.time;
-  std::vector<Vec3<Real>> sum(m.node_count, Vec3<Real>{0, 0, 0});
-  std::vector<Real> weight(m.node_count);
+  const std::vector<Real> watch_before(s.search.watch.data(),
+                                       s.search.watch.data() + s.search.watch.size());
+  const std::vector<Index> watched_before(s.search.watched.data(),
+                                          s.search.watched.data() + s.search.watched.size());
+  list_watched(m, s);
+  const RigidMotion rigid(m, s);
   const InMotion nodes{s.nodes.motion.data()};
-  add_rigid_motion(m.tet4, 4, nodes, sum, weight);
-  add_rigid_motion(m.pyramid5, 5, nodes, sum, weight);
-  add_rigid_motion(m.wedge6, 6, nodes, sum, weight);
-  add_rigid_motion(m.hex8, 8, nodes, sum, weight);
-
-  Column<Real>& skin = s.search.node_skin;
-  skin.resize(m.node_count);
-  skin.fill(0);
-  for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x)
-    for (Index k = 0; k < 4; ++k) {
-      const Index face = s.search.exposed_face[x], node = m.face_nodes[4 * face + k];
-      if (node < 0) continue;
-      const Real length = m.face_length[face];
-      skin[node] = skin[node] > 0 ? std::min(skin[node], length) : length;
-    }
-#pragma omp parallel for schedule(static) if (m.node_count >= worth_threads)
-  for (Index i = 0; i < m.node_count; ++i) {
-    const Vec3<Real> x = nodes.position(i), v = Real(1.0) / weight[i] * sum[i];
-    const Real stray =
-        s.search.horizon * norm(v - foreseen(s, i)) + period * s.dt * norm(nodes.velocity(i) - v);
-    Real* row = s.nodes.built_motion.data() + std::size_t(i) * 8;
-    row[0] = x.x, row[1] = x.y, row[2] = x.z;
-    row[4] = v.x, row[5] = v.y, row[6] = v.z;
-    if (skin[i] > 0) skin[i] = std::clamp(stray, least * skin[i], most * skin[i]);
-  }
-  list_watched(s);
-}
-
-void list_watched(State& s) {
-  s.search.watched.resize(0);
-  for (Index i = 0; i < Index(s.search.node_skin.size()); ++i)
-    if (s.search.node_skin[i] > 0) s.search.watched.push(i);
   const Index count = Index(s.search.watched.size());
-  s.search.watch.resize(8 * std::size_t(count));
+  std::vector<Vec3<Real>> change(count, Vec3<Real>{0, 0, 0});  // of a velocity since the last time
+  for (std::size_t w = 0; w < watched_before.size(); ++w) {
+    const Real* before = watch_before.data() + 8 * w + 4;
+    const Index place = s.search.node_watch[watched_before[w]];
+    if (place >= 0) change[place] = rigid.at(place) - Vec3<Real>{before[0], before[1], before[2]};
+  }
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index w = 0; w < count; ++w) {
-    const std::size_t i = s.search.watched[w];
+    const Index i = s.search.watched[w];
     Real* row = s.search.watch.data() + 8 * std::size_t(w);
-    std::copy_n(s.nodes.built_motion.data() + 8 * i, 8, row);
-    row[3] = s.search.node_skin[i] * s.search.node_skin[i];
+    const Vec3<Real> v = rigid.at(w);
+    const Real stray =
+        s.search.horizon * norm(change[w]) + period * s.dt * norm(nodes.velocity(i) - v);
+    const Real skin = std::clamp(stray, least * row[7], most * row[7]);
+    WatchedNode{nodes.position(i), v, skin}.store(row);
   }
 }
 

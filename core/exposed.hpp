@@ -11,16 +11,30 @@
 
 namespace cdem {
 
-/// Velocity that the lists foresee for a node.
-Vec3<Real> foreseen(const State& s, Index node);
+/// A node of exposed faces as the lists see it: they are old once it is farther than its skin from
+/// where it went straight on.
+struct WatchedNode {
+  Vec3<Real> position;  // when the lists were made  [m]
+  Vec3<Real> velocity;  // foreseen  [m/s]
+  Real skin;            // [m]
+
+  static WatchedNode of(const State& s, Index node) {
+    const Real* r = s.search.watch.data() + 8 * std::size_t(s.search.node_watch[node]);
+    return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[7]};
+  }
+  void store(Real* r) const {
+    r[0] = position.x, r[1] = position.y, r[2] = position.z, r[3] = skin * skin;
+    r[4] = velocity.x, r[5] = velocity.y, r[6] = velocity.z, r[7] = skin;
+  }
+};
 
 /// Foresee where the nodes of exposed faces go, straight on with the rigid motion of their elements
 /// (which leaves the elements' vibrations out), and how far they may stray from there: as far as
 /// they would with the change of velocity that they had since the last refresh.
 void foresee_motion(const Model& model, State& state);
 
-/// List the nodes whose straying makes the lists old.
-void list_watched(State& state);
+/// Let nodes know their places among those that are watched.
+void place_watched(const Model& model, State& state);
 
 /// An exposed face as the lists see it: where it is, and how it may move before they are old.
 struct ExposedFace {

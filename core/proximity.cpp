@@ -30,6 +30,12 @@ Real motion_between(const ExposedFace& x, const ExposedFace& y) {
   return norm(x.drift - y.drift) + x.stir + y.stir;
 }
 
+/// How far two watched nodes may move apart until the next refresh  [m].
+Real may_part(const State& s, Index a, Index b) {
+  const WatchedNode x = WatchedNode::of(s, a), y = WatchedNode::of(s, b);
+  return s.search.horizon * norm(x.velocity - y.velocity) + x.skin + y.skin;
+}
+
 /// How much the gap between anything of x and of y along a normal of y (or of both) may change, at
 /// least and at most  [m].
 struct GapChange {
@@ -165,10 +171,9 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
   const Index point = f.faces.node_glue[node];  // never the deepest vertex?
   for (Index r = f.faces.ring_first[point]; r < f.faces.ring_first[point + 1]; ++r) {
     const Index other = f.faces.ring[r];
-    if (f.s.search.node_skin[other] == 0) continue;  // nothing watches its motion
+    if (f.s.search.node_watch[other] < 0) continue;
     const Vec3<Real> d = f.faces.nodes.position(other) - v;
-    const Real moved = f.s.search.horizon * norm(foreseen(f.s, other) - foreseen(f.s, node)) +
-                       f.s.search.node_skin[other] + f.s.search.node_skin[node];
+    const Real moved = may_part(f.s, other, node);
     const Real long_d = norm(d), turn = 2 * moved / long_d + y.turn;
     if (dot(d, y.normal) < -(rules.cone + turn) * long_d) return false;
   }
@@ -230,10 +235,8 @@ struct TwoEdges {
       glued = glued || f.faces.node_glue[a] == f.faces.node_glue[b];
       if (f.faces.node_place[a] != f.faces.node_place[b]) continue;
       shared |= 1 << i;
-      const Real motion = f.s.search.horizon * norm(foreseen(f.s, a) - foreseen(f.s, b)) +
-                          f.s.search.node_skin[a] + f.s.search.node_skin[b];
-      parted =
-          std::min(parted, norm(f.faces.nodes.position(a) - f.faces.nodes.position(b)) + motion);
+      const Real now = norm(f.faces.nodes.position(a) - f.faces.nodes.position(b));
+      parted = std::min(parted, now + may_part(f.s, a, b));
     }
   }
   /// `shared` for sides that run against their edges.

@@ -316,7 +316,6 @@ void refresh_contacts(const Model& m, State& s) {
     s.search.face_exposed.resize(m.face_count, -1);
     for (Index f = 0; f < m.face_count; ++f)
       if (m.face_initially_exposed[f]) expose(s, f);
-    s.nodes.built_motion.assign(s.nodes.motion.data(), s.nodes.motion.size());
   }
   open_hinges<3>(m, s, m.triangles, s.triangles, m.bond_indentation_triangle);
   open_hinges<4>(m, s, m.quads, s.quads, m.bond_indentation_quad);

@@ -70,7 +70,7 @@ void prepare(const Model& m, State& s) {
   list_exposed(m, s);
   sum_stiffness(m, s);
   list_corners(m, s);
-  list_watched(s);
+  place_watched(m, s);
 }
 
 }  // namespace cdem

@@ -8,8 +8,7 @@
 namespace cdem {
 
 struct NodeState {
-  Column<Real> motion;        // rows of 8: position, velocity
-  Column<Real> built_motion;  // rows of 8: position and velocity at the last refresh
+  Column<Real> motion;  // rows of 8: position, velocity
   Column<Real> work_external, work_damping;
   Column<Real> force, reaction, sample;  // rows of 4
   Column<Real> damping_force;            // rows of 4, empty until something damps
@@ -76,9 +75,8 @@ struct SearchState {
   Column<Index> across;                // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
-  Column<Real> node_skin;                       // [m], 0 for nodes of no exposed face
-  Column<Index> watched;                        // the other nodes
-  Column<Real> watch;  // rows of 8 of theirs: position then, skin squared; velocity foreseen
+  Column<Index> watched, node_watch;  // nodes of exposed faces; node -> place among them, or -1
+  Column<Real> watch;                 // rows of 8 of theirs, see WatchedNode
 };
 
 /// What the wall time of steps is counted by.
@@ -137,7 +135,9 @@ void describe_search(S& search, Visit&& field) {
   field("search.contact_first", search.contact_first, "start of a node's contact rows");
   field("search.contact_corner", search.contact_corner,
         "contact rows of a node, of faces that are not idle");
-  field("search.node_skin", search.node_skin, "straying that calls for a refresh [m]");
+  field("search.watched", search.watched, "nodes whose straying calls for a refresh");
+  field("search.watch", search.watch,
+        "their position at the last, skin squared [m2], velocity foreseen, skin [m]");
 }
 
 /// Visit every array that must survive a restart, by name: checkpoint and Python views come from
@@ -145,7 +145,6 @@ void describe_search(S& search, Visit&& field) {
 template <class S, class Visit>
 void describe(S& s, Visit&& field) {
   field("node.motion", s.nodes.motion, "position [m], pad, velocity [m/s], pad");
-  field("node.built_motion", s.nodes.built_motion, "position and velocity at the last refresh");
   field("node.work_external", s.nodes.work_external, "work of loads and supports [J]");
   field("node.work_damping", s.nodes.work_damping, "work taken out by damping [J]");
   field("node.reaction", s.nodes.reaction, "force of supports [N]");
