@@ -213,7 +213,8 @@ void foresee_motion(const Model& m, State& s) {
   const RigidMotion rigid(m, s);
   const InMotion nodes{s.nodes.motion.data()};
   const Index count = Index(s.search.watched.size());
-  std::vector<Vec3<Real>> change(count, Vec3<Real>{0, 0, 0});  // of a velocity since the last time
+  std::vector<Vec3<Real>> change(count);  // of velocity since then; of a new one, its vibration
+  for (Index w = 0; w < count; ++w) change[w] = rigid.at(w) - nodes.velocity(s.search.watched[w]);
   for (std::size_t w = 0; w < watched_before.size(); ++w) {
     const Real* before = watch_before.data() + 8 * w + 4;
     const Index place = s.search.node_watch[watched_before[w]];
