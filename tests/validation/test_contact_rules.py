@@ -66,26 +66,30 @@ def test_a_loaded_contact_is_kept_while_an_edge_reaches_deeper_beyond_a_rim(angl
     np.testing.assert_allclose(after, before, rtol=1e-9)
 
 
+CORNER = [
+    {"group": "rock", "box": {"size": size}, "translate": at}
+    for size, at in [
+        ([2, 2, 1], [-2, -1, -1]),  # floor
+        ([1, 2, 1], [0, -1, -1]),  # under the wall
+        ([1, 2, 1], [0, -1, 0]),  # wall
+    ]
+]
+BONDED = {
+    "default": {"friction_angle": 0, "cohesion": 1e9, "tensile_strength": 1e9},
+    "pairs": [
+        {"between": ["rock", "tet"], "friction_angle": 0, "cohesion": 0, "tensile_strength": 0}
+    ],
+}
+
+
 @pytest.mark.parametrize("angle", [0.0, 40.0])
 def test_a_vertex_pressed_into_a_corner_stays_on_the_floor(angle):
     """Floor and wall of three bonded blocks. The vertex slides on the floor into the wall, 20 mm deep in both:
     its indented point is beside neither, but behind the corner between them.
     """
-    rock = [
-        {"group": "rock", "box": {"size": size}, "translate": at}
-        for size, at in [
-            ([2, 2, 1], [-2, -1, -1]),  # floor
-            ([1, 2, 1], [0, -1, -1]),  # under the wall
-            ([1, 2, 1], [0, -1, 0]),  # wall
-        ]
-    ]
-    law = {"friction_angle": 0, "cohesion": 1e9, "tensile_strength": 1e9}
-    pairs = [
-        {"between": ["rock", "tet"], "friction_angle": 0, "cohesion": 0, "tensile_strength": 0}
-    ]
     arms = np.array([[0, 0, 0], [-1, 0, 0.9], [-0.6, 0.5, 1.2], [-0.6, -0.5, 1.2]])
     tip = np.array([-0.1, 0, 0])
-    scene = Scene(rock, tip + arms, angle, {"default": law, "pairs": pairs})
+    scene = Scene(CORNER, tip + arms, angle, BONDED)
     for depth in (-1e-3, 1e-3, 1e-2, 2e-2):
         scene.put(tip - [0, 0, depth] + arms)
     normal, before = scene.springs()
@@ -95,6 +99,21 @@ def test_a_vertex_pressed_into_a_corner_stays_on_the_floor(angle):
     normal, after = scene.springs()
     on_floor = after[(normal == [0, 0, 1]).all(axis=1)]
     np.testing.assert_allclose(on_floor, before, rtol=1e-9)
+
+
+@pytest.mark.parametrize("angle", [0.0, 40.0])
+def test_a_vertex_that_is_found_behind_a_corner_is_held_by_floor_and_wall(angle):
+    """0.1 m below the floor and 0.15 m behind the wall, deeper than a contact begins, and beside neither.
+    Two of its faces look at the floor, and one at the wall.
+    """
+    tip = np.array([0.15, 0, -0.1])
+    arms = np.array([[0, 0, 0], [-1, 0, 0.9], [-0.6, 0.5, 1.2], [-0.6, -0.5, 1.2]])
+    scene = Scene(CORNER, tip + arms, angle, BONDED)
+    scene.put(tip + arms)
+    normal, force = scene.springs()
+    np.testing.assert_array_equal(np.unique(normal, axis=0), [[-1, 0, 0], [0, 0, 1]])
+    assert len(force) == 3
+    np.testing.assert_array_equal(force, 0)  # free of stress there
 
 
 @pytest.mark.parametrize("angle", [0.0, 40.0])
