@@ -51,7 +51,7 @@ using Crossings = Rows<Proximity::Crossing>;
 /// are of them know their places there.
 template <class Pair, class Item>
 void list_pairs(std::vector<Proximity>& found, std::vector<Pair> Proximity::* pairs,
-                std::vector<Item> Proximity::* items, Column<Index>& nodes, Column<Real>& room,
+                std::vector<Item> Proximity::* items, Column<Index>& nodes, Column<float>& room,
                 Column<Flag>& near) {
   std::vector<Index> first(found.size() + 1);
   for (std::size_t p = 0; p < found.size(); ++p)
@@ -69,7 +69,7 @@ void list_pairs(std::vector<Proximity>& found, std::vector<Pair> Proximity::* pa
       for (std::size_t k = 0; k < std::size(pair.nodes); ++k)
         nodes[k * stride + place] = pair.nodes[k];
       for (std::size_t k = 0; k < std::size(pair.room); ++k)
-        room[k * stride + place] = pair.room[k];
+        room[k * stride + place] = float(pair.room[k]);
       ++place;
     }
   }
@@ -151,7 +151,7 @@ void list_candidates(const Model& m, State& s) {
   foresee_motion(m, s);
   std::vector<Proximity> found = find_proximity(m, s);
   list_pairs(found, &Proximity::faces, &Proximity::touches, s.search.faces_corners,
-             s.search.faces_room, s.search.faces_near);
+             s.search.faces_bounds, s.search.faces_near);
   list_pairs(found, &Proximity::edges, &Proximity::crossings, s.search.edges_ends,
              s.search.edges_bounds, s.search.edges_near);
   const Index count = Index(s.search.exposed_face.size());

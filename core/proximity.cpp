@@ -275,7 +275,7 @@ Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Re
   return {{node, f.faces.vertex(y.face, 0), f.faces.vertex(y.face, 1), f.faces.vertex(y.face, 2),
            f.faces.vertex(y.face, last)},
           {above + rules.lifted, above + rules.depth * length, aside,
-           behind ? rules.entry * std::min(least, y.length) - slack : 1e300,
+           behind ? rules.entry * std::min(least, y.length) - slack : 1e30,
            1.34 * f.m.face_reach[y.face] + aside}};
 }
 
@@ -381,7 +381,7 @@ Proximity::Edges near_edges(const Finder& f, const TwoEdges& ends, const Patch& 
   edges.meet(f, a, p);
   edges.meet(f, b, q);
   return {{ends.p[first_p], ends.p[1 - first_p], ends.q[first_q], ends.q[1 - first_q]},
-          {rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
+          {1.000001 * rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
            ends.shared ? 0.999999 * rules.indentation * edges.length : 0}};
 }
 

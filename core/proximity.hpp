@@ -41,7 +41,8 @@ struct Proximity {
     Index mother, vertex, face;
     Index pair;  // place in the list below
   };
-  /// The pair of vertex and face that touches are of, see MarkNearFaces.
+  /// The pair of vertex and face that touches are of, see MarkNearFaces. The room leaves some for
+  /// single precision.
   struct VertexFace {
     Index nodes[5];
     Real room[5];
@@ -52,7 +53,7 @@ struct Proximity {
     Index sides;  // SidePair::code
     Index pair;   // place in the list below
   };
-  /// The pair of edges that crossings are of, see MarkNearEdges.
+  /// The pair of edges that crossings are of, see MarkNearEdges; the same of the room.
   struct Edges {
     Index nodes[4];
     Real room[5];

@@ -359,7 +359,7 @@ void mark_near_faces(const Model&, State& s, Queue q) {
   launch(q, count,
          MarkNearFaces{{s.nodes.motion.data()},
                        {s.search.faces_corners.data(), padded_stride(count)},
-                       {s.search.faces_room.data(), padded_stride(count)},
+                       {s.search.faces_bounds.data(), padded_stride(count)},
                        s.search.faces_near.data()});
 }
 

@@ -61,13 +61,13 @@ struct SearchState {
   bool strayed = false;     // a vertex left its foreseen path: the lists are old
   Column<Index> candidate_first, candidate, candidate_pair;  // by vertex
   Column<Index> faces_corners;                               // [5][pair] vertex, corners of a face
-  Column<Real> faces_room;                                   // [5][pair] see MarkNearFaces
+  Column<float> faces_bounds;                                // [5][pair] see MarkNearFaces
   Column<Flag> faces_near;  // [pair] may they be in contact in this step?
   Column<Flag> may_begin;   // [candidate] see SiftTargetFaces; made in every step
   Column<Index> edge_candidate_first, edge_candidate;  // by face
   Column<Index> edge_candidate_edge, edge_candidate_sides, edge_candidate_edges;
   Column<Index> edges_ends;            // [4][pair] nodes of both
-  Column<Real> edges_bounds;           // [5][pair] see MarkNearEdges
+  Column<float> edges_bounds;          // [5][pair] see MarkNearEdges
   Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
   Column<Flag> edge_touch;             // [candidate] see TouchTargetEdges; made in every step
   Column<Index> source_first, source;  // faces whose contacts may act on a face
@@ -115,7 +115,7 @@ void describe_search(S& search, Visit&& field) {
   field("search.candidate", search.candidate, "exposed faces that it may touch");
   field("search.candidate_pair", search.candidate_pair, "pairs of vertex and face they are of");
   field("search.faces_corners", search.faces_corners, "vertex and corners of the face of a pair");
-  field("search.faces_room", search.faces_room, "how far apart they may be in contact [m]");
+  field("search.faces_bounds", search.faces_bounds, "how far apart they may be in contact [m]");
   field("search.faces_near", search.faces_near, "1: they may be in contact in this step");
   field("search.source_first", search.source_first, "start of a face's sources");
   field("search.source", search.source, "exposed faces whose contacts may act on it");

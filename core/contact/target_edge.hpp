@@ -108,7 +108,7 @@ struct MarkNearEdges {
   InMotion nodes;
   InIndices ends;   // [4][pair]: of one edge, and of the other; if any of them began at the same
                     // place in the mesh, then the first of both
-  InTable room;     // [5][pair]: depth at which a contact may begin; how far the indentation moves
+  InBounds room;    // [5][pair]: depth at which a contact may begin; how far the indentation moves
                     // an edge aside, at most  [m]; side on which one edge must be of the other,
                     // along the cross product: 1, -1, 0: either; what it takes from the ends of an
                     // edge, at least; distance of the first ends at which edges are together  [m]

@@ -86,7 +86,7 @@ struct SpringColumns {
 struct MarkNearFaces {
   InMotion nodes;
   InIndices corners;  // [5][pair]: the vertex; the corners of the face, a triangle's last one twice
-  InTable room;       // [5][pair]: highest above the face and lowest below it, farthest outside a
+  InBounds room;      // [5][pair]: highest above the face and lowest below it, farthest outside a
                       // side; depth from which it may lie outside, and distance from the centre of
                       // three corners that it has then at most  [m]
   Flag* near;
