@@ -233,12 +233,10 @@ void sum_stiffness(const Model& m, State& s) {
     Real stiffest = 0;
     // the law is that of mother and target, in this order: joints may differ from their groups
     const auto meet = [&](Index y, bool is_target) {
-      const Interface& law =
-          laws.interfaces[is_target ? laws.between(geometry, x, y) : laws.between(geometry, y, x)];
-      const Real stiffer = geometry.stiffer(x, y);
-      stiffest =
-          std::max(stiffest, geometry.contact_area(x, y) *
-                                 std::max(law.stiffness_n(stiffer), law.stiffness_s(stiffer)));
+      const Index mother = is_target ? x : y, target = is_target ? y : x;
+      const auto stiffness =
+          laws.stiffness(geometry, laws.between(geometry, mother, target), mother, target);
+      stiffest = std::max(stiffest, std::max(stiffness.n, stiffness.s));
     };
     for (Index c = s.search.candidate_first[4 * x]; c < s.search.candidate_first[4 * x + 4]; ++c)
       meet(s.search.candidate[c], true);

@@ -23,24 +23,24 @@ struct ContactLaws {
         },
         m, t);
   }
-  /// Stiffness of a contact of theirs on its characteristic area  [N/m].
+  template <class T>
+  struct Stiffness {
+    T n, s;  // [N/m]
+  };
+  /// Stiffness of a contact of theirs on its characteristic area.
   template <class Ids>
-  CDEM_HD auto stiffness_n(const FaceGeometry& geometry, const Ids& law, const Ids& m,
-                           const Ids& t) const {
-    return numbers_of(
-        [&](Index l, Index a, Index b) {
-          return geometry.contact_area(a, b) * interfaces[l].stiffness_n(geometry.stiffer(a, b));
-        },
-        law, m, t);
-  }
-  template <class Ids>
-  CDEM_HD auto stiffness_s(const FaceGeometry& geometry, const Ids& law, const Ids& m,
-                           const Ids& t) const {
-    return numbers_of(
-        [&](Index l, Index a, Index b) {
-          return geometry.contact_area(a, b) * interfaces[l].stiffness_s(geometry.stiffer(a, b));
-        },
-        law, m, t);
+  CDEM_HD auto stiffness(const FaceGeometry& geometry, const Ids& law, const Ids& m,
+                         const Ids& t) const {
+    const auto on_area = [&](auto per_area) {
+      return numbers_of(
+          [&](Index l, Index a, Index b) {
+            return geometry.contact_area(a, b) * per_area(interfaces[l], geometry.stiffer(a, b));
+          },
+          law, m, t);
+    };
+    return Stiffness<Number<Ids>>{
+        on_area([](const Interface& l, Real stiffer) { return l.stiffness_n(stiffer); }),
+        on_area([](const Interface& l, Real stiffer) { return l.stiffness_s(stiffer); })};
   }
 };
 
@@ -205,8 +205,8 @@ struct UpdateSpringForces {
       return numbers_of([&](Index l) { return of(laws.interfaces[l]); }, law);
     };
     // half of it: the other block's semi-springs see the contact too
-    const T kn = T(0.5) * laws.stiffness_n(geometry, law, item.row, t);
-    const T ks = T(0.5) * laws.stiffness_s(geometry, law, item.row, t);
+    const auto stiffness = laws.stiffness(geometry, law, item.row, t);
+    const T kn = T(0.5) * stiffness.n, ks = T(0.5) * stiffness.s;
     const T tan_friction = property([](const Interface& l) { return l.tan_friction; });
     const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / flex);
     const T gap_rate = dot(frame.n, rate);
@@ -344,7 +344,7 @@ struct UpdateEdgeForces {
     const T gap_free = was([](const ContactState& s) { return s.gap_free; });
     const auto law = laws.between(geometry, m, t);
     // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
-    const T kn = laws.stiffness_n(geometry, law, m, t), ks = laws.stiffness_s(geometry, law, m, t);
+    const auto [kn, ks] = laws.stiffness(geometry, law, m, t);
     const T tan_friction =
         numbers_of([&](Index l) { return laws.interfaces[l].tan_friction; }, law);
 
