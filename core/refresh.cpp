@@ -13,6 +13,7 @@
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
 #include "core/edge_list.hpp"
+#include "core/hand_over.hpp"
 #include "core/proximity.hpp"
 #include "core/rest.hpp"
 #include "core/surface.hpp"
@@ -20,10 +21,6 @@
 namespace cdem {
 
 namespace {
-
-Real pair_length(const Model& m, const PairSet& p, Index i) {
-  return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
-}
 
 /// A pair whose points are all broken has its faces released once they have moved apart or along
 /// each other by this part of the indentation; by the whole indentation, at once.
@@ -90,46 +87,6 @@ void sort_exposed(State& s) {
   for (std::size_t x = 0; x < count; ++x) place[exposed[x]] = Index(x);
 }
 
-/// Give the springs of a released conforming pair the force that its bond points carried, half to
-/// either side, so that the change of bookkeeping is no jolt. A point whose vertices have parted,
-/// as those of a hinge do before its last point breaks, carries nothing.
-void hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
-  const FaceColumns faces = face_columns(m, s);
-  const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
-  const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
-  const Frame<Real> frame_a = faces.shape(a).frame(), frame_b = faces.shape(b).frame();
-  for (Index k = 0; k < p.points; ++k) {
-    const Index node_a = p.nodes[std::size_t(k) * p.stride + i];
-    const Index node_b = p.nodes[std::size_t(p.points + k) * p.stride + i];
-    const Vec3<Real> jump = faces.nodes.position(node_b) - faces.nodes.position(node_a);
-    if (dot(frame_a.n, jump) >= 0) continue;  // open: nothing to carry over
-    if (norm(jump) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
-    const std::size_t point = std::size_t(k) * p.point_stride + i;
-    const Real area = p.area[i] / p.points, kn = area * p.stiffness[i],
-               ks = area * p.stiffness[std::size_t(p.stride) + i];
-    const Vec3<Real> slip = ps.slip1[point] * frame_a.t1 + ps.slip2[point] * frame_a.t2;
-    const Vec3<Real> along = jump - dot(frame_a.n, jump) * frame_a.n;
-    const Vec3<Real> on_b = (-0.5 * ks) * (along - slip);
-    const auto give = [&](Index place, Index face, Index node, Index target,
-                          const Frame<Real>& frame, const Vec3<Real>& force) {
-      for (Index v = 0; v < faces.vertex_count(face); ++v) {
-        if (faces.vertex(face, v) != node) continue;
-        const Index slot = 4 * place + v;
-        s.springs.target[slot] = s.springs.target_before[slot] = target;
-        ContactState spring = ContactState::at(s.springs.state.data(), slot);
-        spring.shear1 = dot(force, frame.t1);
-        spring.shear2 = dot(force, frame.t2);
-        spring.sunk = -dot(frame_a.n, jump);
-        spring.force_n = 0.5 * kn * spring.sunk;
-        spring.energy_n = 0.25 * kn * spring.sunk * spring.sunk;
-        spring.store(s.springs.state.data(), slot);
-      }
-    };
-    give(place_a, a, node_a, place_b, frame_b, -on_b);
-    give(place_b, b, node_b, place_a, frame_a, on_b);
-  }
-}
-
 /// A pair that holds by some of its points and is this part of its length apart at another is a
 /// hinge: what comes between its faces touches them.
 constexpr Real hinge_part = 0.05;
@@ -183,8 +140,14 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
-    if (p.point_first.size() == 0 && ps.live[i] == 1) hand_over(m, s, p, ps, i);
-    ps.live[i] = ps.jump[i] = ps.stored[i] = 0;
+    if (p.point_first.size() > 0) {
+      ps.released.push(i);
+    } else {
+      if (ps.live[i] == 1) ps.stored[i] -= hand_over(m, s, p, ps, i);
+      ps.friction[i] += ps.stored[i];
+      ps.stored[i] = 0;
+    }
+    ps.live[i] = ps.jump[i] = 0;
     ps.jump_at_break[i] = -1;
     any = true;
   }

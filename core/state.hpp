@@ -31,7 +31,8 @@ struct ElementState {
 struct PairState {
   Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> stored, fracture, friction;
-  Column<Index> awake;  // blocks of pairs, see rest.hpp
+  Column<Index> awake;     // blocks of pairs, see rest.hpp
+  Column<Index> released;  // overlaps whose contacts the search has still to find in this step
 };
 
 struct SpringState {

@@ -12,6 +12,7 @@
 #include "core/edge_list.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
+#include "core/hand_over.hpp"
 #include "core/rest.hpp"
 
 namespace cdem {
@@ -87,8 +88,15 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
     finish(q);
   } while (!make_room_for_edges(s));
   launch_one(q, count,
-             ListEdges{edges_before(s), found_edges(s), s.edges.first.data(),
-                       s.edges.contact.data(), s.edges.friction.data(), s.edges.dashpot.data()});
+             ListEdges{face_columns(m, s), face_geometry(s), edges_before(s), found_edges(s),
+                       s.edges.first.data(), s.edges.contact.data(), s.edges.friction.data(),
+                       s.edges.dashpot.data()});
+}
+
+void hand_over_released(const Model& m, State& s, Queue q) {  // hand_over.hpp
+  if (s.overlaps.released.size() == 0) return;
+  finish(q);
+  hand_over_overlaps(m, s);
 }
 
 void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, contact/force.hpp
@@ -220,6 +228,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   const bool contacts = may_have_contacts(s);
   if (contacts) find_target_faces(m, s, q);
   if (contacts) find_target_edges(m, s, q);
+  if (contacts) hand_over_released(m, s, q);
   if (m.check_search) s.missed += count_missed_contacts(m, s);
   watch.lap(Phase::search);
   if (contacts) update_contact_forces(m, s, q);

@@ -155,11 +155,11 @@ struct UpdateSpringForces {
 
   CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
   /// Slots that are in contact; those that no longer are end here.
-  CDEM_HD bool picks(Index, Index slot) const {
+  CDEM_HD bool picks(Index m, Index slot) const {
     const Index t = springs.target[slot], before = springs.target_before[slot];
     if (before >= 0 && t != before) {
       if (t < 0)
-        end(slot);
+        end(m, slot, before);
       else
         carry_shear(slot, before, t);
     }
@@ -293,12 +293,23 @@ struct UpdateSpringForces {
     s.shear2 = scale * b;
     s.store(springs.state, slot);
   }
-  /// A contact that opened forgets its shear force; what that spring held is lost to friction, and
-  /// what the normal spring held and did not give back to the dashpot.
-  CDEM_HD void end(Index slot) const {
-    const ContactState s = ContactState::at(springs.state, slot);
-    springs.friction[slot] += s.energy_s;
-    springs.dashpot[slot] += s.energy_n - 0.5 * s.force_n * s.sunk;
+  /// A contact that ended forgets its forces.
+  CDEM_HD void end(Index m, Index slot, Index before) const {
+    const FaceVertices<Index> corners = geometry.vertices(before);
+    Vec3<Real> moved[4];
+    FaceShape<Real> shape = faces.shape(corners);
+    for (Index j = 0; j < 4; ++j) {
+      moved[j] = faces.dt * faces.nodes.velocity(corners.node[j]);
+      shape.x[j] = shape.x[j] - moved[j];
+    }
+    const Frame<Real> frame = shape.frame();
+    const Point<Real> mother = mother_point(m, slot);
+    const Projection<Real> foot = project(shape, mother.x_old, frame.n);
+    Vec3<Real> way = mother.x - mother.x_old;
+    for (Index j = 0; j < 4; ++j) way = way - foot.weight[j] * moved[j];
+    const LostAtEnd lost(ContactState::at(springs.state, slot), frame, way);
+    springs.friction[slot] += lost.friction;
+    springs.dashpot[slot] += lost.dashpot;
     ContactState{}.store(springs.state, slot);
     Real* row = springs.reaction + std::size_t(slot) * 8;
     row[0] = row[1] = row[2] = row[3] = 0;

@@ -391,6 +391,8 @@ struct FindTargetEdges {
 /// List what was found for one exposed face: its contacts go on or begin, and what the springs of
 /// those that ended did not give back is lost to friction and dashpot.
 struct ListEdges {
+  FaceColumns faces;
+  FaceGeometry geometry;
   EdgesBefore held;
   FoundEdges found;
   const Index* first;  // [exposed + 1] of the list
@@ -407,10 +409,35 @@ struct ListEdges {
       for (Index j = 0; j < found.count[m.i]; ++j)
         goes_on = goes_on || EdgeContact::at(found.rows, row + j).before == c;
       if (goes_on) continue;
-      const ContactState s = ContactState::at(held.state, c);
-      friction[m.i] += s.energy_s;
-      dashpot[m.i] += s.energy_n - 0.5 * s.force_n * max_of(s.sunk, 0.0);
+      const LostAtEnd lost = lost_at_end(c);
+      friction[m.i] += lost.friction;
+      dashpot[m.i] += lost.dashpot;
     }
+  }
+
+ private:
+  CDEM_HD LostAtEnd lost_at_end(Index c) const {
+    const EdgeContact contact = EdgeContact::at(held.contact, c);
+    const Index m = contact.mother / 4, k = contact.mother % 4;
+    const Vec3<Real> out = geometry.normal(contact.face) - geometry.normal(m);
+    const Index* target = faces.edge_nodes + 2 * contact.edge;
+    const Side mother = side(geometry.table[m].corner[k], geometry.table[m].end(k)),
+               crossed = side(target[0], target[1]);
+    const Vec3<Real> n = edge_normal(mother.along, crossed.along, out);
+    const Crossing<Real> at = cross_edges(mother.x, mother.along, crossed.x, crossed.along, n);
+    return {ContactState::at(held.state, c), edge_frame(n, crossed.along),
+            mother.way(at.s) - crossed.way(at.t)};
+  }
+  /// An edge one step ago, and how its ends have moved since.
+  struct Side {
+    Vec3<Real> x, along, way0, way1;
+    CDEM_HD Vec3<Real> way(Real s) const { return way0 + s * (way1 - way0); }
+  };
+  CDEM_HD Side side(Index a, Index b) const {
+    const Vec3<Real> way_a = faces.dt * faces.nodes.velocity(a),
+                     way_b = faces.dt * faces.nodes.velocity(b),
+                     x = faces.nodes.position(a) - way_a;
+    return {x, faces.nodes.position(b) - way_b - x, way_a, way_b};
   }
 };
 

@@ -97,7 +97,12 @@ def test_dropped_it_breaks_and_the_ledger_closes():
     sim = dropped(2, 0.4, 0.05)
     assert sum(sim.broken.values()) > 200
     assert np.isfinite(sim.fields["position"]).all()
-    assert abs(sim.energies["error"]) < 0.01
+    assert abs(sim.energies["error"]) < 0.002
+
+
+def test_the_ledger_of_broken_rock_converges_with_the_step():
+    """What released pairs and contacts that end under load still held is lost, and counted."""
+    assert abs(dropped(2, 0.1, 0.05).energies["error"]) < 1e-3  # 1.6e-3 while it was not
 
 
 @pytest.mark.slow
@@ -132,6 +137,58 @@ def test_a_hinge_that_breaks_hands_over_no_force():
     state = sim.core.fields()
     assert state["quads.live"][0] == 0 and (state["spring.target"] >= 0).any()
     assert np.abs(state["spring.friction"]).max() < 1  # found inside, so free of stress
+
+
+OVER = {"a bed": ([3, 3, 1], [1, 1, 0.5]), "a rail": ([0.4, 3, 1], [1, 0.3, 0.5])}
+
+
+@pytest.mark.parametrize("over", OVER)
+def test_bonds_of_faces_that_do_not_conform_hand_over_their_force(over):
+    """A block that slides off its broken bonds stays pressed as it was, by vertices or by edges alone.
+
+    It was let go free of stress, and its bonds' energy was lost to no account (0.07 % and 0.7 %). The
+    vertices on a bed see half the stiffness of the bonds: the bed's semi-springs meet no vertex.
+    """
+    (length, width, height), size = OVER[over]
+    sim = simulate(
+        [
+            {
+                "group": "bed",
+                "box": {"size": [length, width, height]},
+                "translate": [-length / 2, -width / 2, -height],
+            },
+            {"group": "block", "box": {"size": size}, "translate": [-0.5, -0.15, 0]},
+        ],
+        {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={
+            "default": {"friction_angle": 30, "cohesion": "1 MPa", "tensile_strength": "1 MPa"}
+        },
+        rock={"young_modulus": "0.1 GPa"},
+        loads={"gravity": [0, 7, -7]},
+        stages=[
+            {"name": "hold", "mode": "static", "tolerance": 1e-6},
+            {
+                "name": "slide",
+                "mode": "dynamic",
+                "duration": 0.2,
+                "set": {"interfaces.default.cohesion": 0, "interfaces.default.tensile_strength": 0},
+            },
+        ],
+    )
+    assert sim.run_stage("hold") == "converged"
+
+    def pressure():
+        return sim.fields["reaction"][:, 2].sum() - 7 * 2500 * length * width * height
+
+    sim.run_until(sim.time + 1e-9)
+    bonds = sim.core.fields()["overlaps.live"]
+    while bonds[0] > 0:
+        before = pressure()
+        sim.step()
+    assert before > 0
+    assert pressure() > 0.4 * before
+    sim.step(500)
+    assert abs(sim.energies["error"]) < 2e-4
 
 
 def test_an_open_hinge_stops_what_falls_into_it():
