@@ -33,6 +33,11 @@ struct Box {
   void inflate(Real by) {
     for (int d = 0; d < 3; ++d) low[d] -= by, high[d] += by;
   }
+  bool overlaps(const Box& b) const {
+    bool apart = false;
+    for (int d = 0; d < 3; ++d) apart = apart || low[d] > b.high[d] || b.low[d] > high[d];
+    return !apart;
+  }
   static Box nothing() { return {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}}; }
 };
 
