@@ -1,7 +1,10 @@
 // candidates.cpp - the lists of the search, by face, vertex and node.
 #include "core/candidates.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <tuple>
 #include <vector>
@@ -25,19 +28,43 @@ struct Rows {
   const T* end(Index x) const { return items.data() + first[x + 1]; }
 };
 
-/// Deal out what was found, `list` of each patch, to the mother faces; rows are sorted by `key`.
+/// Counts that several threads may raise: where a row's next item goes. Which of them comes first
+/// is left to chance, so rows must be sorted.
+struct Counters {
+  Index* counts;
+  bool alone = omp_get_max_threads() == 1;  // taking turns costs time
+  Index raise(std::size_t i) const {
+    if (alone) return counts[i]++;
+    return std::atomic_ref(counts[i]).fetch_add(1, std::memory_order_relaxed);
+  }
+};
+
+/// Make starts of rows of counts: counts[i + 1] were those of row i.
+template <class Counts>
+void add_up(Counts& counts, std::size_t rows) {
+  for (std::size_t i = 0; i < rows; ++i) counts[i + 1] += counts[i];
+}
+
+/// Deal out what was found to the mother faces; rows are sorted by `key`.
 template <class T, class Key>
-Rows<T> by_mother(const std::vector<Proximity>& found, std::vector<T> Proximity::* list,
-                  Index count, const Key& key) {
+Rows<T> by_mother(const AllProximity& found, std::vector<T> Proximity::* list, Index count,
+                  const Key& key) {
   Rows<T> rows;
   rows.first.resize(count + 1);
-  for (const Proximity& f : found)
-    for (const T& item : f.*list) ++rows.first[item.mother + 1];
-  for (Index x = 0; x < count; ++x) rows.first[x + 1] += rows.first[x];
+  const auto visit = [&](auto&& at) {
+    for (const Proximity& of : found.by_thread) {
+      const std::vector<T>& items = of.*list;
+#pragma omp parallel for schedule(static) if (items.size() >= worth_threads)
+      for (std::size_t i = 0; i < items.size(); ++i) at(items[i]);
+    }
+  };
+  const Counters number{rows.first.data() + 1};
+  visit([&](const T& item) { number.raise(item.mother); });
+  add_up(rows.first, count);
   rows.items.resize(rows.first[count]);
-  std::vector<Index> next(rows.first.begin(), rows.first.end() - 1);
-  for (const Proximity& f : found)
-    for (const T& item : f.*list) rows.items[next[item.mother]++] = item;
+  std::vector<Index> places(rows.first.begin(), rows.first.end() - 1);
+  const Counters next{places.data()};
+  visit([&](const T& item) { rows.items[next.raise(item.mother)] = item; });
 #pragma omp parallel for schedule(dynamic, 64) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x)
     std::sort(rows.begin(x), rows.end(x), [&](const T& a, const T& b) { return key(a) < key(b); });
@@ -47,30 +74,38 @@ Rows<T> by_mother(const std::vector<Proximity>& found, std::vector<T> Proximity:
 using Touches = Rows<Proximity::Touch>;
 using Crossings = Rows<Proximity::Crossing>;
 
-/// List the pairs that all patches have found, with their nodes and room, and let the items that
-/// are of them know their places there.
+/// List the pairs that have been found, patch after patch, with their nodes and room, and let the
+/// items that are of them know their places there.
 template <class Pair, class Item>
-void list_pairs(std::vector<Proximity>& found, std::vector<Pair> Proximity::* pairs,
-                std::vector<Item> Proximity::* items, Column<Index>& nodes, Column<float>& room,
+void list_pairs(AllProximity& found, std::vector<Pair> Proximity::* pairs,
+                Range AllProximity::Share::* pair_range, std::vector<Item> Proximity::* items,
+                Range AllProximity::Share::* item_range, Column<Index>& nodes, Column<float>& room,
                 Column<Flag>& near) {
-  std::vector<Index> first(found.size() + 1);
-  for (std::size_t p = 0; p < found.size(); ++p)
-    first[p + 1] = first[p] + Index((found[p].*pairs).size());
+  const std::size_t patches = found.by_patch.size();
+  std::vector<Index> first(patches + 1);
+  for (std::size_t p = 0; p < patches; ++p) {
+    const Range range = found.by_patch[p].*pair_range;
+    first[p + 1] = first[p] + range.last - range.first;
+  }
   const Index count = first.back();
   const std::size_t stride = padded_stride(count);
   near.resize(count);
   nodes.resize(std::size(Pair{}.nodes) * stride);
   room.resize(std::size(Pair{}.room) * stride);
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
-  for (std::size_t p = 0; p < found.size(); ++p) {
-    for (Item& item : found[p].*items) item.pair += first[p];
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
+  for (std::size_t p = 0; p < patches; ++p) {
+    const AllProximity::Share& share = found.by_patch[p];
+    Proximity& lists = found.by_thread[share.thread];
+    const Range of_pairs = share.*pair_range, of_items = share.*item_range;
+    for (Index i = of_items.first; i < of_items.last; ++i)
+      (lists.*items)[i].pair += first[p] - of_pairs.first;
     std::size_t place = first[p];
-    for (const Pair& pair : found[p].*pairs) {
+    for (Index i = of_pairs.first; i < of_pairs.last; ++i, ++place) {
+      const Pair& pair = (lists.*pairs)[i];
       for (std::size_t k = 0; k < std::size(pair.nodes); ++k)
         nodes[k * stride + place] = pair.nodes[k];
       for (std::size_t k = 0; k < std::size(pair.room); ++k)
         room[k * stride + place] = float(pair.room[k]);
-      ++place;
     }
   }
 }
@@ -82,6 +117,7 @@ void list_sources(SearchState& search, const Touches& touches, const Crossings& 
   first.resize(count + 1);
   first.fill(0);
   const auto visit = [&](auto&& at) {
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
     for (Index x = 0; x < count; ++x) {
       const Proximity::Touch* touch = touches.begin(x);
       const Proximity::Crossing* crossing = crossings.begin(x);
@@ -96,11 +132,17 @@ void list_sources(SearchState& search, const Touches& touches, const Crossings& 
       }
     }
   };
-  visit([&](Index y, Index) { ++first[y + 1]; });
-  for (Index y = 0; y < count; ++y) first[y + 1] += first[y];
+  const Counters number{first.data() + 1};
+  visit([&](Index y, Index) { number.raise(y); });
+  add_up(first, count);
   source.resize(first[count]);
-  std::vector<Index> next(first.data(), first.data() + count);
-  visit([&](Index y, Index x) { source[next[y]++] = x; });
+  std::vector<Index> places(first.data(), first.data() + count);
+  const Counters next{places.data()};
+  visit([&](Index y, Index x) { source[next.raise(y)] = x; });
+  if (next.alone) return;  // they are in ascending order
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
+  for (Index y = 0; y < count; ++y)
+    std::sort(source.data() + first[y], source.data() + first[y + 1]);
 }
 
 void list_touches(SearchState& search, const Touches& touches) {
@@ -112,7 +154,7 @@ void list_touches(SearchState& search, const Touches& touches) {
   for (Index x = 0; x < count; ++x)
     for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
       ++first[4 * std::size_t(x) + t->vertex + 1];
-  for (std::size_t slot = 0; slot < 4 * std::size_t(count); ++slot) first[slot + 1] += first[slot];
+  add_up(first, 4 * std::size_t(count));
   other.resize(first[4 * std::size_t(count)]);
   search.candidate_pair.resize(other.size());
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
@@ -149,11 +191,12 @@ void list_crossings(const Model& m, SearchState& search, const Crossings& crossi
 
 void list_candidates(const Model& m, State& s) {
   foresee_motion(m, s);
-  std::vector<Proximity> found = find_proximity(m, s);
-  list_pairs(found, &Proximity::faces, &Proximity::touches, s.search.faces_corners,
-             s.search.faces_bounds, s.search.faces_near);
-  list_pairs(found, &Proximity::edges, &Proximity::crossings, s.search.edges_ends,
-             s.search.edges_bounds, s.search.edges_near);
+  using Share = AllProximity::Share;
+  AllProximity found = find_proximity(m, s);
+  list_pairs(found, &Proximity::faces, &Share::faces, &Proximity::touches, &Share::touches,
+             s.search.faces_corners, s.search.faces_bounds, s.search.faces_near);
+  list_pairs(found, &Proximity::edges, &Share::edges, &Proximity::crossings, &Share::crossings,
+             s.search.edges_ends, s.search.edges_bounds, s.search.edges_near);
   const Index count = Index(s.search.exposed_face.size());
   const Touches touches =
       by_mother(found, &Proximity::touches, count,

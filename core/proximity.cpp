@@ -1,6 +1,8 @@
 // proximity.cpp - pairs of patches, and what of them may touch before the lists are renewed.
 #include "core/proximity.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -423,7 +425,7 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
 
 }  // namespace
 
-std::vector<Proximity> find_proximity(const Model& m, const State& s) {
+AllProximity find_proximity(const Model& m, const State& s) {
   const std::vector<ExposedFace> exposed = exposed_faces(m, s);
   const std::vector<ExposedSide> sides = exposed_sides(s, exposed);
   const Bonded bonded = live_overlaps(m, s);
@@ -433,29 +435,38 @@ std::vector<Proximity> find_proximity(const Model& m, const State& s) {
   std::vector<Box> boxes(count);
   for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
   const BoxTree tree(boxes);
-  std::vector<Proximity> found(count);
-#pragma omp parallel for schedule(dynamic, 32) if (count >= worth_threads)
-  for (Index p = 0; p < count; ++p) {
-    const Patch& a = patches[p];
-    if (!a.movable) continue;  // those that are near it find it
+  AllProximity all;
+  all.by_thread.resize(omp_get_max_threads());
+  all.by_patch.resize(count);
+#pragma omp parallel if (count >= worth_threads)
+  {
+    Proximity& found = all.by_thread[omp_get_thread_num()];
+    found.reserve_like(s.search, omp_get_num_threads());
     std::vector<Index> others;
-    others.reserve(32);
-    tree.query(boxes[p], [&](Index q) {
-      if ((q > p || !patches[q].movable) && a.block != patches[q].block &&
-          !apart(m, s, exposed, a, patches[q]))
-        others.push_back(q);
-    });
-    std::sort(others.begin(), others.end());
-    for (const Index q : others) {
-      const Patch& b = patches[q];
-      const FacePairs pairs(f, a, b);
-      if (!pairs.any()) continue;
-      list_touches(f, a, b, pairs, false, found[p]);
-      list_touches(f, b, a, pairs, true, found[p]);
-      if (m.semi_edges) list_crossings(f, a, b, pairs, found[p]);
+#pragma omp for schedule(dynamic, 32)
+    for (Index p = 0; p < count; ++p) {
+      const Patch& a = patches[p];
+      if (!a.movable) continue;  // those that are near it find it
+      others.clear();
+      tree.query(boxes[p], [&](Index q) {
+        if ((q > p || !patches[q].movable) && a.block != patches[q].block &&
+            !apart(m, s, exposed, a, patches[q]))
+          others.push_back(q);
+      });
+      std::sort(others.begin(), others.end());
+      all.by_patch[p].begin(omp_get_thread_num(), found);
+      for (const Index q : others) {
+        const Patch& b = patches[q];
+        const FacePairs pairs(f, a, b);
+        if (!pairs.any()) continue;
+        list_touches(f, a, b, pairs, false, found);
+        list_touches(f, b, a, pairs, true, found);
+        if (m.semi_edges) list_crossings(f, a, b, pairs, found);
+      }
+      all.by_patch[p].end(found);
     }
   }
-  return found;
+  return all;
 }
 
 bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,

@@ -34,7 +34,7 @@ Bonded live_overlaps(const Model& m, const State& s);
 bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,
                 SidePair& pair);
 
-/// What of a patch may touch what of the patches after it.
+/// What patches may touch of the patches after them, patch after patch as one thread comes to them.
 struct Proximity {
   /// A vertex of a mother face on another exposed face.
   struct Touch {
@@ -62,9 +62,37 @@ struct Proximity {
   std::vector<VertexFace> faces;
   std::vector<Crossing> crossings;
   std::vector<Edges> edges;
+
+  /// Make room for a thread's part of what the last search has found, and some more.
+  void reserve_like(const SearchState& last, Index threads) {
+    const auto part = [&](std::size_t size) { return (size + size / 8) / threads; };
+    touches.reserve(part(last.candidate.size()));
+    faces.reserve(part(last.faces_near.size()));
+    crossings.reserve(part(last.edge_candidate.size()));
+    edges.reserve(part(last.edges_near.size()));
+  }
 };
 
-/// What may touch before the next refresh: by patch, with the patches after it.
-std::vector<Proximity> find_proximity(const Model& model, const State& state);
+/// All that may touch before the next refresh.
+struct AllProximity {
+  /// Where a patch's share of a thread's lists begins and ends.
+  struct Share {
+    Index thread = 0;
+    Range touches{0, 0}, faces{0, 0}, crossings{0, 0}, edges{0, 0};
+
+    void begin(Index of, const Proximity& lists) {
+      thread = of;
+      touches.first = Index(lists.touches.size()), faces.first = Index(lists.faces.size());
+      crossings.first = Index(lists.crossings.size()), edges.first = Index(lists.edges.size());
+    }
+    void end(const Proximity& lists) {
+      touches.last = Index(lists.touches.size()), faces.last = Index(lists.faces.size());
+      crossings.last = Index(lists.crossings.size()), edges.last = Index(lists.edges.size());
+    }
+  };
+  std::vector<Proximity> by_thread;
+  std::vector<Share> by_patch;
+};
+AllProximity find_proximity(const Model& model, const State& state);
 
 }  // namespace cdem

@@ -285,7 +285,7 @@ void refresh_contacts(const Model& m, State& s) {
   released = release_pairs(m, s, m.quads, s.quads) || released;
   released = release_pairs(m, s, m.overlaps, s.overlaps) || released;
   sort_exposed(s);
-  join_surfaces(m, s);
+  join_surfaces(m, s, released);
   list_exposed(m, s);
   list_candidates(m, s);
   sum_stiffness(m, s);

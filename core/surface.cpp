@@ -6,6 +6,8 @@
 #include <tuple>
 #include <vector>
 
+#include "core/check.hpp"
+
 namespace cdem {
 
 namespace {
@@ -117,9 +119,19 @@ void find_across(const Model& m, State& s) {
     }
 }
 
+/// How many bond points are intact.
+Real bonded_points(const PairState& ps) {
+  return ordered_sum(Index(ps.bond.size()), [&](Index i) { return ps.bond[i]; });
+}
+
 }  // namespace
 
-void join_surfaces(const Model& m, State& s) {
+void join_surfaces(const Model& m, State& s, bool released) {
+  const Index faces = Index(s.search.exposed_face.size());
+  const Real points = bonded_points(s.triangles) + bonded_points(s.quads);
+  if (!released && faces == s.search.joined_faces && points == s.search.joined_points) return;
+  s.search.joined_faces = faces;
+  s.search.joined_points = points;
   label_glue(m, s);
   merge_rings(m, s);
   find_across(m, s);
