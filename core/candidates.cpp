@@ -21,7 +21,7 @@ namespace {
 template <class T>
 struct Rows {
   std::vector<Index> first;
-  std::vector<T> items;
+  Unset<T> items;
   T* begin(Index x) { return items.data() + first[x]; }
   T* end(Index x) { return items.data() + first[x + 1]; }
   const T* begin(Index x) const { return items.data() + first[x]; }

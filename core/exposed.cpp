@@ -116,8 +116,9 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
 }
 
 /// All of a patch but its faces.
-void complete(const Model& m, const State& s, const std::vector<ExposedFace>& exposed, Patch& p) {
+void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed, Patch& p) {
   const FaceColumns faces = face_columns(m, s);
+  p.box = Box::nothing();
   for (Index i = 0; i < p.face_count; ++i) {
     const ExposedFace& e = exposed[p.face[i]];
     p.drift = p.drift + Real(1.0) / p.face_count * e.drift;
@@ -232,40 +233,47 @@ void foresee_motion(const Model& m, State& s) {
   }
 }
 
-std::vector<ExposedFace> exposed_faces(const Model& m, const State& s) {
+Unset<ExposedFace> exposed_faces(const Model& m, const State& s) {
   const Index count = Index(s.search.exposed_face.size());
-  std::vector<ExposedFace> exposed(count);
+  Unset<ExposedFace> exposed(count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) exposed[x] = exposed_face(m, s, x);
   return exposed;
 }
 
-std::vector<Patch> exposed_patches(const Model& m, const State& s,
-                                   const std::vector<ExposedFace>& exposed) {
+Unset<Patch> exposed_patches(const Model& m, const State& s, const Unset<ExposedFace>& exposed) {
   std::vector<Index> patch_of(m.tet4.count + m.pyramid5.count + m.wedge6.count + m.hex8.count, -1);
-  std::vector<Patch> patches;
+  struct Faces {
+    Index count, place[6];
+  };
+  std::vector<Faces> faces;
   for (Index x = 0; x < Index(exposed.size()); ++x) {
-    Index& place = patch_of[m.face_element[exposed[x].face]];
-    if (place < 0) {
-      place = Index(patches.size());
-      patches.emplace_back();
+    Index& patch = patch_of[m.face_element[exposed[x].face]];
+    if (patch < 0) {
+      patch = Index(faces.size());
+      faces.push_back({});
     }
-    Patch& patch = patches[place];
-    patch.face[patch.face_count++] = x;
+    faces[patch].place[faces[patch].count++] = x;
   }
-  const Index count = Index(patches.size());
+  const Index count = Index(faces.size());
+  Unset<Patch> patches(count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
-  for (Index p = 0; p < count; ++p) complete(m, s, exposed, patches[p]);
+  for (Index p = 0; p < count; ++p) {
+    Patch& patch = patches[p] = {};
+    patch.face_count = faces[p].count;
+    std::copy_n(faces[p].place, faces[p].count, patch.face);
+    complete(m, s, exposed, patch);
+  }
   return patches;
 }
 
-std::vector<ExposedSide> exposed_sides(const State& s, const std::vector<ExposedFace>& exposed) {
-  std::vector<ExposedSide> sides(4 * exposed.size());
+Unset<ExposedSide> exposed_sides(const State& s, const Unset<ExposedFace>& exposed) {
+  Unset<ExposedSide> sides(4 * exposed.size());
 #pragma omp parallel for schedule(static, 128) if (exposed.size() >= worth_threads)
   for (std::size_t x = 0; x < exposed.size(); ++x) {
     const ExposedFace& e = exposed[x];
     for (Index k = 0; k < e.shape.count(); ++k) {
-      ExposedSide& side = sides[4 * x + k];
+      ExposedSide& side = sides[4 * x + k] = {};
       side.start = e.shape.x[k];
       side.along = e.shape.x[k + 1 == e.shape.count() ? 0 : k + 1] - side.start;
       side.length = norm(side.along);

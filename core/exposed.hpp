@@ -2,6 +2,7 @@
 // move before the lists are renewed. Host code.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/contact/boxes.hpp"
@@ -10,6 +11,19 @@
 #include "core/state.hpp"
 
 namespace cdem {
+
+/// A vector for loops to fill: its items begin as the memory is, for to fill them twice, at first
+/// on one thread, costs as much as what the loops do.
+template <class T>
+struct LeaveUnset : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = LeaveUnset<U>;
+  };
+  void construct(T* item) { ::new (static_cast<void*>(item)) T; }
+};
+template <class T>
+using Unset = std::vector<T, LeaveUnset<T>>;
 
 /// A node of exposed faces as the lists see it: they are old once it is farther than its skin from
 /// where it went straight on.
@@ -51,45 +65,45 @@ struct ExposedFace {
   Box box;  // of the whole way
 };
 
-std::vector<ExposedFace> exposed_faces(const Model& model, const State& state);
+Unset<ExposedFace> exposed_faces(const Model& model, const State& state);
 
 /// The exposed faces of one element, with their vertices and edges, each once.
 struct Patch {
   /// An edge: the faces of the patch that meet there, and which of their sides it is.
   struct Edge {
-    Index id, faces = 0;
+    Index id, faces;
     Index face[2], side[2];
   };
-  Index face_count = 0, vertex_count = 0, edge_count = 0;
+  Index face_count, vertex_count, edge_count;
   Index face[6];  // exposed
   Index vertex[8];
   Index corner[8][6];  // which corner of a face a vertex is, or -1
   Edge edge[12];
-  Vec3<Real> drift{0, 0, 0};   // of all its vertices alike  [m]
-  Real stir = 0;               // of a vertex beyond the drift  [m]
-  Real deepest = 0;            // contact  [m]
-  Real length = 0, reach = 0;  // largest of its faces  [m]
-  Index block = -1;
-  bool movable = false;
-  Box box = Box::nothing();  // of the whole way
+  Vec3<Real> drift;    // of all its vertices alike  [m]
+  Real stir;           // of a vertex beyond the drift  [m]
+  Real deepest;        // contact  [m]
+  Real length, reach;  // largest of its faces  [m]
+  Index block;
+  bool movable;
+  Box box;  // of the whole way
 };
 
 /// Group the exposed faces by the elements behind them.
-std::vector<Patch> exposed_patches(const Model& model, const State& state,
-                                   const std::vector<ExposedFace>& exposed);
+Unset<Patch> exposed_patches(const Model& model, const State& state,
+                             const Unset<ExposedFace>& exposed);
 
 /// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
 /// lie between theirs, which is what `fall` tells (see TouchTargetEdges::cones_hold).
 struct ExposedSide {
-  bool sharp = false;  // may be an edge of a contact: its faces are not coplanar
-  bool rises = false;  // may be where the surface bends towards its outside
+  bool sharp;  // may be an edge of a contact: its faces are not coplanar
+  bool rises;  // may be where the surface bends towards its outside
   Vec3<Real> start, along;
-  Vec3<Real> fall, fall_across;  // normal x side, of the face and of the one across
-  Index across = -1;             // exposed face on the other side, or -1
-  Real length = 0;               // [m]
-  Real turn = 0, turn_face = 0, turn_across = 0;  // of the side and of both faces
+  Vec3<Real> fall, fall_across;       // normal x side, of the face and of the one across
+  Index across;                       // exposed face on the other side, or -1
+  Real length;                        // [m]
+  Real turn, turn_face, turn_across;  // of the side and of both faces
 };
 
-std::vector<ExposedSide> exposed_sides(const State& state, const std::vector<ExposedFace>& exposed);
+Unset<ExposedSide> exposed_sides(const State& state, const Unset<ExposedFace>& exposed);
 
 }  // namespace cdem

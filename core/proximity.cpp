@@ -20,8 +20,8 @@ struct Finder {
   const Model& m;
   const State& s;
   const FaceColumns faces;
-  const std::vector<ExposedFace>& exposed;
-  const std::vector<ExposedSide>& sides;
+  const Unset<ExposedFace>& exposed;
+  const Unset<ExposedSide>& sides;
   const Bonded& bonded;
 };
 
@@ -58,7 +58,7 @@ Real farthest_contact(const SearchRules& rules, const Patch& a, const Patch& b) 
 }
 
 /// Does a plane along a face of either patch hold the two apart until the next refresh?
-bool apart(const Model& m, const State& s, const std::vector<ExposedFace>& exposed, const Patch& a,
+bool apart(const Model& m, const State& s, const Unset<ExposedFace>& exposed, const Patch& a,
            const Patch& b) {
   const InMotion nodes{s.nodes.motion.data()};
   const Real room = farthest_contact(m.rules, a, b);
@@ -426,11 +426,11 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
 }  // namespace
 
 AllProximity find_proximity(const Model& m, const State& s) {
-  const std::vector<ExposedFace> exposed = exposed_faces(m, s);
-  const std::vector<ExposedSide> sides = exposed_sides(s, exposed);
+  const Unset<ExposedFace> exposed = exposed_faces(m, s);
+  const Unset<ExposedSide> sides = exposed_sides(s, exposed);
   const Bonded bonded = live_overlaps(m, s);
   const Finder f{m, s, face_columns(m, s), exposed, sides, bonded};
-  const std::vector<Patch> patches = exposed_patches(m, s, exposed);
+  const Unset<Patch> patches = exposed_patches(m, s, exposed);
   const Index count = Index(patches.size());
   std::vector<Box> boxes(count);
   for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
