@@ -260,6 +260,9 @@ struct FacePairs {
           row[i] |= 1 << j;
   }
   bool any() const { return row[0] || row[1] || row[2] || row[3] || row[4] || row[5]; }
+  /// The faces of the second that may touch one at an edge of the first, and the faces at an edge.
+  int of(const Patch::Edge& e) const { return row[e.face[0]] | row[e.face[e.faces - 1]]; }
+  static int at(const Patch::Edge& e) { return 1 << e.face[0] | 1 << e.face[e.faces - 1]; }
 };
 
 /// Corners and room of a vertex and a face that may touch; `length`, `reach` and `least` as above.
@@ -395,12 +398,13 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
     const Patch::Edge& p = a.edge[e];
     const ExposedFace& x = f.exposed[a.face[p.face[0]]];
     const ExposedSide& side_p = f.sides[4 * std::size_t(a.face[p.face[0]]) + p.side[0]];
-    if (!side_p.sharp) continue;
+    const int met = pairs.of(p);
+    if (!side_p.sharp || !met) continue;
     for (Index g = 0; g < b.edge_count; ++g) {
       const Patch::Edge& q = b.edge[g];
       const ExposedFace& y = f.exposed[b.face[q.face[0]]];
       const ExposedSide& side_q = f.sides[4 * std::size_t(b.face[q.face[0]]) + q.side[0]];
-      if (!side_q.sharp) continue;
+      if (!side_q.sharp || !(met & FacePairs::at(q))) continue;
       const Vec3<Real> normal = cross(side_p.along, side_q.along);
       const Real off = dot(normal, side_p.start - side_q.start);
       if (off * off > room * room * dot(normal, normal)) continue;  // so far are even the lines
