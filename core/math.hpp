@@ -72,6 +72,15 @@ struct Row {
   }
   CDEM_HD void store(Real* memory) const { std::memcpy(memory, &n, sizeof n); }
   CDEM_HD Vec3<Real> vector() const { return {n[0], n[1], n[2]}; }
+  /// The same without the sign of the fourth.
+  CDEM_HD Row with_size_of_last() const {
+#if defined(__CUDACC__)
+    return {Numbers{n[0], n[1], n[2], n[3] < 0 ? -n[3] : n[3]}};
+#else
+    using Bits = std::int64_t __attribute__((vector_size(32)));
+    return {(Numbers)((Bits)n & Bits{-1, -1, -1, INT64_MAX})};
+#endif
+  }
   /// The same with 0 in the fourth place.
   CDEM_HD Row xyz() const {
 #if defined(__CUDACC__)

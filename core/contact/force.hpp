@@ -473,31 +473,22 @@ struct GatherFaceForces {
   CDEM_HD void operator()(One m) const {
     if (is_idle(candidates, edge_candidates, sources, m.i)) return;
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
-    Real sum[4][4] = {};
+    Row sum[4] = {Row::zero(), Row::zero(), Row::zero(), Row::zero()};
     own(m.i, count, sum);
     for (Index c = sources.first[m.i]; c < sources.first[m.i + 1]; ++c) {
       if (!acting[c]) continue;
       reactions(m.i, face, count, sources.other[c], sum);
       acting[c] = 0;
     }
-    for (Index k = 0; k < count; ++k)
-      for (Index j = 0; j < 4; ++j) corner_force[(std::size_t(m.i) * 4 + k) * 4 + j] = sum[k][j];
+    for (Index k = 0; k < count; ++k) sum[k].store(corner_force + (std::size_t(m.i) * 4 + k) * 4);
   }
 
  private:
-  CDEM_HD static void add(Real* corner, Real weight, const Real* row) {
-    corner[0] += weight * row[0];
-    corner[1] += weight * row[1];
-    corner[2] += weight * row[2];
-    corner[3] += abs_of(weight) * row[3];
+  /// The force with its weight, the stiffness with the size of that.
+  CDEM_HD static void add(Row& corner, Real weight, const Real* row) {
+    corner = corner + (weight * Row::at(row)).with_size_of_last();
   }
-  CDEM_HD static void take(Real* corner, Real weight, const Real* row) {
-    corner[0] -= weight * row[0];
-    corner[1] -= weight * row[1];
-    corner[2] -= weight * row[2];
-    corner[3] += abs_of(weight) * row[3];
-  }
-  CDEM_HD void own(Index m, Index count, Real sum[4][4]) const {
+  CDEM_HD void own(Index m, Index count, Row sum[4]) const {
     const Real shared = rules.action / Real(count);
     for (Index k = 0; k < count; ++k) {
       if (springs.target[4 * m + k] < 0) continue;
@@ -515,19 +506,19 @@ struct GatherFaceForces {
       edge_dashpot[m] += row[7];
     }
   }
-  CDEM_HD void reactions(Index m, Index face, Index count, Index other, Real sum[4][4]) const {
+  CDEM_HD void reactions(Index m, Index face, Index count, Index other, Row sum[4]) const {
     for (Index k = 0; k < 4; ++k) {
       if (springs.target[4 * other + k] != m) continue;
       const Real* row = springs.reaction + (std::size_t(other) * 4 + k) * 8;
-      for (Index j = 0; j < count; ++j) take(sum[j], row[4 + j], row);
+      for (Index j = 0; j < count; ++j) add(sum[j], -row[4 + j], row);
     }
     for (Index c = edges.first[other]; c < edges.first[other + 1]; ++c) {
       const EdgeContact contact = EdgeContact::at(edges.contact, c);
       if (contact.face != m) continue;
       const Real* row = edges.reaction + std::size_t(c) * 8;
       const Index k = faces.side_on(face, contact.edge);
-      take(sum[k], 1.0 - row[5], row);
-      take(sum[k + 1 == count ? 0 : k + 1], row[5], row);
+      add(sum[k], row[5] - 1.0, row);
+      add(sum[k + 1 == count ? 0 : k + 1], -row[5], row);
     }
   }
 };
