@@ -68,8 +68,11 @@ class Build:
 
     @cached_property
     def fingerprint(self) -> str:
-        """The same for models whose nodes begin at the same places, in the same order."""
-        return hashlib.sha256(self.start_position.tobytes()).hexdigest()
+        """The same for models with the same nodes, elements and groups, in the same order."""
+        digest = hashlib.sha256(self.start_position.tobytes())
+        for shape, cells in sorted(self.mesh.cells.items()):
+            digest.update(shape.encode() + cells.tobytes() + self.mesh.cell_group[shape].tobytes())
+        return digest.hexdigest()
 
     @property
     def group_names(self) -> list[str]:

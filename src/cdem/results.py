@@ -167,9 +167,9 @@ class Results:
             )
         if attributes.get("nodes") != sim.build.fingerprint:
             raise CdemError(
-                f"{self.folder / 'checkpoint.h5'}: belongs to another model, whose nodes begin at "
-                "other places or are numbered otherwise; resume with the case, the mesh and the "
-                f"cdem that were run ({attributes['version']}; this is {__version__})"
+                f"{self.folder / 'checkpoint.h5'}: belongs to another model, with other elements or "
+                "groups, or whose nodes begin at other places or are numbered otherwise; resume with "
+                f"the case, the mesh and the cdem that were run ({attributes['version']}; this is {__version__})"
             )
         return arrays, attributes
 
