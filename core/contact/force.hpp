@@ -48,8 +48,8 @@ struct ContactLaws {
 ///
 /// A contact met from outside is free at zero gap. One that is found already inside must not
 /// release energy that nothing put in (faces of freshly broken rock have slid a little past each
-/// other, a vertex turns a corner): it may begin as deep as the contact it takes over from; what is
-/// deeper counts as free of stress.
+/// other, a vertex turns a corner): it may begin with the energy of the contact it takes over from,
+/// `sunk_before` deep; what is deeper counts as free of stress.
 /// `dilated` is how far that contact had opened by dilation.
 template <class T>
 CDEM_HD inline T starting_gap_free(T gap, T gap_rate, T dt, T sunk_before, T dilated) {
@@ -161,7 +161,7 @@ struct UpdateSpringForces {
       if (t < 0)
         end(m, slot, before);
       else
-        carry_shear(slot, before, t);
+        turn(m, slot, before, t);
     }
     return t >= 0;
   }
@@ -177,7 +177,8 @@ struct UpdateSpringForces {
     const Four<T> forces = InRows{springs.state}.at(slot, 0);
     const ContactBefore<T> old{select(begins, zero, forces.x), select(begins, zero, forces.y),
                                select(begins, zero, forces.z), select(begins, zero, forces.w)};
-    const T free_before = select(begins, zero, InRows{springs.state}.at(slot, 4).x);
+    const Four<T> rest = InRows{springs.state}.at(slot, 4);  // see turn
+    const T free_before = select(begins, zero, rest.x);
 
     const auto corners = geometry.vertices(t);
     const FaceShape<T> shape = faces.shape(corners);
@@ -216,15 +217,20 @@ struct UpdateSpringForces {
     const Dilation<T> dilation{
         min_of(property([](const Interface& l) { return l.tan_dilation; }), tan_friction),
         max_of(property([](const Interface& l) { return l.dilation_most; }) - free, zero)};
-    const ContactForce<T> f =
-        contact_force(kn, ks, tan_friction, foot.gap - free, gap_rate, dashpot,
-                      -dot(old_frame.t1, apart), -dot(old_frame.t2, apart), old, dilation, dt);
+    const T slip1 = -dot(old_frame.t1, apart), slip2 = -dot(old_frame.t2, apart);
+    const ContactForce<T> f = contact_force(kn, ks, tan_friction, foot.gap - free, gap_rate,
+                                            dashpot, slip1, slip2, old, dilation, dt);
     const T state[8] = {f.force_n,     f.sunk,     f.shear1,   f.shear2,
                         free + f.rise, f.energy_n, f.energy_s, zero};
     set_rows(springs.state, slot, state);
-    add_to(springs.friction, slot, f.friction);
-    // a change of face is no work of the dashpot
-    add_to(springs.dashpot, slot, select(moves & !begins, zero, f.dashpot));
+    // A turn loses what the springs held on the old face and neither gave back nor hold on the new
+    // one. If it should make energy, that is no loss: it is left to the closing error.
+    const auto turns = moves & !begins;
+    const T half(0.5);
+    const T lost_s = rest.z - f.energy_s - half * (f.shear1 * slip1 + f.shear2 * slip2);
+    const T lost_n = rest.y - f.energy_n - half * f.force_n * gap_rate * dt;
+    add_to(springs.friction, slot, select(turns, lost_s, f.friction));
+    add_to(springs.dashpot, slot, select(turns, max_of(lost_n, -lost_s), f.dashpot));
 
     const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
     // the target takes the force where its line of action meets the face: no couple is left over
@@ -279,9 +285,12 @@ struct UpdateSpringForces {
     return rules.action / Real(count) + (j == k ? 1.0 - rules.action : 0.0);
   }
   /// A contact that changes its face keeps the shear force, turned into the new plane with its
-  /// length kept (hand-over).
-  CDEM_HD void carry_shear(Index slot, Index before, Index t) const {
+  /// length kept (hand-over), and sinks in as far as gives the normal spring there the energy it
+  /// had: as deep as before would make some where the new face is the stiffer one. Until it has its
+  /// new force, its energies are what its springs held on the old face and did not give back.
+  CDEM_HD void turn(Index m, Index slot, Index before, Index t) const {
     ContactState s = ContactState::at(springs.state, slot);
+    const LostAtEnd left = lost_on(m, slot, before);
     const Frame<Real> from = faces.shape(geometry.vertices(before)).frame();
     const Frame<Real> to = faces.shape(geometry.vertices(t)).frame();
     const Real s1 = s.shear1, s2 = s.shear2;
@@ -291,13 +300,26 @@ struct UpdateSpringForces {
     const Real scale = in_plane > 0 ? sqrt_of(s1 * s1 + s2 * s2) / in_plane : 0.0;
     s.shear1 = scale * a;
     s.shear2 = scale * b;
+    const Real kn = 0.5 * laws.stiffness(geometry, laws.between(geometry, m, t), m, t).n;
+    s.sunk = sqrt_of(2 / kn * s.energy_n);
+    s.energy_n = left.dashpot;
+    s.energy_s = left.friction;
     s.store(springs.state, slot);
   }
   /// A contact that ended forgets its forces.
   CDEM_HD void end(Index m, Index slot, Index before) const {
+    const LostAtEnd lost = lost_on(m, slot, before);
+    springs.friction[slot] += lost.friction;
+    springs.dashpot[slot] += lost.dashpot;
+    ContactState{}.store(springs.state, slot);
+    Real* row = springs.reaction + std::size_t(slot) * 8;
+    row[0] = row[1] = row[2] = row[3] = 0;
+  }
+  /// What the springs held on a face that they have left, and did not give back.
+  CDEM_HD LostAtEnd lost_on(Index m, Index slot, Index before) const {
     const FaceVertices<Index> corners = geometry.vertices(before);
-    Vec3<Real> moved[4];
     FaceShape<Real> shape = faces.shape(corners);
+    Vec3<Real> moved[4];
     for (Index j = 0; j < 4; ++j) {
       moved[j] = faces.dt * faces.nodes.velocity(corners.node[j]);
       shape.x[j] = shape.x[j] - moved[j];
@@ -307,12 +329,7 @@ struct UpdateSpringForces {
     const Projection<Real> foot = project(shape, mother.x_old, frame.n);
     Vec3<Real> way = mother.x - mother.x_old;
     for (Index j = 0; j < 4; ++j) way = way - foot.weight[j] * moved[j];
-    const LostAtEnd lost(ContactState::at(springs.state, slot), frame, way);
-    springs.friction[slot] += lost.friction;
-    springs.dashpot[slot] += lost.dashpot;
-    ContactState{}.store(springs.state, slot);
-    Real* row = springs.reaction + std::size_t(slot) * 8;
-    row[0] = row[1] = row[2] = row[3] = 0;
+    return {ContactState::at(springs.state, slot), frame, way};
   }
 };
 

@@ -54,7 +54,7 @@ def test_at_rest_it_stays_at_rest():
     assert sum(sim.broken.values()) == 0
 
 
-def dropped(divisions, steps_safety, time):
+def dropped(divisions, steps_safety, time, friction_angle=30):
     sim = cdem.Simulation(
         case(
             [
@@ -68,7 +68,7 @@ def dropped(divisions, steps_safety, time):
             {"body": {"velocity": [0.3, 0.1, -4]}, "bed": {"fix": ["x", "y", "z"]}},
             interfaces={
                 "default": {
-                    "friction_angle": 30,
+                    "friction_angle": friction_angle,
                     "cohesion": "20 kPa",
                     "tensile_strength": "10 kPa",
                 }
@@ -100,9 +100,14 @@ def test_dropped_it_breaks_and_the_ledger_closes():
     assert abs(sim.energies["error"]) < 0.002
 
 
-def test_the_ledger_of_broken_rock_converges_with_the_step():
-    """What released pairs and contacts that end under load still held is lost, and counted."""
-    assert abs(dropped(2, 0.1, 0.05).energies["error"]) < 1e-3  # 1.6e-3 while it was not
+@pytest.mark.parametrize("friction_angle", [0, 30])
+def test_the_ledger_of_broken_rock_converges_with_the_step(friction_angle):
+    """What released pairs and contacts that end under load or turn corners held is lost, and counted.
+
+    It was not, and 0.2 to 0.3 % were missing with any step.
+    """
+    sim = dropped(2, 0.1, 0.05, friction_angle)
+    assert abs(sim.energies["error"]) < 1e-4
 
 
 @pytest.mark.slow
