@@ -60,8 +60,7 @@ struct SearchState {
   Real horizon = 0, built_time = 0;          // how long the lists look ahead, and from when  [s]
   Real skin_least = 0.001;  // of a node, in parts of L; follows how long the lists last
   bool strayed = false;     // a vertex left its foreseen path: the lists are old
-  Index joined_faces =
-      -1;  // exposed faces, and intact bond points, when join_surfaces was last due
+  Index joined_faces = -1;  // exposed faces, and intact bond points, as join_surfaces last saw them
   Real joined_points = -1;
   Column<Index> candidate_first, candidate, candidate_pair;  // by vertex
   Column<Index> faces_corners;                               // [5][pair] vertex, corners of a face
