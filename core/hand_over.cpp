@@ -12,38 +12,17 @@ Real pair_length(const Model& m, const PairSet& p, Index i) {
   return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
 }
 
-namespace {
-
-/// Nodes, faces and edges as they were one step ago, when bonds gave their last forces.
-struct OneStepAgo {
-  FaceColumns faces;
-
-  Vec3<Real> position(Index node) const {
-    return faces.nodes.position(node) - faces.dt * faces.nodes.velocity(node);
-  }
-  FaceShape<Real> shape(Index face) const {
-    FaceShape<Real> shape = faces.shape(face);
-    for (Index k = 0; k < 4; ++k) {
-      const Index vertex = faces.vertex(face, k);
-      shape.x[k] = position(vertex < 0 ? faces.vertex(face, 2) : vertex);
-    }
-    return shape;
-  }
-};
-
-}  // namespace
-
 Real hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
-  const OneStepAgo before{face_columns(m, s)};
-  const FaceColumns& faces = before.faces;
+  const FaceColumns faces = face_columns(m, s);
   const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
   const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
-  const Frame<Real> frame_a = before.shape(a).frame(), frame_b = before.shape(b).frame();
+  const Frame<Real> frame_a = faces.shape_before(a).frame(),
+                    frame_b = faces.shape_before(b).frame();
   Real handed = 0;
   for (Index k = 0; k < p.points; ++k) {
     const Index node_a = p.nodes[std::size_t(k) * p.stride + i];
     const Index node_b = p.nodes[std::size_t(p.points + k) * p.stride + i];
-    const Vec3<Real> jump = before.position(node_b) - before.position(node_a);
+    const Vec3<Real> jump = faces.position_before(node_b) - faces.position_before(node_a);
     if (dot(frame_a.n, jump) >= 0) continue;  // open: nothing to carry over
     if (norm(jump) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
     const std::size_t point = std::size_t(k) * p.point_stride + i;
@@ -90,13 +69,12 @@ struct Successor {
 /// Contacts of exposed face x with y that begin now.
 void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
                     std::vector<Successor>& found) {
-  const OneStepAgo before{face_columns(m, s)};
-  const FaceColumns& faces = before.faces;
+  const FaceColumns faces = face_columns(m, s);
   const FaceGeometry geometry = face_geometry(s);
   const ContactLaws laws = contact_laws(m, s);
   const auto stiffness = laws.stiffness(geometry, laws.between(geometry, x, y), x, y);
-  const FaceShape<Real> mother = before.shape(s.search.exposed_face[x]),
-                        target = before.shape(s.search.exposed_face[y]);
+  const FaceShape<Real> mother = faces.shape_before(s.search.exposed_face[x]),
+                        target = faces.shape_before(s.search.exposed_face[y]);
   const Frame<Real> frame = target.frame();
   const auto add = [&](Successor c) {
     if (c.depth > 0) found.push_back(c);
@@ -113,8 +91,9 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
     if (contact.face != y || contact.before >= 0) continue;
     const Index k = contact.mother % 4, next = k + 1 == mother.count() ? 0 : k + 1;
     const Vec3<Real> along_m = mother.x[next] - mother.x[k];
-    const Vec3<Real> start = before.position(faces.edge_nodes[2 * contact.edge]);
-    const Vec3<Real> along_t = before.position(faces.edge_nodes[2 * contact.edge + 1]) - start;
+    const Vec3<Real> start = faces.position_before(faces.edge_nodes[2 * contact.edge]);
+    const Vec3<Real> along_t =
+        faces.position_before(faces.edge_nodes[2 * contact.edge + 1]) - start;
     const Frame<Real> at =
         edge_frame(edge_normal(along_m, along_t, frame.n - mother.normal()), along_t);
     add({c, true, on_b, at, -cross_edges(mother.x[k], along_m, start, along_t, at.n).gap,
@@ -158,14 +137,14 @@ Vec3<Real> force_on_second(const State& s, const PairSet& p, Index i) {
 
 void hand_over_overlaps(const Model& m, State& s) {
   const PairSet& p = m.overlaps;
-  for (std::size_t r = 0; r < s.overlaps.released.size(); ++r) {
-    const Index i = s.overlaps.released[r];
+  for (std::size_t r = 0; r < s.released_overlaps.size(); ++r) {
+    const Index i = s.released_overlaps[r];
     const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
     std::vector<Successor> contacts;
     add_successors(m, s, s.search.face_exposed[a], s.search.face_exposed[b], false, contacts);
     add_successors(m, s, s.search.face_exposed[b], s.search.face_exposed[a], true, contacts);
-    const OneStepAgo before{face_columns(m, s)};
-    const Vec3<Real> n = unit(before.shape(a).normal() - before.shape(b).normal());
+    const FaceColumns faces = face_columns(m, s);
+    const Vec3<Real> n = unit(faces.shape_before(a).normal() - faces.shape_before(b).normal());
     const Vec3<Real> on_b = force_on_second(s, p, i);
     const Real carried = dot(on_b, n);
     const Vec3<Real> shear = on_b - carried * n;
@@ -180,7 +159,7 @@ void hand_over_overlaps(const Model& m, State& s) {
     s.overlaps.friction[i] += s.overlaps.stored[i];
     s.overlaps.stored[i] = 0;
   }
-  s.overlaps.released.resize(0);
+  s.released_overlaps.resize(0);
 }
 
 }  // namespace cdem

@@ -141,7 +141,7 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
     if (p.point_first.size() > 0) {
-      ps.released.push(i);
+      s.released_overlaps.push(i);
     } else {
       if (ps.live[i] == 1) ps.stored[i] -= hand_over(m, s, p, ps, i);
       ps.friction[i] += ps.stored[i];

@@ -31,8 +31,7 @@ struct ElementState {
 struct PairState {
   Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> stored, fracture, friction;
-  Column<Index> awake;     // blocks of pairs, see rest.hpp
-  Column<Index> released;  // overlaps whose contacts the search has still to find in this step
+  Column<Index> awake;  // blocks of pairs, see rest.hpp
 };
 
 struct SpringState {
@@ -101,6 +100,7 @@ struct State {
   NodeState nodes;
   ElementState tet4, pyramid5, wedge6, hex8;
   PairState triangles, quads, overlaps;
+  Column<Index> released_overlaps;  // their contacts are still to be found in this step
   SpringState springs;
   EdgeState edges;
   SearchState search;

@@ -94,7 +94,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
 }
 
 void hand_over_released(const Model& m, State& s, Queue q) {  // hand_over.hpp
-  if (s.overlaps.released.size() == 0) return;
+  if (s.released_overlaps.size() == 0) return;
   finish(q);
   hand_over_overlaps(m, s);
 }

@@ -141,13 +141,26 @@ struct FaceColumns {
                                    nodes.position(of.node[2]), nodes.position(of.node[3])},
                                   of.quad()};
   }
-  CDEM_HD FaceShape<Real> shape(Index face) const {
-    const Index* v = face_nodes + 4 * face;
-    return shape(FaceVertices<Index>{{v[0], v[1], v[2], v[3] < 0 ? v[2] : v[3]}});
+  CDEM_HD FaceShape<Real> shape(Index face) const { return shape(vertices(face)); }
+  /// Where a node and a face were one step ago.
+  CDEM_HD Vec3<Real> position_before(Index node) const {
+    return nodes.position(node) - dt * nodes.velocity(node);
+  }
+  CDEM_HD FaceShape<Real> shape_before(Index face) const {
+    const FaceVertices<Index> of = vertices(face);
+    return {{position_before(of.node[0]), position_before(of.node[1]), position_before(of.node[2]),
+             position_before(of.node[3])},
+            of.quad()};
   }
   /// The face on the other side of side k of an exposed face, or -1: of the same block or of one
   /// that is bonded to it there.
   CDEM_HD Index across(Index exposed, Index k) const { return beyond[4 * exposed + k]; }
+
+ private:
+  CDEM_HD FaceVertices<Index> vertices(Index face) const {
+    const Index* v = face_nodes + 4 * face;
+    return {{v[0], v[1], v[2], v[3] < 0 ? v[2] : v[3]}};
+  }
 };
 
 /// What the search and the forces ask of an exposed face and never changes between two refreshes:

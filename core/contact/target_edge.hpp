@@ -434,10 +434,9 @@ struct ListEdges {
     CDEM_HD Vec3<Real> way(Real s) const { return way0 + s * (way1 - way0); }
   };
   CDEM_HD Side side(Index a, Index b) const {
-    const Vec3<Real> way_a = faces.dt * faces.nodes.velocity(a),
-                     way_b = faces.dt * faces.nodes.velocity(b),
-                     x = faces.nodes.position(a) - way_a;
-    return {x, faces.nodes.position(b) - way_b - x, way_a, way_b};
+    const Vec3<Real> x = faces.position_before(a);
+    return {x, faces.position_before(b) - x, faces.dt * faces.nodes.velocity(a),
+            faces.dt * faces.nodes.velocity(b)};
   }
 };
 
