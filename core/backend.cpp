@@ -112,7 +112,7 @@ template void launch_picked(Queue, Index, const KeepTargetFaces&);
 template void launch_picked(Queue, Index, const SiftTargetFaces&);
 template void launch_one(Queue, Index, const FindTargetFaces&);
 template void launch_picked(Queue, Index, const TouchTargetEdges&);
-template void launch_one(Queue, Index, const FindTargetEdges&);
+template void launch_one(Queue, Index, const MarkHeldEdges&);
 template void launch_picked(Queue, Index, const UpdateSpringForces&);
 template void launch(Queue, Index, const UpdateEdgeForces&);
 template void launch_one(Queue, Index, const ListEdges&);

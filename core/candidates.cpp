@@ -72,74 +72,122 @@ Rows<T> by_mother(const AllProximity& found, std::vector<T> Proximity::* list, I
 }
 
 using Touches = Rows<Proximity::Touch>;
-using Crossings = Rows<Proximity::Crossing>;
+using Share = AllProximity::Share;
 
-/// List the pairs that have been found, patch after patch, with their nodes and room, and let the
-/// items that are of them know their places there.
-template <class Pair, class Item>
-void list_pairs(AllProximity& found, std::vector<Pair> Proximity::* pairs,
-                Range AllProximity::Share::* pair_range, std::vector<Item> Proximity::* items,
-                Range AllProximity::Share::* item_range, Column<Index>& nodes, Column<float>& room,
-                Column<Flag>& near) {
-  const std::size_t patches = found.by_patch.size();
-  std::vector<Index> first(patches + 1);
-  for (std::size_t p = 0; p < patches; ++p) {
-    const Range range = found.by_patch[p].*pair_range;
-    first[p + 1] = first[p] + range.last - range.first;
-  }
-  const Index count = first.back();
+/// Where the pairs of each patch begin in the list of all.
+std::vector<Index> places(const AllProximity& found, Range Share::* share) {
+  std::vector<Index> first(found.by_patch.size() + 1);
+  for (std::size_t p = 0; p < found.by_patch.size(); ++p)
+    first[p + 1] = first[p] + (found.by_patch[p].*share).last - (found.by_patch[p].*share).first;
+  return first;
+}
+
+/// List the pairs that have been found, patch after patch, with their nodes and room; `also` gets
+/// every pair and its place.
+template <class Pair, class Also>
+void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
+                Range Share::* share, const std::vector<Index>& first, Column<Index>& nodes,
+                Column<float>& room, Column<Flag>& near, const Also& also) {
+  const Index patches = Index(found.by_patch.size()), count = first.back();
   const std::size_t stride = padded_stride(count);
   near.resize(count);
   nodes.resize(std::size(Pair{}.nodes) * stride);
   room.resize(std::size(Pair{}.room) * stride);
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
-  for (std::size_t p = 0; p < patches; ++p) {
-    const AllProximity::Share& share = found.by_patch[p];
-    Proximity& lists = found.by_thread[share.thread];
-    const Range of_pairs = share.*pair_range, of_items = share.*item_range;
-    for (Index i = of_items.first; i < of_items.last; ++i)
-      (lists.*items)[i].pair += first[p] - of_pairs.first;
+  for (Index p = 0; p < patches; ++p) {
+    const std::vector<Pair>& list = found.by_thread[found.by_patch[p].thread].*pairs;
+    const Range range = found.by_patch[p].*share;
     std::size_t place = first[p];
-    for (Index i = of_pairs.first; i < of_pairs.last; ++i, ++place) {
-      const Pair& pair = (lists.*pairs)[i];
+    for (Index i = range.first; i < range.last; ++i, ++place) {
+      const Pair& pair = list[i];
       for (std::size_t k = 0; k < std::size(pair.nodes); ++k)
         nodes[k * stride + place] = pair.nodes[k];
       for (std::size_t k = 0; k < std::size(pair.room); ++k)
         room[k * stride + place] = float(pair.room[k]);
+      also(pair, place);
     }
   }
 }
 
+/// The pairs of vertex and face; touches learn the places of those that they are of.
+void list_face_pairs(AllProximity& found, SearchState& search) {
+  const std::vector<Index> first = places(found, &Share::faces);
+  list_pairs(found, &Proximity::faces, &Share::faces, first, search.faces_corners,
+             search.faces_bounds, search.faces_near, [](const auto&, std::size_t) {});
+  const Index patches = Index(found.by_patch.size());
+#pragma omp parallel for schedule(static, 128) if (first.back() >= worth_threads)
+  for (Index p = 0; p < patches; ++p) {
+    const Share& share = found.by_patch[p];
+    std::vector<Proximity::Touch>& touches = found.by_thread[share.thread].touches;
+    for (Index i = share.touches.first; i < share.touches.last; ++i)
+      touches[i].pair += first[p] - share.faces.first;
+  }
+}
+
+/// The pairs of edges.
+void list_edge_pairs(const AllProximity& found, SearchState& search) {
+  const std::vector<Index> first = places(found, &Share::edges);
+  const std::size_t stride = padded_stride(first.back());
+  search.edge_sides.assign(found.edge_sides.data(), found.edge_sides.size());
+  search.edges_of.resize(2 * stride);
+  search.edges_code.resize(first.back());
+  list_pairs(found, &Proximity::edges, &Share::edges, first, search.edges_ends, search.edges_bounds,
+             search.edges_near, [&](const Proximity::Edges& pair, std::size_t place) {
+               search.edges_of[place] = pair.edge[0];
+               search.edges_of[stride + place] = pair.edge[1];
+               search.edges_code[place] = pair.code;
+             });
+}
+
+/// Contacts of semi-edges learn the places of the pairs that they are of.
+void place_held_edges(const Model& m, State& s) {
+  EdgeState& held = s.edges;
+  held.pair.fill(-1);
+  if (held.pair.size() == 0) return;
+  const EdgePairs pairs = edge_pairs(s);
+  const Index count = Index(s.search.edges_near.size());
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index p = 0; p < count; ++p)
+    for (Index way = 0; way < EdgePairs::ways; ++way) {
+      if (!pairs.may_touch(p, way)) continue;
+      const EdgePairs::Sides sides = pairs.sides_of(p, way);
+      const Index x = sides.mother / 4, target = s.search.exposed_face[sides.target / 4];
+      for (Index c = held.first[x]; c < held.first[x + 1]; ++c) {
+        const EdgeContact contact = EdgeContact::at(held.contact.data(), c);
+        if (contact.mother == sides.mother &&
+            contact.edge == m.face_edges[4 * target + sides.target % 4])
+          held.pair[c] = p;
+      }
+    }
+}
+
 /// For every exposed face the others that list it: their contacts may act on it.
-void list_sources(SearchState& search, const Touches& touches, const Crossings& crossings) {
-  const Index count = Index(touches.first.size()) - 1;
+void list_sources(const AllProximity& found, Index count, SearchState& search) {
   Column<Index>&first = search.source_first, &source = search.source;
+  Column<Flag>& listed = search.face_listed;
   first.resize(count + 1);
   first.fill(0);
+  listed.resize(count);
+  listed.fill(0);
   const auto visit = [&](auto&& at) {
-#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
-    for (Index x = 0; x < count; ++x) {
-      const Proximity::Touch* touch = touches.begin(x);
-      const Proximity::Crossing* crossing = crossings.begin(x);
-      while (touch != touches.end(x) || crossing != crossings.end(x)) {
-        // both are in ascending order
-        const Index y = touch == touches.end(x)        ? crossing->face
-                        : crossing == crossings.end(x) ? touch->face
-                                                       : std::min(touch->face, crossing->face);
-        at(y, x);
-        while (touch != touches.end(x) && touch->face == y) ++touch;
-        while (crossing != crossings.end(x) && crossing->face == y) ++crossing;
-      }
+    for (const Proximity& of : found.by_thread) {
+#pragma omp parallel for schedule(static) if (of.meetings.size() >= worth_threads)
+      for (std::size_t i = 0; i < of.meetings.size(); ++i) at(of.meetings[i]);
     }
   };
   const Counters number{first.data() + 1};
-  visit([&](Index y, Index) { number.raise(y); });
+  visit([&](const Proximity::Meeting& meeting) {
+    number.raise(meeting.face);
+    set(listed[meeting.face]);
+    set(listed[meeting.mother]);
+  });
   add_up(first, count);
   source.resize(first[count]);
-  std::vector<Index> places(first.data(), first.data() + count);
-  const Counters next{places.data()};
-  visit([&](Index y, Index x) { source[next.raise(y)] = x; });
-  if (next.alone) return;  // they are in ascending order
+  std::vector<Index> next_places(first.data(), first.data() + count);
+  const Counters next{next_places.data()};
+  visit([&](const Proximity::Meeting& meeting) {
+    source[next.raise(meeting.face)] = meeting.mother;
+  });
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index y = 0; y < count; ++y)
     std::sort(source.data() + first[y], source.data() + first[y + 1]);
@@ -169,46 +217,19 @@ void list_touches(SearchState& search, const Touches& touches) {
     }
 }
 
-void list_crossings(const Model& m, SearchState& search, const Crossings& crossings) {
-  search.edge_candidate_first.assign(crossings.first.data(), crossings.first.size());
-  const std::size_t count = crossings.items.size();
-  search.edge_candidate.resize(count);
-  search.edge_candidate_edge.resize(count);
-  search.edge_candidate_sides.resize(count);
-  search.edge_candidate_edges.resize(count);
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
-  for (std::size_t i = 0; i < count; ++i) {
-    const Proximity::Crossing& c = crossings.items[i];
-    search.edge_candidate[i] = c.face;
-    search.edge_candidate_edge[i] =
-        m.face_edges[4 * search.exposed_face[c.face] + SidePair::of(c.sides).j];
-    search.edge_candidate_sides[i] = c.sides;
-    search.edge_candidate_edges[i] = c.pair;
-  }
-}
-
 }  // namespace
 
 void list_candidates(const Model& m, State& s) {
   foresee_motion(m, s);
-  using Share = AllProximity::Share;
   AllProximity found = find_proximity(m, s);
-  list_pairs(found, &Proximity::faces, &Share::faces, &Proximity::touches, &Share::touches,
-             s.search.faces_corners, s.search.faces_bounds, s.search.faces_near);
-  list_pairs(found, &Proximity::edges, &Share::edges, &Proximity::crossings, &Share::crossings,
-             s.search.edges_ends, s.search.edges_bounds, s.search.edges_near);
   const Index count = Index(s.search.exposed_face.size());
-  const Touches touches =
-      by_mother(found, &Proximity::touches, count,
-                [](const Proximity::Touch& t) { return std::pair(t.face, t.vertex); });
-  const Crossings crossings =
-      by_mother(found, &Proximity::crossings, count, [](const Proximity::Crossing& c) {
-        const SidePair pair = SidePair::of(c.sides);
-        return std::tuple(c.face, pair.k, pair.j);
-      });
-  list_touches(s.search, touches);
-  list_crossings(m, s.search, crossings);
-  list_sources(s.search, touches, crossings);
+  list_face_pairs(found, s.search);
+  list_edge_pairs(found, s.search);
+  place_held_edges(m, s);
+  list_sources(found, count, s.search);
+  list_touches(s.search,
+               by_mother(found, &Proximity::touches, count,
+                         [](const Proximity::Touch& t) { return std::pair(t.face, t.vertex); }));
 }
 
 void list_corners(const Model& m, State& s) {
@@ -238,7 +259,7 @@ void list_contact_corners(const Model& m, State& s) {
   first.fill(0);
   const auto visit = [&](auto&& at) {
     for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x) {
-      if (is_idle(candidate_columns(s), edge_candidate_columns(s), source_columns(s), x)) continue;
+      if (!s.search.face_listed[x]) continue;
       const Index face = s.search.exposed_face[x];
       for (Index k = 0; k < 4; ++k)
         if (m.face_nodes[4 * face + k] >= 0) at(m.face_nodes[4 * face + k], 4 * x + k);

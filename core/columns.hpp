@@ -39,14 +39,13 @@ inline Sources source_columns(const State& s) {
   return {s.search.source_first.data(), s.search.source.data()};
 }
 
-inline EdgeCandidates edge_candidate_columns(State& s) {
-  return {s.search.edge_candidate_first.data(),
-          s.search.edge_candidate.data(),
-          s.search.edge_candidate_edge.data(),
-          s.search.edge_candidate_sides.data(),
-          s.search.edge_candidate_edges.data(),
-          s.search.edges_near.data(),
-          s.search.edge_touch.data()};
+inline EdgePairs edge_pairs(State& s) {
+  const Index stride = padded_stride(Index(s.search.edges_near.size()));
+  return {{s.search.edges_ends.data(), stride},
+          {s.search.edges_of.data(), stride},
+          s.search.edges_code.data(),
+          s.search.edge_sides.data(),
+          s.search.edges_near.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {
@@ -62,7 +61,7 @@ inline EdgeColumns edge_columns(State& s) {
 
 inline EdgesBefore edges_before(const State& s) {
   const EdgeState& c = s.edges;
-  return {c.old_first.data(), c.old_contact.data(), c.old_state.data()};
+  return {c.old_first.data(), c.old_contact.data(), c.old_pair.data(), c.old_state.data()};
 }
 
 inline FaceSearch face_search(const Model& m, State& s) {
@@ -70,13 +69,14 @@ inline FaceSearch face_search(const Model& m, State& s) {
           candidate_columns(s), m.rules,          spring_columns(s)};
 }
 
-inline TouchTargetEdges edge_search(const Model& m, State& s) {
-  return {face_columns(m, s), face_geometry(s), edge_candidate_columns(s), m.rules,
-          edges_before(s)};
-}
-
 inline FoundEdges found_edges(State& s) {
   return {s.edges.slots, s.edges.found_count.data(), s.edges.found.data()};
+}
+
+inline TouchTargetEdges edge_search(const Model& m, State& s) {
+  return {face_columns(m, s),  face_geometry(s), s.search.exposed_face.data(),
+          edge_pairs(s),       m.rules,          edges_before(s),
+          s.edges.lost.data(), found_edges(s)};
 }
 
 /// Lumped masses that move: those of adaptive relaxation while it lasts.

@@ -13,7 +13,14 @@ namespace {
 void swap_with_old(EdgeState& e) {
   e.first.swap(e.old_first);
   e.contact.swap(e.old_contact);
+  e.pair.swap(e.old_pair);
   e.state.swap(e.old_state);
+}
+
+void make_places(EdgeState& e, std::size_t count) {
+  e.found_count.resize(count);
+  e.found_count.fill(0);
+  e.found.resize(4 * std::size_t(e.slots) * count);
 }
 
 }  // namespace
@@ -23,8 +30,7 @@ void begin_edges(State& s) {
   const std::size_t count = s.search.exposed_face.size();
   swap_with_old(e);
   e.first.resize(count + 1);
-  e.found_count.resize(count);
-  e.found.resize(4 * std::size_t(e.slots) * count);
+  make_places(e, count);
 }
 
 bool make_room_for_edges(State& s) {
@@ -36,17 +42,18 @@ bool make_room_for_edges(State& s) {
     most = std::max(most, e.found_count[x]);
     e.first[x + 1] = e.first[x] + e.found_count[x];
   }
-  if (most > FindTargetEdges::most_slots) {
+  if (most > TouchTargetEdges::most_slots) {
     swap_with_old(e);  // what is reported of the run is that of the step before
     throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
   }
   if (most > e.slots) {
     e.slots = most;
-    e.found.resize(4 * std::size_t(e.slots) * count);
+    make_places(e, count);
     return false;
   }
   const std::size_t contacts = e.first[count];
   e.contact.resize(4 * contacts);
+  e.pair.resize(contacts);
   e.state.resize(8 * contacts);
   e.reaction.resize(8 * contacts);
   return true;
@@ -56,6 +63,7 @@ void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Inde
   begin_edges(s);
   EdgeState& e = s.edges;
   e.contact.resize(e.old_contact.size());
+  e.pair.resize(e.old_pair.size(), -1);
   e.state.resize(e.old_state.size());
   Index next = 0;
   for (std::size_t x = 0; x < from.size(); ++x) {

@@ -140,10 +140,17 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
       const Index id = m.face_edges[4 * e.face + k];
       Patch::Edge* last = p.edge + p.edge_count;
       Patch::Edge* edge = std::find_if(p.edge, last, [&](const auto& o) { return o.id == id; });
-      if (edge == last) p.edge[p.edge_count++] = {id, 0, {}, {}};
+      if (edge == last) p.edge[p.edge_count++] = {id, 0, {}, {}, {}};
       edge->face[edge->faces] = i;
       edge->side[edge->faces++] = k;
     }
+  }
+  for (Index e = 0; e < p.edge_count; ++e) {
+    Patch::Edge& edge = p.edge[e];
+    const Index i = edge.face[0], count = exposed[p.face[i]].shape.count();
+    for (Index v = 0; v < p.vertex_count; ++v)
+      for (Index end = 0; end < 2; ++end)
+        if (p.corner[v][i] == (edge.side[0] + end) % count) edge.vertex[end] = v;
   }
   for (Index i = 0; i < p.face_count; ++i) {
     const ExposedFace& e = exposed[p.face[i]];

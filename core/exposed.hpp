@@ -73,12 +73,14 @@ struct Patch {
   struct Edge {
     Index id, faces;
     Index face[2], side[2];
+    Index vertex[2];
   };
   Index face_count, vertex_count, edge_count;
   Index face[6];  // exposed
   Index vertex[8];
   Index corner[8][6];  // which corner of a face a vertex is, or -1
   Edge edge[12];
+  Index edge_first;    // place of the first among those of all patches
   Vec3<Real> drift;    // of all its vertices alike  [m]
   Real stir;           // of a vertex beyond the drift  [m]
   Real deepest;        // contact  [m]

@@ -2,6 +2,7 @@
 // sums.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -42,6 +43,24 @@ CDEM_HD inline Real min_of(Real a, Real b) { return a < b ? a : b; }
 CDEM_HD inline Real abs_of(Real a) { return a < 0 ? -a : a; }
 CDEM_HD inline Real sqrt_of(Real a) { return std::sqrt(a); }
 CDEM_HD inline bool any_of(bool mask) { return mask; }
+
+/// Raise a count that several threads may raise at once, and return what it was. Which of them
+/// comes first is left to chance: what is found with it must be sorted.
+CDEM_HD inline Index raise(Index& count) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(&count, 1);
+#else
+  return std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed);
+#endif
+}
+/// Set a flag that several threads may set at once.
+CDEM_HD inline void set(Flag& flag) {
+#if defined(__CUDA_ARCH__)
+  flag = 1;
+#else
+  std::atomic_ref(flag).store(1, std::memory_order_relaxed);
+#endif
+}
 
 /// Item of a kernel that picks what it runs for: an item of a row.
 struct Picked {
@@ -180,6 +199,9 @@ using Truth = decltype(T() < T());
 
 /// Does a comparison hold for a lane?
 CDEM_HD inline bool holds(bool outcome, Index) { return outcome; }
+/// The index of a lane.
+CDEM_HD inline Index& of_lane(Index& index, Index) { return index; }
+CDEM_HD inline Index of_lane(const Index& index, Index) { return index; }
 /// Do something for every lane of a picked item, with the number of the lane, row and item.
 template <class Do>
 CDEM_HD inline void for_lanes(const Picked& item, const Do& act) {
@@ -187,6 +209,8 @@ CDEM_HD inline void for_lanes(const Picked& item, const Do& act) {
 }
 #if !defined(__CUDACC__)
 CDEM_HD inline bool holds(const Mask& outcome, Index lane) { return outcome.bits[lane] != 0; }
+CDEM_HD inline Index& of_lane(IndexPack& index, Index lane) { return index.id[lane]; }
+CDEM_HD inline Index of_lane(const IndexPack& index, Index lane) { return index.id[lane]; }
 template <class Do>
 CDEM_HD inline void for_lanes(const PickedLane& item, const Do& act) {
   for (Index j = 0; j < lanes; ++j) act(j, item.row.id[j], item.id.id[j]);

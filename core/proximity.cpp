@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -241,21 +242,89 @@ struct TwoEdges {
       parted = std::min(parted, now + may_part(f.s, a, b));
     }
   }
-  /// `shared` for sides that run against their edges.
-  Index seen(bool against_p, bool against_q) const {
-    Index seen = 0;
-    for (Index i = 0; i < 4; ++i) seen |= (shared >> i & 1) << (i ^ (against_p << 1 | against_q));
-    return seen;
+};
+
+/// What of two patches stays beyond the reach of the other until the next refresh, seen along the
+/// normals of their faces: no edge of it can touch, and no vertex that is outside the block. (Of
+/// patches that a plane holds apart, this is everything: see above.)
+///
+/// A vertex that is inside a block may begin deeper than that, at the nearest face (see
+/// FindTargetFaces). It is not beyond the reach of a patch that is a block by itself; what lies
+/// beyond one that goes on behind may be inside of what it goes on as.
+struct Beyond {
+  // Which vertices lie on the far side of the other patch: two bits for each normal, one for either
+  // end of it. What has its vertices on the same far side lies there as a whole.
+  unsigned vertex[2][8] = {}, edge[2][12] = {};
+  bool nothing_on[2][6];  // face: none of its vertices, nor of its edges
+  bool no_vertex_on[2][6];
+
+  Beyond(const Finder& f, const Patch& a, const Patch& b) {
+    const Real room = farthest_contact(f.m.rules, a, b);
+    const Vec3<Real> closing = last_step * (b.drift - a.drift);
+    unsigned bit = 1;
+    for (const Patch* p : {&a, &b})
+      for (Index i = 0; i < p->face_count; ++i, bit <<= 2) {
+        const Vec3<Real>& n = f.exposed[p->face[i]].normal;
+        const Vec3<Real>& origin = f.exposed[p->face[i]].center;
+        const Heights of_a(f, a, n, origin), of_b(f, b, n, origin);
+        const Real closer = dot(n, closing);
+        const Real up = room + std::max(closer, 0.0), down = room - std::min(closer, 0.0);
+        for (Index v = 0; v < a.vertex_count; ++v)
+          vertex[0][v] |= (of_a.at[v] - of_b.most > up ? bit : 0) |
+                          (of_b.least - of_a.at[v] > down ? bit << 1 : 0);
+        for (Index v = 0; v < b.vertex_count; ++v)
+          vertex[1][v] |= (of_b.at[v] - of_a.most > down ? bit : 0) |
+                          (of_a.least - of_b.at[v] > up ? bit << 1 : 0);
+      }
+    spread(a, 0, is_whole(b));
+    spread(b, 1, is_whole(a));
+  }
+  /// Can nothing of two faces touch, of the first patch and of the second?
+  bool hold_apart(Index x, Index y) const {
+    return (nothing_on[0][x] && no_vertex_on[1][y]) || (nothing_on[1][y] && no_vertex_on[0][x]);
+  }
+
+ private:
+  /// Of the vertices of a patch along a normal  [m].
+  struct Heights {
+    Real at[8], least = 1e300, most = -1e300;
+    Heights(const Finder& f, const Patch& p, const Vec3<Real>& n, const Vec3<Real>& origin) {
+      for (Index v = 0; v < p.vertex_count; ++v) {
+        at[v] = dot(n, f.faces.nodes.position(p.vertex[v]) - origin);
+        least = std::min(least, at[v]);
+        most = std::max(most, at[v]);
+      }
+    }
+  };
+  /// Are all faces of the element behind a patch exposed?
+  static bool is_whole(const Patch& p) {
+    return p.face_count == (p.vertex_count == 4 ? 4 : p.vertex_count == 8 ? 6 : 5);
+  }
+  void spread(const Patch& p, int of, bool other_is_whole) {
+    for (Index e = 0; e < p.edge_count; ++e)
+      edge[of][e] = vertex[of][p.edge[e].vertex[0]] & vertex[of][p.edge[e].vertex[1]];
+    for (Index v = 0; v < p.vertex_count && !other_is_whole; ++v) vertex[of][v] = 0;
+    for (Index i = 0; i < p.face_count; ++i) {
+      unsigned all = ~0u;
+      no_vertex_on[of][i] = true;
+      for (Index v = 0; v < p.vertex_count; ++v) {
+        if (p.corner[v][i] < 0) continue;
+        all &= vertex[of][v];
+        no_vertex_on[of][i] = no_vertex_on[of][i] && vertex[of][v];
+      }
+      nothing_on[of][i] = all;
+    }
   }
 };
 
 /// Which faces of two patches may touch, bit by bit: row = face of the first.
 struct FacePairs {
   int row[6] = {};
-  FacePairs(const Finder& f, const Patch& a, const Patch& b) {
+  FacePairs(const Finder& f, const Patch& a, const Patch& b, const Beyond& beyond) {
     for (Index i = 0; i < a.face_count; ++i)
       for (Index j = 0; j < b.face_count; ++j)
-        if (may_touch(f.m.rules, f.exposed[a.face[i]], f.exposed[b.face[j]]) &&
+        if (!beyond.hold_apart(i, j) &&
+            may_touch(f.m.rules, f.exposed[a.face[i]], f.exposed[b.face[j]]) &&
             !Bonded::among(f.bonded.faces, a.face[i], b.face[j]))
           row[i] |= 1 << j;
   }
@@ -284,14 +353,30 @@ Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Re
            1.34 * f.m.face_reach[y.face] + aside}};
 }
 
+/// Faces of two patches that lists have for each other, bit by bit: `row[reverse]`, with those of
+/// the first patch as mothers, and then with those of the second.
+struct Met {
+  int row[2][6] = {};
+
+  void add(bool reverse, Index mother, Index face) { row[reverse][mother] |= 1 << face; }
+  void list(const Patch& a, const Patch& b, Proximity& found) const {
+    for (Index i = 0; i < a.face_count; ++i)
+      for (Index j = 0; j < b.face_count; ++j) {
+        if (row[0][i] >> j & 1) found.meetings.push_back({a.face[i], b.face[j]});
+        if (row[1][j] >> i & 1) found.meetings.push_back({b.face[j], a.face[i]});
+      }
+  }
+};
+
 /// Vertices of one patch on faces of another.
 void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
-                  bool reverse, Proximity& found) {
+                  const Beyond& beyond, bool reverse, Met& all_met, Proximity& found) {
   const auto met = [&](Index i, Index j) {
     return (reverse ? pairs.row[j] >> i : pairs.row[i] >> j) & 1;
   };
   for (Index j = 0; j < b.face_count; ++j) {
     for (Index v = 0; v < a.vertex_count; ++v) {
+      if (beyond.vertex[reverse][v]) continue;
       Index first = -1;  // of the faces at the vertex
       Real least = 1e300;
       bool touches = false;  // already
@@ -308,9 +393,11 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
           !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
         continue;
       for (Index i = 0; i < a.face_count; ++i)
-        if (a.corner[v][i] >= 0 && met(i, j))
+        if (a.corner[v][i] >= 0 && met(i, j)) {
+          all_met.add(reverse, i, j);
           found.touches.push_back(
               {a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
+        }
       found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, a.reach, least));
     }
   }
@@ -324,37 +411,35 @@ bool may_be_right(const Finder& f, const ExposedFace& x, const ExposedFace& y,
          !(dot(x.normal, f.exposed[q.across].normal) < dot(x.normal, y.normal) - turns);
 }
 
-/// A side of an exposed face, and does it run against its edge?
-struct SideOfEdge {
-  Index face, k;
-  bool against;
-  SideOfEdge(const Finder& f, const Patch& a, const Patch::Edge& e, Index i, Index start)
-      : face(a.face[e.face[i]]),
-        k(e.side[i]),
-        against(f.faces.vertex(f.exposed[face].face, k) != start) {}
-};
-
-/// Sides at two edges that may cross, in both directions.
-void list_crossing(const Finder& f, const SideOfEdge& p, const SideOfEdge& q, Index edges,
-                   const TwoEdges& ends, Proximity& found) {
-  const ExposedFace &x = f.exposed[p.face], &y = f.exposed[q.face];
-  // ends that stay together are no edges on each other, see TouchTargetEdges
-  if (ends.parted < f.m.rules.indentation * std::min(x.length, y.length)) return;
-  const Index shared = ends.seen(p.against, q.against);
-  if (may_be_right(f, x, y, f.sides[4 * std::size_t(q.face) + q.k]))
-    found.crossings.push_back({p.face, q.face, SidePair{p.k, q.k, shared}.code(), edges});
-  if (may_be_right(f, y, x, f.sides[4 * std::size_t(p.face) + p.k])) {
-    const Index swapped = (shared & 9) | (shared & 2) << 1 | (shared & 4) >> 1;
-    found.crossings.push_back({q.face, p.face, SidePair{q.k, p.k, swapped}.code(), edges});
-  }
+/// In which ways two edges may touch, see EdgePairs, as bits.
+Index ways_to_touch(const Finder& f, const Patch& a, const Patch::Edge& p, const Patch& b,
+                    const Patch::Edge& q, const FacePairs& pairs, const TwoEdges& ends, Met& met) {
+  Index ways = 0;
+  for (Index i = 0; i < p.faces; ++i)
+    for (Index j = 0; j < q.faces; ++j) {
+      if (!(pairs.row[p.face[i]] >> q.face[j] & 1)) continue;
+      const Index face_p = a.face[p.face[i]], face_q = b.face[q.face[j]];
+      const ExposedFace &x = f.exposed[face_p], &y = f.exposed[face_q];
+      // ends that stay together are no edges on each other, see TouchTargetEdges
+      if (ends.parted < f.m.rules.indentation * std::min(x.length, y.length)) continue;
+      if (may_be_right(f, x, y, f.sides[4 * std::size_t(face_q) + q.side[j]])) {
+        ways |= 1 << EdgePairs::way(false, i, j);
+        met.add(false, p.face[i], q.face[j]);
+      }
+      if (may_be_right(f, y, x, f.sides[4 * std::size_t(face_p) + p.side[i]])) {
+        ways |= 1 << EdgePairs::way(true, i, j);
+        met.add(true, q.face[j], p.face[i]);
+      }
+    }
+  return ways;
 }
 
-/// What the indentation of the faces at some edges takes from the ends of the edges, at least, and
-/// how far it moves them aside, at most, with room for what faces are strained; least L  [m].
+/// What the indentation of the faces at an edge takes from the ends of the edge, at least, and how
+/// far it moves it aside, at most, with room for what faces are strained; least L  [m].
 struct Indented {
   Real inset = 1e300, shift = 0, length = 1e300;
 
-  void meet(const Finder& f, const Patch& a, const Patch::Edge& edge) {
+  Indented(const Finder& f, const Patch& a, const Patch::Edge& edge) {
     const Real part = f.m.rules.indentation;
     for (Index i = 0; i < edge.faces; ++i) {
       const Index place = a.face[edge.face[i]];
@@ -368,43 +453,137 @@ struct Indented {
       length = std::min(length, face.length);
     }
   }
+  /// Of two edges, the worse.
+  Indented(const Indented& p, const Indented& q)
+      : inset(std::min(p.inset, q.inset)),
+        shift(std::max(p.shift, q.shift)),
+        length(std::min(p.length, q.length)) {}
 };
 
+/// An edge, and how its ends may move until the next refresh.
+struct MovingEdge {
+  Vec3<Real> start, along, path[2];  // [m]
+  Real length, skin, turn;           // [m], [m], [rad]
+  Indented indented;
+
+  MovingEdge(const Finder& f, const Patch& a, const Patch::Edge& edge) : indented(f, a, edge) {
+    const WatchedNode ends[2] = {WatchedNode::of(f.s, a.vertex[edge.vertex[0]]),
+                                 WatchedNode::of(f.s, a.vertex[edge.vertex[1]])};
+    for (const int end : {0, 1}) path[end] = f.s.search.horizon * ends[end].velocity;
+    start = ends[0].position;
+    along = ends[1].position - start;
+    length = norm(along);
+    skin = std::max(ends[0].skin, ends[1].skin);
+    turn = (norm(path[1] - path[0]) + 2 * skin) / length;
+  }
+  Vec3<Real> path_at(Real place) const { return path[0] + place / length * (path[1] - path[0]); }
+};
+
+/// Those of a patch, each worked out once when it is asked for first.
+class MovingEdges {
+  const Finder& f;
+  const Patch& patch;
+  std::optional<MovingEdge> edge[12];
+
+ public:
+  MovingEdges(const Finder& finder, const Patch& of) : f(finder), patch(of) {}
+  const MovingEdge& operator[](Index e) {
+    if (!edge[e]) edge[e].emplace(f, patch, patch.edge[e]);
+    return *edge[e];
+  }
+};
+
+/// Does the crossing of two edges stay off their ends until the next refresh, so that MarkNearEdges
+/// finds them far in every step?
+///
+/// Seen along their common perpendicular n, the line of an edge d crosses the other one between its
+/// ends x0 and x1 if these lie on different sides of it: (y - x) . (d / |d| x n) is the distance of
+/// an end from the line through y. It changes by no more than the end moves as seen from its foot
+/// on the line, and by its distance from the foot times what d and n turn.
+bool pass_by(const MovingEdge& p, const MovingEdge& q) {
+  const Indented edges(p.indented, q.indented);
+  const Vec3<Real> c = cross(p.along, q.along);
+  const Real size = norm(c), turns = p.turn + q.turn, per_lengths = 1 / (p.length * q.length);
+  const Real sine = size * per_lengths - turns;
+  if (!(sine > 0)) return sine + 2 * turns < MarkNearEdges::parallel;
+  const Vec3<Real> n = 1 / size * c;
+  const Real round_off = 1e-6 * std::min(p.length, q.length);
+  // how far from the ends of one edge the line of the other crosses it, at most, times the sine
+  const auto inside = [&](const MovingEdge& on, const MovingEdge& line) {
+    const Vec3<Real> along = 1 / line.length * line.along, across = cross(along, n);
+    const Real way = dot(on.along, across) < 0 ? -1 : 1;
+    Real least = 1e300;
+    for (const int end : {0, 1}) {
+      const Vec3<Real> arm = line.start - on.start - Real(end) * on.along;
+      const Real foot = -dot(arm, along), nearest = std::clamp(foot, 0.0, line.length);
+      const Real motion = norm(on.path[end] - line.path_at(nearest)) + on.skin + line.skin;
+      const Real change = motion + line.turn * std::abs(foot - nearest) +
+                          (line.turn + turns / sine) * norm(arm + foot * along);
+      least = std::min(least, (end ? -way : way) * dot(arm, across) + change);
+    }
+    return least + round_off;
+  };
+  const Real cosine = std::min(1.0, std::abs(dot(p.along, q.along)) * per_lengths + turns);
+  const Real inset = sine * edges.inset - cosine * edges.shift, beside = -edges.shift;
+  const Real on_p = inside(p, q), on_q = inside(q, p);
+  return !((on_p > inset && on_q > beside) || (on_q > inset && on_p > beside));
+}
+
+/// Was an edge in contact with another one a step ago?
+bool in_contact(const Finder& f, const Patch& a, const Patch::Edge& p, Index edge) {
+  const EdgeState& held = f.s.edges;
+  for (Index i = 0; i < p.faces; ++i) {
+    const Index x = a.face[p.face[i]];
+    for (Index c = held.first[x]; c < held.first[x + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(held.contact.data(), c);
+      if (contact.mother == 4 * x + p.side[i] && contact.edge == edge) return true;
+    }
+  }
+  return false;
+}
+
 /// Two edges as MarkNearEdges sees them, on sides `on` of each other: those of their ends first
-/// that began at the same place, if any.
+/// that began at the same place, if any. `ways` are those in which they may touch.
 Proximity::Edges near_edges(const Finder& f, const TwoEdges& ends, const Patch& a,
-                            const Patch::Edge& p, const Patch& b, const Patch::Edge& q, int on) {
+                            const Patch::Edge& p, const Patch& b, const Patch::Edge& q,
+                            const Indented& edges, int on, Index ways) {
   const SearchRules& rules = f.m.rules;
   Index first = 0;
   while (ends.shared && !(ends.shared >> first & 1)) ++first;
   const Index first_p = first >> 1, first_q = first & 1;
+  const auto against = [&](const Patch& of, const Patch::Edge& e, Index start) {
+    Index sides = 0;
+    for (Index i = 0; i < e.faces; ++i)
+      sides |= (f.faces.vertex(f.exposed[of.face[e.face[i]]].face, e.side[i]) != start) << i;
+    return sides;
+  };
+  const Index sides = against(a, p, ends.p[first_p]) | against(b, q, ends.q[first_q]) << 2;
   // seen along the cross product of the two as their ends are listed here
-  const bool turned = SideOfEdge(f, a, p, 0, ends.p[first_p]).against !=
-                      SideOfEdge(f, b, q, 0, ends.q[first_q]).against;
+  const bool turned = (sides & 1) != (sides >> 2 & 1);
   const Real way = on == 3 ? 0 : ((on == 1) != turned ? 1 : -1);
-  Indented edges;
-  edges.meet(f, a, p);
-  edges.meet(f, b, q);
   return {{ends.p[first_p], ends.p[1 - first_p], ends.q[first_q], ends.q[1 - first_q]},
           {1.000001 * rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
-           ends.shared ? 0.999999 * rules.indentation * edges.length : 0}};
+           ends.shared ? 0.999999 * rules.indentation * edges.length : 0},
+          {a.edge_first + Index(&p - a.edge), b.edge_first + Index(&q - b.edge)},
+          EdgePairs::code_of(ways, SidePair::turned(ends.shared, first_p, first_q), sides)};
 }
 
 /// Edges of one patch across edges of another.
-void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
-                    Proximity& found) {
+void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
+                const Beyond& beyond, Met& met, Proximity& found) {
   const Real room = farthest_contact(f.m.rules, a, b) + last_step * norm(b.drift - a.drift);
+  MovingEdges of_a(f, a), of_b(f, b);
   for (Index e = 0; e < a.edge_count; ++e) {
     const Patch::Edge& p = a.edge[e];
     const ExposedFace& x = f.exposed[a.face[p.face[0]]];
     const ExposedSide& side_p = f.sides[4 * std::size_t(a.face[p.face[0]]) + p.side[0]];
-    const int met = pairs.of(p);
-    if (!side_p.sharp || !met) continue;
+    const int opposite = pairs.of(p);
+    if (beyond.edge[0][e] || !side_p.sharp || !opposite) continue;
     for (Index g = 0; g < b.edge_count; ++g) {
       const Patch::Edge& q = b.edge[g];
       const ExposedFace& y = f.exposed[b.face[q.face[0]]];
       const ExposedSide& side_q = f.sides[4 * std::size_t(b.face[q.face[0]]) + q.side[0]];
-      if (!side_q.sharp || !(met & FacePairs::at(q))) continue;
+      if (beyond.edge[1][g] || !side_q.sharp || !(opposite & FacePairs::at(q))) continue;
       const Vec3<Real> normal = cross(side_p.along, side_q.along);
       const Real off = dot(normal, side_p.start - side_q.start);
       if (off * off > room * room * dot(normal, normal)) continue;  // so far are even the lines
@@ -413,18 +592,36 @@ void list_crossings(const Finder& f, const Patch& a, const Patch& b, const FaceP
       if (dot(apart, apart) > room * room) continue;
       const int on = crossing_sides(f.m.rules, x, side_p, y, side_q, apart);
       if (!on) continue;
+      if (pass_by(of_a[e], of_b[g]) && !in_contact(f, a, p, q.id) && !in_contact(f, b, q, p.id))
+        continue;
       const TwoEdges ends(f, p.id, q.id);
       if (ends.glued) continue;
-      const std::size_t before = found.crossings.size();
-      const Index edges = Index(found.edges.size());
-      for (Index i = 0; i < p.faces; ++i)
-        for (Index j = 0; j < q.faces; ++j)
-          if (pairs.row[p.face[i]] >> q.face[j] & 1)
-            list_crossing(f, {f, a, p, i, ends.p[0]}, {f, b, q, j, ends.q[0]}, edges, ends, found);
-      if (found.crossings.size() == before) continue;
-      found.edges.push_back(near_edges(f, ends, a, p, b, q, on));
+      const Index ways = ways_to_touch(f, a, p, b, q, pairs, ends, met);
+      if (!ways) continue;
+      const Indented edges(of_a[e].indented, of_b[g].indented);
+      found.edges.push_back(near_edges(f, ends, a, p, b, q, edges, on, ways));
     }
   }
+}
+
+/// The sides at the edges of all patches, see EdgePairs; patches learn their places.
+Unset<Index> list_edge_sides(Unset<Patch>& patches) {
+  Index count = 0;
+  for (Patch& patch : patches) {
+    patch.edge_first = count;
+    count += patch.edge_count;
+  }
+  Unset<Index> sides(2 * std::size_t(count));
+  const Index patch_count = Index(patches.size());
+#pragma omp parallel for schedule(static, 128) if (patch_count >= worth_threads)
+  for (Index p = 0; p < patch_count; ++p)
+    for (Index e = 0; e < patches[p].edge_count; ++e) {
+      const Patch::Edge& edge = patches[p].edge[e];
+      for (Index i = 0; i < 2; ++i)
+        sides[2 * std::size_t(patches[p].edge_first + e) + i] =
+            i < edge.faces ? 4 * patches[p].face[edge.face[i]] + edge.side[i] : -1;
+    }
+  return sides;
 }
 
 }  // namespace
@@ -434,7 +631,7 @@ AllProximity find_proximity(const Model& m, const State& s) {
   const Unset<ExposedSide> sides = exposed_sides(s, exposed);
   const Bonded bonded = live_overlaps(m, s);
   const Finder f{m, s, face_columns(m, s), exposed, sides, bonded};
-  const Unset<Patch> patches = exposed_patches(m, s, exposed);
+  Unset<Patch> patches = exposed_patches(m, s, exposed);
   const Index count = Index(patches.size());
   std::vector<Box> boxes(count);
   for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
@@ -442,6 +639,7 @@ AllProximity find_proximity(const Model& m, const State& s) {
   AllProximity all;
   all.by_thread.resize(omp_get_max_threads());
   all.by_patch.resize(count);
+  all.edge_sides = list_edge_sides(patches);
 #pragma omp parallel if (count >= worth_threads)
   {
     Proximity& found = all.by_thread[omp_get_thread_num()];
@@ -461,11 +659,14 @@ AllProximity find_proximity(const Model& m, const State& s) {
       all.by_patch[p].begin(omp_get_thread_num(), found);
       for (const Index q : others) {
         const Patch& b = patches[q];
-        const FacePairs pairs(f, a, b);
+        const Beyond beyond(f, a, b);
+        const FacePairs pairs(f, a, b, beyond);
         if (!pairs.any()) continue;
-        list_touches(f, a, b, pairs, false, found);
-        list_touches(f, b, a, pairs, true, found);
-        if (m.semi_edges) list_crossings(f, a, b, pairs, found);
+        Met met;
+        list_touches(f, a, b, pairs, beyond, false, met, found);
+        list_touches(f, b, a, pairs, beyond, true, met, found);
+        if (m.semi_edges) list_edges(f, a, b, pairs, beyond, met, found);
+        met.list(a, b, found);
       }
       all.by_patch[p].end(found);
     }

@@ -47,29 +47,28 @@ struct Proximity {
     Index nodes[5];
     Real room[5];
   };
-  /// A side of a mother face across one of another exposed face.
-  struct Crossing {
-    Index mother, face;
-    Index sides;  // SidePair::code
-    Index pair;   // place in the list below
-  };
-  /// The pair of edges that crossings are of, see MarkNearEdges; the same of the room.
+  /// A pair of edges that may touch, see MarkNearEdges and EdgePairs; the same of the room.
   struct Edges {
     Index nodes[4];
     Real room[5];
+    Index edge[2], code;
+  };
+  /// A face of which a vertex or a side is on the lists, and the one that it may touch.
+  struct Meeting {
+    Index mother, face;
   };
   std::vector<Touch> touches;
   std::vector<VertexFace> faces;
-  std::vector<Crossing> crossings;
   std::vector<Edges> edges;
+  std::vector<Meeting> meetings;
 
   /// Make room for a thread's part of what the last search has found, and some more.
   void reserve_like(const SearchState& last, Index threads) {
     const auto part = [&](std::size_t size) { return (size + size / 8) / threads; };
     touches.reserve(part(last.candidate.size()));
     faces.reserve(part(last.faces_near.size()));
-    crossings.reserve(part(last.edge_candidate.size()));
     edges.reserve(part(last.edges_near.size()));
+    meetings.reserve(part(last.source.size()));
   }
 };
 
@@ -78,20 +77,21 @@ struct AllProximity {
   /// Where a patch's share of a thread's lists begins and ends.
   struct Share {
     Index thread = 0;
-    Range touches{0, 0}, faces{0, 0}, crossings{0, 0}, edges{0, 0};
+    Range touches{0, 0}, faces{0, 0}, edges{0, 0};
 
     void begin(Index of, const Proximity& lists) {
       thread = of;
       touches.first = Index(lists.touches.size()), faces.first = Index(lists.faces.size());
-      crossings.first = Index(lists.crossings.size()), edges.first = Index(lists.edges.size());
+      edges.first = Index(lists.edges.size());
     }
     void end(const Proximity& lists) {
       touches.last = Index(lists.touches.size()), faces.last = Index(lists.faces.size());
-      crossings.last = Index(lists.crossings.size()), edges.last = Index(lists.edges.size());
+      edges.last = Index(lists.edges.size());
     }
   };
   std::vector<Proximity> by_thread;
   std::vector<Share> by_patch;
+  Unset<Index> edge_sides;  // of the edges of all patches, see EdgePairs
 };
 AllProximity find_proximity(const Model& model, const State& state);
 

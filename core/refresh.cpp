@@ -1,5 +1,6 @@
 // refresh.cpp - now and then: release broken pairs, expose faces, have the lists renewed.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -156,6 +157,18 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
 
 }  // namespace
 
+namespace {
+
+/// Raise what several threads may raise at once.
+void raise_to(Real& most, Real value) {
+  const std::atomic_ref shared(most);
+  Real now = shared.load(std::memory_order_relaxed);
+  while (now < value && !shared.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace
+
 /// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to before
 /// the next refresh.
 void sum_stiffness(const Model& m, State& s) {
@@ -192,23 +205,13 @@ void sum_stiffness(const Model& m, State& s) {
   const Index exposed = Index(s.search.exposed_face.size());
   std::vector<Real> stiffest_of(exposed);  // contact that a face may have  [N/m]
 #pragma omp parallel for schedule(static, 128) if (exposed >= worth_threads)
-  for (Index x = 0; x < exposed; ++x) {
-    Real stiffest = 0;
-    // the law is that of mother and target, in this order: joints may differ from their groups
-    const auto meet = [&](Index y, bool is_target) {
-      const Index mother = is_target ? x : y, target = is_target ? y : x;
-      const auto stiffness =
-          laws.stiffness(geometry, laws.between(geometry, mother, target), mother, target);
-      stiffest = std::max(stiffest, std::max(stiffness.n, stiffness.s));
-    };
-    for (Index c = s.search.candidate_first[4 * x]; c < s.search.candidate_first[4 * x + 4]; ++c)
-      meet(s.search.candidate[c], true);
-    for (Index c = s.search.edge_candidate_first[x]; c < s.search.edge_candidate_first[x + 1]; ++c)
-      meet(s.search.edge_candidate[c], true);
-    for (Index c = s.search.source_first[x]; c < s.search.source_first[x + 1]; ++c)
-      meet(s.search.source[c], false);
-    stiffest_of[x] = stiffest;
-  }
+  for (Index y = 0; y < exposed; ++y)
+    for (Index c = s.search.source_first[y]; c < s.search.source_first[y + 1]; ++c) {
+      const Index x = s.search.source[c];
+      const auto stiffness = laws.stiffness(geometry, laws.between(geometry, x, y), x, y);
+      for (const Index face : {x, y})
+        raise_to(stiffest_of[face], std::max(stiffness.n, stiffness.s));
+    }
   for (Index x = 0; x < exposed; ++x) {  // either side's semi-springs, as much again for semi-edges
     const Index face = s.search.exposed_face[x];
     for (Index v = 0; v < faces.vertex_count(face); ++v)
@@ -297,8 +300,7 @@ void refresh_contacts(const Model& m, State& s) {
 }
 
 bool may_have_contacts(const State& s) {
-  return s.search.candidate.size() > 0 || s.search.edge_candidate.size() > 0 ||
-         s.built_step == s.step;
+  return s.search.source.size() > 0 || s.built_step == s.step;
 }
 
 void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
@@ -308,11 +310,9 @@ void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
   launch_one(q, count,
              UpdateFaceGeometry{face_columns(m, s), exposed, s.search.exposed.data(),
                                 s.face_geometry.data()});
-  launch_one(
-      q, count,
-      MarkSharpSides{face_columns(m, s), all ? nullptr : s.search.edge_candidate_first.data(),
-                     all ? nullptr : s.search.source_first.data(), s.search.exposed.data(),
-                     s.face_geometry.data()});
+  launch_one(q, count,
+             MarkSharpSides{face_columns(m, s), all ? nullptr : s.search.face_listed.data(),
+                            s.search.exposed.data(), s.face_geometry.data()});
 }
 
 void mark_near_faces(const Model&, State& s, Queue q) {

@@ -44,10 +44,11 @@ struct SpringState {
 /// Contacts of semi-edges, see EdgeColumns; a step makes the list anew from the one before.
 struct EdgeState {
   Column<Index> first, contact;    // [exposed + 1], rows of 4
+  Column<Index> pair;              // of edges, that the lists know
   Column<Real> state, reaction;    // rows of 8
   Column<Real> friction, dashpot;  // [exposed]
   Column<Flag> lost;               // [exposed]
-  Column<Index> old_first, old_contact;
+  Column<Index> old_first, old_contact, old_pair;
   Column<Real> old_state;
   Index slots = 8;  // of the search in a step: places a face, see FoundEdges
   Column<Index> found_count, found;
@@ -64,15 +65,15 @@ struct SearchState {
   Column<Index> candidate_first, candidate, candidate_pair;  // by vertex
   Column<Index> faces_corners;                               // [5][pair] vertex, corners of a face
   Column<float> faces_bounds;                                // [5][pair] see MarkNearFaces
-  Column<Flag> faces_near;  // [pair] may they be in contact in this step?
-  Column<Flag> may_begin;   // [candidate] see SiftTargetFaces; made in every step
-  Column<Index> edge_candidate_first, edge_candidate;  // by face
-  Column<Index> edge_candidate_edge, edge_candidate_sides, edge_candidate_edges;
+  Column<Flag> faces_near;             // [pair] may they be in contact in this step?
+  Column<Flag> may_begin;              // [candidate] see SiftTargetFaces; made in every step
   Column<Index> edges_ends;            // [4][pair] nodes of both
+  Column<Index> edges_of, edges_code;  // [2][pair], [pair], see EdgePairs
+  Column<Index> edge_sides;            // [edge][2] the same
   Column<float> edges_bounds;          // [5][pair] see MarkNearEdges
   Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
-  Column<Flag> edge_touch;             // [candidate] see TouchTargetEdges; made in every step
   Column<Index> source_first, source;  // faces whose contacts may act on a face
+  Column<Flag> face_listed;            // [exposed] may any act on it, or its own on others?
   Column<Flag> acting;                 // [source] do they in this step? All 0 between steps
   Column<Index> across;                // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
@@ -122,13 +123,11 @@ void describe_search(S& search, Visit&& field) {
   field("search.faces_near", search.faces_near, "1: they may be in contact in this step");
   field("search.source_first", search.source_first, "start of a face's sources");
   field("search.source", search.source, "exposed faces whose contacts may act on it");
-  field("search.edge_candidate_first", search.edge_candidate_first, "start of a face's sides");
-  field("search.edge_candidate", search.edge_candidate, "exposed face whose side may be crossed");
-  field("search.edge_candidate_edge", search.edge_candidate_edge, "edge that may be crossed");
-  field("search.edge_candidate_sides", search.edge_candidate_sides,
-        "which sides, which ends shared");
-  field("search.edge_candidate_edges", search.edge_candidate_edges, "pair of edges they are of");
+  field("search.face_listed", search.face_listed, "1: it may act on a face, or one on it");
   field("search.edges_ends", search.edges_ends, "ends of pairs of edges that may touch");
+  field("search.edges_of", search.edges_of, "places of the two among the edges");
+  field("search.edges_code", search.edges_code, "of which sides they are, which ends shared");
+  field("search.edge_sides", search.edge_sides, "4 * exposed face + side of the faces at an edge");
   field("search.edges_bounds", search.edges_bounds,
         "how far apart they may begin to, see MarkNearEdges [m]");
   field("search.edges_near", search.edges_near, "1: they may begin to touch in this step");
@@ -196,6 +195,7 @@ void describe(S& s, Visit&& field) {
   field("edge.first", s.edges.first, "place of a face's first contact");
   field("edge.contact", s.edges.contact,
         "4 * mother face + side, target face, target edge, place one step ago");
+  field("edge.pair", s.edges.pair, "pair of edges on the lists, or -1");
   field("edge.state", s.edges.state,
         "normal force, penetration, shear forces, gap without stress, stored energies");
   field("edge.reaction", s.edges.reaction,

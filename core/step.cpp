@@ -79,18 +79,15 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   if (!m.semi_edges) return;
   mark_near_edges(m, s, q);
   begin_edges(s);
-  const Index count = Index(s.search.exposed_face.size());
-  s.search.edge_touch.resize(s.search.edge_candidate.size());
-  const TouchTargetEdges touch = edge_search(m, s);
-  launch_picked(q, count, touch);
+  launch_one(q, Index(s.edges.old_pair.size()),
+             MarkHeldEdges{s.edges.old_pair.data(), s.search.edges_near.data()});
   do {
-    launch_one(q, count, FindTargetEdges{touch, s.edges.lost.data(), found_edges(s)});
+    launch_picked(q, Index(s.search.edges_near.size()), edge_search(m, s));
     finish(q);
   } while (!make_room_for_edges(s));
-  launch_one(q, count,
-             ListEdges{face_columns(m, s), face_geometry(s), edges_before(s), found_edges(s),
-                       s.edges.first.data(), s.edges.contact.data(), s.edges.friction.data(),
-                       s.edges.dashpot.data()});
+  launch_one(q, Index(s.search.exposed_face.size()),
+             ListEdges{edge_search(m, s), s.edges.first.data(), s.edges.contact.data(),
+                       s.edges.pair.data(), s.edges.friction.data(), s.edges.dashpot.data()});
 }
 
 void hand_over_released(const Model& m, State& s, Queue q) {  // hand_over.hpp
@@ -112,11 +109,11 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
   s.search.acting.resize(s.search.source.size());
   Flag* acting = s.search.acting.data();
   launch_one(q, count, MarkActing{source_columns(s), spring_columns(s), edge_columns(s), acting});
-  launch_one(q, count,
-             GatherFaceForces{face_columns(m, s), exposed, candidate_columns(s),
-                              edge_candidate_columns(s), source_columns(s), m.rules,
-                              spring_columns(s), edge_columns(s), s.edges.friction.data(),
-                              s.edges.dashpot.data(), acting, s.contact_force.data()});
+  launch_one(
+      q, count,
+      GatherFaceForces{face_columns(m, s), exposed, s.search.face_listed.data(), source_columns(s),
+                       m.rules, spring_columns(s), edge_columns(s), s.edges.friction.data(),
+                       s.edges.dashpot.data(), acting, s.contact_force.data()});
 }
 
 template <class Shape>

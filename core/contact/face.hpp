@@ -276,15 +276,12 @@ inline constexpr Real coplanar_faces = 0.999;
 /// Renew which sides of every exposed face are sharp; runs after UpdateFaceGeometry.
 struct MarkSharpSides {
   FaceColumns faces;
-  // faces whose sides nobody may cross need no marks; null: mark all
-  const Index *edge_candidate_first, *source_first;
+  const Flag* listed;  // [exposed] faces on no list need no marks; null: mark all
   const ExposedRow* table;
   Real* rows;
 
   CDEM_HD void operator()(One i) const {
-    if (source_first && source_first[i.i] == source_first[i.i + 1] &&
-        edge_candidate_first[i.i] == edge_candidate_first[i.i + 1])
-      return;
+    if (listed && !listed[i.i]) return;
     const FaceGeometry geometry{rows, table};
     int sharp = 0;
     for (Index k = 0; k < table[i.i].count(); ++k)

@@ -432,14 +432,6 @@ struct UpdateEdgeForces {
   }
 };
 
-/// Does an exposed face list nothing, and is on no list? Then it has no contacts.
-CDEM_HD inline bool is_idle(const Candidates& candidates, const EdgeCandidates& edge_candidates,
-                            const Sources& sources, Index m) {
-  return candidates.first[4 * m] == candidates.first[4 * m + 4] &&
-         edge_candidates.first[m] == edge_candidates.first[m + 1] &&
-         sources.first[m] == sources.first[m + 1];
-}
-
 /// Mark, among the sources of every exposed face, those whose contacts act on it in this step: most
 /// do not. Each face marks where its own contacts act.
 struct MarkActing {
@@ -476,8 +468,7 @@ struct MarkActing {
 struct GatherFaceForces {
   FaceColumns faces;
   const Index* exposed_face;
-  Candidates candidates;
-  EdgeCandidates edge_candidates;
+  const Flag* listed;  // [exposed] 0: idle, on no list
   Sources sources;
   SearchRules rules;
   SpringColumns springs;
@@ -488,7 +479,7 @@ struct GatherFaceForces {
   Real* corner_force;   // row of 4 per vertex: force x y z [N], stiffness of its contacts [N/m]
 
   CDEM_HD void operator()(One m) const {
-    if (is_idle(candidates, edge_candidates, sources, m.i)) return;
+    if (!listed[m.i]) return;
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
     Row sum[4] = {Row::zero(), Row::zero(), Row::zero(), Row::zero()};
     own(m.i, count, sum);

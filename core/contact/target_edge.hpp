@@ -37,26 +37,37 @@ struct EdgeColumns {
 struct EdgesBefore {
   const Index* first;
   const Index* contact;
+  const Index* pair;  // pair of edges on the lists
   const Real* state;
 };
 
-/// What the search finds in a step: `slots` places a face. A face may cross more edges than that;
-/// its count says so, and the caller makes room.
+/// What the search finds in a step, by mother face and in any order: `slots` places a face. A face
+/// may cross more edges than that; its count says so, and the caller makes room.
 struct FoundEdges {
   Index slots;
   Index* count;  // [exposed]
-  Index* rows;   // [exposed][slots] of EdgeContact
+  Index* rows;   // [exposed][slots] of FoundEdge
 };
 
-/// Pairs of sides of exposed faces that may cross before the next refresh, in both directions.
-struct EdgeCandidates {
-  const Index* first;  // [exposed + 1]
-  const Index* face;   // exposed face to which the target side belongs, ascending in a row
-  const Index* edge;   // target edge
-  const Index* sides;  // SidePair::code
-  const Index* edges;  // pair of edges that the sides are of
-  const Flag* near;    // [pair of edges] 0: they cannot begin to touch in this step
-  Flag* touch;         // do they? See TouchTargetEdges
+/// A contact of a semi-edge as it is found: a row of 4.
+struct FoundEdge {
+  Index mother, target;  // 4 * exposed face + side
+  Index before;          // place of this contact one step ago, or -1
+  Index pair;            // of edges, on the lists
+
+  CDEM_HD static FoundEdge at(const Index* rows, std::size_t place) {
+    const Index* r = rows + 4 * place;
+    return {r[0], r[1], r[2], r[3]};
+  }
+  CDEM_HD void store(Index* rows, std::size_t place) const {
+    Index* r = rows + 4 * place;
+    r[0] = mother, r[1] = target, r[2] = before, r[3] = pair;
+  }
+  /// In the order of the target faces, of the mother's sides and of the target's.
+  CDEM_HD bool is_before(const FoundEdge& other) const {
+    if (target / 4 != other.target / 4) return target < other.target;
+    return mother != other.mother ? mother < other.mother : target < other.target;
+  }
 };
 
 /// Side k of the mother and side j of the target. Bit 2 a + b of `shared`: end a of the one and end
@@ -65,6 +76,51 @@ struct SidePair {
   Index k, j, shared;
   CDEM_HD Index code() const { return shared << 4 | k << 2 | j; }
   CDEM_HD static SidePair of(Index code) { return {code >> 2 & 3, code & 3, code >> 4}; }
+  /// `shared` where the one, or the other, is run through backwards.
+  CDEM_HD static Index turned(Index shared, bool one, bool other) {
+    if (one) shared = (shared & 3) << 2 | shared >> 2;
+    if (other) shared = (shared & 5) << 1 | (shared & 10) >> 1;
+    return shared;
+  }
+  /// `shared` with the two in each other's place.
+  CDEM_HD static Index swapped(Index shared) {
+    return (shared & 9) | (shared & 2) << 1 | (shared & 4) >> 1;
+  }
+};
+
+/// Pairs of edges that may touch before the next refresh. Of the (at most two) faces at each edge
+/// one is the mother's and one the target's: eight ways to choose the sides.
+struct EdgePairs {
+  InIndices ends;      // [4][pair]: of one edge, and of the other; if any of them began at the same
+                       // place in the mesh, then the first of both
+  InIndices edges;     // [2][pair]: places in `sides`
+  const Index* code;   // [pair]: see code_of
+  const Index* sides;  // [edge][2]: 4 * exposed face + side, or -1
+  Flag* near;          // [pair] 0: they cannot begin to touch in this step
+
+  static constexpr Index ways = 8;
+  /// Is the mother's edge the second one?
+  CDEM_HD static bool is_reverse(Index way) { return way & 4; }
+  CDEM_HD static Index way(bool reverse, Index i, Index j) { return reverse << 2 | i << 1 | j; }
+  /// The ways in which two edges may touch, as bits; which of their ends are shared; which of the
+  /// four sides (those of the first edge, then of the second) run against the edges.
+  CDEM_HD static Index code_of(Index some, Index shared, Index against) {
+    return some | shared << ways | against << (ways + 4);
+  }
+
+  CDEM_HD bool may_touch(Index p, Index way) const { return code[p] >> way & 1; }
+  /// The mother's side and the target's, 4 * exposed face + side.
+  struct Sides {
+    Index mother, target, shared;
+  };
+  CDEM_HD Sides sides_of(Index p, Index way) const {
+    const Index i = way >> 1 & 1, j = way & 1, against = code[p] >> (ways + 4);
+    const Index a = sides[2 * edges.at(0, One{p}) + i], b = sides[2 * edges.at(1, One{p}) + j];
+    const Index shared =
+        SidePair::turned(code[p] >> ways & 15, against >> i & 1, against >> (2 + j) & 1);
+    if (is_reverse(way)) return {b, a, SidePair::swapped(shared)};
+    return {a, b, shared};
+  }
 };
 
 /// Where x_m + s d_m and x_t + t d_t are closest along a direction: x_m(s) - x_t(t) = gap * way.
@@ -106,8 +162,7 @@ CDEM_HD inline Frame<T> edge_frame(const Vec3<T>& n, const Vec3<T>& along_t) {
 /// indentation and the rate of approach. So what is found in contact does not depend on it.
 struct MarkNearEdges {
   InMotion nodes;
-  InIndices ends;   // [4][pair]: of one edge, and of the other; if any of them began at the same
-                    // place in the mesh, then the first of both
+  InIndices ends;   // see EdgePairs
   InBounds room;    // [5][pair]: depth at which a contact may begin; how far the indentation moves
                     // an edge aside, at most  [m]; side on which one edge must be of the other,
                     // along the cross product: 1, -1, 0: either; what it takes from the ends of an
@@ -161,6 +216,16 @@ struct MarkNearEdges {
   }
 };
 
+/// Those that were in contact one step ago must be looked at all the same.
+struct MarkHeldEdges {
+  const Index* pair;  // [contact one step ago]
+  Flag* near;
+
+  CDEM_HD void operator()(One c) const {
+    if (pair[c.i] >= 0) set(near[pair[c.i]]);
+  }
+};
+
 /// A side of an exposed face and one of another, or such a pair a lane.
 template <class Ids>
 struct TwoSides {
@@ -177,31 +242,55 @@ struct TwoSides {
 struct TouchTargetEdges {
   FaceColumns faces;
   FaceGeometry geometry;
-  EdgeCandidates candidates;
+  const Index* exposed_face;
+  EdgePairs pairs;
   SearchRules rules;
   EdgesBefore held;
+  Flag* lost;  // [exposed] 1: a loaded contact was lost because it sank too deep
+  FoundEdges found;
 
-  CDEM_HD Range items(Index m) const { return {candidates.first[m], candidates.first[m + 1]}; }
-  /// Sides of edges that are near, and those that were in contact one step ago.
-  CDEM_HD bool picks(Index m, Index c) const {
-    candidates.touch[c] = no_touch;
-    if (held.first[m] == held.first[m + 1]) return candidates.near[candidates.edges[c]];
-    return candidates.near[candidates.edges[c]] || held_place(m, c) >= 0;
+  /// More contacts than this on one face stop the run.
+  static constexpr Index most_slots = 64;
+
+  CDEM_HD Range items(Index p) const {
+    return {EdgePairs::ways * p, EdgePairs::ways * (p + (pairs.near[p] ? 1 : 0))};
+  }
+  CDEM_HD bool picks(Index p, Index id) const {
+    return pairs.may_touch(p, id - EdgePairs::ways * p);
   }
   template <class I>
   CDEM_HD void operator()(const I& item) const {
-    const auto touch = test(TwoSides<typename IndexOf<I>::type>{
-        item.row, look_up(candidates.face, item.id), look_up(candidates.sides, item.id),
-        indices_of([&](Index m, Index c) { return held_place(m, c); }, item.row, item.id)});
-    for_lanes(item, [&](Index lane, Index, Index c) {
-      if (holds(touch.sank, lane)) candidates.touch[c] = has_sunk;
-      if (holds(touch.touches, lane)) candidates.touch[c] = touches;
+    TwoSides<typename IndexOf<I>::type> sides;
+    for_lanes(item, [&](Index lane, Index p, Index id) {
+      const auto of = pairs.sides_of(p, id - EdgePairs::ways * p);
+      const SidePair pair{of.mother % 4, of.target % 4, of.shared};
+      of_lane(sides.m, lane) = of.mother / 4;
+      of_lane(sides.t, lane) = of.target / 4;
+      of_lane(sides.sides, lane) = pair.code();
+      of_lane(sides.before, lane) = held_place(of.mother, of.target);
+    });
+    const auto touch = test(sides);
+    if (!any_of(touch.touches | touch.sank)) return;
+    for_lanes(item, [&](Index lane, Index p, Index) {
+      const Index m = of_lane(sides.m, lane);
+      if (holds(touch.sank, lane)) set(lost[m]);
+      if (!holds(touch.touches, lane)) return;
+      const SidePair pair = SidePair::of(of_lane(sides.sides, lane));
+      const FoundEdge contact{4 * m + pair.k, 4 * of_lane(sides.t, lane) + pair.j,
+                              of_lane(sides.before, lane), p};
+      const Index place = raise(found.count[m]);
+      if (place < found.slots) contact.store(found.rows, std::size_t(m) * found.slots + place);
     });
   }
 
-  /// Place of the contact that the sides of a candidate had one step ago, or -1.
-  CDEM_HD Index held_place(Index m, Index c) const {
-    return held_place(m, SidePair::of(candidates.sides[c]).k, candidates.edge[c]);
+  /// Place of the contact that two sides (4 * exposed face + side) had one step ago, or -1.
+  CDEM_HD Index held_place(Index mother, Index target) const {
+    const Index m = mother / 4;
+    if (held.first[m] == held.first[m + 1]) return -1;
+    return held_place(m, mother % 4, edge_of(target));
+  }
+  CDEM_HD Index edge_of(Index side) const {
+    return faces.face_edges[4 * exposed_face[side / 4] + side % 4];
   }
   CDEM_HD Index held_place(Index m, Index k, Index edge) const {
     for (Index c = held.first[m]; c < held.first[m + 1]; ++c) {
@@ -254,8 +343,6 @@ struct TouchTargetEdges {
         pair.before);
     return Outcome{Truth<T>(may & !deep), Truth<T>(may & deep & (loaded > zero))};
   }
-
-  static constexpr Flag no_touch = 0, touches = 1, has_sunk = 2;
 
  private:
   /// Ends of both sides.
@@ -361,53 +448,31 @@ struct TouchTargetEdges {
   }
 };
 
-/// Collect what touches for one exposed face.
-struct FindTargetEdges {
-  TouchTargetEdges touch;
-  Flag* lost;  // [exposed] 1: a loaded contact was lost because it sank too deep
-  FoundEdges found;
-
-  /// More contacts than this on one face stop the run.
-  static constexpr Index most_slots = 64;
-
-  CDEM_HD void operator()(One m) const {
-    const EdgeCandidates& candidates = touch.candidates;
-    Index used = 0;
-    for (Index c = candidates.first[m.i]; c < candidates.first[m.i + 1]; ++c) {
-      if (candidates.touch[c] == TouchTargetEdges::no_touch) continue;
-      if (candidates.touch[c] == TouchTargetEdges::has_sunk) {
-        lost[m.i] = 1;
-        continue;
-      }
-      const EdgeContact contact{4 * m.i + SidePair::of(candidates.sides[c]).k, candidates.face[c],
-                                candidates.edge[c], touch.held_place(m.i, c)};
-      if (used < found.slots) contact.store(found.rows, std::size_t(m.i) * found.slots + used);
-      ++used;
-    }
-    found.count[m.i] = used;
-  }
-};
-
-/// List what was found for one exposed face: its contacts go on or begin, and what the springs of
-/// those that ended did not give back is lost to friction and dashpot.
+/// List what was found for one exposed face, in order: its contacts go on or begin, and what the
+/// springs of those that ended did not give back is lost to friction and dashpot.
 struct ListEdges {
-  FaceColumns faces;
-  FaceGeometry geometry;
-  EdgesBefore held;
-  FoundEdges found;
+  TouchTargetEdges touch;
   const Index* first;  // [exposed + 1] of the list
   Index* contact;      // rows of EdgeContact
+  Index* pair;         // [contact] of edges, on the lists
   Real* friction;      // [exposed] lost so far  [J]
   Real* dashpot;       // [exposed] lost so far  [J]
 
   CDEM_HD void operator()(One m) const {
-    const std::size_t row = std::size_t(m.i) * found.slots;
-    for (Index j = 0; j < found.count[m.i]; ++j)
-      EdgeContact::at(found.rows, row + j).store(contact, first[m.i] + j);
+    const EdgesBefore& held = touch.held;
+    const FoundEdges& found = touch.found;
+    Index* row = found.rows + 4 * std::size_t(m.i) * found.slots;
+    sort(row, found.count[m.i]);
+    for (Index j = 0; j < found.count[m.i]; ++j) {
+      const FoundEdge edge = FoundEdge::at(row, j);
+      EdgeContact{edge.mother, edge.target / 4, touch.edge_of(edge.target), edge.before}.store(
+          contact, first[m.i] + j);
+      pair[first[m.i] + j] = edge.pair;
+    }
     for (Index c = held.first[m.i]; c < held.first[m.i + 1]; ++c) {
       bool goes_on = false;
       for (Index j = 0; j < found.count[m.i]; ++j)
-        goes_on = goes_on || EdgeContact::at(found.rows, row + j).before == c;
+        goes_on = goes_on || FoundEdge::at(row, j).before == c;
       if (goes_on) continue;
       const LostAtEnd lost = lost_at_end(c);
       friction[m.i] += lost.friction;
@@ -416,8 +481,19 @@ struct ListEdges {
   }
 
  private:
+  CDEM_HD static void sort(Index* row, Index count) {
+    for (Index j = 1; j < count; ++j) {
+      const FoundEdge edge = FoundEdge::at(row, j);
+      Index place = j;
+      for (; place > 0 && edge.is_before(FoundEdge::at(row, place - 1)); --place)
+        FoundEdge::at(row, place - 1).store(row, place);
+      edge.store(row, place);
+    }
+  }
   CDEM_HD LostAtEnd lost_at_end(Index c) const {
-    const EdgeContact contact = EdgeContact::at(held.contact, c);
+    const FaceColumns& faces = touch.faces;
+    const FaceGeometry& geometry = touch.geometry;
+    const EdgeContact contact = EdgeContact::at(touch.held.contact, c);
     const Index m = contact.mother / 4, k = contact.mother % 4;
     const Vec3<Real> out = geometry.normal(contact.face) - geometry.normal(m);
     const Index* target = faces.edge_nodes + 2 * contact.edge;
@@ -425,7 +501,7 @@ struct ListEdges {
                crossed = side(target[0], target[1]);
     const Vec3<Real> n = edge_normal(mother.along, crossed.along, out);
     const Crossing<Real> at = cross_edges(mother.x, mother.along, crossed.x, crossed.along, n);
-    return {ContactState::at(held.state, c), edge_frame(n, crossed.along),
+    return {ContactState::at(touch.held.state, c), edge_frame(n, crossed.along),
             mother.way(at.s) - crossed.way(at.t)};
   }
   /// An edge one step ago, and how its ends have moved since.
@@ -434,6 +510,7 @@ struct ListEdges {
     CDEM_HD Vec3<Real> way(Real s) const { return way0 + s * (way1 - way0); }
   };
   CDEM_HD Side side(Index a, Index b) const {
+    const FaceColumns& faces = touch.faces;
     const Vec3<Real> x = faces.position_before(a);
     return {x, faces.position_before(b) - x, faces.dt * faces.nodes.velocity(a),
             faces.dt * faces.nodes.velocity(b)};

@@ -156,12 +156,11 @@ class Audit:
         t, a = b.topology, b.assembly
         core = self._sim.core.fields()
         exposed = core["search.exposed_face"]
-        vertices, sides = core["search.candidate_first"], core["search.edge_candidate_first"]
+        sources = core["search.source_first"]
         pairs = [
             np.empty((0, 2), int),
             *a.pair_faces.values(),
-            exposed[_pairs_of(vertices, core["search.candidate"]) // (4, 1)],
-            exposed[_pairs_of(sides, core["search.edge_candidate"])],
+            exposed[_pairs_of(sources, core["search.source"])],
         ]
         joined = t.face_block[np.concatenate(pairs)]
         held = np.zeros(len(t.block_group), bool)
