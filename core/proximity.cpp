@@ -143,6 +143,22 @@ bool may_sink(const Finder& f, const Vec3<Real>& v, const ExposedFace& x, const 
   return true;
 }
 
+/// Does a point that moves as exposed face x does stay beside exposed face y until the next refresh,
+/// farther than `room` [m]? `v` is the vertex that it belongs to.
+bool stays_beside(const Finder& f, const Vec3<Real>& v, const Vec3<Real>& point,
+                  const ExposedFace& x, Index place_y, Real room) {
+  const ExposedFace& y = f.exposed[place_y];
+  for (Index j = 0; j < y.shape.count(); ++j) {
+    const ExposedSide& side = f.sides[4 * std::size_t(place_y) + j];
+    const Vec3<Real> from = point - side.start;
+    if (dot(cross(y.normal, side.along), from) <
+            -(room + 2 * y.turn * (norm(from) + room)) * side.length &&
+        !may_go_behind(f, v, x, side))
+      return true;
+  }
+  return false;
+}
+
 /// May a vertex of exposed face x come into contact with exposed face y before the next refresh?
 /// The tests of FindTargetFaces::qualify with room for the motion; `reach` is that of the largest
 /// of the faces at the vertex, `least` the L of the smallest. A vertex that a bond holds to y has
@@ -158,15 +174,9 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
   if (gap + change.least > gap_room + rules.lifted ||
       gap + change.most < -rules.depth * length - gap_room)
     return false;
-  for (Index j = 0; j < y.shape.count(); ++j) {  // beside the face?
-    const Vec3<Real> a = y.shape.x[j], side = y.shape.x[j + 1 == y.shape.count() ? 0 : j + 1] - a;
-    const Vec3<Real> from = v - a;
-    const Real room = rules.tolerance * length + rules.indentation * reach + motion +
-                      2 * y.turn * (norm(from) + rules.indentation * reach);
-    if (dot(cross(y.normal, side), from) < -room * norm(side) &&
-        !may_go_behind(f, v, x, f.sides[4 * std::size_t(place_y) + j]))
-      return false;
-  }
+  if (stays_beside(f, v, v, x, place_y,
+                   rules.tolerance * length + rules.indentation * reach + motion))
+    return false;
   for (Index j = 0; j < y.shape.count(); ++j)
     if (f.faces.node_glue[f.faces.vertex(y.face, j)] == f.faces.node_glue[node]) return false;
   if (Bonded::among(f.bonded.vertices, node, place_y)) return false;
@@ -392,12 +402,20 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
       if (!touches &&
           !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
         continue;
-      for (Index i = 0; i < a.face_count; ++i)
-        if (a.corner[v][i] >= 0 && met(i, j)) {
-          all_met.add(reverse, i, j);
-          found.touches.push_back(
-              {a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
-        }
+      const Vec3<Real> at = f.faces.nodes.position(a.vertex[v]);
+      bool any = false;
+      for (Index i = 0; i < a.face_count; ++i) {
+        if (a.corner[v][i] < 0 || !met(i, j)) continue;
+        const ExposedFace &x = f.exposed[a.face[i]], &y = f.exposed[b.face[j]];
+        const Vec3<Real> indented = at + f.m.rules.indentation * (x.center - at);
+        if (!touches && stays_beside(f, at, indented, x, b.face[j],
+                                     f.m.rules.tolerance * length + motion_between(x, y)))
+          continue;
+        any = true;
+        all_met.add(reverse, i, j);
+        found.touches.push_back({a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
+      }
+      if (!any) continue;
       found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, a.reach, least));
     }
   }
