@@ -116,6 +116,16 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
 }
 
 /// All of a patch but its faces.
+Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
+  const Real part = m.rules.indentation;
+  const Vec3<Real>& start = face.shape.x[side];
+  const Vec3<Real> arm = face.center - start,
+                   edge = face.shape.x[side + 1 == face.shape.count() ? 0 : side + 1] - start;
+  const Real length = norm(edge), along = dot(arm, edge) / length;
+  return {0.99 * part * std::min(along, length - along), 1.01 * part * norm(cross(arm, edge)) / length,
+          face.length};
+}
+
 void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed, Patch& p) {
   const FaceColumns faces = face_columns(m, s);
   p.box = Box::nothing();
@@ -140,9 +150,10 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
       const Index id = m.face_edges[4 * e.face + k];
       Patch::Edge* last = p.edge + p.edge_count;
       Patch::Edge* edge = std::find_if(p.edge, last, [&](const auto& o) { return o.id == id; });
-      if (edge == last) p.edge[p.edge_count++] = {id, 0, {}, {}, {}};
+      if (edge == last) p.edge[p.edge_count++] = {id, 0, {}, {}, {}, {}};
       edge->face[edge->faces] = i;
       edge->side[edge->faces++] = k;
+      edge->indented = edge->indented.and_of(indented_at(m, e, k));
     }
   }
   for (Index e = 0; e < p.edge_count; ++e) {

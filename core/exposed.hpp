@@ -2,6 +2,7 @@
 // move before the lists are renewed. Host code.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -67,6 +68,17 @@ struct ExposedFace {
 
 Unset<ExposedFace> exposed_faces(const Model& model, const State& state);
 
+/// What the indentation of the faces at an edge takes from the ends of the edge, at least, and how
+/// far it moves it aside, at most, with room for what faces are strained; least L  [m].
+struct Indented {
+  Real inset = 1e300, shift = 0, length = 1e300;
+
+  Indented and_of(const Indented& other) const {
+    return {std::min(inset, other.inset), std::max(shift, other.shift),
+            std::min(length, other.length)};
+  }
+};
+
 /// The exposed faces of one element, with their vertices and edges, each once.
 struct Patch {
   /// An edge: the faces of the patch that meet there, and which of their sides it is.
@@ -74,6 +86,7 @@ struct Patch {
     Index id, faces;
     Index face[2], side[2];
     Index vertex[2];
+    Indented indented;
   };
   Index face_count, vertex_count, edge_count;
   Index face[6];  // exposed
