@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <iterator>
+#include <memory>
 #include <tuple>
 #include <vector>
 
@@ -221,7 +222,9 @@ void list_touches(SearchState& search, const Touches& touches) {
 
 void list_candidates(const Model& m, State& s) {
   foresee_motion(m, s);
-  AllProximity found = find_proximity(m, s);
+  if (!s.search.lists) s.search.lists = std::make_shared<ProximitySearch>();
+  find_proximity(m, s, *s.search.lists);
+  AllProximity& found = s.search.lists->found;
   const Index count = Index(s.search.exposed_face.size());
   list_face_pairs(found, s.search);
   list_edge_pairs(found, s.search);

@@ -251,15 +251,15 @@ void foresee_motion(const Model& m, State& s) {
   }
 }
 
-Unset<ExposedFace> exposed_faces(const Model& m, const State& s) {
+void list_exposed_faces(const Model& m, const State& s, Unset<ExposedFace>& exposed) {
   const Index count = Index(s.search.exposed_face.size());
-  Unset<ExposedFace> exposed(count);
+  exposed.resize(count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x) exposed[x] = exposed_face(m, s, x);
-  return exposed;
 }
 
-Unset<Patch> exposed_patches(const Model& m, const State& s, const Unset<ExposedFace>& exposed) {
+void list_patches(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
+                  Unset<Patch>& patches) {
   std::vector<Index> patch_of(m.tet4.count + m.pyramid5.count + m.wedge6.count + m.hex8.count, -1);
   struct Faces {
     Index count, place[6];
@@ -274,7 +274,7 @@ Unset<Patch> exposed_patches(const Model& m, const State& s, const Unset<Exposed
     faces[patch].place[faces[patch].count++] = x;
   }
   const Index count = Index(faces.size());
-  Unset<Patch> patches(count);
+  patches.resize(count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index p = 0; p < count; ++p) {
     Patch& patch = patches[p] = {};
@@ -282,11 +282,11 @@ Unset<Patch> exposed_patches(const Model& m, const State& s, const Unset<Exposed
     std::copy_n(faces[p].place, faces[p].count, patch.face);
     complete(m, s, exposed, patch);
   }
-  return patches;
 }
 
-Unset<ExposedSide> exposed_sides(const State& s, const Unset<ExposedFace>& exposed) {
-  Unset<ExposedSide> sides(4 * exposed.size());
+void list_exposed_sides(const State& s, const Unset<ExposedFace>& exposed,
+                        Unset<ExposedSide>& sides) {
+  sides.resize(4 * exposed.size());
 #pragma omp parallel for schedule(static, 128) if (exposed.size() >= worth_threads)
   for (std::size_t x = 0; x < exposed.size(); ++x) {
     const ExposedFace& e = exposed[x];
@@ -312,7 +312,6 @@ Unset<ExposedSide> exposed_sides(const State& s, const Unset<ExposedFace>& expos
       side.rises = side.sharp && dot(e.normal, arm) > -(e.turn + beyond.turn) * norm(arm);
     }
   }
-  return sides;
 }
 
 }  // namespace cdem

@@ -66,7 +66,7 @@ struct ExposedFace {
   Box box;  // of the whole way
 };
 
-Unset<ExposedFace> exposed_faces(const Model& model, const State& state);
+void list_exposed_faces(const Model& model, const State& state, Unset<ExposedFace>& exposed);
 
 /// What the indentation of the faces at an edge takes from the ends of the edge, at least, and how
 /// far it moves it aside, at most, with room for what faces are strained; least L  [m].
@@ -104,8 +104,8 @@ struct Patch {
 };
 
 /// Group the exposed faces by the elements behind them.
-Unset<Patch> exposed_patches(const Model& model, const State& state,
-                             const Unset<ExposedFace>& exposed);
+void list_patches(const Model& model, const State& state, const Unset<ExposedFace>& exposed,
+                  Unset<Patch>& patches);
 
 /// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
 /// lie between theirs, which is what `fall` tells (see TouchTargetEdges::cones_hold).
@@ -119,6 +119,7 @@ struct ExposedSide {
   Real turn, turn_face, turn_across;  // of the side and of both faces
 };
 
-Unset<ExposedSide> exposed_sides(const State& state, const Unset<ExposedFace>& exposed);
+void list_exposed_sides(const State& state, const Unset<ExposedFace>& exposed,
+                        Unset<ExposedSide>& sides);
 
 }  // namespace cdem

@@ -645,13 +645,13 @@ void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs
 }
 
 /// The sides at the edges of all patches, see EdgePairs; patches learn their places.
-Unset<Index> list_edge_sides(Unset<Patch>& patches) {
+void list_edge_sides(Unset<Patch>& patches, Unset<Index>& sides) {
   Index count = 0;
   for (Patch& patch : patches) {
     patch.edge_first = count;
     count += patch.edge_count;
   }
-  Unset<Index> sides(2 * std::size_t(count));
+  sides.resize(2 * std::size_t(count));
   const Index patch_count = Index(patches.size());
 #pragma omp parallel for schedule(static, 128) if (patch_count >= worth_threads)
   for (Index p = 0; p < patch_count; ++p)
@@ -661,29 +661,31 @@ Unset<Index> list_edge_sides(Unset<Patch>& patches) {
         sides[2 * std::size_t(patches[p].edge_first + e) + i] =
             i < edge.faces ? 4 * patches[p].face[edge.face[i]] + edge.side[i] : -1;
     }
-  return sides;
 }
 
 }  // namespace
 
-AllProximity find_proximity(const Model& m, const State& s) {
-  const Unset<ExposedFace> exposed = exposed_faces(m, s);
-  const Unset<ExposedSide> sides = exposed_sides(s, exposed);
+void find_proximity(const Model& m, const State& s, ProximitySearch& search) {
+  Unset<ExposedFace>& exposed = search.exposed;
+  Unset<ExposedSide>& sides = search.sides;
+  Unset<Patch>& patches = search.patches;
+  list_exposed_faces(m, s, exposed);
+  list_exposed_sides(s, exposed, sides);
+  list_patches(m, s, exposed, patches);
   const Bonded bonded = live_overlaps(m, s);
   const Finder f{m, s, face_columns(m, s), exposed, sides, bonded};
-  Unset<Patch> patches = exposed_patches(m, s, exposed);
   const Index count = Index(patches.size());
   std::vector<Box> boxes(count);
   for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
   const BoxTree tree(boxes);
-  AllProximity all;
+  AllProximity& all = search.found;
   all.by_thread.resize(omp_get_max_threads());
-  all.by_patch.resize(count);
-  all.edge_sides = list_edge_sides(patches);
+  all.by_patch.assign(count, {});
+  list_edge_sides(patches, all.edge_sides);
+  for (Proximity& found : all.by_thread) found.clear();
 #pragma omp parallel if (count >= worth_threads)
   {
     Proximity& found = all.by_thread[omp_get_thread_num()];
-    found.reserve_like(s.search, omp_get_num_threads());
     std::vector<Index> others;
 #pragma omp for schedule(dynamic, 32)
     for (Index p = 0; p < count; ++p) {
@@ -711,7 +713,6 @@ AllProximity find_proximity(const Model& m, const State& s) {
       all.by_patch[p].end(found);
     }
   }
-  return all;
 }
 
 bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,

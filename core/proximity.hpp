@@ -62,13 +62,11 @@ struct Proximity {
   std::vector<Edges> edges;
   std::vector<Meeting> meetings;
 
-  /// Make room for a thread's part of what the last search has found, and some more.
-  void reserve_like(const SearchState& last, Index threads) {
-    const auto part = [&](std::size_t size) { return (size + size / 8) / threads; };
-    touches.reserve(part(last.candidate.size()));
-    faces.reserve(part(last.faces_near.size()));
-    edges.reserve(part(last.edges_near.size()));
-    meetings.reserve(part(last.source.size()));
+  void clear() {
+    touches.clear();
+    faces.clear();
+    edges.clear();
+    meetings.clear();
   }
 };
 
@@ -93,6 +91,15 @@ struct AllProximity {
   std::vector<Share> by_patch;
   Unset<Index> edge_sides;  // of the edges of all patches, see EdgePairs
 };
-AllProximity find_proximity(const Model& model, const State& state);
+
+/// What a search works with and what it finds. It is kept from refresh to refresh for its memory
+/// only, which the system would have to hand out anew.
+struct ProximitySearch {
+  Unset<ExposedFace> exposed;
+  Unset<ExposedSide> sides;
+  Unset<Patch> patches;
+  AllProximity found;
+};
+void find_proximity(const Model& model, const State& state, ProximitySearch& search);
 
 }  // namespace cdem

@@ -1,6 +1,7 @@
 // state.hpp - what a step changes, and the list that names every array of it.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "core/contact/face.hpp"
@@ -80,6 +81,7 @@ struct SearchState {
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Index> watched, node_watch;  // nodes of exposed faces; node -> place among them, or -1
   Column<Real> watch;                 // rows of 8 of theirs, see WatchedNode
+  std::shared_ptr<struct ProximitySearch> lists;  // how they are made, see proximity.hpp
 };
 
 /// What the wall time of steps is counted by.
