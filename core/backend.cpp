@@ -111,6 +111,7 @@ template void launch(Queue, Index, const MarkNearEdges&);
 template void launch_picked(Queue, Index, const KeepTargetFaces&);
 template void launch_picked(Queue, Index, const SiftTargetFaces&);
 template void launch_one(Queue, Index, const FindTargetFaces&);
+template void launch_picked(Queue, Index, const SiftTargetEdges&);
 template void launch_picked(Queue, Index, const TouchTargetEdges&);
 template void launch_one(Queue, Index, const MarkHeldEdges&);
 template void launch_picked(Queue, Index, const UpdateSpringForces&);

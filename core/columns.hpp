@@ -45,7 +45,8 @@ inline EdgePairs edge_pairs(State& s) {
           {s.search.edges_of.data(), stride},
           s.search.edges_code.data(),
           s.search.edge_sides.data(),
-          s.search.edges_near.data()};
+          s.search.edges_near.data(),
+          s.search.edges_open.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {

@@ -42,6 +42,7 @@ CDEM_HD inline Real max_of(Real a, Real b) { return a > b ? a : b; }
 CDEM_HD inline Real min_of(Real a, Real b) { return a < b ? a : b; }
 CDEM_HD inline Real abs_of(Real a) { return a < 0 ? -a : a; }
 CDEM_HD inline Real sqrt_of(Real a) { return std::sqrt(a); }
+CDEM_HD inline unsigned lane_bits(bool mask) { return mask; }
 CDEM_HD inline bool any_of(bool mask) { return mask; }
 
 /// Raise a count that several threads may raise at once, and return what it was. Which of them
@@ -54,11 +55,11 @@ CDEM_HD inline Index raise(Index& count) {
 #endif
 }
 /// Set a flag that several threads may set at once.
-CDEM_HD inline void set(Flag& flag) {
+CDEM_HD inline void set(Flag& flag, Flag value = 1) {
 #if defined(__CUDA_ARCH__)
-  flag = 1;
+  flag = value;
 #else
-  std::atomic_ref(flag).store(1, std::memory_order_relaxed);
+  std::atomic_ref(flag).store(value, std::memory_order_relaxed);
 #endif
 }
 

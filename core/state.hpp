@@ -73,6 +73,7 @@ struct SearchState {
   Column<Index> edge_sides;            // [edge][2] the same
   Column<float> edges_bounds;          // [5][pair] see MarkNearEdges
   Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
+  Column<Flag> edges_open;             // [pair] see SiftTargetEdges; made in every step
   Column<Index> source_first, source;  // faces whose contacts may act on a face
   Column<Flag> face_listed;            // [exposed] may any act on it, or its own on others?
   Column<Flag> acting;                 // [source] do they in this step? All 0 between steps

@@ -81,8 +81,13 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   begin_edges(s);
   launch_one(q, Index(s.edges.old_pair.size()),
              MarkHeldEdges{s.edges.old_pair.data(), s.search.edges_near.data()});
+  const Index pairs = Index(s.search.edges_near.size());
+  s.search.edges_open.resize(pairs);
+  launch_picked(q, pairs,
+                SiftTargetEdges{
+                    {s.nodes.motion.data()}, face_geometry(s), edge_pairs(s), m.rules});
   do {
-    launch_picked(q, Index(s.search.edges_near.size()), edge_search(m, s));
+    launch_picked(q, pairs, edge_search(m, s));
     finish(q);
   } while (!make_room_for_edges(s));
   launch_one(q, Index(s.search.exposed_face.size()),

@@ -96,9 +96,11 @@ struct EdgePairs {
   InIndices edges;     // [2][pair]: places in `sides`
   const Index* code;   // [pair]: see code_of
   const Index* sides;  // [edge][2]: 4 * exposed face + side, or -1
-  Flag* near;          // [pair] 0: they cannot begin to touch in this step
+  Flag* near;          // [pair] 0: they cannot begin to touch in this step; held: they did before
+  Flag* open;          // [pair] of those that are near: ways in which they may, see SiftTargetEdges
 
   static constexpr Index ways = 8;
+  static constexpr Flag held = 2;
   /// Is the mother's edge the second one?
   CDEM_HD static bool is_reverse(Index way) { return way & 4; }
   CDEM_HD static Index way(bool reverse, Index i, Index j) { return reverse << 2 | i << 1 | j; }
@@ -109,6 +111,12 @@ struct EdgePairs {
   }
 
   CDEM_HD bool may_touch(Index p, Index way) const { return code[p] >> way & 1; }
+  /// Side i of the first edge, or of the second one, as it is in `sides`; the other one if there is
+  /// only one.
+  CDEM_HD Index side(Index p, bool second, Index i) const {
+    const Index* of = sides + 2 * edges.at(second, One{p});
+    return of[i] >= 0 ? of[i] : of[0];
+  }
   /// The mother's side and the target's, 4 * exposed face + side.
   struct Sides {
     Index mother, target, shared;
@@ -222,7 +230,7 @@ struct MarkHeldEdges {
   Flag* near;
 
   CDEM_HD void operator()(One c) const {
-    if (pair[c.i] >= 0) set(near[pair[c.i]]);
+    if (pair[c.i] >= 0) set(near[pair[c.i]], EdgePairs::held);
   }
 };
 
@@ -232,6 +240,77 @@ struct TwoSides {
   Ids m, t;    // exposed faces
   Ids sides;   // SidePair::code
   Ids before;  // place of their contact one step ago, or -1
+};
+
+/// How far a contact that goes on may cross beyond the ends of the sides, in parts of them.
+CDEM_HD inline Real crossing_slack(Real indentation) { return 0.5 * indentation; }
+
+/// Sift the ways in which edges that are near each other may touch: most do not cross where the
+/// mother's is indented, or are on the wrong side of each other. It is seen for all ways at once, from
+/// the common perpendicular, without a root or a division. Those that may are left to
+/// TouchTargetEdges; that its tests are the same but for some room, nothing found depends on it.
+struct SiftTargetEdges {
+  InMotion nodes;
+  FaceGeometry geometry;
+  EdgePairs pairs;
+  SearchRules rules;
+
+  CDEM_HD Range items(Index p) const { return {p, p + (pairs.near[p] ? 1 : 0)}; }
+  CDEM_HD bool picks(Index, Index) const { return true; }
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    using T = Number<I>;
+    const auto end = [&](Index k) {
+      return nodes.position(indices_of([&](Index p) { return pairs.ends.at(k, One{p}); }, item.id));
+    };
+    const Vec3<T> x[2] = {end(0), end(2)}, d[2] = {end(1) - x[0], end(3) - x[1]};
+    const Vec3<T> c = cross(d[0], d[1]);
+    const T c2 = dot(c, c), apart = dot(x[1] - x[0], c), zero(0.0);
+    const auto goes_on =
+        numbers_of([&](Index p) { return pairs.near[p] == EdgePairs::held; }, item.id) > zero;
+    const T slack = select(goes_on, T(1.000001 * crossing_slack(rules.indentation)), zero);
+    Vec3<T> normal[2][2];
+    T along[2][2];  // c
+    Truth<T> far[2][2];
+    for (Index e = 0; e < 2; ++e)
+      for (Index i = 0; i < 2; ++i) {
+        const auto face = indices_of([&](Index p) { return pairs.side(p, e, i) / 4; }, item.id);
+        const auto of = geometry.row(face);
+        normal[e][i] = of.normal;
+        along[e][i] = dot(c, of.normal);
+        const Vec3<T> start = x[e] + T(rules.indentation) * (of.center - x[e]);
+        far[e][i] = misses(start, d[e], x[1 - e], d[1 - e], c, c2, slack);
+      }
+    const auto parallel = c2 < T(MarkNearEdges::parallel * MarkNearEdges::parallel) *
+                                   dot(d[0], d[0]) * dot(d[1], d[1]);
+    unsigned open[EdgePairs::ways];  // lane by lane, as bits
+    for (Index i = 0; i < 2; ++i)
+      for (Index j = 0; j < 2; ++j) {
+        const auto wrong = parallel | (apart * (along[1][j] - along[0][i]) < zero) |
+                           !(dot(normal[0][i], normal[1][j]) < T(-rules.opposing));
+        open[EdgePairs::way(false, i, j)] = lane_bits(!(wrong | far[0][i]));
+        open[EdgePairs::way(true, i, j)] = lane_bits(!(wrong | far[1][j]));
+      }
+    for_lanes(item, [&](Index lane, Index, Index p) {
+      Index some = 0;
+      for (Index way = 0; way < EdgePairs::ways; ++way) some |= (open[way] >> lane & 1) << way;
+      pairs.open[p] = Flag(some & pairs.code[p]);
+    });
+  }
+
+ private:
+  /// Do the lines of an indented side and of a target side, seen along c, cross beyond either?
+  template <class T>
+  CDEM_HD Truth<T> misses(const Vec3<T>& start, const Vec3<T>& along, const Vec3<T>& start_t,
+                          const Vec3<T>& along_t, const Vec3<T>& c, const T& c2,
+                          const T& slack) const {
+    const Vec3<T> apart = start_t - start;
+    const T way = select(dot(cross(along, along_t), c) < T(0.0), T(-1.0), T(1.0));
+    const T s = way * dot(cross(apart, along_t), c), t = way * dot(cross(apart, along), c);
+    const T room = (slack + T(2e-9)) * c2;  // more than in far_apart
+    const T longest = T(1.0 - rules.indentation) * c2;
+    return (s < -room) | (s > longest + room) | (t < -room) | (t > c2 + room);
+  }
 };
 
 /// Find which semi-edges touch.
@@ -256,7 +335,7 @@ struct TouchTargetEdges {
     return {EdgePairs::ways * p, EdgePairs::ways * (p + (pairs.near[p] ? 1 : 0))};
   }
   CDEM_HD bool picks(Index p, Index id) const {
-    return pairs.may_touch(p, id - EdgePairs::ways * p);
+    return pairs.open[p] >> (id - EdgePairs::ways * p) & 1;
   }
   template <class I>
   CDEM_HD void operator()(const I& item) const {
@@ -317,7 +396,7 @@ struct TouchTargetEdges {
     const Vec3<T> dm = faces.nodes.position(at.m1) - xm, dt = faces.nodes.position(at.t1) - xt;
     const Vec3<T> p0 = xm + alpha * (of_m.center - xm);
     const auto goes_on = numbers_of([](Index before) { return before >= 0; }, pair.before) > zero;
-    const T slack = select(goes_on, T(0.5) * alpha, zero);
+    const T slack = select(goes_on, T(crossing_slack(rules.indentation)), zero);
     const T length = min_of(abs_of(of_m.length), abs_of(of_t.length));
     Truth<T> may = (dot(nm, nt) < T(-rules.opposing)) & are_sharp<T>(pair) &
                    !far_apart(xm, dm, p0, xt, dt, nt - nm, slack) & !together(pair, at, length);
