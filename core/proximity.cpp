@@ -283,14 +283,15 @@ struct FacePairs {
   static int at(const Patch::Edge& e) { return 1 << e.face[0] | 1 << e.face[e.faces - 1]; }
 };
 
-/// Corners and room of a vertex and a face that may touch; `length`, `reach` and `least` as above.
+/// Corners and room of a vertex and a face that may touch; `length` and `least` as above, `indented`
+/// is how far its indented points are from the vertex, at most.
 Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Real length,
-                                  Real reach, Real least) {
+                                  Real indented, Real least) {
   const SearchRules& rules = f.m.rules;
   const ExposedFace& y = f.exposed[place_y];
   const Real slack = 1e-6 * y.length;  // for round-off
   const Real above = (y.shape.count() == 3 ? 0 : 0.5 * y.length) + y.warp + slack;
-  const Real aside = rules.tolerance * length + 1.01 * rules.indentation * reach + slack;
+  const Real aside = rules.tolerance * length + indented + slack;
   const Index last = y.shape.count() == 3 ? 2 : 3;
   const ExposedSide* sides = f.sides.data() + 4 * std::size_t(place_y);
   const bool behind = std::any_of(sides, sides + y.shape.count(),
@@ -342,20 +343,20 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
           !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
         continue;
       const Vec3<Real> at = f.faces.nodes.position(a.vertex[v]);
-      bool any = false;
+      Real shift = 0;  // of the indented points
       for (Index i = 0; i < a.face_count; ++i) {
         if (a.corner[v][i] < 0 || !met(i, j)) continue;
         const ExposedFace &x = f.exposed[a.face[i]], &y = f.exposed[b.face[j]];
-        const Vec3<Real> indented = at + f.m.rules.indentation * (x.center - at);
+        const Vec3<Real> arm = x.center - at, indented = at + f.m.rules.indentation * arm;
         if (!touches && stays_beside(f, at, indented, x, b.face[j],
                                      f.m.rules.tolerance * length + motion_between(x, y)))
           continue;
-        any = true;
+        shift = std::max(shift, f.m.rules.indentation * (norm(arm) + 2 * x.stir));
         all_met.add(reverse, i, j);
         found.touches.push_back({a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
       }
-      if (!any) continue;
-      found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, a.reach, least));
+      if (shift == 0) continue;  // nothing is listed
+      found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, shift, least));
     }
   }
 }
