@@ -170,9 +170,9 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
 }
 
 /// Smallest skin of a node, in parts of the smallest L of its faces: wide skins make long lists,
-/// thin ones lists that do not last. Both cost about the same where lists last some twenty steps.
+/// thin ones lists that do not last. Both cost about the same where lists last some thirty steps.
 Real least_skin(const State& s, std::int64_t lasted) {
-  constexpr Index short_lived = 16, long_lived = 32;
+  constexpr Index short_lived = 24, long_lived = 48;
   constexpr Real thinnest = 0.001, widest = 0.03, change = 1.5;
   if (s.search.strayed && lasted < short_lived)
     return std::min(change * s.search.skin_least, widest);
