@@ -41,12 +41,9 @@ inline Sources source_columns(const State& s) {
 
 inline EdgePairs edge_pairs(State& s) {
   const Index stride = padded_stride(Index(s.search.edges_near.size()));
-  return {{s.search.edges_ends.data(), stride},
-          {s.search.edges_of.data(), stride},
-          s.search.edges_code.data(),
-          s.search.edge_sides.data(),
-          s.search.edges_near.data(),
-          s.search.edges_open.data()};
+  return {{s.search.edges_ends.data(), stride}, {s.search.edges_of.data(), stride},
+          s.search.edges_code.data(),           s.search.edge_sides.data(),
+          s.search.edges_near.data(),           s.search.edges_open.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {

@@ -122,8 +122,8 @@ Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
   const Vec3<Real> arm = face.center - start,
                    edge = face.shape.x[side + 1 == face.shape.count() ? 0 : side + 1] - start;
   const Real length = norm(edge), along = dot(arm, edge) / length;
-  return {0.99 * part * std::min(along, length - along), 1.01 * part * norm(cross(arm, edge)) / length,
-          face.length};
+  return {0.99 * part * std::min(along, length - along),
+          1.01 * part * norm(cross(arm, edge)) / length, face.length};
 }
 
 void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed, Patch& p) {

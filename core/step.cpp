@@ -84,8 +84,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   const Index pairs = Index(s.search.edges_near.size());
   s.search.edges_open.resize(pairs);
   launch_picked(q, pairs,
-                SiftTargetEdges{
-                    {s.nodes.motion.data()}, face_geometry(s), edge_pairs(s), m.rules});
+                SiftTargetEdges{{s.nodes.motion.data()}, face_geometry(s), edge_pairs(s), m.rules});
   do {
     launch_picked(q, pairs, edge_search(m, s));
     finish(q);

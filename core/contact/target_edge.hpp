@@ -246,8 +246,8 @@ struct TwoSides {
 CDEM_HD inline Real crossing_slack(Real indentation) { return 0.5 * indentation; }
 
 /// Sift the ways in which edges that are near each other may touch: most do not cross where the
-/// mother's is indented, or are on the wrong side of each other. It is seen for all ways at once, from
-/// the common perpendicular, without a root or a division. Those that may are left to
+/// mother's is indented, or are on the wrong side of each other. It is seen for all ways at once,
+/// from the common perpendicular, without a root or a division. Those that may are left to
 /// TouchTargetEdges; that its tests are the same but for some room, nothing found depends on it.
 struct SiftTargetEdges {
   InMotion nodes;
