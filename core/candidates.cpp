@@ -140,25 +140,32 @@ void list_edge_pairs(const AllProximity& found, SearchState& search) {
              });
 }
 
-/// Contacts of semi-edges learn the places of the pairs that they are of.
-void place_held_edges(const Model& m, State& s) {
-  EdgeState& held = s.edges;
-  held.pair.fill(-1);
-  if (held.pair.size() == 0) return;
-  const EdgePairs pairs = edge_pairs(s);
-  const Index count = Index(s.search.edges_near.size());
+/// For every edge of the mesh the pairs that it is of, and the other edges, in any order.
+void list_pairs_of_edges(const Model& m, SearchState& search) {
+  const Index count = Index(search.edges_near.size());
+  const std::size_t stride = padded_stride(count);
+  Column<Index>&first = search.edge_pairs_first, &pairs = search.edge_pairs;
+  first.resize(count > 0 ? m.edge_nodes.size() / 2 + 1 : 0);
+  first.fill(0);
+  pairs.resize(4 * std::size_t(count));
+  if (count == 0) return;
+  const auto edge = [&](Index p, Index which) {
+    const Index side = search.edge_sides[2 * std::size_t(search.edges_of[which * stride + p])];
+    return m.face_edges[4 * search.exposed_face[side / 4] + side % 4];
+  };
+  const Counters number{first.data() + 1};
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index p = 0; p < count; ++p)
-    for (Index way = 0; way < EdgePairs::ways; ++way) {
-      if (!pairs.may_touch(p, way)) continue;
-      const EdgePairs::Sides sides = pairs.sides_of(p, way);
-      const Index x = sides.mother / 4, target = s.search.exposed_face[sides.target / 4];
-      for (Index c = held.first[x]; c < held.first[x + 1]; ++c) {
-        const EdgeContact contact = EdgeContact::at(held.contact.data(), c);
-        if (contact.mother == sides.mother &&
-            contact.edge == m.face_edges[4 * target + sides.target % 4])
-          held.pair[c] = p;
-      }
+    for (const Index which : {0, 1}) number.raise(edge(p, which));
+  add_up(first, first.size() - 1);
+  std::vector<Index> places(first.data(), first.data() + first.size() - 1);
+  const Counters next{places.data()};
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index p = 0; p < count; ++p)
+    for (const Index which : {0, 1}) {
+      const std::size_t place = next.raise(edge(p, which));
+      pairs[2 * place] = p;
+      pairs[2 * place + 1] = edge(p, 1 - which);
     }
 }
 
@@ -228,7 +235,7 @@ void list_candidates(const Model& m, State& s) {
   const Index count = Index(s.search.exposed_face.size());
   list_face_pairs(found, s.search);
   list_edge_pairs(found, s.search);
-  place_held_edges(m, s);
+  list_pairs_of_edges(m, s.search);
   list_sources(found, count, s.search);
   list_touches(s.search,
                by_mother(found, &Proximity::touches, count,

@@ -59,7 +59,7 @@ inline EdgeColumns edge_columns(State& s) {
 
 inline EdgesBefore edges_before(const State& s) {
   const EdgeState& c = s.edges;
-  return {c.old_first.data(), c.old_contact.data(), c.old_pair.data(), c.old_state.data()};
+  return {c.old_first.data(), c.old_contact.data(), c.old_state.data()};
 }
 
 inline FaceSearch face_search(const Model& m, State& s) {

@@ -13,14 +13,13 @@ namespace {
 void swap_with_old(EdgeState& e) {
   e.first.swap(e.old_first);
   e.contact.swap(e.old_contact);
-  e.pair.swap(e.old_pair);
   e.state.swap(e.old_state);
 }
 
 void make_places(EdgeState& e, std::size_t count) {
   e.found_count.resize(count);
   e.found_count.fill(0);
-  e.found.resize(4 * std::size_t(e.slots) * count);
+  e.found.resize(3 * std::size_t(e.slots) * count);
 }
 
 }  // namespace
@@ -53,7 +52,6 @@ bool make_room_for_edges(State& s) {
   }
   const std::size_t contacts = e.first[count];
   e.contact.resize(4 * contacts);
-  e.pair.resize(contacts);
   e.state.resize(8 * contacts);
   e.reaction.resize(8 * contacts);
   return true;
@@ -63,7 +61,6 @@ void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Inde
   begin_edges(s);
   EdgeState& e = s.edges;
   e.contact.resize(e.old_contact.size());
-  e.pair.resize(e.old_pair.size(), -1);
   e.state.resize(e.old_state.size());
   Index next = 0;
   for (std::size_t x = 0; x < from.size(); ++x) {

@@ -54,8 +54,8 @@ inline Real farthest_contact(const SearchRules& rules, const Patch& a, const Pat
 }
 
 /// What of two patches stays beyond the reach of the other until the next refresh, seen along the
-/// normals of their faces: no edge of it can touch, and no vertex that is outside the block. (What a
-/// plane holds apart as a whole is no pair at all.)
+/// normals of their faces: no edge of it can touch, and no vertex that is outside the block. (What
+/// a plane holds apart as a whole is no pair at all.)
 ///
 /// A vertex that is inside a block may begin deeper than that, at the nearest face (see
 /// FindTargetFaces). It is not beyond the reach of a patch that is a block by itself; what lies

@@ -45,11 +45,10 @@ struct SpringState {
 /// Contacts of semi-edges, see EdgeColumns; a step makes the list anew from the one before.
 struct EdgeState {
   Column<Index> first, contact;    // [exposed + 1], rows of 4
-  Column<Index> pair;              // of edges, that the lists know
   Column<Real> state, reaction;    // rows of 8
   Column<Real> friction, dashpot;  // [exposed]
   Column<Flag> lost;               // [exposed]
-  Column<Index> old_first, old_contact, old_pair;
+  Column<Index> old_first, old_contact;
   Column<Real> old_state;
   Index slots = 8;  // of the search in a step: places a face, see FoundEdges
   Column<Index> found_count, found;
@@ -71,13 +70,14 @@ struct SearchState {
   Column<Index> edges_ends;            // [4][pair] nodes of both
   Column<Index> edges_of, edges_code;  // [2][pair], [pair], see EdgePairs
   Column<Index> edge_sides;            // [edge][2] the same
-  Column<float> edges_bounds;          // [5][pair] see MarkNearEdges
-  Column<Flag> edges_near;             // [pair] may they begin to touch in this step?
-  Column<Flag> edges_open;             // [pair] see SiftTargetEdges; made in every step
-  Column<Index> source_first, source;  // faces whose contacts may act on a face
-  Column<Flag> face_listed;            // [exposed] may any act on it, or its own on others?
-  Column<Flag> acting;                 // [source] do they in this step? All 0 between steps
-  Column<Index> across;                // side of an exposed face -> face beyond it, or -1
+  Column<Index> edge_pairs_first, edge_pairs;  // by edge of the mesh, see MarkHeldEdges
+  Column<float> edges_bounds;                  // [5][pair] see MarkNearEdges
+  Column<Flag> edges_near;                     // [pair] may they begin to touch in this step?
+  Column<Flag> edges_open;                     // [pair] see SiftTargetEdges; made in every step
+  Column<Index> source_first, source;          // faces whose contacts may act on a face
+  Column<Flag> face_listed;                    // [exposed] may any act on it, or its own on others?
+  Column<Flag> acting;                         // [source] do they in this step? All 0 between steps
+  Column<Index> across;                        // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Index> watched, node_watch;  // nodes of exposed faces; node -> place among them, or -1
@@ -130,6 +130,8 @@ void describe_search(S& search, Visit&& field) {
   field("search.edges_ends", search.edges_ends, "ends of pairs of edges that may touch");
   field("search.edges_of", search.edges_of, "places of the two among the edges");
   field("search.edges_code", search.edges_code, "of which sides they are, which ends shared");
+  field("search.edge_pairs_first", search.edge_pairs_first, "start of an edge's pairs");
+  field("search.edge_pairs", search.edge_pairs, "pairs that an edge is of, and the other edge");
   field("search.edge_sides", search.edge_sides, "4 * exposed face + side of the faces at an edge");
   field("search.edges_bounds", search.edges_bounds,
         "how far apart they may begin to, see MarkNearEdges [m]");
@@ -198,7 +200,6 @@ void describe(S& s, Visit&& field) {
   field("edge.first", s.edges.first, "place of a face's first contact");
   field("edge.contact", s.edges.contact,
         "4 * mother face + side, target face, target edge, place one step ago");
-  field("edge.pair", s.edges.pair, "pair of edges on the lists, or -1");
   field("edge.state", s.edges.state,
         "normal force, penetration, shear forces, gap without stress, stored energies");
   field("edge.reaction", s.edges.reaction,

@@ -79,10 +79,13 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   if (!m.semi_edges) return;
   mark_near_edges(m, s, q);
   begin_edges(s);
-  launch_one(q, Index(s.edges.old_pair.size()),
-             MarkHeldEdges{s.edges.old_pair.data(), s.search.edges_near.data()});
   const Index pairs = Index(s.search.edges_near.size());
   s.search.edges_open.resize(pairs);
+  if (pairs > 0)
+    launch_one(q, Index(s.edges.old_contact.size() / 4),
+               MarkHeldEdges{s.search.exposed_face.data(), m.face_edges.data(),
+                             s.edges.old_contact.data(), s.search.edge_pairs_first.data(),
+                             s.search.edge_pairs.data(), s.search.edges_near.data()});
   launch_picked(q, pairs,
                 SiftTargetEdges{{s.nodes.motion.data()}, face_geometry(s), edge_pairs(s), m.rules});
   do {
@@ -91,7 +94,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, conta
   } while (!make_room_for_edges(s));
   launch_one(q, Index(s.search.exposed_face.size()),
              ListEdges{edge_search(m, s), s.edges.first.data(), s.edges.contact.data(),
-                       s.edges.pair.data(), s.edges.friction.data(), s.edges.dashpot.data()});
+                       s.edges.friction.data(), s.edges.dashpot.data()});
 }
 
 void hand_over_released(const Model& m, State& s, Queue q) {  // hand_over.hpp

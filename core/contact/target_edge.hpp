@@ -37,7 +37,6 @@ struct EdgeColumns {
 struct EdgesBefore {
   const Index* first;
   const Index* contact;
-  const Index* pair;  // pair of edges on the lists
   const Real* state;
 };
 
@@ -49,19 +48,18 @@ struct FoundEdges {
   Index* rows;   // [exposed][slots] of FoundEdge
 };
 
-/// A contact of a semi-edge as it is found: a row of 4.
+/// A contact of a semi-edge as it is found: a row of 3.
 struct FoundEdge {
   Index mother, target;  // 4 * exposed face + side
   Index before;          // place of this contact one step ago, or -1
-  Index pair;            // of edges, on the lists
 
   CDEM_HD static FoundEdge at(const Index* rows, std::size_t place) {
-    const Index* r = rows + 4 * place;
-    return {r[0], r[1], r[2], r[3]};
+    const Index* r = rows + 3 * place;
+    return {r[0], r[1], r[2]};
   }
   CDEM_HD void store(Index* rows, std::size_t place) const {
-    Index* r = rows + 4 * place;
-    r[0] = mother, r[1] = target, r[2] = before, r[3] = pair;
+    Index* r = rows + 3 * place;
+    r[0] = mother, r[1] = target, r[2] = before;
   }
   /// In the order of the target faces, of the mother's sides and of the target's.
   CDEM_HD bool is_before(const FoundEdge& other) const {
@@ -224,13 +222,21 @@ struct MarkNearEdges {
   }
 };
 
-/// Those that were in contact one step ago must be looked at all the same.
+/// Those that were in contact one step ago must be looked at all the same: whatever faces the pair
+/// is listed for, as another face at the target edge may be the right one now.
 struct MarkHeldEdges {
-  const Index* pair;  // [contact one step ago]
+  const Index* exposed_face;
+  const Index* face_edges;  // see FaceColumns
+  const Index* contact;     // rows of EdgeContact, one step ago
+  const Index* first;       // [edge + 1]
+  const Index* listed;      // rows of 2, by edge: pair that it is of, the other edge
   Flag* near;
 
   CDEM_HD void operator()(One c) const {
-    if (pair[c.i] >= 0) set(near[pair[c.i]], EdgePairs::held);
+    const EdgeContact held = EdgeContact::at(contact, c.i);
+    const Index edge = face_edges[4 * exposed_face[held.mother / 4] + held.mother % 4];
+    for (Index i = first[edge]; i < first[edge + 1]; ++i)
+      if (listed[2 * i + 1] == held.edge) set(near[listed[2 * i]], EdgePairs::held);
   }
 };
 
@@ -350,13 +356,13 @@ struct TouchTargetEdges {
     });
     const auto touch = test(sides);
     if (!any_of(touch.touches | touch.sank)) return;
-    for_lanes(item, [&](Index lane, Index p, Index) {
+    for_lanes(item, [&](Index lane, Index, Index) {
       const Index m = of_lane(sides.m, lane);
       if (holds(touch.sank, lane)) set(lost[m]);
       if (!holds(touch.touches, lane)) return;
       const SidePair pair = SidePair::of(of_lane(sides.sides, lane));
       const FoundEdge contact{4 * m + pair.k, 4 * of_lane(sides.t, lane) + pair.j,
-                              of_lane(sides.before, lane), p};
+                              of_lane(sides.before, lane)};
       const Index place = raise(found.count[m]);
       if (place < found.slots) contact.store(found.rows, std::size_t(m) * found.slots + place);
     });
@@ -533,20 +539,18 @@ struct ListEdges {
   TouchTargetEdges touch;
   const Index* first;  // [exposed + 1] of the list
   Index* contact;      // rows of EdgeContact
-  Index* pair;         // [contact] of edges, on the lists
   Real* friction;      // [exposed] lost so far  [J]
   Real* dashpot;       // [exposed] lost so far  [J]
 
   CDEM_HD void operator()(One m) const {
     const EdgesBefore& held = touch.held;
     const FoundEdges& found = touch.found;
-    Index* row = found.rows + 4 * std::size_t(m.i) * found.slots;
+    Index* row = found.rows + 3 * std::size_t(m.i) * found.slots;
     sort(row, found.count[m.i]);
     for (Index j = 0; j < found.count[m.i]; ++j) {
       const FoundEdge edge = FoundEdge::at(row, j);
       EdgeContact{edge.mother, edge.target / 4, touch.edge_of(edge.target), edge.before}.store(
           contact, first[m.i] + j);
-      pair[first[m.i] + j] = edge.pair;
     }
     for (Index c = held.first[m.i]; c < held.first[m.i + 1]; ++c) {
       bool goes_on = false;
