@@ -156,6 +156,8 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
       edge->indented = edge->indented.and_of(indented_at(m, e, k));
     }
   }
+  p.whole = p.face_count == (p.vertex_count == 4 ? 4 : p.vertex_count == 8 ? 6 : 5);
+  if (!p.whole) p.box.inflate(m.rules.depth * p.length);  // see farthest_contact
   for (Index e = 0; e < p.edge_count; ++e) {
     Patch::Edge& edge = p.edge[e];
     const Index i = edge.face[0], count = exposed[p.face[i]].shape.count();

@@ -100,7 +100,8 @@ struct Patch {
   Real length, reach;  // largest of its faces  [m]
   Index block;
   bool movable;
-  Box box;  // of the whole way
+  bool whole;  // are all faces of the element exposed?
+  Box box;     // of the whole way
 };
 
 /// Group the exposed faces by the elements behind them.

@@ -261,7 +261,7 @@ Proximity::Edges near_edges(const Finder& f, const Patch& a, Index e, const Movi
 
 void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
                 const Beyond& beyond, Met& met, Proximity& found) {
-  const Real room = farthest_contact(f.m.rules, a, b) + last_step * norm(b.drift - a.drift);
+  const Real room = farthest_crossing(f.m.rules, a, b) + last_step * norm(b.drift - a.drift);
   MovingEdges of_a(f, a), of_b(f, b);
   for (Index e = 0; e < a.edge_count; ++e) {
     const int opposite = pairs.of(a.edge[e]);

@@ -23,11 +23,6 @@ struct Heights {
   }
 };
 
-/// Are all faces of the element behind a patch exposed?
-bool is_whole(const Patch& p) {
-  return p.face_count == (p.vertex_count == 4 ? 4 : p.vertex_count == 8 ? 6 : 5);
-}
-
 /// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
 bool apart(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
   Real lowest = 1e300, span2 = 0;
@@ -51,7 +46,7 @@ bool may_touch(const SearchRules& rules, const ExposedFace& x, const ExposedFace
 }  // namespace
 
 Beyond::Beyond(const Finder& f, const Patch& a, const Patch& b) {
-  const Real room = farthest_contact(f.m.rules, a, b);
+  const Real room = farthest_crossing(f.m.rules, a, b);
   const Vec3<Real> closing = last_step * (b.drift - a.drift);
   unsigned bit = 1;
   for (const Patch* p : {&a, &b})
@@ -68,8 +63,8 @@ Beyond::Beyond(const Finder& f, const Patch& a, const Patch& b) {
         vertex[1][v] |= (of_b.at[v] - of_a.most > down ? bit : 0) |
                         (of_a.least - of_b.at[v] > up ? bit << 1 : 0);
     }
-  spread(a, 0, is_whole(b));
-  spread(b, 1, is_whole(a));
+  spread(a, 0, b.whole);
+  spread(b, 1, a.whole);
 }
 
 void Beyond::spread(const Patch& p, int of, bool other_is_whole) {

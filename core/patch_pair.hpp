@@ -45,12 +45,21 @@ struct GapChange {
   }
 };
 
-/// Farthest that anything of one patch may be from the other when lists are made, if it may be in
-/// contact before they are renewed  [m]; but for the drifts, which have a direction.
-inline Real farthest_contact(const SearchRules& rules, const Patch& a, const Patch& b) {
+/// Farthest that an edge of one patch may be from the other when lists are made, if it may be in
+/// contact before they are renewed  [m]; but for the drifts, which have a direction. It holds for
+/// vertices as well that are not inside a block.
+inline Real farthest_crossing(const SearchRules& rules, const Patch& a, const Patch& b) {
   return last_step * (a.stir + b.stir) + a.deepest + b.deepest + rules.lifted +
          (rules.entry + 2 * rules.tolerance) * std::min(a.length, b.length) +
          2 * rules.indentation * std::max(a.reach, b.reach);
+}
+
+/// The same for anything. A vertex that is inside a block may begin deeper, at the nearest face
+/// (see FindTargetFaces), and so be farther from the element behind it than an edge, unless that
+/// element is the block.
+inline Real farthest_contact(const SearchRules& rules, const Patch& a, const Patch& b) {
+  return farthest_crossing(rules, a, b) +
+         (a.whole && b.whole ? 0.0 : rules.depth * std::min(a.length, b.length));
 }
 
 /// What of two patches stays beyond the reach of the other until the next refresh, seen along the
