@@ -108,7 +108,6 @@ struct EdgePairs {
     return some | shared << ways | against << (ways + 4);
   }
 
-  CDEM_HD bool may_touch(Index p, Index way) const { return code[p] >> way & 1; }
   /// Side i of the first edge, or of the second one, as it is in `sides`; the other one if there is
   /// only one.
   CDEM_HD Index side(Index p, bool second, Index i) const {
@@ -272,6 +271,8 @@ struct SiftTargetEdges {
     const Vec3<T> x[2] = {end(0), end(2)}, d[2] = {end(1) - x[0], end(3) - x[1]};
     const Vec3<T> c = cross(d[0], d[1]);
     const T c2 = dot(c, c), apart = dot(x[1] - x[0], c), zero(0.0);
+    // of a gap, times |c| twice: which side it is on is left to TouchTargetEdges then
+    const T round_off = T(1e-12) * c2 * (abs_of(d[0].x) + abs_of(d[0].y) + abs_of(d[0].z));
     const auto goes_on =
         numbers_of([&](Index p) { return pairs.near[p] == EdgePairs::held; }, item.id) > zero;
     const T slack = select(goes_on, T(1.000001 * crossing_slack(rules.indentation)), zero);
@@ -292,7 +293,7 @@ struct SiftTargetEdges {
     unsigned open[EdgePairs::ways];  // lane by lane, as bits
     for (Index i = 0; i < 2; ++i)
       for (Index j = 0; j < 2; ++j) {
-        const auto wrong = parallel | (apart * (along[1][j] - along[0][i]) < zero) |
+        const auto wrong = parallel | (apart * (along[1][j] - along[0][i]) < -round_off) |
                            !(dot(normal[0][i], normal[1][j]) < T(-rules.opposing));
         open[EdgePairs::way(false, i, j)] = lane_bits(!(wrong | far[0][i]));
         open[EdgePairs::way(true, i, j)] = lane_bits(!(wrong | far[1][j]));
