@@ -140,7 +140,7 @@ void list_edge_pairs(const AllProximity& found, SearchState& search) {
              });
 }
 
-/// For every edge of the mesh the pairs that it is of, and the other edges, in any order.
+/// For every edge of the mesh the pairs that it is of, and the other edges.
 void list_pairs_of_edges(const Model& m, SearchState& search) {
   const Index count = Index(search.edges_near.size());
   const std::size_t stride = padded_stride(count);
@@ -153,17 +153,13 @@ void list_pairs_of_edges(const Model& m, SearchState& search) {
     const Index side = search.edge_sides[2 * std::size_t(search.edges_of[which * stride + p])];
     return m.face_edges[4 * search.exposed_face[side / 4] + side % 4];
   };
-  const Counters number{first.data() + 1};
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index p = 0; p < count; ++p)
-    for (const Index which : {0, 1}) number.raise(edge(p, which));
+    for (const Index which : {0, 1}) ++first[edge(p, which) + 1];
   add_up(first, first.size() - 1);
   std::vector<Index> places(first.data(), first.data() + first.size() - 1);
-  const Counters next{places.data()};
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index p = 0; p < count; ++p)
     for (const Index which : {0, 1}) {
-      const std::size_t place = next.raise(edge(p, which));
+      const std::size_t place = places[edge(p, which)]++;
       pairs[2 * place] = p;
       pairs[2 * place + 1] = edge(p, 1 - which);
     }
