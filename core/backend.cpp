@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/contact/bond.hpp"
+#include "core/contact/edge_pair.hpp"
 #include "core/contact/force.hpp"
 #include "core/contact/target_edge.hpp"
 #include "core/contact/target_face.hpp"

@@ -115,7 +115,7 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   return e;
 }
 
-/// All of a patch but its faces.
+/// What the indentation of a face does at one of its sides.
 Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
   const Real part = m.rules.indentation;
   const Vec3<Real>& start = face.shape.x[side];
@@ -126,6 +126,7 @@ Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
           1.01 * part * norm(cross(arm, edge)) / length, face.length};
 }
 
+/// All of a patch but its faces.
 void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed, Patch& p) {
   const FaceColumns faces = face_columns(m, s);
   p.box = Box::nothing();

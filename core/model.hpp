@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/target_edge.hpp"
+#include "core/contact/target_face.hpp"
 #include "core/interfaces/brittle_coulomb.hpp"
 #include "core/nodes/motion.hpp"
 

@@ -278,8 +278,8 @@ void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs
       const SharedEnds ends(p, q);
       if (ends.glued) continue;
       // ends that stay together are no edges on each other, see TouchTargetEdges
-      const Real together = f.m.rules.indentation;
-      if (ends.parted < together * std::min(p.indented.length, q.indented.length)) continue;
+      const Real length = std::min(p.indented.length, q.indented.length);
+      if (ends.parted < f.m.rules.indentation * length) continue;
       int on = 3;
       const Real sine = std::sqrt(sine2), turns = p.turn + q.turn;
       if (sine + turns < MarkNearEdges::parallel) continue;
