@@ -302,6 +302,7 @@ struct InMotion {
     return {r[0], r[1], r[2]};
   }
   CDEM_HD Row velocity_row(Index node) const { return Row::at(rows + std::size_t(node) * 8 + 4); }
+  CDEM_HD void fetch(Index node) const { cdem::fetch(rows + std::size_t(node) * 8); }
 #if !defined(__CUDACC__)
   Vec3<Pack> position(const IndexPack& node) const { return gather(node, 0); }
   Vec3<Pack> velocity(const IndexPack& node) const { return gather(node, 4); }
@@ -334,6 +335,7 @@ struct OutForces {
 struct InForces {
   const Real* rows;
   CDEM_HD Row at(std::size_t row) const { return Row::at(rows + row * 4); }
+  CDEM_HD void fetch(std::size_t row) const { cdem::fetch(rows + row * 4); }
 };
 
 }  // namespace cdem

@@ -32,6 +32,18 @@ using Flag = std::int8_t;
 /// Items that one SIMD register holds. The build sets it to match the instruction set: 2, 4 or 8.
 inline constexpr Index lanes = CDEM_LANES;
 
+/// How a kernel fetches what it will read.
+struct Fetching {
+  Index ahead;  // so many blocks
+  Index worth;  // if there are as many blocks; fewer leave it in the caches from step to step
+};
+/// Ask for memory that will be read soon.
+CDEM_HD inline void fetch(const void* memory) {
+#if !defined(__CUDA_ARCH__)
+  __builtin_prefetch(memory);
+#endif
+}
+
 /// Item of a kernel that runs for one number at a time.
 struct One {
   Index i;
@@ -374,6 +386,18 @@ void for_each_picked(Queue, Index count, const Kernel& kernel) {
   }
 }
 
+/// Have the kernel fetch what it reads at random for a block to come, if it knows how to: what lies
+/// in the order of the items the machine fetches by itself.
+template <class Kernel>
+CDEM_HD inline void fetch_ahead(const Kernel& kernel, Blocks blocks, Index b) {
+  if constexpr (requires { kernel.fetch(One{0}); }) {
+    constexpr Fetching how = Kernel::fetching;
+    if (blocks.count < how.worth || b + how.ahead >= blocks.count) return;
+    const Index first = blocks.id[b + how.ahead] * block_size;
+    for (Index i = first; i < first + block_size; ++i) kernel.fetch(One{i});
+  }
+}
+
 /// The same for some blocks of items.
 template <class Kernel>
 void for_each(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
@@ -384,6 +408,7 @@ void for_each(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
   for (Index b = 0; b < blocks.count; ++b) {
     const Index first = blocks.id[b] * block_size;
     const Index last = first + block_size < count ? first + block_size : count;
+    fetch_ahead(kernel, blocks, b);
     Index i = first;
     for (; i < last && i < whole; i += lanes) kernel(Lane{i});
     for (; i < last; ++i) kernel(One{i});
@@ -395,6 +420,7 @@ void for_each_one(Queue queue, Index count, Blocks blocks, const Kernel& kernel)
 #pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
   for (Index b = 0; b < blocks.count; ++b) {
     const Index first = blocks.id[b] * block_size;
+    fetch_ahead(kernel, blocks, b);
     for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
   }
 }

@@ -30,6 +30,37 @@ bool is_fixed(const Model& m, const State& s, Index node) {
   return true;
 }
 
+/// Does nothing but its own forces, bonds and weight act on a block of one tet or hexahedron, which
+/// begins with this node?
+bool is_free(const Model& m, const State& s, Index i) {
+  const Index last = i + m.block_count[i];
+  if (m.lumped || m.block_first[i] != i || (last - i != 4 && last - i != 8) ||
+      m.load_first[i] < m.load_first[last] ||
+      s.search.contact_first[i] < s.search.contact_first[last])
+    return false;
+  for (Index k = i; k < last; ++k) {
+    const Index* row = s.nodes.corner.data() + s.nodes.corner_first[k];
+    const Index rows = s.nodes.corner_first[k + 1] - s.nodes.corner_first[k];
+    const auto of_element = [&](Index r) {
+      return row[r] >= 0 && row[r] < m.triangles.corner_first;
+    };
+    if (m.support[k] >= 0 || m.dense_first[k] < 0 || m.dense_step[k] > 0 || rows == 0 ||
+        !of_element(0) || (rows > 1 && of_element(1)))
+      return false;
+  }
+  return true;
+}
+
+void find_free(const Model& m, State& s) {
+  s.nodes.free.resize(0);
+  for (Index i = 0; i < m.node_count; ++i) {
+    if (!is_free(m, s, i)) continue;
+    s.nodes.free.resize(m.node_count);
+    for (Index k = 0; k < m.block_count[i]; ++k)
+      s.nodes.free[i + k] = k > 0 ? Flag(1) : Flag(m.block_count[i]);
+  }
+}
+
 }  // namespace
 
 void find_awake(const Model& m, State& s) {
@@ -85,6 +116,7 @@ void list_awake_nodes(const Model& m, State& s) {
     if (std::any_of(begin, end, [](Flag f) { return f; })) std::fill(begin, end, Flag(1));
   }
   list_blocks(m.node_count, s.nodes.awake, [&](Index i) { return wakes[i]; });
+  find_free(m, s);
 }
 
 }  // namespace cdem

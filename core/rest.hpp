@@ -14,7 +14,7 @@ namespace cdem {
 void find_awake(const Model& model, State& state);
 
 /// List the awake nodes anew after the lists of contacts: those that were on the last ones stay
-/// awake until the next, for they have yet to forget their contacts.
+/// awake until the next, for they have yet to forget their contacts. Finds the free blocks, too.
 void list_awake_nodes(const Model& model, State& state);
 
 /// The blocks that a step runs.

@@ -18,6 +18,8 @@ struct NodeState {
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
   Column<Index> glue, awake;           // awake: blocks of nodes, see rest.hpp
   Column<Flag> rests, listed;          // see rest.hpp
+  Column<Flag> free;                   // blocks of one element that nothing but their bonds knows
+                                       // of: how many nodes, at the first; 1 at the others, else 0
   bool damped = false;                 // in the last step, else damping_force does not count
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };

@@ -201,7 +201,9 @@ void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
 
 void advance_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
   const SumNodeForces sum = node_forces(m, s, s.all_awake);
-  launch_one(q, m.node_count, awake(s, s.nodes.awake), AdvanceNodes{sum, node_motion(m, s)});
+  const bool some_free = s.nodes.free.size() > 0 && !s.nodes.damped;
+  launch_one(q, m.node_count, awake(s, s.nodes.awake),
+             AdvanceNodes{sum, node_motion(m, s), some_free ? s.nodes.free.data() : nullptr});
   finish(q);
 }
 

@@ -203,6 +203,12 @@ struct ConformingBonds {
     write_forces(p, live, force);
   }
 
+  static constexpr Fetching fetching{2, 1024};
+  /// The mates: the first face's vertices come in the order of the pairs.
+  CDEM_HD void fetch(One p) const {
+    for (Index k = count; k < 2 * count; ++k) nodes.fetch(pair_nodes.at(k, p));
+  }
+
   /// Mean positions of mated vertices, and the jumps at the bond points.
   template <class I, class T>
   CDEM_HD void gather_jumps(I p, Vec3<T>* mean, Vec3<T>* jump) const {

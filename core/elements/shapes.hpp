@@ -53,6 +53,9 @@ struct ElementColumns {
     const Index row = (point * (Shape::nodes - 1) + node - 1) * 3;
     return {gradient.at(row, e), gradient.at(row + 1, e), gradient.at(row + 2, e)};
   }
+  CDEM_HD void fetch(One e) const {
+    for (Index k = 0; k < Shape::nodes; ++k) nodes.fetch(element_nodes.at(k, e));
+  }
   template <class I>
   CDEM_HD auto material(I e) const {
     return materials.at(element_material.at(0, e));
