@@ -66,16 +66,15 @@ CDEM_HD inline Projection<T> project_on_triangle(const FaceShape<T>& f, const Ve
 }
 
 /// Newton on the bilinear surface, seen from its first vertex so that round-off does not grow with
-/// the distance from the origin. A step du, dv leaves it du dv warp from the point: when that is
-/// round-off, which for a parallelogram it is at once, the step was the last.
+/// the distance from the origin. A parallelogram takes one step, and one that shows it; the error
+/// falls with the square of the step before, so a small step is the last.
 template <class T>
 CDEM_HD inline Projection<T> project_on_quad(const FaceShape<T>& f, const Vec3<T>& point,
                                              const Vec3<T>& n) {
   constexpr int most_steps = 20;
-  const T one(1.0);
+  const T last(1e-8), one(1.0);
   const Vec3<T> p = point - f.x[0], a = f.x[1] - f.x[0], b = f.x[3] - f.x[0];
   const Vec3<T> warp = f.x[2] - f.x[3] - a;  // point at u, v: u a + v b + u v warp
-  const T left = dot(warp, warp), round_off = T(1e-32) * min_of(dot(a, a), dot(b, b));  // squared
   T u(0.5), v(0.5);
   Truth<T> goes_on = f.quad;
   for (int step = 0; step < most_steps && any_of(goes_on); ++step) {
@@ -86,8 +85,7 @@ CDEM_HD inline Projection<T> project_on_quad(const FaceShape<T>& f, const Vec3<T
     const T dv = dot(cross(along_u, miss), n) * per_area;
     u = select(goes_on, u + du, u);
     v = select(goes_on, v + dv, v);
-    const T far = du * dv;
-    goes_on = goes_on & (far * far * left > round_off);
+    goes_on = goes_on & !(abs_of(du) + abs_of(dv) < last);
   }
   const T gap = dot(n, p - u * (a + v * warp) - v * b);
   return {{(one - u) * (one - v), u * (one - v), u * v, (one - u) * v}, gap};
