@@ -201,7 +201,8 @@ void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
 
 void advance_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
   const SumNodeForces sum = node_forces(m, s, s.all_awake);
-  const bool some_free = s.nodes.free.size() > 0 && !s.nodes.damped;
+  // what was free before may have been given a load or a support, or contacts in this step
+  const bool some_free = s.nodes.free.size() > 0 && !s.all_awake && !s.nodes.damped;
   launch_one(q, m.node_count, awake(s, s.nodes.awake),
              AdvanceNodes{sum, node_motion(m, s), some_free ? s.nodes.free.data() : nullptr});
   finish(q);
