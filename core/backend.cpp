@@ -12,7 +12,7 @@
 #include "core/contact/target_face.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
-#include "core/nodes/motion.hpp"
+#include "core/nodes/free.hpp"
 
 namespace cdem {
 
@@ -102,6 +102,9 @@ template void launch(Queue, Index, Blocks, const IncrementalForce<Pyramid5, Neve
 template void launch(Queue, Index, Blocks, const IncrementalForce<Wedge6, NeverTurn>&);
 template void launch(Queue, Index, Blocks, const IncrementalForce<Hex8, NeverTurn>&);
 template void launch(Queue, Index, Blocks, const IncrementalForce<Hex8OnePoint, NeverTurn>&);
+template void launch(Queue, Index, Blocks, const AdvanceFree<Tet4>&);
+template void launch(Queue, Index, Blocks, const AdvanceFree<Hex8>&);
+template void launch(Queue, Index, Blocks, const AdvanceFree<Hex8OnePoint>&);
 template void launch(Queue, Index, Blocks, const ConformingBonds<3>&);
 template void launch(Queue, Index, Blocks, const ConformingBonds<4>&);
 

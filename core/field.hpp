@@ -80,6 +80,9 @@ struct InTable {
   const Real* data;
   Index stride;
   CDEM_HD Real at(Index row, One item) const { return data[std::size_t(row) * stride + item.i]; }
+  CDEM_HD void fetch(Index row, One item) const {
+    cdem::fetch(data + std::size_t(row) * stride + item.i);
+  }
 #if !defined(__CUDACC__)
   Pack at(Index row, Lane item) const {
     Pack p;
@@ -228,6 +231,24 @@ CDEM_HD inline void store_fours(const Four<Pack>& v, const Rows& row) {
 }
 #endif
 
+/// Four numbers that follow each other in a list, from a place on or from one a lane; and back.
+CDEM_HD inline Four<Real> fours_at(const Real* list, Index place) {
+  const Real* r = list + place;
+  return {r[0], r[1], r[2], r[3]};
+}
+CDEM_HD inline void set_fours(Real* list, Index place, const Four<Real>& v) {
+  Real* r = list + place;
+  r[0] = v.x, r[1] = v.y, r[2] = v.z, r[3] = v.w;
+}
+#if !defined(__CUDACC__)
+inline Four<Pack> fours_at(const Real* list, const IndexPack& place) {
+  return load_fours([&](Index j) { return list + place.id[j]; });
+}
+inline void set_fours(Real* list, const IndexPack& place, const Four<Pack>& v) {
+  store_fours(v, [&](Index j) { return list + place.id[j]; });
+}
+#endif
+
 /// Rows of 8 numbers, read four at a time from place `from`, and written.
 struct InRows {
   const Real* rows;
@@ -317,6 +338,10 @@ struct InMotion {
 /// Forces on corners, one 32-byte row each: x y z, pad. Gathered by nodes in a fixed order.
 struct OutForces {
   Real* rows;
+  CDEM_HD void fetch(One item, Index corners_per_item) const {
+    const Real* first = rows + std::size_t(item.i) * corners_per_item * 4;
+    for (Index line = 0; line < corners_per_item * 4; line += 8) fetch_to_write(first + line);
+  }
   CDEM_HD void set(One item, Index corners_per_item, Index corner, const Vec3<Real>& f) const {
     Real* r = rows + (std::size_t(item.i) * corners_per_item + corner) * 4;
     r[0] = f.x;
@@ -335,6 +360,22 @@ struct OutForces {
 struct InForces {
   const Real* rows;
   CDEM_HD Row at(std::size_t row) const { return Row::at(rows + row * 4); }
+  /// Rows that are kept as such, or as ~row where the opposite of what stands there is meant.
+  CDEM_HD Vec3<Real> signed_at(Index row) const {
+    const Index opposite = row >> 31;  // 0 or -1
+    return Real(2 * opposite + 1) * at(row ^ opposite).vector();
+  }
+#if !defined(__CUDACC__)
+  Vec3<Pack> signed_at(const IndexPack& row) const {
+    Index __attribute__((vector_size(4 * CDEM_LANES))) opposite;
+    std::memcpy(&opposite, row.id, sizeof opposite);
+    opposite >>= 31;
+    IndexPack plain;
+    for (Index j = 0; j < lanes; ++j) plain.id[j] = row.id[j] ^ (row.id[j] >> 31);
+    const Pack sign = __builtin_convertvector(2 * opposite + 1, Pack::Numbers);
+    return sign * load_rows([&](Index j) { return rows + std::size_t(plain.id[j]) * 4; });
+  }
+#endif
   CDEM_HD void fetch(std::size_t row) const { cdem::fetch(rows + row * 4); }
 };
 

@@ -4,21 +4,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/free.hpp"
+
 namespace cdem {
 
 namespace {
-
-/// Blocks with an item for which `is_awake` holds.
-template <class Test>
-void list_blocks(Index count, Column<Index>& list, Test&& is_awake) {
-  list.resize(0);
-  for (Index first = 0; first < count; first += block_size) {
-    bool any = false;  // every item must be asked: the test takes notes
-    for (Index i = first; i < first + block_size && i < count; ++i) any = is_awake(i) || any;
-    if (any) list.push(first / block_size);
-  }
-  if (list.size() == 0) list.push(0);  // an empty list would stand for all
-}
 
 bool is_fixed(const Model& m, const State& s, Index node) {
   const Index row = m.support[node];
@@ -28,37 +18,6 @@ bool is_fixed(const Model& m, const State& s, Index node) {
         s.nodes.motion[8 * std::size_t(node) + 4 + axis] != 0)
       return false;
   return true;
-}
-
-/// Does nothing but its own forces, bonds and weight act on a block of one tet or hexahedron, which
-/// begins with this node?
-bool is_free(const Model& m, const State& s, Index i) {
-  const Index last = i + m.block_count[i];
-  if (m.lumped || m.block_first[i] != i || (last - i != 4 && last - i != 8) ||
-      m.load_first[i] < m.load_first[last] ||
-      s.search.contact_first[i] < s.search.contact_first[last])
-    return false;
-  for (Index k = i; k < last; ++k) {
-    const Index* row = s.nodes.corner.data() + s.nodes.corner_first[k];
-    const Index rows = s.nodes.corner_first[k + 1] - s.nodes.corner_first[k];
-    const auto of_element = [&](Index r) {
-      return row[r] >= 0 && row[r] < m.triangles.corner_first;
-    };
-    if (m.support[k] >= 0 || m.dense_first[k] < 0 || m.dense_step[k] > 0 || rows == 0 ||
-        !of_element(0) || (rows > 1 && of_element(1)))
-      return false;
-  }
-  return true;
-}
-
-void find_free(const Model& m, State& s) {
-  s.nodes.free.resize(0);
-  for (Index i = 0; i < m.node_count; ++i) {
-    if (!is_free(m, s, i)) continue;
-    s.nodes.free.resize(m.node_count);
-    for (Index k = 0; k < m.block_count[i]; ++k)
-      s.nodes.free[i + k] = k > 0 ? Flag(1) : Flag(m.block_count[i]);
-  }
 }
 
 }  // namespace

@@ -17,9 +17,22 @@ void find_awake(const Model& model, State& state);
 /// awake until the next, for they have yet to forget their contacts. Finds the free blocks, too.
 void list_awake_nodes(const Model& model, State& state);
 
+/// Blocks with an item for which `is_awake` holds.
+template <class Test>
+void list_blocks(Index count, Column<Index>& list, Test&& is_awake) {
+  list.resize(0);
+  for (Index first = 0; first < count; first += block_size) {
+    bool any = false;  // every item must be asked: the test takes notes
+    for (Index i = first; i < first + block_size && i < count; ++i) any = is_awake(i) || any;
+    if (any) list.push(first / block_size);
+  }
+}
+
 /// The blocks that a step runs.
 inline Blocks awake(const State& s, const Column<Index>& list) {
-  return s.all_awake ? Blocks{} : Blocks{list.data(), Index(list.size())};
+  static constexpr Index none = 0;  // a null pointer would stand for all
+  if (s.all_awake) return {};
+  return {list.size() > 0 ? list.data() : &none, Index(list.size())};
 }
 
 }  // namespace cdem

@@ -53,6 +53,7 @@ void start(const Model& m, State& s, const Real* position) {
   size_pairs(m.quads, s.quads);
   size_pairs(m.overlaps, s.overlaps);
   s.corner_force.resize(4 * std::size_t(m.corner_rows));
+  s.corner_force.resize(4 * std::size_t(m.corner_rows + 1), -0.0);  // x + -0 is x: adds nothing
 }
 
 void prepare(const Model& m, State& s) {

@@ -18,10 +18,16 @@ struct NodeState {
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
   Column<Index> glue, awake;           // awake: blocks of nodes, see rest.hpp
   Column<Flag> rests, listed;          // see rest.hpp
-  Column<Flag> free;                   // blocks of one element that nothing but their bonds knows
-                                       // of: how many nodes, at the first; 1 at the others, else 0
+  Column<Flag> free;                   // 1: of a free block, see free.hpp; empty: there is none
+  Column<Index> others;                // awake blocks of nodes, less those of which all are free
   bool damped = false;                 // in the last step, else damping_force does not count
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
+};
+
+/// Blocks of elements of which all are free, see free.hpp; the other ones that are awake.
+struct FreeBlocks {
+  Column<Index> blocks, others;
+  Column<Index> row_first, row;  // see FreeRows
 };
 
 struct ElementState {
@@ -29,6 +35,7 @@ struct ElementState {
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
   Column<Index> awake;  // blocks of elements, see rest.hpp
+  FreeBlocks free;
 };
 
 struct PairState {

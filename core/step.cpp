@@ -13,6 +13,7 @@
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
 #include "core/hand_over.hpp"
+#include "core/nodes/free.hpp"
 #include "core/rest.hpp"
 
 namespace cdem {
@@ -123,14 +124,28 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
                        s.edges.dashpot.data(), acting, s.contact_force.data()});
 }
 
+NodeDamping node_damping(const Model& m, const State& s) {
+  return {m.damping.local, m.damping.mass + s.relax_damping};
+}
+bool damps_nodes(const Model& m, const State& s) {
+  const NodeDamping damping = node_damping(m, s);
+  return damping.local > 0 || damping.mass > 0;
+}
+
+/// Do free blocks go apart in this step? Not where something looks at forces, or damps them.
+bool free_go_apart(const Model& m, const State& s, bool sampled) {
+  return s.nodes.free.size() > 0 && !sampled && !s.all_awake && !s.stop_due && !damps_nodes(m, s);
+}
+
 template <class Shape>
-void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
+void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es,
+                     bool free_too) {
   const ElementColumns<Shape> columns = element_columns<Shape>(m, s, e);
   const OutForces out{s.corner_force.data() + std::size_t(e.corner_first) * 4};
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
   const Real damping_time = m.stiffness_damping * s.dt;
-  const Blocks some = awake(s, es.awake);
+  const Blocks some = awake(s, free_too ? es.awake : es.free.others);
   switch (m.formulation) {
     case Formulation::corotational:
       return launch(
@@ -149,19 +164,47 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   }
 }
 
-void update_element_forces(const Model& m, State& s, Queue q) {  // Eq. 2, elements/
-  update_elements<Tet4>(m, s, q, m.tet4, s.tet4);
-  update_elements<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5);
-  update_elements<Wedge6>(m, s, q, m.wedge6, s.wedge6);
+void update_element_forces(const Model& m, State& s, Queue q, bool free_too) {  // Eq. 2, elements/
+  update_elements<Tet4>(m, s, q, m.tet4, s.tet4, free_too);
+  update_elements<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5, true);
+  update_elements<Wedge6>(m, s, q, m.wedge6, s.wedge6, true);
   if (m.hex8.hourglass.size() > 0)
-    update_elements<Hex8OnePoint>(m, s, q, m.hex8, s.hex8);
+    update_elements<Hex8OnePoint>(m, s, q, m.hex8, s.hex8, free_too);
   else
-    update_elements<Hex8>(m, s, q, m.hex8, s.hex8);
+    update_elements<Hex8>(m, s, q, m.hex8, s.hex8, free_too);
+}
+
+template <class Shape>
+void advance_free(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
+  const FreeBlocks& free = es.free;
+  const CorotationalForce<Shape, FollowRotation> element{element_columns<Shape>(m, s, e),
+                                                         m.stiffness_damping * s.dt,
+                                                         s.dt,
+                                                         {es.damping_work.data(), e.stride},
+                                                         {}};
+  launch(q, e.count, awake(s, free.blocks),
+         AdvanceFree<Shape>{element,
+                            {free.row_first.data(), free.row.data()},
+                            {s.corner_force.data()},
+                            load_columns(m, s),
+                            mass_columns(m, s),
+                            s.dt_last,
+                            s.dt,
+                            s.nodes.motion.data(),
+                            s.nodes.work_external.data()});
+}
+
+void advance_free_blocks(const Model& m, State& s, Queue q) {  // nodes/free.hpp
+  advance_free<Tet4>(m, s, q, m.tet4, s.tet4);
+  if (m.hex8.hourglass.size() > 0)
+    advance_free<Hex8OnePoint>(m, s, q, m.hex8, s.hex8);
+  else
+    advance_free<Hex8>(m, s, q, m.hex8, s.hex8);
 }
 
 SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
-  const NodeDamping damping{m.damping.local, m.damping.mass + s.relax_damping};
-  const bool damps = damping.local > 0 || damping.mass > 0;
+  const NodeDamping damping = node_damping(m, s);
+  const bool damps = damps_nodes(m, s);
   if (damps) s.nodes.damping_force.resize(s.nodes.force.size());
   s.nodes.damped = damps;
   return {{s.nodes.motion.data()},
@@ -199,12 +242,10 @@ void move_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
   finish(q);
 }
 
-void advance_nodes(const Model& m, State& s, Queue q) {  // nodes/motion.hpp
+void advance_nodes(const Model& m, State& s, Queue q, bool free_too) {  // nodes/motion.hpp
   const SumNodeForces sum = node_forces(m, s, s.all_awake);
-  // what was free before may have been given a load or a support, or contacts in this step
-  const bool some_free = s.nodes.free.size() > 0 && !s.all_awake && !s.nodes.damped;
-  launch_one(q, m.node_count, awake(s, s.nodes.awake),
-             AdvanceNodes{sum, node_motion(m, s), some_free ? s.nodes.free.data() : nullptr});
+  launch_one(q, m.node_count, awake(s, free_too ? s.nodes.awake : s.nodes.others),
+             AdvanceNodes{sum, node_motion(m, s), free_too ? nullptr : s.nodes.free.data()});
   finish(q);
 }
 
@@ -240,7 +281,9 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   watch.lap(Phase::search);
   if (contacts) update_contact_forces(m, s, q);
   watch.lap(Phase::contact);
-  update_element_forces(m, s, q);
+  const bool apart = free_go_apart(m, s, sampled);
+  update_element_forces(m, s, q, !apart);
+  if (apart) advance_free_blocks(m, s, q);
   watch.lap(Phase::element);
   if (sampled || s.stop_due) {
     sum_node_forces(m, s, q);
@@ -249,7 +292,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
     move_nodes(m, s, q);
     if (sampled) sample_after(m, s, q);
   } else {
-    advance_nodes(m, s, q);
+    advance_nodes(m, s, q, !apart);
   }
   if (s.all_awake) find_awake(m, s);
   s.all_awake = false;
@@ -321,7 +364,10 @@ Report run(const Model& m, State& s, const Goal& goal) {
     const bool last = n == goal.steps || s.time + s.dt >= goal.end_time;
     const bool scheduled = s.step % goal.check_interval == 0;  // whatever the split into runs
     const bool check = last || scheduled;
-    step(m, s, {}, check || goal.relaxation == Relaxation::kinetic);
+    // what a step samples changes no motion: where nothing asks for it, it need not be the same
+    const bool sampled = last || !s.ledger_started || goal.relaxation == Relaxation::kinetic ||
+                         (scheduled && goal.unbalance_limit > 0);
+    step(m, s, {}, sampled);
     if (goal.relaxation == Relaxation::kinetic) relax_kinetically(m, s);
     if (goal.relaxation == Relaxation::adaptive) relax_adaptively(m, s);
     if (s.missed > 0) return {Outcome::missed_contact, -1, Real(s.missed)};

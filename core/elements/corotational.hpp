@@ -63,10 +63,15 @@ struct CorotationalForce {
     requires(Shape::nodes == 4)
   {
     columns.fetch(e);
+    corner_force.fetch(e, Shape::nodes);
   }
 
   template <class I>
   CDEM_HD void operator()(I e) const {
+    forces(e).store(corner_force, e);
+  }
+  template <class I>
+  CDEM_HD CornerForces<Shape, Number<I>> forces(I e) const {
     using T = Number<I>;
     const auto law = columns.material(e);
     PointStrains<Shape, Rotation, T> p(columns, e);
@@ -78,7 +83,7 @@ struct CorotationalForce {
     if constexpr (Shape::hourglass)
       Hourglass<T>(columns, e, position_arms<Shape>(columns, e)).add(columns, e, T(1.0), force);
     if (damping_time > 0) add_dashpot(e, law, p, force);
-    force.store(corner_force, e);
+    return force;
   }
 
  private:

@@ -68,21 +68,6 @@ struct CornerLists {
     Index c = first[node];
     const Index last = first[node + 1];
     for (; c < last && corner[c] >= 0; ++c) f = f + corner_force.at(corner[c]);
-    return sum_signed(c, last, f);
-  }
-  /// The same for a node of one element.
-  CDEM_HD Row sum_of_one(Index node, Row f) const {
-    const Index c = first[node];
-    return sum_signed(c + 1, first[node + 1], f + corner_force.at(corner[c]));
-  }
-  /// Ask for the rows of nodes from `node` to before `last`.
-  CDEM_HD void fetch(Index node, Index last) const {
-    for (Index c = first[node]; c < first[last]; ++c)
-      corner_force.fetch(corner[c] ^ (corner[c] >> 31));
-  }
-
- private:
-  CDEM_HD Row sum_signed(Index c, Index last, Row f) const {
     for (; c < last; ++c) {  // no branch: which sign comes next cannot be foreseen
       const Index opposite = corner[c] >> 31;  // 0 or -1
       f = f + Real(2 * opposite + 1) * corner_force.at(corner[c] ^ opposite);
@@ -220,12 +205,6 @@ struct MoveNodes {
     if (damping_force)
       work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way.vector());
   }
-  /// The same where nothing but a weight acts from outside, and nothing damps.
-  CDEM_HD void advance(Index i, const Row& acceleration, const Row& weight) const {
-    const Row v0 = Row::at(motion + std::size_t(i) * 8 + 4);
-    const Row way = drift(i, v0, v0 + kick() * acceleration);
-    work_external[i] += dot(weight.vector(), way.vector());
-  }
 
  private:
   CDEM_HD Real kick() const { return 0.5 * (dt_before + dt); }
@@ -278,48 +257,20 @@ struct MoveNodes {
 
 /// Both at once, for a step in which nothing looks at the forces in between: what the sum leaves is
 /// still in cache when the motion wants it. Nodes that share a mass matrix go together, with the
-/// first of them; free blocks, the most of bonded rock, without asking what else they need.
+/// first of them.
 struct AdvanceNodes {
   SumNodeForces sum;
   MoveNodes move;
-  const Flag* free;  // [node] see NodeState; null where something damps
-
-  static constexpr Fetching fetching{4, 16384};
-  CDEM_HD void fetch(One node) const {
-    if (free && free[node.i] > 1) sum.corners.fetch(node.i, node.i + free[node.i]);
-  }
+  const Flag* free;  // [node] 1: moved by AdvanceFree; null where none is
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
-    if (free && free[i] > 0) {
-      if (free[i] == 4) advance_free<4>(i);
-      if (free[i] == 8) advance_free<8>(i);
-      return;
-    }
+    if (free && free[i]) return;
     const bool shared = move.mass.row(i) >= 0;
     if (shared && move.mass.block_first[i] != i) return;
     const Index last = shared ? i + move.mass.block_count[i] : i + 1;
     for (Index j = i; j < last; ++j) sum(One{j});
     for (Index j = i; j < last; ++j) move(One{j});
-  }
-
- private:
-  /// A block of one element, of which no support, load or contact knows: the same arithmetic,
-  /// nothing to ask.
-  template <Index count>
-  CDEM_HD void advance_free(Index i) const {
-    Row f[count], weight[count];
-    const Real* inverse = move.mass.inverse + move.mass.dense_first[i];
-    for (Index k = 0; k < count; ++k) {
-      weight[k] = move.loads.weight(i + k);
-      f[k] = sum.corners.sum_of_one(i + k, weight[k]);
-      f[k].store(sum.force + std::size_t(i + k) * 4);
-    }
-    for (Index k = 0; k < count; ++k) {
-      Row a = Row::zero();
-      for (Index j = 0; j < count; ++j) a = a + inverse[count * k + j] * f[j];
-      move.advance(i + k, (a / move.mass.mass[i + k]).xyz(), weight[k]);
-    }
   }
 };
 

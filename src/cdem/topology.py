@@ -265,10 +265,11 @@ def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
     flat = np.concatenate([k.ravel() for k in keys])
     unique, first, inverse = np.unique(flat, return_index=True, return_inverse=True)
     # nodes of a large block in the order in which its elements come to them, so that what is near
-    # lies together; those of a small one fit into a cache, and stay in the order of the mesh
+    # lies together, and those of a block of one element in the order of its corners, as free blocks
+    # need it (core/nodes/free.hpp); the others fit into a cache, and stay in the order of the mesh
     owner = unique // len(mesh.points)
-    large = np.bincount(owner)[owner] > LARGE_BLOCK
-    order = np.lexsort((np.where(large, first, np.arange(len(unique))), owner))
+    follows = (np.bincount(owner) > LARGE_BLOCK) | (np.bincount(block) == 1)
+    order = np.lexsort((np.where(follows[owner], first, np.arange(len(unique))), owner))
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
     unique, inverse = unique[order], rank[inverse]

@@ -200,6 +200,60 @@ def test_what_slept_wakes_up_when_it_is_freed():
     assert sim.fields["velocity"][bed, 2].mean() == pytest.approx(-9.81 * 0.02, rel=0.05)
 
 
+@pytest.mark.parametrize(
+    ("shape", "hexahedra"), [("tet4", "full"), ("hex8", "full"), ("hex8", "one-point")]
+)
+def test_free_blocks_that_go_apart_move_as_with_all_others(shape, hexahedra):
+    """Bonded elements in the air, one of them shot at the others; every call of the core begins with a step in
+    which none goes apart."""
+    scene = case(
+        [
+            {"group": "bar", "box": {"size": [4, 2, 2], "divisions": [4, 2, 2], "shape": shape}},
+            {"group": "ball", "box": {"size": [0.5, 0.5, 0.5]}, "translate": [-0.51, 0.2, 0.4]},
+        ],
+        {"bar": {"velocity": [0.3, 0.2, 0.1]}, "ball": {"velocity": [20, 0, 1]}},
+        interfaces={"default": {"friction_angle": 30, "cohesion": 1e5, "tensile_strength": 1e5}},
+        rock={"young_modulus": "0.1 GPa"},
+        loads={"gravity": [0, 1, -9.81]},
+        stages=[{"name": "fly", "mode": "dynamic", "duration": 1, "damping": {"stiffness": 0.1}}],
+        model={"split": {"bar": "elements"}},
+        elements={"hexahedra": hexahedra},
+    )
+    at_once, stepwise = (cdem.Simulation(scene, threads=1) for _ in range(2))
+    for steps in (7, 150, 143):
+        at_once.step(steps)
+        for _ in range(steps):
+            stepwise.step(1)
+        assert digest(at_once) == digest(stepwise)
+    assert sum(at_once.broken.values()) > 0
+
+
+def test_what_flew_freely_stops_in_the_step_in_which_it_is_held():
+    step = 1e-5
+    sim = cdem.Simulation(
+        case(
+            [{"group": "body", "box": {"size": [2, 1, 1], "divisions": [2, 1, 1], "shape": "tet4"}}],
+            {"body": {"velocity": [3, 2, 1]}},
+            interfaces={
+                "default": {"friction_angle": 30, "cohesion": 1e9, "tensile_strength": 1e9}
+            },
+            stages=[
+                {"name": "fly", "mode": "dynamic", "duration": 29.5 * step},
+                {"name": "held", "mode": "dynamic", "duration": 20 * step,
+                 "set": {"groups.body.fix": ["x", "y", "z"]}},
+            ],
+            model={"split": {"body": "elements"}},
+            time={"step": step},
+        ),
+        threads=1,
+    )  # fmt: skip
+    sim.run_stage("fly")
+    assert sim.step_count == 30  # the next does not sum up energies: nodes advance in one pass
+    before = sim.fields["position"].copy()
+    sim.run()
+    assert np.array_equal(sim.fields["position"], before)
+
+
 @pytest.mark.parametrize("way", ["local", "kinetic", "adaptive"])
 def test_stop_and_resume_on_the_way_to_rest(tmp_path, way):
     def settle(**more):
