@@ -57,7 +57,7 @@ struct CorotationalForce {
   InOutTable damping_work;  // [1][element]  [J], taken out by the dashpot so far
   OutForces corner_force;   // [N]
 
-  static constexpr Fetching fetching{4, 1024};
+  static constexpr Fetching fetching{4, 4096};
   /// Not of hexahedra: with their 170 columns of gradients it costs more than it gains.
   CDEM_HD void fetch(One e) const
     requires(Shape::nodes == 4)

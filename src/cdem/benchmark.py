@@ -25,7 +25,7 @@ REPEATS = 5
 SECONDS = 0.3
 """Least wall time of a timed run [s]."""
 STEPS = 40
-"""Least steps of a timed run: as in any run, every twentieth and the last also sum up energies."""
+"""Least steps of a timed run: as in any run, the first computes all and the last sums up energies."""
 SIZES = {"1e4": 6, "1e5": 13, "1e6": 28}
 """Cells in the width of the bars (8 m x m x m cells of 6 tets), by number of tets."""
 TRIAD_BYTES = 400_000_000
