@@ -12,7 +12,7 @@
 #include "core/contact/target_face.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
-#include "core/nodes/free.hpp"
+#include "core/nodes/free_block.hpp"
 
 namespace cdem {
 

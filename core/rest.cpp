@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/free.hpp"
+#include "core/free_blocks.hpp"
 
 namespace cdem {
 

@@ -16,15 +16,16 @@ struct NodeState {
   Column<Real> unbalance;
   Column<Real> relax;       // adaptive relaxation only, rows of 8: force, velocity of the last step
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
-  Column<Index> glue, awake;           // awake: blocks of nodes, see rest.hpp
-  Column<Flag> rests, listed;          // see rest.hpp
-  Column<Flag> free;                   // 1: of a free block, see free.hpp; empty: there is none
-  Column<Index> others;                // awake blocks of nodes, less those of which all are free
-  bool damped = false;                 // in the last step, else damping_force does not count
+  Column<Index> glue, awake;   // awake: blocks of nodes, see rest.hpp
+  Column<Flag> rests, listed;  // see rest.hpp
+  Column<Flag> free;           // 1: of a free block, see nodes/free_block.hpp; empty: there is none
+  Column<Index> others;        // awake blocks of nodes, less those of which all are free
+  bool damped = false;         // in the last step, else damping_force does not count
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };
 
-/// Blocks of elements of which all are free, see free.hpp; the other ones that are awake.
+/// Blocks of elements of which all are free, see nodes/free_block.hpp; the other ones that are
+/// awake.
 struct FreeBlocks {
   Column<Index> blocks, others;
   Column<Index> row_first, row;  // see FreeRows

@@ -13,7 +13,7 @@
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
 #include "core/hand_over.hpp"
-#include "core/nodes/free.hpp"
+#include "core/nodes/free_block.hpp"
 #include "core/rest.hpp"
 
 namespace cdem {
@@ -194,7 +194,7 @@ void advance_free(const Model& m, State& s, Queue q, const ElementSet& e, Elemen
                             s.nodes.work_external.data()});
 }
 
-void advance_free_blocks(const Model& m, State& s, Queue q) {  // nodes/free.hpp
+void advance_free_blocks(const Model& m, State& s, Queue q) {  // nodes/free_block.hpp
   advance_free<Tet4>(m, s, q, m.tet4, s.tet4);
   if (m.hex8.hourglass.size() > 0)
     advance_free<Hex8OnePoint>(m, s, q, m.hex8, s.hex8);

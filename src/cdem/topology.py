@@ -266,7 +266,7 @@ def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
     unique, first, inverse = np.unique(flat, return_index=True, return_inverse=True)
     # nodes of a large block in the order in which its elements come to them, so that what is near
     # lies together, and those of a block of one element in the order of its corners, as free blocks
-    # need it (core/nodes/free.hpp); the others fit into a cache, and stay in the order of the mesh
+    # need it (core/nodes/free_block.hpp); the others fit into a cache, and stay in the order of the mesh
     owner = unique // len(mesh.points)
     follows = (np.bincount(owner) > LARGE_BLOCK) | (np.bincount(block) == 1)
     order = np.lexsort((np.where(follows[owner], first, np.arange(len(unique))), owner))

@@ -1,4 +1,4 @@
-// free.hpp - finds the blocks of one element of which only their bonds know. Host code.
+// free_blocks.hpp - finds the blocks of one element of which only their bonds know. Host code.
 #pragma once
 
 #include "core/model.hpp"

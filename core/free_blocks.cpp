@@ -1,5 +1,5 @@
-// free.cpp - finds the blocks of one element of which only their bonds know.
-#include "core/free.hpp"
+// free_blocks.cpp - finds the blocks of one element of which only their bonds know.
+#include "core/free_blocks.hpp"
 
 #include <algorithm>
 #include <vector>

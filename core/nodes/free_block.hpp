@@ -1,4 +1,5 @@
-// free.hpp - blocks of one element of which only their bonds know: force and motion in one pass.
+// free_block.hpp - blocks of one element of which only their bonds know: force and motion in one
+// pass.
 #pragma once
 
 #include "core/elements/corotational.hpp"
