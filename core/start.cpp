@@ -52,8 +52,10 @@ void start(const Model& m, State& s, const Real* position) {
   size_pairs(m.triangles, s.triangles);
   size_pairs(m.quads, s.quads);
   size_pairs(m.overlaps, s.overlaps);
-  s.corner_force.resize(4 * std::size_t(m.corner_rows));
-  s.corner_force.resize(4 * std::size_t(m.corner_rows + 1), -0.0);  // x + -0 is x: adds nothing
+  const std::size_t rows = 4 * std::size_t(m.corner_rows);
+  s.corner_force.resize(rows + 4);
+  // the row that adds nothing, see FreeRows: x + -0 is x, whatever the sign of a zero
+  for (std::size_t k = rows; k < rows + 4; ++k) s.corner_force[k] = -0.0;
 }
 
 void prepare(const Model& m, State& s) {
