@@ -360,23 +360,23 @@ struct OutForces {
 struct InForces {
   const Real* rows;
   CDEM_HD Row at(std::size_t row) const { return Row::at(rows + row * 4); }
-  /// Rows that are kept as such, or as ~row where the opposite of what stands there is meant.
-  CDEM_HD Vec3<Real> signed_at(Index row) const {
-    const Index opposite = row >> 31;  // 0 or -1
-    return Real(2 * opposite + 1) * at(row ^ opposite).vector();
-  }
+  /// What is meant by a row, or by ~row: the opposite of what stands there. No branch: which of
+  /// them comes next cannot be foreseen.
+  CDEM_HD Row signed_row(Index row) const { return Real(2 * (row >> 31) + 1) * at(plain(row)); }
+  CDEM_HD Vec3<Real> signed_at(Index row) const { return signed_row(row).vector(); }
 #if !defined(__CUDACC__)
   Vec3<Pack> signed_at(const IndexPack& row) const {
     Index __attribute__((vector_size(4 * CDEM_LANES))) opposite;
     std::memcpy(&opposite, row.id, sizeof opposite);
     opposite >>= 31;
-    IndexPack plain;
-    for (Index j = 0; j < lanes; ++j) plain.id[j] = row.id[j] ^ (row.id[j] >> 31);
     const Pack sign = __builtin_convertvector(2 * opposite + 1, Pack::Numbers);
-    return sign * load_rows([&](Index j) { return rows + std::size_t(plain.id[j]) * 4; });
+    return sign * load_rows([&](Index j) { return rows + plain(row.id[j]) * 4; });
   }
 #endif
-  CDEM_HD void fetch(std::size_t row) const { cdem::fetch(rows + row * 4); }
+  CDEM_HD void fetch_signed(Index row) const { fetch(rows + plain(row) * 4); }
+
+ private:
+  CDEM_HD static std::size_t plain(Index row) { return std::size_t(row ^ (row >> 31)); }
 };
 
 }  // namespace cdem

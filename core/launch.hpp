@@ -391,8 +391,8 @@ void for_each_picked(Queue, Index count, const Kernel& kernel) {
   }
 }
 
-/// Have the kernel fetch what it reads at random for a block to come, if it knows how to: what lies
-/// in the order of the items the machine fetches by itself.
+/// Have the kernel fetch what it needs for a block to come, if it knows what the machine does not
+/// fetch by itself: what it reads at random, or in too many columns.
 template <class Kernel>
 CDEM_HD inline void fetch_ahead(const Kernel& kernel, Blocks blocks, Index b) {
   if constexpr (requires { kernel.fetch(One{0}); }) {
@@ -425,7 +425,6 @@ void for_each_one(Queue queue, Index count, Blocks blocks, const Kernel& kernel)
 #pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
   for (Index b = 0; b < blocks.count; ++b) {
     const Index first = blocks.id[b] * block_size;
-    fetch_ahead(kernel, blocks, b);
     for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
   }
 }

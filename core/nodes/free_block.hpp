@@ -85,7 +85,7 @@ struct AdvanceFree {
         cdem::fetch(list + first);
     const Index* row = rows.of(e.i);
     for (Index c = 0; c < count * rows.most(e.i, count); ++c, row += block_size)
-      bond_force.fetch(*row ^ (*row >> 31));
+      bond_force.fetch_signed(*row);
   }
 
  private:

@@ -14,11 +14,8 @@ struct LoadColumns {
   const Real* load_force;    // row of 4  [N]
   const Real* curve_value;   // [curve] factors at the time of this step
 
-  CDEM_HD Row weight(Index node) const {
-    return gravity_mass[node] * Row::of(gravity.x, gravity.y, gravity.z);
-  }
   CDEM_HD Row at(Index node) const {
-    Row f = weight(node);
+    Row f = gravity_mass[node] * Row::of(gravity.x, gravity.y, gravity.z);
     for (Index l = load_first[node]; l < load_first[node + 1]; ++l)
       f = f + curve_value[load_curve[l]] * Row::at(load_force + std::size_t(l) * 4);
     return f;
@@ -68,10 +65,7 @@ struct CornerLists {
     Index c = first[node];
     const Index last = first[node + 1];
     for (; c < last && corner[c] >= 0; ++c) f = f + corner_force.at(corner[c]);
-    for (; c < last; ++c) {  // no branch: which sign comes next cannot be foreseen
-      const Index opposite = corner[c] >> 31;  // 0 or -1
-      f = f + Real(2 * opposite + 1) * corner_force.at(corner[c] ^ opposite);
-    }
+    for (; c < last; ++c) f = f + corner_force.signed_row(corner[c]);
     return f;
   }
 };
@@ -196,9 +190,13 @@ struct MoveNodes {
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
-    const Row v0 = Row::at(motion + std::size_t(i) * 8 + 4);
-    const Row v1 = supports.with_given(i, v0 + kick() * acceleration(i));
-    const Row way = drift(i, v0, v1);
+    Real* r = motion + std::size_t(i) * 8;
+    const Row v0 = Row::at(r + 4);
+    const Real kick = 0.5 * (dt_before + dt);
+    const Row v1 = supports.with_given(i, v0 + kick * acceleration(i));
+    v1.store(r + 4);
+    (Row::at(r) + dt * v1).store(r);
+    const Row way = 0.5 * (dt_before * v0 + dt * v1);
     Row external = loads.at(i);
     if (supports.support[i] >= 0) external = external + react(i, v0, v1);
     work_external[i] += dot(external.vector(), way.vector());
@@ -207,14 +205,6 @@ struct MoveNodes {
   }
 
  private:
-  CDEM_HD Real kick() const { return 0.5 * (dt_before + dt); }
-  /// Move with the new velocity. Returns the way along which the forces of the step work.
-  CDEM_HD Row drift(Index i, const Row& v0, const Row& v1) const {
-    Real* r = motion + std::size_t(i) * 8;
-    v1.store(r + 4);
-    (Row::at(r) + dt * v1).store(r);
-    return 0.5 * (dt_before * v0 + dt * v1);
-  }
   CDEM_HD Row acceleration(Index i) const {
     const Index row = mass.row(i);
     if (row < 0) return (Row::at(force + std::size_t(i) * 4) / mass.mass[i]).xyz();
