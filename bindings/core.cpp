@@ -108,6 +108,7 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
   const auto real = [&](const char* name) { return nb::cast<Real>(scalars[name]); };
   const auto whole = [&](const char* name) { return nb::cast<std::int64_t>(scalars[name]); };
   s.time = real("time"), s.dt = real("dt"), s.dt_last = real("dt_last");
+  s.dt_stable = real("dt_stable");
   s.step = whole("step"), s.refreshes = whole("refreshes"), s.built_step = whole("built_step");
   s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
   s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
@@ -121,6 +122,7 @@ nb::dict scalars(const Core& core) {
   const State& s = core.state;
   nb::dict d;
   d["time"] = s.time, d["dt"] = s.dt, d["dt_last"] = s.dt_last;
+  d["dt_stable"] = s.dt_stable;
   d["step"] = s.step, d["refreshes"] = s.refreshes, d["built_step"] = s.built_step;
   d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
   d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;

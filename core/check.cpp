@@ -250,9 +250,14 @@ StepLimit step_limit(const Model& m, const State& s) {
 }
 
 void renew_step(const Model& m, State& s) {
-  s.dt = m.step_given > 0 ? m.step_given : m.step_safety * step_limit(m, s).dt;
-  if (s.nodes.relax_mass.size() > 0) scale_masses(m, s);
+  s.dt_stable = m.step_given > 0 ? m.step_given : m.step_safety * step_limit(m, s).dt;
+  const bool relaxes = s.nodes.relax_mass.size() > 0;
+  const bool at_once = m.step_given > 0 || relaxes || !(s.dt > 0);
+  s.dt = at_once ? s.dt_stable : std::min(s.dt, s.dt_stable);
+  if (relaxes) scale_masses(m, s);
 }
+
+void grow_step(State& s) { s.dt = std::min(step_growth * s.dt, s.dt_stable); }
 
 Report check_health(const Model& m, const State& s) {
   Real fastest = 0;

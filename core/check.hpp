@@ -8,6 +8,12 @@ namespace cdem {
 /// The stable step is found anew every so many steps, and after every refresh of the search.
 inline constexpr std::int64_t step_check_interval = 100;
 
+/// A step is at most this much longer than the last. A sudden change from w dt = 1.6 to nothing or
+/// back multiplies the energy of a mode by chance, both together by 1.28 on average; a slow one
+/// does not (docs/theory). Contacts that come and go shorten the step and set it free again and
+/// again.
+inline constexpr Real step_growth = 1.01;
+
 /// Step of adaptive relaxation, as a part of the stable one: its masses are made for it, from
 /// bounds that hold.
 inline constexpr Real relax_safety = 0.9;
@@ -37,6 +43,8 @@ Report check_health(const Model& model, const State& state);
 /// Renew centre, normal and sharp sides of every exposed face; those sides only where there are
 /// candidates, unless `all`.
 void update_face_geometry(const Model& model, State& state, Queue queue, bool all);
+/// After every step: longer if it may be.
+void grow_step(State& state);
 /// Do the lists name anything? Without it contacts only end, in the first step with these lists.
 bool may_have_contacts(const State& state);
 /// Mark which pairs of vertex and face may be in contact in this step.

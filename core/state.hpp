@@ -102,6 +102,7 @@ struct State {
   Real seconds[5] = {};  // wall time so far by Phase; no part of the results
   Real time = 0;
   Real dt = 0, dt_last = 0;  // of the coming and of the last step  [s]
+  Real dt_stable = 0;        // which `dt` grows towards  [s]
   std::int64_t step = 0, refreshes = 0, built_step = -1;
   Real energy_start = 0, energy_scale = 0;  // of the ledger
   Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]

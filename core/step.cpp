@@ -299,6 +299,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   s.dt_last = s.dt;
   s.time += s.dt;
   s.step += 1;
+  grow_step(s);
   if (s.step % step_check_interval == 0) renew_step(m, s);
   watch.lap(Phase::node);
 }

@@ -410,10 +410,11 @@ class Simulation:
         assert self.results is not None
         arrays, attributes = self.results.read_checkpoint(self)
         self.reference = arrays.pop("simulation.reference")
-        if other := sorted(set(arrays) ^ set(self.core.fields())):
+        kept = set(arrays) | set(attributes["core"])
+        if other := sorted(kept ^ (set(self.core.fields()) | set(self.core.scalars()))):
             raise CdemError(
                 f"{self.results.folder}: its checkpoint was written by another version of cdem "
-                f"({attributes['version']}; this is {__version__}) and holds other arrays "
+                f"({attributes['version']}; this is {__version__}) and holds other fields "
                 f"({', '.join(other[:3])}, ...). Go on with the cdem that wrote it, or run the case "
                 f"anew in another folder (-o)"
             )

@@ -324,3 +324,36 @@ def test_a_state_restored_forgets_what_came_after():
     sim.core.restore(arrays, scalars)
     sim.core.prepare()
     assert fly() == first
+
+
+def test_restored_while_the_step_grows_it_grows_on():
+    """A cube leaves the bed that it has hit, and its step may be longer again, little by little."""
+
+    def cube():
+        return cdem.Simulation(
+            case(
+                [
+                    {"group": "body", "box": {"size": [1, 1, 1]}, "translate": [0, 0, 0.01]},
+                    {"group": "bed", "box": {"size": [4, 4, 1]}, "translate": [-1, -1, -1]},
+                ],
+                {"body": {"velocity": [0, 0, -5]}, "bed": {"fix": ["x", "y", "z"]}},
+                interfaces={"default": {"friction_angle": 30, "stiffness_n": "100 E/h"}},
+            ),
+            threads=1,
+        )
+
+    sim = cube()
+    steps = []
+    while len(steps) < 2 or not steps[-1] > steps[-2]:
+        sim.step()
+        steps.append(sim.core.scalars()["dt"])
+    arrays = {name: values.copy() for name, values in sim.core.fields().items()}
+    scalars = sim.core.scalars()
+    sim.step(20)
+    again = cube()
+    again.step(int(np.argmin(steps)) + 1)  # where it may not grow
+    again.core.restore(arrays, scalars)
+    again.core.prepare()
+    again.step(20)
+    assert again.core.scalars() == sim.core.scalars()
+    assert digest(again) == digest(sim)

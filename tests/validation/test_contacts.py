@@ -153,13 +153,17 @@ def test_collisions_keep_momentum_and_energy(kind):
     assert abs(sim.energies["error"]) < 1e-3
 
 
-def test_energy_in_a_collision_converges_with_the_step():
-    """At 0.8 of the stability limit a bounce is off by up to 0.8 %, at 0.1 by about 1e-4."""
-    for kind in ("face", "edge", "vertex"):
-        coarse = abs(collide(kind, safety=0.8)[0].energies["error"])
-        fine = abs(collide(kind, safety=0.1)[0].energies["error"])
-        assert coarse < 8e-3
-        assert fine < 2e-4
+@pytest.mark.parametrize("kind", ["face", "edge", "vertex"])
+def test_energy_in_a_collision_converges_with_the_step(kind):
+    """At 0.8 of the stability limit a bounce is off by 0.8 % (root of the mean square over speeds: a
+    single one depends on where in a step it begins), at 0.1 by about 1e-4.
+    """
+    errors = [
+        collide(kind, speed, safety=0.8)[0].energies["error"]
+        for speed in (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.45, 1.6, 1.8)
+    ]
+    assert np.sqrt(np.mean(np.square(errors))) < 8e-3
+    assert abs(collide(kind, safety=0.1)[0].energies["error"]) < 2e-4
 
 
 @pytest.mark.parametrize("phi", [0.0, 26.0])
