@@ -1,6 +1,8 @@
 // backend.cpp - the list of launches. backend.cu is this file again, given to the CUDA compiler.
 #include "core/backend.hpp"
 
+#include <omp.h>
+
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
@@ -8,6 +10,7 @@
 #include "core/contact/bond.hpp"
 #include "core/contact/edge_pair.hpp"
 #include "core/contact/force.hpp"
+#include "core/contact/gather.hpp"
 #include "core/contact/target_edge.hpp"
 #include "core/contact/target_face.hpp"
 #include "core/elements/corotational.hpp"
@@ -25,6 +28,7 @@ void* allocate(std::size_t bytes) {
   return memory;
 }
 void release(void* memory) { cudaFree(memory); }
+bool runs_alone() { return false; }
 void finish(Queue queue) {
   const cudaError_t error = cudaStreamSynchronize(queue.stream);
   if (error != cudaSuccess) throw std::runtime_error(cudaGetErrorString(error));
@@ -46,6 +50,7 @@ void* allocate(std::size_t bytes) {
   return memory;
 }
 void release(void* memory) { std::free(memory); }
+bool runs_alone() { return omp_get_max_threads() == 1; }
 void finish(Queue) {}
 const char* device_name() { return "cpu"; }
 
@@ -122,7 +127,8 @@ template void launch_picked(Queue, Index, const UpdateSpringForces&);
 template void launch(Queue, Index, const UpdateEdgeForces&);
 template void launch_one(Queue, Index, const ListEdges&);
 template void launch(Queue, Index, const MarkNearFaces&);
-template void launch_one(Queue, Index, const MarkActing&);
+template void launch_one(Queue, Index, const CountActing&);
+template void launch_one(Queue, Index, const ListActing&);
 template void launch_one(Queue, Index, const GatherFaceForces&);
 template void launch_one(Queue, Index, Blocks, const SumNodeForces&);
 template void launch_one(Queue, Index, Blocks, const MoveNodes&);

@@ -1,10 +1,7 @@
 // candidates.cpp - the lists of the search, by face, vertex and node.
 #include "core/candidates.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
-#include <atomic>
 #include <iterator>
 #include <memory>
 #include <tuple>
@@ -33,11 +30,8 @@ struct Rows {
 /// is left to chance, so rows must be sorted.
 struct Counters {
   Index* counts;
-  bool alone = omp_get_max_threads() == 1;  // taking turns costs time
-  Index raise(std::size_t i) const {
-    if (alone) return counts[i]++;
-    return std::atomic_ref(counts[i]).fetch_add(1, std::memory_order_relaxed);
-  }
+  bool alone = runs_alone();
+  Index raise(std::size_t i) const { return cdem::raise(counts[i], alone); }
 };
 
 /// Make starts of rows of counts: counts[i + 1] were those of row i.

@@ -3,6 +3,7 @@
 
 #include "core/contact/bond.hpp"
 #include "core/contact/force.hpp"
+#include "core/contact/gather.hpp"
 #include "core/elements/shapes.hpp"
 #include "core/model.hpp"
 #include "core/nodes/motion.hpp"
@@ -35,10 +36,6 @@ inline Candidates candidate_columns(State& s) {
           s.search.candidate_pair.data(), s.search.faces_near.data(), s.search.may_begin.data()};
 }
 
-inline Sources source_columns(const State& s) {
-  return {s.search.source_first.data(), s.search.source.data()};
-}
-
 inline EdgePairs edge_pairs(State& s) {
   const Index stride = padded_stride(Index(s.search.edges_near.size()));
   return {{s.search.edges_ends.data(), stride}, {s.search.edges_of.data(), stride},
@@ -68,7 +65,7 @@ inline FaceSearch face_search(const Model& m, State& s) {
 }
 
 inline FoundEdges found_edges(State& s) {
-  return {s.edges.slots, s.edges.found_count.data(), s.edges.found.data()};
+  return {s.edges.slots, s.edges.found_count.data(), s.edges.found.data(), runs_alone()};
 }
 
 inline TouchTargetEdges edge_search(const Model& m, State& s) {

@@ -62,9 +62,14 @@ CDEM_HD inline Real sqrt_of(Real a) { return std::sqrt(a); }
 CDEM_HD inline unsigned lane_bits(bool mask) { return mask; }
 CDEM_HD inline bool any_of(bool mask) { return mask; }
 
+/// Is there one thread for all items of a launch?
+bool runs_alone();
+
 /// Raise a count that several threads may raise at once, and return what it was. Which of them
-/// comes first is left to chance: what is found with it must be sorted.
-CDEM_HD inline Index raise(Index& count) {
+/// comes first is left to chance: what is found with it must be sorted. Taking turns costs time,
+/// which one thread `alone` need not spend.
+CDEM_HD inline Index raise(Index& count, bool alone) {
+  if (alone) return count++;
 #if defined(__CUDA_ARCH__)
   return atomicAdd(&count, 1);
 #else

@@ -64,6 +64,12 @@ struct EdgeState {
   Column<Index> found_count, found;
 };
 
+/// Which contacts act on the exposed faces, see contact/gather.hpp; made anew in every step.
+struct ActingState {
+  Column<Index> count, first;    // by target
+  Column<Index> place, contact;  // by contact; the list
+};
+
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
   Column<ExposedRow> exposed;                // what follows from them, see list_exposed
@@ -86,7 +92,6 @@ struct SearchState {
   Column<Flag> edges_open;                     // [pair] see SiftTargetEdges; made in every step
   Column<Index> source_first, source;          // faces whose contacts may act on a face
   Column<Flag> face_listed;                    // [exposed] may any act on it, or its own on others?
-  Column<Flag> acting;                         // [source] do they in this step? All 0 between steps
   Column<Index> across;                        // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
@@ -118,6 +123,7 @@ struct State {
   Column<Index> released_overlaps;  // their contacts are still to be found in this step
   SpringState springs;
   EdgeState edges;
+  ActingState acting;
   SearchState search;
   Column<Real> face_geometry, corner_force, contact_force;  // rows of 8, 4, 4
   Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]

@@ -114,14 +114,32 @@ void update_contact_forces(const Model& m, State& s, Queue q) {  // Eq. 13-14, c
   launch(q, Index(s.edges.contact.size() / 4),
          UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m, s),
                           s.edges.old_state.data(), edge_columns(s)});
-  s.search.acting.resize(s.search.source.size());
-  Flag* acting = s.search.acting.data();
-  launch_one(q, count, MarkActing{source_columns(s), spring_columns(s), edge_columns(s), acting});
-  launch_one(
-      q, count,
-      GatherFaceForces{face_columns(m, s), exposed, s.search.face_listed.data(), source_columns(s),
-                       m.rules, spring_columns(s), edge_columns(s), s.edges.friction.data(),
-                       s.edges.dashpot.data(), acting, s.contact_force.data()});
+}
+
+void make_rows(ActingState& acting) {
+  const std::size_t count = acting.count.size();
+  acting.first.resize(count + 1);
+  for (std::size_t i = 0; i < count; ++i) acting.first[i + 1] = acting.first[i] + acting.count[i];
+  acting.contact.resize(acting.first[count]);
+}
+
+void gather_contact_forces(const Model& m, State& s, Queue q) {  // contact/gather.hpp
+  const Index count = Index(s.search.exposed_face.size());
+  const ContactsOf contacts{spring_columns(s), edge_columns(s), count};
+  ActingState& acting = s.acting;
+  acting.count.resize(count);
+  acting.count.fill(0);
+  acting.place.resize(s.springs.target.size() + s.edges.contact.size() / 4);
+  launch_one(q, count,
+             CountActing{contacts, acting.count.data(), acting.place.data(), runs_alone()});
+  finish(q);
+  make_rows(acting);
+  const Acting rows{acting.first.data(), acting.contact.data()};
+  launch_one(q, count, ListActing{contacts, acting.place.data(), rows});
+  launch_one(q, count,
+             GatherFaceForces{contacts, face_columns(m, s), s.search.exposed_face.data(),
+                              s.search.face_listed.data(), rows, m.rules, s.edges.friction.data(),
+                              s.edges.dashpot.data(), s.contact_force.data()});
 }
 
 NodeDamping node_damping(const Model& m, const State& s) {
@@ -280,6 +298,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   if (m.check_search) s.missed += count_missed_contacts(m, s);
   watch.lap(Phase::search);
   if (contacts) update_contact_forces(m, s, q);
+  if (contacts) gather_contact_forces(m, s, q);
   watch.lap(Phase::contact);
   const bool apart = free_go_apart(m, s, sampled);
   update_element_forces(m, s, q, !apart);

@@ -29,6 +29,7 @@ struct FoundEdges {
   Index slots;
   Index* count;  // [exposed]
   Index* rows;   // [exposed][slots] of FoundEdge
+  bool alone;    // see raise
 };
 
 /// A contact of a semi-edge as it is found: a row of 3.
@@ -137,7 +138,7 @@ struct TouchTargetEdges {
       const SidePair pair = SidePair::of(of_lane(sides.sides, lane));
       const FoundEdge contact{4 * m + pair.k, 4 * of_lane(sides.t, lane) + pair.j,
                               of_lane(sides.before, lane)};
-      const Index place = raise(found.count[m]);
+      const Index place = raise(found.count[m], found.alone);
       if (place < found.slots) contact.store(found.rows, std::size_t(m) * found.slots + place);
     });
   }

@@ -41,12 +41,6 @@ struct FaceList {
   }
 };
 
-/// Exposed faces whose semi-springs and semi-edges may act on an exposed face: ragged rows.
-struct Sources {
-  const Index* first;  // [exposed + 1]
-  const Index* other;  // exposed face, ascending in a row
-};
-
 /// What a contact remembers from step to step: a row of 8 numbers.
 struct ContactState {
   Real force_n;             // compression > 0  [N]
