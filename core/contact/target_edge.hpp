@@ -1,6 +1,8 @@
 // target_edge.hpp - which edges a semi-edge crosses. Feng et al. (2014), Eq. 10-12.
 #pragma once
 
+#include <bit>
+
 #include "core/contact/edge_pair.hpp"
 
 namespace cdem {
@@ -112,8 +114,11 @@ struct TouchTargetEdges {
   /// More contacts than this on one face stop the run.
   static constexpr Index most_slots = 64;
 
+  /// From the first way that is open to the last.
   CDEM_HD Range items(Index p) const {
-    return {EdgePairs::ways * p, EdgePairs::ways * (p + (pairs.near[p] ? 1 : 0))};
+    const auto open = std::uint8_t(pairs.near[p] ? pairs.open[p] : 0);
+    const Index first = open ? std::countr_zero(open) : 0;
+    return {EdgePairs::ways * p + first, EdgePairs::ways * p + std::bit_width(open)};
   }
   CDEM_HD bool picks(Index p, Index id) const {
     return pairs.open[p] >> (id - EdgePairs::ways * p) & 1;
