@@ -150,7 +150,7 @@ class Audit:
         volume = self._sim.build.assembly.element_volume["tet4"]
         return int(in_pieces(thin, t.element_nodes["tet4"], volume).sum())
 
-    def _free_blocks(self) -> dict[str, int]:
+    def _unheld_blocks(self) -> dict[str, int]:
         """Blocks of each group that neither supports nor bonds nor contacts hold at the start."""
         b = self._sim.build
         t, a = b.topology, b.assembly
@@ -177,7 +177,7 @@ class Audit:
         sim, b = self._sim, self._sim.build
         out = list(b.mesh.notes)
         if any(s.mode == "static" for s in sim.case.stages):
-            for name, count in self._free_blocks().items():
+            for name, count in self._unheld_blocks().items():
                 blocks = "1 block has" if count == 1 else f"{count:,} blocks have"
                 out.append(
                     f"group {name}: {blocks} no support, direct or through others, at the start; in "

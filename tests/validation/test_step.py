@@ -110,3 +110,24 @@ def test_the_step_of_an_irregular_mesh_is_bounded_by_its_nodes(tmp_path, mass):
     assert (sim.build.arrays["node.dense_first"] >= 0).all() == (mass == "exact")
     assert worst_element < exact / 3
     assert exact / 2 < sim.core.step_limit()[0] < exact
+
+
+def test_what_flies_on_forgets_the_stiffness_of_its_last_contact():
+    """A cube far from the bed that it has hit steps as if it were alone, however the run is split."""
+
+    def fly(*runs):
+        sim = simulate(
+            [
+                {"group": "body", "box": {"size": [1, 1, 1]}, "translate": [0, 0, 0.01]},
+                {"group": "bed", "box": {"size": [4, 4, 1]}, "translate": [-1, -1, -1]},
+            ],
+            {"body": {"velocity": [0, 0, -10]}, "bed": {"fix": ["x", "y", "z"]}},
+        )
+        for steps in runs:
+            sim.step(steps)
+        assert sim.fields["position"][sim.build.nodes_of("body"), 2].min() > 0.5
+        return sim.core.scalars()
+
+    alone = simulate([{"group": "a", "box": {"size": [1, 1, 1]}}], {"a": {}}).core.scalars()["dt"]
+    assert fly(2000)["dt"] == pytest.approx(alone, rel=1e-12)
+    assert fly(2000) == fly(*[100] * 20)
