@@ -283,16 +283,19 @@ struct TouchTargetEdges {
                               const Vec3<T>& dm, const Vec3<T>& dt, const Vec3<T>& n) const {
     const auto k = indices_of([](Index code) { return SidePair::of(code).k; }, pair.sides);
     const auto j = indices_of([](Index code) { return SidePair::of(code).j; }, pair.sides);
-    const T zero(0.0), slack(rules.cone);
-    // a plane that leaves the edge along `along`, on the side of the face with this normal
-    const auto up = [&](const Vec3<T>& normal, const Vec3<T>& along) {
-      return dot(n, unit(cross(normal, along)));
+    const T zero(0.0), slack2(rules.cone * rules.cone);
+    // does the face with this normal, which leaves the edge to the left of `along`, rise along
+    // `way` by more than the slack (a sine)? Without a root or a division.
+    const auto rises = [&](const Vec3<T>& normal, const Vec3<T>& along, const Vec3<T>& way) {
+      const Vec3<T> into = cross(normal, along);
+      const T up = dot(way, into);
+      return (up > zero) & (up * up > slack2 * dot(into, into));
     };
-    // 0, then nan, where there is no face across: no comparison holds
+    // 0 where there is no face across, which does not rise
     const Vec3<T> beyond_m = normal_across(faces, geometry, pair.m, k);
     const Vec3<T> beyond_t = normal_across(faces, geometry, pair.t, j);
-    return !((up(nm, dm) < -slack) | (up(nt, dt) > slack) | (up(beyond_m, -dm) < -slack) |
-             (up(beyond_t, -dt) > slack));
+    return !(rises(nm, dm, -n) | rises(nt, dt, n) | rises(beyond_m, -dm, -n) |
+             rises(beyond_t, -dt, n));
   }
   /// Is exposed face t the right face of its side for the mother face: does the one across that
   /// side oppose it less? `here` is the product of their normals.
