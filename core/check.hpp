@@ -5,7 +5,8 @@
 
 namespace cdem {
 
-/// The stable step is found anew every so many steps, and after every refresh of the search.
+/// The stable step is found anew every so many steps, after every refresh of the search, and after
+/// every step with contacts.
 inline constexpr std::int64_t step_check_interval = 100;
 
 /// A step is at most this much longer than the last. A sudden change from w dt = 1.6 to nothing or

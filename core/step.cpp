@@ -319,7 +319,8 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   s.time += s.dt;
   s.step += 1;
   grow_step(s);
-  if (s.step % step_check_interval == 0) renew_step(m, s);
+  // more contacts may press on a node than the lists foresaw
+  if (contacts || s.step % step_check_interval == 0) renew_step(m, s);
   watch.lap(Phase::node);
 }
 

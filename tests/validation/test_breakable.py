@@ -153,6 +153,52 @@ def test_the_step_shrinks_at_once_and_grows_slowly():
     assert 1.01 - 1e-12 < change.max() < 1.01 + 1e-12
 
 
+@pytest.mark.parametrize("seed", [1, 3])
+def test_contacts_crowded_on_a_node_do_not_break_the_step(seed):
+    """48 tets are thrown at a meshed bed at 0.8 of the stable step.
+
+    More contacts press on a node than two for each of its faces. The step saw that after up to 100
+    steps: it was unstable for some, and made 1.5 % of the energy in a throw of seed 1, 70 % of seed 3.
+    """
+    rng = np.random.default_rng(seed)
+    for throw in range(4):
+        velocity = rng.normal(size=3) * [1, 1, 0.5] + [0, 0, -3]
+        spin, friction_angle = rng.normal(size=3) * 3, float(rng.uniform(0, 45))
+        sim = simulate(
+            [
+                {
+                    "group": "body",
+                    "box": {"size": [1, 1, 1], "divisions": [2, 2, 2], "shape": "tet4"},
+                    "translate": [0, 0, 0.01],
+                },
+                {
+                    "group": "bed",
+                    "box": {"size": [4, 4, 1], "divisions": [3, 3, 1]},
+                    "translate": [-1.5, -1.5, -1],
+                },
+            ],
+            {
+                "body": {"velocity": velocity.tolist(), "angular_velocity": spin.tolist()},
+                "bed": {"fix": ["x", "y", "z"]},
+            },
+            interfaces={
+                "default": {
+                    "friction_angle": friction_angle,
+                    "cohesion": "20 kPa",
+                    "tensile_strength": "10 kPa",
+                }
+            },
+            rock={"young_modulus": "0.05 GPa"},
+            loads={"gravity": [0, 0, -9.81]},
+            stages=[
+                {"name": "d", "mode": "dynamic", "duration": 0.05, "damping": {"contact": 0.1}}
+            ],
+            model={"split": {"body": "elements"}},
+        )
+        sim.run()
+        assert abs(sim.energies["error"]) < 5e-3, throw
+
+
 @pytest.mark.slow
 def test_a_cube_of_2058_tets_breaks_tumbles_and_settles():
     sim = dropped(7, 0.4, 0.3)
