@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/contact/bond.hpp"
-#include "core/contact/edge_pair.hpp"
+#include "core/contact/close.hpp"
 #include "core/contact/force.hpp"
 #include "core/contact/gather.hpp"
 #include "core/contact/target_edge.hpp"
@@ -116,17 +116,21 @@ template void launch(Queue, Index, Blocks, const ConformingBonds<4>&);
 template void launch_one(Queue, Index, Blocks, const OverlapBonds&);
 template void launch_one(Queue, Index, const UpdateFaceGeometry&);
 template void launch_one(Queue, Index, const MarkSharpSides&);
-template void launch(Queue, Index, const MarkNearEdges&);
 template void launch_picked(Queue, Index, const KeepTargetFaces&);
 template void launch_picked(Queue, Index, const SiftTargetFaces&);
 template void launch_one(Queue, Index, const FindTargetFaces&);
-template void launch_picked(Queue, Index, const SiftTargetEdges&);
+template void launch(Queue, Index, const SiftTargetEdges&);
 template void launch_picked(Queue, Index, const TouchTargetEdges&);
-template void launch_one(Queue, Index, const MarkHeldEdges&);
 template void launch_picked(Queue, Index, const UpdateSpringForces&);
 template void launch(Queue, Index, const UpdateEdgeForces&);
 template void launch_one(Queue, Index, const ListEdges&);
 template void launch(Queue, Index, const MarkNearFaces&);
+template void launch_picked(Queue, Index, const MarkCloseFaces&);
+template void launch_one(Queue, Index, const CountCloseFaces&);
+template void launch_one(Queue, Index, const ListCloseFaces&);
+template void launch(Queue, Index, const MarkNearEdges&);
+template void launch_one(Queue, Index, const MarkHeldEdges&);
+template void launch_one(Queue, Index, const CopyCloseEdges&);
 template void launch_one(Queue, Index, const CountActing&);
 template void launch_one(Queue, Index, const ListActing&);
 template void launch_one(Queue, Index, const GatherFaceForces&);

@@ -82,10 +82,9 @@ std::vector<Index> places(const AllProximity& found, Range Share::* share) {
 template <class Pair, class Also>
 void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
                 Range Share::* share, const std::vector<Index>& first, Column<Index>& nodes,
-                Column<float>& room, Column<Flag>& near, const Also& also) {
+                Column<float>& room, const Also& also) {
   const Index patches = Index(found.by_patch.size()), count = first.back();
   const std::size_t stride = padded_stride(count);
-  near.resize(count);
   nodes.resize(std::size(Pair{}.nodes) * stride);
   room.resize(std::size(Pair{}.room) * stride);
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
@@ -108,7 +107,7 @@ void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
 void list_face_pairs(AllProximity& found, SearchState& search) {
   const std::vector<Index> first = places(found, &Share::faces);
   list_pairs(found, &Proximity::faces, &Share::faces, first, search.faces_corners,
-             search.faces_bounds, search.faces_near, [](const auto&, std::size_t) {});
+             search.faces_bounds, [](const auto&, std::size_t) {});
   const Index patches = Index(found.by_patch.size());
 #pragma omp parallel for schedule(static, 128) if (first.back() >= worth_threads)
   for (Index p = 0; p < patches; ++p) {
@@ -127,7 +126,7 @@ void list_edge_pairs(const AllProximity& found, SearchState& search) {
   search.edges_of.resize(2 * stride);
   search.edges_code.resize(first.back());
   list_pairs(found, &Proximity::edges, &Share::edges, first, search.edges_ends, search.edges_bounds,
-             search.edges_near, [&](const Proximity::Edges& pair, std::size_t place) {
+             [&](const Proximity::Edges& pair, std::size_t place) {
                search.edges_of[place] = pair.edge[0];
                search.edges_of[stride + place] = pair.edge[1];
                search.edges_code[place] = pair.code;
@@ -136,7 +135,7 @@ void list_edge_pairs(const AllProximity& found, SearchState& search) {
 
 /// For every edge of the mesh the pairs that it is of, and the other edges.
 void list_pairs_of_edges(const Model& m, SearchState& search) {
-  const Index count = Index(search.edges_near.size());
+  const Index count = Index(search.edges_code.size());
   const std::size_t stride = padded_stride(count);
   Column<Index>&first = search.edge_pairs_first, &pairs = search.edge_pairs;
   first.resize(count > 0 ? m.edge_nodes.size() / 2 + 1 : 0);
@@ -226,6 +225,9 @@ void list_candidates(const Model& m, State& s) {
   list_face_pairs(found, s.search);
   list_edge_pairs(found, s.search);
   list_pairs_of_edges(m, s.search);
+  s.search.turn_soon.resize(count);
+  for (Index x = 0; x < count; ++x) s.search.turn_soon[x] = s.search.lists->exposed[x].turn_soon;
+  s.search.close.known = false;
   list_sources(found, count, s.search);
   list_touches(s.search,
                by_mother(found, &Proximity::touches, count,

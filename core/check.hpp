@@ -48,10 +48,6 @@ void update_face_geometry(const Model& model, State& state, Queue queue, bool al
 void grow_step(State& state);
 /// Do the lists name anything? Without it contacts only end, in the first step with these lists.
 bool may_have_contacts(const State& state);
-/// Mark which pairs of vertex and face may be in contact in this step.
-void mark_near_faces(const Model& model, State& state, Queue queue);
-/// Mark which pairs of edges may begin to touch in this step.
-void mark_near_edges(const Model& model, State& state, Queue queue);
 /// Stiffness that bonds and possible contacts put on each node.
 void sum_stiffness(const Model& model, State& state);
 

@@ -32,15 +32,18 @@ inline FaceGeometry face_geometry(const State& s) {
 }
 
 inline Candidates candidate_columns(State& s) {
-  return {s.search.candidate_first.data(), s.search.candidate.data(),
-          s.search.candidate_pair.data(), s.search.faces_near.data(), s.search.may_begin.data()};
+  CloseState& close = s.search.close;
+  return {close.first.data(), close.candidate.data(), close.may_begin.data()};
 }
 
 inline EdgePairs edge_pairs(State& s) {
-  const Index stride = padded_stride(Index(s.search.edges_near.size()));
-  return {{s.search.edges_ends.data(), stride}, {s.search.edges_of.data(), stride},
-          s.search.edges_code.data(),           s.search.edge_sides.data(),
-          s.search.edges_near.data(),           s.search.edges_open.data()};
+  CloseState& close = s.search.close;
+  const Index count = Index(close.near_edges.size()), stride = padded_stride(count);
+  const Index* rows = close.edge_pairs.data();
+  return {{rows, stride},
+          {rows + 4 * std::size_t(stride), stride},
+          {rows + 8 * std::size_t(stride), stride},
+          close.open.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {

@@ -95,12 +95,14 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
     sum = sum + path[k];
   }
   e.drift = Real(1.0) / Real(count) * sum;
-  e.stir = e.warp = 0;
+  e.stir = e.stir_soon = e.warp = 0;
   Real longest = 0, skin = 0;
   e.box = Box::nothing();
   for (Index k = 0; k < count; ++k) {
     skin = std::max(skin, node_skin[k]);
-    e.stir = std::max(e.stir, norm(path[k] - e.drift) + node_skin[k]);
+    const Real apart = norm(path[k] - e.drift);
+    e.stir = std::max(e.stir, apart + node_skin[k]);
+    e.stir_soon = std::max(e.stir_soon, close_way * apart + close_skin * node_skin[k]);
     e.warp = std::max(e.warp, std::abs(dot(e.normal, e.shape.x[k] - e.center)));
     longest = std::max(longest, norm(e.shape.x[k + 1 == count ? 0 : k + 1] - e.shape.x[k]));
     e.box.include(e.shape.x[k]);
@@ -112,6 +114,8 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   // the plane turns by what two vertices may move apart over the smallest height
   const Real height = (count == 3 ? 2 : 1) * m.face_area[e.face] / longest;
   e.turn = 2 * e.stir / height;
+  e.turn_soon = 2 * e.stir_soon / height;
+  e.slender = longest / height;
   return e;
 }
 
@@ -173,9 +177,9 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
 }
 
 /// Smallest skin of a node, in parts of the smallest L of its faces: wide skins make long lists,
-/// thin ones lists that do not last. Both cost about the same where lists last some thirty steps.
+/// thin ones lists that do not last. Both cost about the same where lists last some fifty steps.
 Real least_skin(const State& s, std::int64_t lasted) {
-  constexpr Index short_lived = 24, long_lived = 48;
+  constexpr Index short_lived = 36, long_lived = 72;
   constexpr Real thinnest = 0.001, widest = 0.03, change = 1.5;
   if (s.search.strayed && lasted < short_lived)
     return std::min(change * s.search.skin_least, widest);

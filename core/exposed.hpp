@@ -43,6 +43,10 @@ struct WatchedNode {
   }
 };
 
+/// The lists of what is close look ahead for such a part of the horizon, and give every vertex such
+/// a part of its skin at most, see close_lists.hpp.
+inline constexpr Real close_way = 0.06, close_skin = 0.5;
+
 /// Foresee where the nodes of exposed faces go, straight on with the rigid motion of their elements
 /// (which leaves the elements' vibrations out), and how far they may stray from there: as far as
 /// they would with the change of velocity that they had since the last refresh.
@@ -55,12 +59,14 @@ void place_watched(const Model& model, State& state);
 struct ExposedFace {
   FaceShape<Real> shape;
   Vec3<Real> center, normal;
-  Vec3<Real> drift;  // of all its vertices alike  [m]
-  Real stir;         // of a vertex beyond the drift  [m]
-  Real turn;         // of the normal and of the sides  [rad]
-  Real deepest;      // contact  [m]
-  Real warp;         // of a vertex out of the mean plane  [m]
-  Real length;       // L  [m]
+  Vec3<Real> drift;           // of all its vertices alike  [m]
+  Real stir;                  // of a vertex beyond the drift  [m]
+  Real turn;                  // of the normal and of the sides  [rad]
+  Real stir_soon, turn_soon;  // as long as the close lists hold
+  Real slender;               // longest side over smallest height
+  Real deepest;               // contact  [m]
+  Real warp;                  // of a vertex out of the mean plane  [m]
+  Real length;                // L  [m]
   Index face, block;
   bool movable;
   Box box;  // of the whole way

@@ -304,6 +304,13 @@ template <class Ids>
 CDEM_HD inline auto look_up(const Index* list, const Ids& place) {
   return indices_of([&](Index i) { return list[i]; }, place);
 }
+/// Write the number of an item.
+CDEM_HD inline void store(Real* list, One item, Real number) { list[item.i] = number; }
+#if !defined(__CUDACC__)
+inline void store(Real* list, Lane item, Pack number) {
+  std::memcpy(list + item.i, &number.n, sizeof number.n);
+}
+#endif
 CDEM_HD inline void add_to(Real* list, Index place, Real number) { list[place] += number; }
 #if !defined(__CUDACC__)
 inline void add_to(Real* list, const IndexPack& place, Pack number) {

@@ -230,6 +230,11 @@ template <class Do>
 CDEM_HD inline void for_lanes(const Picked& item, const Do& act) {
   act(0, item.row, item.id);
 }
+/// The same for every lane of an item, with the number of the lane and the item.
+template <class Do>
+CDEM_HD inline void for_lanes(One item, const Do& act) {
+  act(0, item.i);
+}
 #if !defined(__CUDACC__)
 CDEM_HD inline bool holds(const Mask& outcome, Index lane) { return outcome.bits[lane] != 0; }
 CDEM_HD inline Index& of_lane(IndexPack& index, Index lane) { return index.id[lane]; }
@@ -237,6 +242,10 @@ CDEM_HD inline Index of_lane(const IndexPack& index, Index lane) { return index.
 template <class Do>
 CDEM_HD inline void for_lanes(const PickedLane& item, const Do& act) {
   for (Index j = 0; j < lanes; ++j) act(j, item.row.id[j], item.id.id[j]);
+}
+template <class Do>
+CDEM_HD inline void for_lanes(Lane item, const Do& act) {
+  for (Index j = 0; j < lanes; ++j) act(j, item.i + j);
 }
 #endif
 

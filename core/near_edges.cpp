@@ -193,7 +193,15 @@ struct TwoLines {
   };
 };
 
-/// In which ways two edges may touch, see EdgePairs, as bits.
+/// How far the foreseen ways of two points of the one and of the other part as long as the close
+/// lists hold  [m].
+Real ways_part_soon(const MovingEdge& p, const MovingEdge& q) {
+  Real most = 0;
+  for (Index i = 0; i < 4; ++i) most = std::max(most, norm(p.path[i >> 1] - q.path[i & 1]));
+  return close_way * most;
+}
+
+/// In which ways two edges may touch, see EdgeWays, as bits.
 Index ways_to_touch(const Finder& f, const Patch& a, const Patch::Edge& p, const Patch& b,
                     const Patch::Edge& q, const FacePairs& pairs, const SharedEnds& ends,
                     Met& met) {
@@ -206,11 +214,11 @@ Index ways_to_touch(const Finder& f, const Patch& a, const Patch::Edge& p, const
       // ends that stay together are no edges on each other, see TouchTargetEdges
       if (ends.parted < f.m.rules.indentation * std::min(x.length, y.length)) continue;
       if (may_be_right(f, x, y, f.sides[4 * std::size_t(face_q) + q.side[j]])) {
-        ways |= 1 << EdgePairs::way(false, i, j);
+        ways |= 1 << EdgeWays::way(false, i, j);
         met.add(false, p.face[i], q.face[j]);
       }
       if (may_be_right(f, y, x, f.sides[4 * std::size_t(face_p) + p.side[i]])) {
-        ways |= 1 << EdgePairs::way(true, i, j);
+        ways |= 1 << EdgeWays::way(true, i, j);
         met.add(true, q.face[j], p.face[i]);
       }
     }
@@ -252,9 +260,10 @@ Proximity::Edges near_edges(const Finder& f, const Patch& a, Index e, const Movi
   const Real way = on == 3 ? 0 : ((on == 1) != (first_p != first_q) ? 1 : -1);
   return {{p.node[first_p], p.node[1 - first_p], q.node[first_q], q.node[1 - first_q]},
           {1.000001 * rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
-           ends.shared ? 0.999999 * rules.indentation * edges.length : 0},
+           ends.shared ? 0.999999 * rules.indentation * edges.length : 0,
+           ways_part_soon(p, q) + 1e-6 * edges.length},
           {a.edge_first + e, b.edge_first + g},
-          EdgePairs::code_of(ways, SidePair::turned(ends.shared, first_p, first_q), sides)};
+          EdgeWays::code_of(ways, SidePair::turned(ends.shared, first_p, first_q), sides)};
 }
 
 }  // namespace
@@ -282,7 +291,7 @@ void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs
       if (ends.parted < f.m.rules.indentation * length) continue;
       int on = 3;
       const Real sine = std::sqrt(sine2), turns = p.turn + q.turn;
-      if (sine + turns < MarkNearEdges::parallel) continue;
+      if (sine + turns < parallel_edges) continue;
       if (sine > turns) {
         const TwoLines lines(p, q, normal, sine);
         on = lines.sides(f.m.rules);

@@ -34,6 +34,12 @@ inline Real may_part(const State& s, Index a, Index b) {
   return s.search.horizon * norm(x.velocity - y.velocity) + x.skin + y.skin;
 }
 
+/// How far their foreseen ways part as long as the close lists hold  [m].
+inline Real ways_part_soon(const State& s, Index a, Index b) {
+  return close_way * s.search.horizon *
+         norm(WatchedNode::of(s, a).velocity - WatchedNode::of(s, b).velocity);
+}
+
 /// How much the gap between anything of x and of y along a normal of y (or of both) may change, at
 /// least and at most  [m].
 struct GapChange {

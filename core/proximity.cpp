@@ -134,9 +134,14 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
 }
 
 /// Corners and room of a vertex and a face that may touch; `length` and `least` as above,
-/// `indented` is how far its indented points are from the vertex, at most.
+/// `indented` is how far its indented points are from the vertex, at most, and `stir` how far its
+/// faces are strained and turned as long as the close lists hold.
+///
+/// In contact the vertex is at a point of the face but for the depth and for `off` beside it, more
+/// behind a corner (or from the centre of a warped face), of which the turn of the face changes
+/// what is seen along its sides, or its normal.
 Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Real length,
-                                  Real indented, Real least) {
+                                  Real indented, Real stir, Real least) {
   const SearchRules& rules = f.m.rules;
   const ExposedFace& y = f.exposed[place_y];
   const Real slack = 1e-6 * y.length;  // for round-off
@@ -146,11 +151,19 @@ Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Re
   const ExposedSide* sides = f.sides.data() + 4 * std::size_t(place_y);
   const bool behind = std::any_of(sides, sides + y.shape.count(),
                                   [](const ExposedSide& side) { return side.rises; });
+  const Real reach = 1.34 * f.m.face_reach[y.face] + aside;
+  const Real off =
+      behind ? 2 * reach : std::max(2 * aside * y.slender, last == 3 ? 0.5 * reach : 0.0);
+  Real parted = 0;
+  for (Index k = 0; k <= last; ++k)
+    parted = std::max(parted, ways_part_soon(f.s, node, f.faces.vertex(y.face, k)));
+  const Real turns = 2 * y.turn_soon;
+  const Real motion = parted + rules.indentation * 2 * stir + turns * off + slack;
   return {{node, f.faces.vertex(y.face, 0), f.faces.vertex(y.face, 1), f.faces.vertex(y.face, 2),
            f.faces.vertex(y.face, last)},
-          {above + rules.lifted, above + rules.depth * length, aside,
-           behind ? rules.entry * std::min(least, y.length) - slack : 1e30,
-           1.34 * f.m.face_reach[y.face] + aside}};
+          {above + rules.lifted + motion, above + rules.depth * length + motion, aside + motion,
+           behind ? std::max(rules.entry * std::min(least, y.length) - slack - motion, 0.0) : 1e30,
+           reach + motion, motion, turns}};
 }
 
 /// Vertices of one patch on faces of another.
@@ -178,7 +191,7 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
           !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
         continue;
       const Vec3<Real> at = f.faces.nodes.position(a.vertex[v]);
-      Real shift = 0;  // of the indented points
+      Real shift = 0, stir = 0;  // of the indented points
       for (Index i = 0; i < a.face_count; ++i) {
         if (a.corner[v][i] < 0 || !met(i, j)) continue;
         const ExposedFace &x = f.exposed[a.face[i]], &y = f.exposed[b.face[j]];
@@ -187,11 +200,12 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
                                      f.m.rules.tolerance * length + motion_between(x, y)))
           continue;
         shift = std::max(shift, f.m.rules.indentation * (norm(arm) + 2 * x.stir));
+        stir = std::max(stir, x.stir_soon);
         all_met.add(reverse, i, j);
         found.touches.push_back({a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
       }
       if (shift == 0) continue;  // nothing is listed
-      found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, shift, least));
+      found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, shift, stir, least));
     }
   }
 }

@@ -45,12 +45,12 @@ struct Proximity {
   /// single precision.
   struct VertexFace {
     Index nodes[5];
-    Real room[5];
+    Real room[7];
   };
   /// A pair of edges that may touch, see MarkNearEdges and EdgePairs; the same of the room.
   struct Edges {
     Index nodes[4];
-    Real room[5];
+    Real room[6];
     Index edge[2], code;
   };
   /// A face of which a vertex or a side is on the lists, and the one that it may touch.

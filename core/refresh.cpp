@@ -11,6 +11,7 @@
 #include "core/backend.hpp"
 #include "core/candidates.hpp"
 #include "core/check.hpp"
+#include "core/close_lists.hpp"
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
 #include "core/edge_list.hpp"
@@ -219,32 +220,6 @@ void sum_stiffness(const Model& m, State& s) {
   }
 }
 
-namespace {
-
-/// Has any watched node left its foreseen way by more than its skin?
-bool any_strayed(const State& s) {
-  const InMotion nodes{s.nodes.motion.data()};
-  const InRows rows{s.search.watch.data()};
-  const Index count = Index(s.search.watched.size()), whole = count - count % lanes;
-  const InIndices watched{s.search.watched.data(), count};
-  // beyond the horizon the lists take every vertex to stand still: what rests needs no new ones
-  const Real after = std::min(s.time - s.search.built_time, s.search.horizon);
-  const auto strayed = [&](auto item) {
-    using T = Number<decltype(item)>;
-    const Four<T> then = rows.at(item, 0), way = rows.at(item, 4);
-    const Vec3<T> now = nodes.position(watched.at(0, item));
-    const Vec3<T> off = now - then.vector() - T(after) * way.vector();
-    return any_of(dot(off, off) > then.w);
-  };
-  bool found = false;
-#pragma omp parallel for schedule(static) reduction(|| : found) if (count >= worth_threads)
-  for (Index w = 0; w < whole; w += lanes) found = strayed(Lane{w}) || found;
-  for (Index w = whole; w < count; ++w) found = strayed(One{w}) || found;
-  return found;
-}
-
-}  // namespace
-
 bool refresh_is_due(const Model& m, State& s) {
   s.search.strayed = false;
   if (s.built_step < 0) return true;
@@ -252,7 +227,8 @@ bool refresh_is_due(const Model& m, State& s) {
   if (release_is_due(m, m.triangles, s.triangles) || release_is_due(m, m.quads, s.quads) ||
       release_is_due(m, m.overlaps, s.overlaps))
     return true;
-  return s.search.strayed = any_strayed(s);
+  SearchState& search = s.search;
+  return search.strayed = any_strayed(s, search.watch, search.built_time, search.horizon);
 }
 
 void list_exposed(const Model& m, State& s) {
@@ -315,33 +291,12 @@ void update_face_geometry(const Model& m, State& s, Queue q, bool all) {
                             s.search.exposed.data(), s.face_geometry.data()});
 }
 
-void mark_near_faces(const Model&, State& s, Queue q) {
-  const Index count = Index(s.search.faces_near.size());
-  launch(q, count,
-         MarkNearFaces{{s.nodes.motion.data()},
-                       {s.search.faces_corners.data(), padded_stride(count)},
-                       {s.search.faces_bounds.data(), padded_stride(count)},
-                       s.search.faces_near.data()});
-}
-
-void mark_near_edges(const Model& m, State& s, Queue q) {
-  const SearchState& search = s.search;
-  const Index count = Index(search.edges_near.size());
-  launch(q, count,
-         MarkNearEdges{{s.nodes.motion.data()},
-                       {search.edges_ends.data(), padded_stride(count)},
-                       {search.edges_bounds.data(), padded_stride(count)},
-                       m.rules.approach_steps * s.dt_last,
-                       s.search.edges_near.data()});
-}
-
 Real adopt_overlaps(const Model& m, State& s, Index& count, Index& face) {
   constexpr Real reported = 1e-6;  // of L: shallower overlaps are round-off of the mesh
   SearchRules deep = m.rules;
   deep.entry = deep.depth;
   update_face_geometry(m, s, {}, true);
-  mark_near_faces(m, s, {});
-  finish({});
+  list_close(m, s, {});
   FindTargetFaces search{face_search(m, s)};
   search.rules = deep;
   const Index exposed = Index(s.search.exposed_face.size());
@@ -431,7 +386,7 @@ Index count_missed_contacts(const Model& m, State& s) {
       open.clear();
       std::copy_if(all.begin(), all.end(), std::back_inserter(open),
                    [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
-      const FaceList list{open.data(), nullptr, nullptr, nullptr, Index(open.size())};
+      const FaceList list{open.data(), nullptr, Index(open.size())};
       missed += s.springs.target[4 * x + k] != springs.choose(x, k, list, &ignored);
     }
     if (!m.semi_edges) continue;

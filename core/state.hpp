@@ -70,6 +70,23 @@ struct ActingState {
   Column<Index> place, contact;  // by contact; the list
 };
 
+/// The few of all that is listed which the search looks at in every step, see close_lists.hpp. They
+/// follow from the lists, whenever they are made.
+struct CloseState {
+  bool known = false;  // have they been made since the lists were?
+  Real built_time = 0;
+  Column<Real> watch, skin;    // rows of 8 of watched nodes, see WatchedNode; [node]  [m]
+  Column<Real> motion;         // [listed pair] see MarkNearFaces
+  Column<Flag> faces, edges;   // [listed pair] are they near?
+  Column<Flag> candidates;     // [listed candidate] are they close?
+  Column<Index> first, count;  // of the candidates of a vertex
+  Column<Index> candidate;     // exposed faces
+  Column<Flag> may_begin;      // [close candidate] see SiftTargetFaces; made in every step
+  Column<Index> near_edges;    // listed pairs of edges
+  Column<Index> edge_pairs;    // [9][near pair of edges] see CopyCloseEdges
+  Column<Flag> open;           // [near pair] see SiftTargetEdges; made in every step
+};
+
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
   Column<ExposedRow> exposed;                // what follows from them, see list_exposed
@@ -80,19 +97,17 @@ struct SearchState {
   Real joined_points = -1;
   Column<Index> candidate_first, candidate, candidate_pair;  // by vertex
   Column<Index> faces_corners;                               // [5][pair] vertex, corners of a face
-  Column<float> faces_bounds;                                // [5][pair] see MarkNearFaces
-  Column<Flag> faces_near;             // [pair] may they be in contact in this step?
-  Column<Flag> may_begin;              // [candidate] see SiftTargetFaces; made in every step
-  Column<Index> edges_ends;            // [4][pair] nodes of both
-  Column<Index> edges_of, edges_code;  // [2][pair], [pair], see EdgePairs
-  Column<Index> edge_sides;            // [edge][2] the same
+  Column<float> faces_bounds;                                // [7][pair] see MarkNearFaces
+  Column<Index> edges_ends;                                  // [4][pair] nodes of both
+  Column<Index> edges_of, edges_code;          // [2][pair], [pair], see CopyCloseEdges
+  Column<Index> edge_sides;                    // [edge][2] the same
   Column<Index> edge_pairs_first, edge_pairs;  // by edge of the mesh, see MarkHeldEdges
-  Column<float> edges_bounds;                  // [5][pair] see MarkNearEdges
-  Column<Flag> edges_near;                     // [pair] may they begin to touch in this step?
-  Column<Flag> edges_open;                     // [pair] see SiftTargetEdges; made in every step
-  Column<Index> source_first, source;          // faces whose contacts may act on a face
-  Column<Flag> face_listed;                    // [exposed] may any act on it, or its own on others?
-  Column<Index> across;                        // side of an exposed face -> face beyond it, or -1
+  Column<float> edges_bounds;                  // [6][pair] see MarkNearEdges
+  Column<Real> turn_soon;                      // [exposed] see ListedFaces
+  CloseState close;
+  Column<Index> source_first, source;  // faces whose contacts may act on a face
+  Column<Flag> face_listed;            // [exposed] may any act on it, or its own on others?
+  Column<Index> across;                // side of an exposed face -> face beyond it, or -1
   Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   Column<Index> watched, node_watch;  // nodes of exposed faces; node -> place among them, or -1
@@ -140,19 +155,18 @@ void describe_search(S& search, Visit&& field) {
   field("search.candidate_pair", search.candidate_pair, "pairs of vertex and face they are of");
   field("search.faces_corners", search.faces_corners, "vertex and corners of the face of a pair");
   field("search.faces_bounds", search.faces_bounds, "how far apart they may be in contact [m]");
-  field("search.faces_near", search.faces_near, "1: they may be in contact in this step");
   field("search.source_first", search.source_first, "start of a face's sources");
   field("search.source", search.source, "exposed faces whose contacts may act on it");
   field("search.face_listed", search.face_listed, "1: it may act on a face, or one on it");
   field("search.edges_ends", search.edges_ends, "ends of pairs of edges that may touch");
   field("search.edges_of", search.edges_of, "places of the two among the edges");
   field("search.edges_code", search.edges_code, "of which sides they are, which ends shared");
+  field("search.edge_sides", search.edge_sides, "4 * exposed face + side of the faces at an edge");
   field("search.edge_pairs_first", search.edge_pairs_first, "start of an edge's pairs");
   field("search.edge_pairs", search.edge_pairs, "pairs that an edge is of, and the other edge");
-  field("search.edge_sides", search.edge_sides, "4 * exposed face + side of the faces at an edge");
   field("search.edges_bounds", search.edges_bounds,
         "how far apart they may begin to, see MarkNearEdges [m]");
-  field("search.edges_near", search.edges_near, "1: they may begin to touch in this step");
+  field("search.turn_soon", search.turn_soon, "how far an exposed face may soon turn [rad]");
   field("search.across", search.across, "face beyond a side of an exposed face, or -1");
   field("search.ring_first", search.ring_first, "start of a point's ring");
   field("search.ring", search.ring, "other ends of the edges that leave a point");

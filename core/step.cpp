@@ -7,6 +7,7 @@
 
 #include "core/backend.hpp"
 #include "core/check.hpp"
+#include "core/close_lists.hpp"
 #include "core/columns.hpp"
 #include "core/contact/force.hpp"
 #include "core/edge_list.hpp"
@@ -68,9 +69,7 @@ void update_bonds(const Model& m, State& s, Queue q, bool sampled) {  // contact
 
 void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact/target_face.hpp
   const Index count = Index(s.search.exposed_face.size());
-  s.search.may_begin.resize(s.search.candidate.size());
   const FaceSearch search = face_search(m, s);
-  mark_near_faces(m, s, q);
   launch_picked(q, count, KeepTargetFaces{search});
   launch_picked(q, count, SiftTargetFaces{search});
   launch_one(q, 4 * count, FindTargetFaces{search});
@@ -78,17 +77,14 @@ void find_target_faces(const Model& m, State& s, Queue q) {  // Eq. 6-9, contact
 
 void find_target_edges(const Model& m, State& s, Queue q) {  // Eq. 10-12, contact/target_edge.hpp
   if (!m.semi_edges) return;
-  mark_near_edges(m, s, q);
   begin_edges(s);
-  const Index pairs = Index(s.search.edges_near.size());
-  s.search.edges_open.resize(pairs);
-  if (pairs > 0)
-    launch_one(q, Index(s.edges.old_contact.size() / 4),
-               MarkHeldEdges{s.search.exposed_face.data(), m.face_edges.data(),
-                             s.edges.old_contact.data(), s.search.edge_pairs_first.data(),
-                             s.search.edge_pairs.data(), s.search.edges_near.data()});
-  launch_picked(q, pairs,
-                SiftTargetEdges{{s.nodes.motion.data()}, face_geometry(s), edge_pairs(s), m.rules});
+  const Index pairs = Index(s.search.close.near_edges.size());
+  launch(q, pairs,
+         SiftTargetEdges{{s.nodes.motion.data()},
+                         face_geometry(s),
+                         edge_pairs(s),
+                         m.rules,
+                         s.edges.old_first.data()});
   do {
     launch_picked(q, pairs, edge_search(m, s));
     finish(q);
@@ -292,6 +288,7 @@ void step(const Model& m, State& s, Queue q, bool sampled) {
   update_bonds(m, s, q, sampled || s.all_awake);
   watch.lap(Phase::contact);
   const bool contacts = may_have_contacts(s);
+  if (contacts && close_lists_are_old(s)) list_close(m, s, q);  // contact/close.hpp
   if (contacts) find_target_faces(m, s, q);
   if (contacts) find_target_edges(m, s, q);
   if (contacts) hand_over_released(m, s, q);

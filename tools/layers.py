@@ -9,7 +9,7 @@ LAYERS = """launch math field measure
             materials interfaces elements contact nodes
             model state columns
             backend
-            step check start refresh hand_over surface exposed patch_pair near_edges proximity candidates edge_list rest free_blocks""".splitlines()
+            step check start refresh hand_over surface exposed patch_pair near_edges proximity candidates close_lists edge_list rest free_blocks""".splitlines()
 DEEPEST = 10
 
 

@@ -116,18 +116,18 @@ struct TouchTargetEdges {
 
   /// From the first way that is open to the last.
   CDEM_HD Range items(Index p) const {
-    const auto open = std::uint8_t(pairs.near[p] ? pairs.open[p] : 0);
+    const auto open = std::uint8_t(pairs.open[p]);
     const Index first = open ? std::countr_zero(open) : 0;
-    return {EdgePairs::ways * p + first, EdgePairs::ways * p + std::bit_width(open)};
+    return {EdgeWays::count * p + first, EdgeWays::count * p + std::bit_width(open)};
   }
   CDEM_HD bool picks(Index p, Index id) const {
-    return pairs.open[p] >> (id - EdgePairs::ways * p) & 1;
+    return pairs.open[p] >> (id - EdgeWays::count * p) & 1;
   }
   template <class I>
   CDEM_HD void operator()(const I& item) const {
     TwoSides<typename IndexOf<I>::type> sides;
     for_lanes(item, [&](Index lane, Index p, Index id) {
-      const auto of = pairs.sides_of(p, id - EdgePairs::ways * p);
+      const auto of = pairs.sides_of(p, id - EdgeWays::count * p);
       const SidePair pair{of.mother % 4, of.target % 4, of.shared};
       of_lane(sides.m, lane) = of.mother / 4;
       of_lane(sides.t, lane) = of.target / 4;
@@ -264,7 +264,7 @@ struct TouchTargetEdges {
   CDEM_HD Truth<T> far_apart(const Vec3<T>& xm, const Vec3<T>& dm, const Vec3<T>& p0,
                              const Vec3<T>& xt, const Vec3<T>& dt, const Vec3<T>& out,
                              const T& slack) const {
-    constexpr Real parallel = MarkNearEdges::parallel;
+    constexpr Real parallel = parallel_edges;
     const Vec3<T> c = cross(dm, dt);
     const T c2 = dot(c, c);
     return (c2 < T(parallel * parallel) * dot(dm, dm) * dot(dt, dt)) |

@@ -20,25 +20,19 @@ struct SearchRules {
   Real lifted = 0;            // [m] gap up to which contacts that have dilated are kept, at most
 };
 
-/// Faces that a vertex of an exposed face may touch before the next refresh: ragged rows.
+/// Faces that a vertex of an exposed face may touch soon, see close.hpp: ragged rows.
 struct Candidates {
   const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
   const Index* other;  // exposed face, ascending in a row
-  const Index* pair;   // pair of vertex and face
-  const Flag* near;    // [pair] 0: they cannot be in contact in this step
-  Flag* may_begin;     // of those that are near, see SiftTargetFaces
+  Flag* may_begin;     // of those, see SiftTargetFaces
 };
 
 /// Some of them.
 struct FaceList {
   const Index* other;
-  const Index* pair;  // null: all are to be looked at
-  const Flag* near;
-  const Flag* may_begin;  // null: all that are near
+  const Flag* may_begin;  // null: all are to be looked at
   Index count;
-  CDEM_HD bool takes(Index c) const {
-    return !pair || (near[pair[c]] && (!may_begin || may_begin[c]));
-  }
+  CDEM_HD bool takes(Index c) const { return !may_begin || may_begin[c]; }
 };
 
 /// What a contact remembers from step to step: a row of 8 numbers.
@@ -88,48 +82,6 @@ struct SpringColumns {
   Flag* lost;            // 1: a loaded contact was lost because it sank too deep
 };
 
-/// Mark the pairs of vertex and face that may be in contact in this step. One test stands for the
-/// semi-springs in all faces at the vertex, and has room for what distinguishes them. So what is
-/// found in contact does not depend on it.
-struct MarkNearFaces {
-  InMotion nodes;
-  InIndices corners;  // [5][pair]: the vertex; the corners of the face, a triangle's last one twice
-  InBounds room;      // [5][pair]: highest above the face and lowest below it, farthest outside a
-                      // side; depth from which it may lie outside, and distance from the centre of
-                      // three corners that it has then at most  [m]
-  Flag* near;
-
-  template <class I>
-  CDEM_HD void operator()(I p) const {
-    using T = Number<I>;
-    const Vec3<T> v = nodes.position(corners.at(0, p));
-    const Vec3<T> x[4] = {nodes.position(corners.at(1, p)), nodes.position(corners.at(2, p)),
-                          nodes.position(corners.at(3, p)), nodes.position(corners.at(4, p))};
-    const Vec3<T> n = cross(x[2] - x[0], x[3] - x[1]);
-    const T n2 = dot(n, n), gap = dot(n, v - x[0]);  // times |n|
-    const T gap2 = gap * gap;
-    const auto below = gap < T(0.0);
-    const T most = select(below, room.at(1, p), room.at(0, p));
-    const T aside = room.at(2, p), sunk = room.at(3, p), reach = room.at(4, p);
-    auto outside = beyond(x[0], x[1], n, n2, v, aside) | beyond(x[1], x[2], n, n2, v, aside);
-    outside = outside | beyond(x[2], x[3], n, n2, v, aside) | beyond(x[3], x[0], n, n2, v, aside);
-    const Vec3<T> arm = v - T(1.0 / 3.0) * (x[0] + x[1] + x[2]);
-    const auto beside = dot(arm, arm) * n2 - gap2 > reach * reach * n2;
-    const auto deep = below & (gap2 > sunk * sunk * n2);
-    set_flags(near, p, !((gap2 > most * most * n2) | beside | (outside & !deep)));
-  }
-
- private:
-  /// Is a point farther outside the side from a to b than `room`?
-  template <class T>
-  CDEM_HD static auto beyond(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& n, const T& n2,
-                             const Vec3<T>& point, const T& room) {
-    const Vec3<T> side = b - a;
-    const T out = dot(cross(side, n), point - a);  // times |n| and the length of the side
-    return (out > T(0.0)) & (out * out > room * room * n2 * dot(side, side));
-  }
-};
-
 /// A vertex of an exposed face and a face that it may touch, or one a lane.
 template <class T>
 struct VertexFace {
@@ -154,6 +106,12 @@ struct VertexFace {
     return pair;
   }
 };
+
+/// The vertex of exposed face m that a candidate is of; `first` is of all slots.
+CDEM_HD inline Index vertex_of(const Index* first, Index m, Index candidate) {
+  const Index* row = first + 4 * m;
+  return (candidate >= row[1]) + (candidate >= row[2]) + (candidate >= row[3]);
+}
 
 /// What the search for target faces looks at.
 struct FaceSearch {
@@ -200,7 +158,7 @@ struct KeepTargetFaces : FaceSearch {
   }
 };
 
-/// Sift the faces that semi-springs without contact may touch: most cannot, for reasons that are
+/// Sift the faces that semi-springs without contact may touch: many cannot, for reasons that are
 /// seen in SIMD lanes. Those that may are left to FindTargetFaces; that their tests are the same
 /// but for some room in the depth, nothing found depends on it.
 struct SiftTargetFaces : FaceSearch {
@@ -211,15 +169,19 @@ struct SiftTargetFaces : FaceSearch {
                       (before[3] >= 0 || geometry.table[m].count() == 3);
     return {first, held ? first : candidates.first[4 * m + 4]};
   }
-  CDEM_HD bool picks(Index, Index c) const { return candidates.near[candidates.pair[c]]; }
+  CDEM_HD bool picks(Index m, Index c) const {
+    return springs.target_before[4 * m + vertex_of(candidates.first, m, c)] < 0;
+  }
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
     using T = Number<I>;
     const auto t = look_up(candidates.other, item.id);
-    const auto node =
-        indices_of([&](Index m, Index c) { return geometry.table[m].corner[vertex_of(m, c)]; },
-                   item.row, item.id);
+    const auto node = indices_of(
+        [&](Index m, Index c) {
+          return geometry.table[m].corner[vertex_of(candidates.first, m, c)];
+        },
+        item.row, item.id);
     const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
     const T zero(0.0), plane = dot(c.normal, c.v - c.center);
     const T above = select(c.target_length > zero, zero, T(-0.5) * c.target_length);
@@ -252,15 +214,10 @@ struct SiftTargetFaces : FaceSearch {
   CDEM_HD void mark(const I& item, const M& may) const {
     for_lanes(item, [&](Index lane, Index m, Index c) {
       candidates.may_begin[c] = holds(may, lane);
-      const Index slot = 4 * m + vertex_of(m, c);
+      const Index slot = 4 * m + vertex_of(candidates.first, m, c);
       if (holds(may, lane) && springs.target[slot] < 0)
         springs.target[slot] = SpringColumns::sought;
     });
-  }
-  /// The vertex of exposed face m that a candidate is of.
-  CDEM_HD Index vertex_of(Index m, Index c) const {
-    const Index* first = candidates.first + 4 * m;
-    return (c >= first[1]) + (c >= first[2]) + (c >= first[3]);
   }
   template <class T, class Ids>
   CDEM_HD T approach(const VertexFace<T>& c, const Ids& node,
@@ -315,11 +272,10 @@ struct FindTargetFaces : FaceSearch {
     springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, listed, springs.lost + slot.i);
   }
 
-  /// The faces near the vertex of a slot.
+  /// The faces close to the vertex of a slot.
   CDEM_HD FaceList listed_for(Index slot) const {
     const Index first = candidates.first[slot];
-    return {candidates.other + first, candidates.pair + first, candidates.near, nullptr,
-            candidates.first[slot + 1] - first};
+    return {candidates.other + first, nullptr, candidates.first[slot + 1] - first};
   }
   /// Target of vertex k of exposed face m among others, or none; `lost` is set where a loaded
   /// contact sank too deep.
