@@ -77,15 +77,17 @@ std::vector<Index> places(const AllProximity& found, Range Share::* share) {
   return first;
 }
 
-/// List the pairs that have been found, patch after patch, with their nodes and room; `also` gets
-/// every pair and its place.
+/// List the pairs that have been found, patch after patch, with what they are of and room; `also`
+/// gets every pair and its place.
 template <class Pair, class Also>
 void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
-                Range Share::* share, const std::vector<Index>& first, Column<Index>& nodes,
+                Range Share::* share, const std::vector<Index>& first, Column<Index>& of,
                 Column<float>& room, const Also& also) {
   const Index patches = Index(found.by_patch.size()), count = first.back();
   const std::size_t stride = padded_stride(count);
-  nodes.resize(std::size(Pair{}.nodes) * stride);
+  of.resize(2 * stride);
+  for (std::size_t k = 0; k < 2; ++k)  // lanes go on past the last
+    std::fill(of.data() + k * stride + count, of.data() + (k + 1) * stride, 0);
   room.resize(std::size(Pair{}.room) * stride);
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index p = 0; p < patches; ++p) {
@@ -94,8 +96,7 @@ void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
     std::size_t place = first[p];
     for (Index i = range.first; i < range.last; ++i, ++place) {
       const Pair& pair = list[i];
-      for (std::size_t k = 0; k < std::size(pair.nodes); ++k)
-        nodes[k * stride + place] = pair.nodes[k];
+      for (std::size_t k = 0; k < 2; ++k) of[k * stride + place] = pair.of[k];
       for (std::size_t k = 0; k < std::size(pair.room); ++k)
         room[k * stride + place] = float(pair.room[k]);
       also(pair, place);
@@ -106,8 +107,8 @@ void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
 /// The pairs of vertex and face; touches learn the places of those that they are of.
 void list_face_pairs(AllProximity& found, SearchState& search) {
   const std::vector<Index> first = places(found, &Share::faces);
-  list_pairs(found, &Proximity::faces, &Share::faces, first, search.faces_corners,
-             search.faces_bounds, [](const auto&, std::size_t) {});
+  list_pairs(found, &Proximity::faces, &Share::faces, first, search.faces_of, search.faces_bounds,
+             [](const auto&, std::size_t) {});
   const Index patches = Index(found.by_patch.size());
 #pragma omp parallel for schedule(static, 128) if (first.back() >= worth_threads)
   for (Index p = 0; p < patches; ++p) {
@@ -121,14 +122,10 @@ void list_face_pairs(AllProximity& found, SearchState& search) {
 /// The pairs of edges.
 void list_edge_pairs(const AllProximity& found, SearchState& search) {
   const std::vector<Index> first = places(found, &Share::edges);
-  const std::size_t stride = padded_stride(first.back());
   search.edge_sides.assign(found.edge_sides.data(), found.edge_sides.size());
-  search.edges_of.resize(2 * stride);
   search.edges_code.resize(first.back());
-  list_pairs(found, &Proximity::edges, &Share::edges, first, search.edges_ends, search.edges_bounds,
+  list_pairs(found, &Proximity::edges, &Share::edges, first, search.edges_of, search.edges_bounds,
              [&](const Proximity::Edges& pair, std::size_t place) {
-               search.edges_of[place] = pair.edge[0];
-               search.edges_of[stride + place] = pair.edge[1];
                search.edges_code[place] = pair.code;
              });
 }

@@ -66,13 +66,15 @@ void watch_nodes(const Model& m, State& s) {
 void list_close_faces(const Model& m, State& s, Queue q) {
   SearchState& search = s.search;
   CloseState& close = search.close;
-  const Index stride = Index(search.faces_corners.size() / 5), pairs = stride;
+  const Index stride = Index(search.faces_of.size() / 2), pairs = stride;
   close.faces.resize(pairs);
   close.motion.resize(pairs);
   launch(q, pairs,
          MarkNearFaces{{s.nodes.motion.data()},
-                       {search.faces_corners.data(), stride},
+                       face_geometry(s),
+                       {search.faces_of.data(), stride},
                        {search.faces_bounds.data(), stride},
+                       search.turn_soon.data(),
                        close.skin.data(),
                        close.faces.data(),
                        close.motion.data()});
@@ -121,11 +123,14 @@ void list_close_edges(const Model& m, State& s, Queue q) {
   SearchState& search = s.search;
   CloseState& close = search.close;
   const Index pairs = Index(search.edges_code.size()), stride = padded_stride(pairs);
-  const InIndices ends{search.edges_ends.data(), stride};
+  const ListedEdges listed{{search.edges_of.data(), stride},
+                           search.edges_code.data(),
+                           search.edge_sides.data(),
+                           search.exposed.data()};
   close.edges.resize(pairs);
   launch(q, pairs,
          MarkNearEdges{{s.nodes.motion.data()},
-                       ends,
+                       listed,
                        {search.edges_bounds.data(), stride},
                        close.skin.data(),
                        m.rules,
@@ -149,13 +154,7 @@ void list_close_edges(const Model& m, State& s, Queue q) {
   close.edge_pairs.resize(9 * std::size_t(near_stride));
   close.open.resize(count);
   launch_one(q, count,
-             CopyCloseEdges{close.near_edges.data(),
-                            ends,
-                            {search.edges_of.data(), stride},
-                            search.edges_code.data(),
-                            search.edge_sides.data(),
-                            close.edge_pairs.data(),
-                            near_stride});
+             CopyCloseEdges{close.near_edges.data(), listed, close.edge_pairs.data(), near_stride});
 }
 
 }  // namespace

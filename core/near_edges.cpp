@@ -258,12 +258,12 @@ Proximity::Edges near_edges(const Finder& f, const Patch& a, Index e, const Movi
       against(a, a.edge[e], p.node[first_p]) | against(b, b.edge[g], q.node[first_q]) << 2;
   // seen along the cross product of the two as their ends are listed here
   const Real way = on == 3 ? 0 : ((on == 1) != (first_p != first_q) ? 1 : -1);
-  return {{p.node[first_p], p.node[1 - first_p], q.node[first_q], q.node[1 - first_q]},
+  return {{a.edge_first + e, b.edge_first + g},
           {1.000001 * rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
            ends.shared ? 0.999999 * rules.indentation * edges.length : 0,
            ways_part_soon(p, q) + 1e-6 * edges.length},
-          {a.edge_first + e, b.edge_first + g},
-          EdgeWays::code_of(ways, SidePair::turned(ends.shared, first_p, first_q), sides)};
+          EdgeWays::code_of(ways, SidePair::turned(ends.shared, first_p, first_q), sides,
+                            first_p | first_q << 1)};
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
   return true;
 }
 
-/// Corners and room of a vertex and a face that may touch; `length` and `least` as above,
+/// Room of a vertex and a face that may touch; `length` and `least` as above,
 /// `indented` is how far its indented points are from the vertex, at most, and `stir` how far its
 /// faces are strained and turned as long as the close lists hold.
 ///
@@ -157,13 +157,11 @@ Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Re
   Real parted = 0;
   for (Index k = 0; k <= last; ++k)
     parted = std::max(parted, ways_part_soon(f.s, node, f.faces.vertex(y.face, k)));
-  const Real turns = 2 * y.turn_soon;
-  const Real motion = parted + rules.indentation * 2 * stir + turns * off + slack;
-  return {{node, f.faces.vertex(y.face, 0), f.faces.vertex(y.face, 1), f.faces.vertex(y.face, 2),
-           f.faces.vertex(y.face, last)},
+  const Real motion = parted + rules.indentation * 2 * stir + 2 * y.turn_soon * off + slack;
+  return {{node, place_y},
           {above + rules.lifted + motion, above + rules.depth * length + motion, aside + motion,
            behind ? std::max(rules.entry * std::min(least, y.length) - slack - motion, 0.0) : 1e30,
-           reach + motion, motion, turns}};
+           reach + motion, motion}};
 }
 
 /// Vertices of one patch on faces of another.

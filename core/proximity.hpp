@@ -44,14 +44,14 @@ struct Proximity {
   /// The pair of vertex and face that touches are of, see MarkNearFaces. The room leaves some for
   /// single precision.
   struct VertexFace {
-    Index nodes[5];
-    Real room[7];
+    Index of[2];  // node, exposed face
+    Real room[6];
   };
   /// A pair of edges that may touch, see MarkNearEdges and EdgePairs; the same of the room.
   struct Edges {
-    Index nodes[4];
+    Index of[2];  // places of the edges in `edge_sides`
     Real room[6];
-    Index edge[2], code;
+    Index code;
   };
   /// A face of which a vertex or a side is on the lists, and the one that it may touch.
   struct Meeting {

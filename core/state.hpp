@@ -96,11 +96,10 @@ struct SearchState {
   Index joined_faces = -1;  // exposed faces, and intact bond points, as join_surfaces last saw them
   Real joined_points = -1;
   Column<Index> candidate_first, candidate, candidate_pair;  // by vertex
-  Column<Index> faces_corners;                               // [5][pair] vertex, corners of a face
-  Column<float> faces_bounds;                                // [7][pair] see MarkNearFaces
-  Column<Index> edges_ends;                                  // [4][pair] nodes of both
-  Column<Index> edges_of, edges_code;          // [2][pair], [pair], see CopyCloseEdges
-  Column<Index> edge_sides;                    // [edge][2] the same
+  Column<Index> faces_of;                                    // [2][pair] node, exposed face
+  Column<float> faces_bounds;                                // [6][pair] see MarkNearFaces
+  Column<Index> edges_of, edges_code;                        // [2][pair], [pair], see ListedEdges
+  Column<Index> edge_sides;                                  // [edge][2] the same
   Column<Index> edge_pairs_first, edge_pairs;  // by edge of the mesh, see MarkHeldEdges
   Column<float> edges_bounds;                  // [6][pair] see MarkNearEdges
   Column<Real> turn_soon;                      // [exposed] see ListedFaces
@@ -153,13 +152,13 @@ void describe_search(S& search, Visit&& field) {
   field("search.candidate_first", search.candidate_first, "start of a vertex's candidates");
   field("search.candidate", search.candidate, "exposed faces that it may touch");
   field("search.candidate_pair", search.candidate_pair, "pairs of vertex and face they are of");
-  field("search.faces_corners", search.faces_corners, "vertex and corners of the face of a pair");
+  field("search.faces_of", search.faces_of, "vertex and exposed face of a pair");
   field("search.faces_bounds", search.faces_bounds, "how far apart they may be in contact [m]");
   field("search.source_first", search.source_first, "start of a face's sources");
   field("search.source", search.source, "exposed faces whose contacts may act on it");
   field("search.face_listed", search.face_listed, "1: it may act on a face, or one on it");
-  field("search.edges_ends", search.edges_ends, "ends of pairs of edges that may touch");
-  field("search.edges_of", search.edges_of, "places of the two among the edges");
+  field("search.edges_of", search.edges_of,
+        "pairs of edges that may touch: places of the two among the edges");
   field("search.edges_code", search.edges_code, "of which sides they are, which ends shared");
   field("search.edge_sides", search.edge_sides, "4 * exposed face + side of the faces at an edge");
   field("search.edge_pairs_first", search.edge_pairs_first, "start of an edge's pairs");

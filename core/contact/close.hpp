@@ -13,33 +13,36 @@ namespace cdem {
 /// semi-springs in all faces at the vertex, and has room for what distinguishes them.
 struct MarkNearFaces {
   InMotion nodes;
-  InIndices corners;  // [5][pair]: the vertex; the corners of the face, a triangle's last one twice
-  InBounds room;      // [7][pair]: highest above the face and lowest below it, farthest outside a
-                      // side; depth from which it may lie outside, and distance from the centre of
-                      // three corners that it has then at most; how far the vertex may soon move
-                      // as seen from the face, which all have room for: without skins  [m]; how
-                      // much what is above the face moves along it for that, in parts of its height
-  const Real* skin;   // [node]  [m]
+  FaceGeometry geometry;
+  InIndices of;      // [2][pair]: node of the vertex; exposed face
+  InBounds room;     // [6][pair]: highest above the face and lowest below it, farthest outside a
+                     // side; depth from which it may lie outside, and distance from the centre of
+                     // three corners that it has then at most; how far the vertex may soon move
+                     // as seen from the face, which all have room for: without skins  [m]
+  const Real* turn;  // [exposed] how much its normal may soon turn  [rad]
+  const Real* skin;  // [node]  [m]
   Flag* near;
   Real* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
 
   template <class I>
   CDEM_HD void operator()(I p) const {
     using T = Number<I>;
-    const Vec3<T> v = nodes.position(corners.at(0, p));
-    const Vec3<T> x[4] = {nodes.position(corners.at(1, p)), nodes.position(corners.at(2, p)),
-                          nodes.position(corners.at(3, p)), nodes.position(corners.at(4, p))};
+    const auto vertex = of.at(0, p), face = of.at(1, p);
+    const auto corners = geometry.vertices(face);
+    const Vec3<T> v = nodes.position(vertex);
+    const Vec3<T> x[4] = {nodes.position(corners.node[0]), nodes.position(corners.node[1]),
+                          nodes.position(corners.node[2]), nodes.position(corners.node[3])};
     const Vec3<T> n = cross(x[2] - x[0], x[3] - x[1]);
     const T n2 = dot(n, n), gap = dot(n, v - x[0]);  // times |n|
     const T gap2 = gap * gap;
     const auto below = gap < T(0.0);
-    const T skins =
-        look_up(skin, corners.at(0, p)) +
-        max_of(max_of(look_up(skin, corners.at(1, p)), look_up(skin, corners.at(2, p))),
-               max_of(look_up(skin, corners.at(3, p)), look_up(skin, corners.at(4, p))));
+    const auto skin_at = [&](Index k) { return look_up(skin, corners.node[k]); };
+    const T skins = look_up(skin, vertex) +
+                    max_of(max_of(skin_at(0), skin_at(1)), max_of(skin_at(2), skin_at(3)));
     store(motion, p, room.at(5, p) + skins);
     const T most = select(below, room.at(1, p), room.at(0, p)) + skins;
-    const T along = room.at(6, p) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
+    // how much what is above the face moves along it as the face turns
+    const T along = T(2.0) * look_up(turn, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
     const T reach = room.at(4, p) + skins + along, aside = room.at(2, p) + skins + along;
     const T sunk = max_of(room.at(3, p) - skins, T(0.0));
     auto outside = beyond(x[0], x[1], n, n2, v, aside) | beyond(x[1], x[2], n, n2, v, aside);
@@ -139,6 +142,27 @@ struct ListCloseFaces {
   }
 };
 
+/// Pairs of edges that may touch before the next refresh.
+struct ListedEdges {
+  InIndices of;             // [2][pair]: places in `sides`
+  const Index* code;        // [pair]: see EdgeWays
+  const Index* sides;       // [edge][2]: 4 * exposed face + side, or -1
+  const ExposedRow* table;  // of exposed faces
+
+  /// Nodes of one edge, and of the other, see EdgePairs.
+  template <class I>
+  CDEM_HD auto end(Index k, I pair) const {
+    return indices_of(
+        [&](Index p) {
+          const Index side = sides[2 * of.at(k / 2, One{p})];
+          const ExposedRow& face = table[side / 4];
+          return EdgeWays::is_turned(code[p], k / 2) == (k % 2 == 0) ? face.end(side % 4)
+                                                                     : face.corner[side % 4];
+        },
+        pair);
+  }
+};
+
 /// Mark the pairs of edges that may soon begin to touch. One test stands for the sides of all faces
 /// at both edges, in either direction, and has room for what distinguishes them: their indentation
 /// and the rate of approach.
@@ -149,7 +173,7 @@ struct ListCloseFaces {
 /// common perpendicular, which turns by `swing`, as far apart as that and `swing` times the depth.
 struct MarkNearEdges {
   InMotion nodes;
-  InIndices ends;  // see EdgePairs
+  ListedEdges listed;
   InBounds room;  // [6][pair]: depth at which a contact may begin; how far the indentation moves an
                   // edge aside, at most  [m]; side on which one edge must be of the other, along
                   // the cross product: 1, -1, 0: either; what it takes from the ends of an edge, at
@@ -165,7 +189,8 @@ struct MarkNearEdges {
   template <class I>
   CDEM_HD void operator()(I p) const {
     using T = Number<I>;
-    const auto a0 = ends.at(0, p), a1 = ends.at(1, p), b0 = ends.at(2, p), b1 = ends.at(3, p);
+    const auto a0 = listed.end(0, p), a1 = listed.end(1, p);
+    const auto b0 = listed.end(2, p), b1 = listed.end(3, p);
     const Vec3<T> start_a = nodes.position(a0), start_b = nodes.position(b0);
     const Vec3<T> along_a = nodes.position(a1) - start_a, along_b = nodes.position(b1) - start_b;
     const Vec3<T> c = cross(along_a, along_b), apart = start_b - start_a;
@@ -236,23 +261,20 @@ struct MarkHeldEdges {
 
 /// Copy the pairs of edges that are near to where the search looks for them.
 struct CopyCloseEdges {
-  const Index* near;   // [pair]
-  InIndices ends;      // see EdgePairs
-  InIndices edges;     // [2][listed pair]: places in `sides`
-  const Index* code;   // [listed pair]
-  const Index* sides;  // [edge][2]: 4 * exposed face + side, or -1
-  Index* pairs;        // [9][pair]: ends, sides, code of EdgePairs
+  const Index* near;  // [pair]
+  ListedEdges listed;
+  Index* pairs;  // [9][pair]: ends, sides, code of EdgePairs
   Index stride;
 
   CDEM_HD void operator()(One pair) const {
     const One from{near[pair.i]};
-    for (Index k = 0; k < 4; ++k) set(k, pair, ends.at(k, from));
+    for (Index k = 0; k < 4; ++k) set(k, pair, listed.end(k, from));
     for (Index e = 0; e < 2; ++e) {
-      const Index* of = sides + 2 * edges.at(e, from);
-      set(4 + 2 * e, pair, of[0]);
-      set(5 + 2 * e, pair, of[1] >= 0 ? of[1] : of[0]);
+      const Index* sides = listed.sides + 2 * listed.of.at(e, from);
+      set(4 + 2 * e, pair, sides[0]);
+      set(5 + 2 * e, pair, sides[1] >= 0 ? sides[1] : sides[0]);
     }
-    set(8, pair, code[from.i]);
+    set(8, pair, listed.code[from.i]);
   }
 
  private:

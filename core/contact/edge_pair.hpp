@@ -48,10 +48,12 @@ struct EdgeWays {
   CDEM_HD static bool is_reverse(Index way) { return way & 4; }
   CDEM_HD static Index way(bool reverse, Index i, Index j) { return reverse << 2 | i << 1 | j; }
   /// The ways in which two edges may touch, as bits; which of their ends are shared; which of the
-  /// four sides (those of the first edge, then of the second) run against the edges.
-  CDEM_HD static Index code_of(Index some, Index shared, Index against) {
-    return some | shared << count | against << (count + 4);
+  /// four sides (those of the first edge, then of the second) run against the edges; which of the
+  /// edges begin where their first side ends.
+  CDEM_HD static Index code_of(Index some, Index shared, Index against, Index turned) {
+    return some | shared << count | against << (count + 4) | turned << (count + 8);
   }
+  CDEM_HD static bool is_turned(Index code, Index edge) { return code >> (count + 8 + edge) & 1; }
 };
 
 /// Pairs of edges that may touch soon, see close.hpp.
