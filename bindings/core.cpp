@@ -6,9 +6,18 @@
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
-#include "core/backend.hpp"
-#include "core/measure.hpp"
-#include "core/step.hpp"
+#include "core/base/device.hpp"
+#include "core/base/machine_limits.hpp"
+#include "core/contact/pair_list/initial_overlaps.hpp"
+#include "core/diagnostics/energy.hpp"
+#include "core/diagnostics/unbalance.hpp"
+#include "core/elements/report.hpp"
+#include "core/model/describe.hpp"
+#include "core/model/init_state.hpp"
+#include "core/nodes/curves.hpp"
+#include "core/nodes/masses.hpp"
+#include "core/nodes/time_step.hpp"
+#include "core/run/run.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -66,15 +75,17 @@ void take_counts(Core& core, const nb::dict& c) {
   m.edge_count = number("edges");
   m.group_count = number("groups");
   m.corner_rows = number("corner_rows");
-  const auto elements = [&](const std::string& name, ElementSet& e) {
+  const auto elements = [&](const std::string& name, ElementSet& e, Index corners, Index points) {
+    e.corners = corners;
+    e.points = points;
     e.count = number((name + ".count").c_str());
     e.stride = padded_stride(e.count);
     e.corner_first = number((name + ".corner_first").c_str());
   };
-  elements("tet4", m.tet4);
-  elements("pyramid5", m.pyramid5);
-  elements("wedge6", m.wedge6);
-  elements("hex8", m.hex8);
+  elements("tet4", m.tet4, 4, 1);
+  elements("pyramid5", m.pyramid5, 5, 5);
+  elements("wedge6", m.wedge6, 6, 6);
+  elements("hex8", m.hex8, 8, 8);
   const auto pairs = [&](const std::string& name, PairSet& p, Index points, Index corners) {
     p.count = number((name + ".count").c_str());
     p.stride = padded_stride(p.count);
@@ -229,7 +240,7 @@ NB_MODULE(CDEM_MODULE, module) {
               const std::vector<std::vector<Real>>& factors) {
              c.model.curve_time = times;
              c.model.curve_factor = factors;
-             evaluate_curves(c.model, c.state);
+             set_loads_and_supports(c.model, c.state);
            })
       .def("set_gravity",
            [](Core& c, const std::vector<Real>& g) {
@@ -243,7 +254,8 @@ NB_MODULE(CDEM_MODULE, module) {
            })
       .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
-      .def("start", [](Core& c, Array<Real> position) { start(c.model, c.state, position.data()); })
+      .def("start",
+           [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
       .def("restore", &restore)
       .def("prepare", [](Core& c) { prepare(c.model, c.state); })
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
@@ -300,9 +312,8 @@ NB_MODULE(CDEM_MODULE, module) {
            })
       .def("adopt_overlaps",
            [](Core& c) {
-             Index count = 0, face = -1;
-             const Real deepest = adopt_overlaps(c.model, c.state, count, face);
-             return std::make_tuple(deepest, count, face);
+             const InitialOverlaps found = adopt_overlaps(c.model, c.state);
+             return std::make_tuple(found.deepest, found.count, found.face);
            })
       .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
 }

@@ -1,38 +1,76 @@
-"""Fail when a core file includes one from a layer above its own, or when includes nest too deep."""
+"""Check the includes of core/: folders in one order, no cycles, no deep nesting, kernels without model."""
 
 import re
 import sys
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
-LAYERS = """launch math field measure
-            materials interfaces elements contact nodes
-            model state columns
-            backend
-            step check start refresh hand_over surface exposed patch_pair near_edges proximity candidates close_lists edge_list rest free_blocks""".splitlines()
-DEEPEST = 10
+# Folders, lowest first: a file includes its own folder and those before it.
+FOLDERS = """base records materials interfaces model
+             contact/geometry elements nodes
+             contact/narrow_phase contact/force bonds contact/broad_phase contact/pair_list contact
+             diagnostics . run kernels""".split()
+DEEPEST = 8
+
+problems: list[str] = []
 
 
-def layer(path: str) -> int:
-    """Height of the layer that a file of core/ belongs to."""
-    name = path.split("/")[1].split(".")[0]
-    for height, names in enumerate(LAYERS):
-        if name in names.split():
-            return height
-    sys.exit(f"{path}: give it a place in LAYERS")
+def folder(path: str) -> str:
+    """Folder of a file of core/, as FOLDERS names it."""
+    name = str(Path(path).relative_to("core").parent)
+    if name not in FOLDERS:
+        sys.exit(f"{path}: give its folder a place in FOLDERS of tools/layers.py")
+    return name
+
+
+@cache
+def includes(path: str) -> tuple[str, ...]:
+    """Files of core/ that a file includes."""
+    return tuple(re.findall(r'#include "(core/[^"]+)"', Path(path).read_text()))
 
 
 @cache
 def depth(path: str) -> int:
     """Length of the longest chain of includes from a file down."""
-    layer(path)  # a file that includes nothing needs its place too
-    below = re.findall(r'#include "(core/[^"]+)"', Path(path).read_text())
-    for other in below:
-        if layer(other) > layer(path):
-            sys.exit(f"{path} may not include {other}, which lies above it")
-    return 1 + max(map(depth, below), default=0)
+    return 1 + max(map(depth, includes(path)), default=0)
 
 
-sources = [path for ending in ("*.[hc]pp", "*.cu") for path in sorted(Path("core").rglob(ending))]
-deepest = max(depth(str(path)) for path in sources)
-sys.exit(f"includes are {deepest} deep, more than {DEEPEST}" if deepest > DEEPEST else 0)
+@cache
+def closure(path: str) -> frozenset[str]:
+    """All files that a file includes, directly or not."""
+    below = includes(path)
+    return frozenset(below).union(*map(closure, below))
+
+
+def unit(path: str) -> str:
+    """A header and the .cpp that it owns are one unit."""
+    return path.rsplit(".", 1)[0]
+
+
+sources = [str(path) for path in sorted(Path("core").rglob("*.[hc]pp"))]
+units: dict[str, set[str]] = {unit(path): set() for path in sources}
+for path in sources:
+    height = FOLDERS.index(folder(path))
+    for other in includes(path):
+        if FOLDERS.index(folder(other)) > height:
+            problems.append(f"{path} may not include {other}, which lies above it")
+        if unit(other) != unit(path):
+            units[unit(path)].add(unit(other))
+    if path.endswith(".cpp") and folder(path) != "kernels":
+        if next(iter(includes(path)), "") != unit(path) + ".hpp":
+            problems.append(f"{path} must include its own header first")
+    if folder(path) == "kernels":
+        for other in sorted(closure(path)):
+            if other.startswith("core/model/"):
+                problems.append(f"{path} is a kernel and may not reach {other}")
+
+try:
+    TopologicalSorter(units).prepare()
+except CycleError as cycle:
+    problems.append("units include each other: " + " -> ".join(cycle.args[1]))
+
+deepest = max(sources, key=depth) if not problems else ""
+if deepest and depth(deepest) > DEEPEST:
+    problems.append(f"{deepest}: includes are {depth(deepest)} deep, more than {DEEPEST}")
+sys.exit("\n".join(problems))

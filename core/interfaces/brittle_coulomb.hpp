@@ -2,7 +2,7 @@
 // brittle.
 #pragma once
 
-#include "core/field.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 

@@ -1,7 +1,7 @@
 // linear_elastic.hpp - isotropic linear elasticity: stress = lambda tr(strain) I + 2 mu strain.
 #pragma once
 
-#include "core/field.hpp"
+#include "core/base/views.hpp"
 
 namespace cdem {
 

@@ -1,0 +1,62 @@
+// parallel.hpp - run a kernel for many items: lane by lane, one by one, or for those it selects.
+#pragma once
+
+#include <atomic>
+
+#include "core/base/device.hpp"
+
+namespace cdem {
+
+/// Loops over fewer items than this run on one thread: starting the others would cost more.
+inline constexpr Index worth_threads = 1024;
+
+/// Blocks of so many consecutive items that a launch may be limited to.
+inline constexpr Index block_size = 8;
+
+/// Numbers of the blocks to run, ascending; all of them where `id` is null.
+struct Blocks {
+  const Index* id = nullptr;
+  Index count = 0;
+};
+
+/// Raise a count that several threads may raise at once, and return what it was. Which of them
+/// comes first is left to chance: what is found with it must be sorted. Taking turns costs time,
+/// which one thread `alone` need not spend.
+CDEM_HD inline Index raise(Index& count, bool alone) {
+  if (alone) return count++;
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(&count, 1);
+#else
+  return std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed);
+#endif
+}
+/// Set a flag that several threads may set at once.
+CDEM_HD inline void set(Flag& flag, Flag value = 1) {
+#if defined(__CUDA_ARCH__)
+  flag = value;
+#else
+  std::atomic_ref(flag).store(value, std::memory_order_relaxed);
+#endif
+}
+
+/// Run a kernel for `count` items; straight-line kernels go lane by lane. Instantiated for every
+/// kernel in core/kernels.
+template <class Kernel>
+void for_each_lane(Queue queue, Index count, const Kernel& kernel);
+
+/// The same for kernels whose items take different paths.
+template <class Kernel>
+void for_each_item(Queue queue, Index count, const Kernel& kernel);
+
+/// The same for kernels that select what they run for: of the `items(row)` of each of `count` rows
+/// those that it `selects(row, id)`. Selected items are packed into lanes.
+template <class Kernel>
+void for_each_selected(Queue queue, Index count, const Kernel& kernel);
+
+/// The same for some blocks of the items.
+template <class Kernel>
+void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel);
+template <class Kernel>
+void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel);
+
+}  // namespace cdem

@@ -1,0 +1,149 @@
+// parallel_loops.hpp - the loops behind for_each_lane, for_each_item and for_each_selected.
+//
+// Only the files of core/kernels include it: each instantiates the loops for the kernels of its
+// stage, as C++ for the CPU or as CUDA for a GPU.
+#pragma once
+
+#include "core/base/parallel.hpp"
+#include "core/base/prefetch.hpp"
+
+namespace cdem {
+
+#if defined(__CUDACC__)
+
+template <class Kernel>
+__global__ void run_on_gpu(Index count, Kernel kernel) {
+  const Index i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count) kernel(One{i});
+}
+
+/// Run a kernel for every item, one GPU thread each.
+template <class Kernel>
+void for_each_lane(Queue queue, Index count, const Kernel& kernel) {
+  if (count > 0) run_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
+}
+template <class Kernel>
+void for_each_item(Queue queue, Index count, const Kernel& kernel) {
+  for_each_lane(queue, count, kernel);
+}
+
+template <class Kernel>
+__global__ void run_picked_on_gpu(Index count, Kernel kernel) {
+  const Index row = blockIdx.x * blockDim.x + threadIdx.x;
+  if (row >= count) return;
+  const Range all = kernel.items(row);
+  for (Index id = all.first; id < all.last; ++id)
+    if (kernel.picks(row, id)) kernel(Picked{row, id});
+}
+template <class Kernel>
+void for_each_selected(Queue queue, Index count, const Kernel& kernel) {
+  if (count > 0) run_picked_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
+}
+
+template <class Kernel>
+__global__ void run_blocks_on_gpu(Index count, Blocks blocks, Kernel kernel) {
+  const Index place = blockIdx.x * blockDim.x + threadIdx.x;
+  if (place >= blocks.count * block_size) return;
+  const Index i = blocks.id[place / block_size] * block_size + place % block_size;
+  if (i < count) kernel(One{i});
+}
+template <class Kernel>
+void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  if (!blocks.id) return for_each_lane(queue, count, kernel);
+  const Index threads = blocks.count * block_size;
+  if (threads > 0)
+    run_blocks_on_gpu<<<(threads + 127) / 128, 128, 0, queue.stream>>>(count, blocks, kernel);
+}
+template <class Kernel>
+void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  for_each_lane(queue, count, blocks, kernel);
+}
+
+#else
+
+/// Run a straight-line kernel for every item: whole lanes, then the remainder one by one.
+template <class Kernel>
+void for_each_lane(Queue, Index count, const Kernel& kernel) {
+  const Index whole = count - count % lanes;
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index i = 0; i < whole; i += lanes) kernel(Lane{i});
+  for (Index i = whole; i < count; ++i) kernel(One{i});
+}
+
+/// Run a kernel whose items take different paths (searches, ragged sums): one number at a time,
+/// dealt out in small parts, for the faces that are in contact lie together.
+template <class Kernel>
+void for_each_item(Queue, Index count, const Kernel& kernel) {
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
+  for (Index i = 0; i < count; ++i) kernel(One{i});
+}
+
+/// Run a kernel for what it picks of each of `count` rows: whole lanes, whatever rows their items
+/// are of, then each thread's remainder one by one. Picking takes no branch, for none could be
+/// foreseen.
+template <class Kernel>
+void for_each_selected(Queue, Index count, const Kernel& kernel) {
+#pragma omp parallel if (count >= worth_threads)
+  {
+    constexpr Index most = 8 * lanes;
+    PickedLane some[most / lanes];
+    Index picked = 0;
+#pragma omp for schedule(static, 128) nowait
+    for (Index row = 0; row < count; ++row) {
+      const Range all = kernel.items(row);
+      for (Index id = all.first; id < all.last; ++id) {
+        some[picked / lanes].row.id[picked % lanes] = row;
+        some[picked / lanes].id.id[picked % lanes] = id;
+        picked += kernel.picks(row, id) ? 1 : 0;
+        if (picked < most) continue;
+        for (const PickedLane& lane : some) kernel(lane);
+        picked = 0;
+      }
+    }
+    for (Index j = 0; j < picked / lanes; ++j) kernel(some[j]);
+    for (Index j = picked - picked % lanes; j < picked; ++j)
+      kernel(Picked{some[j / lanes].row.id[j % lanes], some[j / lanes].id.id[j % lanes]});
+  }
+}
+
+/// Have the kernel fetch what it needs for a block to come, if it knows what the machine does not
+/// fetch by itself: what it reads at random, or in too many columns.
+template <class Kernel>
+CDEM_HD inline void fetch_ahead(const Kernel& kernel, Blocks blocks, Index b) {
+  if constexpr (requires { kernel.fetch(One{0}); }) {
+    constexpr Fetching how = Kernel::fetching;
+    if (blocks.count < how.worth || b + how.ahead >= blocks.count) return;
+    const Index first = blocks.id[b + how.ahead] * block_size;
+    for (Index i = first; i < first + block_size; ++i) kernel.fetch(One{i});
+  }
+}
+
+/// The same for some blocks of items.
+template <class Kernel>
+void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  static_assert(block_size % lanes == 0);
+  if (!blocks.id) return for_each_lane(queue, count, kernel);
+  const Index whole = count - count % lanes;
+#pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
+  for (Index b = 0; b < blocks.count; ++b) {
+    const Index first = blocks.id[b] * block_size;
+    const Index last = first + block_size < count ? first + block_size : count;
+    fetch_ahead(kernel, blocks, b);
+    Index i = first;
+    for (; i < last && i < whole; i += lanes) kernel(Lane{i});
+    for (; i < last; ++i) kernel(One{i});
+  }
+}
+template <class Kernel>
+void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  if (!blocks.id) return for_each_item(queue, count, kernel);
+#pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
+  for (Index b = 0; b < blocks.count; ++b) {
+    const Index first = blocks.id[b] * block_size;
+    for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
+  }
+}
+
+#endif
+
+}  // namespace cdem

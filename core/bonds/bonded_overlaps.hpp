@@ -1,0 +1,25 @@
+// bonded_overlaps.hpp - faces and vertices that live bonds of overlapping faces hold.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// What live bonds of overlaps look after, as sorted keys.
+struct Bonded {
+  using Pairs = std::vector<std::pair<Index, Index>>;
+  Pairs faces;     // exposed face and the one it is bonded to
+  Pairs vertices;  // node of a bonded face and exposed face that it is bonded to
+
+  static bool among(const Pairs& pairs, Index a, Index b) {
+    return std::binary_search(pairs.begin(), pairs.end(), std::pair(a, b));
+  }
+};
+Bonded live_overlaps(const Model& m, const State& s);
+
+}  // namespace cdem

@@ -1,0 +1,254 @@
+// bonded_pairs.hpp - bonds of conforming pairs of faces, and of faces that overlap.
+#pragma once
+
+#include "core/bonds/bond_point.hpp"
+#include "core/contact/geometry/face_geometry.hpp"
+
+namespace cdem {
+
+/// Frame of a pair of faces from the mean of both sides' vertices; n points from the first face
+/// into the second.
+template <Index count, class T>
+CDEM_HD inline Frame<T> pair_frame(const Vec3<T>* mean) {
+  const Vec3<T> last = mean[count - 1];
+  const Vec3<T> n = unit(cross(mean[2] - mean[0], last - mean[1]));
+  const Vec3<T> side = mean[1] - mean[0];
+  const Vec3<T> t1 = unit(side - dot(n, side) * n);
+  return {n, t1, cross(n, t1)};
+}
+
+/// From values at the vertices to those at the bond points.
+template <Index count, class T>
+CDEM_HD inline void move_inside(Real indentation, Vec3<T>* values) {
+  const T own(1.0 - indentation), shared(indentation / count);
+  Vec3<T> sum{T(0.0), T(0.0), T(0.0)};
+  for (Index k = 0; k < count; ++k) sum = sum + values[k];
+  for (Index k = 0; k < count; ++k) values[k] = own * values[k] + shared * sum;
+}
+
+/// State and properties of bonded pairs that do not depend on their number of vertices.
+struct PairColumns {
+  InIndices interface;  // [1][pair]: index of the interface's properties
+  InTable area;         // [1][pair] true overlap area  [m2]
+  InTable live;         // [1][pair] 1 until the pair is released to the contact search; 2 while it
+                        // is an open hinge: points hold, but the search has its faces
+  InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
+  const Real *cohesion, *tensile_strength, *tan_friction;  // by interface
+  InOutTable bond, slip1, slip2;                           // [point][pair]
+  InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
+  InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
+  InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
+  InOutTable stored, fracture, friction;  // [1][pair]  [J]
+
+  /// A pair that opened as a hinge has a wide jump when its last point breaks: what counts for its
+  /// release is how far it has moved since.
+  template <class I, class M, class T>
+  CDEM_HD void note_jump(I p, const M& broken, const T& widest) const {
+    const T none(-1.0), zero(0.0), old = jump_at_break.at(0, p);
+    const T start = select(broken, select(old < zero, widest, old), none);
+    jump_at_break.set(0, p, start);
+    jump.set(0, p, select(broken, abs_of(widest - start), zero));
+  }
+};
+
+/// Bonds of conforming pairs: `count` vertices on either side coincide at the start.
+///
+/// Point k sits at constant weights (1 - a) delta_kj + a / count on both faces and carries
+/// area / count. The six half springs of two triangles (Fig. 14) are three whole ones: the same.
+template <Index count>
+struct ConformingBonds {
+  InMotion nodes;
+  InIndices pair_nodes;  // [2 * count][pair]: vertices of the first face, then their mates
+  PairColumns pairs;
+  Real indentation;  // a: 0 at the vertices, 1/2 (3) or 1 - 1/sqrt(3) (4) as quadrature points
+  Real dt;
+  bool sampled;            // does anything ask for the energy of intact pairs?
+  OutForces corner_force;  // [pair][count]: on the mates; on the first face's vertices the opposite
+
+  template <class I>
+  CDEM_HD void operator()(I p) const {
+    using T = Number<I>;
+    const auto live = pairs.live.at(0, p) > T(0.0);
+    if (!any_of(live)) return;
+    Vec3<T> mean[count], jump[count], force[count];
+    gather_jumps(p, mean, jump);
+    const Frame<T> frame = pair_frame<count>(mean);
+    const BondLaw<T> law = law_of(p);
+    if (any_of(live & !all_bear(p, frame, jump, law, force))) {
+      update_history(p, live, frame, jump, law, force);
+    } else if (sampled) {
+      T stored(0.0);
+      for (Index k = 0; k < count; ++k) stored += intact_energy(frame, jump[k], law);
+      pairs.stored.set(0, p, select(live, stored, T(0.0)));
+    }
+    write_forces(p, live, force);
+  }
+
+  static constexpr Fetching fetching{2, 1024};
+  /// The mates: the first face's vertices come in the order of the pairs.
+  CDEM_HD void fetch(One p) const {
+    for (Index k = count; k < 2 * count; ++k) nodes.fetch(pair_nodes.at(k, p));
+  }
+
+  /// Mean positions of mated vertices, and the jumps at the bond points.
+  template <class I, class T>
+  CDEM_HD void gather_jumps(I p, Vec3<T>* mean, Vec3<T>* jump) const {
+    for (Index k = 0; k < count; ++k) {
+      const Vec3<T> xa = nodes.position(pair_nodes.at(k, p));
+      const Vec3<T> xb = nodes.position(pair_nodes.at(count + k, p));
+      mean[k] = T(0.5) * (xa + xb);
+      jump[k] = xb - xa;
+    }
+    move_inside<count>(indentation, jump);
+  }
+  template <class I>
+  CDEM_HD BondLaw<Number<I>> law_of(I p) const {
+    using T = Number<I>;
+    const auto interface = pairs.interface.at(0, p);
+    const T area = pairs.area.at(0, p) / T(Real(count));
+    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
+            area * look_up(pairs.tensile_strength, interface),
+            area * look_up(pairs.cohesion, interface), look_up(pairs.tan_friction, interface)};
+  }
+
+ private:
+  /// The common case: all points of the pair were intact and stay so.
+  template <class I, class T>
+  CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, const BondLaw<T>& law,
+                        Vec3<T>* force) const {
+    auto all = pairs.bond.at(0, p) > T(0.5);
+    for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
+    for (Index k = 0; k < count; ++k) all = all & bears(frame, jump[k], law, force[k]);
+    return all;
+  }
+  template <class I, class M, class T>
+  CDEM_HD void update_history(I p, const M& live, const Frame<T>& frame, const Vec3<T>* jump,
+                              const BondLaw<T>& law, Vec3<T>* force) const {
+    const T zero(0.0);
+    const auto open = pairs.live.at(0, p) > T(1.5);
+    Vec3<T> rate[count];
+    gather_rates(p, rate);
+    BondForce<T> total{{zero, zero, zero}, zero, zero, zero, zero, zero};
+    T widest(0.0), intact(0.0);
+    for (Index k = 0; k < count; ++k) {
+      const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
+      BondHistory<T> h = old;
+      const BondForce<T> f = bond_force(frame, jump[k], jump[k] - T(dt) * rate[k], law, open, h);
+      // a released pair beside live ones in a lane keeps its history as it was
+      pairs.bond.set(k, p, select(live, h.bond, old.bond));
+      pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
+      pairs.slip2.set(k, p, select(live, h.slip2, old.slip2));
+      force[k] = f.on_b;
+      widest = max_of(widest, dot(jump[k], jump[k]));
+      intact += h.bond;
+      total.stored += f.stored;
+      total.fracture += f.fracture;
+      total.friction += f.friction;
+      total.tension += f.tension;
+      total.shear += f.shear;
+    }
+    pairs.note_jump(p, live & (!(intact > zero)), sqrt_of(widest));
+    pairs.stored.set(0, p, select(live, total.stored, zero));
+    add(pairs.fracture, p, select(live, total.fracture, zero));
+    add(pairs.friction, p, select(live, total.friction, zero));
+    add(pairs.broken_tension, p, select(live, total.tension, zero));
+    add(pairs.broken_shear, p, select(live, total.shear, zero));
+  }
+  template <class I, class M, class T>
+  CDEM_HD void write_forces(I p, const M& live, const Vec3<T>* force) const {
+    const T own(1.0 - indentation), shared(indentation / count), zero(0.0);
+    Vec3<T> sum{zero, zero, zero};
+    for (Index k = 0; k < count; ++k) sum = sum + force[k];
+    for (Index k = 0; k < count; ++k) {
+      Vec3<T> fk = own * force[k] + shared * sum;
+      fk = {select(live, fk.x, zero), select(live, fk.y, zero), select(live, fk.z, zero)};
+      corner_force.set(p, count, k, fk);
+    }
+  }
+  template <class I>
+  CDEM_HD static void add(InOutTable table, I p, Number<I> more) {
+    table.set(0, p, table.at(0, p) + more);
+  }
+  template <class I, class T>
+  CDEM_HD void gather_rates(I p, Vec3<T>* rate) const {
+    for (Index k = 0; k < count; ++k)
+      rate[k] = nodes.velocity(pair_nodes.at(count + k, p)) - nodes.velocity(pair_nodes.at(k, p));
+    move_inside<count>(indentation, rate);
+  }
+};
+
+/// Bonds of touching faces that do not conform: one point per vertex of their overlap polygon.
+struct OverlapBonds {
+  FaceColumns faces;
+  const Index* pair_faces;   // [pair][2]
+  const Index* point_first;  // [pair + 1]
+  const Real* weights_a;     // [point][4] on the first face's vertices
+  const Real* weights_b;     // [point][4] on the second's
+  const Real* point_area;    // [point]  [m2]
+  PairColumns pairs;         // bond, slip1, slip2 are [1][point] here
+  OutForces corner_force;    // [pair][8]: four vertices of either face
+
+  CDEM_HD void operator()(One p) const {
+    if (!(pairs.live.at(0, p) > 0)) return;
+    const Index a = pair_faces[2 * p.i], b = pair_faces[2 * p.i + 1];
+    const Vec3<Real> none{0.0, 0.0, 0.0};
+    Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};
+    const Frame<Real> frame = frame_of(a, b);
+    Real widest = 0, intact = 0, stored = 0, fracture = 0, friction = 0, tension = 0, shear = 0;
+    for (Index c = point_first[p.i]; c < point_first[p.i + 1]; ++c) {
+      const One point{c};
+      const Vec3<Real> jump = at(b, weights_b, c) - at(a, weights_a, c);
+      const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
+      BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
+                          pairs.slip2.at(0, point)};
+      const BondForce<Real> f =
+          bond_force(frame, jump, jump - faces.dt * rate, law_of(p, point_area[c]), false, h);
+      pairs.bond.set(0, point, h.bond);
+      pairs.slip1.set(0, point, h.slip1);
+      pairs.slip2.set(0, point, h.slip2);
+      for (Index k = 0; k < 4; ++k) {
+        force[k] = force[k] - weights_a[4 * c + k] * f.on_b;
+        force[4 + k] = force[4 + k] + weights_b[4 * c + k] * f.on_b;
+      }
+      widest = max_of(widest, norm(jump));
+      intact += h.bond;
+      stored += f.stored, fracture += f.fracture, friction += f.friction;
+      tension += f.tension, shear += f.shear;
+    }
+    for (Index k = 0; k < 8; ++k) corner_force.set(p, 8, k, force[k]);
+    pairs.note_jump(p, !(intact > 0), widest);
+    pairs.stored.set(0, p, stored);
+    pairs.fracture.set(0, p, pairs.fracture.at(0, p) + fracture);
+    pairs.friction.set(0, p, pairs.friction.at(0, p) + friction);
+    pairs.broken_tension.set(0, p, pairs.broken_tension.at(0, p) + tension);
+    pairs.broken_shear.set(0, p, pairs.broken_shear.at(0, p) + shear);
+  }
+
+ private:
+  CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
+    const Frame<Real> f = faces.shape(a).frame();
+    const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
+    const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
+    return {n, t1, cross(n, t1)};
+  }
+  CDEM_HD Vec3<Real> at(Index face, const Real* weights, Index c) const {
+    Vec3<Real> sum{0.0, 0.0, 0.0};
+    for (Index k = 0; k < faces.vertex_count(face); ++k)
+      sum = sum + weights[4 * c + k] * faces.nodes.position(faces.vertex(face, k));
+    return sum;
+  }
+  CDEM_HD Vec3<Real> rate_at(Index face, const Real* weights, Index c) const {
+    Vec3<Real> sum{0.0, 0.0, 0.0};
+    for (Index k = 0; k < faces.vertex_count(face); ++k)
+      sum = sum + weights[4 * c + k] * faces.nodes.velocity(faces.vertex(face, k));
+    return sum;
+  }
+  CDEM_HD BondLaw<Real> law_of(One p, Real area) const {
+    const Index interface = pairs.interface.at(0, p);
+    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
+            area * look_up(pairs.tensile_strength, interface),
+            area * look_up(pairs.cohesion, interface), look_up(pairs.tan_friction, interface)};
+  }
+};
+
+}  // namespace cdem

@@ -1,0 +1,140 @@
+// surface.cpp - glue labels, rings around points, neighbours of faces across edges.
+#include "core/bonds/bonded_surface.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "core/base/reduce.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Visit the conforming pairs that are still live.
+template <class Visit>
+void for_live_pairs(const Model& m, const State& s, Visit&& visit) {
+  const auto all = [&](const PairSet& p, const PairState& ps) {
+    for (Index i = 0; i < p.count; ++i)
+      if (ps.live[i] > 0) visit(p, ps, i);
+  };
+  all(m.triangles, s.triangles);
+  all(m.quads, s.quads);
+}
+
+void label_glue(const Model& m, State& s) {
+  Index* label = s.nodes.glue.data();
+  std::iota(label, label + m.node_count, 0);
+  const auto root = [&](Index i) {
+    while (label[i] != i) i = label[i] = label[label[i]];
+    return i;
+  };
+  for_live_pairs(m, s, [&](const PairSet& p, const PairState& ps, Index i) {
+    for (Index k = 0; k < p.points; ++k) {
+      if (!(ps.bond[std::size_t(k) * p.point_stride + i] > 0)) continue;
+      const Index a = root(p.nodes[std::size_t(k) * p.stride + i]);
+      const Index b = root(p.nodes[std::size_t(p.points + k) * p.stride + i]);
+      label[std::max(a, b)] = std::min(a, b);
+    }
+  });
+  for (Index i = 0; i < m.node_count; ++i) label[i] = root(i);
+}
+
+/// Rings of the points that vertices of exposed faces belong to: other ends of all edges that leave
+/// any node of the point, once each, and by a node whose motion the lists watch if there is one.
+void merge_rings(const Model& m, State& s) {
+  const Index* glue = s.nodes.glue.data();
+  std::vector<Flag> exposed(m.node_count);
+  for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x)
+    for (Index k = 0; k < 4; ++k) {
+      const Index node = m.face_nodes[4 * s.search.exposed_face[x] + k];
+      if (node >= 0) exposed[node] = 1;
+    }
+  std::vector<Flag> wanted(m.node_count);  // by label
+  for (Index i = 0; i < m.node_count; ++i)
+    if (exposed[i]) wanted[glue[i]] = 1;
+
+  std::vector<Index> first(m.node_count + 1), member(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i) ++first[glue[i] + 1];
+  for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
+  std::vector<Index> next(first.begin(), first.end() - 1);
+  for (Index i = 0; i < m.node_count; ++i) member[next[glue[i]]++] = i;
+
+  s.search.ring_first.resize(m.node_count + 1);
+  s.search.ring.resize(0);
+  std::vector<std::tuple<Index, bool, Index>> ends;  // label, not watched, node
+  for (Index label = 0; label < m.node_count; ++label) {
+    s.search.ring_first[label] = Index(s.search.ring.size());
+    if (!wanted[label]) continue;
+    ends.clear();
+    for (Index c = first[label]; c < first[label + 1]; ++c)
+      for (Index r = m.ring_first[member[c]]; r < m.ring_first[member[c] + 1]; ++r)
+        ends.push_back({glue[m.ring[r]], !exposed[m.ring[r]], m.ring[r]});
+    std::sort(ends.begin(), ends.end());
+    Index last = -1;
+    for (const auto& [end, hidden, node] : ends)
+      if (end != last) s.search.ring.push(node), last = end;
+  }
+  s.search.ring_first[m.node_count] = Index(s.search.ring.size());
+}
+
+/// The face beyond a side of an exposed face: walk through the bodies that meet there, from each
+/// into the next that is bonded to it along the side, until a face is in the open.
+void find_across(const Model& m, State& s) {
+  const Index* glue = s.nodes.glue.data();
+  std::vector<Index> mate(m.face_count, -1);
+  for_live_pairs(m, s, [&](const PairSet& p, const PairState&, Index i) {
+    mate[p.faces[2 * i]] = p.faces[2 * i + 1];
+    mate[p.faces[2 * i + 1]] = p.faces[2 * i];
+  });
+  const auto vertices = [&](Index face) { return m.face_nodes[4 * face + 3] < 0 ? 3 : 4; };
+  // side of a face between the same two points as an edge, or -1
+  const auto side_along = [&](Index face, Index edge) {
+    const Index a = glue[m.edge_nodes[2 * edge]], b = glue[m.edge_nodes[2 * edge + 1]];
+    const Index count = vertices(face);
+    for (Index k = 0; k < count; ++k) {
+      const Index u = glue[m.face_nodes[4 * face + k]];
+      const Index v = glue[m.face_nodes[4 * face + (k + 1) % count]];
+      if ((u == a && v == b) || (u == b && v == a)) return k;
+    }
+    return Index(-1);
+  };
+  constexpr Index most_bodies = 1000;  // around one edge
+  const Index count = Index(s.search.exposed_face.size());
+  s.search.across.resize(4 * std::size_t(count), -1);
+  for (Index x = 0; x < count; ++x)
+    for (Index k = 0; k < vertices(s.search.exposed_face[x]); ++k) {
+      Index face = s.search.exposed_face[x], side = k, beyond = -1;
+      for (Index body = 0; body < most_bodies; ++body) {
+        const Index edge = m.face_edges[4 * face + side];
+        const Index a = m.edge_faces[2 * edge], b = m.edge_faces[2 * edge + 1];
+        beyond = a == face ? b : a;
+        if (beyond < 0 || s.search.face_exposed[beyond] >= 0 || mate[beyond] < 0) break;
+        face = mate[beyond];
+        side = side_along(face, edge);
+        if (side < 0) break;  // the bond is broken there
+      }
+      s.search.across[4 * std::size_t(x) + k] = beyond;
+    }
+}
+
+/// How many bond points are intact.
+Real bonded_points(const PairState& ps) {
+  return ordered_sum(Index(ps.bond.size()), [&](Index i) { return ps.bond[i]; });
+}
+
+}  // namespace
+
+void join_surfaces(const Model& m, State& s, bool released) {
+  const Index faces = Index(s.search.exposed_face.size());
+  const Real points = bonded_points(s.triangles) + bonded_points(s.quads);
+  if (!released && faces == s.search.joined_faces && points == s.search.joined_points) return;
+  s.search.joined_faces = faces;
+  s.search.joined_points = points;
+  label_glue(m, s);
+  merge_rings(m, s);
+  find_across(m, s);
+}
+
+}  // namespace cdem

@@ -1,0 +1,25 @@
+// transfer_to_contact.hpp - what a released pair carried goes to the contacts that follow it.
+#pragma once
+
+#include "core/base/device.hpp"
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Smaller length L of the two faces of a pair  [m].
+Real pair_length(const Model& model, const PairSet& pairs, Index pair);
+
+/// Give the springs of a conforming pair the force that its bond points carried, half to either
+/// side, so that the change of bookkeeping is no jolt. A point whose vertices have parted, as those
+/// of a hinge do before its last point breaks, carries nothing. Returns the energy that the springs
+/// hold  [J].
+Real hand_over(const Model& model, State& state, const PairSet& pairs, const PairState& bonds,
+               Index pair);
+
+/// The same for overlaps that were released in this step, once the search has found what touches.
+/// Their contacts are not where their bond points were: what the pair carried is shared by the
+/// depths of the contacts, and none is pressed harder than its depth says.
+void transfer_released_bonds(const Model& model, State& state, Queue queue);
+
+}  // namespace cdem

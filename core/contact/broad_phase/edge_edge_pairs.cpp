@@ -1,0 +1,310 @@
+// edge_edge_pairs.cpp - see edge_edge_pairs.hpp.
+#include "core/contact/broad_phase/edge_edge_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/contact/narrow_phase/edge_pair.hpp"
+#include "core/contact/narrow_phase/side_pairs.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Is face y the right face of its side for a mother face x, or may it become so?
+bool may_be_right(const Finder& f, const ExposedFace& x, const ExposedFace& y,
+                  const ExposedSide& q) {
+  const Real turns = 2 * (x.turn + y.turn) + q.turn_across;
+  return q.across < 0 ||
+         !(dot(x.normal, f.exposed[q.across].normal) < dot(x.normal, y.normal) - turns);
+}
+
+/// An edge, and how its ends may move until the next refresh.
+struct MovingEdge {
+  const ExposedFace* face;  // the first of those that meet there
+  const ExposedSide* side;  // of it
+  Index node[2], glue[2], place[2];
+  Vec3<Real> end[2], path[2];          // [m]
+  Vec3<Real> along;                    // from the first end to the second, of unit length
+  Real length, skin[2], widest, turn;  // [m], [m], the larger skin [m], [rad]
+  Indented indented;
+
+  MovingEdge(const Finder& f, const Patch& a, const Patch::Edge& edge)
+      : face(&f.exposed[a.face[edge.face[0]]]),
+        side(&f.sides[4 * std::size_t(a.face[edge.face[0]]) + edge.side[0]]),
+        indented(edge.indented) {
+    for (const int i : {0, 1}) {
+      node[i] = a.vertex[edge.vertex[i]];
+      glue[i] = f.faces.node_glue[node[i]];
+      place[i] = f.faces.node_place[node[i]];
+      const WatchedNode watched = WatchedNode::of(f.s, node[i]);
+      end[i] = watched.position;
+      path[i] = f.s.search.horizon * watched.velocity;
+      skin[i] = watched.skin;
+    }
+    length = side->length;
+    along = 1 / length * side->along;
+    widest = std::max(skin[0], skin[1]);
+    turn = (norm(path[1] - path[0]) + 2 * widest) / length;
+  }
+  Vec3<Real> path_at(Real at) const { return path[0] + at / length * (path[1] - path[0]); }
+};
+
+/// Those of a patch, each worked out once when it is asked for first.
+class MovingEdges {
+  const Finder& f;
+  const Patch& patch;
+  std::optional<MovingEdge> edge[12];
+
+ public:
+  MovingEdges(const Finder& finder, const Patch& of) : f(finder), patch(of) {}
+  const MovingEdge& operator[](Index e) {
+    if (!edge[e]) edge[e].emplace(f, patch, patch.edge[e]);
+    return *edge[e];
+  }
+};
+
+/// Ends of two edges, and which of them began at the same place in the mesh: bit 2 a + b of
+/// `shared` for end a of the one and end b of the other.
+struct SharedEnds {
+  Index shared = 0;
+  bool glued = false;   // intact bonds hold ends together
+  Real parted = 1e300;  // how far the closest of the shared ends may part before the next refresh
+
+  SharedEnds(const MovingEdge& p, const MovingEdge& q) {
+    for (Index i = 0; i < 4; ++i) {
+      const Index a = i >> 1, b = i & 1;
+      glued = glued || p.glue[a] == q.glue[b];
+      if (p.place[a] != q.place[b]) continue;
+      shared |= 1 << i;
+      parted = std::min(
+          parted, norm(p.end[a] - q.end[b]) + norm(p.path[a] - q.path[b]) + p.skin[a] + q.skin[b]);
+    }
+  }
+};
+
+/// Square of the distance of two edges  [m2].
+Real distance2(const MovingEdge& p, const MovingEdge& q) {
+  const Vec3<Real> apart = p.end[0] - q.end[0];
+  const Real cosine = dot(p.along, q.along), det = 1 - cosine * cosine;
+  const Real on_p = dot(p.along, apart), on_q = dot(q.along, apart);
+  Real s = det > 1e-12 ? std::clamp((cosine * on_q - on_p) / det, 0.0, p.length) : 0.0;
+  const Real t = std::clamp(cosine * s + on_q, 0.0, q.length);
+  s = std::clamp(cosine * t - on_p, 0.0, p.length);
+  const Vec3<Real> nearest = apart + s * p.along - t * q.along;
+  return dot(nearest, nearest);
+}
+
+/// Two edges seen along their common perpendicular.
+struct TwoLines {
+  const MovingEdge &p, &q;
+  Vec3<Real> n;
+  Real gap;          // from the line of q to that of p along n  [m]
+  Real turns, sine;  // what both may turn  [rad]; of the angle between them then, at least
+
+  /// `cross` is that of the directions, of length `size`.
+  TwoLines(const MovingEdge& one, const MovingEdge& other, const Vec3<Real>& cross, Real size)
+      : p(one),
+        q(other),
+        n(1 / size * cross),
+        gap(dot(n, p.end[0] - q.end[0])),
+        turns(p.turn + q.turn),
+        sine(size - turns) {}
+
+  /// On which sides of each other the two may touch before the next refresh, as bits: 1 where the
+  /// contact normal is n, 2 where it is -n. The tests of TouchTargetEdges with room for the motion.
+  ///
+  /// In contact the gap between the points that cross then is not positive along the normal n' of
+  /// that time. They lie on n', so the gap of the same points along n was not positive either, but
+  /// for how they move along n. (What little beyond its ends an edge may be crossed, see pass_by,
+  /// turns with it.)
+  int sides(const SearchRules& rules) const {
+    const ExposedFace &x = *p.face, &y = *q.face;
+    const ExposedSide &on_p = *p.side, &on_q = *q.side;
+    const Real swing = turns / sine;  // of the normal
+    const Real room = swing * std::max(p.indented.shift, q.indented.shift);
+    const auto beyond = [&](Real sine_of_cone, const MovingEdge& of, Real turn_face) {
+      return sine_of_cone < -(rules.cone + swing + of.turn + turn_face);
+    };
+    int found = 0;
+    for (const int side : {1, 2}) {
+      const Real way = side == 1 ? 1 : -1;
+      if (way * gap + GapChange(x, y, way * n).least > room ||
+          beyond(way * dot(n, on_p.fall), p, on_p.turn_face) ||
+          beyond(-way * dot(n, on_q.fall), q, on_q.turn_face) ||
+          (on_p.across >= 0 && beyond(way * dot(n, on_p.fall_across), p, on_p.turn_across)) ||
+          (on_q.across >= 0 && beyond(-way * dot(n, on_q.fall_across), q, on_q.turn_across)))
+        continue;
+      found |= side;
+    }
+    return found;
+  }
+
+  /// Does the crossing of the lines stay off the ends of the edges until the next refresh, so that
+  /// MarkNearEdges finds them far in every step?
+  ///
+  /// The line of an edge d (of unit length) crosses the other one between its ends x0 and x1 if
+  /// these lie on different sides of it: (y - x) . (d x n) is the distance of an end from the line
+  /// through y. It changes by no more than the end moves as seen from its foot on the line, and by
+  /// its distance from the foot times what d and n turn.
+  bool pass_by() const {
+    const Indented edges = p.indented.and_of(q.indented);
+    const Real cosine = std::min(1.0, std::abs(dot(p.along, q.along)) + turns);
+    const Real inset = sine * edges.inset - cosine * edges.shift, beside = -edges.shift;
+    const auto crosses = [&](Real on_p, Real on_q) {
+      return (on_p > inset && on_q > beside) || (on_q > inset && on_p > beside);
+    };
+    const Ends of_p(p, q, n), of_q(q, p, n);
+    if (crosses(of_p.inside(), of_q.inside())) return false;
+    const Real round_off = 1e-6 * std::min(p.length, q.length), swing = turns / sine;
+    return !crosses(of_p.may_be_inside(swing) + round_off, of_q.may_be_inside(swing) + round_off);
+  }
+
+ private:
+  /// The ends of an edge as seen from the line of the other.
+  struct Ends {
+    const MovingEdge &on, &line;
+    Vec3<Real> arm[2];
+    Real off[2];  // from the line, > 0 if it crosses the edge on this side of the end  [m]
+
+    Ends(const MovingEdge& edge, const MovingEdge& other, const Vec3<Real>& n)
+        : on(edge), line(other), arm{other.end[0] - edge.end[0], other.end[0] - edge.end[1]} {
+      const Vec3<Real> across = cross(line.along, n);
+      const Real way = dot(on.along, across) < 0 ? -1 : 1;
+      off[0] = way * dot(arm[0], across);
+      off[1] = -way * dot(arm[1], across);
+    }
+    /// How far from the ends of the edge the line crosses it, times the sine of the angle.
+    Real inside() const { return std::min(off[0], off[1]); }
+    /// The same until the next refresh, at most.
+    Real may_be_inside(Real swing) const {
+      Real least = 1e300;
+      for (const int i : {0, 1}) {
+        const Real foot = -dot(arm[i], line.along), nearest = std::clamp(foot, 0.0, line.length);
+        const Real motion = norm(on.path[i] - line.path_at(nearest)) + on.skin[i] + line.widest;
+        const Real change = motion + line.turn * std::abs(foot - nearest) +
+                            (line.turn + swing) * norm(arm[i] + foot * line.along);
+        least = std::min(least, off[i] + change);
+      }
+      return least;
+    }
+  };
+};
+
+/// How far the foreseen ways of two points of the one and of the other part as long as the close
+/// lists hold  [m].
+Real ways_part_soon(const MovingEdge& p, const MovingEdge& q) {
+  Real most = 0;
+  for (Index i = 0; i < 4; ++i) most = std::max(most, norm(p.path[i >> 1] - q.path[i & 1]));
+  return close_way * most;
+}
+
+/// In which ways two edges may touch, see EdgeWays, as bits.
+Index ways_to_touch(const Finder& f, const Patch& a, const Patch::Edge& p, const Patch& b,
+                    const Patch::Edge& q, const FacePairs& pairs, const SharedEnds& ends,
+                    Met& met) {
+  Index ways = 0;
+  for (Index i = 0; i < p.faces; ++i)
+    for (Index j = 0; j < q.faces; ++j) {
+      if (!(pairs.row[p.face[i]] >> q.face[j] & 1)) continue;
+      const Index face_p = a.face[p.face[i]], face_q = b.face[q.face[j]];
+      const ExposedFace &x = f.exposed[face_p], &y = f.exposed[face_q];
+      // ends that stay together are no edges on each other, see TouchTargetEdges
+      if (ends.parted < f.m.rules.indentation * std::min(x.length, y.length)) continue;
+      if (may_be_right(f, x, y, f.sides[4 * std::size_t(face_q) + q.side[j]])) {
+        ways |= 1 << EdgeWays::way(false, i, j);
+        met.add(false, p.face[i], q.face[j]);
+      }
+      if (may_be_right(f, y, x, f.sides[4 * std::size_t(face_p) + p.side[i]])) {
+        ways |= 1 << EdgeWays::way(true, i, j);
+        met.add(true, q.face[j], p.face[i]);
+      }
+    }
+  return ways;
+}
+
+/// Was an edge in contact with another one a step ago?
+bool in_contact(const Finder& f, const Patch& a, const Patch::Edge& p, Index edge) {
+  const EdgeState& held = f.s.edges;
+  for (Index i = 0; i < p.faces; ++i) {
+    const Index x = a.face[p.face[i]];
+    for (Index c = held.first[x]; c < held.first[x + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(held.contact.data(), c);
+      if (contact.mother == 4 * x + p.side[i] && contact.edge == edge) return true;
+    }
+  }
+  return false;
+}
+
+/// Two edges as MarkNearEdges sees them, on sides `on` of each other: those of their ends first
+/// that began at the same place, if any. `ways` are those in which they may touch.
+Proximity::Edges near_edges(const Finder& f, const Patch& a, Index e, const MovingEdge& p,
+                            const Patch& b, Index g, const MovingEdge& q, const SharedEnds& ends,
+                            int on, Index ways) {
+  const SearchRules& rules = f.m.rules;
+  const Indented edges = p.indented.and_of(q.indented);
+  Index first = 0;
+  while (ends.shared && !(ends.shared >> first & 1)) ++first;
+  const Index first_p = first >> 1, first_q = first & 1;
+  const auto against = [&](const Patch& of, const Patch::Edge& edge, Index start) {
+    Index sides = 0;
+    for (Index i = 0; i < edge.faces; ++i)
+      sides |= (f.faces.vertex(f.exposed[of.face[edge.face[i]]].face, edge.side[i]) != start) << i;
+    return sides;
+  };
+  const Index sides =
+      against(a, a.edge[e], p.node[first_p]) | against(b, b.edge[g], q.node[first_q]) << 2;
+  // seen along the cross product of the two as their ends are listed here
+  const Real way = on == 3 ? 0 : ((on == 1) != (first_p != first_q) ? 1 : -1);
+  return {{a.edge_first + e, b.edge_first + g},
+          {1.000001 * rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
+           ends.shared ? 0.999999 * rules.indentation * edges.length : 0,
+           ways_part_soon(p, q) + 1e-6 * edges.length},
+          EdgeWays::code_of(ways, SidePair::turned(ends.shared, first_p, first_q), sides,
+                            first_p | first_q << 1)};
+}
+
+}  // namespace
+
+void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
+                const Beyond& beyond, Met& met, Proximity& found) {
+  const Real room = farthest_crossing(f.m.rules, a, b) + last_step * norm(b.drift - a.drift);
+  MovingEdges of_a(f, a), of_b(f, b);
+  for (Index e = 0; e < a.edge_count; ++e) {
+    const int opposite = pairs.of(a.edge[e]);
+    if (beyond.edge[0][e] || !opposite) continue;
+    const MovingEdge& p = of_a[e];
+    if (!p.side->sharp) continue;
+    for (Index g = 0; g < b.edge_count; ++g) {
+      if (beyond.edge[1][g] || !(opposite & FacePairs::at(b.edge[g]))) continue;
+      const MovingEdge& q = of_b[g];
+      if (!q.side->sharp) continue;
+      const Vec3<Real> normal = cross(p.along, q.along);
+      const Real sine2 = dot(normal, normal), off = dot(normal, p.end[0] - q.end[0]);
+      if (off * off > room * room * sine2) continue;  // so far are even the lines
+      const SharedEnds ends(p, q);
+      if (ends.glued) continue;
+      // ends that stay together are no edges on each other, see TouchTargetEdges
+      const Real length = std::min(p.indented.length, q.indented.length);
+      if (ends.parted < f.m.rules.indentation * length) continue;
+      int on = 3;
+      const Real sine = std::sqrt(sine2), turns = p.turn + q.turn;
+      if (sine + turns < parallel_edges) continue;
+      if (sine > turns) {
+        const TwoLines lines(p, q, normal, sine);
+        on = lines.sides(f.m.rules);
+        if (!on) continue;
+        if (lines.pass_by() && !in_contact(f, a, a.edge[e], b.edge[g].id) &&
+            !in_contact(f, b, b.edge[g], a.edge[e].id))
+          continue;
+      } else if (distance2(p, q) > room * room) {
+        continue;
+      }
+      const Index ways = ways_to_touch(f, a, a.edge[e], b, b.edge[g], pairs, ends, met);
+      if (ways) found.edges.push_back(near_edges(f, a, e, p, b, g, q, ends, on, ways));
+    }
+  }
+}
+
+}  // namespace cdem

@@ -1,0 +1,12 @@
+// edge_edge_pairs.hpp - which edges of two patches may touch before the lists are renewed.
+#pragma once
+
+#include "core/contact/broad_phase/separating_planes.hpp"
+
+namespace cdem {
+
+/// List the edges of one patch that may touch edges of another.
+void list_edges(const Finder& finder, const Patch& a, const Patch& b, const FacePairs& pairs,
+                const Beyond& beyond, Met& met, Proximity& found);
+
+}  // namespace cdem

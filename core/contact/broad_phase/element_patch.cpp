@@ -1,0 +1,196 @@
+// element_patch.cpp - see element_patch.hpp.
+#include "core/contact/broad_phase/element_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/geometry/views.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Deepest contact of a face: its targets may lie this far outside its path  [m].
+Real deepest_gap(const State& s, Index place) {
+  Real deepest = 0;
+  for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
+    if (s.springs.target[k] >= 0) {
+      const ContactState spring = ContactState::at(s.springs.state.data(), k);
+      deepest = std::max(deepest, spring.sunk - spring.gap_free);
+    }
+  for (Index c = s.edges.first[place]; c < s.edges.first[place + 1]; ++c) {
+    const ContactState edge = ContactState::at(s.edges.state.data(), c);
+    deepest = std::max(deepest, edge.sunk - edge.gap_free);
+  }
+  return 2 * deepest;
+}
+
+ExposedFace exposed_face(const Model& m, const State& s, Index place) {
+  ExposedFace e;
+  e.face = s.search.exposed_face[place];
+  e.block = m.face_block[e.face];
+  e.movable = m.face_movable[e.face] != 0;
+  e.length = m.face_length[e.face];
+  e.shape = face_columns(m, s).shape(e.face);
+  e.center = e.shape.center();
+  e.normal = e.shape.normal();
+  const Index count = e.shape.count();
+  Vec3<Real> path[4], sum{0, 0, 0};
+  Real node_skin[4];
+  for (Index k = 0; k < count; ++k) {
+    const WatchedNode node = WatchedNode::of(s, m.face_nodes[4 * e.face + k]);
+    path[k] = s.search.horizon * node.velocity;
+    node_skin[k] = node.skin;
+    sum = sum + path[k];
+  }
+  e.drift = Real(1.0) / Real(count) * sum;
+  e.stir = e.stir_soon = e.warp = 0;
+  Real longest = 0, skin = 0;
+  e.box = Box::nothing();
+  for (Index k = 0; k < count; ++k) {
+    skin = std::max(skin, node_skin[k]);
+    const Real apart = norm(path[k] - e.drift);
+    e.stir = std::max(e.stir, apart + node_skin[k]);
+    e.stir_soon = std::max(e.stir_soon, close_way * apart + close_skin * node_skin[k]);
+    e.warp = std::max(e.warp, std::abs(dot(e.normal, e.shape.x[k] - e.center)));
+    longest = std::max(longest, norm(e.shape.x[k + 1 == count ? 0 : k + 1] - e.shape.x[k]));
+    e.box.include(e.shape.x[k]);
+    e.box.include(e.shape.x[k] + path[k]);
+  }
+  e.warp = count == 3 ? 0.0 : e.warp + 2 * e.stir;
+  e.deepest = deepest_gap(s, place);
+  e.box.inflate(skin + e.deepest + m.rules.lifted);
+  // the plane turns by what two vertices may move apart over the smallest height
+  const Real height = (count == 3 ? 2 : 1) * m.face_area[e.face] / longest;
+  e.turn = 2 * e.stir / height;
+  e.turn_soon = 2 * e.stir_soon / height;
+  e.slender = longest / height;
+  return e;
+}
+
+/// What the indentation of a face does at one of its sides.
+Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
+  const Real part = m.rules.indentation;
+  const Vec3<Real>& start = face.shape.x[side];
+  const Vec3<Real> arm = face.center - start,
+                   edge = face.shape.x[side + 1 == face.shape.count() ? 0 : side + 1] - start;
+  const Real length = norm(edge), along = dot(arm, edge) / length;
+  return {0.99 * part * std::min(along, length - along),
+          1.01 * part * norm(cross(arm, edge)) / length, face.length};
+}
+
+/// All of a patch but its faces.
+void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed, Patch& p) {
+  const FaceColumns faces = face_columns(m, s);
+  p.box = Box::nothing();
+  for (Index i = 0; i < p.face_count; ++i) {
+    const ExposedFace& e = exposed[p.face[i]];
+    p.drift = p.drift + Real(1.0) / p.face_count * e.drift;
+    p.deepest = std::max(p.deepest, e.deepest);
+    p.length = std::max(p.length, e.length);
+    p.reach = std::max(p.reach, m.face_reach[e.face]);
+    p.block = e.block;
+    p.movable = e.movable;
+    p.box.include(e.box);
+    for (Index k = 0; k < e.shape.count(); ++k) {
+      Index* end = p.vertex + p.vertex_count;
+      const Index node = faces.vertex(e.face, k);
+      const Index v = Index(std::find(p.vertex, end, node) - p.vertex);
+      if (v == p.vertex_count) {
+        p.vertex[p.vertex_count++] = node;
+        std::fill_n(p.corner[v], 6, -1);
+      }
+      p.corner[v][i] = k;
+      const Index id = m.face_edges[4 * e.face + k];
+      Patch::Edge* last = p.edge + p.edge_count;
+      Patch::Edge* edge = std::find_if(p.edge, last, [&](const auto& o) { return o.id == id; });
+      if (edge == last) p.edge[p.edge_count++] = {id, 0, {}, {}, {}, {}};
+      edge->face[edge->faces] = i;
+      edge->side[edge->faces++] = k;
+      edge->indented = edge->indented.and_of(indented_at(m, e, k));
+    }
+  }
+  p.whole = p.face_count == (p.vertex_count == 4 ? 4 : p.vertex_count == 8 ? 6 : 5);
+  if (!p.whole) p.box.inflate(m.rules.depth * p.length);  // see farthest_contact
+  for (Index e = 0; e < p.edge_count; ++e) {
+    Patch::Edge& edge = p.edge[e];
+    const Index i = edge.face[0], count = exposed[p.face[i]].shape.count();
+    for (Index v = 0; v < p.vertex_count; ++v)
+      for (Index end = 0; end < 2; ++end)
+        if (p.corner[v][i] == (edge.side[0] + end) % count) edge.vertex[end] = v;
+  }
+  for (Index i = 0; i < p.face_count; ++i) {
+    const ExposedFace& e = exposed[p.face[i]];
+    p.stir = std::max(p.stir, norm(e.drift - p.drift) + e.stir);
+  }
+}
+
+}  // namespace
+
+void list_exposed_faces(const Model& m, const State& s, Unset<ExposedFace>& exposed) {
+  const Index count = Index(s.search.exposed_face.size());
+  exposed.resize(count);
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index x = 0; x < count; ++x) exposed[x] = exposed_face(m, s, x);
+}
+
+void list_patches(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
+                  Unset<Patch>& patches) {
+  std::vector<Index> patch_of(m.tet4.count + m.pyramid5.count + m.wedge6.count + m.hex8.count, -1);
+  struct Faces {
+    Index count, place[6];
+  };
+  std::vector<Faces> faces;
+  for (Index x = 0; x < Index(exposed.size()); ++x) {
+    Index& patch = patch_of[m.face_element[exposed[x].face]];
+    if (patch < 0) {
+      patch = Index(faces.size());
+      faces.push_back({});
+    }
+    faces[patch].place[faces[patch].count++] = x;
+  }
+  const Index count = Index(faces.size());
+  patches.resize(count);
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index p = 0; p < count; ++p) {
+    Patch& patch = patches[p] = {};
+    patch.face_count = faces[p].count;
+    std::copy_n(faces[p].place, faces[p].count, patch.face);
+    complete(m, s, exposed, patch);
+  }
+}
+
+void list_exposed_sides(const State& s, const Unset<ExposedFace>& exposed,
+                        Unset<ExposedSide>& sides) {
+  sides.resize(4 * exposed.size());
+#pragma omp parallel for schedule(static, 128) if (exposed.size() >= worth_threads)
+  for (std::size_t x = 0; x < exposed.size(); ++x) {
+    const ExposedFace& e = exposed[x];
+    for (Index k = 0; k < e.shape.count(); ++k) {
+      ExposedSide& side = sides[4 * x + k] = {};
+      side.start = e.shape.x[k];
+      side.along = e.shape.x[k + 1 == e.shape.count() ? 0 : k + 1] - side.start;
+      side.length = norm(side.along);
+      side.turn = 2 * e.stir / side.length;
+      side.turn_face = e.turn;
+      side.fall = unit(cross(e.normal, side.along));
+      const Index across = s.search.across[4 * x + k];
+      side.across = across < 0 ? -1 : s.search.face_exposed[across];
+      side.sharp = true;
+      if (side.across < 0) continue;  // none, or one whose motion nothing watches
+      const ExposedFace& beyond = exposed[side.across];
+      side.turn_across = beyond.turn;
+      side.fall_across = unit(cross(beyond.normal, -side.along));
+      // the angle between the faces may change by what both may turn
+      const Real angle = std::acos(std::min(1.0, dot(e.normal, beyond.normal)));
+      side.sharp = angle + e.turn + beyond.turn > std::acos(coplanar_faces);
+      const Vec3<Real> arm = beyond.center - side.start;
+      side.rises = side.sharp && dot(e.normal, arm) > -(e.turn + beyond.turn) * norm(arm);
+    }
+  }
+}
+
+}  // namespace cdem

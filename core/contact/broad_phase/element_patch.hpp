@@ -1,0 +1,88 @@
+// element_patch.hpp - the exposed faces of one element: where they are, and how they may move.
+#pragma once
+
+#include <algorithm>
+
+#include "core/base/uninitialized.hpp"
+#include "core/contact/broad_phase/bounding_boxes.hpp"
+#include "core/contact/geometry/face.hpp"
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// An exposed face as the lists see it: where it is, and how it may move before they are old.
+struct ExposedFace {
+  FaceShape<Real> shape;
+  Vec3<Real> center, normal;
+  Vec3<Real> drift;           // of all its vertices alike  [m]
+  Real stir;                  // of a vertex beyond the drift  [m]
+  Real turn;                  // of the normal and of the sides  [rad]
+  Real stir_soon, turn_soon;  // as long as the close lists hold
+  Real slender;               // longest side over smallest height
+  Real deepest;               // contact  [m]
+  Real warp;                  // of a vertex out of the mean plane  [m]
+  Real length;                // L  [m]
+  Index face, block;
+  bool movable;
+  Box box;  // of the whole way
+};
+
+void list_exposed_faces(const Model& model, const State& state, Unset<ExposedFace>& exposed);
+
+/// What the indentation of the faces at an edge takes from the ends of the edge, at least, and how
+/// far it moves it aside, at most, with room for what faces are strained; least L  [m].
+struct Indented {
+  Real inset = 1e300, shift = 0, length = 1e300;
+
+  Indented and_of(const Indented& other) const {
+    return {std::min(inset, other.inset), std::max(shift, other.shift),
+            std::min(length, other.length)};
+  }
+};
+
+/// The exposed faces of one element, with their vertices and edges, each once.
+struct Patch {
+  /// An edge: the faces of the patch that meet there, and which of their sides it is.
+  struct Edge {
+    Index id, faces;
+    Index face[2], side[2];
+    Index vertex[2];
+    Indented indented;
+  };
+  Index face_count, vertex_count, edge_count;
+  Index face[6];  // exposed
+  Index vertex[8];
+  Index corner[8][6];  // which corner of a face a vertex is, or -1
+  Edge edge[12];
+  Index edge_first;    // place of the first among those of all patches
+  Vec3<Real> drift;    // of all its vertices alike  [m]
+  Real stir;           // of a vertex beyond the drift  [m]
+  Real deepest;        // contact  [m]
+  Real length, reach;  // largest of its faces  [m]
+  Index block;
+  bool movable;
+  bool whole;  // are all faces of the element exposed?
+  Box box;     // of the whole way
+};
+
+/// Group the exposed faces by the elements behind them.
+void list_patches(const Model& model, const State& state, const Unset<ExposedFace>& exposed,
+                  Unset<Patch>& patches);
+
+/// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
+/// lie between theirs, which is what `fall` tells (see TouchTargetEdges::cones_hold).
+struct ExposedSide {
+  bool sharp;  // may be an edge of a contact: its faces are not coplanar
+  bool rises;  // may be where the surface bends towards its outside
+  Vec3<Real> start, along;
+  Vec3<Real> fall, fall_across;       // normal x side, of the face and of the one across
+  Index across;                       // exposed face on the other side, or -1
+  Real length;                        // [m]
+  Real turn, turn_face, turn_across;  // of the side and of both faces
+};
+
+void list_exposed_sides(const State& state, const Unset<ExposedFace>& exposed,
+                        Unset<ExposedSide>& sides);
+
+}  // namespace cdem

@@ -1,0 +1,117 @@
+// pair_search.cpp - see pair_search.hpp.
+#include "core/contact/broad_phase/pair_search.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/contact/broad_phase/edge_edge_pairs.hpp"
+#include "core/contact/broad_phase/vertex_face_pairs.hpp"
+#include "core/contact/geometry/views.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Does a plane along a face of either patch hold the two apart until the next refresh?
+bool apart(const Model& m, const State& s, const Unset<ExposedFace>& exposed, const Patch& a,
+           const Patch& b) {
+  const InMotion nodes{s.nodes.motion.data()};
+  const Real room = farthest_contact(m.rules, a, b);
+  const Vec3<Real> closing = last_step * (b.drift - a.drift);
+  const auto range = [&](const Patch& p, const Vec3<Real>& n, const Vec3<Real>& c) {
+    std::pair<Real, Real> r{1e300, -1e300};
+    for (Index i = 0; i < p.vertex_count; ++i) {
+      const Real up = dot(n, nodes.position(p.vertex[i]) - c);
+      r = {std::min(r.first, up), std::max(r.second, up)};
+    }
+    return r;
+  };
+  for (const Patch* p : {&a, &b})
+    for (Index f = 0; f < p->face_count; ++f) {
+      const ExposedFace& face = exposed[p->face[f]];
+      const auto of_a = range(a, face.normal, face.center);
+      const auto of_b = range(b, face.normal, face.center);
+      const Real closer = dot(face.normal, closing);
+      if (of_b.first - of_a.second + std::min(closer, 0.0) > room ||
+          of_a.first - of_b.second - std::max(closer, 0.0) > room)
+        return true;
+    }
+  return false;
+}
+
+/// The sides at the edges of all patches, see EdgePairs; patches learn their places.
+void list_edge_sides(Unset<Patch>& patches, Unset<Index>& sides) {
+  Index count = 0;
+  for (Patch& patch : patches) {
+    patch.edge_first = count;
+    count += patch.edge_count;
+  }
+  sides.resize(2 * std::size_t(count));
+  const Index patch_count = Index(patches.size());
+#pragma omp parallel for schedule(static, 128) if (patch_count >= worth_threads)
+  for (Index p = 0; p < patch_count; ++p)
+    for (Index e = 0; e < patches[p].edge_count; ++e) {
+      const Patch::Edge& edge = patches[p].edge[e];
+      for (Index i = 0; i < 2; ++i)
+        sides[2 * std::size_t(patches[p].edge_first + e) + i] =
+            i < edge.faces ? 4 * patches[p].face[edge.face[i]] + edge.side[i] : -1;
+    }
+}
+
+}  // namespace
+
+void find_proximity(const Model& m, const State& s, ProximitySearch& search) {
+  Unset<ExposedFace>& exposed = search.exposed;
+  Unset<ExposedSide>& sides = search.sides;
+  Unset<Patch>& patches = search.patches;
+  list_exposed_faces(m, s, exposed);
+  list_exposed_sides(s, exposed, sides);
+  list_patches(m, s, exposed, patches);
+  const Bonded bonded = live_overlaps(m, s);
+  const Finder f{m, s, face_columns(m, s), exposed, sides, bonded};
+  const Index count = Index(patches.size());
+  std::vector<Box> boxes(count);
+  for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
+  const BoxTree tree(boxes);
+  AllProximity& all = search.found;
+  all.by_thread.resize(omp_get_max_threads());
+  all.by_patch.assign(count, {});
+  list_edge_sides(patches, all.edge_sides);
+  for (Proximity& found : all.by_thread) found.clear();
+#pragma omp parallel if (count >= worth_threads)
+  {
+    Proximity& found = all.by_thread[omp_get_thread_num()];
+    std::vector<Index> others;
+#pragma omp for schedule(dynamic, 32)
+    for (Index p = 0; p < count; ++p) {
+      const Patch& a = patches[p];
+      if (!a.movable) continue;  // those that are near it find it
+      others.clear();
+      tree.query(boxes[p], [&](Index q) {
+        if ((q > p || !patches[q].movable) && a.block != patches[q].block &&
+            !apart(m, s, exposed, a, patches[q]))
+          others.push_back(q);
+      });
+      std::sort(others.begin(), others.end());
+      all.by_patch[p].begin(omp_get_thread_num(), found);
+      for (const Index q : others) {
+        const Patch& b = patches[q];
+        const Beyond beyond(f, a, b);
+        const FacePairs pairs(f, a, b, beyond);
+        if (!pairs.any()) continue;
+        Met met;
+        list_touches(f, a, b, pairs, beyond, false, met, found);
+        list_touches(f, b, a, pairs, beyond, true, met, found);
+        if (m.semi_edges) list_edges(f, a, b, pairs, beyond, met, found);
+        met.list(a, b, found);
+      }
+      all.by_patch[p].end(found);
+    }
+  }
+}
+
+}  // namespace cdem

@@ -1,0 +1,63 @@
+// force.cpp - see force.hpp.
+#include "core/contact/force/force.hpp"
+
+#include "core/base/parallel.hpp"
+#include "core/contact/force/accumulate.hpp"
+#include "core/contact/force/edge_force.hpp"
+#include "core/contact/force/spring_force.hpp"
+#include "core/contact/force/views.hpp"
+#include "core/contact/narrow_phase/views.hpp"
+#include "core/model/phase_timer.hpp"
+
+namespace cdem {
+
+namespace {
+
+void update_forces(const Model& m, State& s, Queue q) {
+  const Index count = Index(s.search.exposed_face.size());
+  const Index* exposed = s.search.exposed_face.data();
+  const FaceGeometry geometry = face_geometry(s);
+  for_each_selected(q, count,
+                    UpdateSpringForces{face_columns(m, s), geometry, m.rules, contact_laws(m, s),
+                                       spring_columns(s)});
+  for_each_lane(q, Index(s.edges.contact.size() / 4),
+                UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m, s),
+                                 s.edges.old_state.data(), edge_columns(s)});
+}
+
+void make_rows(ActingState& acting) {
+  const std::size_t count = acting.count.size();
+  acting.first.resize(count + 1);
+  for (std::size_t i = 0; i < count; ++i) acting.first[i + 1] = acting.first[i] + acting.count[i];
+  acting.contact.resize(acting.first[count]);
+}
+
+void accumulate_forces(const Model& m, State& s, Queue q) {
+  const Index count = Index(s.search.exposed_face.size());
+  const ContactsOf contacts{spring_columns(s), edge_columns(s), count};
+  ActingState& acting = s.acting;
+  acting.count.resize(count);
+  acting.count.fill(0);
+  acting.place.resize(s.springs.target.size() + s.edges.contact.size() / 4);
+  for_each_item(q, count,
+                CountActing{contacts, acting.count.data(), acting.place.data(), runs_alone()});
+  finish(q);
+  make_rows(acting);
+  const Acting rows{acting.first.data(), acting.contact.data()};
+  for_each_item(q, count, ListActing{contacts, acting.place.data(), rows});
+  for_each_item(
+      q, count,
+      GatherFaceForces{contacts, face_columns(m, s), s.search.exposed_face.data(),
+                       s.search.face_listed.data(), rows, m.rules, s.edges.friction.data(),
+                       s.edges.dashpot.data(), s.contact_force.data()});
+}
+
+}  // namespace
+
+void update_contact_forces(const Model& m, State& s, Queue q) {
+  const PhaseTimer timer(s, Phase::contact);
+  update_forces(m, s, q);
+  accumulate_forces(m, s, q);
+}
+
+}  // namespace cdem

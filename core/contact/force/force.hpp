@@ -1,0 +1,13 @@
+// force.hpp - front door: forces of semi-springs and semi-edges, and their sums by face.
+#pragma once
+
+#include "core/base/device.hpp"
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Force of every contact, Eq. 13-14, and the sum of what acts on each exposed face.
+void update_contact_forces(const Model& model, State& state, Queue queue);
+
+}  // namespace cdem

@@ -1,0 +1,13 @@
+// stiffness_bound.hpp - the stiffness that bonds and contacts put on each node at most.
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to before
+/// the next rebuild of the pair list.
+void sum_stiffness(const Model& model, State& state);
+
+}  // namespace cdem

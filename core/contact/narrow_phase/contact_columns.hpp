@@ -1,0 +1,41 @@
+// contact_columns.hpp - state of semi-springs and semi-edges, as kernels see it.
+#pragma once
+
+#include "core/base/views.hpp"
+#include "core/records/contact_records.hpp"
+
+namespace cdem {
+
+/// State of the semi-springs of exposed faces: slot = 4 * exposed face + vertex.
+struct SpringColumns {
+  /// Target of a semi-spring that the step has still to look for.
+  static constexpr Index sought = -2;
+
+  Index* target;         // exposed face in contact, or -1
+  Index* target_before;  // the same one step ago
+  Real* state;           // rows of ContactState
+  Real* friction;        // lost so far  [J]
+  Real* dashpot;         // lost in the contact dashpot so far  [J]
+  Real* reaction;        // row of 8: force on the mother x y z, stiffness, weights on the target
+  Flag* lost;            // 1: a loaded contact was lost because it sank too deep
+};
+
+/// The semi-edge contacts, in the order of their mother faces: first[m] to first[m + 1] are those
+/// of exposed face m.
+struct EdgeColumns {
+  const Index* first;    // [exposed + 1]
+  const Index* contact;  // rows of EdgeContact
+  Real* state;           // rows of ContactState
+  Real* reaction;  // rows of 8: force on the mother x y z, stiffness, place on the mother side
+                   // (0..1), place on the target's side (0..1), what friction and dashpot
+                   // took in the step  [J]
+};
+
+/// The same one step ago.
+struct EdgesBefore {
+  const Index* first;
+  const Index* contact;
+  const Real* state;
+};
+
+}  // namespace cdem

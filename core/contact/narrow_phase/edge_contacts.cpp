@@ -1,0 +1,78 @@
+// edge_list.cpp - see edge_list.hpp.
+#include "core/contact/narrow_phase/edge_contacts.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/contact/narrow_phase/target_edge.hpp"
+
+namespace cdem {
+
+namespace {
+
+void swap_with_old(EdgeState& e) {
+  e.first.swap(e.old_first);
+  e.contact.swap(e.old_contact);
+  e.state.swap(e.old_state);
+}
+
+void make_places(EdgeState& e, std::size_t count) {
+  e.found_count.resize(count);
+  e.found_count.fill(0);
+  e.found.resize(3 * std::size_t(e.slots) * count);
+}
+
+}  // namespace
+
+void begin_edges(State& s) {
+  EdgeState& e = s.edges;
+  const std::size_t count = s.search.exposed_face.size();
+  swap_with_old(e);
+  e.first.resize(count + 1);
+  make_places(e, count);
+}
+
+bool make_room_for_edges(State& s) {
+  EdgeState& e = s.edges;
+  const std::size_t count = s.search.exposed_face.size();
+  Index most = 0;
+  e.first[0] = 0;
+  for (std::size_t x = 0; x < count; ++x) {
+    most = std::max(most, e.found_count[x]);
+    e.first[x + 1] = e.first[x] + e.found_count[x];
+  }
+  if (most > TouchTargetEdges::most_slots) {
+    swap_with_old(e);  // what is reported of the run is that of the step before
+    throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
+  }
+  if (most > e.slots) {
+    e.slots = most;
+    make_places(e, count);
+    return false;
+  }
+  const std::size_t contacts = e.first[count];
+  e.contact.resize(4 * contacts);
+  e.state.resize(8 * contacts);
+  e.reaction.resize(8 * contacts);
+  return true;
+}
+
+void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Index>& to) {
+  begin_edges(s);
+  EdgeState& e = s.edges;
+  e.contact.resize(e.old_contact.size());
+  e.state.resize(e.old_state.size());
+  Index next = 0;
+  for (std::size_t x = 0; x < from.size(); ++x) {
+    e.first[x] = next;
+    for (Index c = e.old_first[from[x]]; c < e.old_first[from[x] + 1]; ++c, ++next) {
+      const EdgeContact old = EdgeContact::at(e.old_contact.data(), c);
+      EdgeContact{4 * Index(x) + old.mother % 4, to[old.face], old.edge, old.before}.store(
+          e.contact.data(), next);
+      ContactState::at(e.old_state.data(), c).store(e.state.data(), next);
+    }
+  }
+  e.first[from.size()] = next;
+}
+
+}  // namespace cdem

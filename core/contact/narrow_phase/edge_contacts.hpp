@@ -1,0 +1,20 @@
+// edge_list.hpp - the list of the contacts of semi-edges, which every step makes anew. Host code.
+#pragma once
+
+#include <vector>
+
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Before a step's search: the list becomes that of one step ago.
+void begin_edges(State& state);
+
+/// After it: give every face its part of the new list. False where the search found more contacts
+/// on a face than it had places for: there are more now, search again.
+bool make_room_for_edges(State& state);
+
+/// Bring the list into a new order of the exposed faces: place x was from[x], y becomes to[y].
+void sort_edges(State& state, const std::vector<Index>& from, const std::vector<Index>& to);
+
+}  // namespace cdem

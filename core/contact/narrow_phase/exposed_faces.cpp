@@ -1,0 +1,113 @@
+// exposed_faces.cpp - see exposed_faces.hpp.
+#include "core/contact/narrow_phase/exposed_faces.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/contact/geometry/views.hpp"
+#include "core/contact/narrow_phase/edge_contacts.hpp"
+#include "core/model/phase_timer.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Visit all state that belongs to exposed faces: column, numbers a face, what a new one begins
+/// with.
+template <class Visit>
+void visit_faces(State& s, Visit&& visit) {
+  SpringState& c = s.springs;
+  visit(c.target, 4, Index(-1));
+  visit(c.target_before, 4, Index(-1));
+  for (Column<Real>* column : {&c.friction, &c.dashpot}) visit(*column, 4, Real(0));
+  for (Column<Real>* column : {&c.state, &c.reaction}) visit(*column, 4 * 8, Real(0));
+  visit(c.lost, 4, Flag(0));
+  visit(s.edges.friction, 1, Real(0));
+  visit(s.edges.dashpot, 1, Real(0));
+  visit(s.edges.lost, 1, Flag(0));
+  visit(s.face_geometry, 8, Real(0));
+  visit(s.contact_force, 4 * 4, Real(0));
+}
+
+/// `listed` limits the search for sharp sides to some faces; null stands for all.
+void launch_geometry(const Model& m, State& s, Queue q, const Flag* listed) {
+  const Index count = Index(s.search.exposed_face.size());
+  const Index* exposed = s.search.exposed_face.data();
+  for_each_item(q, count,
+                UpdateFaceGeometry{face_columns(m, s), exposed, s.search.exposed.data(),
+                                   s.face_geometry.data()});
+  for_each_item(
+      q, count,
+      MarkSharpSides{face_columns(m, s), listed, s.search.exposed.data(), s.face_geometry.data()});
+}
+
+}  // namespace
+
+void expose(State& s, Index face) {
+  if (s.search.face_exposed[face] >= 0) return;
+  s.search.face_exposed[face] = Index(s.search.exposed_face.size());
+  s.search.exposed_face.push(face);
+  const std::size_t count = s.search.exposed_face.size();
+  visit_faces(s, [&](auto& column, Index row, auto fill) { column.resize(row * count, fill); });
+  s.edges.first.resize(count + 1, Index(s.edges.contact.size() / 4));
+}
+
+/// Put exposed faces into the order of the model, in which faces that are near each other mostly
+/// lie together, also in memory.
+void sort_exposed(State& s) {
+  Column<Index>&exposed = s.search.exposed_face, &place = s.search.face_exposed;
+  const std::size_t count = exposed.size();
+  if (std::is_sorted(exposed.data(), exposed.data() + count)) return;
+  std::vector<Index> from(count), to(count);  // places
+  std::iota(from.begin(), from.end(), 0);
+  std::sort(from.begin(), from.end(), [&](Index a, Index b) { return exposed[a] < exposed[b]; });
+  for (std::size_t x = 0; x < count; ++x) to[from[x]] = Index(x);
+  const auto follow = [&](Column<Index>& targets) {
+    for (std::size_t k = 0; k < targets.size(); ++k)
+      if (targets[k] >= 0) targets[k] = to[targets[k]];
+  };
+  follow(s.springs.target);
+  follow(s.springs.target_before);
+  sort_edges(s, from, to);
+  const auto sort_rows = [&](auto& column, std::size_t row, auto) {
+    const auto before = std::vector(column.data(), column.data() + row * count);
+    for (std::size_t x = 0; x < count; ++x)
+      std::copy_n(before.data() + row * from[x], row, column.data() + row * x);
+  };
+  visit_faces(s, sort_rows);
+  sort_rows(exposed, 1, Index(-1));
+  for (std::size_t x = 0; x < count; ++x) place[exposed[x]] = Index(x);
+}
+
+void list_exposed(const Model& m, State& s) {
+  const SearchState& search = s.search;
+  const std::size_t count = search.exposed_face.size();
+  s.search.exposed.resize(count);
+  for (std::size_t x = 0; x < count; ++x) {
+    const Index face = search.exposed_face[x];
+    ExposedRow& row = s.search.exposed[x];
+    const Index* nodes = m.face_nodes.data() + 4 * std::size_t(face);
+    for (Index k = 0; k < 4; ++k) {
+      const Index across = search.across[4 * x + k];
+      row.corner[k] = nodes[k] < 0 ? nodes[2] : nodes[k];
+      row.beside[k] = across < 0 ? -1 : search.face_exposed[across];
+    }
+    row.reach = m.face_reach[face];
+    row.area = m.face_area[face] / row.count();
+    row.stiffness = m.face_stiffness[face];
+    row.group = m.face_group[face];
+  }
+}
+
+void update_face_geometry(const Model& m, State& s, Queue q) {
+  const PhaseTimer timer(s, Phase::contact);
+  if (has_contact_pairs(s)) launch_geometry(m, s, q, s.search.face_listed.data());
+}
+
+void update_all_face_geometry(const Model& m, State& s, Queue q) {
+  launch_geometry(m, s, q, nullptr);
+}
+
+}  // namespace cdem

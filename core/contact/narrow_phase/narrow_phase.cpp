@@ -1,0 +1,40 @@
+// narrow_phase.cpp - see narrow_phase.hpp.
+#include "core/contact/narrow_phase/narrow_phase.hpp"
+
+#include "core/base/parallel.hpp"
+#include "core/contact/narrow_phase/edge_contacts.hpp"
+#include "core/contact/narrow_phase/views.hpp"
+#include "core/model/phase_timer.hpp"
+
+namespace cdem {
+
+void find_target_faces(const Model& m, State& s, Queue q) {
+  const PhaseTimer timer(s, Phase::search);
+  const Index count = Index(s.search.exposed_face.size());
+  const FaceSearch search = face_search(m, s);
+  for_each_selected(q, count, KeepTargetFaces{search});
+  for_each_selected(q, count, SiftTargetFaces{search});
+  for_each_item(q, 4 * count, FindTargetFaces{search});
+}
+
+void find_target_edges(const Model& m, State& s, Queue q) {
+  if (!m.semi_edges) return;
+  const PhaseTimer timer(s, Phase::search);
+  begin_edges(s);
+  const Index pairs = Index(s.search.close.near_edges.size());
+  for_each_lane(q, pairs,
+                SiftTargetEdges{{s.nodes.motion.data()},
+                                face_geometry(s),
+                                edge_pairs(s),
+                                m.rules,
+                                s.edges.old_first.data()});
+  do {
+    for_each_selected(q, pairs, edge_search(m, s));
+    finish(q);
+  } while (!make_room_for_edges(s));
+  for_each_item(q, Index(s.search.exposed_face.size()),
+                ListEdges{edge_search(m, s), s.edges.first.data(), s.edges.contact.data(),
+                          s.edges.friction.data(), s.edges.dashpot.data()});
+}
+
+}  // namespace cdem

@@ -1,0 +1,21 @@
+// side_pairs.cpp - see side_pairs.hpp.
+#include "core/contact/narrow_phase/side_pairs.hpp"
+
+namespace cdem {
+
+bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,
+                SidePair& pair) {
+  const Index km = k + 1 == faces.vertex_count(face_m) ? 0 : k + 1;
+  const Index jt = j + 1 == faces.vertex_count(face_t) ? 0 : j + 1;
+  const Index mother[2] = {faces.vertex(face_m, k), faces.vertex(face_m, km)};
+  const Index target[2] = {faces.vertex(face_t, j), faces.vertex(face_t, jt)};
+  pair = {k, j, 0};
+  for (Index i = 0; i < 4; ++i) {
+    const Index a = mother[i >> 1], b = target[i & 1];
+    if (faces.node_glue[a] == faces.node_glue[b]) return false;
+    if (faces.node_place[a] == faces.node_place[b]) pair.shared |= 1 << i;
+  }
+  return true;
+}
+
+}  // namespace cdem

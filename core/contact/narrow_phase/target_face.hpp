@@ -1,0 +1,334 @@
+// target_face.hpp - which face a semi-spring touches. Feng et al. (2014), Eq. 6-9.
+#pragma once
+
+#include "core/contact/narrow_phase/contact_columns.hpp"
+#include "core/contact/narrow_phase/vertex_face.hpp"
+
+namespace cdem {
+
+/// What the search for target faces looks at.
+struct FaceSearch {
+  FaceColumns faces;
+  FaceGeometry geometry;
+  const Index* exposed_face;
+  Candidates candidates;
+  SearchRules rules;
+  SpringColumns springs;
+};
+
+/// Keep the target of a semi-spring that is in contact, as most go on: see FindTargetFaces. What
+/// takes a closer look is left to it.
+struct KeepTargetFaces : FaceSearch {
+  CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
+  CDEM_HD bool picks(Index, Index slot) const {
+    springs.target_before[slot] = springs.target[slot];
+    return springs.target[slot] >= 0;
+  }
+
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    using T = Number<I>;
+    const auto& slot = item.id;
+    const auto t = look_up(springs.target_before, slot);
+    const auto node = indices_of([&](Index m, Index s) { return geometry.table[m].corner[s % 4]; },
+                                 item.row, slot);
+    const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
+    const auto corners = geometry.vertices(t);
+    const FaceShape<T> shape = faces.shape(corners);
+    const T gap = project(shape, c.v, c.normal).gap;
+    const T gap_free = InRows{springs.state}.at(slot, 4).x, zero(0.0);
+    const T lifted = T(2.0) * max_of(gap_free, zero);
+    const T depth = T(rules.depth) * c.length - min_of(gap_free, zero);
+    const auto glued = [&](Index j) {
+      return differ(look_up(faces.node_glue, corners.node[j]), look_up(faces.node_glue, node));
+    };
+    const auto kept = c.opposes & shape.inside(c.p, c.normal, T(rules.tolerance) * c.length) &
+                      !((gap > lifted) | (gap < -depth)) & glued(0) & glued(1) & glued(2) &
+                      glued(3);
+    for_lanes(item, [&](Index lane, Index, Index id) {
+      if (!holds(kept, lane)) springs.target[id] = SpringColumns::sought;
+    });
+  }
+};
+
+/// Sift the faces that semi-springs without contact may touch: many cannot, for reasons that are
+/// seen in SIMD lanes. Those that may are left to FindTargetFaces; that their tests are the same
+/// but for some room in the depth, nothing found depends on it.
+struct SiftTargetFaces : FaceSearch {
+  /// Nothing where all vertices are in contact, as at rest.
+  CDEM_HD Range items(Index m) const {
+    const Index first = candidates.first[4 * m], *before = springs.target_before + 4 * m;
+    const bool held = before[0] >= 0 && before[1] >= 0 && before[2] >= 0 &&
+                      (before[3] >= 0 || geometry.table[m].count() == 3);
+    return {first, held ? first : candidates.first[4 * m + 4]};
+  }
+  CDEM_HD bool picks(Index m, Index c) const {
+    return springs.target_before[4 * m + vertex_of(candidates.first, m, c)] < 0;
+  }
+
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    using T = Number<I>;
+    const auto t = look_up(candidates.other, item.id);
+    const auto node = indices_of(
+        [&](Index m, Index c) {
+          return geometry.table[m].corner[vertex_of(candidates.first, m, c)];
+        },
+        item.row, item.id);
+    const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
+    const T zero(0.0), plane = dot(c.normal, c.v - c.center);
+    const T above = select(c.target_length > zero, zero, T(-0.5) * c.target_length);
+    const T room = T(rules.tolerance) * c.length;
+    const Vec3<T> arm = c.p - c.center;
+    const T up = dot(c.normal, arm),
+            reach = numbers_of([&](Index x) { return geometry.table[x].reach; }, t) + room;
+    const auto may = c.opposes & !(plane > above) & !(plane < T(-rules.depth) * c.length - above) &
+                     (dot(arm, arm) - up * up < reach * reach);
+    if (!any_of(may)) return mark(item, may);
+    const auto corners = geometry.vertices(t);
+    const FaceShape<T> shape = faces.shape(corners);
+    const auto inside = may & shape.inside(c.p, c.normal, room);
+    const auto deep = may & (plane < T(-rules.entry) * c.length);
+    auto begins = inside;
+    if (any_of(inside)) {
+      const T gap = project(shape, c.v, c.normal).gap;
+      const T entry = T(1.000001 * rules.entry) * c.length;  // and room for round-off
+      begins = begins & !(gap > zero);
+      if (any_of(begins & (gap < -entry)))
+        begins = begins & !(gap < -entry - T(1.000001) * approach(c, node, corners));
+    }
+    if (!any_of(deep)) return mark(item, begins);
+    // what lies deeper than a contact may begin must be inside the block
+    mark(item, begins | (deep & !escapes(c, t, plane)));
+  }
+
+ private:
+  template <class I, class M>
+  CDEM_HD void mark(const I& item, const M& may) const {
+    for_lanes(item, [&](Index lane, Index m, Index c) {
+      candidates.may_begin[c] = holds(may, lane);
+      const Index slot = 4 * m + vertex_of(candidates.first, m, c);
+      if (holds(may, lane) && springs.target[slot] < 0)
+        springs.target[slot] = SpringColumns::sought;
+    });
+  }
+  template <class T, class Ids>
+  CDEM_HD T approach(const VertexFace<T>& c, const Ids& node,
+                     const FaceVertices<Ids>& corners) const {
+    const Vec3<T> v0 = faces.nodes.velocity(corners.node[0]),
+                  v1 = faces.nodes.velocity(corners.node[1]),
+                  v2 = faces.nodes.velocity(corners.node[2]),
+                  v3 = faces.nodes.velocity(corners.node[3]), sum = v0 + v1 + v2;
+    const Vec3<T> mean = select(corners.quad(), T(1.0 / 4.0) * (sum + v3), T(1.0 / 3.0) * sum);
+    return T(rules.approach_steps * faces.dt) *
+           abs_of(dot(c.normal, faces.nodes.velocity(node) - mean));
+  }
+  /// Is the way out of the block shorter through a face beside t? See FindTargetFaces::encloses.
+  /// Faces that are not exposed are left to it.
+  template <class T, class Ids>
+  CDEM_HD Truth<T> escapes(const VertexFace<T>& c, const Ids& t, const T& plane) const {
+    Truth<T> found = plane > plane;
+    for (Index k = 0; k < 4; ++k) {
+      const auto beside = indices_of(
+          [&](Index y) {
+            const Index other = geometry.table[y].beside[k];
+            return other >= 0 ? other : y;
+          },
+          t);
+      const auto row = geometry.row(beside);
+      found = found | ((dot(c.normal, row.center - c.center) < T(0.0)) &
+                       (dot(row.normal, c.v - row.center) > plane));
+    }
+    return found;
+  }
+};
+
+/// Choose the target face of one semi-spring.
+///
+/// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
+/// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
+/// into it, v is behind its plane within the limit, and no exterior edge that leaves v goes deeper
+/// (v is the locally deepest point). The current target is kept while the vertex is behind it,
+/// whatever its edges do. A contact that has dilated acts above the plane, and is kept to twice the
+/// height to which it has risen.
+///
+/// Some vertices sink past the limit for new contacts all the same: while another target keeps
+/// their spring, or beside a rim where an edge that leaves them reaches deeper, in free air. One
+/// that is truly inside a block may begin as deep as a contact is kept, at the nearest face and
+/// whatever its edges do; like all that begins inside it is free of stress there.
+struct FindTargetFaces : FaceSearch {
+  CDEM_HD void operator()(One slot) const {
+    if (springs.target[slot.i] != SpringColumns::sought) return;
+    FaceList listed = listed_for(slot.i);
+    if (springs.target_before[slot.i] < 0)
+      listed.may_begin = candidates.may_begin + candidates.first[slot.i];
+    springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, listed, springs.lost + slot.i);
+  }
+
+  /// The faces close to the vertex of a slot.
+  CDEM_HD FaceList listed_for(Index slot) const {
+    const Index first = candidates.first[slot];
+    return {candidates.other + first, nullptr, candidates.first[slot + 1] - first};
+  }
+  /// Target of vertex k of exposed face m among others, or none; `lost` is set where a loaded
+  /// contact sank too deep.
+  CDEM_HD Index choose(Index m, Index k, const FaceList& others, Flag* lost) const {
+    Seeker s = start(m, k, lost);
+    for (Index c = 0; c < others.count && !s.kept; ++c) {
+      if (!others.takes(c)) continue;
+      const Index t = others.other[c];
+      if (!opposes(m, t)) continue;
+      const Real near = above(t), length = smaller_length(m, t);
+      const Real plane = plane_gap(s.v, t);
+      if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
+      if (!beside(s.p, t, rules.tolerance * length)) continue;
+      // what lies flatter may begin whatever the approach
+      const bool flat = geometry.is_triangle(t) && plane > -0.9 * rules.entry * length;
+      const Real entry = rules.entry * length + (flat ? 0.0 : approach(s.node, t)) + s.hand_over;
+      const bool sunk = s.free && plane < -entry && encloses(t, s.v, plane);
+      const Real limit = sunk ? deepest_inside(t, length) : entry;
+      const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, sunk});
+      if (gap < none && gap > s.gap) {
+        s.best = t;
+        s.gap = gap;
+      }
+    }
+    return s.best;
+  }
+
+ private:
+  static constexpr Real none = 1e300;  // a gap that is no contact
+
+  /// One vertex that seeks its target.
+  struct Seeker {
+    Index node, best;
+    Vec3<Real> v, p;  // true vertex, indented point
+    Real gap, hand_over;
+    Real lifted;  // highest gap of a contact  [m]
+    bool kept;    // the current target still qualifies
+    bool free;    // there was none
+  };
+
+  /// What is asked of a contact.
+  struct Terms {
+    Real lifted, limit;  // highest gap, and lowest below zero  [m]
+    bool inside;  // it is inside the block: need not be the deepest point, and may lie behind
+                  // a corner, beside neither face
+  };
+
+  CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
+    const Index slot = 4 * m + k, current = springs.target_before[slot];
+    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, current < 0};
+    s.v = faces.nodes.position(s.node);
+    s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
+    if (current < 0) return s;
+    const ContactState state = ContactState::at(springs.state, slot);
+    const bool loaded = state.force_n > 0;
+    const Real length = smaller_length(m, current), gap_free = state.gap_free;
+    const Real depth = rules.depth * length - min_of(gap_free, 0.0);
+    s.lifted = 2 * max_of(gap_free, 0.0);
+    if (qualify(m, s.node, s.v, s.p, current, {s.lifted, depth, true}) < none) {
+      s.best = current;
+      s.kept = true;
+      return s;
+    }
+    const Real old_gap = plane_gap(s.v, current);
+    // a loaded spring may enter its next face as deep as it leaves the last
+    if (loaded && old_gap < 0) s.hand_over = -1.5 * old_gap;
+    if (loaded && sank_below(s.p, current, old_gap, depth)) *lost = 1;
+    return s;
+  }
+  CDEM_HD bool opposes(Index m, Index t) const {
+    return dot(geometry.normal(m), geometry.normal(t)) < -rules.opposing;
+  }
+  CDEM_HD Real smaller_length(Index m, Index t) const {
+    return min_of(geometry.length(m), geometry.length(t));
+  }
+  CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
+    return dot(geometry.normal(t), v - geometry.center(t));
+  }
+  /// Down to here what is behind a face is not yet beyond the other side of its block.
+  CDEM_HD Real deepest_inside(Index t, Real length) const {
+    return min_of(rules.depth * length, 0.5 * faces.face_height[exposed_face[t]]);
+  }
+  /// Is a point that lies behind face t by `plane` < 0 at least as far behind the faces that bend
+  /// away across its sides? Then t is where the way out of the block is shortest.
+  CDEM_HD bool encloses(Index t, const Vec3<Real>& v, Real plane) const {
+    for (Index k = 0; k < faces.vertex_count(exposed_face[t]); ++k) {
+      const Index across = faces.across(t, k);
+      if (across < 0) continue;
+      const Index exposed = faces.face_exposed[across];
+      const Vec3<Real> center =
+          exposed >= 0 ? geometry.center(exposed) : faces.shape(across).center();
+      if (plane_gap(center, t) < 0 && dot(normal_across(faces, geometry, t, k), v - center) > plane)
+        return false;
+    }
+    return true;
+  }
+  /// A warped face may reach above its mean plane; a plane one does not.
+  CDEM_HD Real above(Index t) const {
+    return geometry.is_triangle(t) ? 0.0 : 0.5 * geometry.length(t);
+  }
+  CDEM_HD Real approach(Index node, Index t) const {
+    const Index face = exposed_face[t];
+    Vec3<Real> target_velocity{0.0, 0.0, 0.0};
+    const Index count = faces.vertex_count(face);
+    for (Index j = 0; j < count; ++j)
+      target_velocity = target_velocity + faces.nodes.velocity(faces.vertex(face, j));
+    const Vec3<Real> relative =
+        faces.nodes.velocity(node) - Real(1.0) / Real(count) * target_velocity;
+    return rules.approach_steps * faces.dt * abs_of(dot(geometry.normal(t), relative));
+  }
+  /// Cheap part of the inside test: P lies within reach of the face's centre.
+  CDEM_HD bool beside(const Vec3<Real>& p, Index t, Real tolerance) const {
+    const Vec3<Real> n = geometry.normal(t), arm = p - geometry.center(t);
+    const Real up = dot(n, arm), reach = geometry.table[t].reach + tolerance;
+    return dot(arm, arm) - up * up < reach * reach;
+  }
+  CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
+    return gap < -depth && faces.shape(exposed_face[t]).inside(p, geometry.normal(t), 0.0);
+  }
+  /// Is a point that is not beside face t behind it all the same, between the normals of t and of
+  /// the faces that rise beyond its sides, where it is beside none of them? A vertex that is
+  /// pressed into a corner from inside comes there.
+  CDEM_HD bool behind_corner(Index t, const FaceShape<Real>& f, const Vec3<Real>& v,
+                             const Vec3<Real>& p, const Vec3<Real>& n, Real room) const {
+    for (Index k = 0; k < f.count(); ++k) {
+      const Vec3<Real> a = f.x[k], side = f.x[k + 1 == f.count() ? 0 : k + 1] - a;
+      if (!outside(a, side, n, p, room)) continue;
+      const Index across = faces.across(t, k);
+      if (across < 0) return false;
+      const FaceShape<Real> beyond_it = faces.shape(across);
+      const Vec3<Real> u = beyond_it.normal();
+      const bool rises = dot(n, beyond_it.center() - a) > 0 && !(dot(n, u) > coplanar_faces);
+      if (!rises || dot(u, v - a) > 0 || dot(cross(u, side), p - a) < 0) return false;
+    }
+    return true;
+  }
+  /// Gap of the vertex to face t if it is in contact there on the given terms, else `none`.
+  CDEM_HD Real qualify(Index m, Index node, const Vec3<Real>& v, const Vec3<Real>& p, Index t,
+                       const Terms& terms) const {
+    if (!opposes(m, t)) return none;
+    const Vec3<Real> n = geometry.normal(t);
+    const FaceShape<Real> f = faces.shape(exposed_face[t]);
+    const Real room = rules.tolerance * smaller_length(m, t);
+    if (!f.inside(p, n, room) && !(terms.inside && behind_corner(t, f, v, p, n, room))) return none;
+    const Real gap = project(f, v, n).gap;
+    if (gap > terms.lifted || gap < -terms.limit) return none;
+    for (Index j = 0; j < f.count(); ++j)
+      if (faces.node_glue[faces.vertex(exposed_face[t], j)] == faces.node_glue[node]) return none;
+    return terms.inside || deepest(node, v, n) ? gap : none;
+  }
+  /// No edge that leaves v, or what is bonded to it there, goes below the plane through v.
+  CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {
+    const Index point = faces.node_glue[node];
+    for (Index r = faces.ring_first[point]; r < faces.ring_first[point + 1]; ++r) {
+      const Vec3<Real> d = faces.nodes.position(faces.ring[r]) - v;
+      const Real down = -dot(d, n);
+      if (down > 0 && down * down > rules.cone * rules.cone * dot(d, d)) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace cdem

@@ -1,0 +1,17 @@
+// inner_list.hpp - inner pair list: pairs of the outer list that can come into contact within the
+// next few steps.
+#pragma once
+
+#include "core/base/device.hpp"
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Take the inner list from the outer one if it is too old.
+void prune_pair_list_if_due(const Model& model, State& state, Queue queue);
+
+/// Make them, with room for the motion to come (see close_way).
+void list_close(const Model& model, State& state, Queue queue);
+
+}  // namespace cdem

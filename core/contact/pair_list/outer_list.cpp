@@ -1,0 +1,234 @@
+// outer_list.cpp - see outer_list.hpp.
+#include "core/contact/pair_list/outer_list.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/contact/broad_phase/pair_search.hpp"
+#include "core/contact/broad_phase/predicted_motion.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Ragged rows, one for each exposed face.
+template <class T>
+struct Rows {
+  std::vector<Index> first;
+  Unset<T> items;
+  T* begin(Index x) { return items.data() + first[x]; }
+  T* end(Index x) { return items.data() + first[x + 1]; }
+  const T* begin(Index x) const { return items.data() + first[x]; }
+  const T* end(Index x) const { return items.data() + first[x + 1]; }
+};
+
+/// Counts that several threads may raise: where a row's next item goes. Which of them comes first
+/// is left to chance, so rows must be sorted.
+struct Counters {
+  Index* counts;
+  bool alone = runs_alone();
+  Index raise(std::size_t i) const { return cdem::raise(counts[i], alone); }
+};
+
+/// Make starts of rows of counts: counts[i + 1] were those of row i.
+template <class Counts>
+void add_up(Counts& counts, std::size_t rows) {
+  for (std::size_t i = 0; i < rows; ++i) counts[i + 1] += counts[i];
+}
+
+/// Deal out what was found to the mother faces; rows are sorted by `key`.
+template <class T, class Key>
+Rows<T> by_mother(const AllProximity& found, std::vector<T> Proximity::* list, Index count,
+                  const Key& key) {
+  Rows<T> rows;
+  rows.first.resize(count + 1);
+  const auto visit = [&](auto&& at) {
+    for (const Proximity& of : found.by_thread) {
+      const std::vector<T>& items = of.*list;
+#pragma omp parallel for schedule(static) if (items.size() >= worth_threads)
+      for (std::size_t i = 0; i < items.size(); ++i) at(items[i]);
+    }
+  };
+  const Counters number{rows.first.data() + 1};
+  visit([&](const T& item) { number.raise(item.mother); });
+  add_up(rows.first, count);
+  rows.items.resize(rows.first[count]);
+  std::vector<Index> places(rows.first.begin(), rows.first.end() - 1);
+  const Counters next{places.data()};
+  visit([&](const T& item) { rows.items[next.raise(item.mother)] = item; });
+#pragma omp parallel for schedule(dynamic, 64) if (count >= worth_threads)
+  for (Index x = 0; x < count; ++x)
+    std::sort(rows.begin(x), rows.end(x), [&](const T& a, const T& b) { return key(a) < key(b); });
+  return rows;
+}
+
+using Touches = Rows<Proximity::Touch>;
+using Share = AllProximity::Share;
+
+/// Where the pairs of each patch begin in the list of all.
+std::vector<Index> places(const AllProximity& found, Range Share::* share) {
+  std::vector<Index> first(found.by_patch.size() + 1);
+  for (std::size_t p = 0; p < found.by_patch.size(); ++p)
+    first[p + 1] = first[p] + (found.by_patch[p].*share).last - (found.by_patch[p].*share).first;
+  return first;
+}
+
+/// List the pairs that have been found, patch after patch, with what they are of and room; `also`
+/// gets every pair and its place.
+template <class Pair, class Also>
+void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
+                Range Share::* share, const std::vector<Index>& first, Column<Index>& of,
+                Column<float>& room, const Also& also) {
+  const Index patches = Index(found.by_patch.size()), count = first.back();
+  const std::size_t stride = padded_stride(count);
+  of.resize(2 * stride);
+  for (std::size_t k = 0; k < 2; ++k)  // lanes go on past the last
+    std::fill(of.data() + k * stride + count, of.data() + (k + 1) * stride, 0);
+  room.resize(std::size(Pair{}.room) * stride);
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
+  for (Index p = 0; p < patches; ++p) {
+    const std::vector<Pair>& list = found.by_thread[found.by_patch[p].thread].*pairs;
+    const Range range = found.by_patch[p].*share;
+    std::size_t place = first[p];
+    for (Index i = range.first; i < range.last; ++i, ++place) {
+      const Pair& pair = list[i];
+      for (std::size_t k = 0; k < 2; ++k) of[k * stride + place] = pair.of[k];
+      for (std::size_t k = 0; k < std::size(pair.room); ++k)
+        room[k * stride + place] = float(pair.room[k]);
+      also(pair, place);
+    }
+  }
+}
+
+/// The pairs of vertex and face; touches learn the places of those that they are of.
+void list_face_pairs(AllProximity& found, SearchState& search) {
+  const std::vector<Index> first = places(found, &Share::faces);
+  list_pairs(found, &Proximity::faces, &Share::faces, first, search.faces_of, search.faces_bounds,
+             [](const auto&, std::size_t) {});
+  const Index patches = Index(found.by_patch.size());
+#pragma omp parallel for schedule(static, 128) if (first.back() >= worth_threads)
+  for (Index p = 0; p < patches; ++p) {
+    const Share& share = found.by_patch[p];
+    std::vector<Proximity::Touch>& touches = found.by_thread[share.thread].touches;
+    for (Index i = share.touches.first; i < share.touches.last; ++i)
+      touches[i].pair += first[p] - share.faces.first;
+  }
+}
+
+/// The pairs of edges.
+void list_edge_pairs(const AllProximity& found, SearchState& search) {
+  const std::vector<Index> first = places(found, &Share::edges);
+  search.edge_sides.assign(found.edge_sides.data(), found.edge_sides.size());
+  search.edges_code.resize(first.back());
+  list_pairs(found, &Proximity::edges, &Share::edges, first, search.edges_of, search.edges_bounds,
+             [&](const Proximity::Edges& pair, std::size_t place) {
+               search.edges_code[place] = pair.code;
+             });
+}
+
+/// For every edge of the mesh the pairs that it is of, and the other edges.
+void list_pairs_of_edges(const Model& m, SearchState& search) {
+  const Index count = Index(search.edges_code.size());
+  const std::size_t stride = padded_stride(count);
+  Column<Index>&first = search.edge_pairs_first, &pairs = search.edge_pairs;
+  first.resize(count > 0 ? m.edge_nodes.size() / 2 + 1 : 0);
+  first.fill(0);
+  pairs.resize(4 * std::size_t(count));
+  if (count == 0) return;
+  const auto edge = [&](Index p, Index which) {
+    const Index side = search.edge_sides[2 * std::size_t(search.edges_of[which * stride + p])];
+    return m.face_edges[4 * search.exposed_face[side / 4] + side % 4];
+  };
+  for (Index p = 0; p < count; ++p)
+    for (const Index which : {0, 1}) ++first[edge(p, which) + 1];
+  add_up(first, first.size() - 1);
+  std::vector<Index> places(first.data(), first.data() + first.size() - 1);
+  for (Index p = 0; p < count; ++p)
+    for (const Index which : {0, 1}) {
+      const std::size_t place = places[edge(p, which)]++;
+      pairs[2 * place] = p;
+      pairs[2 * place + 1] = edge(p, 1 - which);
+    }
+}
+
+/// For every exposed face the others that list it: their contacts may act on it.
+void list_sources(const AllProximity& found, Index count, SearchState& search) {
+  Column<Index>&first = search.source_first, &source = search.source;
+  Column<Flag>& listed = search.face_listed;
+  first.resize(count + 1);
+  first.fill(0);
+  listed.resize(count);
+  listed.fill(0);
+  const auto visit = [&](auto&& at) {
+    for (const Proximity& of : found.by_thread) {
+#pragma omp parallel for schedule(static) if (of.meetings.size() >= worth_threads)
+      for (std::size_t i = 0; i < of.meetings.size(); ++i) at(of.meetings[i]);
+    }
+  };
+  const Counters number{first.data() + 1};
+  visit([&](const Proximity::Meeting& meeting) {
+    number.raise(meeting.face);
+    set(listed[meeting.face]);
+    set(listed[meeting.mother]);
+  });
+  add_up(first, count);
+  source.resize(first[count]);
+  std::vector<Index> next_places(first.data(), first.data() + count);
+  const Counters next{next_places.data()};
+  visit([&](const Proximity::Meeting& meeting) {
+    source[next.raise(meeting.face)] = meeting.mother;
+  });
+#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
+  for (Index y = 0; y < count; ++y)
+    std::sort(source.data() + first[y], source.data() + first[y + 1]);
+}
+
+void list_touches(SearchState& search, const Touches& touches) {
+  const Index count = Index(touches.first.size()) - 1;
+  Column<Index>&first = search.candidate_first, &other = search.candidate;
+  first.resize(4 * std::size_t(count) + 1);
+  first.fill(0);
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index x = 0; x < count; ++x)
+    for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
+      ++first[4 * std::size_t(x) + t->vertex + 1];
+  add_up(first, 4 * std::size_t(count));
+  other.resize(first[4 * std::size_t(count)]);
+  search.candidate_pair.resize(other.size());
+#pragma omp parallel for schedule(static) if (count >= worth_threads)
+  for (Index x = 0; x < count; ++x)
+    for (Index k = 0; k < 4; ++k) {
+      Index place = first[4 * x + k];
+      for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
+        if (t->vertex == k) {
+          search.candidate_pair[place] = t->pair;
+          other[place++] = t->face;
+        }
+    }
+}
+
+}  // namespace
+
+void list_candidates(const Model& m, State& s) {
+  foresee_motion(m, s);
+  if (!s.search.lists) s.search.lists = std::make_shared<ProximitySearch>();
+  find_proximity(m, s, *s.search.lists);
+  AllProximity& found = s.search.lists->found;
+  const Index count = Index(s.search.exposed_face.size());
+  list_face_pairs(found, s.search);
+  list_edge_pairs(found, s.search);
+  list_pairs_of_edges(m, s.search);
+  s.search.turn_soon.resize(count);
+  for (Index x = 0; x < count; ++x) s.search.turn_soon[x] = s.search.lists->exposed[x].turn_soon;
+  s.search.close.known = false;
+  list_sources(found, count, s.search);
+  list_touches(s.search,
+               by_mother(found, &Proximity::touches, count,
+                         [](const Proximity::Touch& t) { return std::pair(t.face, t.vertex); }));
+}
+
+}  // namespace cdem

@@ -1,0 +1,289 @@
+// prune.hpp - kernels that take the inner pair list from the outer one.
+//
+// The tests of the narrow phase, made now and then and with room for how far everything may move
+// before they are made again. What they leave out cannot touch before, so that what is found in
+// contact does not depend on them.
+#pragma once
+
+#include "core/base/parallel.hpp"
+#include "core/contact/narrow_phase/contact_columns.hpp"
+#include "core/contact/narrow_phase/edge_pair.hpp"
+#include "core/contact/narrow_phase/vertex_face.hpp"
+
+namespace cdem {
+
+/// Mark the pairs of vertex and face that may soon be in contact. One test stands for the
+/// semi-springs in all faces at the vertex, and has room for what distinguishes them.
+struct MarkNearFaces {
+  InMotion nodes;
+  FaceGeometry geometry;
+  InIndices of;      // [2][pair]: node of the vertex; exposed face
+  InBounds room;     // [6][pair]: highest above the face and lowest below it, farthest outside a
+                     // side; depth from which it may lie outside, and distance from the centre of
+                     // three corners that it has then at most; how far the vertex may soon move
+                     // as seen from the face, which all have room for: without skins  [m]
+  const Real* turn;  // [exposed] how much its normal may soon turn  [rad]
+  const Real* skin;  // [node]  [m]
+  Flag* near;
+  Real* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
+
+  template <class I>
+  CDEM_HD void operator()(I p) const {
+    using T = Number<I>;
+    const auto vertex = of.at(0, p), face = of.at(1, p);
+    const auto corners = geometry.vertices(face);
+    const Vec3<T> v = nodes.position(vertex);
+    const Vec3<T> x[4] = {nodes.position(corners.node[0]), nodes.position(corners.node[1]),
+                          nodes.position(corners.node[2]), nodes.position(corners.node[3])};
+    const Vec3<T> n = cross(x[2] - x[0], x[3] - x[1]);
+    const T n2 = dot(n, n), gap = dot(n, v - x[0]);  // times |n|
+    const T gap2 = gap * gap;
+    const auto below = gap < T(0.0);
+    const auto skin_at = [&](Index k) { return look_up(skin, corners.node[k]); };
+    const T skins = look_up(skin, vertex) +
+                    max_of(max_of(skin_at(0), skin_at(1)), max_of(skin_at(2), skin_at(3)));
+    store(motion, p, room.at(5, p) + skins);
+    const T most = select(below, room.at(1, p), room.at(0, p)) + skins;
+    // how much what is above the face moves along it as the face turns
+    const T along = T(2.0) * look_up(turn, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
+    const T reach = room.at(4, p) + skins + along, aside = room.at(2, p) + skins + along;
+    const T sunk = max_of(room.at(3, p) - skins, T(0.0));
+    auto outside = beyond(x[0], x[1], n, n2, v, aside) | beyond(x[1], x[2], n, n2, v, aside);
+    outside = outside | beyond(x[2], x[3], n, n2, v, aside) | beyond(x[3], x[0], n, n2, v, aside);
+    const Vec3<T> arm = v - T(1.0 / 3.0) * (x[0] + x[1] + x[2]);
+    const auto beside = dot(arm, arm) * n2 - gap2 > reach * reach * n2;
+    const auto deep = below & (gap2 > sunk * sunk * n2);
+    set_flags(near, p, !((gap2 > most * most * n2) | beside | (outside & !deep)));
+  }
+
+ private:
+  /// Is a point farther outside the side from a to b than `room`?
+  template <class T>
+  CDEM_HD static auto beyond(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& n, const T& n2,
+                             const Vec3<T>& point, const T& room) {
+    const Vec3<T> side = b - a;
+    const T out = dot(cross(side, n), point - a);  // times |n| and the length of the side
+    return (out > T(0.0)) & (out * out > room * room * n2 * dot(side, side));
+  }
+};
+
+/// Faces that a vertex of an exposed face may touch before the next refresh: ragged rows.
+struct ListedFaces {
+  const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
+  const Index* other;  // exposed face, ascending in a row
+  const Index* pair;   // pair of vertex and face
+  const Flag* near;    // [pair] see MarkNearFaces
+  const Real* motion;  // [pair] the same
+  const Real* turn;    // [exposed] how much its normal may soon turn  [rad]
+};
+
+/// Of the faces that are near a vertex, mark those on which a semi-spring may soon go on or begin:
+/// what FindTargetFaces asks of its indented point and of the two faces, with room.
+struct MarkCloseFaces {
+  FaceColumns faces;
+  FaceGeometry geometry;
+  SearchRules rules;
+  ListedFaces listed;
+  Flag* close;  // [listed]
+
+  CDEM_HD Range items(Index m) const { return {listed.first[4 * m], listed.first[4 * m + 4]}; }
+  CDEM_HD bool picks(Index, Index c) const {
+    close[c] = 0;
+    return listed.near[listed.pair[c]];
+  }
+
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    using T = Number<I>;
+    const auto t = look_up(listed.other, item.id);
+    const auto node = indices_of(
+        [&](Index m, Index c) { return geometry.table[m].corner[vertex_of(listed.first, m, c)]; },
+        item.row, item.id);
+    const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
+    const T turns = look_up(listed.turn, item.row) + look_up(listed.turn, t);
+    const auto opposes = dot(geometry.normal(item.row), c.normal) < turns - T(rules.opposing);
+    const T motion = numbers_of([&](Index x) { return listed.motion[listed.pair[x]]; }, item.id);
+    const T zero(0.0), plane = dot(c.normal, c.v - c.center);
+    const T above = select(c.target_length > zero, zero, T(-0.5) * c.target_length) + motion;
+    const T along = T(2.0) * look_up(listed.turn, t) * (abs_of(plane) + motion);
+    const T room = T(rules.tolerance) * c.length + motion + along;
+    auto may = opposes & !(plane > above + T(rules.lifted)) &
+               !(plane < T(-rules.depth) * c.length - above);
+    if (any_of(may)) {
+      const auto inside = faces.shape(geometry.vertices(t)).inside(c.p, c.normal, room);
+      // what lies deeper than a contact may begin may be behind a corner
+      may = may & (inside | (plane < motion - T(rules.entry) * c.length));
+    }
+    for_lanes(item, [&](Index lane, Index, Index id) { close[id] = holds(may, lane); });
+  }
+};
+
+/// Count those that are marked, slot by slot.
+struct CountCloseFaces {
+  const Index* first;
+  const Flag* close;
+  Index* count;  // [4 * exposed]
+
+  CDEM_HD void operator()(One slot) const {
+    Index found = 0;
+    for (Index c = first[slot.i]; c < first[slot.i + 1]; ++c) found += close[c];
+    count[slot.i] = found;
+  }
+};
+
+/// List them.
+struct ListCloseFaces {
+  ListedFaces listed;
+  const Flag* close;
+  const Index* first;  // [4 * exposed + 1] of the new list
+  Index* other;
+
+  CDEM_HD void operator()(One slot) const {
+    Index place = first[slot.i];
+    for (Index c = listed.first[slot.i]; c < listed.first[slot.i + 1]; ++c)
+      if (close[c]) other[place++] = listed.other[c];
+  }
+};
+
+/// Pairs of edges that may touch before the next refresh.
+struct ListedEdges {
+  InIndices of;             // [2][pair]: places in `sides`
+  const Index* code;        // [pair]: see EdgeWays
+  const Index* sides;       // [edge][2]: 4 * exposed face + side, or -1
+  const ExposedRow* table;  // of exposed faces
+
+  /// Nodes of one edge, and of the other, see EdgePairs.
+  template <class I>
+  CDEM_HD auto end(Index k, I pair) const {
+    return indices_of(
+        [&](Index p) {
+          const Index side = sides[2 * of.at(k / 2, One{p})];
+          const ExposedRow& face = table[side / 4];
+          return EdgeWays::is_turned(code[p], k / 2) == (k % 2 == 0) ? face.end(side % 4)
+                                                                     : face.corner[side % 4];
+        },
+        pair);
+  }
+};
+
+/// Mark the pairs of edges that may soon begin to touch. One test stands for the sides of all faces
+/// at both edges, in either direction, and has room for what distinguishes them: their indentation
+/// and the rate of approach.
+///
+/// Where two edges touch, points of theirs lie on the contact normal, no deeper than a contact may
+/// begin. No two points of the edges move relative to each other by more than `motion` until then,
+/// so that now they are on the right side of each other but for that, and in the plane across the
+/// common perpendicular, which turns by `swing`, as far apart as that and `swing` times the depth.
+struct MarkNearEdges {
+  InMotion nodes;
+  ListedEdges listed;
+  InBounds room;  // [6][pair]: depth at which a contact may begin; how far the indentation moves an
+                  // edge aside, at most  [m]; side on which one edge must be of the other, along
+                  // the cross product: 1, -1, 0: either; what it takes from the ends of an edge, at
+                  // least; distance of the first ends at which edges are together; how far two
+                  // points of theirs may soon move relative to each other, without skins  [m]
+  const Real* skin;  // [node]  [m]
+  SearchRules rules;
+  Real dt;  // of the last step  [s]
+  Flag* near;
+
+  static constexpr Real round_off = 1e-8;  // of a gap, in parts of the depth
+
+  template <class I>
+  CDEM_HD void operator()(I p) const {
+    using T = Number<I>;
+    const auto a0 = listed.end(0, p), a1 = listed.end(1, p);
+    const auto b0 = listed.end(2, p), b1 = listed.end(3, p);
+    const Vec3<T> start_a = nodes.position(a0), start_b = nodes.position(b0);
+    const Vec3<T> along_a = nodes.position(a1) - start_a, along_b = nodes.position(b1) - start_b;
+    const Vec3<T> c = cross(along_a, along_b), apart = start_b - start_a;
+    const T c2 = dot(c, c), a2 = dot(along_a, along_a), b2 = dot(along_b, along_b);
+    const T gap = dot(c, apart), gap2 = gap * gap;  // times |c|
+    const Vec3<T> va = nodes.velocity(a0), vb = nodes.velocity(b0);
+    const T rate = size(va - vb) + size(nodes.velocity(a1) - va) + size(nodes.velocity(b1) - vb);
+    // between two steps nothing moves farther than twice the motion
+    const T motion = room.at(5, p) + max_of(look_up(skin, a0), look_up(skin, a1)) +
+                     max_of(look_up(skin, b0), look_up(skin, b1));
+    const T approach = T(rules.approach_steps) * max_of(T(dt) * rate, T(2.0) * motion);
+    const T depth = room.at(0, p) + approach + motion, shift = room.at(1, p);
+    const T behind = motion + T(round_off) * depth;
+    const T parted = max_of(room.at(4, p) - motion, T(0.0));
+    const auto far = (gap2 > depth * depth * c2) |
+                     ((room.at(2, p) * gap < T(0.0)) & (gap2 > behind * behind * c2)) |
+                     (dot(apart, apart) < parted * parted);
+    if (!any_of(!far)) return set_flags(near, p, !far);
+    const T long_a = sqrt_of(a2), long_b = sqrt_of(b2), per_c = T(1.0) / sqrt_of(c2);
+    const T sine = T(1.0) / (per_c * long_a * long_b);
+    const T turns = T(2.0) * motion * (T(1.0) / long_a + T(1.0) / long_b);
+    const auto parallel = sine + turns < T(parallel_edges);
+    const auto open = !(sine > T(2.0) * turns);  // may turn into anything
+    // where the lines cross, from the starts of the edges [m]. An indented edge lies beside the
+    // true one by `shift` at most, so that the crossing with the target moves by shift / sin of the
+    // angle between the two on the target, and by shift * cot on the edge itself.
+    const T on_a = dot(cross(apart, along_b), c) * per_c * per_c * long_a;
+    const T on_b = dot(cross(apart, along_a), c) * per_c * per_c * long_b;
+    const T least = sine - turns, swing = turns / least;
+    const T off = (motion + swing * depth) / least + T(2.0) * motion;
+    const T cot = abs_of(dot(along_a, along_b)) * per_c + swing / least;
+    const T inset = room.at(3, p) - shift * cot - off, beside = -shift / least - off;
+    const auto crosses = (within(on_a, inset, long_a) & within(on_b, beside, long_b)) |
+                         (within(on_b, inset, long_b) & within(on_a, beside, long_a));
+    set_flags(near, p, !(far | parallel) & (open | crosses));
+  }
+
+ private:
+  /// Not less than the length of a vector.
+  template <class T>
+  CDEM_HD static T size(const Vec3<T>& v) {
+    return abs_of(v.x) + abs_of(v.y) + abs_of(v.z);
+  }
+  /// Does a place on an edge lie at least `from_ends` from both ends?
+  template <class T>
+  CDEM_HD static auto within(const T& place, const T& from_ends, const T& length) {
+    return !((place < from_ends) | (place > length - from_ends));
+  }
+};
+
+/// Those that are in contact must be looked at all the same: whatever faces the pair is listed for,
+/// as another face at the target edge may be the right one soon.
+struct MarkHeldEdges {
+  const Index* exposed_face;
+  const Index* face_edges;  // see FaceColumns
+  const Index* contact;     // rows of EdgeContact
+  const Index* first;       // [edge + 1]
+  const Index* listed;      // rows of 2, by edge: pair that it is of, the other edge
+  Flag* near;
+
+  CDEM_HD void operator()(One c) const {
+    const EdgeContact held = EdgeContact::at(contact, c.i);
+    const Index edge = face_edges[4 * exposed_face[held.mother / 4] + held.mother % 4];
+    for (Index i = first[edge]; i < first[edge + 1]; ++i)
+      if (listed[2 * i + 1] == held.edge) set(near[listed[2 * i]]);
+  }
+};
+
+/// Copy the pairs of edges that are near to where the search looks for them.
+struct CopyCloseEdges {
+  const Index* near;  // [pair]
+  ListedEdges listed;
+  Index* pairs;  // [9][pair]: ends, sides, code of EdgePairs
+  Index stride;
+
+  CDEM_HD void operator()(One pair) const {
+    const One from{near[pair.i]};
+    for (Index k = 0; k < 4; ++k) set(k, pair, listed.end(k, from));
+    for (Index e = 0; e < 2; ++e) {
+      const Index* sides = listed.sides + 2 * listed.of.at(e, from);
+      set(4 + 2 * e, pair, sides[0]);
+      set(5 + 2 * e, pair, sides[1] >= 0 ? sides[1] : sides[0]);
+    }
+    set(8, pair, listed.code[from.i]);
+  }
+
+ private:
+  CDEM_HD void set(Index row, One pair, Index value) const {
+    pairs[std::size_t(row) * stride + pair.i] = value;
+  }
+};
+
+}  // namespace cdem

@@ -1,0 +1,49 @@
+// rebuild.cpp - see rebuild.hpp.
+#include "core/contact/pair_list/rebuild.hpp"
+
+#include "core/bonds/bonded_surface.hpp"
+#include "core/bonds/release.hpp"
+#include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/force/stiffness_bound.hpp"
+#include "core/contact/narrow_phase/exposed_faces.hpp"
+#include "core/contact/pair_list/outer_list.hpp"
+#include "core/model/phase_timer.hpp"
+#include "core/nodes/corner_lists.hpp"
+#include "core/nodes/sleep.hpp"
+#include "core/nodes/time_step.hpp"
+
+namespace cdem {
+
+bool pair_list_is_due(const Model& m, State& s) {
+  const PhaseTimer timer(s, Phase::refresh);
+  s.search.strayed = false;
+  if (s.built_step < 0) return true;
+  if (m.refresh_interval > 0) return s.step - s.built_step >= m.refresh_interval;
+  if (release_is_due(m, s)) return true;
+  SearchState& search = s.search;
+  return search.strayed = any_strayed(s, search.watch, search.built_time, search.horizon);
+}
+
+void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {
+  const PhaseTimer timer(s, Phase::refresh);
+  const bool first = s.built_step < 0;
+  if (first) {
+    s.search.face_exposed.resize(m.face_count, -1);
+    for (Index f = 0; f < m.face_count; ++f)
+      if (m.face_initially_exposed[f]) expose(s, f);
+  }
+  const bool released = release_bonds(m, s) || first;
+  sort_exposed(s);
+  join_surfaces(m, s, released);
+  list_exposed(m, s);
+  list_candidates(m, s);
+  sum_stiffness(m, s);
+  if (released) list_corners(m, s);
+  list_contact_corners(m, s);
+  if (!plan.everything_awake) list_awake_nodes(m, s);
+  s.built_step = s.step;
+  ++s.refreshes;
+  renew_step(m, s);  // faces that may now touch call for a shorter step before they do
+}
+
+}  // namespace cdem

@@ -1,0 +1,28 @@
+// health.hpp - what stops a run that went wrong: outcomes, and the check for them.
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+enum class Outcome {
+  steps_done,
+  time_reached,
+  converged,
+  not_finite,
+  too_fast,
+  lost_contact,
+  missed_contact
+};
+
+struct Report {
+  Outcome outcome = Outcome::steps_done;
+  Index culprit = -1;  // node, or exposed face for a lost contact
+  Real value = 0;
+};
+
+/// Are all numbers finite, all speeds below the limit, all contacts kept?
+Report check_health(const Model& model, const State& state);
+
+}  // namespace cdem

@@ -1,0 +1,16 @@
+// report.hpp - stress and strain energy of elements where the nodes are now.
+#pragma once
+
+#include "core/base/device.hpp"
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Stress and strain energy of every element where the nodes are now.
+void report_elements(const Model& model, State& state, Queue queue);
+
+/// Stress of every element where the nodes are now; energies stay those of the last sampled step.
+void report_stress(const Model& model, State& state);
+
+}  // namespace cdem

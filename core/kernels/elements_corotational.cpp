@@ -1,0 +1,21 @@
+// elements_corotational.cpp - the loops over kernels of this stage, instantiated. Compiled as C++,
+// and as CUDA.
+#include "core/base/parallel_loops.hpp"
+#include "core/elements/corotational.hpp"
+
+namespace cdem {
+
+template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Tet4, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalForce<Pyramid5, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Wedge6, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Hex8, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalForce<Hex8OnePoint, FollowRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Tet4, FollowRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Pyramid5, FollowRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Wedge6, FollowRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Hex8, FollowRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Hex8OnePoint, FollowRotation>&);
+
+}  // namespace cdem

@@ -1,0 +1,33 @@
+// elements_other.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as
+// CUDA.
+#include "core/base/parallel_loops.hpp"
+#include "core/elements/corotational.hpp"
+#include "core/elements/incremental.hpp"
+
+namespace cdem {
+
+template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Tet4, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalForce<Pyramid5, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Wedge6, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Hex8, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalForce<Hex8OnePoint, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Tet4, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Pyramid5, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Wedge6, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Hex8, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, const CorotationalReport<Hex8OnePoint, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Tet4, TurnByHalves>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Pyramid5, TurnByHalves>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Wedge6, TurnByHalves>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Hex8, TurnByHalves>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const IncrementalForce<Hex8OnePoint, TurnByHalves>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Tet4, NeverTurn>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Pyramid5, NeverTurn>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Wedge6, NeverTurn>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Hex8, NeverTurn>&);
+template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Hex8OnePoint, NeverTurn>&);
+
+}  // namespace cdem

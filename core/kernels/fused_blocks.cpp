@@ -1,0 +1,12 @@
+// fused_blocks.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as
+// CUDA.
+#include "core/base/parallel_loops.hpp"
+#include "core/nodes/fused_block.hpp"
+
+namespace cdem {
+
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFree<Tet4>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFree<Hex8>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFree<Hex8OnePoint>&);
+
+}  // namespace cdem

@@ -1,0 +1,14 @@
+// nodes.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
+#include "core/base/parallel_loops.hpp"
+#include "core/nodes/central_difference.hpp"
+#include "core/nodes/node_energy.hpp"
+
+namespace cdem {
+
+template void for_each_item(Queue, Index, Blocks, const SumNodeForces&);
+template void for_each_item(Queue, Index, Blocks, const MoveNodes&);
+template void for_each_item(Queue, Index, Blocks, const AdvanceNodes&);
+template void for_each_item(Queue, Index, const NodeMomentum&);
+template void for_each_item(Queue, Index, const SampleNodes&);
+
+}  // namespace cdem

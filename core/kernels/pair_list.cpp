@@ -1,0 +1,15 @@
+// pair_list.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
+#include "core/base/parallel_loops.hpp"
+#include "core/contact/pair_list/prune.hpp"
+
+namespace cdem {
+
+template void for_each_lane(Queue, Index, const MarkNearFaces&);
+template void for_each_selected(Queue, Index, const MarkCloseFaces&);
+template void for_each_item(Queue, Index, const CountCloseFaces&);
+template void for_each_item(Queue, Index, const ListCloseFaces&);
+template void for_each_lane(Queue, Index, const MarkNearEdges&);
+template void for_each_item(Queue, Index, const MarkHeldEdges&);
+template void for_each_item(Queue, Index, const CopyCloseEdges&);
+
+}  // namespace cdem

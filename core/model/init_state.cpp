@@ -1,0 +1,56 @@
+// init_state.cpp - see init_state.hpp.
+#include "core/model/init_state.hpp"
+
+namespace cdem {
+
+namespace {
+
+void size_elements(const Model& m, const ElementSet& e, ElementState& es) {
+  const std::size_t row = e.stride;
+  es.stress.resize(6 * row);
+  es.energy.resize(row);
+  es.damping_work.resize(row);
+  const bool keeps_stress =
+      m.formulation == Formulation::incremental || m.formulation == Formulation::paper_incremental;
+  if (keeps_stress) es.point_stress.resize(6 * std::size_t(e.points) * row);
+}
+
+void size_pairs(const PairSet& p, PairState& s) {
+  const std::size_t row = p.stride, points = std::size_t(p.points) * p.point_stride;
+  for (Column<Real>* column :
+       {&s.broken_tension, &s.broken_shear, &s.jump, &s.stored, &s.fracture, &s.friction})
+    column->resize(row);
+  s.jump_at_break.resize(row, -1.0);
+  s.live.resize(row);
+  for (Index i = 0; i < p.count; ++i) s.live[i] = 1;
+  s.bond.resize(points, 1.0);
+  s.slip1.resize(points);
+  s.slip2.resize(points);
+}
+
+}  // namespace
+
+void init_state(const Model& m, State& s, const Real* position) {
+  const std::size_t count = m.node_count;
+  NodeState& n = s.nodes;
+  n.motion.resize(8 * count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) n.motion[8 * i + axis] = position[3 * i + axis];
+  for (Column<Real>* column : {&n.force, &n.reaction, &n.sample}) column->resize(4 * count);
+  for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
+    column->resize(count);
+  n.glue.resize(count);
+  size_elements(m, m.tet4, s.tet4);
+  size_elements(m, m.pyramid5, s.pyramid5);
+  size_elements(m, m.wedge6, s.wedge6);
+  size_elements(m, m.hex8, s.hex8);
+  size_pairs(m.triangles, s.triangles);
+  size_pairs(m.quads, s.quads);
+  size_pairs(m.overlaps, s.overlaps);
+  const std::size_t rows = 4 * std::size_t(m.corner_rows);
+  s.corner_force.resize(rows + 4);
+  // the row that adds nothing, see FreeRows: x + -0 is x, whatever the sign of a zero
+  for (std::size_t k = rows; k < rows + 4; ++k) s.corner_force[k] = -0.0;
+}
+
+}  // namespace cdem

@@ -1,0 +1,12 @@
+// init_state.hpp - size the arrays of a new state.
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Size every array of a new state and place the nodes; `position` has a row of 3 per node.
+void init_state(const Model& model, State& state, const Real* position);
+
+}  // namespace cdem

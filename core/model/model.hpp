@@ -1,0 +1,95 @@
+// model.hpp - what a step never changes: mesh, topology, properties, rules.
+#pragma once
+
+#include <vector>
+
+#include "core/base/column.hpp"
+#include "core/base/math.hpp"
+#include "core/interfaces/brittle_coulomb.hpp"
+#include "core/records/rules.hpp"
+
+namespace cdem {
+
+enum class Formulation { corotational, incremental, paper_incremental, paper_total };
+
+/// Elements of one shape: tables with one row per corner, gradient component or Gauss point.
+struct ElementSet {
+  Index count = 0, stride = 0;
+  Index corners = 0, points = 0;  // nodes and Gauss points of an element
+  Index corner_first = 0;         // first of its rows among the corner forces
+  Column<Index> nodes, material;
+  Column<Real> gradient, volume;
+  Column<Real> hourglass;  // of hexahedra with one point, else empty
+};
+
+/// Bonded pairs of one kind: conforming triangles, conforming quadrilaterals, or overlaps.
+struct PairSet {
+  Index count = 0, stride = 0;
+  Index points = 0, point_stride = 0;   // rows of point tables, and their stride
+  Index corner_first = 0, corners = 0;  // rows among the corner forces, and how many a pair has
+  Column<Index> faces;                  // [pair][2]
+  Column<Index> nodes;                  // conforming: [2 * vertices][pair]
+  Column<Index> interface;              // [pair]
+  Column<Real> area, stiffness;
+  Column<Index> point_first;  // overlaps: [pair + 1]
+  Column<Real> weights_a, weights_b, point_area;
+};
+
+struct Model {
+  // nodes
+  Index node_count = 0;
+  Column<Index> node_block, node_place;
+  Column<Real> mass, gravity_mass;
+  Column<Index> dense_first, dense_step, block_first, block_count;
+  Column<Real> mass_inverse, mass_matrix;
+  Column<Real> inverse_mass_bound;  // largest eigenvalue of the inverse mass matrix  [1/kg]
+  Column<Real> frequency2;          // bound from the node's elements, squared  [1/s2]
+  Column<Real> lumped_frequency2;   // the same with lumped masses
+
+  ElementSet tet4, pyramid5, wedge6, hex8;
+  Column<Real> material_lambda, material_mu;
+
+  // exterior faces and edges
+  Index face_count = 0, edge_count = 0;
+  Column<Index> face_nodes, face_edges, face_group, face_block, face_element;
+  Column<Real> face_length, face_reach, face_area, face_height, face_stiffness;
+  Column<Index> edge_nodes, edge_faces, ring_first, ring;
+  Column<Flag> face_initially_exposed, face_movable;
+
+  // interfaces
+  PairSet triangles, quads, overlaps;
+  Index group_count = 0;
+  Column<Index> interface_of;
+  Column<Interface> interfaces;
+  Column<Real> cohesion, tensile_strength, tan_friction;
+
+  // corner rows of each node; ~row where it takes the opposite of what stands there
+  Index corner_rows = 0;
+  Column<Index> corner_first, corner;
+
+  // loads and supports
+  Vec3<Real> gravity{0, 0, 0};
+  Column<Index> load_first, load_curve;
+  Column<Real> load_force;
+  Column<Index> support, support_curve;
+  Column<Flag> support_component;
+  Column<Real> support_velocity;
+  std::vector<std::vector<Real>> curve_time, curve_factor;
+
+  // rules
+  Formulation formulation = Formulation::corotational;
+  SearchRules rules;
+  Real bond_indentation_triangle = 0, bond_indentation_quad = 0;
+  bool semi_edges = true;
+  bool check_search = false;   // compare every search with an all-pairs search
+  Index refresh_interval = 0;  // 0: by displacement; else the paper's every so many steps
+  NodeDamping damping{0, 0};
+  bool lumped = false;         // lumped masses for all: quicker to rest, wrong inertia
+  Real stiffness_damping = 0;  // Rayleigh, fraction of critical at the stability limit
+  Real contact_damping = 0;    // fraction of critical
+  Real step_safety = 0.8;
+  Real step_given = 0;   // 0: automatic
+  Real speed_limit = 0;  // faster than this the run has gone wrong  [m/s]
+};
+
+}  // namespace cdem

@@ -1,0 +1,116 @@
+// fused_block.hpp - single-element blocks without contacts, loads or supports: force and motion in
+// one kernel.
+#pragma once
+
+#include "core/elements/corotational.hpp"
+#include "core/nodes/loads.hpp"
+#include "core/nodes/mass.hpp"
+
+namespace cdem {
+
+/// Rows of bonds that the nodes of free blocks sum, for each block of `block_size` elements: first
+/// those of the first corners, the first row of each element, then the second, and so on; as many
+/// for all corners of all its elements, filled up with the row that adds nothing.
+struct FreeRows {
+  const Index* first;  // [block of elements + 1]
+  const Index* row;    // ~row where the opposite is meant
+
+  /// Where the rows of the element of this number begin, and how many a corner has.
+  CDEM_HD const Index* of(Index element) const {
+    return row + first[element / block_size] + element % block_size;
+  }
+  CDEM_HD Index most(Index element, Index corners) const {
+    const Index* f = first + element / block_size;
+    return (f[1] - f[0]) / (corners * block_size);
+  }
+};
+
+/// Force and motion of blocks of one element that no load, support, contact or damping knows of: no
+/// other block reads or writes their nodes in this pass, so nothing is stored in between. The
+/// arithmetic is that of SumNodeForces and MoveNodes.
+template <class Shape>
+struct AdvanceFree {
+  static constexpr Index count = Shape::nodes;
+  CorotationalForce<Shape, FollowRotation> element;
+  FreeRows rows;
+  InForces bond_force;
+  LoadColumns loads;
+  MassColumns mass;
+  Real dt_before, dt;   // of the last step and of this one  [s]
+  Real* motion;         // row of 8
+  Real* work_external;  // [node] of gravity so far  [J]
+
+  template <class I>
+  CDEM_HD void operator()(I e) const {
+    using T = Number<I>;
+    const auto first = element.columns.element_nodes.at(0, e);  // the others follow it
+    const CornerForces<Shape, T> own = element.forces(e);
+    T heavy[count], m[count], work[count];
+    read(loads.gravity_mass, first, heavy);
+    read(mass.mass, first, m);
+    read(work_external, first, work);
+    Vec3<T> weight[count], f[count];
+    for (Index k = 0; k < count; ++k) {
+      weight[k] = {heavy[k] * T(loads.gravity.x), heavy[k] * T(loads.gravity.y),
+                   heavy[k] * T(loads.gravity.z)};
+      f[k] = add_bonds(e, k, weight[k] + own.f[k]);
+    }
+    const auto matrix = look_up(mass.dense_first, first);
+    const T kick(0.5 * (dt_before + dt)), zero(0.0);
+    for (Index k = 0; k < count; ++k) {
+      T inverse[count];
+      read(mass.inverse, after(matrix, count * k), inverse);
+      Vec3<T> a{zero, zero, zero};
+      for (Index j = 0; j < count; ++j) a = a + inverse[j] * f[j];
+      const auto node = after(first, k);
+      const Four<T> x0 = InRows{motion}.at(node, 0), v0 = InRows{motion}.at(node, 4);
+      const Vec3<T> v1 = v0.vector() + kick * Vec3<T>{a.x / m[k], a.y / m[k], a.z / m[k]};
+      const Vec3<T> x1 = x0.vector() + T(dt) * v1;
+      const T row[8] = {x1.x, x1.y, x1.z, zero, v1.x, v1.y, v1.z, zero};
+      set_rows(motion, node, row);
+      work[k] += dot(weight[k], T(0.5) * (T(dt_before) * v0.vector() + T(dt) * v1));
+    }
+    for (Index k = 0; k < count; k += 4)
+      set_fours(work_external, after(first, k), {work[k], work[k + 1], work[k + 2], work[k + 3]});
+  }
+
+  static constexpr Fetching fetching{4, 4096};
+  /// Not of hexahedra, see CorotationalForce.
+  CDEM_HD void fetch(One e) const
+    requires(count == 4)
+  {
+    element.columns.fetch(e);
+    const Index first = element.columns.element_nodes.at(0, e);
+    if (e.i % 2 == 0)  // a line of numbers serves two tets
+      for (const Real* list : {loads.gravity_mass, mass.mass, (const Real*)work_external})
+        cdem::fetch(list + first);
+    const Index* row = rows.of(e.i);
+    for (Index c = 0; c < count * rows.most(e.i, count); ++c, row += block_size)
+      bond_force.fetch_signed(*row);
+  }
+
+ private:
+  /// The place so many after a place, or after one a lane.
+  template <class Ids>
+  CDEM_HD static Ids after(const Ids& place, Index many) {
+    return indices_of([&](Index i) { return i + many; }, place);
+  }
+  /// What a list holds for the nodes of an element, from the place of the first.
+  template <class Ids, class T>
+  CDEM_HD static void read(const Real* list, const Ids& place, T* numbers) {
+    for (Index k = 0; k < count; k += 4) {
+      const Four<T> some = fours_at(list, after(place, k));
+      numbers[k] = some.x, numbers[k + 1] = some.y, numbers[k + 2] = some.z;
+      numbers[k + 3] = some.w;
+    }
+  }
+  template <class I, class T>
+  CDEM_HD Vec3<T> add_bonds(I e, Index corner, Vec3<T> f) const {
+    const Index most = rows.most(e.i, count);
+    const InIndices of{rows.of(e.i) + corner * most * block_size, block_size};
+    for (Index c = 0; c < most; ++c) f = f + bond_force.signed_at(of.at(c, I{0}));
+    return f;
+  }
+};
+
+}  // namespace cdem

@@ -1,0 +1,130 @@
+// free_blocks.cpp - finds the blocks of one element of which only their bonds know.
+#include "core/nodes/fused_blocks.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Elements of one shape, and how many corners each has.
+struct Elements {
+  const Model& m;
+  const State& s;
+  const ElementSet& e;
+  Index corners;
+
+  Index first_node(Index i) const { return e.nodes[i]; }
+  /// The rows of bonds that a node sums: all after the one of its element.
+  Range bond_rows(Index node) const {
+    return {s.nodes.corner_first[node] + 1, s.nodes.corner_first[node + 1]};
+  }
+  bool is_free(Index i) const {
+    const Index first = first_node(i), last = first + corners;
+    if (m.block_first[first] != first || m.block_count[first] != corners ||
+        m.load_first[first] < m.load_first[last] ||
+        s.search.contact_first[first] < s.search.contact_first[last] || m.dense_first[first] < 0)
+      return false;
+    for (Index k = 0; k < corners; ++k) {
+      const Index node = first + k;
+      const Range bonds = bond_rows(node);
+      const Index own = e.corner_first + corners * i + k;
+      if (e.nodes[std::size_t(k) * e.stride + i] != node || m.support[node] >= 0 ||
+          m.dense_first[node] != m.dense_first[first] + corners * k || m.dense_step[node] > 0 ||
+          bonds.first > bonds.last || s.nodes.corner[bonds.first - 1] != own ||
+          (bonds.first < bonds.last && is_of_element(s.nodes.corner[bonds.first])))
+        return false;
+    }
+    return true;
+  }
+  /// Are all elements of a block free?
+  bool are_free(Index block) const {
+    const Index begin = block * block_size, end = std::min(begin + block_size, e.count);
+    for (Index i = begin; i < end; ++i)
+      if (!is_free(i)) return false;
+    return begin < end;
+  }
+  template <class Visit>
+  void visit_nodes(Index block, Visit&& visit) const {
+    const Index begin = block * block_size, end = std::min(begin + block_size, e.count);
+    for (Index i = begin; i < end; ++i)
+      for (Index k = 0; k < corners; ++k) visit(i - begin, k, first_node(i) + k);
+  }
+
+ private:
+  bool is_of_element(Index row) const { return row >= 0 && row < m.triangles.corner_first; }
+};
+
+/// List what the nodes of free blocks sum, see FreeRows.
+void list_rows(const Elements& of, FreeBlocks& free) {
+  const State& s = of.s;
+  Column<Index>&first = free.row_first, &rows = free.row;
+  first.resize(of.e.count / block_size + 2);
+  first.fill(0);
+  for (std::size_t b = 0; b < free.blocks.size(); ++b) {
+    Index most = 0;
+    of.visit_nodes(free.blocks[b], [&](Index, Index, Index node) {
+      const Range bonds = of.bond_rows(node);
+      most = std::max(most, bonds.last - bonds.first);
+    });
+    first[free.blocks[b] + 1] = most * of.corners * block_size;
+  }
+  for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
+  rows.resize(first[first.size() - 1]);
+  rows.fill(of.m.corner_rows);  // adds nothing
+#pragma omp parallel for schedule(static) if (free.blocks.size() * block_size >= worth_threads)
+  for (std::size_t b = 0; b < free.blocks.size(); ++b) {
+    const Index block = free.blocks[b];
+    const Index most = (first[block + 1] - first[block]) / (of.corners * block_size);
+    of.visit_nodes(block, [&](Index lane, Index corner, Index node) {
+      Index* row = rows.data() + first[block] + corner * most * block_size + lane;
+      const Range bonds = of.bond_rows(node);
+      for (Index c = bonds.first; c < bonds.last; ++c, row += block_size) *row = s.nodes.corner[c];
+    });
+  }
+}
+
+void find_free_elements(const Model& m, State& s, const ElementSet& e, ElementState& es,
+                        Index corners) {
+  FreeBlocks& free = es.free;
+  const Elements of{m, s, e, corners};
+  const Index count = Index(es.awake.size());
+  std::vector<Flag> are_free(count);
+#pragma omp parallel for schedule(static) if (count * block_size >= worth_threads)
+  for (Index b = 0; b < count; ++b) are_free[b] = of.are_free(es.awake[b]);
+  free.blocks.resize(0);
+  free.others.resize(0);
+  for (Index b = 0; b < count; ++b) (are_free[b] ? free.blocks : free.others).push(es.awake[b]);
+  list_rows(of, free);
+  if (free.blocks.size() == 0) return;
+  s.nodes.free.resize(m.node_count);
+  for (std::size_t b = 0; b < free.blocks.size(); ++b)
+    of.visit_nodes(free.blocks[b], [&](Index, Index, Index node) {
+      s.nodes.free[node] = 1;
+      s.nodes.force[4 * std::size_t(node) + 3] = 0;  // no contact stiffens it any more
+    });
+}
+
+}  // namespace
+
+void find_free(const Model& m, State& s) {
+  NodeState& nodes = s.nodes;
+  nodes.free.resize(0);
+  if (m.lumped || m.formulation != Formulation::corotational) return;
+  find_free_elements(m, s, m.tet4, s.tet4, 4);
+  find_free_elements(m, s, m.hex8, s.hex8, 8);
+  if (nodes.free.size() == 0) return;
+  nodes.others.resize(0);
+  for (std::size_t b = 0; b < nodes.awake.size(); ++b) {
+    const Index begin = nodes.awake[b] * block_size;
+    const Index end = std::min(begin + block_size, m.node_count);
+    const Flag* free = nodes.free.data();
+    if (!std::all_of(free + begin, free + end, [](Flag f) { return f == 1; }))
+      nodes.others.push(nodes.awake[b]);
+  }
+}
+
+}  // namespace cdem

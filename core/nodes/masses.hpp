@@ -1,0 +1,20 @@
+// masses.hpp - change the masses that move, and stop all motion; the energy of it is booked.
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Half of momentum times velocity, with the present masses  [J].
+Real energy_of_motion(const Model& model, const State& state);
+
+/// Move lumped or exact masses from now on, unscaled; what kinetic energy that takes is booked as
+/// damping.
+void change_mass(Model& model, State& state, bool lumped);
+
+/// Between forces and motion: zero all velocities; their energy is booked as damping. The step that
+/// follows starts from rest with half a kick, as a central difference must.
+void stop_motion(const Model& model, State& state);
+
+}  // namespace cdem

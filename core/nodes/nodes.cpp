@@ -1,0 +1,144 @@
+// nodes.cpp - see nodes.hpp.
+#include "core/nodes/nodes.hpp"
+
+#include "core/base/parallel.hpp"
+#include "core/base/reduce.hpp"
+#include "core/elements/report.hpp"
+#include "core/elements/views.hpp"
+#include "core/model/block_lists.hpp"
+#include "core/model/phase_timer.hpp"
+#include "core/nodes/central_difference.hpp"
+#include "core/nodes/fused_block.hpp"
+#include "core/nodes/masses.hpp"
+#include "core/nodes/node_energy.hpp"
+#include "core/nodes/sleep.hpp"
+#include "core/nodes/views.hpp"
+
+namespace cdem {
+
+namespace {
+
+NodeDamping node_damping(const Model& m, const State& s) {
+  return {m.damping.local, m.damping.mass + s.relax_damping};
+}
+
+template <class Shape>
+void advance_free(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
+                  ElementState& es) {
+  const FreeBlocks& free = es.free;
+  const CorotationalForce<Shape, FollowRotation> element{element_columns<Shape>(m, s, e),
+                                                         m.stiffness_damping * s.dt,
+                                                         s.dt,
+                                                         {es.damping_work.data(), e.stride},
+                                                         {}};
+  for_each_lane(q, e.count, awake(plan, free.blocks),
+                AdvanceFree<Shape>{element,
+                                   {free.row_first.data(), free.row.data()},
+                                   {s.corner_force.data()},
+                                   load_columns(m, s),
+                                   mass_columns(m, s),
+                                   s.dt_last,
+                                   s.dt,
+                                   s.nodes.motion.data(),
+                                   s.nodes.work_external.data()});
+}
+
+void advance_free_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
+  advance_free<Tet4>(m, s, q, plan, m.tet4, s.tet4);
+  if (m.hex8.hourglass.size() > 0)
+    advance_free<Hex8OnePoint>(m, s, q, plan, m.hex8, s.hex8);
+  else
+    advance_free<Hex8>(m, s, q, plan, m.hex8, s.hex8);
+}
+
+SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
+  const NodeDamping damping = node_damping(m, s);
+  const bool damps = damps_nodes(m, s);
+  if (damps) s.nodes.damping_force.resize(s.nodes.force.size());
+  s.nodes.damped = damps;
+  return {{s.nodes.motion.data()},
+          corner_lists(s),
+          load_columns(m, s),
+          support_columns(m, s),
+          damping,
+          mass_columns(m, s),
+          0.5 * (s.dt_last + s.dt),
+          s.nodes.force.data(),
+          damps ? s.nodes.damping_force.data() : nullptr,
+          sampled ? s.nodes.unbalance.data() : nullptr};
+}
+
+MoveNodes node_motion(const Model& m, State& s) {
+  return {mass_columns(m, s),
+          load_columns(m, s),
+          support_columns(m, s),
+          s.nodes.force.data(),
+          damping_forces(s),
+          s.dt_last,
+          s.dt,
+          s.nodes.motion.data(),
+          s.nodes.reaction.data(),
+          s.nodes.work_external.data(),
+          s.nodes.work_damping.data()};
+}
+
+void sample_before(const Model& m, State& s, Queue q) {
+  report_elements(m, s, q);
+  for_each_item(q, m.node_count,
+                NodeMomentum{{s.nodes.motion.data()}, mass_columns(m, s), s.nodes.sample.data()});
+}
+
+void sample_after(const Model& m, State& s, Queue q) {
+  for_each_item(q, m.node_count,
+                SampleNodes{{s.nodes.motion.data()},
+                            load_columns(m, s),
+                            support_columns(m, s),
+                            s.nodes.reaction.data(),
+                            damping_forces(s),
+                            s.dt,
+                            s.nodes.sample.data()});
+  finish(q);
+}
+
+/// Sum the forces first, then move: something looks at the forces in between.
+void sum_then_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
+  const Blocks nodes = awake(plan, s.nodes.awake);
+  for_each_item(q, m.node_count, nodes, node_forces(m, s, true));
+  if (plan.stop_motion) stop_motion(m, s);
+  if (plan.sample) sample_before(m, s, q);
+  for_each_item(q, m.node_count, nodes, node_motion(m, s));
+  finish(q);
+  if (plan.sample) sample_after(m, s, q);
+}
+
+/// Both in one pass over the nodes; fused blocks move with their element forces.
+void sum_and_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
+  const bool fuses = fuses_blocks(s, plan);
+  if (fuses) advance_free_blocks(m, s, q, plan);
+  const SumNodeForces sum = node_forces(m, s, plan.everything_awake);
+  for_each_item(q, m.node_count, awake(plan, fuses ? s.nodes.others : s.nodes.awake),
+                AdvanceNodes{sum, node_motion(m, s), fuses ? s.nodes.free.data() : nullptr});
+  finish(q);
+}
+
+}  // namespace
+
+void advance_nodes(const Model& m, State& s, Queue q, const StepPlan& plan) {
+  const PhaseTimer timer(s, Phase::node);
+  if (plan.sample || plan.stop_motion)
+    sum_then_move(m, s, q, plan);
+  else
+    sum_and_move(m, s, q, plan);
+  if (plan.everything_awake) find_awake(m, s);
+}
+
+bool damps_nodes(const Model& m, const State& s) {
+  const NodeDamping damping = node_damping(m, s);
+  return damping.local > 0 || damping.mass > 0;
+}
+
+Real kinetic_energy(const Model& m, const State& s) {
+  return ordered_sum(m.node_count, [&](Index i) { return s.nodes.sample[4 * std::size_t(i)]; });
+}
+
+}  // namespace cdem

@@ -1,0 +1,82 @@
+// sleep.cpp - see sleep.hpp.
+#include "core/nodes/sleep.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/model/block_lists.hpp"
+#include "core/nodes/fused_blocks.hpp"
+
+namespace cdem {
+
+namespace {
+
+bool is_fixed(const Model& m, const State& s, Index node) {
+  const Index row = m.support[node];
+  if (row < 0) return false;
+  for (Index axis = 0; axis < 3; ++axis)
+    if (!m.support_component[3 * row + axis] || m.support_velocity[3 * row + axis] != 0 ||
+        s.nodes.motion[8 * std::size_t(node) + 4 + axis] != 0)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+void find_awake(const Model& m, State& s) {
+  std::vector<Flag> fixed(m.node_count), pulled(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i) fixed[i] = is_fixed(m, s, i);
+  /// Is one of the item's nodes free? Then all are pulled.
+  const auto note = [&](Index corners, auto&& node) {
+    bool moves = false;
+    for (Index k = 0; k < corners; ++k) moves = moves || !fixed[node(k)];
+    for (Index k = 0; moves && k < corners; ++k) pulled[node(k)] = 1;
+    return moves;
+  };
+  const auto elements = [&](const ElementSet& e, ElementState& es, Index corners) {
+    list_blocks(e.count, es.awake, [&](Index i) {
+      return note(corners, [&](Index k) { return e.nodes[std::size_t(k) * e.stride + i]; });
+    });
+  };
+  elements(m.tet4, s.tet4, 4);
+  elements(m.pyramid5, s.pyramid5, 5);
+  elements(m.wedge6, s.wedge6, 6);
+  elements(m.hex8, s.hex8, 8);
+  const auto pairs = [&](const PairSet& p, PairState& ps) {
+    list_blocks(p.count, ps.awake, [&](Index i) {
+      return note(2 * p.points, [&](Index k) { return p.nodes[std::size_t(k) * p.stride + i]; });
+    });
+  };
+  pairs(m.triangles, s.triangles);
+  pairs(m.quads, s.quads);
+  list_blocks(m.overlaps.count, s.overlaps.awake, [&](Index i) {
+    return note(8, [&](Index k) {
+      const Index* nodes = m.face_nodes.data() + 4 * m.overlaps.faces[2 * i + k / 4];
+      return nodes[k % 4] < 0 ? nodes[0] : nodes[k % 4];
+    });
+  });
+  s.nodes.rests.resize(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i)
+    s.nodes.rests[i] = fixed[i] && !pulled[i] && m.load_first[i] == m.load_first[i + 1];
+  list_awake_nodes(m, s);
+}
+
+void list_awake_nodes(const Model& m, State& s) {
+  s.nodes.listed.resize(m.node_count);
+  const Index* first = s.search.contact_first.data();
+  std::vector<Flag> wakes(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i) {
+    const bool was = s.nodes.listed[i], is = first[i] < first[i + 1];
+    s.nodes.listed[i] = is;
+    wakes[i] = !s.nodes.rests[i] || is || was;
+  }
+  for (Index i = 0; i < m.node_count; ++i) {  // nodes that share a mass matrix move together
+    if (m.lumped || m.dense_first[i] < 0 || m.block_first[i] != i) continue;
+    const auto begin = wakes.begin() + i, end = begin + m.block_count[i];
+    if (std::any_of(begin, end, [](Flag f) { return f; })) std::fill(begin, end, Flag(1));
+  }
+  list_blocks(m.node_count, s.nodes.awake, [&](Index i) { return wakes[i]; });
+  find_free(m, s);
+}
+
+}  // namespace cdem

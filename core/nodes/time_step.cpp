@@ -1,0 +1,97 @@
+// time_step.cpp - see time_step.hpp.
+#include "core/nodes/time_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/phase_timer.hpp"
+#include "core/nodes/masses.hpp"
+#include "core/nodes/views.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// Stiffness of bonds and contacts, those that may begin included, on a node  [N/m].
+Real stiffness_at(const State& s, Index i) {
+  return std::max(s.nodes.force[std::size_t(i) * 4 + 3], s.node_potential[i]) + s.node_bonds[i];
+}
+
+/// Node with the highest frequency; `held` counts those that are held or driven in all directions.
+Real highest_frequency2(const Model& m, const State& s, bool held, StepLimit& limit) {
+  Real largest = -1;
+  const MassColumns mass = mass_columns(m, s);
+  const SupportColumns supports = support_columns(m, s);
+  for (Index i = 0; i < m.node_count; ++i) {
+    Real stiffness = 0;
+    const bool dense = mass.row(i) >= 0;
+    const Index first = dense ? m.block_first[i] : i;
+    const Index last = dense ? first + m.block_count[i] : i + 1;
+    if (dense && i != first) continue;
+    Real element2 = 0;
+    bool free = held;
+    for (Index j = first; j < last; ++j) {
+      for (Index axis = 0; axis < 3; ++axis) free = free || !supports.given(j, axis);
+      stiffness = std::max(stiffness, stiffness_at(s, j));
+      element2 = std::max(element2, m.lumped ? m.lumped_frequency2[j] : m.frequency2[j]);
+    }
+    if (!free) continue;
+    // Gershgorin: a spring between two points adds at most twice its stiffness to a row
+    const Real contact2 = 2 * stiffness * (m.lumped ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
+    if (element2 + contact2 > largest) {
+      largest = element2 + contact2;
+      limit.node = i;
+      limit.element2 = element2;
+      limit.contact2 = contact2;
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+StepLimit step_limit(const Model& m, const State& s) {
+  StepLimit limit;
+  // what is held or driven in all directions cannot become unstable; where nothing else is, its
+  // step still is what curves, histories and ends of stages are followed with
+  Real largest = highest_frequency2(m, s, false, limit);
+  if (!(largest > 0)) largest = highest_frequency2(m, s, true, limit);
+  // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
+  const Real xi =
+      m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);
+  limit.dt =
+      2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) / std::sqrt(1 + m.damping.local);
+  return limit;
+}
+
+void renew_step(const Model& m, State& s) {
+  s.dt_stable = m.step_given > 0 ? m.step_given : m.step_safety * step_limit(m, s).dt;
+  const bool relaxes = s.nodes.relax_mass.size() > 0;
+  const bool at_once = m.step_given > 0 || relaxes || !(s.dt > 0);
+  s.dt = at_once ? s.dt_stable : std::min(s.dt, s.dt_stable);
+  if (relaxes) scale_masses(m, s);
+}
+
+void advance_clock(const Model& m, State& s) {
+  const PhaseTimer timer(s, Phase::node);
+  const bool contacts = has_contact_pairs(s);
+  s.dt_last = s.dt;
+  s.time += s.dt;
+  s.step += 1;
+  s.dt = std::min(step_growth * s.dt, s.dt_stable);
+  // more contacts may press on a node than the pair list expects
+  if (contacts || s.step % step_check_interval == 0) renew_step(m, s);
+}
+
+void scale_masses(const Model& m, State& s) {
+  const StepLimit limit = step_limit(m, s);
+  const Real part = s.dt / (relax_safety * limit.dt);
+  const Real squared = (limit.element2 + limit.contact2) / (part * part);
+  const Real before = energy_of_motion(m, s);
+  s.nodes.relax_mass.resize(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i)
+    s.nodes.relax_mass[i] = (m.mass[i] * m.lumped_frequency2[i] + 2 * stiffness_at(s, i)) / squared;
+  s.stopped_energy += before - energy_of_motion(m, s);
+}
+
+}  // namespace cdem

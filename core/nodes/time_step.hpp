@@ -1,0 +1,46 @@
+// time_step.hpp - the stable time step, its growth, and masses scaled for it.
+#pragma once
+
+#include <cstdint>
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// What limits the time step.
+struct StepLimit {
+  Real dt = 0;        // stable step before the safety factor  [s]
+  Index node = -1;    // where it is reached
+  Real element2 = 0;  // squared frequency of its elements there  [1/s2]
+  Real contact2 = 0;  // and of its bonds and contacts  [1/s2]
+};
+
+/// The stable step is found anew every so many steps, after every refresh of the search, and after
+/// every step with contacts.
+inline constexpr std::int64_t step_check_interval = 100;
+
+/// A step is at most this much longer than the last. A sudden change from w dt = 1.6 to nothing or
+/// back multiplies the energy of a mode by chance, both together by 1.28 on average; a slow one
+/// does not (docs/theory). Contacts that come and go shorten the step and set it free again and
+/// again.
+inline constexpr Real step_growth = 1.01;
+
+/// Step of adaptive relaxation, as a part of the stable one: its masses are made for it, from
+/// bounds that hold.
+inline constexpr Real relax_safety = 0.9;
+
+StepLimit step_limit(const Model& model, const State& state);
+
+/// Find the stable step; the coming step shrinks to it at once and grows slowly.
+void renew_step(const Model& model, State& state);
+
+/// End a step: the clock moves on, and the coming step grows if it may.
+void advance_clock(const Model& model, State& state);
+
+/// Adaptive relaxation: give every node the least mass that its stiffness allows in the present
+/// step (Gershgorin), so that stiff and small parts hold up no others. What kinetic energy that
+/// takes is booked as damping. It lasts until `change_mass`.
+void scale_masses(const Model& model, State& state);
+
+}  // namespace cdem

@@ -1,0 +1,62 @@
+// contact_records.hpp - rows that contacts and exposed faces are kept in.
+#pragma once
+
+#include <cstddef>
+
+#include "core/base/lanes.hpp"
+
+namespace cdem {
+
+/// What a contact remembers from step to step: a row of 8 numbers.
+struct ContactState {
+  Real force_n;             // compression > 0  [N]
+  Real sunk;                // effective penetration: gap_free - gap, or 0; -1 before it begins  [m]
+  Real shear1, shear2;      // in the frame of target face or edge pair  [N]
+  Real gap_free;            // gap at which the contact is free of stress  [m]
+  Real energy_n, energy_s;  // stored in the normal and in the shear spring  [J]
+
+  CDEM_HD static ContactState at(const Real* rows, std::size_t place) {
+    const Real* r = rows + 8 * place;
+    return {r[0], r[1], r[2], r[3], r[4], r[5], r[6]};
+  }
+  CDEM_HD void store(Real* rows, std::size_t place) const {
+    Real* r = rows + 8 * place;
+    r[0] = force_n, r[1] = sunk, r[2] = shear1, r[3] = shear2;
+    r[4] = gap_free, r[5] = energy_n, r[6] = energy_s;
+  }
+};
+
+/// A contact of a semi-edge, as it is kept: a row of 4.
+struct EdgeContact {
+  Index mother;  // 4 * exposed face + side
+  Index face;    // exposed face to which the target edge belongs
+  Index edge;    // target edge
+  Index before;  // place of this contact one step ago, or -1
+
+  CDEM_HD static EdgeContact at(const Index* rows, std::size_t place) {
+    const Index* r = rows + 4 * place;
+    return {r[0], r[1], r[2], r[3]};
+  }
+  CDEM_HD void store(Index* rows, std::size_t place) const {
+    Index* r = rows + 4 * place;
+    r[0] = mother, r[1] = face, r[2] = edge, r[3] = before;
+  }
+};
+
+/// What the search and the forces ask of an exposed face and never changes between two refreshes:
+/// one cache line.
+struct ExposedRow {
+  Index corner[4];  // nodes; the fourth of a triangle repeats its third
+  Index beside[4];  // exposed face across side k, or -1
+  Real reach;       // a little more than the farthest vertex from the centre  [m]
+  Real area;        // a vertex's share of the face, Eq. 4-5  [m2]
+  Real stiffness;   // modulus of the element behind over its height  [Pa/m]
+  Index group;
+  Index unused = 0;
+
+  CDEM_HD Index count() const { return corner[3] == corner[2] ? 3 : 4; }
+  /// The vertex at the end of side k.
+  CDEM_HD Index end(Index k) const { return corner[k + 1 == count() ? 0 : k + 1]; }
+};
+
+}  // namespace cdem

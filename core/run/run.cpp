@@ -1,0 +1,99 @@
+// run.cpp - see run.hpp.
+#include "core/run/run.hpp"
+
+#include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/force/stiffness_bound.hpp"
+#include "core/contact/narrow_phase/exposed_faces.hpp"
+#include "core/contact/pair_list/rebuild.hpp"
+#include "core/diagnostics/energy.hpp"
+#include "core/diagnostics/unbalance.hpp"
+#include "core/nodes/corner_lists.hpp"
+#include "core/nodes/curves.hpp"
+#include "core/nodes/nodes.hpp"
+#include "core/nodes/time_step.hpp"
+#include "core/step.hpp"
+
+namespace cdem {
+
+void prepare(const Model& m, State& s) {
+  set_loads_and_supports(m, s);
+  if (s.built_step < 0) {
+    rebuild_pair_list(m, s, {.everything_awake = true});
+    s.dt_last = s.dt;
+    return;
+  }
+  // restored: what is not kept because it follows from the rest
+  const std::size_t exposed = s.search.exposed_face.size();
+  s.face_geometry.resize(8 * exposed);
+  s.contact_force.resize(16 * exposed);
+  list_exposed(m, s);
+  sum_stiffness(m, s);
+  list_corners(m, s);
+  place_watched(m, s);
+}
+
+namespace {
+
+/// Where in a run a step is.
+struct Place {
+  bool first;      // of the run: loads, supports or strengths may have been changed
+  bool last;       // of the run, as far as is known before it
+  bool scheduled;  // for a check, whatever the split into runs
+};
+
+Place place_of(const State& s, const Goal& goal, std::int64_t number) {
+  return {.first = number == 1,
+          .last = number == goal.steps || s.time + s.dt >= goal.end_time,
+          .scheduled = s.step % goal.check_interval == 0};
+}
+
+/// What a step samples changes no motion: where nothing asks for it, it need not be the same.
+StepPlan plan_step(const Model& m, const State& s, const Goal& goal, const Place& place) {
+  const bool sample = place.last || !s.ledger_started || goal.relaxation == Relaxation::kinetic ||
+                      (place.scheduled && goal.unbalance_limit > 0);
+  return {.sample = sample,
+          .everything_awake = place.first,
+          .stop_motion = s.stop_due,
+          .fuse_blocks = !sample && !place.first && !s.stop_due && !damps_nodes(m, s)};
+}
+
+void begin_run(const Model& m, State& s, const Goal& goal) {
+  if (goal.relaxation != Relaxation::adaptive) s.relax_damping = 0;
+  if (goal.relaxation != Relaxation::kinetic) s.stop_due = false;
+  if (goal.relaxation == Relaxation::adaptive && s.nodes.relax_mass.size() == 0) scale_masses(m, s);
+}
+
+void end_step(const Model& m, State& s, const Goal& goal, const StepPlan& plan) {
+  if (plan.sample && !s.ledger_started) open_ledger(m, s);
+  if (goal.relaxation == Relaxation::kinetic) relax_kinetically(m, s);
+  if (goal.relaxation == Relaxation::adaptive) relax_adaptively(m, s);
+}
+
+/// Why the run ends after this step, or `steps_done` where it may go on.
+Report report_of(const Model& m, const State& s, const Goal& goal, const Place& place) {
+  if (s.missed > 0) return {Outcome::missed_contact, -1, Real(s.missed)};
+  if (!place.last && !place.scheduled) return {};
+  const Report health = check_health(m, s);
+  if (health.outcome != Outcome::steps_done) return health;
+  if (s.time >= goal.end_time) return {Outcome::time_reached, -1, s.time};
+  if (place.scheduled && goal.unbalance_limit > 0 && unbalance_ratio(m, s) < goal.unbalance_limit)
+    return {Outcome::converged, -1, s.time};
+  return {};
+}
+
+}  // namespace
+
+Report run(const Model& m, State& s, const Goal& goal) {
+  begin_run(m, s, goal);
+  for (std::int64_t n = 1; n <= goal.steps; ++n) {
+    const Place place = place_of(s, goal, n);
+    const StepPlan plan = plan_step(m, s, goal, place);
+    step(m, s, {}, plan);
+    end_step(m, s, goal, plan);
+    const Report report = report_of(m, s, goal, place);
+    if (report.outcome != Outcome::steps_done) return report;
+  }
+  return {};
+}
+
+}  // namespace cdem
