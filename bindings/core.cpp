@@ -73,7 +73,7 @@ void take_counts(Core& core, const nb::dict& c) {
   m.node_count = number("nodes");
   m.face_count = number("faces");
   m.edge_count = number("edges");
-  m.group_count = number("groups");
+  m.class_count = number("interface_classes");
   m.corner_rows = number("corner_rows");
   const auto elements = [&](const std::string& name, ElementSet& e, Index corners, Index points) {
     e.corners = corners;
@@ -120,12 +120,12 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
   const auto whole = [&](const char* name) { return nb::cast<std::int64_t>(scalars[name]); };
   s.time = real("time"), s.dt = real("dt"), s.dt_last = real("dt_last");
   s.dt_stable = real("dt_stable");
-  s.step = whole("step"), s.refreshes = whole("refreshes"), s.built_step = whole("built_step");
+  s.step = whole("step"), s.rebuilds = whole("rebuilds"), s.built_step = whole("built_step");
   s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
   s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
   s.relax_damping = real("relax_damping"), s.stop_due = whole("stop_due") != 0;
-  s.search.horizon = real("horizon"), s.search.built_time = real("built_time");
-  s.search.skin_least = real("skin_least");
+  s.search.outer.lookahead_time = real("horizon"), s.search.outer.built_time = real("built_time");
+  s.search.outer.least_skin = real("skin_least");
   s.ledger_started = whole("ledger_started") != 0;
 }
 
@@ -134,12 +134,12 @@ nb::dict scalars(const Core& core) {
   nb::dict d;
   d["time"] = s.time, d["dt"] = s.dt, d["dt_last"] = s.dt_last;
   d["dt_stable"] = s.dt_stable;
-  d["step"] = s.step, d["refreshes"] = s.refreshes, d["built_step"] = s.built_step;
+  d["step"] = s.step, d["rebuilds"] = s.rebuilds, d["built_step"] = s.built_step;
   d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
   d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
   d["relax_damping"] = s.relax_damping, d["stop_due"] = std::int64_t(s.stop_due);
-  d["horizon"] = s.search.horizon, d["built_time"] = s.search.built_time;
-  d["skin_least"] = s.search.skin_least;
+  d["horizon"] = s.search.outer.lookahead_time, d["built_time"] = s.search.outer.built_time;
+  d["skin_least"] = s.search.outer.least_skin;
   d["ledger_started"] = std::int64_t(s.ledger_started);
   return d;
 }
@@ -178,7 +178,7 @@ void set_options(Core& core, const nb::dict& o) {
   m.bond_indentation_quad = real("bond_indentation_quad");
   m.semi_edges = nb::cast<bool>(o["semi_edges"]);
   m.check_search = nb::cast<bool>(o["check_search"]);
-  m.refresh_interval = nb::cast<Index>(o["refresh_interval"]);
+  m.rebuild_interval = nb::cast<Index>(o["rebuild_interval"]);
   m.step_safety = real("step_safety");
   m.step_given = real("step_given");
   m.speed_limit = real("speed_limit");
@@ -293,7 +293,8 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("step_limit",
            [](const Core& c) {
              const StepLimit l = step_limit(c.model, c.state);
-             return std::make_tuple(l.dt, l.node, l.element2, l.contact2);
+             return std::make_tuple(l.dt, l.node, l.element_frequency_squared,
+                                    l.contact_frequency_squared);
            })
       .def("node_force",
            [](nb::handle_t<Core> self) {

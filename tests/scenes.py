@@ -55,9 +55,9 @@ def momentum(sim):
     arrays, motion = sim.build.arrays, sim.fields
     v, x = motion["velocity"], motion["position"]
     p = arrays["node.mass"][:, None] * v
-    for i in np.flatnonzero(arrays["node.dense_first"] >= 0):
+    for i in np.flatnonzero(arrays["node.mass_row_first"] >= 0):
         first, count = arrays["node.block_first"][i], arrays["node.block_count"][i]
-        row = arrays["node.dense_first"][i]
+        row = arrays["node.mass_row_first"][i]
         matrix = arrays["node.mass"][i] * arrays["mass.matrix"][row : row + count]
         p[i] = matrix @ v[first : first + count]
     return p.sum(axis=0), np.cross(x, p).sum(axis=0)

@@ -43,8 +43,8 @@ CDEM_HD inline Real sqrt_of(Real a) { return std::sqrt(a); }
 CDEM_HD inline unsigned lane_bits(bool mask) { return mask; }
 CDEM_HD inline bool any_of(bool mask) { return mask; }
 
-/// Item of a kernel that picks what it runs for: an item of a row.
-struct Picked {
+/// Item of a kernel that selects what it runs for: an item of a row.
+struct Selected {
   Index row, id;
 };
 
@@ -128,7 +128,7 @@ struct IndexPack {
 };
 
 /// As many picked items as there are lanes, whatever rows they are of.
-struct PickedLane {
+struct SelectedLane {
   IndexPack row, id;
 };
 
@@ -146,7 +146,7 @@ struct NumberOf<Lane> {
   using type = Pack;
 };
 template <>
-struct NumberOf<PickedLane> {
+struct NumberOf<SelectedLane> {
   using type = Pack;
 };
 template <>
@@ -169,7 +169,7 @@ struct IndexOf<Lane> {
   using type = IndexPack;
 };
 template <>
-struct IndexOf<PickedLane> {
+struct IndexOf<SelectedLane> {
   using type = IndexPack;
 };
 #endif
@@ -185,7 +185,7 @@ CDEM_HD inline Index& of_lane(Index& index, Index) { return index; }
 CDEM_HD inline Index of_lane(const Index& index, Index) { return index; }
 /// Do something for every lane of a picked item, with the number of the lane, row and item.
 template <class Do>
-CDEM_HD inline void for_lanes(const Picked& item, const Do& act) {
+CDEM_HD inline void for_lanes(const Selected& item, const Do& act) {
   act(0, item.row, item.id);
 }
 /// The same for every lane of an item, with the number of the lane and the item.
@@ -198,7 +198,7 @@ CDEM_HD inline bool holds(const Mask& outcome, Index lane) { return outcome.bits
 CDEM_HD inline Index& of_lane(IndexPack& index, Index lane) { return index.id[lane]; }
 CDEM_HD inline Index of_lane(const IndexPack& index, Index lane) { return index.id[lane]; }
 template <class Do>
-CDEM_HD inline void for_lanes(const PickedLane& item, const Do& act) {
+CDEM_HD inline void for_lanes(const SelectedLane& item, const Do& act) {
   for (Index j = 0; j < lanes; ++j) act(j, item.row.id[j], item.id.id[j]);
 }
 template <class Do>

@@ -33,7 +33,7 @@ __global__ void run_picked_on_gpu(Index count, Kernel kernel) {
   if (row >= count) return;
   const Range all = kernel.items(row);
   for (Index id = all.first; id < all.last; ++id)
-    if (kernel.picks(row, id)) kernel(Picked{row, id});
+    if (kernel.selects(row, id)) kernel(Selected{row, id});
 }
 template <class Kernel>
 void for_each_selected(Queue queue, Index count, const Kernel& kernel) {
@@ -78,7 +78,7 @@ void for_each_item(Queue, Index count, const Kernel& kernel) {
   for (Index i = 0; i < count; ++i) kernel(One{i});
 }
 
-/// Run a kernel for what it picks of each of `count` rows: whole lanes, whatever rows their items
+/// Run a kernel for what it selects of each of `count` rows: whole lanes, whatever rows their items
 /// are of, then each thread's remainder one by one. Picking takes no branch, for none could be
 /// foreseen.
 template <class Kernel>
@@ -86,23 +86,23 @@ void for_each_selected(Queue, Index count, const Kernel& kernel) {
 #pragma omp parallel if (count >= worth_threads)
   {
     constexpr Index most = 8 * lanes;
-    PickedLane some[most / lanes];
-    Index picked = 0;
+    SelectedLane some[most / lanes];
+    Index selected = 0;
 #pragma omp for schedule(static, 128) nowait
     for (Index row = 0; row < count; ++row) {
       const Range all = kernel.items(row);
       for (Index id = all.first; id < all.last; ++id) {
-        some[picked / lanes].row.id[picked % lanes] = row;
-        some[picked / lanes].id.id[picked % lanes] = id;
-        picked += kernel.picks(row, id) ? 1 : 0;
-        if (picked < most) continue;
-        for (const PickedLane& lane : some) kernel(lane);
-        picked = 0;
+        some[selected / lanes].row.id[selected % lanes] = row;
+        some[selected / lanes].id.id[selected % lanes] = id;
+        selected += kernel.selects(row, id) ? 1 : 0;
+        if (selected < most) continue;
+        for (const SelectedLane& lane : some) kernel(lane);
+        selected = 0;
       }
     }
-    for (Index j = 0; j < picked / lanes; ++j) kernel(some[j]);
-    for (Index j = picked - picked % lanes; j < picked; ++j)
-      kernel(Picked{some[j / lanes].row.id[j % lanes], some[j / lanes].id.id[j % lanes]});
+    for (Index j = 0; j < selected / lanes; ++j) kernel(some[j]);
+    for (Index j = selected - selected % lanes; j < selected; ++j)
+      kernel(Selected{some[j / lanes].row.id[j % lanes], some[j / lanes].id.id[j % lanes]});
   }
 }
 

@@ -36,8 +36,10 @@ struct BondForce {
 template <class T>
 CDEM_HD inline T stored_energy(const BondLaw<T>& law, const T& force_n, const T& force_s1,
                                const T& force_s2) {
-  const T half(0.5), flex_n = half / law.stiffness_n, flex_s = half / law.stiffness_s;
-  return flex_n * force_n * force_n + flex_s * (force_s1 * force_s1 + force_s2 * force_s2);
+  const T half(0.5), half_compliance_n = half / law.stiffness_n,
+                     half_compliance_s = half / law.stiffness_s;
+  return half_compliance_n * force_n * force_n +
+         half_compliance_s * (force_s1 * force_s1 + force_s2 * force_s2);
 }
 
 /// Does an intact bond point bear this jump? Then `on_b` is what bond_force gives, without the
@@ -102,9 +104,9 @@ CDEM_HD inline BondForce<T> bond_force(const Frame<T>& frame, const Vec3<T>& jum
   out.fracture = zero;
   out.friction = zero;
   if (any_of(h.bond < half)) {
-    const T flex_n = half / law.stiffness_n, flex_s = half / law.stiffness_s;
-    const T stored_n = flex_n * force_n * force_n;
-    const T stored_s = flex_s * (force_s1 * force_s1 + force_s2 * force_s2);
+    const T half_compliance_n = half / law.stiffness_n, half_compliance_s = half / law.stiffness_s;
+    const T stored_n = half_compliance_n * force_n * force_n;
+    const T stored_s = half_compliance_s * (force_s1 * force_s1 + force_s2 * force_s2);
     const T old_n = dot(frame.n, jump_old);
     const T old1 = dot(frame.t1, jump_old), old2 = dot(frame.t2, jump_old);
     const T was_n =
@@ -113,10 +115,10 @@ CDEM_HD inline BondForce<T> bond_force(const Frame<T>& frame, const Vec3<T>& jum
     const T was_s1 = select(was_open, zero, -law.stiffness_s * (old1 - h.slip1));
     const T was_s2 = select(was_open, zero, -law.stiffness_s * (old2 - h.slip2));
     const T lost_s =
-        flex_s * (was_s1 * was_s1 + was_s2 * was_s2) - stored_s -
+        half_compliance_s * (was_s1 * was_s1 + was_s2 * was_s2) - stored_s -
         half * ((was_s1 + force_s1) * (along1 - old1) + (was_s2 + force_s2) * (along2 - old2));
     const T lost_n =
-        flex_n * was_n * was_n - stored_n - half * (was_n + force_n) * (opening - old_n);
+        half_compliance_n * was_n * was_n - stored_n - half * (was_n + force_n) * (opening - old_n);
     out.fracture = select(broke, lost_n + lost_s, zero);
     out.friction = select((!broke) & (h.bond < half) & carries, lost_s, zero);
   }

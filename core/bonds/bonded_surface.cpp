@@ -1,4 +1,4 @@
-// surface.cpp - glue labels, rings around points, neighbours of faces across edges.
+// surface.cpp - bonded_node labels, rings around points, neighbours of faces across edges.
 #include "core/bonds/bonded_surface.hpp"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ void for_live_pairs(const Model& m, const State& s, Visit&& visit) {
   all(m.quads, s.quads);
 }
 
-void label_glue(const Model& m, State& s) {
-  Index* label = s.nodes.glue.data();
+void join_nodes(const Model& m, State& s) {
+  Index* label = s.nodes.bonded_node.data();
   std::iota(label, label + m.node_count, 0);
   const auto root = [&](Index i) {
     while (label[i] != i) i = label[i] = label[label[i]];
@@ -43,8 +43,8 @@ void label_glue(const Model& m, State& s) {
 
 /// Rings of the points that vertices of exposed faces belong to: other ends of all edges that leave
 /// any node of the point, once each, and by a node whose motion the lists watch if there is one.
-void merge_rings(const Model& m, State& s) {
-  const Index* glue = s.nodes.glue.data();
+void merge_edge_stars(const Model& m, State& s) {
+  const Index* bonded_node = s.nodes.bonded_node.data();
   std::vector<Flag> exposed(m.node_count);
   for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x)
     for (Index k = 0; k < 4; ++k) {
@@ -53,36 +53,36 @@ void merge_rings(const Model& m, State& s) {
     }
   std::vector<Flag> wanted(m.node_count);  // by label
   for (Index i = 0; i < m.node_count; ++i)
-    if (exposed[i]) wanted[glue[i]] = 1;
+    if (exposed[i]) wanted[bonded_node[i]] = 1;
 
   std::vector<Index> first(m.node_count + 1), member(m.node_count);
-  for (Index i = 0; i < m.node_count; ++i) ++first[glue[i] + 1];
+  for (Index i = 0; i < m.node_count; ++i) ++first[bonded_node[i] + 1];
   for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
   std::vector<Index> next(first.begin(), first.end() - 1);
-  for (Index i = 0; i < m.node_count; ++i) member[next[glue[i]]++] = i;
+  for (Index i = 0; i < m.node_count; ++i) member[next[bonded_node[i]]++] = i;
 
-  s.search.ring_first.resize(m.node_count + 1);
-  s.search.ring.resize(0);
+  s.search.edge_star_first.resize(m.node_count + 1);
+  s.search.edge_star.resize(0);
   std::vector<std::tuple<Index, bool, Index>> ends;  // label, not watched, node
   for (Index label = 0; label < m.node_count; ++label) {
-    s.search.ring_first[label] = Index(s.search.ring.size());
+    s.search.edge_star_first[label] = Index(s.search.edge_star.size());
     if (!wanted[label]) continue;
     ends.clear();
     for (Index c = first[label]; c < first[label + 1]; ++c)
-      for (Index r = m.ring_first[member[c]]; r < m.ring_first[member[c] + 1]; ++r)
-        ends.push_back({glue[m.ring[r]], !exposed[m.ring[r]], m.ring[r]});
+      for (Index r = m.edge_star_first[member[c]]; r < m.edge_star_first[member[c] + 1]; ++r)
+        ends.push_back({bonded_node[m.edge_star[r]], !exposed[m.edge_star[r]], m.edge_star[r]});
     std::sort(ends.begin(), ends.end());
     Index last = -1;
     for (const auto& [end, hidden, node] : ends)
-      if (end != last) s.search.ring.push(node), last = end;
+      if (end != last) s.search.edge_star.push(node), last = end;
   }
-  s.search.ring_first[m.node_count] = Index(s.search.ring.size());
+  s.search.edge_star_first[m.node_count] = Index(s.search.edge_star.size());
 }
 
 /// The face beyond a side of an exposed face: walk through the bodies that meet there, from each
 /// into the next that is bonded to it along the side, until a face is in the open.
 void find_across(const Model& m, State& s) {
-  const Index* glue = s.nodes.glue.data();
+  const Index* bonded_node = s.nodes.bonded_node.data();
   std::vector<Index> mate(m.face_count, -1);
   for_live_pairs(m, s, [&](const PairSet& p, const PairState&, Index i) {
     mate[p.faces[2 * i]] = p.faces[2 * i + 1];
@@ -91,11 +91,12 @@ void find_across(const Model& m, State& s) {
   const auto vertices = [&](Index face) { return m.face_nodes[4 * face + 3] < 0 ? 3 : 4; };
   // side of a face between the same two points as an edge, or -1
   const auto side_along = [&](Index face, Index edge) {
-    const Index a = glue[m.edge_nodes[2 * edge]], b = glue[m.edge_nodes[2 * edge + 1]];
+    const Index a = bonded_node[m.edge_nodes[2 * edge]],
+                b = bonded_node[m.edge_nodes[2 * edge + 1]];
     const Index count = vertices(face);
     for (Index k = 0; k < count; ++k) {
-      const Index u = glue[m.face_nodes[4 * face + k]];
-      const Index v = glue[m.face_nodes[4 * face + (k + 1) % count]];
+      const Index u = bonded_node[m.face_nodes[4 * face + k]];
+      const Index v = bonded_node[m.face_nodes[4 * face + (k + 1) % count]];
       if ((u == a && v == b) || (u == b && v == a)) return k;
     }
     return Index(-1);
@@ -132,8 +133,8 @@ void join_surfaces(const Model& m, State& s, bool released) {
   if (!released && faces == s.search.joined_faces && points == s.search.joined_points) return;
   s.search.joined_faces = faces;
   s.search.joined_points = points;
-  label_glue(m, s);
-  merge_rings(m, s);
+  join_nodes(m, s);
+  merge_edge_stars(m, s);
   find_across(m, s);
 }
 

@@ -80,7 +80,7 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     if (p.point_first.size() > 0) {
       s.released_overlaps.push(i);
     } else {
-      if (ps.live[i] == 1) ps.stored[i] -= hand_over(m, s, p, ps, i);
+      if (ps.live[i] == 1) ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);
       ps.friction[i] += ps.stored[i];
       ps.stored[i] = 0;
     }

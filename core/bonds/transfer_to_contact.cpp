@@ -15,7 +15,7 @@ Real pair_length(const Model& m, const PairSet& p, Index i) {
   return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
 }
 
-Real hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
+Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
   const FaceColumns faces = face_columns(m, s);
   const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
   const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
@@ -44,9 +44,9 @@ Real hand_over(const Model& m, State& s, const PairSet& p, const PairState& ps, 
         ContactState spring = ContactState::at(s.springs.state.data(), slot);
         spring.shear1 = dot(force, frame.t1);
         spring.shear2 = dot(force, frame.t2);
-        spring.sunk = -dot(frame_a.n, jump);
-        spring.force_n = kn * spring.sunk;
-        spring.energy_n = 0.5 * kn * spring.sunk * spring.sunk;
+        spring.penetration = -dot(frame_a.n, jump);
+        spring.force_n = kn * spring.penetration;
+        spring.energy_n = 0.5 * kn * spring.penetration * spring.penetration;
         spring.energy_s =
             0.5 / ks * (spring.shear1 * spring.shear1 + spring.shear2 * spring.shear2);
         spring.store(s.springs.state.data(), slot);
@@ -107,12 +107,12 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
 /// Returns the energy that the contact holds  [J].
 Real give(State& s, const Successor& c, Real part, const Vec3<Real>& shear) {
   ContactState state{};
-  state.sunk = part * c.depth;
-  state.gap_free = state.sunk - c.depth;
-  state.force_n = c.kn * state.sunk;
+  state.penetration = part * c.depth;
+  state.stress_free_gap = state.penetration - c.depth;
+  state.force_n = c.kn * state.penetration;
   state.shear1 = dot(shear, c.frame.t1);
   state.shear2 = dot(shear, c.frame.t2);
-  state.energy_n = 0.5 * state.force_n * state.sunk;
+  state.energy_n = 0.5 * state.force_n * state.penetration;
   state.energy_s = 0.5 / c.ks * (state.shear1 * state.shear1 + state.shear2 * state.shear2);
   if (c.is_edge) {
     EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c.place);

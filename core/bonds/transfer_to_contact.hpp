@@ -14,8 +14,8 @@ Real pair_length(const Model& model, const PairSet& pairs, Index pair);
 /// side, so that the change of bookkeeping is no jolt. A point whose vertices have parted, as those
 /// of a hinge do before its last point breaks, carries nothing. Returns the energy that the springs
 /// hold  [J].
-Real hand_over(const Model& model, State& state, const PairSet& pairs, const PairState& bonds,
-               Index pair);
+Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs,
+                         const PairState& bonds, Index pair);
 
 /// The same for overlaps that were released in this step, once the search has found what touches.
 /// Their contacts are not where their bond points were: what the pair carried is shared by the

@@ -46,7 +46,7 @@ void update_element_forces(const Model& m, State& s, Queue q, const StepPlan& pl
   const PhaseTimer timer(s, Phase::element);
   const bool fuses = fuses_blocks(s, plan);
   const auto others = [&](const ElementState& es) {
-    return awake(plan, fuses ? es.free.others : es.awake);
+    return awake(plan, fuses ? es.fused.general : es.awake);
   };
   update_elements<Tet4>(m, s, q, m.tet4, s.tet4, others(s.tet4));
   update_elements<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5, awake(plan, s.pyramid5.awake));

@@ -9,8 +9,8 @@ namespace cdem {
 
 template void for_each_selected(Queue, Index, const UpdateSpringForces&);
 template void for_each_lane(Queue, Index, const UpdateEdgeForces&);
-template void for_each_item(Queue, Index, const CountActing&);
-template void for_each_item(Queue, Index, const ListActing&);
-template void for_each_item(Queue, Index, const GatherFaceForces&);
+template void for_each_item(Queue, Index, const CountContactsByTarget&);
+template void for_each_item(Queue, Index, const ListContactsByTarget&);
+template void for_each_item(Queue, Index, const AccumulateFaceForces&);
 
 }  // namespace cdem

@@ -5,8 +5,8 @@
 
 namespace cdem {
 
-template void for_each_lane(Queue, Index, Blocks, const AdvanceFree<Tet4>&);
-template void for_each_lane(Queue, Index, Blocks, const AdvanceFree<Hex8>&);
-template void for_each_lane(Queue, Index, Blocks, const AdvanceFree<Hex8OnePoint>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Tet4>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8OnePoint>&);
 
 }  // namespace cdem

@@ -6,11 +6,11 @@
 
 namespace cdem {
 
-template void for_each_selected(Queue, Index, const KeepTargetFaces&);
-template void for_each_selected(Queue, Index, const SiftTargetFaces&);
-template void for_each_item(Queue, Index, const FindTargetFaces&);
-template void for_each_lane(Queue, Index, const SiftTargetEdges&);
-template void for_each_selected(Queue, Index, const TouchTargetEdges&);
-template void for_each_item(Queue, Index, const ListEdges&);
+template void for_each_selected(Queue, Index, const UpdateHeldTargets&);
+template void for_each_selected(Queue, Index, const FilterNewTargets&);
+template void for_each_item(Queue, Index, const ResolveTargets&);
+template void for_each_lane(Queue, Index, const FilterEdgePairs&);
+template void for_each_selected(Queue, Index, const ResolveTargetEdges&);
+template void for_each_item(Queue, Index, const ListEdgeContacts&);
 
 }  // namespace cdem

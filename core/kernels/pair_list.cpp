@@ -5,11 +5,11 @@
 namespace cdem {
 
 template void for_each_lane(Queue, Index, const MarkNearFaces&);
-template void for_each_selected(Queue, Index, const MarkCloseFaces&);
-template void for_each_item(Queue, Index, const CountCloseFaces&);
-template void for_each_item(Queue, Index, const ListCloseFaces&);
+template void for_each_selected(Queue, Index, const MarkInnerFaces&);
+template void for_each_item(Queue, Index, const CountInnerFaces&);
+template void for_each_item(Queue, Index, const ListInnerFaces&);
 template void for_each_lane(Queue, Index, const MarkNearEdges&);
 template void for_each_item(Queue, Index, const MarkHeldEdges&);
-template void for_each_item(Queue, Index, const CopyCloseEdges&);
+template void for_each_item(Queue, Index, const CopyInnerEdges&);
 
 }  // namespace cdem

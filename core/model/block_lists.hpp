@@ -27,7 +27,7 @@ inline Blocks awake(const StepPlan& plan, const Column<Index>& list) {
 
 /// Does the fused kernel run in this step?
 inline bool fuses_blocks(const State& s, const StepPlan& plan) {
-  return plan.fuse_blocks && s.nodes.free.size() > 0;
+  return plan.fuse_blocks && s.nodes.fused.size() > 0;
 }
 
 }  // namespace cdem

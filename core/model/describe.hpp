@@ -15,13 +15,13 @@ void describe(Model& m, Visit&& field) {
   field("node.place", m.node_place);
   field("node.mass", m.mass);
   field("node.gravity_mass", m.gravity_mass);
-  field("node.lumped_frequency2", m.lumped_frequency2);
-  field("node.dense_first", m.dense_first);
-  field("node.dense_step", m.dense_step);
+  field("node.lumped_frequency_squared", m.lumped_frequency_squared);
+  field("node.mass_row_first", m.mass_row_first);
+  field("node.mass_axis_stride", m.mass_axis_stride);
   field("node.block_first", m.block_first);
   field("node.block_count", m.block_count);
   field("node.inverse_mass_bound", m.inverse_mass_bound);
-  field("node.frequency2", m.frequency2);
+  field("node.frequency_squared", m.frequency_squared);
   field("mass.inverse", m.mass_inverse);
   field("mass.matrix", m.mass_matrix);
   field("material.lambda", m.material_lambda);
@@ -40,7 +40,7 @@ void describe(Model& m, Visit&& field) {
   elements("hex8", m.hex8);
   field("face.nodes", m.face_nodes);
   field("face.edges", m.face_edges);
-  field("face.group", m.face_group);
+  field("face.interface_class", m.face_interface_class);
   field("face.block", m.face_block);
   field("face.element", m.face_element);
   field("face.length", m.face_length);
@@ -52,8 +52,8 @@ void describe(Model& m, Visit&& field) {
   field("face.movable", m.face_movable);
   field("edge.nodes", m.edge_nodes);
   field("edge.faces", m.edge_faces);
-  field("ring.first", m.ring_first);
-  field("ring.node", m.ring);
+  field("edge_star.first", m.edge_star_first);
+  field("edge_star.node", m.edge_star);
   const auto pairs = [&](const char* kind, PairSet& p) {
     const std::string name = std::string(kind) + ".";
     field(name + "faces", p.faces);
@@ -86,31 +86,39 @@ template <class S, class Visit>
 void describe_search(S& search, Visit&& field) {
   field("search.exposed_face", search.exposed_face, "faces that can be touched");
   field("search.face_exposed", search.face_exposed, "place of a face among them, or -1");
-  field("search.candidate_first", search.candidate_first, "start of a vertex's candidates");
-  field("search.candidate", search.candidate, "exposed faces that it may touch");
-  field("search.candidate_pair", search.candidate_pair, "pairs of vertex and face they are of");
-  field("search.faces_of", search.faces_of, "vertex and exposed face of a pair");
-  field("search.faces_bounds", search.faces_bounds, "how far apart they may be in contact [m]");
-  field("search.source_first", search.source_first, "start of a face's sources");
-  field("search.source", search.source, "exposed faces whose contacts may act on it");
-  field("search.face_listed", search.face_listed, "1: it may act on a face, or one on it");
-  field("search.edges_of", search.edges_of,
+  field("outer.slot_first", search.outer.slot_first, "start of a vertex's candidates");
+  field("outer.slot_faces", search.outer.slot_faces, "exposed faces that it may touch");
+  field("outer.slot_pairs", search.outer.slot_pairs, "pairs of vertex and face they are of");
+  field("outer.vf_pairs", search.outer.vf_pairs, "vertex and exposed face of a pair");
+  field("outer.vf_bounds", search.outer.vf_bounds,
+        "how far apart they may be in contact [m]");
+  field("outer.acting_first", search.outer.acting_first, "start of a face's sources");
+  field("outer.faces_acting_on", search.outer.faces_acting_on,
+        "exposed faces whose contacts may act on it");
+  field("outer.face_listed", search.outer.face_listed,
+        "1: it may act on a face, or one on it");
+  field("outer.ee_pairs", search.outer.ee_pairs,
         "pairs of edges that may touch: places of the two among the edges");
-  field("search.edges_code", search.edges_code, "of which sides they are, which ends shared");
-  field("search.edge_sides", search.edge_sides, "4 * exposed face + side of the faces at an edge");
-  field("search.edge_pairs_first", search.edge_pairs_first, "start of an edge's pairs");
-  field("search.edge_pairs", search.edge_pairs, "pairs that an edge is of, and the other edge");
-  field("search.edges_bounds", search.edges_bounds,
+  field("outer.ee_codes", search.outer.ee_codes,
+        "of which sides they are, which ends shared");
+  field("outer.ee_sides", search.outer.ee_sides,
+        "4 * exposed face + side of the faces at an edge");
+  field("outer.edge_first", search.outer.edge_first, "start of an edge's pairs");
+  field("outer.edge_pairs", search.outer.edge_pairs,
+        "pairs that an edge is of, and the other edge");
+  field("outer.ee_bounds", search.outer.ee_bounds,
         "how far apart they may begin to, see MarkNearEdges [m]");
-  field("search.turn_soon", search.turn_soon, "how far an exposed face may soon turn [rad]");
+  field("outer.rotation_soon", search.outer.rotation_soon,
+        "how far an exposed face may soon turn [rad]");
   field("search.across", search.across, "face beyond a side of an exposed face, or -1");
-  field("search.ring_first", search.ring_first, "start of a point's ring");
-  field("search.ring", search.ring, "other ends of the edges that leave a point");
+  field("search.edge_star_first", search.edge_star_first, "start of a point's ring");
+  field("search.edge_star", search.edge_star, "other ends of the edges that leave a point");
   field("search.contact_first", search.contact_first, "start of a node's contact rows");
   field("search.contact_corner", search.contact_corner,
         "contact rows of a node, of faces that are not idle");
-  field("search.watched", search.watched, "nodes whose straying calls for a refresh");
-  field("search.watch", search.watch,
+  field("outer.predicted_nodes", search.outer.predicted_nodes,
+        "nodes whose straying calls for a rebuild");
+  field("outer.predicted", search.outer.predicted,
         "their position at the last, skin squared [m2], velocity foreseen, skin [m]");
 }
 
@@ -124,7 +132,8 @@ void describe(S& s, Visit&& field) {
   field("node.reaction", s.nodes.reaction, "force of supports [N]");
   field("node.relax", s.nodes.relax, "force and velocity of the last step, adaptive relaxation");
   field("node.relax_mass", s.nodes.relax_mass, "scaled masses of adaptive relaxation [kg]");
-  field("node.glue", s.nodes.glue, "label shared by nodes that intact bonds hold together");
+  field("node.bonded_node", s.nodes.bonded_node,
+        "label shared by nodes that intact bonds hold together");
 
   const auto elements = [&](const char* shape, auto& e) {
     const std::string name = std::string(shape) + ".";

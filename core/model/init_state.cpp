@@ -39,7 +39,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   for (Column<Real>* column : {&n.force, &n.reaction, &n.sample}) column->resize(4 * count);
   for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
     column->resize(count);
-  n.glue.resize(count);
+  n.bonded_node.resize(count);
   size_elements(m, m.tet4, s.tet4);
   size_elements(m, m.pyramid5, s.pyramid5);
   size_elements(m, m.wedge6, s.wedge6);
@@ -49,7 +49,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   size_pairs(m.overlaps, s.overlaps);
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
-  // the row that adds nothing, see FreeRows: x + -0 is x, whatever the sign of a zero
+  // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero
   for (std::size_t k = rows; k < rows + 4; ++k) s.corner_force[k] = -0.0;
 }
 

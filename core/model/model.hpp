@@ -40,25 +40,25 @@ struct Model {
   Index node_count = 0;
   Column<Index> node_block, node_place;
   Column<Real> mass, gravity_mass;
-  Column<Index> dense_first, dense_step, block_first, block_count;
+  Column<Index> mass_row_first, mass_axis_stride, block_first, block_count;
   Column<Real> mass_inverse, mass_matrix;
-  Column<Real> inverse_mass_bound;  // largest eigenvalue of the inverse mass matrix  [1/kg]
-  Column<Real> frequency2;          // bound from the node's elements, squared  [1/s2]
-  Column<Real> lumped_frequency2;   // the same with lumped masses
+  Column<Real> inverse_mass_bound;        // largest eigenvalue of the inverse mass matrix  [1/kg]
+  Column<Real> frequency_squared;         // bound from the node's elements, squared  [1/s2]
+  Column<Real> lumped_frequency_squared;  // the same with lumped masses
 
   ElementSet tet4, pyramid5, wedge6, hex8;
   Column<Real> material_lambda, material_mu;
 
   // exterior faces and edges
   Index face_count = 0, edge_count = 0;
-  Column<Index> face_nodes, face_edges, face_group, face_block, face_element;
+  Column<Index> face_nodes, face_edges, face_interface_class, face_block, face_element;
   Column<Real> face_length, face_reach, face_area, face_height, face_stiffness;
-  Column<Index> edge_nodes, edge_faces, ring_first, ring;
+  Column<Index> edge_nodes, edge_faces, edge_star_first, edge_star;
   Column<Flag> face_initially_exposed, face_movable;
 
   // interfaces
   PairSet triangles, quads, overlaps;
-  Index group_count = 0;
+  Index class_count = 0;
   Column<Index> interface_of;
   Column<Interface> interfaces;
   Column<Real> cohesion, tensile_strength, tan_friction;
@@ -82,7 +82,7 @@ struct Model {
   Real bond_indentation_triangle = 0, bond_indentation_quad = 0;
   bool semi_edges = true;
   bool check_search = false;   // compare every search with an all-pairs search
-  Index refresh_interval = 0;  // 0: by displacement; else the paper's every so many steps
+  Index rebuild_interval = 0;  // 0: by displacement; else the paper's every so many steps
   NodeDamping damping{0, 0};
   bool lumped = false;         // lumped masses for all: quicker to rest, wrong inertia
   Real stiffness_damping = 0;  // Rayleigh, fraction of critical at the stability limit

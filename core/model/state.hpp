@@ -16,19 +16,19 @@ struct NodeState {
   Column<Real> unbalance;
   Column<Real> relax;       // adaptive relaxation only, rows of 8: force, velocity of the last step
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
-  Column<Index> glue, awake;   // awake: blocks of nodes, see rest.hpp
-  Column<Flag> rests, listed;  // see rest.hpp
-  Column<Flag> free;           // 1: of a free block, see nodes/free_block.hpp; empty: there is none
-  Column<Index> others;        // awake blocks of nodes, less those of which all are free
-  bool damped = false;         // in the last step, else damping_force does not count
+  Column<Index> bonded_node, awake;  // awake: blocks of nodes, see rest.hpp
+  Column<Flag> sleeps, listed;       // see rest.hpp
+  Column<Flag> fused;     // 1: of a free block, see nodes/free_block.hpp; empty: there is none
+  Column<Index> general;  // awake blocks of nodes, less those of which all are free
+  bool damped = false;    // in the last step, else damping_force does not count
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };
 
 /// Blocks of elements of which all are free, see nodes/free_block.hpp; the other ones that are
 /// awake.
-struct FreeBlocks {
-  Column<Index> blocks, others;
-  Column<Index> row_first, row;  // see FreeRows
+struct FusedBlocks {
+  Column<Index> blocks, general;
+  Column<Index> row_first, row;  // see FusedRows
 };
 
 struct ElementState {
@@ -36,7 +36,7 @@ struct ElementState {
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
   Column<Index> awake;  // blocks of elements, see rest.hpp
-  FreeBlocks free;
+  FusedBlocks fused;
 };
 
 struct PairState {
@@ -65,64 +65,72 @@ struct EdgeState {
 };
 
 /// Which contacts act on the exposed faces, see contact/gather.hpp; made anew in every step.
-struct ActingState {
+struct ContactsByTargetState {
   Column<Index> count, first;    // by target
   Column<Index> place, contact;  // by contact; the list
 };
 
-/// The few of all that is listed which the search looks at in every step, see close_lists.hpp. They
-/// follow from the lists, whenever they are made.
-struct CloseState {
-  bool known = false;  // have they been made since the lists were?
-  Real built_time = 0;
-  Column<Real> watch, skin;    // rows of 8 of watched nodes, see WatchedNode; [node]  [m]
-  Column<Real> motion;         // [listed pair] see MarkNearFaces
-  Column<Flag> faces, edges;   // [listed pair] are they near?
-  Column<Flag> candidates;     // [listed candidate] are they close?
-  Column<Index> first, count;  // of the candidates of a vertex
-  Column<Index> candidate;     // exposed faces
-  Column<Flag> may_begin;      // [close candidate] see SiftTargetFaces; made in every step
-  Column<Index> near_edges;    // listed pairs of edges
-  Column<Index> edge_pairs;    // [9][near pair of edges] see CopyCloseEdges
-  Column<Flag> open;           // [near pair] see SiftTargetEdges; made in every step
+/// Outer pair list: what may touch before the next rebuild, see contact/pair_list/outer_list.hpp.
+/// A slot is 4 * exposed face + vertex; vf is a pair of vertex and face, ee one of two edges.
+struct OuterList {
+  Real lookahead_time = 0, built_time = 0;  // how long it holds at most, and from when  [s]
+  Real least_skin = 0.001;                  // of a node, in parts of L; follows how long it lasts
+  bool skin_exceeded = false;               // a node left its skin: the list is too old
+  Column<Index> slot_first, slot_faces;     // by slot: exposed faces that the vertex may touch
+  Column<Index> slot_pairs;                 // and the pairs of vertex and face that they are of
+  Column<Index> vf_pairs;                   // [2][pair] node, exposed face
+  Column<float> vf_bounds;                  // [6][pair] see MarkNearFaces
+  Column<Index> ee_pairs, ee_codes;         // [2][pair], [pair], see ListedEdges
+  Column<Index> ee_sides;                   // [edge][2] the same
+  Column<float> ee_bounds;                  // [6][pair] see MarkNearEdges
+  Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see MarkHeldEdges
+  Column<Real> rotation_soon;               // [exposed] see ListedFaces
+  Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it
+  Column<Flag> face_listed;                       // [exposed] may it act on any, or any on it?
+  Column<Index> predicted_nodes, node_predicted;  // nodes of exposed faces; node -> place or -1
+  Column<Real> predicted;                         // rows of 8 of theirs, see PredictedNode
 };
 
+/// Inner pair list: pairs of the outer list that can come into contact within the next few steps,
+/// see contact/pair_list/inner_list.hpp. It follows from the outer list, whenever it is made.
+struct InnerList {
+  bool known = false;  // has it been made since the outer list was?
+  Real built_time = 0;
+  Column<Real> predicted, skin;  // rows of 8, see PredictedNode; [node]  [m]
+  Column<Real> motion;           // [outer pair] see MarkNearFaces
+  Column<Flag> faces, edges;     // [outer pair] are they near?
+  Column<Flag> candidates;       // [outer slot face] is it near?
+  Column<Index> first, count;    // by slot
+  Column<Index> candidate;       // exposed faces
+  Column<Flag> may_begin;        // [candidate] see FilterNewTargets; made in every step
+  Column<Index> near_edges;      // outer pairs of edges
+  Column<Index> edge_pairs;      // [9][inner pair of edges] see CopyInnerEdges
+  Column<Flag> open;             // [inner pair] see FilterEdgePairs; made in every step
+};
+
+/// Exposed faces, the surface that they make, and the pair lists.
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
   Column<ExposedRow> exposed;                // what follows from them, see list_exposed
-  Real horizon = 0, built_time = 0;          // how long the lists look ahead, and from when  [s]
-  Real skin_least = 0.001;  // of a node, in parts of L; follows how long the lists last
-  bool strayed = false;     // a vertex left its foreseen path: the lists are old
   Index joined_faces = -1;  // exposed faces, and intact bond points, as join_surfaces last saw them
   Real joined_points = -1;
-  Column<Index> candidate_first, candidate, candidate_pair;  // by vertex
-  Column<Index> faces_of;                                    // [2][pair] node, exposed face
-  Column<float> faces_bounds;                                // [6][pair] see MarkNearFaces
-  Column<Index> edges_of, edges_code;                        // [2][pair], [pair], see ListedEdges
-  Column<Index> edge_sides;                                  // [edge][2] the same
-  Column<Index> edge_pairs_first, edge_pairs;  // by edge of the mesh, see MarkHeldEdges
-  Column<float> edges_bounds;                  // [6][pair] see MarkNearEdges
-  Column<Real> turn_soon;                      // [exposed] see ListedFaces
-  CloseState close;
-  Column<Index> source_first, source;  // faces whose contacts may act on a face
-  Column<Flag> face_listed;            // [exposed] may any act on it, or its own on others?
-  Column<Index> across;                // side of an exposed face -> face beyond it, or -1
-  Column<Index> ring_first, ring;  // point (glue label) -> other ends of the edges that leave it
+  Column<Index> across;                      // side of an exposed face -> face beyond it, or -1
+  Column<Index> edge_star_first, edge_star;  // bonded node -> other ends of the edges that leave it
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
-  Column<Index> watched, node_watch;  // nodes of exposed faces; node -> place among them, or -1
-  Column<Real> watch;                 // rows of 8 of theirs, see WatchedNode
-  std::shared_ptr<struct ProximitySearch> lists;  // how they are made, see proximity.hpp
+  OuterList outer;
+  InnerList inner;
+  std::shared_ptr<struct PairSearch> lists;  // how they are made, see pair_search.hpp
 };
 
 /// What the wall time of steps is counted by.
-enum class Phase { refresh, search, contact, element, node };
+enum class Phase { rebuild, search, contact, element, node };
 
 struct State {
   Real seconds[5] = {};  // wall time so far by Phase; no part of the results
   Real time = 0;
   Real dt = 0, dt_last = 0;  // of the coming and of the last step  [s]
   Real dt_stable = 0;        // which `dt` grows towards  [s]
-  std::int64_t step = 0, refreshes = 0, built_step = -1;
+  std::int64_t step = 0, rebuilds = 0, built_step = -1;
   Real energy_start = 0, energy_scale = 0;  // of the ledger
   Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]
   Real kinetic_peak = 0;                    // since the motion was last stopped  [J]
@@ -136,7 +144,7 @@ struct State {
   Column<Index> released_overlaps;  // their contacts are still to be found in this step
   SpringState springs;
   EdgeState edges;
-  ActingState acting;
+  ContactsByTargetState contacts_by_target;
   SearchState search;
   Column<Real> face_geometry, corner_force, contact_force;  // rows of 8, 4, 4
   Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]
@@ -145,7 +153,7 @@ struct State {
 
 /// Does the pair list name anything? Without it contacts only end, in the first step with it.
 inline bool has_contact_pairs(const State& s) {
-  return s.search.source.size() > 0 || s.built_step == s.step;
+  return s.search.outer.faces_acting_on.size() > 0 || s.built_step == s.step;
 }
 
 }  // namespace cdem

@@ -102,7 +102,7 @@ struct MoveNodes {
                *forces = force + std::size_t(mass.block_first[i]) * 4;
     Row a = Row::zero();
     if (mass.held(i)) {  // another matrix for each axis
-      const Real *x = inverse, *y = x + mass.dense_step[i], *z = y + mass.dense_step[i];
+      const Real *x = inverse, *y = x + mass.mass_axis_stride[i], *z = y + mass.mass_axis_stride[i];
       for (Index j = 0; j < count; ++j, forces += 4)
         a = a + Row::of(x[j] * forces[0], y[j] * forces[1], z[j] * forces[2]);
     } else {
@@ -140,11 +140,11 @@ struct MoveNodes {
 struct AdvanceNodes {
   SumNodeForces sum;
   MoveNodes move;
-  const Flag* free;  // [node] 1: moved by AdvanceFree; null where none is
+  const Flag* fused;  // [node] 1: moved by AdvanceFused; null where none is
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
-    if (free && free[i]) return;
+    if (fused && fused[i]) return;
     const bool shared = move.mass.row(i) >= 0;
     if (shared && move.mass.block_first[i] != i) return;
     const Index last = shared ? i + move.mass.block_count[i] : i + 1;

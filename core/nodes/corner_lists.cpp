@@ -33,7 +33,7 @@ void list_contact_corners(const Model& m, State& s) {
   first.fill(0);
   const auto visit = [&](auto&& at) {
     for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x) {
-      if (!s.search.face_listed[x]) continue;
+      if (!s.search.outer.face_listed[x]) continue;
       const Index face = s.search.exposed_face[x];
       for (Index k = 0; k < 4; ++k)
         if (m.face_nodes[4 * face + k] >= 0) at(m.face_nodes[4 * face + k], 4 * x + k);

@@ -11,7 +11,7 @@ namespace cdem {
 /// Rows of bonds that the nodes of free blocks sum, for each block of `block_size` elements: first
 /// those of the first corners, the first row of each element, then the second, and so on; as many
 /// for all corners of all its elements, filled up with the row that adds nothing.
-struct FreeRows {
+struct FusedRows {
   const Index* first;  // [block of elements + 1]
   const Index* row;    // ~row where the opposite is meant
 
@@ -29,10 +29,10 @@ struct FreeRows {
 /// other block reads or writes their nodes in this pass, so nothing is stored in between. The
 /// arithmetic is that of SumNodeForces and MoveNodes.
 template <class Shape>
-struct AdvanceFree {
+struct AdvanceFused {
   static constexpr Index count = Shape::nodes;
   CorotationalForce<Shape, FollowRotation> element;
-  FreeRows rows;
+  FusedRows rows;
   InForces bond_force;
   LoadColumns loads;
   MassColumns mass;
@@ -55,7 +55,7 @@ struct AdvanceFree {
                    heavy[k] * T(loads.gravity.z)};
       f[k] = add_bonds(e, k, weight[k] + own.f[k]);
     }
-    const auto matrix = look_up(mass.dense_first, first);
+    const auto matrix = look_up(mass.mass_row_first, first);
     const T kick(0.5 * (dt_before + dt)), zero(0.0);
     for (Index k = 0; k < count; ++k) {
       T inverse[count];

@@ -22,29 +22,30 @@ struct Elements {
   Range bond_rows(Index node) const {
     return {s.nodes.corner_first[node] + 1, s.nodes.corner_first[node + 1]};
   }
-  bool is_free(Index i) const {
+  bool is_fused(Index i) const {
     const Index first = first_node(i), last = first + corners;
     if (m.block_first[first] != first || m.block_count[first] != corners ||
         m.load_first[first] < m.load_first[last] ||
-        s.search.contact_first[first] < s.search.contact_first[last] || m.dense_first[first] < 0)
+        s.search.contact_first[first] < s.search.contact_first[last] || m.mass_row_first[first] < 0)
       return false;
     for (Index k = 0; k < corners; ++k) {
       const Index node = first + k;
       const Range bonds = bond_rows(node);
       const Index own = e.corner_first + corners * i + k;
       if (e.nodes[std::size_t(k) * e.stride + i] != node || m.support[node] >= 0 ||
-          m.dense_first[node] != m.dense_first[first] + corners * k || m.dense_step[node] > 0 ||
-          bonds.first > bonds.last || s.nodes.corner[bonds.first - 1] != own ||
+          m.mass_row_first[node] != m.mass_row_first[first] + corners * k ||
+          m.mass_axis_stride[node] > 0 || bonds.first > bonds.last ||
+          s.nodes.corner[bonds.first - 1] != own ||
           (bonds.first < bonds.last && is_of_element(s.nodes.corner[bonds.first])))
         return false;
     }
     return true;
   }
   /// Are all elements of a block free?
-  bool are_free(Index block) const {
+  bool are_fused(Index block) const {
     const Index begin = block * block_size, end = std::min(begin + block_size, e.count);
     for (Index i = begin; i < end; ++i)
-      if (!is_free(i)) return false;
+      if (!is_fused(i)) return false;
     return begin < end;
   }
   template <class Visit>
@@ -58,26 +59,26 @@ struct Elements {
   bool is_of_element(Index row) const { return row >= 0 && row < m.triangles.corner_first; }
 };
 
-/// List what the nodes of free blocks sum, see FreeRows.
-void list_rows(const Elements& of, FreeBlocks& free) {
+/// List what the nodes of free blocks sum, see FusedRows.
+void list_rows(const Elements& of, FusedBlocks& fused) {
   const State& s = of.s;
-  Column<Index>&first = free.row_first, &rows = free.row;
+  Column<Index>&first = fused.row_first, &rows = fused.row;
   first.resize(of.e.count / block_size + 2);
   first.fill(0);
-  for (std::size_t b = 0; b < free.blocks.size(); ++b) {
+  for (std::size_t b = 0; b < fused.blocks.size(); ++b) {
     Index most = 0;
-    of.visit_nodes(free.blocks[b], [&](Index, Index, Index node) {
+    of.visit_nodes(fused.blocks[b], [&](Index, Index, Index node) {
       const Range bonds = of.bond_rows(node);
       most = std::max(most, bonds.last - bonds.first);
     });
-    first[free.blocks[b] + 1] = most * of.corners * block_size;
+    first[fused.blocks[b] + 1] = most * of.corners * block_size;
   }
   for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
   rows.resize(first[first.size() - 1]);
   rows.fill(of.m.corner_rows);  // adds nothing
-#pragma omp parallel for schedule(static) if (free.blocks.size() * block_size >= worth_threads)
-  for (std::size_t b = 0; b < free.blocks.size(); ++b) {
-    const Index block = free.blocks[b];
+#pragma omp parallel for schedule(static) if (fused.blocks.size() * block_size >= worth_threads)
+  for (std::size_t b = 0; b < fused.blocks.size(); ++b) {
+    const Index block = fused.blocks[b];
     const Index most = (first[block + 1] - first[block]) / (of.corners * block_size);
     of.visit_nodes(block, [&](Index lane, Index corner, Index node) {
       Index* row = rows.data() + first[block] + corner * most * block_size + lane;
@@ -87,43 +88,43 @@ void list_rows(const Elements& of, FreeBlocks& free) {
   }
 }
 
-void find_free_elements(const Model& m, State& s, const ElementSet& e, ElementState& es,
-                        Index corners) {
-  FreeBlocks& free = es.free;
+void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementState& es,
+                         Index corners) {
+  FusedBlocks& fused = es.fused;
   const Elements of{m, s, e, corners};
   const Index count = Index(es.awake.size());
-  std::vector<Flag> are_free(count);
+  std::vector<Flag> are_fused(count);
 #pragma omp parallel for schedule(static) if (count * block_size >= worth_threads)
-  for (Index b = 0; b < count; ++b) are_free[b] = of.are_free(es.awake[b]);
-  free.blocks.resize(0);
-  free.others.resize(0);
-  for (Index b = 0; b < count; ++b) (are_free[b] ? free.blocks : free.others).push(es.awake[b]);
-  list_rows(of, free);
-  if (free.blocks.size() == 0) return;
-  s.nodes.free.resize(m.node_count);
-  for (std::size_t b = 0; b < free.blocks.size(); ++b)
-    of.visit_nodes(free.blocks[b], [&](Index, Index, Index node) {
-      s.nodes.free[node] = 1;
+  for (Index b = 0; b < count; ++b) are_fused[b] = of.are_fused(es.awake[b]);
+  fused.blocks.resize(0);
+  fused.general.resize(0);
+  for (Index b = 0; b < count; ++b) (are_fused[b] ? fused.blocks : fused.general).push(es.awake[b]);
+  list_rows(of, fused);
+  if (fused.blocks.size() == 0) return;
+  s.nodes.fused.resize(m.node_count);
+  for (std::size_t b = 0; b < fused.blocks.size(); ++b)
+    of.visit_nodes(fused.blocks[b], [&](Index, Index, Index node) {
+      s.nodes.fused[node] = 1;
       s.nodes.force[4 * std::size_t(node) + 3] = 0;  // no contact stiffens it any more
     });
 }
 
 }  // namespace
 
-void find_free(const Model& m, State& s) {
+void find_fused_blocks(const Model& m, State& s) {
   NodeState& nodes = s.nodes;
-  nodes.free.resize(0);
+  nodes.fused.resize(0);
   if (m.lumped || m.formulation != Formulation::corotational) return;
-  find_free_elements(m, s, m.tet4, s.tet4, 4);
-  find_free_elements(m, s, m.hex8, s.hex8, 8);
-  if (nodes.free.size() == 0) return;
-  nodes.others.resize(0);
+  find_fused_elements(m, s, m.tet4, s.tet4, 4);
+  find_fused_elements(m, s, m.hex8, s.hex8, 8);
+  if (nodes.fused.size() == 0) return;
+  nodes.general.resize(0);
   for (std::size_t b = 0; b < nodes.awake.size(); ++b) {
     const Index begin = nodes.awake[b] * block_size;
     const Index end = std::min(begin + block_size, m.node_count);
-    const Flag* free = nodes.free.data();
-    if (!std::all_of(free + begin, free + end, [](Flag f) { return f == 1; }))
-      nodes.others.push(nodes.awake[b]);
+    const Flag* fused = nodes.fused.data();
+    if (!std::all_of(fused + begin, fused + end, [](Flag f) { return f == 1; }))
+      nodes.general.push(nodes.awake[b]);
   }
 }
 

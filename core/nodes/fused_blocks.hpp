@@ -8,7 +8,7 @@ namespace cdem {
 
 /// Find, among what is awake, blocks of one tet or hexahedron on which nothing but their own
 /// forces, bonds and weight acts, and list what their nodes sum. They may go apart from the other
-/// blocks, see AdvanceFree. Only with the default formulation and full mass matrices.
-void find_free(const Model& model, State& state);
+/// blocks, see AdvanceFused. Only with the default formulation and full mass matrices.
+void find_fused_blocks(const Model& model, State& state);
 
 }  // namespace cdem

@@ -10,19 +10,19 @@ namespace cdem {
 /// which gives them their exact inertia. Matrices are kept without the mass, so that all tets share
 /// one.
 struct MassColumns {
-  bool lumped;               // only the numbers count, whatever the matrices
-  const Real* mass;          // [node] row sum of the mass matrix  [kg]
-  const Index* dense_first;  // [node]: start of the node's row in `dense`, or -1 when lumped
-  const Index* dense_step;   // [node]: from one axis to the next (0 when all three share)
-  const Index* block_first;  // [node]: first node of the block
-  const Index* block_count;  // [node]: nodes of the block
-  const Real* inverse;       // rows of the inverse times `mass`, supported nodes taken out
-  const Real* matrix;        // rows of the matrix over `mass`, in the same places
+  bool lumped;                    // only the numbers count, whatever the matrices
+  const Real* mass;               // [node] row sum of the mass matrix  [kg]
+  const Index* mass_row_first;    // [node]: start of the node's row in `dense`, or -1 when lumped
+  const Index* mass_axis_stride;  // [node]: from one axis to the next (0 when all three share)
+  const Index* block_first;       // [node]: first node of the block
+  const Index* block_count;       // [node]: nodes of the block
+  const Real* inverse;            // rows of the inverse times `mass`, supported nodes taken out
+  const Real* matrix;             // rows of the matrix over `mass`, in the same places
 
   /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
-  CDEM_HD Index row(Index node) const { return lumped ? -1 : dense_first[node]; }
+  CDEM_HD Index row(Index node) const { return lumped ? -1 : mass_row_first[node]; }
   /// Is a node of the block supported, so that the inverse differs from axis to axis?
-  CDEM_HD bool held(Index node) const { return row(node) >= 0 && dense_step[node] > 0; }
+  CDEM_HD bool held(Index node) const { return row(node) >= 0 && mass_axis_stride[node] > 0; }
   /// Part of M a of a node that the given motion of supported nodes of its block makes, row by row
   /// of the full matrix  [N].
   CDEM_HD Row given_inertia(const SupportColumns& supports, const InMotion& nodes, Index i,

@@ -23,32 +23,32 @@ NodeDamping node_damping(const Model& m, const State& s) {
 }
 
 template <class Shape>
-void advance_free(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
-                  ElementState& es) {
-  const FreeBlocks& free = es.free;
+void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
+                   ElementState& es) {
+  const FusedBlocks& fused = es.fused;
   const CorotationalForce<Shape, FollowRotation> element{element_columns<Shape>(m, s, e),
                                                          m.stiffness_damping * s.dt,
                                                          s.dt,
                                                          {es.damping_work.data(), e.stride},
                                                          {}};
-  for_each_lane(q, e.count, awake(plan, free.blocks),
-                AdvanceFree<Shape>{element,
-                                   {free.row_first.data(), free.row.data()},
-                                   {s.corner_force.data()},
-                                   load_columns(m, s),
-                                   mass_columns(m, s),
-                                   s.dt_last,
-                                   s.dt,
-                                   s.nodes.motion.data(),
-                                   s.nodes.work_external.data()});
+  for_each_lane(q, e.count, awake(plan, fused.blocks),
+                AdvanceFused<Shape>{element,
+                                    {fused.row_first.data(), fused.row.data()},
+                                    {s.corner_force.data()},
+                                    load_columns(m, s),
+                                    mass_columns(m, s),
+                                    s.dt_last,
+                                    s.dt,
+                                    s.nodes.motion.data(),
+                                    s.nodes.work_external.data()});
 }
 
-void advance_free_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
-  advance_free<Tet4>(m, s, q, plan, m.tet4, s.tet4);
+void advance_fused_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
+  advance_fused<Tet4>(m, s, q, plan, m.tet4, s.tet4);
   if (m.hex8.hourglass.size() > 0)
-    advance_free<Hex8OnePoint>(m, s, q, plan, m.hex8, s.hex8);
+    advance_fused<Hex8OnePoint>(m, s, q, plan, m.hex8, s.hex8);
   else
-    advance_free<Hex8>(m, s, q, plan, m.hex8, s.hex8);
+    advance_fused<Hex8>(m, s, q, plan, m.hex8, s.hex8);
 }
 
 SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
@@ -114,10 +114,10 @@ void sum_then_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
 /// Both in one pass over the nodes; fused blocks move with their element forces.
 void sum_and_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
   const bool fuses = fuses_blocks(s, plan);
-  if (fuses) advance_free_blocks(m, s, q, plan);
+  if (fuses) advance_fused_blocks(m, s, q, plan);
   const SumNodeForces sum = node_forces(m, s, plan.everything_awake);
-  for_each_item(q, m.node_count, awake(plan, fuses ? s.nodes.others : s.nodes.awake),
-                AdvanceNodes{sum, node_motion(m, s), fuses ? s.nodes.free.data() : nullptr});
+  for_each_item(q, m.node_count, awake(plan, fuses ? s.nodes.general : s.nodes.awake),
+                AdvanceNodes{sum, node_motion(m, s), fuses ? s.nodes.fused.data() : nullptr});
   finish(q);
 }
 

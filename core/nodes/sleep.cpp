@@ -55,9 +55,9 @@ void find_awake(const Model& m, State& s) {
       return nodes[k % 4] < 0 ? nodes[0] : nodes[k % 4];
     });
   });
-  s.nodes.rests.resize(m.node_count);
+  s.nodes.sleeps.resize(m.node_count);
   for (Index i = 0; i < m.node_count; ++i)
-    s.nodes.rests[i] = fixed[i] && !pulled[i] && m.load_first[i] == m.load_first[i + 1];
+    s.nodes.sleeps[i] = fixed[i] && !pulled[i] && m.load_first[i] == m.load_first[i + 1];
   list_awake_nodes(m, s);
 }
 
@@ -68,15 +68,15 @@ void list_awake_nodes(const Model& m, State& s) {
   for (Index i = 0; i < m.node_count; ++i) {
     const bool was = s.nodes.listed[i], is = first[i] < first[i + 1];
     s.nodes.listed[i] = is;
-    wakes[i] = !s.nodes.rests[i] || is || was;
+    wakes[i] = !s.nodes.sleeps[i] || is || was;
   }
   for (Index i = 0; i < m.node_count; ++i) {  // nodes that share a mass matrix move together
-    if (m.lumped || m.dense_first[i] < 0 || m.block_first[i] != i) continue;
+    if (m.lumped || m.mass_row_first[i] < 0 || m.block_first[i] != i) continue;
     const auto begin = wakes.begin() + i, end = begin + m.block_count[i];
     if (std::any_of(begin, end, [](Flag f) { return f; })) std::fill(begin, end, Flag(1));
   }
   list_blocks(m.node_count, s.nodes.awake, [&](Index i) { return wakes[i]; });
-  find_free(m, s);
+  find_fused_blocks(m, s);
 }
 
 }  // namespace cdem

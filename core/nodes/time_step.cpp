@@ -18,7 +18,7 @@ Real stiffness_at(const State& s, Index i) {
 }
 
 /// Node with the highest frequency; `held` counts those that are held or driven in all directions.
-Real highest_frequency2(const Model& m, const State& s, bool held, StepLimit& limit) {
+Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLimit& limit) {
   Real largest = -1;
   const MassColumns mass = mass_columns(m, s);
   const SupportColumns supports = support_columns(m, s);
@@ -28,21 +28,24 @@ Real highest_frequency2(const Model& m, const State& s, bool held, StepLimit& li
     const Index first = dense ? m.block_first[i] : i;
     const Index last = dense ? first + m.block_count[i] : i + 1;
     if (dense && i != first) continue;
-    Real element2 = 0;
+    Real element_frequency_squared = 0;
     bool free = held;
     for (Index j = first; j < last; ++j) {
       for (Index axis = 0; axis < 3; ++axis) free = free || !supports.given(j, axis);
       stiffness = std::max(stiffness, stiffness_at(s, j));
-      element2 = std::max(element2, m.lumped ? m.lumped_frequency2[j] : m.frequency2[j]);
+      element_frequency_squared =
+          std::max(element_frequency_squared,
+                   m.lumped ? m.lumped_frequency_squared[j] : m.frequency_squared[j]);
     }
     if (!free) continue;
     // Gershgorin: a spring between two points adds at most twice its stiffness to a row
-    const Real contact2 = 2 * stiffness * (m.lumped ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
-    if (element2 + contact2 > largest) {
-      largest = element2 + contact2;
+    const Real contact_frequency_squared =
+        2 * stiffness * (m.lumped ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
+    if (element_frequency_squared + contact_frequency_squared > largest) {
+      largest = element_frequency_squared + contact_frequency_squared;
       limit.node = i;
-      limit.element2 = element2;
-      limit.contact2 = contact2;
+      limit.element_frequency_squared = element_frequency_squared;
+      limit.contact_frequency_squared = contact_frequency_squared;
     }
   }
   return largest;
@@ -54,8 +57,8 @@ StepLimit step_limit(const Model& m, const State& s) {
   StepLimit limit;
   // what is held or driven in all directions cannot become unstable; where nothing else is, its
   // step still is what curves, histories and ends of stages are followed with
-  Real largest = highest_frequency2(m, s, false, limit);
-  if (!(largest > 0)) largest = highest_frequency2(m, s, true, limit);
+  Real largest = highest_frequency_squared(m, s, false, limit);
+  if (!(largest > 0)) largest = highest_frequency_squared(m, s, true, limit);
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real xi =
       m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);
@@ -86,11 +89,13 @@ void advance_clock(const Model& m, State& s) {
 void scale_masses(const Model& m, State& s) {
   const StepLimit limit = step_limit(m, s);
   const Real part = s.dt / (relax_safety * limit.dt);
-  const Real squared = (limit.element2 + limit.contact2) / (part * part);
+  const Real squared =
+      (limit.element_frequency_squared + limit.contact_frequency_squared) / (part * part);
   const Real before = energy_of_motion(m, s);
   s.nodes.relax_mass.resize(m.node_count);
   for (Index i = 0; i < m.node_count; ++i)
-    s.nodes.relax_mass[i] = (m.mass[i] * m.lumped_frequency2[i] + 2 * stiffness_at(s, i)) / squared;
+    s.nodes.relax_mass[i] =
+        (m.mass[i] * m.lumped_frequency_squared[i] + 2 * stiffness_at(s, i)) / squared;
   s.stopped_energy += before - energy_of_motion(m, s);
 }
 

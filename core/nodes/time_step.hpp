@@ -10,13 +10,13 @@ namespace cdem {
 
 /// What limits the time step.
 struct StepLimit {
-  Real dt = 0;        // stable step before the safety factor  [s]
-  Index node = -1;    // where it is reached
-  Real element2 = 0;  // squared frequency of its elements there  [1/s2]
-  Real contact2 = 0;  // and of its bonds and contacts  [1/s2]
+  Real dt = 0;                         // stable step before the safety factor  [s]
+  Index node = -1;                     // where it is reached
+  Real element_frequency_squared = 0;  // squared frequency of its elements there  [1/s2]
+  Real contact_frequency_squared = 0;  // and of its bonds and contacts  [1/s2]
 };
 
-/// The stable step is found anew every so many steps, after every refresh of the search, and after
+/// The stable step is found anew every so many steps, after every rebuild of the search, and after
 /// every step with contacts.
 inline constexpr std::int64_t step_check_interval = 100;
 

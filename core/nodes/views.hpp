@@ -18,8 +18,8 @@ inline const Column<Real>& lumped_masses(const Model& m, const State& s) {
 inline MassColumns mass_columns(const Model& m, const State& s) {
   return {m.lumped,
           lumped_masses(m, s).data(),
-          m.dense_first.data(),
-          m.dense_step.data(),
+          m.mass_row_first.data(),
+          m.mass_axis_stride.data(),
           m.block_first.data(),
           m.block_count.data(),
           m.mass_inverse.data(),

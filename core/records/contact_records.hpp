@@ -9,10 +9,10 @@ namespace cdem {
 
 /// What a contact remembers from step to step: a row of 8 numbers.
 struct ContactState {
-  Real force_n;             // compression > 0  [N]
-  Real sunk;                // effective penetration: gap_free - gap, or 0; -1 before it begins  [m]
+  Real force_n;      // compression > 0  [N]
+  Real penetration;  // effective penetration: stress_free_gap - gap, or 0; -1 before it begins  [m]
   Real shear1, shear2;      // in the frame of target face or edge pair  [N]
-  Real gap_free;            // gap at which the contact is free of stress  [m]
+  Real stress_free_gap;     // gap at which the contact is free of stress  [m]
   Real energy_n, energy_s;  // stored in the normal and in the shear spring  [J]
 
   CDEM_HD static ContactState at(const Real* rows, std::size_t place) {
@@ -21,8 +21,8 @@ struct ContactState {
   }
   CDEM_HD void store(Real* rows, std::size_t place) const {
     Real* r = rows + 8 * place;
-    r[0] = force_n, r[1] = sunk, r[2] = shear1, r[3] = shear2;
-    r[4] = gap_free, r[5] = energy_n, r[6] = energy_s;
+    r[0] = force_n, r[1] = penetration, r[2] = shear1, r[3] = shear2;
+    r[4] = stress_free_gap, r[5] = energy_n, r[6] = energy_s;
   }
 };
 
@@ -43,7 +43,7 @@ struct EdgeContact {
   }
 };
 
-/// What the search and the forces ask of an exposed face and never changes between two refreshes:
+/// What the search and the forces ask of an exposed face and never changes between two rebuilds:
 /// one cache line.
 struct ExposedRow {
   Index corner[4];  // nodes; the fourth of a triangle repeats its third
@@ -51,7 +51,7 @@ struct ExposedRow {
   Real reach;       // a little more than the farthest vertex from the centre  [m]
   Real area;        // a vertex's share of the face, Eq. 4-5  [m2]
   Real stiffness;   // modulus of the element behind over its height  [Pa/m]
-  Index group;
+  Index interface_class;
   Index unused = 0;
 
   CDEM_HD Index count() const { return corner[3] == corner[2] ? 3 : 4; }

@@ -29,7 +29,7 @@ void prepare(const Model& m, State& s) {
   list_exposed(m, s);
   sum_stiffness(m, s);
   list_corners(m, s);
-  place_watched(m, s);
+  place_predicted_nodes(m, s);
 }
 
 namespace {

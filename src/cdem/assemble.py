@@ -109,7 +109,7 @@ def assemble(topology: Topology, properties: Properties, padded_stride) -> Assem
         "nodes": len(topology.node_position),
         "faces": len(topology.face_nodes),
         "edges": len(topology.edge_nodes),
-        "groups": len(properties.interface_of),  # kinds of faces, to the core
+        "interface_classes": len(properties.interface_of),
     }
     out.arrays["material.lambda"] = properties.lame
     out.arrays["material.mu"] = properties.shear
@@ -185,10 +185,10 @@ def _mass(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None
     # frequency of the mesh exceeds the largest sum_e w_e^2 m_e / m of a node
     lumped_frequency2 = stiffness / mass
     out.arrays["node.mass"] = mass
-    out.arrays["node.frequency2"] = np.where(
+    out.arrays["node.frequency_squared"] = np.where(
         dense_block[t.node_block], frequency2, lumped_frequency2
     )
-    out.arrays["node.lumped_frequency2"] = lumped_frequency2
+    out.arrays["node.lumped_frequency_squared"] = lumped_frequency2
     out.arrays["node.block_first"] = first[t.node_block].astype(np.int32)
     out.arrays["node.block_count"] = block_nodes.astype(np.int32)
     _dense_blocks(t, p, scaled, stiffness, dense_block, out)
@@ -301,7 +301,7 @@ def _dense_blocks(
 ) -> None:
     """Mass matrices of small blocks, each row over its node's mass, and their inverses, each row
     times its node's mass, with supported nodes taken out."""
-    mass, frequency2 = out.arrays["node.mass"], out.arrays["node.frequency2"]
+    mass, frequency2 = out.arrays["node.mass"], out.arrays["node.frequency_squared"]
     first, size = t.block_first_node, np.diff(t.block_first_node)
     dense_first = np.full(len(mass), -1, np.int32)
     dense_step = np.zeros(len(mass), np.int32)
@@ -352,8 +352,8 @@ def _dense_blocks(
                 inverses = np.linalg.inv(m)
                 per_row = mass[nodes][:, :, None]
             keep(nodes, inverses * per_row, m / per_row)
-    out.arrays["node.dense_first"] = dense_first
-    out.arrays["node.dense_step"] = dense_step
+    out.arrays["node.mass_row_first"] = dense_first
+    out.arrays["node.mass_axis_stride"] = dense_step
     out.arrays["node.inverse_mass_bound"] = bound
     out.arrays["mass.inverse"] = np.concatenate(inverse)
     out.arrays["mass.matrix"] = np.concatenate(matrix)
@@ -425,7 +425,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
     out.arrays |= {
         "face.nodes": t.face_nodes.ravel(),
         "face.edges": t.face_edges.ravel(),
-        "face.group": t.face_kind,
+        "face.interface_class": t.face_kind,
         "face.block": t.face_block,
         "face.element": t.face_element,
         "face.length": length,
@@ -436,8 +436,8 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.movable": _movable(t, p),
         "edge.nodes": t.edge_nodes.ravel(),
         "edge.faces": t.edge_faces.ravel(),
-        "ring.first": t.node_ring_first,
-        "ring.node": t.node_ring,
+        "edge_star.first": t.node_ring_first,
+        "edge_star.node": t.node_ring,
         "interface.of": p.interface_of.astype(np.int32).ravel(),
     }
 

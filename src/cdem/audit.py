@@ -156,11 +156,11 @@ class Audit:
         t, a = b.topology, b.assembly
         core = self._sim.core.fields()
         exposed = core["search.exposed_face"]
-        sources = core["search.source_first"]
+        sources = core["outer.acting_first"]
         pairs = [
             np.empty((0, 2), int),
             *a.pair_faces.values(),
-            exposed[_pairs_of(sources, core["search.source"])],
+            exposed[_pairs_of(sources, core["outer.faces_acting_on"])],
         ]
         joined = t.face_block[np.concatenate(pairs)]
         held = np.zeros(len(t.block_group), bool)

@@ -211,12 +211,12 @@ def rubble(m: int, threads: int) -> Iterator[Row]:
     tets = sim.audit.groups["bar"]["elements"]
     bonds = 3 * sim.audit.counts["bonded_pairs"]
     sim.run_until(0.005)
-    refreshes, steps = int(sim.core.scalars()["refreshes"]), sim.step_count
+    refreshes, steps = int(sim.core.scalars()["rebuilds"]), sim.step_count
     row = _time("P3 tets, broken, in motion", f"{tets:,}", "tets/s", sim, tets, RUBBLE_STEPS)
     done = sim.step_count - steps
     row.more["broken [%]"] = 100 * sum(sim.broken.values()) / bonds
     row.more["refreshes per 1000 steps"] = (
-        1000 * (int(sim.core.scalars()["refreshes"]) - refreshes) / done
+        1000 * (int(sim.core.scalars()["rebuilds"]) - refreshes) / done
     )
     row.more["B/tet of model and state"] = sim.audit.memory / tets
     row.more["start-up [s]"] = start
@@ -228,7 +228,7 @@ def _search(row: Row, refreshes: int, steps: int, sim: Simulation) -> Row:
     """S: targets of all semi-springs by the lists, and the making of the lists, from a P3 row."""
     springs = 3 * len(sim.core.fields()["search.exposed_face"])  # all faces are triangles
     tets = sim.audit.groups["bar"]["elements"]
-    made = int(sim.core.scalars()["refreshes"]) - refreshes
+    made = int(sim.core.scalars()["rebuilds"]) - refreshes
     per_step = tets / row.rate  # wall time of a step [s]
     share = row.more["search [%]"] / 100
     scale = springs / tets / share

@@ -27,9 +27,9 @@ integrate a linear stress exactly (method of the theory page on bonds)."""
 
 SHARED = {
     "node_block": "node.block", "node_place": "node.place", "face_nodes": "face.nodes",
-    "face_edges": "face.edges", "face_kind": "face.group", "face_block": "face.block",
+    "face_edges": "face.edges", "face_kind": "face.interface_class", "face_block": "face.block",
     "face_element": "face.element", "edge_nodes": "edge.nodes", "edge_faces": "edge.faces",
-    "node_ring_first": "ring.first", "node_ring": "ring.node",
+    "node_ring_first": "edge_star.first", "node_ring": "edge_star.node",
 }  # fmt: skip
 """Arrays of the topology that the core has too, under its name."""
 LOOKS_ALONG = 1e-3
@@ -473,7 +473,7 @@ def _options(case: Case, materials) -> dict:
         "bond_indentation_quad": quad,
         "semi_edges": contact.edges,
         "check_search": contact.check,
-        "refresh_interval": 0 if contact.refresh == "displacement" else int(contact.refresh),
+        "rebuild_interval": 0 if contact.refresh == "displacement" else int(contact.refresh),
         "step_safety": case.time.safety,
         "step_given": 0.0 if case.time.step == "auto" else case.time.step,
         "speed_limit": float(wave),  # nothing in rock moves faster than its P wave

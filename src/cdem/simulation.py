@@ -476,7 +476,7 @@ class Simulation:
             "wall_time": self.wall_time,
             "time_step": float(self.core.scalars()["dt"]),
             "unbalance_ratio": self.core.unbalance_ratio() if self.step_count else None,
-            "refreshes": int(self.core.scalars()["refreshes"]),
+            "refreshes": int(self.core.scalars()["rebuilds"]),
             "energies": energies,
             "broken": self.broken,
             "stages": self.finished_stages,

@@ -184,7 +184,7 @@ def test_nodes_that_share_a_mass_matrix_wake_together():
                              "fix": ["x", "y", "z"]}]},
     )  # fmt: skip
     at_once, stepwise = (cdem.Simulation(plate, threads=1) for _ in range(2))
-    shared = at_once.build.arrays["node.dense_first"] >= 0
+    shared = at_once.build.arrays["node.mass_row_first"] >= 0
     assert shared[at_once.build.nodes_of("plate")].all()
     at_once.step(60)
     for _ in range(60):

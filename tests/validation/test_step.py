@@ -107,7 +107,7 @@ def test_the_step_of_an_irregular_mesh_is_bounded_by_its_nodes(tmp_path, mass):
     full = root @ stiffness.reshape(3 * count, 3 * count) @ root.T
     exact = 2 / np.sqrt(np.linalg.eigvalsh(full)[-1])
     worst_element = 2 / sim.build.assembly.element_frequency["tet4"].max()
-    assert (sim.build.arrays["node.dense_first"] >= 0).all() == (mass == "exact")
+    assert (sim.build.arrays["node.mass_row_first"] >= 0).all() == (mass == "exact")
     assert worst_element < exact / 3
     assert exact / 2 < sim.core.step_limit()[0] < exact
 

@@ -44,8 +44,8 @@ std::vector<Box> side_boxes(const Model& m, const State& s) {
 Index count_missed_contacts(const Model& m, State& s) {
   update_all_face_geometry(m, s, {});
   finish({});
-  const FindTargetFaces springs{face_search(m, s)};
-  const TouchTargetEdges edges = edge_search(m, s);
+  const ResolveTargets springs{face_search(m, s)};
+  const ResolveTargetEdges edges = edge_search(m, s);
   const Index count = Index(s.search.exposed_face.size());
   const Bonded bonded = live_overlaps(m, s);
   const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };

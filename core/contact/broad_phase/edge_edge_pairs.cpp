@@ -13,52 +13,52 @@ namespace cdem {
 namespace {
 
 /// Is face y the right face of its side for a mother face x, or may it become so?
-bool may_be_right(const Finder& f, const ExposedFace& x, const ExposedFace& y,
+bool may_be_right(const PairContext& f, const ExposedFace& x, const ExposedFace& y,
                   const ExposedSide& q) {
-  const Real turns = 2 * (x.turn + y.turn) + q.turn_across;
+  const Real rotations = 2 * (x.rotation + y.rotation) + q.rotation_across;
   return q.across < 0 ||
-         !(dot(x.normal, f.exposed[q.across].normal) < dot(x.normal, y.normal) - turns);
+         !(dot(x.normal, f.exposed[q.across].normal) < dot(x.normal, y.normal) - rotations);
 }
 
-/// An edge, and how its ends may move until the next refresh.
+/// An edge, and how its ends may move until the next rebuild.
 struct MovingEdge {
   const ExposedFace* face;  // the first of those that meet there
   const ExposedSide* side;  // of it
-  Index node[2], glue[2], place[2];
-  Vec3<Real> end[2], path[2];          // [m]
-  Vec3<Real> along;                    // from the first end to the second, of unit length
-  Real length, skin[2], widest, turn;  // [m], [m], the larger skin [m], [rad]
+  Index node[2], bonded_node[2], place[2];
+  Vec3<Real> end[2], path[2];              // [m]
+  Vec3<Real> along;                        // from the first end to the second, of unit length
+  Real length, skin[2], widest, rotation;  // [m], [m], the larger skin [m], [rad]
   Indented indented;
 
-  MovingEdge(const Finder& f, const Patch& a, const Patch::Edge& edge)
+  MovingEdge(const PairContext& f, const Patch& a, const Patch::Edge& edge)
       : face(&f.exposed[a.face[edge.face[0]]]),
         side(&f.sides[4 * std::size_t(a.face[edge.face[0]]) + edge.side[0]]),
         indented(edge.indented) {
     for (const int i : {0, 1}) {
       node[i] = a.vertex[edge.vertex[i]];
-      glue[i] = f.faces.node_glue[node[i]];
+      bonded_node[i] = f.faces.bonded_node[node[i]];
       place[i] = f.faces.node_place[node[i]];
-      const WatchedNode watched = WatchedNode::of(f.s, node[i]);
-      end[i] = watched.position;
-      path[i] = f.s.search.horizon * watched.velocity;
-      skin[i] = watched.skin;
+      const PredictedNode predicted = PredictedNode::of(f.s, node[i]);
+      end[i] = predicted.position;
+      path[i] = f.s.search.outer.lookahead_time * predicted.velocity;
+      skin[i] = predicted.skin;
     }
     length = side->length;
     along = 1 / length * side->along;
     widest = std::max(skin[0], skin[1]);
-    turn = (norm(path[1] - path[0]) + 2 * widest) / length;
+    rotation = (norm(path[1] - path[0]) + 2 * widest) / length;
   }
   Vec3<Real> path_at(Real at) const { return path[0] + at / length * (path[1] - path[0]); }
 };
 
 /// Those of a patch, each worked out once when it is asked for first.
 class MovingEdges {
-  const Finder& f;
+  const PairContext& f;
   const Patch& patch;
   std::optional<MovingEdge> edge[12];
 
  public:
-  MovingEdges(const Finder& finder, const Patch& of) : f(finder), patch(of) {}
+  MovingEdges(const PairContext& context, const Patch& of) : f(context), patch(of) {}
   const MovingEdge& operator[](Index e) {
     if (!edge[e]) edge[e].emplace(f, patch, patch.edge[e]);
     return *edge[e];
@@ -70,12 +70,12 @@ class MovingEdges {
 struct SharedEnds {
   Index shared = 0;
   bool glued = false;   // intact bonds hold ends together
-  Real parted = 1e300;  // how far the closest of the shared ends may part before the next refresh
+  Real parted = 1e300;  // how far the closest of the shared ends may part before the next rebuild
 
   SharedEnds(const MovingEdge& p, const MovingEdge& q) {
     for (Index i = 0; i < 4; ++i) {
       const Index a = i >> 1, b = i & 1;
-      glued = glued || p.glue[a] == q.glue[b];
+      glued = glued || p.bonded_node[a] == q.bonded_node[b];
       if (p.place[a] != q.place[b]) continue;
       shared |= 1 << i;
       parted = std::min(
@@ -100,8 +100,8 @@ Real distance2(const MovingEdge& p, const MovingEdge& q) {
 struct TwoLines {
   const MovingEdge &p, &q;
   Vec3<Real> n;
-  Real gap;          // from the line of q to that of p along n  [m]
-  Real turns, sine;  // what both may turn  [rad]; of the angle between them then, at least
+  Real gap;              // from the line of q to that of p along n  [m]
+  Real rotations, sine;  // what both may rotation  [rad]; of the angle between them then, at least
 
   /// `cross` is that of the directions, of length `size`.
   TwoLines(const MovingEdge& one, const MovingEdge& other, const Vec3<Real>& cross, Real size)
@@ -109,55 +109,56 @@ struct TwoLines {
         q(other),
         n(1 / size * cross),
         gap(dot(n, p.end[0] - q.end[0])),
-        turns(p.turn + q.turn),
-        sine(size - turns) {}
+        rotations(p.rotation + q.rotation),
+        sine(size - rotations) {}
 
-  /// On which sides of each other the two may touch before the next refresh, as bits: 1 where the
-  /// contact normal is n, 2 where it is -n. The tests of TouchTargetEdges with room for the motion.
+  /// On which sides of each other the two may touch before the next rebuild, as bits: 1 where the
+  /// contact normal is n, 2 where it is -n. The tests of ResolveTargetEdges with room for the
+  /// motion.
   ///
   /// In contact the gap between the points that cross then is not positive along the normal n' of
   /// that time. They lie on n', so the gap of the same points along n was not positive either, but
   /// for how they move along n. (What little beyond its ends an edge may be crossed, see pass_by,
-  /// turns with it.)
+  /// rotations with it.)
   int sides(const SearchRules& rules) const {
     const ExposedFace &x = *p.face, &y = *q.face;
     const ExposedSide &on_p = *p.side, &on_q = *q.side;
-    const Real swing = turns / sine;  // of the normal
+    const Real swing = rotations / sine;  // of the normal
     const Real room = swing * std::max(p.indented.shift, q.indented.shift);
-    const auto beyond = [&](Real sine_of_cone, const MovingEdge& of, Real turn_face) {
-      return sine_of_cone < -(rules.cone + swing + of.turn + turn_face);
+    const auto beyond = [&](Real sine_of_cone, const MovingEdge& of, Real rotation_face) {
+      return sine_of_cone < -(rules.cone + swing + of.rotation + rotation_face);
     };
     int found = 0;
     for (const int side : {1, 2}) {
       const Real way = side == 1 ? 1 : -1;
       if (way * gap + GapChange(x, y, way * n).least > room ||
-          beyond(way * dot(n, on_p.fall), p, on_p.turn_face) ||
-          beyond(-way * dot(n, on_q.fall), q, on_q.turn_face) ||
-          (on_p.across >= 0 && beyond(way * dot(n, on_p.fall_across), p, on_p.turn_across)) ||
-          (on_q.across >= 0 && beyond(-way * dot(n, on_q.fall_across), q, on_q.turn_across)))
+          beyond(way * dot(n, on_p.fall), p, on_p.rotation_face) ||
+          beyond(-way * dot(n, on_q.fall), q, on_q.rotation_face) ||
+          (on_p.across >= 0 && beyond(way * dot(n, on_p.fall_across), p, on_p.rotation_across)) ||
+          (on_q.across >= 0 && beyond(-way * dot(n, on_q.fall_across), q, on_q.rotation_across)))
         continue;
       found |= side;
     }
     return found;
   }
 
-  /// Does the crossing of the lines stay off the ends of the edges until the next refresh, so that
+  /// Does the crossing of the lines stay off the ends of the edges until the next rebuild, so that
   /// MarkNearEdges finds them far in every step?
   ///
   /// The line of an edge d (of unit length) crosses the other one between its ends x0 and x1 if
   /// these lie on different sides of it: (y - x) . (d x n) is the distance of an end from the line
   /// through y. It changes by no more than the end moves as seen from its foot on the line, and by
-  /// its distance from the foot times what d and n turn.
+  /// its distance from the foot times what d and n rotation.
   bool pass_by() const {
     const Indented edges = p.indented.and_of(q.indented);
-    const Real cosine = std::min(1.0, std::abs(dot(p.along, q.along)) + turns);
+    const Real cosine = std::min(1.0, std::abs(dot(p.along, q.along)) + rotations);
     const Real inset = sine * edges.inset - cosine * edges.shift, beside = -edges.shift;
     const auto crosses = [&](Real on_p, Real on_q) {
       return (on_p > inset && on_q > beside) || (on_q > inset && on_p > beside);
     };
     const Ends of_p(p, q, n), of_q(q, p, n);
     if (crosses(of_p.inside(), of_q.inside())) return false;
-    const Real round_off = 1e-6 * std::min(p.length, q.length), swing = turns / sine;
+    const Real round_off = 1e-6 * std::min(p.length, q.length), swing = rotations / sine;
     return !crosses(of_p.may_be_inside(swing) + round_off, of_q.may_be_inside(swing) + round_off);
   }
 
@@ -177,14 +178,14 @@ struct TwoLines {
     }
     /// How far from the ends of the edge the line crosses it, times the sine of the angle.
     Real inside() const { return std::min(off[0], off[1]); }
-    /// The same until the next refresh, at most.
+    /// The same until the next rebuild, at most.
     Real may_be_inside(Real swing) const {
       Real least = 1e300;
       for (const int i : {0, 1}) {
         const Real foot = -dot(arm[i], line.along), nearest = std::clamp(foot, 0.0, line.length);
         const Real motion = norm(on.path[i] - line.path_at(nearest)) + on.skin[i] + line.widest;
-        const Real change = motion + line.turn * std::abs(foot - nearest) +
-                            (line.turn + swing) * norm(arm[i] + foot * line.along);
+        const Real change = motion + line.rotation * std::abs(foot - nearest) +
+                            (line.rotation + swing) * norm(arm[i] + foot * line.along);
         least = std::min(least, off[i] + change);
       }
       return least;
@@ -192,40 +193,40 @@ struct TwoLines {
   };
 };
 
-/// How far the foreseen ways of two points of the one and of the other part as long as the close
+/// How far the predicted ways of two points of the one and of the other part as long as the close
 /// lists hold  [m].
 Real ways_part_soon(const MovingEdge& p, const MovingEdge& q) {
   Real most = 0;
   for (Index i = 0; i < 4; ++i) most = std::max(most, norm(p.path[i >> 1] - q.path[i & 1]));
-  return close_way * most;
+  return inner_horizon * most;
 }
 
 /// In which ways two edges may touch, see EdgeWays, as bits.
-Index ways_to_touch(const Finder& f, const Patch& a, const Patch::Edge& p, const Patch& b,
-                    const Patch::Edge& q, const FacePairs& pairs, const SharedEnds& ends,
-                    Met& met) {
+Index ways_to_touch(const PairContext& f, const Patch& a, const Patch::Edge& p, const Patch& b,
+                    const Patch::Edge& q, const FacePairMask& pairs, const SharedEnds& ends,
+                    ListedFacePairs& listed) {
   Index ways = 0;
   for (Index i = 0; i < p.faces; ++i)
     for (Index j = 0; j < q.faces; ++j) {
       if (!(pairs.row[p.face[i]] >> q.face[j] & 1)) continue;
       const Index face_p = a.face[p.face[i]], face_q = b.face[q.face[j]];
       const ExposedFace &x = f.exposed[face_p], &y = f.exposed[face_q];
-      // ends that stay together are no edges on each other, see TouchTargetEdges
+      // ends that stay together are no edges on each other, see ResolveTargetEdges
       if (ends.parted < f.m.rules.indentation * std::min(x.length, y.length)) continue;
       if (may_be_right(f, x, y, f.sides[4 * std::size_t(face_q) + q.side[j]])) {
         ways |= 1 << EdgeWays::way(false, i, j);
-        met.add(false, p.face[i], q.face[j]);
+        listed.add(false, p.face[i], q.face[j]);
       }
       if (may_be_right(f, y, x, f.sides[4 * std::size_t(face_p) + p.side[i]])) {
         ways |= 1 << EdgeWays::way(true, i, j);
-        met.add(true, q.face[j], p.face[i]);
+        listed.add(true, q.face[j], p.face[i]);
       }
     }
   return ways;
 }
 
 /// Was an edge in contact with another one a step ago?
-bool in_contact(const Finder& f, const Patch& a, const Patch::Edge& p, Index edge) {
+bool in_contact(const PairContext& f, const Patch& a, const Patch::Edge& p, Index edge) {
   const EdgeState& held = f.s.edges;
   for (Index i = 0; i < p.faces; ++i) {
     const Index x = a.face[p.face[i]];
@@ -239,9 +240,9 @@ bool in_contact(const Finder& f, const Patch& a, const Patch::Edge& p, Index edg
 
 /// Two edges as MarkNearEdges sees them, on sides `on` of each other: those of their ends first
 /// that began at the same place, if any. `ways` are those in which they may touch.
-Proximity::Edges near_edges(const Finder& f, const Patch& a, Index e, const MovingEdge& p,
-                            const Patch& b, Index g, const MovingEdge& q, const SharedEnds& ends,
-                            int on, Index ways) {
+PairBuffer::EdgePair near_edges(const PairContext& f, const Patch& a, Index e, const MovingEdge& p,
+                                const Patch& b, Index g, const MovingEdge& q,
+                                const SharedEnds& ends, int on, Index ways) {
   const SearchRules& rules = f.m.rules;
   const Indented edges = p.indented.and_of(q.indented);
   Index first = 0;
@@ -267,17 +268,18 @@ Proximity::Edges near_edges(const Finder& f, const Patch& a, Index e, const Movi
 
 }  // namespace
 
-void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
-                const Beyond& beyond, Met& met, Proximity& found) {
-  const Real room = farthest_crossing(f.m.rules, a, b) + last_step * norm(b.drift - a.drift);
+void list_edges(const PairContext& f, const Patch& a, const Patch& b, const FacePairMask& pairs,
+                const SeparatedParts& separated, ListedFacePairs& listed, PairBuffer& found) {
+  const Real room =
+      farthest_crossing(f.m.rules, a, b) + last_step * norm(b.displacement - a.displacement);
   MovingEdges of_a(f, a), of_b(f, b);
   for (Index e = 0; e < a.edge_count; ++e) {
     const int opposite = pairs.of(a.edge[e]);
-    if (beyond.edge[0][e] || !opposite) continue;
+    if (separated.edge[0][e] || !opposite) continue;
     const MovingEdge& p = of_a[e];
     if (!p.side->sharp) continue;
     for (Index g = 0; g < b.edge_count; ++g) {
-      if (beyond.edge[1][g] || !(opposite & FacePairs::at(b.edge[g]))) continue;
+      if (separated.edge[1][g] || !(opposite & FacePairMask::at(b.edge[g]))) continue;
       const MovingEdge& q = of_b[g];
       if (!q.side->sharp) continue;
       const Vec3<Real> normal = cross(p.along, q.along);
@@ -285,13 +287,13 @@ void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs
       if (off * off > room * room * sine2) continue;  // so far are even the lines
       const SharedEnds ends(p, q);
       if (ends.glued) continue;
-      // ends that stay together are no edges on each other, see TouchTargetEdges
+      // ends that stay together are no edges on each other, see ResolveTargetEdges
       const Real length = std::min(p.indented.length, q.indented.length);
       if (ends.parted < f.m.rules.indentation * length) continue;
       int on = 3;
-      const Real sine = std::sqrt(sine2), turns = p.turn + q.turn;
-      if (sine + turns < parallel_edges) continue;
-      if (sine > turns) {
+      const Real sine = std::sqrt(sine2), rotations = p.rotation + q.rotation;
+      if (sine + rotations < parallel_edges) continue;
+      if (sine > rotations) {
         const TwoLines lines(p, q, normal, sine);
         on = lines.sides(f.m.rules);
         if (!on) continue;
@@ -301,7 +303,7 @@ void list_edges(const Finder& f, const Patch& a, const Patch& b, const FacePairs
       } else if (distance2(p, q) > room * room) {
         continue;
       }
-      const Index ways = ways_to_touch(f, a, a.edge[e], b, b.edge[g], pairs, ends, met);
+      const Index ways = ways_to_touch(f, a, a.edge[e], b, b.edge[g], pairs, ends, listed);
       if (ways) found.edges.push_back(near_edges(f, a, e, p, b, g, q, ends, on, ways));
     }
   }

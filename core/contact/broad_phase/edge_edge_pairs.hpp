@@ -6,7 +6,8 @@
 namespace cdem {
 
 /// List the edges of one patch that may touch edges of another.
-void list_edges(const Finder& finder, const Patch& a, const Patch& b, const FacePairs& pairs,
-                const Beyond& beyond, Met& met, Proximity& found);
+void list_edges(const PairContext& context, const Patch& a, const Patch& b,
+                const FacePairMask& pairs, const SeparatedParts& separated, ListedFacePairs& listed,
+                PairBuffer& found);
 
 }  // namespace cdem

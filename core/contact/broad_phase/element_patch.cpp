@@ -19,11 +19,11 @@ Real deepest_gap(const State& s, Index place) {
   for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
     if (s.springs.target[k] >= 0) {
       const ContactState spring = ContactState::at(s.springs.state.data(), k);
-      deepest = std::max(deepest, spring.sunk - spring.gap_free);
+      deepest = std::max(deepest, spring.penetration - spring.stress_free_gap);
     }
   for (Index c = s.edges.first[place]; c < s.edges.first[place + 1]; ++c) {
     const ContactState edge = ContactState::at(s.edges.state.data(), c);
-    deepest = std::max(deepest, edge.sunk - edge.gap_free);
+    deepest = std::max(deepest, edge.penetration - edge.stress_free_gap);
   }
   return 2 * deepest;
 }
@@ -41,32 +41,33 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   Vec3<Real> path[4], sum{0, 0, 0};
   Real node_skin[4];
   for (Index k = 0; k < count; ++k) {
-    const WatchedNode node = WatchedNode::of(s, m.face_nodes[4 * e.face + k]);
-    path[k] = s.search.horizon * node.velocity;
+    const PredictedNode node = PredictedNode::of(s, m.face_nodes[4 * e.face + k]);
+    path[k] = s.search.outer.lookahead_time * node.velocity;
     node_skin[k] = node.skin;
     sum = sum + path[k];
   }
-  e.drift = Real(1.0) / Real(count) * sum;
-  e.stir = e.stir_soon = e.warp = 0;
+  e.displacement = Real(1.0) / Real(count) * sum;
+  e.deviation = e.deviation_soon = e.warpage = 0;
   Real longest = 0, skin = 0;
   e.box = Box::nothing();
   for (Index k = 0; k < count; ++k) {
     skin = std::max(skin, node_skin[k]);
-    const Real apart = norm(path[k] - e.drift);
-    e.stir = std::max(e.stir, apart + node_skin[k]);
-    e.stir_soon = std::max(e.stir_soon, close_way * apart + close_skin * node_skin[k]);
-    e.warp = std::max(e.warp, std::abs(dot(e.normal, e.shape.x[k] - e.center)));
+    const Real apart = norm(path[k] - e.displacement);
+    e.deviation = std::max(e.deviation, apart + node_skin[k]);
+    e.deviation_soon =
+        std::max(e.deviation_soon, inner_horizon * apart + inner_skin * node_skin[k]);
+    e.warpage = std::max(e.warpage, std::abs(dot(e.normal, e.shape.x[k] - e.center)));
     longest = std::max(longest, norm(e.shape.x[k + 1 == count ? 0 : k + 1] - e.shape.x[k]));
     e.box.include(e.shape.x[k]);
     e.box.include(e.shape.x[k] + path[k]);
   }
-  e.warp = count == 3 ? 0.0 : e.warp + 2 * e.stir;
+  e.warpage = count == 3 ? 0.0 : e.warpage + 2 * e.deviation;
   e.deepest = deepest_gap(s, place);
   e.box.inflate(skin + e.deepest + m.rules.lifted);
-  // the plane turns by what two vertices may move apart over the smallest height
+  // the plane rotations by what two vertices may move apart over the smallest height
   const Real height = (count == 3 ? 2 : 1) * m.face_area[e.face] / longest;
-  e.turn = 2 * e.stir / height;
-  e.turn_soon = 2 * e.stir_soon / height;
+  e.rotation = 2 * e.deviation / height;
+  e.rotation_soon = 2 * e.deviation_soon / height;
   e.slender = longest / height;
   return e;
 }
@@ -88,7 +89,7 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
   p.box = Box::nothing();
   for (Index i = 0; i < p.face_count; ++i) {
     const ExposedFace& e = exposed[p.face[i]];
-    p.drift = p.drift + Real(1.0) / p.face_count * e.drift;
+    p.displacement = p.displacement + Real(1.0) / p.face_count * e.displacement;
     p.deepest = std::max(p.deepest, e.deepest);
     p.length = std::max(p.length, e.length);
     p.reach = std::max(p.reach, m.face_reach[e.face]);
@@ -124,7 +125,7 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
   }
   for (Index i = 0; i < p.face_count; ++i) {
     const ExposedFace& e = exposed[p.face[i]];
-    p.stir = std::max(p.stir, norm(e.drift - p.drift) + e.stir);
+    p.deviation = std::max(p.deviation, norm(e.displacement - p.displacement) + e.deviation);
   }
 }
 
@@ -174,21 +175,21 @@ void list_exposed_sides(const State& s, const Unset<ExposedFace>& exposed,
       side.start = e.shape.x[k];
       side.along = e.shape.x[k + 1 == e.shape.count() ? 0 : k + 1] - side.start;
       side.length = norm(side.along);
-      side.turn = 2 * e.stir / side.length;
-      side.turn_face = e.turn;
+      side.rotation = 2 * e.deviation / side.length;
+      side.rotation_face = e.rotation;
       side.fall = unit(cross(e.normal, side.along));
       const Index across = s.search.across[4 * x + k];
       side.across = across < 0 ? -1 : s.search.face_exposed[across];
       side.sharp = true;
       if (side.across < 0) continue;  // none, or one whose motion nothing watches
       const ExposedFace& beyond = exposed[side.across];
-      side.turn_across = beyond.turn;
+      side.rotation_across = beyond.rotation;
       side.fall_across = unit(cross(beyond.normal, -side.along));
-      // the angle between the faces may change by what both may turn
+      // the angle between the faces may change by what both may rotation
       const Real angle = std::acos(std::min(1.0, dot(e.normal, beyond.normal)));
-      side.sharp = angle + e.turn + beyond.turn > std::acos(coplanar_faces);
+      side.sharp = angle + e.rotation + beyond.rotation > std::acos(coplanar_faces);
       const Vec3<Real> arm = beyond.center - side.start;
-      side.rises = side.sharp && dot(e.normal, arm) > -(e.turn + beyond.turn) * norm(arm);
+      side.rises = side.sharp && dot(e.normal, arm) > -(e.rotation + beyond.rotation) * norm(arm);
     }
   }
 }

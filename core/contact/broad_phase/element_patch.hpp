@@ -15,14 +15,14 @@ namespace cdem {
 struct ExposedFace {
   FaceShape<Real> shape;
   Vec3<Real> center, normal;
-  Vec3<Real> drift;           // of all its vertices alike  [m]
-  Real stir;                  // of a vertex beyond the drift  [m]
-  Real turn;                  // of the normal and of the sides  [rad]
-  Real stir_soon, turn_soon;  // as long as the close lists hold
-  Real slender;               // longest side over smallest height
-  Real deepest;               // contact  [m]
-  Real warp;                  // of a vertex out of the mean plane  [m]
-  Real length;                // L  [m]
+  Vec3<Real> displacement;             // of all its vertices alike  [m]
+  Real deviation;                      // of a vertex beyond the displacement  [m]
+  Real rotation;                       // of the normal and of the sides  [rad]
+  Real deviation_soon, rotation_soon;  // as long as the close lists hold
+  Real slender;                        // longest side over smallest height
+  Real deepest;                        // contact  [m]
+  Real warpage;                        // of a vertex out of the mean plane  [m]
+  Real length;                         // L  [m]
   Index face, block;
   bool movable;
   Box box;  // of the whole way
@@ -55,11 +55,11 @@ struct Patch {
   Index vertex[8];
   Index corner[8][6];  // which corner of a face a vertex is, or -1
   Edge edge[12];
-  Index edge_first;    // place of the first among those of all patches
-  Vec3<Real> drift;    // of all its vertices alike  [m]
-  Real stir;           // of a vertex beyond the drift  [m]
-  Real deepest;        // contact  [m]
-  Real length, reach;  // largest of its faces  [m]
+  Index edge_first;         // place of the first among those of all patches
+  Vec3<Real> displacement;  // of all its vertices alike  [m]
+  Real deviation;           // of a vertex beyond the displacement  [m]
+  Real deepest;             // contact  [m]
+  Real length, reach;       // largest of its faces  [m]
   Index block;
   bool movable;
   bool whole;  // are all faces of the element exposed?
@@ -71,15 +71,15 @@ void list_patches(const Model& model, const State& state, const Unset<ExposedFac
                   Unset<Patch>& patches);
 
 /// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
-/// lie between theirs, which is what `fall` tells (see TouchTargetEdges::cones_hold).
+/// lie between theirs, which is what `fall` tells (see ResolveTargetEdges::cones_hold).
 struct ExposedSide {
   bool sharp;  // may be an edge of a contact: its faces are not coplanar
   bool rises;  // may be where the surface bends towards its outside
   Vec3<Real> start, along;
-  Vec3<Real> fall, fall_across;       // normal x side, of the face and of the one across
-  Index across;                       // exposed face on the other side, or -1
-  Real length;                        // [m]
-  Real turn, turn_face, turn_across;  // of the side and of both faces
+  Vec3<Real> fall, fall_across;  // normal x side, of the face and of the one across
+  Index across;                  // exposed face on the other side, or -1
+  Real length;                   // [m]
+  Real rotation, rotation_face, rotation_across;  // of the side and of both faces
 };
 
 void list_exposed_sides(const State& state, const Unset<ExposedFace>& exposed,

@@ -16,12 +16,12 @@ namespace cdem {
 
 namespace {
 
-/// Does a plane along a face of either patch hold the two apart until the next refresh?
+/// Does a plane along a face of either patch hold the two apart until the next rebuild?
 bool apart(const Model& m, const State& s, const Unset<ExposedFace>& exposed, const Patch& a,
            const Patch& b) {
   const InMotion nodes{s.nodes.motion.data()};
   const Real room = farthest_contact(m.rules, a, b);
-  const Vec3<Real> closing = last_step * (b.drift - a.drift);
+  const Vec3<Real> closing = last_step * (b.displacement - a.displacement);
   const auto range = [&](const Patch& p, const Vec3<Real>& n, const Vec3<Real>& c) {
     std::pair<Real, Real> r{1e300, -1e300};
     for (Index i = 0; i < p.vertex_count; ++i) {
@@ -64,7 +64,7 @@ void list_edge_sides(Unset<Patch>& patches, Unset<Index>& sides) {
 
 }  // namespace
 
-void find_proximity(const Model& m, const State& s, ProximitySearch& search) {
+void search_pairs(const Model& m, const State& s, PairSearch& search) {
   Unset<ExposedFace>& exposed = search.exposed;
   Unset<ExposedSide>& sides = search.sides;
   Unset<Patch>& patches = search.patches;
@@ -72,19 +72,19 @@ void find_proximity(const Model& m, const State& s, ProximitySearch& search) {
   list_exposed_sides(s, exposed, sides);
   list_patches(m, s, exposed, patches);
   const Bonded bonded = live_overlaps(m, s);
-  const Finder f{m, s, face_columns(m, s), exposed, sides, bonded};
+  const PairContext f{m, s, face_columns(m, s), exposed, sides, bonded};
   const Index count = Index(patches.size());
   std::vector<Box> boxes(count);
   for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
   const BoxTree tree(boxes);
-  AllProximity& all = search.found;
+  PairBuffers& all = search.found;
   all.by_thread.resize(omp_get_max_threads());
   all.by_patch.assign(count, {});
   list_edge_sides(patches, all.edge_sides);
-  for (Proximity& found : all.by_thread) found.clear();
+  for (PairBuffer& found : all.by_thread) found.clear();
 #pragma omp parallel if (count >= worth_threads)
   {
-    Proximity& found = all.by_thread[omp_get_thread_num()];
+    PairBuffer& found = all.by_thread[omp_get_thread_num()];
     std::vector<Index> others;
 #pragma omp for schedule(dynamic, 32)
     for (Index p = 0; p < count; ++p) {
@@ -100,14 +100,14 @@ void find_proximity(const Model& m, const State& s, ProximitySearch& search) {
       all.by_patch[p].begin(omp_get_thread_num(), found);
       for (const Index q : others) {
         const Patch& b = patches[q];
-        const Beyond beyond(f, a, b);
-        const FacePairs pairs(f, a, b, beyond);
+        const SeparatedParts separated(f, a, b);
+        const FacePairMask pairs(f, a, b, separated);
         if (!pairs.any()) continue;
-        Met met;
-        list_touches(f, a, b, pairs, beyond, false, met, found);
-        list_touches(f, b, a, pairs, beyond, true, met, found);
-        if (m.semi_edges) list_edges(f, a, b, pairs, beyond, met, found);
-        met.list(a, b, found);
+        ListedFacePairs listed;
+        list_vertex_face_pairs(f, a, b, pairs, separated, false, listed, found);
+        list_vertex_face_pairs(f, b, a, pairs, separated, true, listed, found);
+        if (m.semi_edges) list_edges(f, a, b, pairs, separated, listed, found);
+        listed.list(a, b, found);
       }
       all.by_patch[p].end(found);
     }

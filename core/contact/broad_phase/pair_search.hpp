@@ -13,14 +13,14 @@
 
 namespace cdem {
 
-/// What a search works with and what it finds. It is kept from refresh to refresh for its memory
+/// What a search works with and what it finds. It is kept from rebuild to rebuild for its memory
 /// only, which the system would have to hand out anew.
-struct ProximitySearch {
+struct PairSearch {
   Unset<ExposedFace> exposed;
   Unset<ExposedSide> sides;
   Unset<Patch> patches;
-  AllProximity found;
+  PairBuffers found;
 };
-void find_proximity(const Model& model, const State& state, ProximitySearch& search);
+void search_pairs(const Model& model, const State& state, PairSearch& search);
 
 }  // namespace cdem

@@ -18,7 +18,9 @@ struct RigidMotion {
   std::vector<Real> weight;
 
   RigidMotion(const Model& m, const State& state)
-      : s(state), sum(s.search.watched.size(), Vec3<Real>{0, 0, 0}), weight(sum.size()) {
+      : s(state),
+        sum(s.search.outer.predicted_nodes.size(), Vec3<Real>{0, 0, 0}),
+        weight(sum.size()) {
     add(m.tet4, 4);
     add(m.pyramid5, 5);
     add(m.wedge6, 6);
@@ -34,7 +36,7 @@ struct RigidMotion {
       bool watched = false;
       for (Index k = 0; k < corners; ++k) {
         id[k] = e.nodes[std::size_t(k) * e.stride + i];
-        place[k] = s.search.node_watch[id[k]];
+        place[k] = s.search.outer.node_predicted[id[k]];
         watched = watched || place[k] >= 0;
         if (place[k] >= 0) weight[place[k]] += 1;
       }
@@ -67,17 +69,17 @@ struct RigidMotion {
 Real least_skin(const State& s, std::int64_t lasted) {
   constexpr Index short_lived = 36, long_lived = 72;
   constexpr Real thinnest = 0.001, widest = 0.03, change = 1.5;
-  if (s.search.strayed && lasted < short_lived)
-    return std::min(change * s.search.skin_least, widest);
-  if (lasted > long_lived) return std::max(s.search.skin_least / change, thinnest);
-  return s.search.skin_least;
+  if (s.search.outer.skin_exceeded && lasted < short_lived)
+    return std::min(change * s.search.outer.least_skin, widest);
+  if (lasted > long_lived) return std::max(s.search.outer.least_skin / change, thinnest);
+  return s.search.outer.least_skin;
 }
 
 /// List the nodes of exposed faces; the smallest L of their faces stands for their skins.
-void list_watched(const Model& m, State& s) {
+void list_predicted_nodes(const Model& m, State& s) {
   SearchState& search = s.search;
-  search.node_watch.resize(m.node_count);
-  search.node_watch.fill(-1);
+  search.outer.node_predicted.resize(m.node_count);
+  search.outer.node_predicted.fill(-1);
   const auto visit = [&](auto&& at) {
     for (std::size_t x = 0; x < search.exposed_face.size(); ++x)
       for (Index k = 0; k < 4; ++k) {
@@ -85,82 +87,87 @@ void list_watched(const Model& m, State& s) {
         if (node >= 0) at(node, m.face_length[face]);
       }
   };
-  visit([&](Index node, Real) { search.node_watch[node] = 0; });
-  search.watched.resize(0);
+  visit([&](Index node, Real) { search.outer.node_predicted[node] = 0; });
+  search.outer.predicted_nodes.resize(0);
   for (Index i = 0; i < m.node_count; ++i)
-    if (search.node_watch[i] >= 0) search.watched.push(i);
-  place_watched(m, s);
-  search.watch.resize(8 * search.watched.size());
-  search.watch.fill(0);
+    if (search.outer.node_predicted[i] >= 0) search.outer.predicted_nodes.push(i);
+  place_predicted_nodes(m, s);
+  search.outer.predicted.resize(8 * search.outer.predicted_nodes.size());
+  search.outer.predicted.fill(0);
   visit([&](Index node, Real length) {
-    Real& least = search.watch[8 * std::size_t(search.node_watch[node]) + 7];
+    Real& least = search.outer.predicted[8 * std::size_t(search.outer.node_predicted[node]) + 7];
     least = least > 0 ? std::min(least, length) : length;
   });
 }
 
 }  // namespace
 
-void place_watched(const Model& m, State& s) {
-  s.search.node_watch.resize(m.node_count);
-  s.search.node_watch.fill(-1);
-  for (std::size_t w = 0; w < s.search.watched.size(); ++w)
-    s.search.node_watch[s.search.watched[w]] = Index(w);
+void place_predicted_nodes(const Model& m, State& s) {
+  s.search.outer.node_predicted.resize(m.node_count);
+  s.search.outer.node_predicted.fill(-1);
+  for (std::size_t w = 0; w < s.search.outer.predicted_nodes.size(); ++w)
+    s.search.outer.node_predicted[s.search.outer.predicted_nodes[w]] = Index(w);
 }
 
-void foresee_motion(const Model& m, State& s) {
+void predict_motion(const Model& m, State& s) {
   constexpr Index fewest = 20, steps = 200;
   constexpr Real most = 0.1;   // skin in parts of the smallest L of the node's faces
   constexpr Real period = 10;  // of vibrations, in steps
-  // rubble that collides strays long before a far horizon, and would list ever more for nothing
+  // rubble that collides strays long before a far lookahead_time, and would list ever more for
+  // nothing
   const std::int64_t lasted = s.built_step < 0 ? steps : s.step - s.built_step;
-  const Real least = s.search.skin_least = least_skin(s, lasted);
+  const Real least = s.search.outer.least_skin = least_skin(s, lasted);
   const Index ahead = std::clamp<std::int64_t>(2 * lasted, fewest, steps);
-  s.search.horizon = s.dt * (m.refresh_interval > 0 ? m.refresh_interval : ahead);
-  s.search.built_time = s.time;
-  const std::vector<Real> watch_before(s.search.watch.data(),
-                                       s.search.watch.data() + s.search.watch.size());
-  const std::vector<Index> watched_before(s.search.watched.data(),
-                                          s.search.watched.data() + s.search.watched.size());
-  list_watched(m, s);
+  s.search.outer.lookahead_time = s.dt * (m.rebuild_interval > 0 ? m.rebuild_interval : ahead);
+  s.search.outer.built_time = s.time;
+  const std::vector<Real> predicted_before(
+      s.search.outer.predicted.data(),
+      s.search.outer.predicted.data() + s.search.outer.predicted.size());
+  const std::vector<Index> nodes_before(
+      s.search.outer.predicted_nodes.data(),
+      s.search.outer.predicted_nodes.data() + s.search.outer.predicted_nodes.size());
+  list_predicted_nodes(m, s);
   const RigidMotion rigid(m, s);
   const InMotion nodes{s.nodes.motion.data()};
-  const Index count = Index(s.search.watched.size());
+  const Index count = Index(s.search.outer.predicted_nodes.size());
   std::vector<Vec3<Real>> change(count);  // of velocity since then; of a new one, its vibration
-  for (Index w = 0; w < count; ++w) change[w] = rigid.at(w) - nodes.velocity(s.search.watched[w]);
-  for (std::size_t w = 0; w < watched_before.size(); ++w) {
-    const Real* before = watch_before.data() + 8 * w + 4;
-    const Index place = s.search.node_watch[watched_before[w]];
+  for (Index w = 0; w < count; ++w)
+    change[w] = rigid.at(w) - nodes.velocity(s.search.outer.predicted_nodes[w]);
+  for (std::size_t w = 0; w < nodes_before.size(); ++w) {
+    const Real* before = predicted_before.data() + 8 * w + 4;
+    const Index place = s.search.outer.node_predicted[nodes_before[w]];
     if (place >= 0) change[place] = rigid.at(place) - Vec3<Real>{before[0], before[1], before[2]};
   }
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index w = 0; w < count; ++w) {
-    const Index i = s.search.watched[w];
-    Real* row = s.search.watch.data() + 8 * std::size_t(w);
+    const Index i = s.search.outer.predicted_nodes[w];
+    Real* row = s.search.outer.predicted.data() + 8 * std::size_t(w);
     const Vec3<Real> v = rigid.at(w);
-    const Real stray =
-        s.search.horizon * norm(change[w]) + period * s.dt * norm(nodes.velocity(i) - v);
-    const Real skin = std::clamp(stray, least * row[7], most * row[7]);
-    WatchedNode{nodes.position(i), v, skin}.store(row);
+    const Real deviation = s.search.outer.lookahead_time * norm(change[w]) +
+                           period * s.dt * norm(nodes.velocity(i) - v);
+    const Real skin = std::clamp(deviation, least * row[7], most * row[7]);
+    PredictedNode{nodes.position(i), v, skin}.store(row);
   }
 }
 
-bool any_strayed(const State& s, const Column<Real>& watch, Real from, Real horizon) {
+bool any_exceeds_skin(const State& s, const Column<Real>& predicted, Real from,
+                      Real lookahead_time) {
   const InMotion nodes{s.nodes.motion.data()};
-  const InRows rows{watch.data()};
-  const Index count = Index(s.search.watched.size()), whole = count - count % lanes;
-  const InIndices watched{s.search.watched.data(), count};
-  const Real after = std::min(s.time - from, horizon);
-  const auto strayed = [&](auto item) {
+  const InRows rows{predicted.data()};
+  const Index count = Index(s.search.outer.predicted_nodes.size()), whole = count - count % lanes;
+  const InIndices nodes_of{s.search.outer.predicted_nodes.data(), count};
+  const Real after = std::min(s.time - from, lookahead_time);
+  const auto exceeds_skin = [&](auto item) {
     using T = Number<decltype(item)>;
     const Four<T> then = rows.at(item, 0), way = rows.at(item, 4);
-    const Vec3<T> now = nodes.position(watched.at(0, item));
+    const Vec3<T> now = nodes.position(nodes_of.at(0, item));
     const Vec3<T> off = now - then.vector() - T(after) * way.vector();
     return any_of(dot(off, off) > then.w);
   };
   bool found = false;
 #pragma omp parallel for schedule(static) reduction(|| : found) if (count >= worth_threads)
-  for (Index w = 0; w < whole; w += lanes) found = strayed(Lane{w}) || found;
-  for (Index w = whole; w < count; ++w) found = strayed(One{w}) || found;
+  for (Index w = 0; w < whole; w += lanes) found = exceeds_skin(Lane{w}) || found;
+  for (Index w = whole; w < count; ++w) found = exceeds_skin(One{w}) || found;
   return found;
 }
 

@@ -12,7 +12,7 @@ namespace {
 /// Of the vertices of a patch along a normal  [m].
 struct Heights {
   Real at[8], least = 1e300, most = -1e300;
-  Heights(const Finder& f, const Patch& p, const Vec3<Real>& n, const Vec3<Real>& origin) {
+  Heights(const PairContext& f, const Patch& p, const Vec3<Real>& n, const Vec3<Real>& origin) {
     for (Index v = 0; v < p.vertex_count; ++v) {
       at[v] = dot(n, f.faces.nodes.position(p.vertex[v]) - origin);
       least = std::min(least, at[v]);
@@ -21,7 +21,7 @@ struct Heights {
   }
 };
 
-/// All vertices of x stay above the plane of y until the next refresh: they cannot touch.
+/// All vertices of x stay above the plane of y until the next rebuild: they cannot touch.
 bool apart(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
   Real lowest = 1e300, span2 = 0;
   for (Index k = 0; k < x.shape.count(); ++k) {
@@ -30,22 +30,22 @@ bool apart(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y)
     span2 = std::max(span2, dot(arm, arm));
   }
   if (lowest < 0) return false;
-  const Real turned = y.turn * (std::sqrt(span2) + motion_between(x, y));
-  return lowest + GapChange(x, y, y.normal).least > turned + y.warp + rules.lifted;
+  const Real turned = y.rotation * (std::sqrt(span2) + motion_between(x, y));
+  return lowest + GapChange(x, y, y.normal).least > turned + y.warpage + rules.lifted;
 }
 
-/// May anything of the two faces touch before the next refresh?
+/// May anything of the two faces touch before the next rebuild?
 bool may_touch(const SearchRules& rules, const ExposedFace& x, const ExposedFace& y) {
   return x.block != y.block && (x.movable || y.movable) &&
-         dot(x.normal, y.normal) < -rules.opposing + x.turn + y.turn && !apart(rules, x, y) &&
-         !apart(rules, y, x);
+         dot(x.normal, y.normal) < -rules.opposing + x.rotation + y.rotation &&
+         !apart(rules, x, y) && !apart(rules, y, x);
 }
 
 }  // namespace
 
-Beyond::Beyond(const Finder& f, const Patch& a, const Patch& b) {
+SeparatedParts::SeparatedParts(const PairContext& f, const Patch& a, const Patch& b) {
   const Real room = farthest_crossing(f.m.rules, a, b);
-  const Vec3<Real> closing = last_step * (b.drift - a.drift);
+  const Vec3<Real> closing = last_step * (b.displacement - a.displacement);
   unsigned bit = 1;
   for (const Patch* p : {&a, &b})
     for (Index i = 0; i < p->face_count; ++i, bit <<= 2) {
@@ -65,7 +65,7 @@ Beyond::Beyond(const Finder& f, const Patch& a, const Patch& b) {
   spread(b, 1, a.whole);
 }
 
-void Beyond::spread(const Patch& p, int of, bool other_is_whole) {
+void SeparatedParts::spread(const Patch& p, int of, bool other_is_whole) {
   for (Index e = 0; e < p.edge_count; ++e)
     edge[of][e] = vertex[of][p.edge[e].vertex[0]] & vertex[of][p.edge[e].vertex[1]];
   for (Index v = 0; v < p.vertex_count && !other_is_whole; ++v) vertex[of][v] = 0;
@@ -81,20 +81,21 @@ void Beyond::spread(const Patch& p, int of, bool other_is_whole) {
   }
 }
 
-FacePairs::FacePairs(const Finder& f, const Patch& a, const Patch& b, const Beyond& beyond) {
+FacePairMask::FacePairMask(const PairContext& f, const Patch& a, const Patch& b,
+                           const SeparatedParts& separated) {
   for (Index i = 0; i < a.face_count; ++i)
     for (Index j = 0; j < b.face_count; ++j)
-      if (!beyond.hold_apart(i, j) &&
+      if (!separated.hold_apart(i, j) &&
           may_touch(f.m.rules, f.exposed[a.face[i]], f.exposed[b.face[j]]) &&
           !Bonded::among(f.bonded.faces, a.face[i], b.face[j]))
         row[i] |= 1 << j;
 }
 
-void Met::list(const Patch& a, const Patch& b, Proximity& found) const {
+void ListedFacePairs::list(const Patch& a, const Patch& b, PairBuffer& found) const {
   for (Index i = 0; i < a.face_count; ++i)
     for (Index j = 0; j < b.face_count; ++j) {
-      if (row[0][i] >> j & 1) found.meetings.push_back({a.face[i], b.face[j]});
-      if (row[1][j] >> i & 1) found.meetings.push_back({b.face[j], a.face[i]});
+      if (row[0][i] >> j & 1) found.face_pairs.push_back({a.face[i], b.face[j]});
+      if (row[1][j] >> i & 1) found.face_pairs.push_back({b.face[j], a.face[i]});
     }
 }
 

@@ -13,7 +13,7 @@
 namespace cdem {
 
 /// What the search for one pair of patches needs.
-struct Finder {
+struct PairContext {
   const Model& m;
   const State& s;
   const FaceColumns faces;
@@ -26,19 +26,19 @@ inline constexpr Real last_step = 1.05;  // the last step counts 1.5 times, see 
 
 /// How far a vertex of one face may move as seen from the other  [m].
 inline Real motion_between(const ExposedFace& x, const ExposedFace& y) {
-  return norm(x.drift - y.drift) + x.stir + y.stir;
+  return norm(x.displacement - y.displacement) + x.deviation + y.deviation;
 }
 
-/// How far two watched nodes may move apart until the next refresh  [m].
+/// How far two watched nodes may move apart until the next rebuild  [m].
 inline Real may_part(const State& s, Index a, Index b) {
-  const WatchedNode x = WatchedNode::of(s, a), y = WatchedNode::of(s, b);
-  return s.search.horizon * norm(x.velocity - y.velocity) + x.skin + y.skin;
+  const PredictedNode x = PredictedNode::of(s, a), y = PredictedNode::of(s, b);
+  return s.search.outer.lookahead_time * norm(x.velocity - y.velocity) + x.skin + y.skin;
 }
 
-/// How far their foreseen ways part as long as the close lists hold  [m].
+/// How far their predicted ways part as long as the close lists hold  [m].
 inline Real ways_part_soon(const State& s, Index a, Index b) {
-  return close_way * s.search.horizon *
-         norm(WatchedNode::of(s, a).velocity - WatchedNode::of(s, b).velocity);
+  return inner_horizon * s.search.outer.lookahead_time *
+         norm(PredictedNode::of(s, a).velocity - PredictedNode::of(s, b).velocity);
 }
 
 /// How much the gap between anything of x and of y along a normal of y (or of both) may change, at
@@ -46,9 +46,10 @@ inline Real ways_part_soon(const State& s, Index a, Index b) {
 struct GapChange {
   Real least, most;
   GapChange(const ExposedFace& x, const ExposedFace& y, const Vec3<Real>& n) {
-    const Real approach = dot(n, x.drift - y.drift), stir = x.stir + y.stir;
-    least = std::min(approach, 0.0) - stir;
-    most = std::max(approach, 0.0) + stir;
+    const Real approach = dot(n, x.displacement - y.displacement),
+               deviation = x.deviation + y.deviation;
+    least = std::min(approach, 0.0) - deviation;
+    most = std::max(approach, 0.0) + deviation;
   }
 };
 
@@ -56,34 +57,34 @@ struct GapChange {
 /// contact before they are renewed  [m]; but for the drifts, which have a direction. It holds for
 /// vertices as well that are not inside a block.
 inline Real farthest_crossing(const SearchRules& rules, const Patch& a, const Patch& b) {
-  return last_step * (a.stir + b.stir) + a.deepest + b.deepest + rules.lifted +
+  return last_step * (a.deviation + b.deviation) + a.deepest + b.deepest + rules.lifted +
          (rules.entry + 2 * rules.tolerance) * std::min(a.length, b.length) +
          2 * rules.indentation * std::max(a.reach, b.reach);
 }
 
 /// The same for anything. A vertex that is inside a block may begin deeper, at the nearest face
-/// (see FindTargetFaces), and so be farther from the element behind it than an edge, unless that
+/// (see ResolveTargets), and so be farther from the element behind it than an edge, unless that
 /// element is the block.
 inline Real farthest_contact(const SearchRules& rules, const Patch& a, const Patch& b) {
   return farthest_crossing(rules, a, b) +
          (a.whole && b.whole ? 0.0 : rules.depth * std::min(a.length, b.length));
 }
 
-/// What of two patches stays beyond the reach of the other until the next refresh, seen along the
+/// What of two patches stays beyond the reach of the other until the next rebuild, seen along the
 /// normals of their faces: no edge of it can touch, and no vertex that is outside the block. (What
 /// a plane holds apart as a whole is no pair at all.)
 ///
 /// A vertex that is inside a block may begin deeper than that, at the nearest face (see
-/// FindTargetFaces). It is not beyond the reach of a patch that is a block by itself; what lies
+/// ResolveTargets). It is not beyond the reach of a patch that is a block by itself; what lies
 /// beyond one that goes on behind may be inside of what it goes on as.
-struct Beyond {
+struct SeparatedParts {
   // Which vertices lie on the far side of the other patch: two bits for each normal, one for either
   // end of it. What has its vertices on the same far side lies there as a whole.
   unsigned vertex[2][8] = {}, edge[2][12] = {};
   bool nothing_on[2][6];  // face: none of its vertices, nor of its edges
   bool no_vertex_on[2][6];
 
-  Beyond(const Finder& f, const Patch& a, const Patch& b);
+  SeparatedParts(const PairContext& f, const Patch& a, const Patch& b);
   /// Can nothing of two faces touch, of the first patch and of the second?
   bool hold_apart(Index x, Index y) const {
     return (nothing_on[0][x] && no_vertex_on[1][y]) || (nothing_on[1][y] && no_vertex_on[0][x]);
@@ -94,9 +95,10 @@ struct Beyond {
 };
 
 /// Which faces of two patches may touch, bit by bit: row = face of the first.
-struct FacePairs {
+struct FacePairMask {
   int row[6] = {};
-  FacePairs(const Finder& f, const Patch& a, const Patch& b, const Beyond& beyond);
+  FacePairMask(const PairContext& f, const Patch& a, const Patch& b,
+               const SeparatedParts& separated);
   bool any() const { return row[0] || row[1] || row[2] || row[3] || row[4] || row[5]; }
   /// The faces of the second that may touch one at an edge of the first, and the faces at an edge.
   int of(const Patch::Edge& e) const { return row[e.face[0]] | row[e.face[e.faces - 1]]; }
@@ -105,11 +107,11 @@ struct FacePairs {
 
 /// Faces of two patches that lists have for each other, bit by bit: `row[reverse]`, with those of
 /// the first patch as mothers, and then with those of the second.
-struct Met {
+struct ListedFacePairs {
   int row[2][6] = {};
 
   void add(bool reverse, Index mother, Index face) { row[reverse][mother] |= 1 << face; }
-  void list(const Patch& a, const Patch& b, Proximity& found) const;
+  void list(const Patch& a, const Patch& b, PairBuffer& found) const;
 };
 
 }  // namespace cdem

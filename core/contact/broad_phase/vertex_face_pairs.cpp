@@ -7,29 +7,29 @@ namespace cdem {
 
 namespace {
 
-/// Gap that a vertex of exposed face x at `v` may have to exposed face y until the next refresh.
+/// Gap that a vertex of exposed face x at `v` may have to exposed face y until the next rebuild.
 struct GapRange {
   Real least, most;
   GapRange(const ExposedFace& x, const ExposedFace& y, const Vec3<Real>& v) {
     const Vec3<Real> arm = v - y.center;
     const GapChange change(x, y, y.normal);
     const Real gap = dot(y.normal, arm);
-    const Real room = y.turn * (norm(arm) + motion_between(x, y)) + y.warp;
+    const Real room = y.rotation * (norm(arm) + motion_between(x, y)) + y.warpage;
     least = gap + change.least - room;
     most = gap + change.most + room;
   }
 };
 
 /// May a contact with a face go on behind the corner at its side, where the surface rises (see
-/// FindTargetFaces::behind_corner)?
-bool may_go_behind(const Finder& f, const Vec3<Real>& v, const ExposedFace& x,
+/// ResolveTargets::behind_corner)?
+bool may_go_behind(const PairContext& f, const Vec3<Real>& v, const ExposedFace& x,
                    const ExposedSide& side) {
   return side.rises && GapRange(x, f.exposed[side.across], v).least <= 0;
 }
 
 /// May a vertex sink past the depth at which contacts with exposed face y begin, and be held there
-/// (see FindTargetFaces::encloses)? `entry` is that depth, `length` L.
-bool may_sink(const Finder& f, const Vec3<Real>& v, const ExposedFace& x, const ExposedFace& y,
+/// (see ResolveTargets::encloses)? `entry` is that depth, `length` L.
+bool may_sink(const PairContext& f, const Vec3<Real>& v, const ExposedFace& x, const ExposedFace& y,
               Index place_y, Real entry, Real length) {
   const GapRange gap(x, y, v);
   const Real deepest = std::min(f.m.rules.depth * length, 0.5 * f.m.face_height[y.face]);
@@ -39,40 +39,40 @@ bool may_sink(const Finder& f, const Vec3<Real>& v, const ExposedFace& x, const 
     if (side.across < 0) continue;
     const ExposedFace& u = f.exposed[side.across];
     const Vec3<Real> arm = u.center - y.center;
-    const bool falls = dot(y.normal, arm) < -(y.turn + u.turn) * norm(arm);
+    const bool falls = dot(y.normal, arm) < -(y.rotation + u.rotation) * norm(arm);
     if (falls && GapRange(x, u, v).least > gap.most) return false;
   }
   return true;
 }
 
 /// Does a point that moves as exposed face x does stay beside exposed face y until the next
-/// refresh, farther than `room` [m]? `v` is the vertex that it belongs to.
-bool stays_beside(const Finder& f, const Vec3<Real>& v, const Vec3<Real>& point,
+/// rebuild, farther than `room` [m]? `v` is the vertex that it belongs to.
+bool stays_beside(const PairContext& f, const Vec3<Real>& v, const Vec3<Real>& point,
                   const ExposedFace& x, Index place_y, Real room) {
   const ExposedFace& y = f.exposed[place_y];
   for (Index j = 0; j < y.shape.count(); ++j) {
     const ExposedSide& side = f.sides[4 * std::size_t(place_y) + j];
     const Vec3<Real> from = point - side.start;
     if (dot(cross(y.normal, side.along), from) <
-            -(room + 2 * y.turn * (norm(from) + room)) * side.length &&
+            -(room + 2 * y.rotation * (norm(from) + room)) * side.length &&
         !may_go_behind(f, v, x, side))
       return true;
   }
   return false;
 }
 
-/// May a vertex of exposed face x come into contact with exposed face y before the next refresh?
-/// The tests of FindTargetFaces::qualify with room for the motion; `reach` is that of the largest
+/// May a vertex of exposed face x come into contact with exposed face y before the next rebuild?
+/// The tests of ResolveTargets::qualify with room for the motion; `reach` is that of the largest
 /// of the faces at the vertex, `least` the L of the smallest. A vertex that a bond holds to y has
 /// no contact there through its other faces too.
-bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, Real reach,
+bool may_touch(const PairContext& f, Index node, const ExposedFace& x, Real length, Real reach,
                Real least, Index place_y) {
   const ExposedFace& y = f.exposed[place_y];
   const SearchRules& rules = f.m.rules;
   const Real motion = motion_between(x, y);
   const GapChange change(x, y, y.normal);
   const Vec3<Real> v = f.faces.nodes.position(node), arm = v - y.center;
-  const Real gap_room = y.turn * (norm(arm) + motion) + y.warp, gap = dot(y.normal, arm);
+  const Real gap_room = y.rotation * (norm(arm) + motion) + y.warpage, gap = dot(y.normal, arm);
   if (gap + change.least > gap_room + rules.lifted ||
       gap + change.most < -rules.depth * length - gap_room)
     return false;
@@ -80,34 +80,34 @@ bool may_touch(const Finder& f, Index node, const ExposedFace& x, Real length, R
                    rules.tolerance * length + rules.indentation * reach + motion))
     return false;
   for (Index j = 0; j < y.shape.count(); ++j)
-    if (f.faces.node_glue[f.faces.vertex(y.face, j)] == f.faces.node_glue[node]) return false;
+    if (f.faces.bonded_node[f.faces.vertex(y.face, j)] == f.faces.bonded_node[node]) return false;
   if (Bonded::among(f.bonded.vertices, node, place_y)) return false;
   if (may_sink(f, v, x, y, place_y, rules.entry * std::min(least, y.length), length)) return true;
-  const Index point = f.faces.node_glue[node];  // never the deepest vertex?
-  for (Index r = f.faces.ring_first[point]; r < f.faces.ring_first[point + 1]; ++r) {
-    const Index other = f.faces.ring[r];
-    if (f.s.search.node_watch[other] < 0) continue;
+  const Index point = f.faces.bonded_node[node];  // never the deepest vertex?
+  for (Index r = f.faces.edge_star_first[point]; r < f.faces.edge_star_first[point + 1]; ++r) {
+    const Index other = f.faces.edge_star[r];
+    if (f.s.search.outer.node_predicted[other] < 0) continue;
     const Vec3<Real> d = f.faces.nodes.position(other) - v;
     const Real moved = may_part(f.s, other, node);
-    const Real long_d = norm(d), turn = 2 * moved / long_d + y.turn;
-    if (dot(d, y.normal) < -(rules.cone + turn) * long_d) return false;
+    const Real long_d = norm(d), rotation = 2 * moved / long_d + y.rotation;
+    if (dot(d, y.normal) < -(rules.cone + rotation) * long_d) return false;
   }
   return true;
 }
 
 /// Room of a vertex and a face that may touch; `length` and `least` as above,
-/// `indented` is how far its indented points are from the vertex, at most, and `stir` how far its
-/// faces are strained and turned as long as the close lists hold.
+/// `indented` is how far its indented points are from the vertex, at most, and `deviation` how far
+/// its faces are strained and turned as long as the close lists hold.
 ///
 /// In contact the vertex is at a point of the face but for the depth and for `off` beside it, more
-/// behind a corner (or from the centre of a warped face), of which the turn of the face changes
+/// behind a corner (or from the centre of a warped face), of which the rotation of the face changes
 /// what is seen along its sides, or its normal.
-Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Real length,
-                                  Real indented, Real stir, Real least) {
+PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index place_y, Real length,
+                                       Real indented, Real deviation, Real least) {
   const SearchRules& rules = f.m.rules;
   const ExposedFace& y = f.exposed[place_y];
   const Real slack = 1e-6 * y.length;  // for round-off
-  const Real above = (y.shape.count() == 3 ? 0 : 0.5 * y.length) + y.warp + slack;
+  const Real above = (y.shape.count() == 3 ? 0 : 0.5 * y.length) + y.warpage + slack;
   const Real aside = rules.tolerance * length + indented + slack;
   const Index last = y.shape.count() == 3 ? 2 : 3;
   const ExposedSide* sides = f.sides.data() + 4 * std::size_t(place_y);
@@ -119,7 +119,8 @@ Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Re
   Real parted = 0;
   for (Index k = 0; k <= last; ++k)
     parted = std::max(parted, ways_part_soon(f.s, node, f.faces.vertex(y.face, k)));
-  const Real motion = parted + rules.indentation * 2 * stir + 2 * y.turn_soon * off + slack;
+  const Real motion =
+      parted + rules.indentation * 2 * deviation + 2 * y.rotation_soon * off + slack;
   return {{node, place_y},
           {above + rules.lifted + motion, above + rules.depth * length + motion, aside + motion,
            behind ? std::max(rules.entry * std::min(least, y.length) - slack - motion, 0.0) : 1e30,
@@ -129,14 +130,15 @@ Proximity::VertexFace vertex_face(const Finder& f, Index node, Index place_y, Re
 }  // namespace
 
 /// Vertices of one patch on faces of another.
-void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePairs& pairs,
-                  const Beyond& beyond, bool reverse, Met& all_met, Proximity& found) {
+void list_vertex_face_pairs(const PairContext& f, const Patch& a, const Patch& b,
+                            const FacePairMask& pairs, const SeparatedParts& separated,
+                            bool reverse, ListedFacePairs& listed, PairBuffer& found) {
   const auto met = [&](Index i, Index j) {
     return (reverse ? pairs.row[j] >> i : pairs.row[i] >> j) & 1;
   };
   for (Index j = 0; j < b.face_count; ++j) {
     for (Index v = 0; v < a.vertex_count; ++v) {
-      if (beyond.vertex[reverse][v]) continue;
+      if (separated.vertex[reverse][v]) continue;
       Index first = -1;  // of the faces at the vertex
       Real least = 1e300;
       bool touches = false;  // already
@@ -153,7 +155,7 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
           !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
         continue;
       const Vec3<Real> at = f.faces.nodes.position(a.vertex[v]);
-      Real shift = 0, stir = 0;  // of the indented points
+      Real shift = 0, deviation = 0;  // of the indented points
       for (Index i = 0; i < a.face_count; ++i) {
         if (a.corner[v][i] < 0 || !met(i, j)) continue;
         const ExposedFace &x = f.exposed[a.face[i]], &y = f.exposed[b.face[j]];
@@ -161,13 +163,15 @@ void list_touches(const Finder& f, const Patch& a, const Patch& b, const FacePai
         if (!touches && stays_beside(f, at, indented, x, b.face[j],
                                      f.m.rules.tolerance * length + motion_between(x, y)))
           continue;
-        shift = std::max(shift, f.m.rules.indentation * (norm(arm) + 2 * x.stir));
-        stir = std::max(stir, x.stir_soon);
-        all_met.add(reverse, i, j);
-        found.touches.push_back({a.face[i], a.corner[v][i], b.face[j], Index(found.faces.size())});
+        shift = std::max(shift, f.m.rules.indentation * (norm(arm) + 2 * x.deviation));
+        deviation = std::max(deviation, x.deviation_soon);
+        listed.add(reverse, i, j);
+        found.candidates.push_back(
+            {a.face[i], a.corner[v][i], b.face[j], Index(found.vertex_faces.size())});
       }
       if (shift == 0) continue;  // nothing is listed
-      found.faces.push_back(vertex_face(f, a.vertex[v], b.face[j], length, shift, stir, least));
+      found.vertex_faces.push_back(
+          vertex_face(f, a.vertex[v], b.face[j], length, shift, deviation, least));
     }
   }
 }

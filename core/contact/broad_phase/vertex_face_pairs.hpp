@@ -6,7 +6,8 @@
 namespace cdem {
 
 /// List the vertices of one patch that may touch faces of another.
-void list_touches(const Finder& finder, const Patch& a, const Patch& b, const FacePairs& pairs,
-                  const Beyond& beyond, bool reverse, Met& met, Proximity& found);
+void list_vertex_face_pairs(const PairContext& context, const Patch& a, const Patch& b,
+                            const FacePairMask& pairs, const SeparatedParts& separated,
+                            bool reverse, ListedFacePairs& listed, PairBuffer& found);
 
 }  // namespace cdem

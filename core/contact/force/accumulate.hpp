@@ -10,9 +10,9 @@ namespace cdem {
 
 /// Contacts that have an exposed face as target: ragged rows. A semi-spring is its slot; a
 /// semi-edge comes after all of them by its place in its list.
-struct Acting {
+struct ContactsByTarget {
   const Index* first;  // [exposed + 1]
-  Index* contact;      // in any order, see GatherFaceForces
+  Index* contact;      // in any order, see AccumulateFaceForces
 };
 
 /// The contacts of an exposed face and their targets.
@@ -31,7 +31,7 @@ struct ContactsOf {
 };
 
 /// Count the contacts that act on every exposed face; each learns its place among them.
-struct CountActing : ContactsOf {
+struct CountContactsByTarget : ContactsOf {
   Index* count;  // [exposed]
   Index* place;  // [contact]
   bool alone;    // see raise
@@ -41,9 +41,9 @@ struct CountActing : ContactsOf {
 };
 
 /// List the contacts that act on every exposed face.
-struct ListActing : ContactsOf {
+struct ListContactsByTarget : ContactsOf {
   const Index* place;  // [contact]
-  Acting acting;
+  ContactsByTarget acting;
   CDEM_HD void operator()(One m) const {
     visit(m.i, [&](Index target, Index contact) {
       acting.contact[acting.first[target] + place[contact]] = contact;
@@ -55,11 +55,11 @@ struct ListActing : ContactsOf {
 /// of all others that have it as target. It goes through these in their order instead of letting
 /// contacts add to nodes, so the sum has one order for any number of threads. An idle face keeps
 /// what it has: no node sums it.
-struct GatherFaceForces : ContactsOf {
+struct AccumulateFaceForces : ContactsOf {
   FaceColumns faces;
   const Index* exposed_face;
   const Flag* listed;  // [exposed] 0: idle, on no list
-  Acting acting;
+  ContactsByTarget acting;
   SearchRules rules;
   Real* edge_friction;  // [exposed] lost so far in its semi-edges  [J]
   Real* edge_dashpot;   // [exposed] lost so far in their dashpots  [J]

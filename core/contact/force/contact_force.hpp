@@ -12,32 +12,34 @@ namespace cdem {
 /// A contact met from outside is free at zero gap. One that is found already inside must not
 /// release energy that nothing put in (faces of freshly broken rock have slid a little past each
 /// other, a vertex turns a corner): it may begin with the energy of the contact it takes over from,
-/// `sunk_before` deep; what is deeper counts as free of stress.
+/// `penetration_before` deep; what is deeper counts as free of stress.
 /// `dilated` is how far that contact had opened by dilation.
 template <class T>
-CDEM_HD inline T starting_gap_free(T gap, T gap_rate, T dt, T sunk_before, T dilated) {
+CDEM_HD inline T starting_stress_free_gap(T gap, T gap_rate, T dt, T penetration_before,
+                                          T dilated) {
   const T gap_before = gap - gap_rate * dt;
-  return min_of(gap_before + sunk_before, dilated);
+  return min_of(gap_before + penetration_before, dilated);
 }
 
 /// Once a contact is lifted past its stress-free gap, that gap follows it back towards zero; one
 /// that has dilated stays on top of its asperities.
 template <class T>
-CDEM_HD inline T lifted_gap_free(T gap_free, T gap) {
+CDEM_HD inline T lifted_stress_free_gap(T stress_free_gap, T gap) {
   const T zero(0.0);
-  return select(gap_free > zero, gap_free, min_of(max_of(gap_free, gap), zero));
+  return select(stress_free_gap > zero, stress_free_gap,
+                min_of(max_of(stress_free_gap, gap), zero));
 }
 
 /// Elastic and frictional part of one contact's force.
 template <class T>
 struct ContactForce {
   T force_n;             // compression > 0  [N]
-  T sunk;                // effective penetration  [m]
+  T penetration;         // effective penetration  [m]
   T shear1, shear2;      // on the mother  [N]
   T energy_n, energy_s;  // stored  [J]
   T friction;            // lost in this step  [J]
   T dashpot;             // lost in this step  [J]
-  T rise;                // of the stress-free gap, by dilation in this step  [m]
+  T lift;                // of the stress-free gap, by dilation in this step  [m]
 };
 
 /// What a sliding contact needs to know of its asperities.
@@ -50,8 +52,8 @@ struct Dilation {
 /// What a contact had one step ago; all zero for one that begins.
 template <class T>
 struct ContactBefore {
-  T force_n, sunk;   // [N], [m]
-  T shear1, shear2;  // [N]
+  T force_n, penetration;  // [N], [m]
+  T shear1, shear2;        // [N]
 };
 
 /// Normal force from the total gap, shear force from the step's slip, then Coulomb's limit.
@@ -77,33 +79,33 @@ CDEM_HD inline ContactForce<T> contact_force(T stiffness_n, T stiffness_s, T tan
   ContactForce<T> f;
   T elastic = max_of(-stiffness_n * gap, zero);
   f.force_n = select(gap < zero, max_of(elastic - dashpot_constant * gap_rate, zero), zero);
-  f.sunk = max_of(-gap, zero);
+  f.penetration = max_of(-gap, zero);
   const T old1 = before.shear1, old2 = before.shear2;
   const T try1 = old1 - stiffness_s * slip1, try2 = old2 - stiffness_s * slip2;
   const T shear = sqrt_of(try1 * try1 + try2 * try2);
   T limit = f.force_n * tan_friction;
-  f.rise = zero;
+  f.lift = zero;
   const auto dilates = (dilation.tangent > zero) & (f.force_n > zero) & (shear > limit);
   if (any_of(dilates)) {
     const T stiffer = stiffness_s + stiffness_n * dilation.tangent * tan_friction;
-    const T rise = min_of(dilation.tangent * (shear - limit) / stiffer, dilation.room);
-    f.rise = select(dilates, rise, zero);
-    f.sunk += f.rise;
-    f.force_n += stiffness_n * f.rise;
-    elastic += stiffness_n * f.rise;
+    const T lift = min_of(dilation.tangent * (shear - limit) / stiffer, dilation.room);
+    f.lift = select(dilates, lift, zero);
+    f.penetration += f.lift;
+    f.force_n += stiffness_n * f.lift;
+    elastic += stiffness_n * f.lift;
     limit = f.force_n * tan_friction;
   }
   const T keep = select(shear > limit, limit / shear, one);
   f.shear1 = keep * try1;
   f.shear2 = keep * try2;
-  const T flex_s = half / stiffness_s;
-  const T stored_s = flex_s * (f.shear1 * f.shear1 + f.shear2 * f.shear2);
-  f.friction = flex_s * (old1 * old1 + old2 * old2) - stored_s -
+  const T half_compliance_s = half / stiffness_s;
+  const T stored_s = half_compliance_s * (f.shear1 * f.shear1 + f.shear2 * f.shear2);
+  f.friction = half_compliance_s * (old1 * old1 + old2 * old2) - stored_s -
                half * ((old1 + f.shear1) * slip1 + (old2 + f.shear2) * slip2) -
-               half * (stiffness_n * before.sunk + elastic) * f.rise;
+               half * (stiffness_n * before.penetration + elastic) * f.lift;
   f.energy_n = half / stiffness_n * elastic * elastic;
   f.energy_s = stored_s;
-  const T braked = before.force_n - stiffness_n * before.sunk + f.force_n - elastic;
+  const T braked = before.force_n - stiffness_n * before.penetration + f.force_n - elastic;
   f.dashpot = -half * braked * gap_rate * dt;
   return f;
 }

@@ -8,9 +8,9 @@ namespace cdem {
 
 /// Interfaces by pair of groups, and the contact dashpot.
 struct ContactLaws {
-  const Index* interface_of;  // [group_m * group_count + group_t]
+  const Index* interface_of;  // [group_m * class_count + group_t]
   const Interface* interfaces;
-  Index group_count;
+  Index class_count;
   Real damping_ratio;     // of critical, on the effective mass of the two points
   const Real* node_mass;  // [kg]
 
@@ -19,7 +19,8 @@ struct ContactLaws {
   CDEM_HD auto between(const FaceGeometry& geometry, const Ids& m, const Ids& t) const {
     return indices_of(
         [&](Index a, Index b) {
-          return interface_of[geometry.table[a].group * group_count + geometry.table[b].group];
+          return interface_of[geometry.table[a].interface_class * class_count +
+                              geometry.table[b].interface_class];
         },
         m, t);
   }

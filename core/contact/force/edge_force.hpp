@@ -43,8 +43,8 @@ struct UpdateEdgeForces {
           },
           before);
     };
-    const T sunk = was([](const ContactState& s) { return s.sunk; });
-    const T gap_free = was([](const ContactState& s) { return s.gap_free; });
+    const T penetration = was([](const ContactState& s) { return s.penetration; });
+    const T stress_free_gap = was([](const ContactState& s) { return s.stress_free_gap; });
     const auto law = laws.between(geometry, m, t);
     // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
     const auto [kn, ks] = laws.stiffness(geometry, law, m, t);
@@ -66,13 +66,14 @@ struct UpdateEdgeForces {
     const Frame<T> old = edge_frame(edge_normal(old_dm, old_along, out), old_along);
     const Vec3<T> apart = (om + c.s * old_dm) - (ot + c.t * old_along);
     const Vec3<T> rate = (vm + c.s * (vm1 - vm)) - (vt + c.t * (vt1 - vt));
-    const T flex = flexibility(m0, m1, c.s) + flexibility(t0, t1, c.t);
-    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / flex);
+    const T inverse_mass = inverse_mass_of(m0, m1, c.s) + inverse_mass_of(t0, t1, c.t);
+    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / inverse_mass);
     const T gap_rate = dot(frame.n, rate);
-    const T free = select(sunk < zero, starting_gap_free(c.gap, gap_rate, dt, zero, zero),
-                          lifted_gap_free(gap_free, c.gap));
+    const T free =
+        select(penetration < zero, starting_stress_free_gap(c.gap, gap_rate, dt, zero, zero),
+               lifted_stress_free_gap(stress_free_gap, c.gap));
     const ContactBefore<T> old_force{was([](const ContactState& s) { return s.force_n; }),
-                                     max_of(sunk, zero),
+                                     max_of(penetration, zero),
                                      was([](const ContactState& s) { return s.shear1; }),
                                      was([](const ContactState& s) { return s.shear2; })};
     const ContactForce<T> f =
@@ -90,7 +91,8 @@ struct UpdateEdgeForces {
           return faces.vertex(face, faces.side_on(face, e)) == start;
         },
         t, edge, t0);
-    const T state[8] = {f.force_n, f.sunk, f.shear1, f.shear2, free, f.energy_n, f.energy_s, zero};
+    const T state[8] = {f.force_n, f.penetration, f.shear1,   f.shear2,
+                        free,      f.energy_n,    f.energy_s, zero};
     const T reaction[8] = {force.x,    force.y,
                            force.z,    select(pressed, max_of(kn, ks), zero),
                            on_m,       select(forward > zero, on_t, one - on_t),
@@ -101,7 +103,7 @@ struct UpdateEdgeForces {
 
  private:
   template <class Ids, class T>
-  CDEM_HD T flexibility(const Ids& a, const Ids& b, const T& s) const {
+  CDEM_HD T inverse_mass_of(const Ids& a, const Ids& b, const T& s) const {
     const T rest = T(1.0) - s;
     return rest * rest / look_up(laws.node_mass, a) + s * s / look_up(laws.node_mass, b);
   }

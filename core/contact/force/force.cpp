@@ -25,7 +25,7 @@ void update_forces(const Model& m, State& s, Queue q) {
                                  s.edges.old_state.data(), edge_columns(s)});
 }
 
-void make_rows(ActingState& acting) {
+void make_rows(ContactsByTargetState& acting) {
   const std::size_t count = acting.count.size();
   acting.first.resize(count + 1);
   for (std::size_t i = 0; i < count; ++i) acting.first[i + 1] = acting.first[i] + acting.count[i];
@@ -35,21 +35,22 @@ void make_rows(ActingState& acting) {
 void accumulate_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
   const ContactsOf contacts{spring_columns(s), edge_columns(s), count};
-  ActingState& acting = s.acting;
+  ContactsByTargetState& acting = s.contacts_by_target;
   acting.count.resize(count);
   acting.count.fill(0);
   acting.place.resize(s.springs.target.size() + s.edges.contact.size() / 4);
-  for_each_item(q, count,
-                CountActing{contacts, acting.count.data(), acting.place.data(), runs_alone()});
-  finish(q);
-  make_rows(acting);
-  const Acting rows{acting.first.data(), acting.contact.data()};
-  for_each_item(q, count, ListActing{contacts, acting.place.data(), rows});
   for_each_item(
       q, count,
-      GatherFaceForces{contacts, face_columns(m, s), s.search.exposed_face.data(),
-                       s.search.face_listed.data(), rows, m.rules, s.edges.friction.data(),
-                       s.edges.dashpot.data(), s.contact_force.data()});
+      CountContactsByTarget{contacts, acting.count.data(), acting.place.data(), runs_alone()});
+  finish(q);
+  make_rows(acting);
+  const ContactsByTarget rows{acting.first.data(), acting.contact.data()};
+  for_each_item(q, count, ListContactsByTarget{contacts, acting.place.data(), rows});
+  for_each_item(q, count,
+                AccumulateFaceForces{contacts, face_columns(m, s), s.search.exposed_face.data(),
+                                     s.search.outer.face_listed.data(), rows, m.rules,
+                                     s.edges.friction.data(), s.edges.dashpot.data(),
+                                     s.contact_force.data()});
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct UpdateSpringForces {
 
   CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
   /// Slots that are in contact; those that no longer are end here.
-  CDEM_HD bool picks(Index m, Index slot) const {
+  CDEM_HD bool selects(Index m, Index slot) const {
     const Index t = springs.target[slot], before = springs.target_before[slot];
     if (before >= 0 && t != before) {
       if (t < 0)
@@ -59,11 +59,11 @@ struct UpdateSpringForces {
     }
     const Frame<T> old_frame = old_shape.frame();
     Vec3<T> apart = mother.x_old, rate = mother.v;
-    T flex = mother.flex;
+    T inverse_mass = mother.inverse_mass;
     for (Index j = 0; j < 4; ++j) {
       apart = apart - foot.weight[j] * old_shape.x[j];
       rate = rate - foot.weight[j] * velocity[j];
-      flex += foot.weight[j] * foot.weight[j] / look_up(laws.node_mass, corners.node[j]);
+      inverse_mass += foot.weight[j] * foot.weight[j] / look_up(laws.node_mass, corners.node[j]);
     }
     const auto law = laws.between(geometry, item.row, t);
     const auto property = [&](auto of) {
@@ -73,19 +73,20 @@ struct UpdateSpringForces {
     const auto stiffness = laws.stiffness(geometry, law, item.row, t);
     const T kn = T(0.5) * stiffness.n, ks = T(0.5) * stiffness.s;
     const T tan_friction = property([](const Interface& l) { return l.tan_friction; });
-    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / flex);
+    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / inverse_mass);
     const T gap_rate = dot(frame.n, rate);
-    const T free = select(
-        moves, starting_gap_free(foot.gap, gap_rate, dt, old.sunk, max_of(free_before, zero)),
-        lifted_gap_free(free_before, foot.gap));
+    const T free = select(moves,
+                          starting_stress_free_gap(foot.gap, gap_rate, dt, old.penetration,
+                                                   max_of(free_before, zero)),
+                          lifted_stress_free_gap(free_before, foot.gap));
     const Dilation<T> dilation{
         min_of(property([](const Interface& l) { return l.tan_dilation; }), tan_friction),
         max_of(property([](const Interface& l) { return l.dilation_most; }) - free, zero)};
     const T slip1 = -dot(old_frame.t1, apart), slip2 = -dot(old_frame.t2, apart);
     const ContactForce<T> f = contact_force(kn, ks, tan_friction, foot.gap - free, gap_rate,
                                             dashpot, slip1, slip2, old, dilation, dt);
-    const T state[8] = {f.force_n,     f.sunk,     f.shear1,   f.shear2,
-                        free + f.rise, f.energy_n, f.energy_s, zero};
+    const T state[8] = {f.force_n,     f.penetration, f.shear1,   f.shear2,
+                        free + f.lift, f.energy_n,    f.energy_s, zero};
     set_rows(springs.state, slot, state);
     // A turn loses what the springs held on the old face and neither gave back nor hold on the new
     // one. If it should make energy, that is no loss: it is left to the closing error.
@@ -116,7 +117,7 @@ struct UpdateSpringForces {
   template <class T>
   struct Point {
     Vec3<T> x, x_old, v;
-    T flex;  // under a force: sum w^2 / m  [1/kg]
+    T inverse_mass;  // under a force: sum w^2 / m  [1/kg]
   };
   /// The acting point: the vertex, moved towards the face's centre by the action coefficient.
   template <class Ids>
@@ -129,7 +130,7 @@ struct UpdateSpringForces {
       p.x = p.x + w * x;
       p.x_old = p.x_old + w * (x - dt * v);
       p.v = p.v + w * v;
-      p.flex += w * w / look_up(laws.node_mass, node);
+      p.inverse_mass += w * w / look_up(laws.node_mass, node);
     };
     if (!(rules.action > 0)) {
       const auto corner = [&](Index x, Index s) { return geometry.table[x].corner[s % 4]; };
@@ -154,7 +155,7 @@ struct UpdateSpringForces {
   /// new force, its energies are what its springs held on the old face and did not give back.
   CDEM_HD void turn(Index m, Index slot, Index before, Index t) const {
     ContactState s = ContactState::at(springs.state, slot);
-    const LostAtEnd left = lost_on(m, slot, before);
+    const DissipatedAtEnd left = lost_on(m, slot, before);
     const Frame<Real> from = faces.shape(geometry.vertices(before)).frame();
     const Frame<Real> to = faces.shape(geometry.vertices(t)).frame();
     const Real s1 = s.shear1, s2 = s.shear2;
@@ -165,14 +166,14 @@ struct UpdateSpringForces {
     s.shear1 = scale * a;
     s.shear2 = scale * b;
     const Real kn = 0.5 * laws.stiffness(geometry, laws.between(geometry, m, t), m, t).n;
-    s.sunk = sqrt_of(2 / kn * s.energy_n);
+    s.penetration = sqrt_of(2 / kn * s.energy_n);
     s.energy_n = left.dashpot;
     s.energy_s = left.friction;
     s.store(springs.state, slot);
   }
   /// A contact that ended forgets its forces.
   CDEM_HD void end(Index m, Index slot, Index before) const {
-    const LostAtEnd lost = lost_on(m, slot, before);
+    const DissipatedAtEnd lost = lost_on(m, slot, before);
     springs.friction[slot] += lost.friction;
     springs.dashpot[slot] += lost.dashpot;
     ContactState{}.store(springs.state, slot);
@@ -180,7 +181,7 @@ struct UpdateSpringForces {
     row[0] = row[1] = row[2] = row[3] = 0;
   }
   /// What the springs held on a face that they have left, and did not give back.
-  CDEM_HD LostAtEnd lost_on(Index m, Index slot, Index before) const {
+  CDEM_HD DissipatedAtEnd lost_on(Index m, Index slot, Index before) const {
     const FaceVertices<Index> corners = geometry.vertices(before);
     FaceShape<Real> shape = faces.shape(corners);
     Vec3<Real> moved[4];

@@ -59,8 +59,8 @@ void sum_stiffness(const Model& m, State& s) {
   std::vector<Real> stiffest_of(exposed);  // contact that a face may have  [N/m]
 #pragma omp parallel for schedule(static, 128) if (exposed >= worth_threads)
   for (Index y = 0; y < exposed; ++y)
-    for (Index c = s.search.source_first[y]; c < s.search.source_first[y + 1]; ++c) {
-      const Index x = s.search.source[c];
+    for (Index c = s.search.outer.acting_first[y]; c < s.search.outer.acting_first[y + 1]; ++c) {
+      const Index x = s.search.outer.faces_acting_on[c];
       const auto stiffness = laws.stiffness(geometry, laws.between(geometry, x, y), x, y);
       for (const Index face : {x, y})
         raise_to(stiffest_of[face], std::max(stiffness.n, stiffness.s));

@@ -9,7 +9,7 @@
 namespace cdem {
 
 inline ContactLaws contact_laws(const Model& m, const State& s) {
-  return {m.interface_of.data(), m.interfaces.data(), m.group_count, m.contact_damping,
+  return {m.interface_of.data(), m.interfaces.data(), m.class_count, m.contact_damping,
           lumped_masses(m, s).data()};
 }
 

@@ -18,18 +18,18 @@ struct FaceVertices {
 /// The exterior faces and edges of all blocks: what never changes, and the nodes' motion.
 struct FaceColumns {
   InMotion nodes;
-  const Index* face_nodes;    // [face][4], the fourth is -1 for a triangle
-  const Index* face_edges;    // [face][4]: the edge from vertex k to k + 1
-  const Real* face_length;    // L: mean distance from the centre to the vertices, Eq. 3  [m]
-  const Real* face_height;    // of the element behind  [m]
-  const Index* edge_nodes;    // [edge][2]
-  const Index* beyond;        // [exposed][4]: face on the other side of side k, or -1
-  const Index* ring_first;    // [label + 1]
-  const Index* ring;          // other ends of the edges that leave a point
-  const Index* node_glue;     // label shared by nodes that intact bonds hold together
-  const Index* node_place;    // label shared by nodes that began at the same place
-  const Index* face_exposed;  // [face]: place in the list of exposed faces, or -1
-  Real dt;                    // [s]
+  const Index* face_nodes;       // [face][4], the fourth is -1 for a triangle
+  const Index* face_edges;       // [face][4]: the edge from vertex k to k + 1
+  const Real* face_length;       // L: mean distance from the centre to the vertices, Eq. 3  [m]
+  const Real* face_height;       // of the element behind  [m]
+  const Index* edge_nodes;       // [edge][2]
+  const Index* beyond;           // [exposed][4]: face on the other side of side k, or -1
+  const Index* edge_star_first;  // [label + 1]
+  const Index* edge_star;        // other ends of the edges that leave a point
+  const Index* bonded_node;      // label shared by nodes that intact bonds hold together
+  const Index* node_place;       // label shared by nodes that began at the same place
+  const Index* face_exposed;     // [face]: place in the list of exposed faces, or -1
+  Real dt;                       // [s]
 
   CDEM_HD Index vertex_count(Index face) const { return face_nodes[4 * face + 3] < 0 ? 3 : 4; }
   CDEM_HD Index vertex(Index face, Index k) const { return face_nodes[4 * face + k]; }

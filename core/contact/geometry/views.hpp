@@ -15,9 +15,9 @@ inline FaceColumns face_columns(const Model& m, const State& s) {
           m.face_height.data(),
           m.edge_nodes.data(),
           s.search.across.data(),
-          s.search.ring_first.data(),
-          s.search.ring.data(),
-          s.nodes.glue.data(),
+          s.search.edge_star_first.data(),
+          s.search.edge_star.data(),
+          s.nodes.bonded_node.data(),
           m.node_place.data(),
           s.search.face_exposed.data(),
           s.dt_last};

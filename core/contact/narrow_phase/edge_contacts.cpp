@@ -41,7 +41,7 @@ bool make_room_for_edges(State& s) {
     most = std::max(most, e.found_count[x]);
     e.first[x + 1] = e.first[x] + e.found_count[x];
   }
-  if (most > TouchTargetEdges::most_slots) {
+  if (most > ResolveTargetEdges::most_slots) {
     swap_with_old(e);  // what is reported of the run is that of the step before
     throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
   }

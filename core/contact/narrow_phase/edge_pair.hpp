@@ -47,7 +47,7 @@ struct EdgePairs {
   InIndices sides;  // [4][pair]: 4 * exposed face + side, of the faces at the one, and at the
                     // other; the same twice where there is one
   InIndices code;   // [1][pair]: see EdgeWays
-  Flag* open;       // [pair] ways in which they may touch in this step, see SiftTargetEdges
+  Flag* open;       // [pair] ways in which they may touch in this step, see FilterEdgePairs
 
   /// The mother's side and the target's, 4 * exposed face + side.
   struct Sides {
@@ -85,8 +85,8 @@ CDEM_HD inline Truth<T> crosses_beyond(const Vec3<T>& p0, const Vec3<T>& dm, con
 /// Sift the ways in which edges that are close to each other may touch: most do not cross where the
 /// mother's is indented, or are on the wrong side of each other. It is seen for all ways at once,
 /// from the common perpendicular, without a root or a division. Those that may are left to
-/// TouchTargetEdges; that its tests are the same but for some room, nothing found depends on it.
-struct SiftTargetEdges {
+/// ResolveTargetEdges; that its tests are the same but for some room, nothing found depends on it.
+struct FilterEdgePairs {
   InMotion nodes;
   FaceGeometry geometry;
   EdgePairs pairs;
@@ -100,7 +100,7 @@ struct SiftTargetEdges {
     const Vec3<T> x[2] = {end(0), end(2)}, d[2] = {end(1) - x[0], end(3) - x[1]};
     const Vec3<T> c = cross(d[0], d[1]);
     const T c2 = dot(c, c), apart = dot(x[1] - x[0], c);
-    // of a gap, times |c| twice: which side it is on is left to TouchTargetEdges then
+    // of a gap, times |c| twice: which side it is on is left to ResolveTargetEdges then
     const T round_off = T(1e-12) * c2 * (abs_of(d[0].x) + abs_of(d[0].y) + abs_of(d[0].z));
     const T slack(1.000001 * crossing_slack(rules.indentation)), none(0.0);
     Vec3<T> normal[2][2];

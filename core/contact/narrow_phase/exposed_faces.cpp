@@ -97,13 +97,13 @@ void list_exposed(const Model& m, State& s) {
     row.reach = m.face_reach[face];
     row.area = m.face_area[face] / row.count();
     row.stiffness = m.face_stiffness[face];
-    row.group = m.face_group[face];
+    row.interface_class = m.face_interface_class[face];
   }
 }
 
 void update_face_geometry(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::contact);
-  if (has_contact_pairs(s)) launch_geometry(m, s, q, s.search.face_listed.data());
+  if (has_contact_pairs(s)) launch_geometry(m, s, q, s.search.outer.face_listed.data());
 }
 
 void update_all_face_geometry(const Model& m, State& s, Queue q) {

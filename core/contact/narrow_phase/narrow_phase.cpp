@@ -12,18 +12,18 @@ void find_target_faces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::search);
   const Index count = Index(s.search.exposed_face.size());
   const FaceSearch search = face_search(m, s);
-  for_each_selected(q, count, KeepTargetFaces{search});
-  for_each_selected(q, count, SiftTargetFaces{search});
-  for_each_item(q, 4 * count, FindTargetFaces{search});
+  for_each_selected(q, count, UpdateHeldTargets{search});
+  for_each_selected(q, count, FilterNewTargets{search});
+  for_each_item(q, 4 * count, ResolveTargets{search});
 }
 
 void find_target_edges(const Model& m, State& s, Queue q) {
   if (!m.semi_edges) return;
   const PhaseTimer timer(s, Phase::search);
   begin_edges(s);
-  const Index pairs = Index(s.search.close.near_edges.size());
+  const Index pairs = Index(s.search.inner.near_edges.size());
   for_each_lane(q, pairs,
-                SiftTargetEdges{{s.nodes.motion.data()},
+                FilterEdgePairs{{s.nodes.motion.data()},
                                 face_geometry(s),
                                 edge_pairs(s),
                                 m.rules,
@@ -33,8 +33,8 @@ void find_target_edges(const Model& m, State& s, Queue q) {
     finish(q);
   } while (!make_room_for_edges(s));
   for_each_item(q, Index(s.search.exposed_face.size()),
-                ListEdges{edge_search(m, s), s.edges.first.data(), s.edges.contact.data(),
-                          s.edges.friction.data(), s.edges.dashpot.data()});
+                ListEdgeContacts{edge_search(m, s), s.edges.first.data(), s.edges.contact.data(),
+                                 s.edges.friction.data(), s.edges.dashpot.data()});
 }
 
 }  // namespace cdem

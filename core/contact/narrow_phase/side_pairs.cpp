@@ -12,7 +12,7 @@ bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, I
   pair = {k, j, 0};
   for (Index i = 0; i < 4; ++i) {
     const Index a = mother[i >> 1], b = target[i & 1];
-    if (faces.node_glue[a] == faces.node_glue[b]) return false;
+    if (faces.bonded_node[a] == faces.bonded_node[b]) return false;
     if (faces.node_place[a] == faces.node_place[b]) pair.shared |= 1 << i;
   }
   return true;

@@ -53,7 +53,7 @@ struct TwoSides {
 /// The indented semi-edge decides which edges it crosses; the true edges give gap and force. Of the
 /// two faces at a target edge the one that opposes the mother face more is the right face (Eq. 10).
 /// Edges between nearly coplanar faces are no edges; the normal must lie in both edges' cones.
-struct TouchTargetEdges {
+struct ResolveTargetEdges {
   FaceColumns faces;
   FaceGeometry geometry;
   const Index* exposed_face;
@@ -72,7 +72,7 @@ struct TouchTargetEdges {
     const Index first = open ? std::countr_zero(open) : 0;
     return {EdgeWays::count * p + first, EdgeWays::count * p + std::bit_width(open)};
   }
-  CDEM_HD bool picks(Index p, Index id) const {
+  CDEM_HD bool selects(Index p, Index id) const {
     return pairs.open[p] >> (id - EdgeWays::count * p) & 1;
   }
   template <class I>
@@ -267,8 +267,8 @@ struct TouchTargetEdges {
 
 /// List what was found for one exposed face, in order: its contacts go on or begin, and what the
 /// springs of those that ended did not give back is lost to friction and dashpot.
-struct ListEdges {
-  TouchTargetEdges touch;
+struct ListEdgeContacts {
+  ResolveTargetEdges touch;
   const Index* first;  // [exposed + 1] of the list
   Index* contact;      // rows of EdgeContact
   Real* friction;      // [exposed] lost so far  [J]
@@ -289,7 +289,7 @@ struct ListEdges {
       for (Index j = 0; j < found.count[m.i]; ++j)
         goes_on = goes_on || FoundEdge::at(row, j).before == c;
       if (goes_on) continue;
-      const LostAtEnd lost = lost_at_end(c);
+      const DissipatedAtEnd lost = lost_at_end(c);
       friction[m.i] += lost.friction;
       dashpot[m.i] += lost.dashpot;
     }
@@ -305,7 +305,7 @@ struct ListEdges {
       edge.store(row, place);
     }
   }
-  CDEM_HD LostAtEnd lost_at_end(Index c) const {
+  CDEM_HD DissipatedAtEnd lost_at_end(Index c) const {
     const FaceColumns& faces = touch.faces;
     const FaceGeometry& geometry = touch.geometry;
     const EdgeContact contact = EdgeContact::at(touch.held.contact, c);

@@ -16,11 +16,11 @@ struct FaceSearch {
   SpringColumns springs;
 };
 
-/// Keep the target of a semi-spring that is in contact, as most go on: see FindTargetFaces. What
+/// Keep the target of a semi-spring that is in contact, as most go on: see ResolveTargets. What
 /// takes a closer look is left to it.
-struct KeepTargetFaces : FaceSearch {
+struct UpdateHeldTargets : FaceSearch {
   CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
-  CDEM_HD bool picks(Index, Index slot) const {
+  CDEM_HD bool selects(Index, Index slot) const {
     springs.target_before[slot] = springs.target[slot];
     return springs.target[slot] >= 0;
   }
@@ -36,15 +36,15 @@ struct KeepTargetFaces : FaceSearch {
     const auto corners = geometry.vertices(t);
     const FaceShape<T> shape = faces.shape(corners);
     const T gap = project(shape, c.v, c.normal).gap;
-    const T gap_free = InRows{springs.state}.at(slot, 4).x, zero(0.0);
-    const T lifted = T(2.0) * max_of(gap_free, zero);
-    const T depth = T(rules.depth) * c.length - min_of(gap_free, zero);
-    const auto glued = [&](Index j) {
-      return differ(look_up(faces.node_glue, corners.node[j]), look_up(faces.node_glue, node));
+    const T stress_free_gap = InRows{springs.state}.at(slot, 4).x, zero(0.0);
+    const T lifted = T(2.0) * max_of(stress_free_gap, zero);
+    const T depth = T(rules.depth) * c.length - min_of(stress_free_gap, zero);
+    const auto other_node = [&](Index j) {
+      return differ(look_up(faces.bonded_node, corners.node[j]), look_up(faces.bonded_node, node));
     };
     const auto kept = c.opposes & shape.inside(c.p, c.normal, T(rules.tolerance) * c.length) &
-                      !((gap > lifted) | (gap < -depth)) & glued(0) & glued(1) & glued(2) &
-                      glued(3);
+                      !((gap > lifted) | (gap < -depth)) & other_node(0) & other_node(1) &
+                      other_node(2) & other_node(3);
     for_lanes(item, [&](Index lane, Index, Index id) {
       if (!holds(kept, lane)) springs.target[id] = SpringColumns::sought;
     });
@@ -52,9 +52,9 @@ struct KeepTargetFaces : FaceSearch {
 };
 
 /// Sift the faces that semi-springs without contact may touch: many cannot, for reasons that are
-/// seen in SIMD lanes. Those that may are left to FindTargetFaces; that their tests are the same
+/// seen in SIMD lanes. Those that may are left to ResolveTargets; that their tests are the same
 /// but for some room in the depth, nothing found depends on it.
-struct SiftTargetFaces : FaceSearch {
+struct FilterNewTargets : FaceSearch {
   /// Nothing where all vertices are in contact, as at rest.
   CDEM_HD Range items(Index m) const {
     const Index first = candidates.first[4 * m], *before = springs.target_before + 4 * m;
@@ -62,7 +62,7 @@ struct SiftTargetFaces : FaceSearch {
                       (before[3] >= 0 || geometry.table[m].count() == 3);
     return {first, held ? first : candidates.first[4 * m + 4]};
   }
-  CDEM_HD bool picks(Index m, Index c) const {
+  CDEM_HD bool selects(Index m, Index c) const {
     return springs.target_before[4 * m + vertex_of(candidates.first, m, c)] < 0;
   }
 
@@ -123,7 +123,7 @@ struct SiftTargetFaces : FaceSearch {
     return T(rules.approach_steps * faces.dt) *
            abs_of(dot(c.normal, faces.nodes.velocity(node) - mean));
   }
-  /// Is the way out of the block shorter through a face beside t? See FindTargetFaces::encloses.
+  /// Is the way out of the block shorter through a face beside t? See ResolveTargets::encloses.
   /// Faces that are not exposed are left to it.
   template <class T, class Ids>
   CDEM_HD Truth<T> escapes(const VertexFace<T>& c, const Ids& t, const T& plane) const {
@@ -156,7 +156,7 @@ struct SiftTargetFaces : FaceSearch {
 /// their spring, or beside a rim where an edge that leaves them reaches deeper, in free air. One
 /// that is truly inside a block may begin as deep as a contact is kept, at the nearest face and
 /// whatever its edges do; like all that begins inside it is free of stress there.
-struct FindTargetFaces : FaceSearch {
+struct ResolveTargets : FaceSearch {
   CDEM_HD void operator()(One slot) const {
     if (springs.target[slot.i] != SpringColumns::sought) return;
     FaceList listed = listed_for(slot.i);
@@ -184,10 +184,10 @@ struct FindTargetFaces : FaceSearch {
       if (!beside(s.p, t, rules.tolerance * length)) continue;
       // what lies flatter may begin whatever the approach
       const bool flat = geometry.is_triangle(t) && plane > -0.9 * rules.entry * length;
-      const Real entry = rules.entry * length + (flat ? 0.0 : approach(s.node, t)) + s.hand_over;
-      const bool sunk = s.free && plane < -entry && encloses(t, s.v, plane);
-      const Real limit = sunk ? deepest_inside(t, length) : entry;
-      const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, sunk});
+      const Real entry = rules.entry * length + (flat ? 0.0 : approach(s.node, t)) + s.turn_depth;
+      const bool penetration = s.free && plane < -entry && encloses(t, s.v, plane);
+      const Real limit = penetration ? deepest_inside(t, length) : entry;
+      const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, penetration});
       if (gap < none && gap > s.gap) {
         s.best = t;
         s.gap = gap;
@@ -203,7 +203,7 @@ struct FindTargetFaces : FaceSearch {
   struct Seeker {
     Index node, best;
     Vec3<Real> v, p;  // true vertex, indented point
-    Real gap, hand_over;
+    Real gap, turn_depth;
     Real lifted;  // highest gap of a contact  [m]
     bool kept;    // the current target still qualifies
     bool free;    // there was none
@@ -224,9 +224,9 @@ struct FindTargetFaces : FaceSearch {
     if (current < 0) return s;
     const ContactState state = ContactState::at(springs.state, slot);
     const bool loaded = state.force_n > 0;
-    const Real length = smaller_length(m, current), gap_free = state.gap_free;
-    const Real depth = rules.depth * length - min_of(gap_free, 0.0);
-    s.lifted = 2 * max_of(gap_free, 0.0);
+    const Real length = smaller_length(m, current), stress_free_gap = state.stress_free_gap;
+    const Real depth = rules.depth * length - min_of(stress_free_gap, 0.0);
+    s.lifted = 2 * max_of(stress_free_gap, 0.0);
     if (qualify(m, s.node, s.v, s.p, current, {s.lifted, depth, true}) < none) {
       s.best = current;
       s.kept = true;
@@ -234,7 +234,7 @@ struct FindTargetFaces : FaceSearch {
     }
     const Real old_gap = plane_gap(s.v, current);
     // a loaded spring may enter its next face as deep as it leaves the last
-    if (loaded && old_gap < 0) s.hand_over = -1.5 * old_gap;
+    if (loaded && old_gap < 0) s.turn_depth = -1.5 * old_gap;
     if (loaded && sank_below(s.p, current, old_gap, depth)) *lost = 1;
     return s;
   }
@@ -316,14 +316,15 @@ struct FindTargetFaces : FaceSearch {
     const Real gap = project(f, v, n).gap;
     if (gap > terms.lifted || gap < -terms.limit) return none;
     for (Index j = 0; j < f.count(); ++j)
-      if (faces.node_glue[faces.vertex(exposed_face[t], j)] == faces.node_glue[node]) return none;
+      if (faces.bonded_node[faces.vertex(exposed_face[t], j)] == faces.bonded_node[node])
+        return none;
     return terms.inside || deepest(node, v, n) ? gap : none;
   }
   /// No edge that leaves v, or what is bonded to it there, goes below the plane through v.
   CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {
-    const Index point = faces.node_glue[node];
-    for (Index r = faces.ring_first[point]; r < faces.ring_first[point + 1]; ++r) {
-      const Vec3<Real> d = faces.nodes.position(faces.ring[r]) - v;
+    const Index point = faces.bonded_node[node];
+    for (Index r = faces.edge_star_first[point]; r < faces.edge_star_first[point + 1]; ++r) {
+      const Vec3<Real> d = faces.nodes.position(faces.edge_star[r]) - v;
       const Real down = -dot(d, n);
       if (down > 0 && down * down > rules.cone * rules.cone * dot(d, d)) return false;
     }

@@ -10,7 +10,7 @@ namespace cdem {
 struct Candidates {
   const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
   const Index* other;  // exposed face, ascending in a row
-  Flag* may_begin;     // of those, see SiftTargetFaces
+  Flag* may_begin;     // of those, see FilterNewTargets
 };
 
 /// Some of them.

@@ -8,18 +8,18 @@
 namespace cdem {
 
 inline Candidates candidate_columns(State& s) {
-  CloseState& close = s.search.close;
-  return {close.first.data(), close.candidate.data(), close.may_begin.data()};
+  InnerList& inner = s.search.inner;
+  return {inner.first.data(), inner.candidate.data(), inner.may_begin.data()};
 }
 
 inline EdgePairs edge_pairs(State& s) {
-  CloseState& close = s.search.close;
-  const Index count = Index(close.near_edges.size()), stride = padded_stride(count);
-  const Index* rows = close.edge_pairs.data();
+  InnerList& inner = s.search.inner;
+  const Index count = Index(inner.near_edges.size()), stride = padded_stride(count);
+  const Index* rows = inner.edge_pairs.data();
   return {{rows, stride},
           {rows + 4 * std::size_t(stride), stride},
           {rows + 8 * std::size_t(stride), stride},
-          close.open.data()};
+          inner.open.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {
@@ -47,7 +47,7 @@ inline FoundEdges found_edges(State& s) {
   return {s.edges.slots, s.edges.found_count.data(), s.edges.found.data(), runs_alone()};
 }
 
-inline TouchTargetEdges edge_search(const Model& m, State& s) {
+inline ResolveTargetEdges edge_search(const Model& m, State& s) {
   return {face_columns(m, s),  face_geometry(s), s.search.exposed_face.data(),
           edge_pairs(s),       m.rules,          edges_before(s),
           s.edges.lost.data(), found_edges(s)};

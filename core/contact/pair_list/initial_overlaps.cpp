@@ -12,8 +12,8 @@ InitialOverlaps adopt_overlaps(const Model& m, State& s) {
   SearchRules deep = m.rules;
   deep.entry = deep.depth;
   update_all_face_geometry(m, s, {});
-  list_close(m, s, {});
-  FindTargetFaces search{face_search(m, s)};
+  prune_pair_list(m, s, {});
+  ResolveTargets search{face_search(m, s)};
   search.rules = deep;
   const Index exposed = Index(s.search.exposed_face.size());
   InitialOverlaps found;
@@ -28,7 +28,7 @@ InitialOverlaps adopt_overlaps(const Model& m, State& s) {
       const Vec3<Real> v = search.faces.nodes.position(search.faces.vertex(mother, k));
       const Real gap = project(shape, v, shape.normal()).gap;
       ContactState spring{};
-      spring.gap_free = gap;
+      spring.stress_free_gap = gap;
       spring.store(s.springs.state.data(), 4 * x + k);
       s.springs.target_before[4 * x + k] = t;
       if (gap > -reported * m.face_length[mother]) continue;

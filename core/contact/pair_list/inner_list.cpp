@@ -13,145 +13,149 @@ namespace cdem {
 
 namespace {
 
-bool close_lists_are_old(const State& s) {
-  const CloseState& close = s.search.close;
-  return !close.known ||
-         any_strayed(s, close.watch, close.built_time, close_way * s.search.horizon);
+bool inner_list_is_due(const State& s) {
+  const InnerList& inner = s.search.inner;
+  return !inner.known || any_exceeds_skin(s, inner.predicted, inner.built_time,
+                                          inner_horizon * s.search.outer.lookahead_time);
 }
 
-/// From here on the nodes are watched. They may stray as far as they would with the velocity that
-/// they have now, beyond the foreseen one, and a little more; what is hit strays farther and calls
-/// for new lists.
-void watch_nodes(const Model& m, State& s) {
+/// From here on the nodes are watched. They may deviation as far as they would with the velocity
+/// that they have now, beyond the predicted one, and a little more; what is hit strays farther and
+/// calls for new lists.
+void predict_inner_motion(const Model& m, State& s) {
   constexpr Real more = 1.5, least = 0.05;
-  CloseState& close = s.search.close;
+  InnerList& inner = s.search.inner;
   const InMotion nodes{s.nodes.motion.data()};
-  const Index count = Index(s.search.watched.size());
-  const Real way = more * close_way * s.search.horizon;
-  close.watch.resize(8 * std::size_t(count));
-  close.skin.resize(m.node_count);
+  const Index count = Index(s.search.outer.predicted_nodes.size());
+  const Real way = more * inner_horizon * s.search.outer.lookahead_time;
+  inner.predicted.resize(8 * std::size_t(count));
+  inner.skin.resize(m.node_count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index w = 0; w < count; ++w) {
-    const Index node = s.search.watched[w];
-    const WatchedNode foreseen = WatchedNode::of(s, node);
-    const Real stray = way * norm(nodes.velocity(node) - foreseen.velocity);
-    const Real skin = std::clamp(stray, least * foreseen.skin, close_skin * foreseen.skin);
-    close.skin[node] = skin;
-    WatchedNode{nodes.position(node), foreseen.velocity, skin}.store(close.watch.data() +
-                                                                     8 * std::size_t(w));
+    const Index node = s.search.outer.predicted_nodes[w];
+    const PredictedNode predicted = PredictedNode::of(s, node);
+    const Real deviation = way * norm(nodes.velocity(node) - predicted.velocity);
+    const Real skin = std::clamp(deviation, least * predicted.skin, inner_skin * predicted.skin);
+    inner.skin[node] = skin;
+    PredictedNode{nodes.position(node), predicted.velocity, skin}.store(inner.predicted.data() +
+                                                                        8 * std::size_t(w));
   }
-  close.built_time = s.time;
-  close.known = true;
+  inner.built_time = s.time;
+  inner.known = true;
 }
 
-void list_close_faces(const Model& m, State& s, Queue q) {
+void prune_vertex_faces(const Model& m, State& s, Queue q) {
   SearchState& search = s.search;
-  CloseState& close = search.close;
-  const Index stride = Index(search.faces_of.size() / 2), pairs = stride;
-  close.faces.resize(pairs);
-  close.motion.resize(pairs);
+  InnerList& inner = search.inner;
+  const Index stride = Index(search.outer.vf_pairs.size() / 2), pairs = stride;
+  inner.faces.resize(pairs);
+  inner.motion.resize(pairs);
   for_each_lane(q, pairs,
                 MarkNearFaces{{s.nodes.motion.data()},
                               face_geometry(s),
-                              {search.faces_of.data(), stride},
-                              {search.faces_bounds.data(), stride},
-                              search.turn_soon.data(),
-                              close.skin.data(),
-                              close.faces.data(),
-                              close.motion.data()});
+                              {search.outer.vf_pairs.data(), stride},
+                              {search.outer.vf_bounds.data(), stride},
+                              search.outer.rotation_soon.data(),
+                              inner.skin.data(),
+                              inner.faces.data(),
+                              inner.motion.data()});
   const Index count = Index(search.exposed_face.size()), slots = 4 * count;
-  const ListedFaces listed{search.candidate_first.data(), search.candidate.data(),
-                           search.candidate_pair.data(),  close.faces.data(),
-                           close.motion.data(),           search.turn_soon.data()};
-  close.candidates.resize(search.candidate.size());
+  const ListedFaces listed{search.outer.slot_first.data(),
+                           search.outer.slot_faces.data(),
+                           search.outer.slot_pairs.data(),
+                           inner.faces.data(),
+                           inner.motion.data(),
+                           search.outer.rotation_soon.data()};
+  inner.candidates.resize(search.outer.slot_faces.size());
   for_each_selected(q, count,
-                    MarkCloseFaces{face_columns(m, s), face_geometry(s), m.rules, listed,
-                                   close.candidates.data()});
-  close.count.resize(slots);
+                    MarkInnerFaces{face_columns(m, s), face_geometry(s), m.rules, listed,
+                                   inner.candidates.data()});
+  inner.count.resize(slots);
   for_each_item(q, slots,
-                CountCloseFaces{listed.first, close.candidates.data(), close.count.data()});
+                CountInnerFaces{listed.first, inner.candidates.data(), inner.count.data()});
   finish(q);
-  close.first.resize(slots + 1);
-  for (Index i = 0; i < slots; ++i) close.first[i + 1] = close.first[i] + close.count[i];
-  close.candidate.resize(close.first[slots]);
-  close.may_begin.resize(close.first[slots]);
+  inner.first.resize(slots + 1);
+  for (Index i = 0; i < slots; ++i) inner.first[i + 1] = inner.first[i] + inner.count[i];
+  inner.candidate.resize(inner.first[slots]);
+  inner.may_begin.resize(inner.first[slots]);
   for_each_item(
       q, slots,
-      ListCloseFaces{listed, close.candidates.data(), close.first.data(), close.candidate.data()});
+      ListInnerFaces{listed, inner.candidates.data(), inner.first.data(), inner.candidate.data()});
 }
 
 /// Where faces of two elements meet at an edge, the pair that finds it may be another one than that
 /// of which it was near: all pairs of the same two edges go together.
 void join_pairs_of_edges(const Model& m, SearchState& search) {
-  CloseState& close = search.close;
-  const Index pairs = Index(search.edges_code.size()), stride = padded_stride(pairs);
-  const InIndices of{search.edges_of.data(), stride};
+  InnerList& inner = search.inner;
+  const Index pairs = Index(search.outer.ee_codes.size()), stride = padded_stride(pairs);
+  const InIndices of{search.outer.ee_pairs.data(), stride};
   const auto is_of_one = [&](Index p, Index which) {
-    return search.edge_sides[2 * std::size_t(of.at(which, One{p})) + 1] >= 0;
+    return search.outer.ee_sides[2 * std::size_t(of.at(which, One{p})) + 1] >= 0;
   };
   const auto edge_of = [&](Index p, Index which) {
-    const Index side = search.edge_sides[2 * std::size_t(of.at(which, One{p}))];
+    const Index side = search.outer.ee_sides[2 * std::size_t(of.at(which, One{p}))];
     return m.face_edges[4 * search.exposed_face[side / 4] + side % 4];
   };
   for (Index p = 0; p < pairs; ++p) {
-    if (!close.edges[p] || (is_of_one(p, 0) && is_of_one(p, 1))) continue;
+    if (!inner.edges[p] || (is_of_one(p, 0) && is_of_one(p, 1))) continue;
     const Index edge = edge_of(p, 0), other = edge_of(p, 1);
-    for (Index i = search.edge_pairs_first[edge]; i < search.edge_pairs_first[edge + 1]; ++i)
-      if (search.edge_pairs[2 * i + 1] == other) close.edges[search.edge_pairs[2 * i]] = 1;
+    for (Index i = search.outer.edge_first[edge]; i < search.outer.edge_first[edge + 1]; ++i)
+      if (search.outer.edge_pairs[2 * i + 1] == other)
+        inner.edges[search.outer.edge_pairs[2 * i]] = 1;
   }
 }
 
-void list_close_edges(const Model& m, State& s, Queue q) {
+void prune_edges(const Model& m, State& s, Queue q) {
   SearchState& search = s.search;
-  CloseState& close = search.close;
-  const Index pairs = Index(search.edges_code.size()), stride = padded_stride(pairs);
-  const ListedEdges listed{{search.edges_of.data(), stride},
-                           search.edges_code.data(),
-                           search.edge_sides.data(),
+  InnerList& inner = search.inner;
+  const Index pairs = Index(search.outer.ee_codes.size()), stride = padded_stride(pairs);
+  const ListedEdges listed{{search.outer.ee_pairs.data(), stride},
+                           search.outer.ee_codes.data(),
+                           search.outer.ee_sides.data(),
                            search.exposed.data()};
-  close.edges.resize(pairs);
+  inner.edges.resize(pairs);
   for_each_lane(q, pairs,
                 MarkNearEdges{{s.nodes.motion.data()},
                               listed,
-                              {search.edges_bounds.data(), stride},
-                              close.skin.data(),
+                              {search.outer.ee_bounds.data(), stride},
+                              inner.skin.data(),
                               m.rules,
                               s.dt_last,
-                              close.edges.data()});
+                              inner.edges.data()});
   if (pairs > 0)
     for_each_item(q, Index(s.edges.contact.size() / 4),
                   MarkHeldEdges{search.exposed_face.data(), m.face_edges.data(),
-                                s.edges.contact.data(), search.edge_pairs_first.data(),
-                                search.edge_pairs.data(), close.edges.data()});
+                                s.edges.contact.data(), search.outer.edge_first.data(),
+                                search.outer.edge_pairs.data(), inner.edges.data()});
   finish(q);
   join_pairs_of_edges(m, search);
-  close.near_edges.resize(pairs);
+  inner.near_edges.resize(pairs);
   Index count = 0;
   for (Index p = 0; p < pairs; ++p) {
-    close.near_edges[count] = p;
-    count += close.edges[p];
+    inner.near_edges[count] = p;
+    count += inner.edges[p];
   }
-  close.near_edges.resize(count);
+  inner.near_edges.resize(count);
   const Index near_stride = padded_stride(count);
-  close.edge_pairs.resize(9 * std::size_t(near_stride));
-  close.open.resize(count);
+  inner.edge_pairs.resize(9 * std::size_t(near_stride));
+  inner.open.resize(count);
   for_each_item(
       q, count,
-      CopyCloseEdges{close.near_edges.data(), listed, close.edge_pairs.data(), near_stride});
+      CopyInnerEdges{inner.near_edges.data(), listed, inner.edge_pairs.data(), near_stride});
 }
 
 }  // namespace
 
-void list_close(const Model& m, State& s, Queue q) {
-  watch_nodes(m, s);
-  list_close_faces(m, s, q);
-  if (m.semi_edges) list_close_edges(m, s, q);
+void prune_pair_list(const Model& m, State& s, Queue q) {
+  predict_inner_motion(m, s);
+  prune_vertex_faces(m, s, q);
+  if (m.semi_edges) prune_edges(m, s, q);
   finish(q);
 }
 
 void prune_pair_list_if_due(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::search);
-  if (close_lists_are_old(s)) list_close(m, s, q);
+  if (inner_list_is_due(s)) prune_pair_list(m, s, q);
 }
 
 }  // namespace cdem

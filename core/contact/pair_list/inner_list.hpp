@@ -11,7 +11,7 @@ namespace cdem {
 /// Take the inner list from the outer one if it is too old.
 void prune_pair_list_if_due(const Model& model, State& state, Queue queue);
 
-/// Make them, with room for the motion to come (see close_way).
-void list_close(const Model& model, State& state, Queue queue);
+/// Make them, with room for the motion to come (see inner_horizon).
+void prune_pair_list(const Model& model, State& state, Queue queue);
 
 }  // namespace cdem

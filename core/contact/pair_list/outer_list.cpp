@@ -42,12 +42,12 @@ void add_up(Counts& counts, std::size_t rows) {
 
 /// Deal out what was found to the mother faces; rows are sorted by `key`.
 template <class T, class Key>
-Rows<T> by_mother(const AllProximity& found, std::vector<T> Proximity::* list, Index count,
+Rows<T> by_mother(const PairBuffers& found, std::vector<T> PairBuffer::* list, Index count,
                   const Key& key) {
   Rows<T> rows;
   rows.first.resize(count + 1);
   const auto visit = [&](auto&& at) {
-    for (const Proximity& of : found.by_thread) {
+    for (const PairBuffer& of : found.by_thread) {
       const std::vector<T>& items = of.*list;
 #pragma omp parallel for schedule(static) if (items.size() >= worth_threads)
       for (std::size_t i = 0; i < items.size(); ++i) at(items[i]);
@@ -66,11 +66,11 @@ Rows<T> by_mother(const AllProximity& found, std::vector<T> Proximity::* list, I
   return rows;
 }
 
-using Touches = Rows<Proximity::Touch>;
-using Share = AllProximity::Share;
+using CandidateRows = Rows<PairBuffer::Candidate>;
+using Share = PairBuffers::Share;
 
 /// Where the pairs of each patch begin in the list of all.
-std::vector<Index> places(const AllProximity& found, Range Share::* share) {
+std::vector<Index> places(const PairBuffers& found, Range Share::* share) {
   std::vector<Index> first(found.by_patch.size() + 1);
   for (std::size_t p = 0; p < found.by_patch.size(); ++p)
     first[p + 1] = first[p] + (found.by_patch[p].*share).last - (found.by_patch[p].*share).first;
@@ -80,7 +80,7 @@ std::vector<Index> places(const AllProximity& found, Range Share::* share) {
 /// List the pairs that have been found, patch after patch, with what they are of and room; `also`
 /// gets every pair and its place.
 template <class Pair, class Also>
-void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
+void list_pairs(const PairBuffers& found, std::vector<Pair> PairBuffer::* pairs,
                 Range Share::* share, const std::vector<Index>& first, Column<Index>& of,
                 Column<float>& room, const Also& also) {
   const Index patches = Index(found.by_patch.size()), count = first.back();
@@ -104,43 +104,44 @@ void list_pairs(const AllProximity& found, std::vector<Pair> Proximity::* pairs,
   }
 }
 
-/// The pairs of vertex and face; touches learn the places of those that they are of.
-void list_face_pairs(AllProximity& found, SearchState& search) {
-  const std::vector<Index> first = places(found, &Share::faces);
-  list_pairs(found, &Proximity::faces, &Share::faces, first, search.faces_of, search.faces_bounds,
-             [](const auto&, std::size_t) {});
+/// The pairs of vertex and face; candidates learn the places of those that they are of.
+void list_face_pairs(PairBuffers& found, SearchState& search) {
+  const std::vector<Index> first = places(found, &Share::vertex_faces);
+  list_pairs(found, &PairBuffer::vertex_faces, &Share::vertex_faces, first, search.outer.vf_pairs,
+             search.outer.vf_bounds, [](const auto&, std::size_t) {});
   const Index patches = Index(found.by_patch.size());
 #pragma omp parallel for schedule(static, 128) if (first.back() >= worth_threads)
   for (Index p = 0; p < patches; ++p) {
     const Share& share = found.by_patch[p];
-    std::vector<Proximity::Touch>& touches = found.by_thread[share.thread].touches;
-    for (Index i = share.touches.first; i < share.touches.last; ++i)
-      touches[i].pair += first[p] - share.faces.first;
+    std::vector<PairBuffer::Candidate>& candidates = found.by_thread[share.thread].candidates;
+    for (Index i = share.candidates.first; i < share.candidates.last; ++i)
+      candidates[i].pair += first[p] - share.vertex_faces.first;
   }
 }
 
 /// The pairs of edges.
-void list_edge_pairs(const AllProximity& found, SearchState& search) {
+void list_edge_pairs(const PairBuffers& found, SearchState& search) {
   const std::vector<Index> first = places(found, &Share::edges);
-  search.edge_sides.assign(found.edge_sides.data(), found.edge_sides.size());
-  search.edges_code.resize(first.back());
-  list_pairs(found, &Proximity::edges, &Share::edges, first, search.edges_of, search.edges_bounds,
-             [&](const Proximity::Edges& pair, std::size_t place) {
-               search.edges_code[place] = pair.code;
+  search.outer.ee_sides.assign(found.edge_sides.data(), found.edge_sides.size());
+  search.outer.ee_codes.resize(first.back());
+  list_pairs(found, &PairBuffer::edges, &Share::edges, first, search.outer.ee_pairs,
+             search.outer.ee_bounds, [&](const PairBuffer::EdgePair& pair, std::size_t place) {
+               search.outer.ee_codes[place] = pair.code;
              });
 }
 
 /// For every edge of the mesh the pairs that it is of, and the other edges.
 void list_pairs_of_edges(const Model& m, SearchState& search) {
-  const Index count = Index(search.edges_code.size());
+  const Index count = Index(search.outer.ee_codes.size());
   const std::size_t stride = padded_stride(count);
-  Column<Index>&first = search.edge_pairs_first, &pairs = search.edge_pairs;
+  Column<Index>&first = search.outer.edge_first, &pairs = search.outer.edge_pairs;
   first.resize(count > 0 ? m.edge_nodes.size() / 2 + 1 : 0);
   first.fill(0);
   pairs.resize(4 * std::size_t(count));
   if (count == 0) return;
   const auto edge = [&](Index p, Index which) {
-    const Index side = search.edge_sides[2 * std::size_t(search.edges_of[which * stride + p])];
+    const Index side =
+        search.outer.ee_sides[2 * std::size_t(search.outer.ee_pairs[which * stride + p])];
     return m.face_edges[4 * search.exposed_face[side / 4] + side % 4];
   };
   for (Index p = 0; p < count; ++p)
@@ -156,56 +157,54 @@ void list_pairs_of_edges(const Model& m, SearchState& search) {
 }
 
 /// For every exposed face the others that list it: their contacts may act on it.
-void list_sources(const AllProximity& found, Index count, SearchState& search) {
-  Column<Index>&first = search.source_first, &source = search.source;
-  Column<Flag>& listed = search.face_listed;
+void list_sources(const PairBuffers& found, Index count, SearchState& search) {
+  Column<Index>&first = search.outer.acting_first, &source = search.outer.faces_acting_on;
+  Column<Flag>& listed = search.outer.face_listed;
   first.resize(count + 1);
   first.fill(0);
   listed.resize(count);
   listed.fill(0);
   const auto visit = [&](auto&& at) {
-    for (const Proximity& of : found.by_thread) {
-#pragma omp parallel for schedule(static) if (of.meetings.size() >= worth_threads)
-      for (std::size_t i = 0; i < of.meetings.size(); ++i) at(of.meetings[i]);
+    for (const PairBuffer& of : found.by_thread) {
+#pragma omp parallel for schedule(static) if (of.face_pairs.size() >= worth_threads)
+      for (std::size_t i = 0; i < of.face_pairs.size(); ++i) at(of.face_pairs[i]);
     }
   };
   const Counters number{first.data() + 1};
-  visit([&](const Proximity::Meeting& meeting) {
-    number.raise(meeting.face);
-    set(listed[meeting.face]);
-    set(listed[meeting.mother]);
+  visit([&](const PairBuffer::FacePair& pair) {
+    number.raise(pair.face);
+    set(listed[pair.face]);
+    set(listed[pair.mother]);
   });
   add_up(first, count);
   source.resize(first[count]);
   std::vector<Index> next_places(first.data(), first.data() + count);
   const Counters next{next_places.data()};
-  visit([&](const Proximity::Meeting& meeting) {
-    source[next.raise(meeting.face)] = meeting.mother;
-  });
+  visit([&](const PairBuffer::FacePair& pair) { source[next.raise(pair.face)] = pair.mother; });
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index y = 0; y < count; ++y)
     std::sort(source.data() + first[y], source.data() + first[y + 1]);
 }
 
-void list_touches(SearchState& search, const Touches& touches) {
-  const Index count = Index(touches.first.size()) - 1;
-  Column<Index>&first = search.candidate_first, &other = search.candidate;
+void list_slot_candidates(SearchState& search, const CandidateRows& candidates) {
+  const Index count = Index(candidates.first.size()) - 1;
+  Column<Index>&first = search.outer.slot_first, &other = search.outer.slot_faces;
   first.resize(4 * std::size_t(count) + 1);
   first.fill(0);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x)
-    for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
+    for (const PairBuffer::Candidate* t = candidates.begin(x); t != candidates.end(x); ++t)
       ++first[4 * std::size_t(x) + t->vertex + 1];
   add_up(first, 4 * std::size_t(count));
   other.resize(first[4 * std::size_t(count)]);
-  search.candidate_pair.resize(other.size());
+  search.outer.slot_pairs.resize(other.size());
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x)
     for (Index k = 0; k < 4; ++k) {
       Index place = first[4 * x + k];
-      for (const Proximity::Touch* t = touches.begin(x); t != touches.end(x); ++t)
+      for (const PairBuffer::Candidate* t = candidates.begin(x); t != candidates.end(x); ++t)
         if (t->vertex == k) {
-          search.candidate_pair[place] = t->pair;
+          search.outer.slot_pairs[place] = t->pair;
           other[place++] = t->face;
         }
     }
@@ -214,21 +213,23 @@ void list_touches(SearchState& search, const Touches& touches) {
 }  // namespace
 
 void list_candidates(const Model& m, State& s) {
-  foresee_motion(m, s);
-  if (!s.search.lists) s.search.lists = std::make_shared<ProximitySearch>();
-  find_proximity(m, s, *s.search.lists);
-  AllProximity& found = s.search.lists->found;
+  predict_motion(m, s);
+  if (!s.search.lists) s.search.lists = std::make_shared<PairSearch>();
+  search_pairs(m, s, *s.search.lists);
+  PairBuffers& found = s.search.lists->found;
   const Index count = Index(s.search.exposed_face.size());
   list_face_pairs(found, s.search);
   list_edge_pairs(found, s.search);
   list_pairs_of_edges(m, s.search);
-  s.search.turn_soon.resize(count);
-  for (Index x = 0; x < count; ++x) s.search.turn_soon[x] = s.search.lists->exposed[x].turn_soon;
-  s.search.close.known = false;
+  s.search.outer.rotation_soon.resize(count);
+  for (Index x = 0; x < count; ++x)
+    s.search.outer.rotation_soon[x] = s.search.lists->exposed[x].rotation_soon;
+  s.search.inner.known = false;
   list_sources(found, count, s.search);
-  list_touches(s.search,
-               by_mother(found, &Proximity::touches, count,
-                         [](const Proximity::Touch& t) { return std::pair(t.face, t.vertex); }));
+  list_slot_candidates(s.search, by_mother(found, &PairBuffer::candidates, count,
+                                           [](const PairBuffer::Candidate& t) {
+                                             return std::pair(t.face, t.vertex);
+                                           }));
 }
 
 }  // namespace cdem

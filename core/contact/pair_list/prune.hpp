@@ -17,13 +17,13 @@ namespace cdem {
 struct MarkNearFaces {
   InMotion nodes;
   FaceGeometry geometry;
-  InIndices of;      // [2][pair]: node of the vertex; exposed face
-  InBounds room;     // [6][pair]: highest above the face and lowest below it, farthest outside a
-                     // side; depth from which it may lie outside, and distance from the centre of
-                     // three corners that it has then at most; how far the vertex may soon move
-                     // as seen from the face, which all have room for: without skins  [m]
-  const Real* turn;  // [exposed] how much its normal may soon turn  [rad]
-  const Real* skin;  // [node]  [m]
+  InIndices of;   // [2][pair]: node of the vertex; exposed face
+  InBounds room;  // [6][pair]: highest above the face and lowest below it, farthest outside a
+                  // side; depth from which it may lie outside, and distance from the centre of
+                  // three corners that it has then at most; how far the vertex may soon move
+                  // as seen from the face, which all have room for: without skins  [m]
+  const Real* rotation;  // [exposed] how much its normal may soon rotation  [rad]
+  const Real* skin;      // [node]  [m]
   Flag* near;
   Real* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
 
@@ -44,15 +44,15 @@ struct MarkNearFaces {
                     max_of(max_of(skin_at(0), skin_at(1)), max_of(skin_at(2), skin_at(3)));
     store(motion, p, room.at(5, p) + skins);
     const T most = select(below, room.at(1, p), room.at(0, p)) + skins;
-    // how much what is above the face moves along it as the face turns
-    const T along = T(2.0) * look_up(turn, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
+    // how much what is above the face moves along it as the face rotations
+    const T along = T(2.0) * look_up(rotation, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
     const T reach = room.at(4, p) + skins + along, aside = room.at(2, p) + skins + along;
-    const T sunk = max_of(room.at(3, p) - skins, T(0.0));
+    const T penetration = max_of(room.at(3, p) - skins, T(0.0));
     auto outside = beyond(x[0], x[1], n, n2, v, aside) | beyond(x[1], x[2], n, n2, v, aside);
     outside = outside | beyond(x[2], x[3], n, n2, v, aside) | beyond(x[3], x[0], n, n2, v, aside);
     const Vec3<T> arm = v - T(1.0 / 3.0) * (x[0] + x[1] + x[2]);
     const auto beside = dot(arm, arm) * n2 - gap2 > reach * reach * n2;
-    const auto deep = below & (gap2 > sunk * sunk * n2);
+    const auto deep = below & (gap2 > penetration * penetration * n2);
     set_flags(near, p, !((gap2 > most * most * n2) | beside | (outside & !deep)));
   }
 
@@ -67,19 +67,19 @@ struct MarkNearFaces {
   }
 };
 
-/// Faces that a vertex of an exposed face may touch before the next refresh: ragged rows.
+/// Faces that a vertex of an exposed face may touch before the next rebuild: ragged rows.
 struct ListedFaces {
-  const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
-  const Index* other;  // exposed face, ascending in a row
-  const Index* pair;   // pair of vertex and face
-  const Flag* near;    // [pair] see MarkNearFaces
-  const Real* motion;  // [pair] the same
-  const Real* turn;    // [exposed] how much its normal may soon turn  [rad]
+  const Index* first;    // [4 * exposed + 1], slot = 4 * exposed face + vertex
+  const Index* other;    // exposed face, ascending in a row
+  const Index* pair;     // pair of vertex and face
+  const Flag* near;      // [pair] see MarkNearFaces
+  const Real* motion;    // [pair] the same
+  const Real* rotation;  // [exposed] how much its normal may soon rotation  [rad]
 };
 
 /// Of the faces that are near a vertex, mark those on which a semi-spring may soon go on or begin:
-/// what FindTargetFaces asks of its indented point and of the two faces, with room.
-struct MarkCloseFaces {
+/// what ResolveTargets asks of its indented point and of the two faces, with room.
+struct MarkInnerFaces {
   FaceColumns faces;
   FaceGeometry geometry;
   SearchRules rules;
@@ -87,7 +87,7 @@ struct MarkCloseFaces {
   Flag* close;  // [listed]
 
   CDEM_HD Range items(Index m) const { return {listed.first[4 * m], listed.first[4 * m + 4]}; }
-  CDEM_HD bool picks(Index, Index c) const {
+  CDEM_HD bool selects(Index, Index c) const {
     close[c] = 0;
     return listed.near[listed.pair[c]];
   }
@@ -100,12 +100,12 @@ struct MarkCloseFaces {
         [&](Index m, Index c) { return geometry.table[m].corner[vertex_of(listed.first, m, c)]; },
         item.row, item.id);
     const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
-    const T turns = look_up(listed.turn, item.row) + look_up(listed.turn, t);
-    const auto opposes = dot(geometry.normal(item.row), c.normal) < turns - T(rules.opposing);
+    const T rotations = look_up(listed.rotation, item.row) + look_up(listed.rotation, t);
+    const auto opposes = dot(geometry.normal(item.row), c.normal) < rotations - T(rules.opposing);
     const T motion = numbers_of([&](Index x) { return listed.motion[listed.pair[x]]; }, item.id);
     const T zero(0.0), plane = dot(c.normal, c.v - c.center);
     const T above = select(c.target_length > zero, zero, T(-0.5) * c.target_length) + motion;
-    const T along = T(2.0) * look_up(listed.turn, t) * (abs_of(plane) + motion);
+    const T along = T(2.0) * look_up(listed.rotation, t) * (abs_of(plane) + motion);
     const T room = T(rules.tolerance) * c.length + motion + along;
     auto may = opposes & !(plane > above + T(rules.lifted)) &
                !(plane < T(-rules.depth) * c.length - above);
@@ -119,7 +119,7 @@ struct MarkCloseFaces {
 };
 
 /// Count those that are marked, slot by slot.
-struct CountCloseFaces {
+struct CountInnerFaces {
   const Index* first;
   const Flag* close;
   Index* count;  // [4 * exposed]
@@ -132,7 +132,7 @@ struct CountCloseFaces {
 };
 
 /// List them.
-struct ListCloseFaces {
+struct ListInnerFaces {
   ListedFaces listed;
   const Flag* close;
   const Index* first;  // [4 * exposed + 1] of the new list
@@ -145,7 +145,7 @@ struct ListCloseFaces {
   }
 };
 
-/// Pairs of edges that may touch before the next refresh.
+/// Pairs of edges that may touch before the next rebuild.
 struct ListedEdges {
   InIndices of;             // [2][pair]: places in `sides`
   const Index* code;        // [pair]: see EdgeWays
@@ -173,7 +173,8 @@ struct ListedEdges {
 /// Where two edges touch, points of theirs lie on the contact normal, no deeper than a contact may
 /// begin. No two points of the edges move relative to each other by more than `motion` until then,
 /// so that now they are on the right side of each other but for that, and in the plane across the
-/// common perpendicular, which turns by `swing`, as far apart as that and `swing` times the depth.
+/// common perpendicular, which rotations by `swing`, as far apart as that and `swing` times the
+/// depth.
 struct MarkNearEdges {
   InMotion nodes;
   ListedEdges listed;
@@ -214,15 +215,15 @@ struct MarkNearEdges {
     if (!any_of(!far)) return set_flags(near, p, !far);
     const T long_a = sqrt_of(a2), long_b = sqrt_of(b2), per_c = T(1.0) / sqrt_of(c2);
     const T sine = T(1.0) / (per_c * long_a * long_b);
-    const T turns = T(2.0) * motion * (T(1.0) / long_a + T(1.0) / long_b);
-    const auto parallel = sine + turns < T(parallel_edges);
-    const auto open = !(sine > T(2.0) * turns);  // may turn into anything
+    const T rotations = T(2.0) * motion * (T(1.0) / long_a + T(1.0) / long_b);
+    const auto parallel = sine + rotations < T(parallel_edges);
+    const auto open = !(sine > T(2.0) * rotations);  // may rotation into anything
     // where the lines cross, from the starts of the edges [m]. An indented edge lies beside the
     // true one by `shift` at most, so that the crossing with the target moves by shift / sin of the
     // angle between the two on the target, and by shift * cot on the edge itself.
     const T on_a = dot(cross(apart, along_b), c) * per_c * per_c * long_a;
     const T on_b = dot(cross(apart, along_a), c) * per_c * per_c * long_b;
-    const T least = sine - turns, swing = turns / least;
+    const T least = sine - rotations, swing = rotations / least;
     const T off = (motion + swing * depth) / least + T(2.0) * motion;
     const T cot = abs_of(dot(along_a, along_b)) * per_c + swing / least;
     const T inset = room.at(3, p) - shift * cot - off, beside = -shift / least - off;
@@ -263,7 +264,7 @@ struct MarkHeldEdges {
 };
 
 /// Copy the pairs of edges that are near to where the search looks for them.
-struct CopyCloseEdges {
+struct CopyInnerEdges {
   const Index* near;  // [pair]
   ListedEdges listed;
   Index* pairs;  // [9][pair]: ends, sides, code of EdgePairs

@@ -15,17 +15,18 @@
 namespace cdem {
 
 bool pair_list_is_due(const Model& m, State& s) {
-  const PhaseTimer timer(s, Phase::refresh);
-  s.search.strayed = false;
+  const PhaseTimer timer(s, Phase::rebuild);
+  s.search.outer.skin_exceeded = false;
   if (s.built_step < 0) return true;
-  if (m.refresh_interval > 0) return s.step - s.built_step >= m.refresh_interval;
+  if (m.rebuild_interval > 0) return s.step - s.built_step >= m.rebuild_interval;
   if (release_is_due(m, s)) return true;
   SearchState& search = s.search;
-  return search.strayed = any_strayed(s, search.watch, search.built_time, search.horizon);
+  return search.outer.skin_exceeded = any_exceeds_skin(
+             s, search.outer.predicted, search.outer.built_time, search.outer.lookahead_time);
 }
 
 void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {
-  const PhaseTimer timer(s, Phase::refresh);
+  const PhaseTimer timer(s, Phase::rebuild);
   const bool first = s.built_step < 0;
   if (first) {
     s.search.face_exposed.resize(m.face_count, -1);
@@ -42,7 +43,7 @@ void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {
   list_contact_corners(m, s);
   if (!plan.everything_awake) list_awake_nodes(m, s);
   s.built_step = s.step;
-  ++s.refreshes;
+  ++s.rebuilds;
   renew_step(m, s);  // faces that may now touch call for a shorter step before they do
 }
 
