@@ -90,19 +90,15 @@ void describe_search(S& search, Visit&& field) {
   field("outer.slot_faces", search.outer.slot_faces, "exposed faces that it may touch");
   field("outer.slot_pairs", search.outer.slot_pairs, "pairs of vertex and face they are of");
   field("outer.vf_pairs", search.outer.vf_pairs, "vertex and exposed face of a pair");
-  field("outer.vf_bounds", search.outer.vf_bounds,
-        "how far apart they may be in contact [m]");
+  field("outer.vf_bounds", search.outer.vf_bounds, "how far apart they may be in contact [m]");
   field("outer.acting_first", search.outer.acting_first, "start of a face's sources");
   field("outer.faces_acting_on", search.outer.faces_acting_on,
         "exposed faces whose contacts may act on it");
-  field("outer.face_listed", search.outer.face_listed,
-        "1: it may act on a face, or one on it");
+  field("outer.face_listed", search.outer.face_listed, "1: it may act on a face, or one on it");
   field("outer.ee_pairs", search.outer.ee_pairs,
         "pairs of edges that may touch: places of the two among the edges");
-  field("outer.ee_codes", search.outer.ee_codes,
-        "of which sides they are, which ends shared");
-  field("outer.ee_sides", search.outer.ee_sides,
-        "4 * exposed face + side of the faces at an edge");
+  field("outer.ee_codes", search.outer.ee_codes, "of which sides they are, which ends shared");
+  field("outer.ee_sides", search.outer.ee_sides, "4 * exposed face + side of the faces at an edge");
   field("outer.edge_first", search.outer.edge_first, "start of an edge's pairs");
   field("outer.edge_pairs", search.outer.edge_pairs,
         "pairs that an edge is of, and the other edge");

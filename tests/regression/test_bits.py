@@ -77,10 +77,10 @@ print(run_here(2))
 def test_instruction_sets():
     here = os.path.dirname(__file__)
     code = CHILD.format(tests=os.path.dirname(here), here=here)
-    flags = _native._cpu_flags()
+    flags = _native.cpu_flags()
     found = set()
     for isa in _native.available:
-        if not flags >= _native._NEEDS[isa]:
+        if not flags >= _native.NEEDS[isa]:
             continue
         done = subprocess.run(
             [sys.executable, "-c", code],

@@ -1,0 +1,31 @@
+"""What the compiled core is built for: instruction sets, best first. Also read by tools/build.py."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+# What the modules are compiled for, best first, and the CPU flags that each needs.
+NEEDS = {
+    "v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl", "avx2", "fma", "bmi2"},
+    "v3": {"avx2", "fma", "bmi1", "bmi2", "f16c", "movbe"},
+    "x86_64": set(),
+    "generic": set(),
+}
+
+
+def cpu_flags() -> set[str]:
+    """Flags of this CPU; empty where the system does not tell."""
+    try:
+        text = Path("/proc/cpuinfo").read_text()
+    except OSError:
+        return set()
+    for line in text.splitlines():
+        if line.startswith("flags"):
+            return set(line.split(":", 1)[1].split())
+    return set()
+
+
+def native() -> str:
+    """The best instruction set that this CPU can run."""
+    flags = cpu_flags()
+    return next(isa for isa, needs in NEEDS.items() if flags >= needs)

@@ -1,0 +1,53 @@
+"""Results are pinned: a refactoring that changes a bit of them fails here.
+
+golden.json holds one hash per scene. Whoever renews it says why: its "reason" is a line of
+CHANGELOG.md.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from golden_scenes import GOLDEN, SCENES, digest
+
+from cdem import _native
+
+PINNED = json.loads(GOLDEN.read_text())
+ROOT = Path(__file__).parents[2]
+
+
+def test_every_scene_is_pinned():
+    assert sorted(PINNED["scenes"]) == sorted(SCENES)
+
+
+def test_a_renewed_hash_has_its_line_in_the_changelog():
+    assert PINNED["reason"] and PINNED["reason"] in (ROOT / "CHANGELOG.md").read_text()
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("name", SCENES)
+def test_results_are_those_pinned(name, threads):
+    assert digest(SCENES[name](threads)) == PINNED["scenes"][name]
+
+
+def runnable() -> list[str]:
+    """Instruction sets that are built and that this machine has."""
+    flags = _native.cpu_flags()
+    return [isa for isa in _native.available if flags >= _native.NEEDS[isa]]
+
+
+@pytest.mark.parametrize("isa", runnable())
+def test_results_do_not_depend_on_the_instruction_set(isa):
+    done = subprocess.run(
+        [sys.executable, str(Path(__file__).parent / "golden_scenes.py")],
+        env=os.environ | {"CDEM_ISA": isa},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert dict(line.split()[:2] for line in done.stdout.splitlines()) == PINNED["scenes"]
