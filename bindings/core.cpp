@@ -6,12 +6,18 @@
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
 #include "core/base/device.hpp"
 #include "core/base/machine_limits.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/report.hpp"
+#include "core/interfaces/laws.hpp"
+#include "core/materials/laws.hpp"
 #include "core/model/describe.hpp"
 #include "core/model/init_state.hpp"
 #include "core/nodes/curves.hpp"
@@ -144,18 +150,91 @@ nb::dict scalars(const Core& core) {
   return d;
 }
 
-void set_interfaces(Core& core, const std::vector<std::vector<Real>>& rows) {
+/// Numbers of a law's parameters in the order of its declaration, from a dict by name.
+template <class Law>
+std::vector<Real> parameters_of(const nb::dict& values) {
+  std::vector<Real> row;
+  for (const Parameter& p : Law::parameters) row.push_back(nb::cast<Real>(values[p.name]));
+  return row;
+}
+
+/// Call act.template operator()<Law, number>() for the law of this name.
+template <class Laws, class Act>
+void with_law(const std::string& name, const Act& act) {
+  bool found = false;
+  Laws::for_each([&]<template <class> class Law, Index number>() {
+    if (name != Law<Real>::text.name) return;
+    found = true;
+    act.template operator()<Law, number>();
+  });
+  if (!found) throw nb::value_error("unknown law");
+}
+
+/// Why parameters of a law, as the core takes them, contradict each other, or an empty text.
+template <class Laws>
+std::string contradiction(const std::string& law, const nb::dict& values) {
+  std::string why;
+  with_law<Laws>(law, [&]<template <class> class Law, Index>() {
+    const char* text = Law<Real>::contradiction(parameters_of<Law<Real>>(values).data());
+    if (text) why = text;
+  });
+  return why;
+}
+
+/// What the laws of a list say of themselves.
+template <class Laws>
+nb::list declarations() {
+  nb::list laws;
+  Laws::for_each([&]<template <class> class Law, Index>() {
+    nb::dict law;
+    law["name"] = Law<Real>::text.name;
+    law["meaning"] = Law<Real>::text.meaning;
+    nb::list parameters, state;
+    for (const Parameter& p : Law<Real>::parameters) {
+      nb::dict d;
+      d["name"] = p.name, d["unit"] = p.unit, d["meaning"] = p.meaning;
+      d["at_least"] = p.at_least;
+      d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
+      d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
+      d["is_tangent"] = p.form == Form::tangent;
+      d["is_strength"] = p.is_strength;
+      d["bonds"] = p.bonds;
+      parameters.append(d);
+    }
+    for (const StateVariable& v : Law<Real>::state) {
+      nb::dict d;
+      d["name"] = v.name, d["unit"] = v.unit, d["meaning"] = v.meaning;
+      state.append(d);
+    }
+    law["parameters"] = parameters;
+    law["state"] = state;
+    laws.append(law);
+  });
+  return laws;
+}
+
+/// The interfaces of the model: law, stiffness_n and stiffness_s as (value, factor), parameters.
+void set_interfaces(Core& core, const nb::list& interfaces) {
   Model& m = core.model;
-  m.interfaces.resize(rows.size());
+  constexpr std::size_t width = InterfaceLaws::most_parameters;
+  m.interfaces.resize(interfaces.size());
+  m.interface_parameters.resize(width * interfaces.size());
   m.rules.lifted = 0;
-  for (Column<Real>* column : {&m.cohesion, &m.tensile_strength, &m.tan_friction})
-    column->resize(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::vector<Real>& r = rows[i];
-    m.interfaces[i] = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4),
-                       r.at(5), r.at(6), r.at(7), r.at(8)};
-    m.rules.lifted = std::max(m.rules.lifted, 2 * r.at(8));
-    m.cohesion[i] = r[0], m.tensile_strength[i] = r[1], m.tan_friction[i] = r[2];
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
+    const auto entry = nb::cast<nb::dict>(interfaces[i]);
+    const auto stiffness = [&](const char* name) {
+      return nb::cast<std::tuple<Real, Real>>(entry[name]);
+    };
+    Interface& interface = m.interfaces[i];
+    std::tie(interface.stiffness_n_value, interface.stiffness_n_factor) = stiffness("stiffness_n");
+    std::tie(interface.stiffness_s_value, interface.stiffness_s_factor) = stiffness("stiffness_s");
+    const auto name = nb::cast<std::string>(entry["law"]);
+    with_law<InterfaceLaws>(name, [&]<template <class> class Law, Index number>() {
+      interface.law = number;
+      const auto row = parameters_of<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
+      std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
+      m.rules.lifted = std::max(m.rules.lifted, 2 * Law<Real>::rise_most(row.data()));
+    });
   }
 }
 
@@ -220,6 +299,14 @@ NB_MODULE(CDEM_MODULE, module) {
   using namespace cdem;
   module.attr("lanes") = lanes;
   module.def("padded_stride", &padded_stride, "count"_a);
+  module.def("interface_laws", &declarations<InterfaceLaws>,
+             "What the interface laws say of themselves.");
+  module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
+  module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
+  module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
+  module.attr("block_law_parameters") = BlockLaws::most_parameters;
+  module.attr("interface_law_state") = InterfaceLaws::most_state;
+  module.attr("point_history") = point_history;
   module.def("device_name", &device_name);
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,
@@ -234,7 +321,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("update_model", &update_model, "arrays"_a)
       .def("model", &model_arrays)
       .def("set_options", &set_options, "options"_a)
-      .def("set_interfaces", &set_interfaces, "rows"_a)
+      .def("set_interfaces", &set_interfaces, "interfaces"_a)
       .def("set_curves",
            [](Core& c, const std::vector<std::vector<Real>>& times,
               const std::vector<std::vector<Real>>& factors) {
@@ -281,6 +368,7 @@ NB_MODULE(CDEM_MODULE, module) {
              nb::dict d;
              d["kinetic"] = e.kinetic, d["strain"] = e.strain, d["contact"] = e.contact;
              d["friction"] = e.friction, d["damping"] = e.damping, d["fracture"] = e.fracture;
+             if (any_law_flows) d["plastic"] = e.plastic;
              d["external"] = e.external, d["start"] = e.start, d["error"] = e.error;
              return d;
            })

@@ -13,8 +13,8 @@ namespace {
 
 Real largest_term(const Energies& e) {
   Real largest = 0;
-  for (const Real term :
-       {e.kinetic, e.strain, e.contact, e.friction, e.damping, e.fracture, e.external, e.start})
+  for (const Real term : {e.kinetic, e.strain, e.contact, e.friction, e.damping, e.plastic,
+                          e.fracture, e.external, e.start})
     largest = std::max(largest, std::abs(term));
   return largest;
 }
@@ -38,6 +38,7 @@ Energies energies(const Model& m, const State& s) {
   for (const ElementState* es : {&s.tet4, &s.pyramid5, &s.wedge6, &s.hex8}) {
     e.strain += column_sum(es->energy);
     e.damping += column_sum(es->damping_work);
+    e.plastic += column_sum(es->plastic_work);
   }
   const Index exposed = Index(s.search.exposed_face.size());
   const auto spring = [&](Index slot) { return ContactState::at(s.springs.state.data(), slot); };
@@ -58,8 +59,8 @@ Energies energies(const Model& m, const State& s) {
     e.fracture += column_sum(p->fracture);
   }
   e.start = s.energy_start;
-  const Real open =
-      e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture - e.external - e.start;
+  const Real open = e.kinetic + e.strain + e.contact + e.friction + e.damping + e.plastic +
+                    e.fracture - e.external - e.start;
   const Real scale = std::max(s.energy_scale, largest_term(e));
   const RoundOff nothing(m, s);
   e.error = scale > 100 * nothing.force * nothing.shift ? open / scale : 0;
@@ -70,8 +71,8 @@ void open_ledger(const Model& m, State& s) {
   s.ledger_started = true;
   const Energies e = energies(m, s);
   // the first sample may come later than the first step: count what has been lost and done by then
-  s.energy_start =
-      e.kinetic + e.strain + e.contact + e.friction + e.damping + e.fracture - e.external;
+  s.energy_start = e.kinetic + e.strain + e.contact + e.friction + e.damping + e.plastic +
+                   e.fracture - e.external;
 }
 
 }  // namespace cdem

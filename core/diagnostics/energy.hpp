@@ -9,7 +9,7 @@ namespace cdem {
 /// Energies at the time of the last sampled forces  [J]. Lost and stored energy count positive.
 struct Energies {
   Real kinetic = 0, strain = 0, contact = 0;
-  Real friction = 0, damping = 0, fracture = 0, external = 0;
+  Real friction = 0, damping = 0, plastic = 0, fracture = 0, external = 0;
   Real start = 0;  // stored and kinetic energy when the ledger was opened
   Real error = 0;  // what does not close, as a fraction of the largest term so far
 };

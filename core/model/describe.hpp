@@ -26,6 +26,8 @@ void describe(Model& m, Visit&& field) {
   field("mass.matrix", m.mass_matrix);
   field("material.lambda", m.material_lambda);
   field("material.mu", m.material_mu);
+  field("material.law", m.material_law);
+  field("material.parameters", m.material_parameters);
   const auto elements = [&](const char* shape, ElementSet& e) {
     const std::string name = std::string(shape) + ".";
     field(name + "nodes", e.nodes);
@@ -136,6 +138,8 @@ void describe(S& s, Visit&& field) {
     field(name + "point_stress", e.point_stress, "stress at Gauss points [Pa]");
     field(name + "energy", e.energy, "stored energy [J]");
     field(name + "damping_work", e.damping_work, "work of the stiffness dashpot [J]");
+    field(name + "history", e.history, "inelastic strain and state of the laws at Gauss points");
+    field(name + "plastic_work", e.plastic_work, "work of inelastic strain [J]");
   };
   elements("tet4", s.tet4);
   elements("pyramid5", s.pyramid5);
@@ -155,6 +159,7 @@ void describe(S& s, Visit&& field) {
     field(name + "stored", p.stored, "elastic energy [J]");
     field(name + "fracture", p.fracture, "energy of fracture [J]");
     field(name + "friction", p.friction, "frictional work [J]");
+    field(name + "history", p.history, "what the laws of the bond points remember");
   };
   pairs("triangles", s.triangles);
   pairs("quads", s.quads);
@@ -168,6 +173,9 @@ void describe(S& s, Visit&& field) {
   field("spring.dashpot", s.springs.dashpot, "work of the contact dashpot [J]");
   field("spring.reaction", s.springs.reaction, "force, stiffness, weights on the target");
   field("spring.lost", s.springs.lost, "1: lost by depth");
+  field("spring.history", s.springs.history.rows, "what the laws at the vertices remember");
+  field("spring.history_law", s.springs.history.law,
+        "number of the law whose history it is, or -1");
 
   field("edge.first", s.edges.first, "place of a face's first contact");
   field("edge.contact", s.edges.contact,
@@ -179,6 +187,9 @@ void describe(S& s, Visit&& field) {
   field("edge.friction", s.edges.friction, "frictional work [J]");
   field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");
   field("edge.lost", s.edges.lost, "1: lost by depth");
+  field("edge.history", s.edges.side_history.rows, "what the laws at the sides remember");
+  field("edge.history_law", s.edges.side_history.law,
+        "number of the law whose history it is, or -1");
 
   describe_search(s.search, field);
 }

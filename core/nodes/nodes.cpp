@@ -26,11 +26,13 @@ template <class Shape>
 void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
                    ElementState& es) {
   const FusedBlocks& fused = es.fused;
-  const CorotationalForce<Shape, FollowRotation> element{element_columns<Shape>(m, s, e),
-                                                         m.stiffness_damping * s.dt,
-                                                         s.dt,
-                                                         {es.damping_work.data(), e.stride},
-                                                         {}};
+  const CorotationalForce<Shape, FollowRotation> element{
+      .columns = element_columns<Shape>(m, s, e),
+      .damping_time = m.stiffness_damping * s.dt,
+      .dt = s.dt,
+      .damping_work = {es.damping_work.data(), e.stride},
+      .flow = point_flow<Shape>(s, e, es),
+      .corner_force = {}};
   for_each_lane(q, e.count, awake(plan, fused.blocks),
                 AdvanceFused<Shape>{element,
                                     {fused.row_first.data(), fused.row.data()},

@@ -113,6 +113,8 @@ def assemble(topology: Topology, properties: Properties, padded_stride) -> Assem
     }
     out.arrays["material.lambda"] = properties.lame
     out.arrays["material.mu"] = properties.shear
+    out.arrays["material.law"] = np.zeros(len(properties.lame), np.int32)
+    out.arrays["material.parameters"] = np.zeros(0)
     _elements(topology, properties, padded_stride, out)
     _faces(topology, properties, out)
     _pairs(topology, properties, padded_stride, out)

@@ -152,7 +152,7 @@ def build(case: Case) -> Build:
     parts.arrays.clear()  # the core has its own
     _share(topology, core.model())
     core.set_curves([c[0] for c in curves], [c[1] for c in curves])
-    core.set_interfaces([interface_row(law) for law in laws])
+    core.set_interfaces([interface_entry(law) for law in laws])
     core.set_options(_options(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(topology.node_position)
     built = Build(case, merged, topology, parts, core, curves, topology.node_position, bonds)
@@ -285,14 +285,17 @@ def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.
     return np.array([*strong, False])[table]
 
 
-def interface_row(law) -> list[float]:
-    """The numbers of an interface that the core keeps."""
-    tangent = float(np.tan(np.radians(law.friction_angle)))
-    dilation = float(np.tan(np.radians(law.dilation_angle)))
-    return [
-        *(law.cohesion, law.tensile_strength, tangent, *stiffness_row(law)),
-        *(dilation, dilation * law.dilation_slip),
-    ]
+def interface_entry(law) -> dict[str, Any]:
+    """An interface as the core takes it."""
+    parameters = {
+        "friction_angle": float(np.tan(np.radians(law.friction_angle))),
+        "cohesion": law.cohesion,
+        "tensile_strength": law.tensile_strength,
+        "dilation_angle": float(np.tan(np.radians(law.dilation_angle))),
+        "dilation_slip": law.dilation_slip,
+    }
+    n, s = law.stiffness_n.as_pair(), law.stiffness_s.as_pair()
+    return {"law": "brittle", "stiffness_n": n, "stiffness_s": s, "parameters": parameters}
 
 
 def stiffness_row(law) -> list[float]:

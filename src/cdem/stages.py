@@ -114,7 +114,7 @@ def update_core(sim: Simulation, index: int) -> None:
             f"{names[i]!r} and {names[j]!r} was not bonded at the start (cohesion and "
             "tensile_strength 0), so it cannot be given strength now; start with a strength"
         )
-    sim.core.set_interfaces([building.interface_row(law) for law in laws])
+    sim.core.set_interfaces([building.interface_entry(law) for law in laws])
     sim.core.update_model(building.change(b))
     sim.core.set_curves([c[0] for c in b.curves], [c[1] for c in b.curves])
     sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])
