@@ -13,6 +13,7 @@
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/report.hpp"
 #include "core/model/describe.hpp"
+#include "core/model/describe_scalars.hpp"
 #include "core/model/init_state.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
@@ -115,33 +116,26 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
     const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
     column.assign(array.data(), array.size());
   });
-  State& s = core.state;
-  const auto real = [&](const char* name) { return nb::cast<Real>(scalars[name]); };
-  const auto whole = [&](const char* name) { return nb::cast<std::int64_t>(scalars[name]); };
-  s.time = real("time"), s.dt = real("dt"), s.dt_last = real("dt_last");
-  s.dt_stable = real("dt_stable");
-  s.step = whole("step"), s.rebuilds = whole("rebuilds"), s.built_step = whole("built_step");
-  s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
-  s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
-  s.relax_damping = real("relax_damping"), s.stop_due = whole("stop_due") != 0;
-  s.search.outer.lookahead_time = real("horizon"), s.search.outer.built_time = real("built_time");
-  s.search.outer.least_skin = real("skin_least");
-  s.ledger_started = whole("ledger_started") != 0;
+  describe_scalars(core.state, [&]<class T>(const ScalarInfo& info, T& number) {
+    number = nb::cast<T>(scalars[info.name]);
+  });
 }
 
-nb::dict scalars(const Core& core) {
-  const State& s = core.state;
-  nb::dict d;
-  d["time"] = s.time, d["dt"] = s.dt, d["dt_last"] = s.dt_last;
-  d["dt_stable"] = s.dt_stable;
-  d["step"] = s.step, d["rebuilds"] = s.rebuilds, d["built_step"] = s.built_step;
-  d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
-  d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
-  d["relax_damping"] = s.relax_damping, d["stop_due"] = std::int64_t(s.stop_due);
-  d["horizon"] = s.search.outer.lookahead_time, d["built_time"] = s.search.outer.built_time;
-  d["skin_least"] = s.search.outer.least_skin;
-  d["ledger_started"] = std::int64_t(s.ledger_started);
-  return d;
+nb::dict scalars(Core& core) {
+  nb::dict numbers;
+  describe_scalars(
+      core.state, [&](const ScalarInfo& info, const auto& number) { numbers[info.name] = number; });
+  return numbers;
+}
+
+nb::list scalar_infos(Core& core) {
+  nb::list infos;
+  describe_scalars(core.state, [&](const ScalarInfo& info, const auto&) {
+    nb::dict one;
+    one["name"] = info.name, one["unit"] = info.unit, one["meaning"] = info.meaning;
+    infos.append(one);
+  });
+  return infos;
 }
 
 void set_interfaces(Core& core, const std::vector<std::vector<Real>>& rows) {
@@ -261,6 +255,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("fields", &state_fields)
       .def("scalars", &scalars)
+      .def("describe_scalars", &scalar_infos)
       .def(
           "run",
           [](Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
