@@ -207,6 +207,25 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
+nb::dict energy_ledger(const Core& core) {
+  const Energies e = energies(core.model, core.state);
+  nb::dict ledger;
+  for (std::size_t k = 0; k < energy_term_count; ++k) ledger[energy_terms[k].name] = e.terms[k];
+  ledger["start"] = e.start, ledger["error"] = e.error;
+  return ledger;
+}
+
+nb::list energy_term_infos() {
+  static constexpr const char* kinds[] = {"stored", "lost", "supplied"};
+  nb::list infos;
+  for (const EnergyTerm& term : energy_terms) {
+    nb::dict one;
+    one["name"] = term.name, one["kind"] = kinds[int(term.kind)], one["meaning"] = term.meaning;
+    infos.append(one);
+  }
+  return infos;
+}
+
 }  // namespace
 }  // namespace cdem
 
@@ -215,6 +234,8 @@ NB_MODULE(CDEM_MODULE, module) {
   module.attr("lanes") = lanes;
   module.def("padded_stride", &padded_stride, "count"_a);
   module.def("device_name", &device_name);
+  module.def("energy_terms", &energy_term_infos,
+             "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,
              "Memory bandwidth of a triad over arrays of so many bytes together [B/s].");
@@ -270,15 +291,7 @@ NB_MODULE(CDEM_MODULE, module) {
           },
           "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0, "check_interval"_a = 20,
           "relaxation"_a = "none")
-      .def("energies",
-           [](Core& c) {
-             const Energies e = energies(c.model, c.state);
-             nb::dict d;
-             d["kinetic"] = e.kinetic, d["strain"] = e.strain, d["contact"] = e.contact;
-             d["friction"] = e.friction, d["damping"] = e.damping, d["fracture"] = e.fracture;
-             d["external"] = e.external, d["start"] = e.start, d["error"] = e.error;
-             return d;
-           })
+      .def("energies", &energy_ledger)
       .def("seconds",
            [](const Core& c) {
              const Real* t = c.state.seconds;
