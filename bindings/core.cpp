@@ -14,6 +14,7 @@
 #include "core/elements/report.hpp"
 #include "core/model/describe.hpp"
 #include "core/model/describe_scalars.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
@@ -48,6 +49,10 @@ void take_model(Core& core, const nb::dict& arrays) {
     const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
     column.assign(array.data(), array.size());
   });
+  for_each_element_set(core.model, core.state,
+                       [](const auto& kind, ElementSet& e, const ElementState&) {
+                         e.points = kind.points;  // one where there are hourglass springs
+                       });
 }
 
 /// Views of the model's arrays; only until one of them is changed.
@@ -76,29 +81,18 @@ void take_counts(Core& core, const nb::dict& c) {
   m.edge_count = number("edges");
   m.class_count = number("interface_classes");
   m.corner_rows = number("corner_rows");
-  const auto elements = [&](const std::string& name, ElementSet& e, Index corners, Index points) {
-    e.corners = corners;
-    e.points = points;
-    e.count = number((name + ".count").c_str());
-    e.stride = padded_stride(e.count);
-    e.corner_first = number((name + ".corner_first").c_str());
-  };
-  elements("tet4", m.tet4, 4, 1);
-  elements("pyramid5", m.pyramid5, 5, 5);
-  elements("wedge6", m.wedge6, 6, 6);
-  elements("hex8", m.hex8, 8, 8);
-  const auto pairs = [&](const std::string& name, PairSet& p, Index points, Index corners) {
-    p.count = number((name + ".count").c_str());
-    p.stride = padded_stride(p.count);
-    p.points = points;
-    p.corners = corners;
-    p.corner_first = number((name + ".corner_first").c_str());
-    p.point_stride = p.stride;
-  };
-  pairs("triangles", m.triangles, 3, 3);
-  pairs("quads", m.quads, 4, 4);
-  pairs("overlaps", m.overlaps, 1, 8);
-  m.overlaps.point_stride = padded_stride(number("overlaps.points"));
+  for_each_set(m, core.state, [&](const auto& kind, auto& set, const auto&) {
+    const std::string name = kind.name;
+    set.count = number((name + ".count").c_str());
+    set.stride = padded_stride(set.count);
+    set.corners = kind.corners;
+    set.points = kind.points;
+    set.corner_first = number((name + ".corner_first").c_str());
+  });
+  for_each_pair_set(m, core.state, [&](const auto& kind, PairSet& p, const PairState&) {
+    const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
+    p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
+  });
 }
 
 nb::object state_fields(nb::handle_t<Core> self) {
@@ -313,10 +307,10 @@ NB_MODULE(CDEM_MODULE, module) {
              Core& c = nb::cast<Core&>(self);
              report_stress(c.model, c.state);
              nb::dict d;
-             d["tet4"] = view(c.state.tet4.stress, self);
-             d["pyramid5"] = view(c.state.pyramid5.stress, self);
-             d["wedge6"] = view(c.state.wedge6.stress, self);
-             d["hex8"] = view(c.state.hex8.stress, self);
+             for_each_element_set(c.model, c.state,
+                                  [&](const auto& kind, const ElementSet&, ElementState& es) {
+                                    d[kind.name] = view(es.stress, self);
+                                  });
              return d;
            })
       .def("adopt_overlaps",

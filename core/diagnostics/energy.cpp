@@ -6,6 +6,7 @@
 
 #include "core/base/reduce.hpp"
 #include "core/diagnostics/round_off.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -32,17 +33,12 @@ Energies sum_terms(const Model& m, const State& s) {
                        [&](Index i) { return s.nodes.sample[4 * std::size_t(i) + k]; });
   };
   Energies e;
-  Real &strain = e.terms[energy_term("strain")], &contact = e.terms[energy_term("contact")],
-       &friction = e.terms[energy_term("friction")], &damping = e.terms[energy_term("damping")],
-       &fracture = e.terms[energy_term("fracture")];
+  Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];
   e.terms[energy_term("kinetic")] = sample(0);
   e.terms[energy_term("external")] = column_sum(s.nodes.work_external) - sample(1);
-  damping = column_sum(s.nodes.work_damping) - sample(2) + s.stopped_energy +
-            column_sum(s.springs.dashpot) + column_sum(s.edges.dashpot);
-  for (const ElementState* es : {&s.tet4, &s.pyramid5, &s.wedge6, &s.hex8}) {
-    strain += column_sum(es->energy);
-    damping += column_sum(es->damping_work);
-  }
+  e.terms[energy_term("damping")] = column_sum(s.nodes.work_damping) - sample(2) +
+                                    s.stopped_energy + column_sum(s.springs.dashpot) +
+                                    column_sum(s.edges.dashpot);
   const Index exposed = Index(s.search.exposed_face.size());
   const auto spring = [&](Index slot) { return ContactState::at(s.springs.state.data(), slot); };
   contact = ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_n; }) +
@@ -56,11 +52,11 @@ Energies sum_terms(const Model& m, const State& s) {
     return sum;
   });
   friction = column_sum(s.springs.friction) + column_sum(s.edges.friction);
-  for (const PairState* p : {&s.triangles, &s.quads, &s.overlaps}) {
-    contact += column_sum(p->stored);
-    friction += column_sum(p->friction);
-    fracture += column_sum(p->fracture);
-  }
+  for_each_set(m, s, [&](auto, const auto&, const auto& state) {
+    for_each_energy(state, [&](std::size_t term, const Column<Real>& column) {
+      e.terms[term] += column_sum(column);
+    });
+  });
   return e;
 }
 

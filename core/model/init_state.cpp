@@ -1,11 +1,13 @@
 // init_state.cpp - see init_state.hpp.
 #include "core/model/init_state.hpp"
 
+#include "core/model/force_sets.hpp"
+
 namespace cdem {
 
 namespace {
 
-void size_elements(const Model& m, const ElementSet& e, ElementState& es) {
+void size(const Model& m, const ElementSet& e, ElementState& es) {
   const std::size_t row = e.stride;
   es.stress.resize(6 * row);
   es.energy.resize(row);
@@ -15,7 +17,7 @@ void size_elements(const Model& m, const ElementSet& e, ElementState& es) {
   if (keeps_stress) es.point_stress.resize(6 * std::size_t(e.points) * row);
 }
 
-void size_pairs(const PairSet& p, PairState& s) {
+void size(const Model&, const PairSet& p, PairState& s) {
   const std::size_t row = p.stride, points = std::size_t(p.points) * p.point_stride;
   for (Column<Real>* column :
        {&s.broken_tension, &s.broken_shear, &s.jump, &s.stored, &s.fracture, &s.friction})
@@ -40,13 +42,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
     column->resize(count);
   n.bonded_node.resize(count);
-  size_elements(m, m.tet4, s.tet4);
-  size_elements(m, m.pyramid5, s.pyramid5);
-  size_elements(m, m.wedge6, s.wedge6);
-  size_elements(m, m.hex8, s.hex8);
-  size_pairs(m.triangles, s.triangles);
-  size_pairs(m.quads, s.quads);
-  size_pairs(m.overlaps, s.overlaps);
+  for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
   // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero
