@@ -19,6 +19,8 @@
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
 #include "core/model/describe.hpp"
+#include "core/model/describe_scalars.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
@@ -53,6 +55,10 @@ void take_model(Core& core, const nb::dict& arrays) {
     const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
     column.assign(array.data(), array.size());
   });
+  for_each_element_set(core.model, core.state,
+                       [](const auto& kind, ElementSet& e, const ElementState&) {
+                         e.points = kind.points;  // one where there are hourglass springs
+                       });
 }
 
 /// Views of the model's arrays; only until one of them is changed.
@@ -81,29 +87,18 @@ void take_counts(Core& core, const nb::dict& c) {
   m.edge_count = number("edges");
   m.class_count = number("interface_classes");
   m.corner_rows = number("corner_rows");
-  const auto elements = [&](const std::string& name, ElementSet& e, Index corners, Index points) {
-    e.corners = corners;
-    e.points = points;
-    e.count = number((name + ".count").c_str());
-    e.stride = padded_stride(e.count);
-    e.corner_first = number((name + ".corner_first").c_str());
-  };
-  elements("tet4", m.tet4, 4, 1);
-  elements("pyramid5", m.pyramid5, 5, 5);
-  elements("wedge6", m.wedge6, 6, 6);
-  elements("hex8", m.hex8, 8, 8);
-  const auto pairs = [&](const std::string& name, PairSet& p, Index points, Index corners) {
-    p.count = number((name + ".count").c_str());
-    p.stride = padded_stride(p.count);
-    p.points = points;
-    p.corners = corners;
-    p.corner_first = number((name + ".corner_first").c_str());
-    p.point_stride = p.stride;
-  };
-  pairs("triangles", m.triangles, 3, 3);
-  pairs("quads", m.quads, 4, 4);
-  pairs("overlaps", m.overlaps, 1, 8);
-  m.overlaps.point_stride = padded_stride(number("overlaps.points"));
+  for_each_set(m, core.state, [&](const auto& kind, auto& set, const auto&) {
+    const std::string name = kind.name;
+    set.count = number((name + ".count").c_str());
+    set.stride = padded_stride(set.count);
+    set.corners = kind.corners;
+    set.points = kind.points;
+    set.corner_first = number((name + ".corner_first").c_str());
+  });
+  for_each_pair_set(m, core.state, [&](const auto& kind, PairSet& p, const PairState&) {
+    const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
+    p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
+  });
 }
 
 nb::object state_fields(nb::handle_t<Core> self) {
@@ -121,33 +116,26 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
     const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
     column.assign(array.data(), array.size());
   });
-  State& s = core.state;
-  const auto real = [&](const char* name) { return nb::cast<Real>(scalars[name]); };
-  const auto whole = [&](const char* name) { return nb::cast<std::int64_t>(scalars[name]); };
-  s.time = real("time"), s.dt = real("dt"), s.dt_last = real("dt_last");
-  s.dt_stable = real("dt_stable");
-  s.step = whole("step"), s.rebuilds = whole("rebuilds"), s.built_step = whole("built_step");
-  s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
-  s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
-  s.relax_damping = real("relax_damping"), s.stop_due = whole("stop_due") != 0;
-  s.search.outer.lookahead_time = real("horizon"), s.search.outer.built_time = real("built_time");
-  s.search.outer.least_skin = real("skin_least");
-  s.ledger_started = whole("ledger_started") != 0;
+  describe_scalars(core.state, [&]<class T>(const ScalarInfo& info, T& number) {
+    number = nb::cast<T>(scalars[info.name]);
+  });
 }
 
-nb::dict scalars(const Core& core) {
-  const State& s = core.state;
-  nb::dict d;
-  d["time"] = s.time, d["dt"] = s.dt, d["dt_last"] = s.dt_last;
-  d["dt_stable"] = s.dt_stable;
-  d["step"] = s.step, d["rebuilds"] = s.rebuilds, d["built_step"] = s.built_step;
-  d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
-  d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
-  d["relax_damping"] = s.relax_damping, d["stop_due"] = std::int64_t(s.stop_due);
-  d["horizon"] = s.search.outer.lookahead_time, d["built_time"] = s.search.outer.built_time;
-  d["skin_least"] = s.search.outer.least_skin;
-  d["ledger_started"] = std::int64_t(s.ledger_started);
-  return d;
+nb::dict scalars(Core& core) {
+  nb::dict numbers;
+  describe_scalars(
+      core.state, [&](const ScalarInfo& info, const auto& number) { numbers[info.name] = number; });
+  return numbers;
+}
+
+nb::list scalar_infos(Core& core) {
+  nb::list infos;
+  describe_scalars(core.state, [&](const ScalarInfo& info, const auto&) {
+    nb::dict one;
+    one["name"] = info.name, one["unit"] = info.unit, one["meaning"] = info.meaning;
+    infos.append(one);
+  });
+  return infos;
 }
 
 /// Numbers of a law's parameters in the order of its declaration, from a dict by name.
@@ -292,6 +280,30 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
+/// A term that is zero whatever happens is not told of.
+bool is_told(const EnergyTerm& term) { return any_law_flows || !term.needs_flow; }
+
+nb::dict energy_ledger(const Core& core) {
+  const Energies e = energies(core.model, core.state);
+  nb::dict ledger;
+  for (std::size_t k = 0; k < energy_term_count; ++k)
+    if (is_told(energy_terms[k])) ledger[energy_terms[k].name] = e.terms[k];
+  ledger["start"] = e.start, ledger["error"] = e.error;
+  return ledger;
+}
+
+nb::list energy_term_infos() {
+  static constexpr const char* kinds[] = {"stored", "lost", "supplied"};
+  nb::list infos;
+  for (const EnergyTerm& term : energy_terms) {
+    if (!is_told(term)) continue;
+    nb::dict one;
+    one["name"] = term.name, one["kind"] = kinds[int(term.kind)], one["meaning"] = term.meaning;
+    infos.append(one);
+  }
+  return infos;
+}
+
 }  // namespace
 }  // namespace cdem
 
@@ -308,6 +320,8 @@ NB_MODULE(CDEM_MODULE, module) {
   module.attr("interface_law_state") = InterfaceLaws::most_state;
   module.attr("point_history") = point_history;
   module.def("device_name", &device_name);
+  module.def("energy_terms", &energy_term_infos,
+             "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,
              "Memory bandwidth of a triad over arrays of so many bytes together [B/s].");
@@ -348,6 +362,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("fields", &state_fields)
       .def("scalars", &scalars)
+      .def("describe_scalars", &scalar_infos)
       .def(
           "run",
           [](Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
@@ -362,16 +377,7 @@ NB_MODULE(CDEM_MODULE, module) {
           },
           "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0, "check_interval"_a = 20,
           "relaxation"_a = "none")
-      .def("energies",
-           [](Core& c) {
-             const Energies e = energies(c.model, c.state);
-             nb::dict d;
-             d["kinetic"] = e.kinetic, d["strain"] = e.strain, d["contact"] = e.contact;
-             d["friction"] = e.friction, d["damping"] = e.damping, d["fracture"] = e.fracture;
-             if (any_law_flows) d["plastic"] = e.plastic;
-             d["external"] = e.external, d["start"] = e.start, d["error"] = e.error;
-             return d;
-           })
+      .def("energies", &energy_ledger)
       .def("seconds",
            [](const Core& c) {
              const Real* t = c.state.seconds;
@@ -393,10 +399,10 @@ NB_MODULE(CDEM_MODULE, module) {
              Core& c = nb::cast<Core&>(self);
              report_stress(c.model, c.state);
              nb::dict d;
-             d["tet4"] = view(c.state.tet4.stress, self);
-             d["pyramid5"] = view(c.state.pyramid5.stress, self);
-             d["wedge6"] = view(c.state.wedge6.stress, self);
-             d["hex8"] = view(c.state.hex8.stress, self);
+             for_each_element_set(c.model, c.state,
+                                  [&](const auto& kind, const ElementSet&, ElementState& es) {
+                                    d[kind.name] = view(es.stress, self);
+                                  });
              return d;
            })
       .def("adopt_overlaps",

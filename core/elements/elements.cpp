@@ -6,6 +6,7 @@
 #include "core/elements/incremental.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/phase_timer.hpp"
 
 namespace cdem {
@@ -46,16 +47,11 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
 void update_element_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
   const PhaseTimer timer(s, Phase::element);
   const bool fuses = fuses_blocks(s, plan);
-  const auto others = [&](const ElementState& es) {
-    return awake(plan, fuses ? es.fused.general : es.awake);
-  };
-  update_elements<Tet4>(m, s, q, m.tet4, s.tet4, others(s.tet4));
-  update_elements<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5, awake(plan, s.pyramid5.awake));
-  update_elements<Wedge6>(m, s, q, m.wedge6, s.wedge6, awake(plan, s.wedge6.awake));
-  if (m.hex8.hourglass.size() > 0)
-    update_elements<Hex8OnePoint>(m, s, q, m.hex8, s.hex8, others(s.hex8));
-  else
-    update_elements<Hex8>(m, s, q, m.hex8, s.hex8, others(s.hex8));
+  for_each_element_set(m, s,
+                       [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
+                         const Blocks some = awake(plan, fuses ? es.fused.general : es.awake);
+                         update_elements<Shape>(m, s, q, e, es, some);
+                       });
 }
 
 }  // namespace cdem

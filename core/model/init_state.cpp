@@ -3,6 +3,7 @@
 
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -17,7 +18,7 @@ bool has_flowing_element(const Model& m, const ElementSet& e) {
   return any;
 }
 
-void size_elements(const Model& m, const ElementSet& e, ElementState& es) {
+void size(const Model& m, const ElementSet& e, ElementState& es) {
   const std::size_t row = e.stride;
   es.stress.resize(6 * row);
   es.energy.resize(row);
@@ -42,14 +43,14 @@ void init_histories(const Model& m, const PairSet& p, PairState& s) {
         s.history[k * points + point] = Law<Real>::state[k].intact;
     };
     for (Index i = 0; i < p.count; ++i)
-      if (p.point_first.size() > 0)
+      if (!conforms(p))
         for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c) begin(i, c);
       else
         for (Index k = 0; k < p.points; ++k) begin(i, std::size_t(k) * p.point_stride + i);
   });
 }
 
-void size_pairs(const Model& m, const PairSet& p, PairState& s) {
+void size(const Model& m, const PairSet& p, PairState& s) {
   const std::size_t row = p.stride, points = std::size_t(p.points) * p.point_stride;
   for (Column<Real>* column :
        {&s.broken_tension, &s.broken_shear, &s.jump, &s.stored, &s.fracture, &s.friction})
@@ -75,13 +76,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
     column->resize(count);
   n.bonded_node.resize(count);
-  size_elements(m, m.tet4, s.tet4);
-  size_elements(m, m.pyramid5, s.pyramid5);
-  size_elements(m, m.wedge6, s.wedge6);
-  size_elements(m, m.hex8, s.hex8);
-  size_pairs(m, m.triangles, s.triangles);
-  size_pairs(m, m.quads, s.quads);
-  size_pairs(m, m.overlaps, s.overlaps);
+  for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
   // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero

@@ -6,6 +6,7 @@
 #include "core/elements/report.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/phase_timer.hpp"
 #include "core/nodes/central_difference.hpp"
 #include "core/nodes/fused_block.hpp"
@@ -46,11 +47,11 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
 }
 
 void advance_fused_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
-  advance_fused<Tet4>(m, s, q, plan, m.tet4, s.tet4);
-  if (m.hex8.hourglass.size() > 0)
-    advance_fused<Hex8OnePoint>(m, s, q, plan, m.hex8, s.hex8);
-  else
-    advance_fused<Hex8>(m, s, q, plan, m.hex8, s.hex8);
+  for_each_element_set(m, s,
+                       [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
+                         if constexpr (has_fused_kernel<Shape>)
+                           advance_fused<Shape>(m, s, q, plan, e, es);
+                       });
 }
 
 SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
