@@ -54,6 +54,9 @@ inline bool same_bits(Real a, Real b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
+inline Real relative_error(Real a, Real b) {
+  return std::abs(a - b) / std::max(std::abs(a), std::abs(b));
+}
 inline Real distance(const Vec& a, const Vec& b) { return norm(a - b); }
 inline Real distance(const Mat& a, const Mat& b) {
   return std::max({distance(a.r0, b.r0), distance(a.r1, b.r1), distance(a.r2, b.r2)});
