@@ -1,4 +1,7 @@
-"""Check the includes of core/: folders in one order, no cycles, no deep nesting, kernels without model."""
+"""Check the includes of core/: folders in one order, no cycles, no deep nesting, kernels without model.
+
+And the files of tests/core: each mirrors a file of core/.
+"""
 
 import re
 import sys
@@ -85,6 +88,14 @@ try:
     TopologicalSorter(units).prepare()
 except CycleError as cycle:
     problems.append("units include each other: " + " -> ".join(cycle.args[1]))
+
+for path in sorted(Path("tests/core").rglob("*.cpp")):
+    folder_of_tests = path.relative_to("tests/core").parent
+    mirrored = Path("core") / folder_of_tests / path.stem.removeprefix("test_")
+    if path.name != "main.cpp" and not path.name.startswith("test_"):
+        problems.append(f"{path}: tests are in files named test_*.cpp")
+    elif path.name != "main.cpp" and not any(mirrored.parent.glob(f"{mirrored.name}.[hc]pp")):
+        problems.append(f"{path} mirrors nothing: there is no {mirrored}.hpp or .cpp")
 
 deepest = max(sources, key=depth) if not problems else ""
 if deepest and depth(deepest) > DEEPEST:

@@ -1,6 +1,7 @@
 // shapes.hpp - the four element shapes, and how an element reads its nodes and writes its forces.
 #pragma once
 
+#include "core/base/parallel.hpp"
 #include "core/base/views.hpp"
 #include "core/materials/material_table.hpp"
 
