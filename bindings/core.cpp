@@ -177,10 +177,13 @@ nb::list declarations() {
     nb::dict law;
     law["name"] = Law<Real>::text.name;
     law["meaning"] = Law<Real>::text.meaning;
+    law["flows"] = false;
+    if constexpr (requires { Law<Real>::inelastic; }) law["flows"] = Law<Real>::inelastic;
     nb::list parameters, state;
     for (const Parameter& p : Law<Real>::parameters) {
       nb::dict d;
-      d["name"] = p.name, d["unit"] = p.unit, d["meaning"] = p.meaning;
+      d["name"] = p.name, d["symbol"] = p.symbol;
+      d["unit"] = p.unit, d["meaning"] = p.meaning;
       d["at_least"] = p.at_least;
       d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
       d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);

@@ -29,30 +29,35 @@ struct Brittle {
           "Eq. 14"};
   static constexpr std::array parameters{
       Parameter{.name = "friction_angle",
+                .symbol = "phi",
                 .unit = "deg",
                 .meaning = "Friction angle",
                 .below = 90,
                 .form = Form::tangent,
                 .is_strength = true},
       Parameter{.name = "cohesion",
+                .symbol = "c",
                 .unit = "Pa",
                 .meaning = "Cohesion of the intact bond",
                 .otherwise = 0,
                 .is_strength = true,
                 .bonds = true},
       Parameter{.name = "tensile_strength",
+                .symbol = "T",
                 .unit = "Pa",
                 .meaning = "Tensile strength of the intact bond",
                 .otherwise = 0,
                 .is_strength = true,
                 .bonds = true},
       Parameter{.name = "dilation_angle",
+                .symbol = "psi",
                 .unit = "deg",
                 .meaning = "Dilation angle: a sliding joint lifts by its tangent times the slip",
                 .below = 90,
                 .otherwise = 0,
                 .form = Form::tangent},
       Parameter{.name = "dilation_slip",
+                .symbol = "",
                 .unit = "m",
                 .meaning = "Slip after which a joint dilates no more",
                 .otherwise = 0}};
@@ -72,7 +77,7 @@ struct Brittle {
     const auto p = Brittle<Real>::read([&](Index k) { return parameter[k]; });
     // a joint that lifts more than it slips against friction would make energy
     if (p.tan_dilation > p.tan_friction)
-      return "dilation_angle must not be larger than friction_angle";
+      return "dilation_angle must not be larger than friction_angle, {friction_angle:g}";
     if (p.tan_dilation > 0 && !(p.dilation_slip > 0))
       return "dilation_angle needs dilation_slip, the slip after which it dilates no more";
     return nullptr;

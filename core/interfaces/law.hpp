@@ -9,7 +9,8 @@
 //   JointAnswer<T> respond(const JointInput<T>&, T* state) const;
 //   Borne<T> bears(const JointInput<T>&) const;        quick answer for an intact joint; only of
 //                                                      laws without state
-//   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr
+//   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr;
+//                                                      {name} stands for a value of the case
 //   static Real rise_most(const Real*);                how far the stress-free gap may rise  [m]
 //
 // It speaks of tractions [Pa] and separations [m], never of forces and areas: bond points,

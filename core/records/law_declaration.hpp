@@ -27,6 +27,7 @@ inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
 /// One parameter of a law.
 struct Parameter {
   const char* name;
+  const char* symbol;
   const char* unit;  // in a case
   const char* meaning;
   double at_least = 0;  // range in the unit of the case

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import cdem
-from cdem import cells, mesh
-from cdem.bodies import read_bodies
-from cdem.topology import block_labels, build_topology
+from cdem.joints import convex_cells, cutting
+from cdem.mesh import primitives
+from cdem.mesh.blocks import block_labels, build_topology
+from cdem.model.body_files import read_bodies
 
 CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 
@@ -65,11 +66,11 @@ def test_stl(tmp_path, far):
 
 def test_vtk_polyhedra(tmp_path):
     pyvista = pytest.importorskip("pyvista")
-    piece = mesh.box("rock", (2, 2, 2))
-    c = cells.from_mesh(piece, ["rock"], block_labels(piece, {}))
+    piece = primitives.box("rock", (2, 2, 2))
+    c = convex_cells.from_mesh(piece, ["rock"], block_labels(piece, {}))
     for number, normal in enumerate(([1, 1, 1], [1, -0.5, 0.3])):
         n = np.array(normal) / np.linalg.norm(normal)
-        c, _ = cells.cut(c, n, n @ [1, 1.1, 0.9], number, among=np.array([True]))
+        c, _ = cutting.cut(c, n, n @ [1, 1.1, 0.9], number, among=np.array([True]))
     rows = []
     for k in range(len(c.block)):
         loops = [

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cdem import Case, CaseError
-from cdem.fields import Stiffness
+from cdem.case.types import Stiffness
 
 CASE = """\
 cdem: 1

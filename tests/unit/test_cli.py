@@ -12,9 +12,10 @@ import h5py
 import meshio
 import pytest
 
-from cdem import Case, __version__, cli, doctor
-from cdem.progress import describe
-from cdem.simulation import Progress
+from cdem import Case, __version__
+from cdem.cli import run_commands
+from cdem.run.progress import Progress, describe
+from cdem.tools import doctor
 
 CASE = """\
 title: A cube falls
@@ -37,7 +38,9 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture(autouse=True)
 def no_pictures(folder, monkeypatch):
-    monkeypatch.setattr(cli, "_write_report", lambda folder, silent: None)  # they take seconds
+    monkeypatch.setattr(
+        run_commands, "write_report", lambda folder, silent: None
+    )  # they take seconds
 
 
 def test_version_and_help(cdem):
@@ -271,7 +274,7 @@ def test_import_and_help_are_fast():
 
 
 def test_benchmark_rows_say_what_was_measured(monkeypatch):
-    from cdem import benchmark
+    from cdem.tools import benchmark
 
     monkeypatch.setattr(benchmark, "SECONDS", 1e-4)
     monkeypatch.setattr(benchmark, "TRIAD_BYTES", 3_000_000)

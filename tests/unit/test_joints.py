@@ -8,23 +8,26 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cdem
-from cdem import Case, cell_mesh, cells, cli, joints, mesh
-from cdem.parts_model import Joint, Model
-from cdem.topology import block_labels, build_topology
-from cdem.view import snapshot
+from cdem import Case
+from cdem.case.bodies_schema import Joint, Model
+from cdem.cli import run_commands
+from cdem.joints import cell_mesh, convex_cells, cutting, joints
+from cdem.mesh import primitives
+from cdem.mesh.blocks import block_labels, build_topology
+from cdem.output.render import snapshot
 
 ALL = np.array([True])
 
 
 def cube(size=2.0, divisions=(1, 1, 1), shape="hex8"):
-    piece = mesh.box("rock", (size, size, size), divisions, shape=shape)
-    return cells.from_mesh(piece, ["rock"], block_labels(piece, {}))
+    piece = primitives.box("rock", (size, size, size), divisions, shape=shape)
+    return convex_cells.from_mesh(piece, ["rock"], block_labels(piece, {}))
 
 
 def cut(c, planes, **more):
     for number, (normal, offset) in enumerate(planes):
         size = np.linalg.norm(normal)
-        c, _ = cells.cut(c, np.array(normal) / size, offset / size, number, among=ALL, **more)
+        c, _ = cutting.cut(c, np.array(normal) / size, offset / size, number, among=ALL, **more)
     return c
 
 
@@ -72,9 +75,9 @@ def test_planes_through_corners_and_edges_and_along_sides():
 
 
 def test_thin_parts_are_not_cut_off():
-    whole, left = cells.cut(cube(), np.array([1.0, 0, 0]), 1.95, 0, among=ALL, thinnest=0.1)
+    whole, left = cutting.cut(cube(), np.array([1.0, 0, 0]), 1.95, 0, among=ALL, thinnest=0.1)
     assert (whole.blocks, left) == (1, 1)
-    parts, left = cells.cut(cube(), np.array([1.0, 0, 0]), 1.85, 0, among=ALL, thinnest=0.1)
+    parts, left = cutting.cut(cube(), np.array([1.0, 0, 0]), 1.85, 0, among=ALL, thinnest=0.1)
     assert (parts.blocks, left) == (2, 0)
 
 
@@ -97,7 +100,7 @@ def bodies(draw):
     else:
         x = random.normal(size=(draw(st.integers(4, 12)), 3))
         x = size * x / np.linalg.norm(x, axis=1)[:, None] + 10 * size * random.random(3)
-        c = cells.from_polyhedron(x, mesh.outward_faces(x, None), 0)
+        c = convex_cells.from_polyhedron(x, primitives.outward_faces(x, None), 0)
     return c, size, random
 
 
@@ -123,7 +126,7 @@ def test_what_is_cut_stays_exact_closed_and_convex(body, count, close):
             continue
         planes.append((normal, at @ normal))
         normal = normal / np.linalg.norm(normal)
-        c, _ = cells.cut(c, normal, at @ normal, len(planes) - 1, among=ALL)
+        c, _ = cutting.cut(c, normal, at @ normal, len(planes) - 1, among=ALL)
     volumes = c.volumes()
     assert volumes.sum() == pytest.approx(before, rel=1e-12)
     assert sides_that_are_single(c) == (0, set())
@@ -172,8 +175,8 @@ def block_volumes(made, sets):
 def test_a_meshed_body_gives_the_blocks_of_the_whole_one(divisions, shape):
     volumes = []
     for piece in (
-        mesh.box("rock", (10, 10, 10)),
-        mesh.box("rock", (10, 10, 10), divisions, shape=shape),
+        primitives.box("rock", (10, 10, 10)),
+        primitives.box("rock", (10, 10, 10), divisions, shape=shape),
     ):
         t, volume = block_volumes(joints.cut_model([(piece, None)], model(SETS, thinnest=0)), SETS)
         volumes.append(np.sort(volume))
@@ -216,7 +219,7 @@ def test_persistence_is_the_chance_of_a_cut():
             {"name": "n", "normal": [1, 0, 0], "spacing": 1, "origin": [0.5, 0, 0]},
             {"name": "p", "normal": [0, 1, 0], "spacing": 1, "origin": [0, 0.5, 0], **more},
         ]
-        piece = mesh.box("rock", (40, 20, 1))
+        piece = primitives.box("rock", (40, 20, 1))
         return block_volumes(joints.cut_model([(piece, None)], model(sets)), sets)[1]
 
     # every one of 41 columns is met by 20 planes, and each of these cuts one block of it
@@ -297,7 +300,7 @@ def test_models_that_cannot_be_cut_are_refused():
     tiny = case({"model.joints": [SETS[0] | {"spacing": "10 um"}]})
     with pytest.raises(cdem.CaseError, match="give a wider spacing than 1e-05 m"):
         cdem.Simulation(tiny, threads=1)
-    warped = mesh.box("rock", (1, 1, 1))
+    warped = primitives.box("rock", (1, 1, 1))
     warped.points[7] += [0.1, 0, 0]
     with pytest.raises(cdem.MeshError, match="1 of their sides are warped"):
         joints.cut_model([(warped, None)], model(SETS))
@@ -375,7 +378,9 @@ output: {frames: false}
 
 def test_a_jointed_case_is_checked_and_run(cdem, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cli, "_write_report", lambda folder, silent: None)  # it takes seconds
+    monkeypatch.setattr(
+        run_commands, "write_report", lambda folder, silent: None
+    )  # it takes seconds
     (tmp_path / "rock.yaml").write_text(CASE)
     status, out, _ = cdem("check", "rock.yaml")
     assert status == 0

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cdem import preview, scene
-from cdem.scene import can_draw
-from cdem.series import SurfaceSeries
+from cdem.output import model_picture, render
+from cdem.output.reader import SurfaceSeries
+from cdem.output.render import can_draw
 
 CASE = """\
 model:
@@ -51,8 +51,10 @@ def test_the_picture_shows_and_names_everything(cdem, folder, monkeypatch):
     if not can_draw():
         pytest.skip("no OpenGL")
     legends = []
-    legend = preview.legend
-    monkeypatch.setattr(preview, "legend", lambda e, *size: legends.append(e) or legend(e, *size))
+    legend = model_picture.legend
+    monkeypatch.setattr(
+        model_picture, "legend", lambda e, *size: legends.append(e) or legend(e, *size)
+    )
     status, out, err = cdem("check", "model.yaml", "--picture", "model.png", "--threads", "1")
     assert (status, err) == (0, "")
     assert "bonded interfaces" in out
@@ -68,7 +70,7 @@ def test_the_picture_shows_and_names_everything(cdem, folder, monkeypatch):
     ]
     image = np.asarray(Image.open(folder / "model.png"))
     rows = 28 * len(left) + 10
-    assert image.shape == (rows + preview.SIZE[1], 2 * preview.SIZE[0], 3)
+    assert image.shape == (rows + model_picture.SIZE[1], 2 * model_picture.SIZE[0], 3)
     for half, entries in zip(np.split(image[:, :, :3], 2, axis=1), legends, strict=True):
         assert (half[rows:].min(axis=2) < 200).mean() > 0.1  # the model fills a part of the view
         assert all(has(half[:rows], color) for _, color in entries if color.startswith("#"))
@@ -79,11 +81,13 @@ def test_many_inner_pairs_are_counted_not_drawn(folder, monkeypatch):
         pytest.skip("no OpenGL")
     import cdem
 
-    monkeypatch.setattr(preview, "MOST_INNER", 10)
+    monkeypatch.setattr(model_picture, "MOST_INNER", 10)
     entries = []
-    monkeypatch.setattr(preview, "legend", lambda e, rows, _: entries.extend(e) or white(rows))
-    white = lambda rows: np.full((28 * rows, preview.SIZE[0], 3), 255, np.uint8)  # noqa: E731
-    preview.draw_model(cdem.Simulation("model.yaml", threads=1))
+    monkeypatch.setattr(
+        model_picture, "legend", lambda e, rows, _: entries.extend(e) or white(rows)
+    )
+    white = lambda rows: np.full((28 * rows, model_picture.SIZE[0], 3), 255, np.uint8)  # noqa: E731
+    model_picture.draw_model(cdem.Simulation("model.yaml", threads=1))
     assert [label for label, _ in entries if "not drawn" in label] == [
         "wall - wall: 78 pair(s), 30 deg, bonded c 1e+06 T 1e+05 Pa (not drawn)"
     ]
@@ -97,16 +101,16 @@ def test_pictures_of_results_name_the_groups(folder, monkeypatch):
     cdem.Simulation("model.yaml", output="r.results", threads=1).run()
     series = SurfaceSeries(folder / "r.results")
     legends = []
-    legend = scene.legend
-    monkeypatch.setattr(scene, "legend", lambda e, *size: legends.append(e) or legend(e, *size))
-    image = scene.picture([series[0]], "group", titles=["before"])
+    legend = render.legend
+    monkeypatch.setattr(render, "legend", lambda e, *size: legends.append(e) or legend(e, *size))
+    image = render.picture([series[0]], "group", titles=["before"])
     assert [label for label, _ in legends[0]] == ["base", "wall", "loose"]
     rows = len(image) - 28 * 3 - 10
     assert all(has(image[rows:], color) for _, color in legends[0])
 
 
 def test_json_stays_json_and_the_file_must_be_png(cdem, folder, monkeypatch):
-    monkeypatch.setattr(preview, "draw_model", lambda sim: np.zeros((2, 2, 3), np.uint8))
+    monkeypatch.setattr(model_picture, "draw_model", lambda sim: np.zeros((2, 2, 3), np.uint8))
     status, out, _ = cdem("check", "model.yaml", "--json", "--picture", "model.png")
     assert status == 0
     assert json.loads(out)["counts"]["blocks"] == 56

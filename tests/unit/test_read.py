@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from cdem.case.reader import Source, load_case_data, plain, replace_at, resolve
 from cdem.errors import CaseError
-from cdem.read import Source, load_case_data, plain, replace_at, resolve
 
 
 @pytest.fixture

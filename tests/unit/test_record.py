@@ -16,14 +16,8 @@ import numpy as np
 import pytest
 
 from cdem.errors import CdemError
-from cdem.record import (
-    FrameWriter,
-    HistoryWriter,
-    SurfaceWriter,
-    read_checkpoint,
-    write_checkpoint,
-    write_json_atomic,
-)
+from cdem.run.checkpoint import read_checkpoint, write_checkpoint, write_json_atomic
+from cdem.run.writers import FrameWriter, HistoryWriter, SurfaceWriter
 
 # a tetrahedron, a pyramid on it, a wedge and a cube: node ids only need to be in range
 CELLS = {

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cdem import rows, shapes
+from cdem.mesh import arrays, element_shapes
 
 
 @settings(deadline=None)
@@ -15,16 +15,16 @@ def test_order_and_equality_of_rows_are_those_of_numpy(seed, columns, largest):
     rng = np.random.default_rng(seed)
     table = rng.integers(-1, largest, (50, columns), endpoint=True)
     table[rng.integers(0, 50, 30)] = table[rng.integers(0, 50, 30)]
-    assert (rows.order_of_rows(table) == np.lexsort(table.T[::-1])).all()
+    assert (arrays.order_of_rows(table) == np.lexsort(table.T[::-1])).all()
     _, number = np.unique(table, axis=0, return_inverse=True)
-    assert (rows.same_rows(table) == number.reshape(-1)).all()
+    assert (arrays.same_rows(table) == number.reshape(-1)).all()
 
 
 def test_work_in_pieces_is_work_at_once(monkeypatch):
-    monkeypatch.setattr(rows, "PIECE", 7)
+    monkeypatch.setattr(arrays, "PIECE", 7)
     a = np.arange(40.0).reshape(20, 2)
-    assert (rows.in_pieces(lambda x: x.sum(axis=1), a) == a.sum(axis=1)).all()
-    assert rows.in_pieces(lambda x: x.sum(axis=1), a[:0]).shape == (0,)
+    assert (arrays.in_pieces(lambda x: x.sum(axis=1), a) == a.sum(axis=1)).all()
+    assert arrays.in_pieces(lambda x: x.sum(axis=1), a[:0]).shape == (0,)
 
 
 def test_highest_frequency_of_tets_is_the_root_of_the_largest_eigenvalue():
@@ -36,11 +36,11 @@ def test_highest_frequency_of_tets_is_the_root_of_the_largest_eigenvalue():
     corners[:5] = [[1, 1, 1], [-1, 1, -1], [1, -1, -1], [-1, -1, 1]]
     corners[5:10, :, 2] *= 1e-3
     lame, shear, density = rng.uniform(1, 9, 60), rng.uniform(0.1, 5, 60), rng.uniform(1, 3, 60)
-    gradient, volume = shapes.reference_gradients("tet4", corners)
+    gradient, volume = element_shapes.reference_gradients("tet4", corners)
     assert volume[0, 0] == pytest.approx(8 / 3)
-    mass = shapes.mass_matrices("tet4", corners, density)
+    mass = element_shapes.mass_matrices("tet4", corners, density)
     for inertia in (mass, mass.sum(axis=2)):
-        found = shapes.squared_frequencies(
+        found = element_shapes.squared_frequencies(
             "tet4", gradient, volume, lame, shear, inertia, np.zeros((60, 0))
         )
         for e in range(60):

@@ -10,9 +10,9 @@ import pytest
 from scenes import case, simulate
 
 import cdem as package
-from cdem import runout
 from cdem.errors import CdemError
-from cdem.results import pieces_of
+from cdem.output import runout
+from cdem.run.fields import pieces_of
 
 TIME = 0.5
 SPEED = 4.0  # towards azimuth 30 deg

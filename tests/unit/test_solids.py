@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from cdem import mesh
-from cdem.shapes import NODES, reference_gradients
-from cdem.solids import Solids
+from cdem.mesh import primitives
+from cdem.mesh.element_shapes import NODES, reference_gradients
+from cdem.output.element_volumes import Solids
 
 FAR = np.array([5e5, 3e6, 800.0])  # where maps put a slope
 EAST = np.array([1.0, 0.0, 0.0])
@@ -17,19 +17,19 @@ EAST = np.array([1.0, 0.0, 0.0])
 
 def rough(shape: str, shift=0.0) -> Solids:
     """A box whose inner and outer nodes are all displaced: warped faces, no right angles."""
-    made = mesh.box("rock", [4, 3, 2], (4, 3, 2), shape=shape)
+    made = primitives.box("rock", [4, 3, 2], (4, 3, 2), shape=shape)
     noise = 0.1 * np.random.default_rng(1).standard_normal(made.points.shape)
     return Solids.of(made.points + noise + shift, made.cells)
 
 
 def box(size, at=(0, 0, 0), shape="hex8", divisions=(1, 1, 1)) -> Solids:
-    made = mesh.box("rock", size, divisions, shape=shape)
+    made = primitives.box("rock", size, divisions, shape=shape)
     return Solids.of(made.points + at, made.cells)
 
 
 @pytest.mark.parametrize("shape", NODES)
 def test_volumes_are_those_of_the_elements(shape):
-    made = mesh.box("rock", [4, 3, 2], (4, 3, 2), shape=shape)
+    made = primitives.box("rock", [4, 3, 2], (4, 3, 2), shape=shape)
     made.points += 0.1 * np.random.default_rng(2).standard_normal(made.points.shape)
     exact = reference_gradients(shape, made.points[made.cells[shape]])[1].sum(axis=1)
     np.testing.assert_allclose(Solids.of(made.points, made.cells).volumes(), exact, rtol=1e-12)
@@ -65,7 +65,7 @@ def test_columns_of_a_box_are_its_height_times_what_it_covers():
 
 
 def test_a_block_that_hangs_over_another_adds_up():
-    made = [mesh.box("rock", [1, 1, h]) for h in (1, 2)]
+    made = [primitives.box("rock", [1, 1, h]) for h in (1, 2)]
     points = np.vstack([made[0].points, made[1].points + [0, 0, 5]])
     cells = {"hex8": np.vstack([made[0].cells["hex8"], 8 + made[1].cells["hex8"]])}
     np.testing.assert_allclose(Solids.of(points, cells).columns(1.0)[1], [[3.0]], atol=1e-14)
@@ -83,7 +83,7 @@ def test_the_level_below_which_a_share_lies_agrees_with_the_columns(shape):
 
 
 def test_the_level_knows_density_and_direction():
-    made = [mesh.box("rock", [1, 1, 1]) for _ in range(2)]
+    made = [primitives.box("rock", [1, 1, 1]) for _ in range(2)]
     points = np.vstack([made[0].points, made[1].points + [1, 0, 0]])
     solids = Solids.of(
         points, {"hex8": np.vstack([made[0].cells["hex8"], 8 + made[1].cells["hex8"]])}
@@ -101,7 +101,7 @@ def test_the_level_knows_density_and_direction():
 @pytest.mark.parametrize("shape", NODES)
 def test_cuts_integrate_to_the_volume(shape):
     # between the corners' places the area is a quadratic: two Gauss points integrate it exactly
-    made = mesh.box("rock", [1, 1, 1], shape=shape)
+    made = primitives.box("rock", [1, 1, 1], shape=shape)
     made.points += 0.1 * np.random.default_rng(3).standard_normal(made.points.shape)
     solids = Solids.of(made.points, made.cells)
     places = np.unique(solids.triangles[:, :, 0])

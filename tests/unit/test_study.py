@@ -10,15 +10,17 @@ import numpy as np
 import pytest
 
 import cdem
-from cdem.case import Case
+from cdem.case.case import Case
 from cdem.errors import CaseError
-from cdem.formula import Formula
-from cdem.sampling import draw, quantile, rows
-from cdem.simulation import Simulation
-from cdem.study import Parameter, Sampling, Study
-from cdem.sweep import execute, plan
-from cdem.sweep_plots import effects
-from cdem.table import Table, collect
+from cdem.run.simulation import Simulation
+from cdem.study.formula import Formula
+from cdem.study.plan import plan
+from cdem.study.plots import effects
+from cdem.study.results_table import Table, collect
+from cdem.study.sampling import draw, quantile, rows
+from cdem.study.schema import Parameter, Sampling
+from cdem.study.study import Study
+from cdem.study.worker import execute
 
 CASE = """\
 model: {blocks: [{group: cube, box: {size: [1, 1, 1]}}]}

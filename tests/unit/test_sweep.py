@@ -16,11 +16,11 @@ import pytest
 pytest.importorskip("distributed")
 psutil = pytest.importorskip("psutil")
 
-from cdem import cli  # noqa: E402
+from cdem.cli import run_commands  # noqa: E402
 from cdem.errors import BackendError, CaseError  # noqa: E402
-from cdem.study import Study  # noqa: E402
-from cdem.sweep import run_study  # noqa: E402
-from cdem.sweep_plots import effects  # noqa: E402
+from cdem.study.plots import effects  # noqa: E402
+from cdem.study.study import Study  # noqa: E402
+from cdem.study.sweep import run_study  # noqa: E402
 
 CASE = """\
 title: A cube falls
@@ -82,7 +82,9 @@ def slow(folder: Path, seconds: float) -> None:
 
 def test_a_sweep_from_the_command_line(cdem, folder, monkeypatch):
     """Two of six runs fail, the others are those of `cdem run`; asked again, nothing is repeated."""
-    monkeypatch.setattr(cli, "_write_report", lambda folder, silent: None)  # it takes seconds
+    monkeypatch.setattr(
+        run_commands, "write_report", lambda folder, silent: None
+    )  # it takes seconds
     status, out, err = cdem("sweep", "study.yaml", "--workers", "2", "-o", "out")
     assert status == 3
     assert err.count("failed: ") == 2 and "moves at 1e+06 m/s" in err

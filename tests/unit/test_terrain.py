@@ -10,7 +10,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from cdem.errors import BackendError, CaseError
-from cdem.mesh import read_mesh
+from cdem.mesh.mesh_files import read_mesh
 
 pytest.importorskip("scipy", reason="needs the extra 'terrain'")
 pytest.importorskip("netgen", reason="needs the extra 'terrain'")

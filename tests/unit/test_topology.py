@@ -5,17 +5,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cdem import mesh
 from cdem.errors import MeshError
-from cdem.overlap import clip, point_areas
-from cdem.shapes import NODES, reference_gradients
-from cdem.topology import build_topology
+from cdem.mesh import mesh, primitives
+from cdem.mesh.blocks import build_topology
+from cdem.mesh.element_shapes import NODES, reference_gradients
+from cdem.mesh.overlap import clip, point_areas
 
 SPRINGS = {"hex8": 24, "wedge6": 18, "pyramid5": 16, "tet4": 12}
 
 
 def one_element(shape):
-    box = mesh.box("a", (1, 1, 1), shape=shape)
+    box = primitives.box("a", (1, 1, 1), shape=shape)
     cell = box.cells[shape][:1]
     used, numbers = np.unique(cell, return_inverse=True)
     return mesh.Mesh(
@@ -34,7 +34,7 @@ def test_semi_springs_of_one_element(shape):
 
 @pytest.mark.parametrize("shape", SPRINGS)
 def test_boxes_fill_their_volume(shape):
-    t = build_topology(mesh.box("a", (1, 2, 3), (2, 2, 2), shape=shape), {})
+    t = build_topology(primitives.box("a", (1, 2, 3), (2, 2, 2), shape=shape), {})
     volume = sum(
         reference_gradients(s, t.node_position[t.element_nodes[s]])[1].sum() for s in NODES
     )
@@ -45,7 +45,7 @@ def test_boxes_fill_their_volume(shape):
 
 
 def test_a_fully_split_box_pairs_every_inner_face_once():
-    t = build_topology(mesh.box("a", (1, 1, 1), (3, 3, 3), shape="tet4"), {"a": "elements"})
+    t = build_topology(primitives.box("a", (1, 1, 1), (3, 3, 3), shape="tet4"), {"a": "elements"})
     assert len(t.block_group) == 162
     assert 2 * len(t.pair_faces) + 2 * 6 * 9 == len(t.face_nodes)
     assert len(np.unique(t.pair_faces)) == t.pair_faces.size
@@ -57,7 +57,7 @@ def test_a_fully_split_box_pairs_every_inner_face_once():
 
 
 def test_boxes_side_by_side_are_mated_by_place():
-    left, right = mesh.box("a", (1, 1, 1)), mesh.box("b", (1, 1, 1))
+    left, right = primitives.box("a", (1, 1, 1)), primitives.box("b", (1, 1, 1))
     right.points = right.points + [1 + 1e-12, 0, 0]
     t = build_topology(mesh.merge([left, right]), {})
     assert len(t.pair_faces) == 1
@@ -72,12 +72,12 @@ def test_inverted_element_is_an_error():
 
 def test_polyhedra():
     corners = np.array(np.meshgrid([0, 1], [0, 2], [0, 3])).reshape(3, -1).T
-    block = mesh.polyhedron("a", corners)
+    block = primitives.polyhedron("a", corners)
     volume = reference_gradients("tet4", block.points[block.cells["tet4"]])[1].sum()
     assert volume == pytest.approx(6, rel=1e-12)
     np.testing.assert_allclose(block.points[-1], [0.5, 1, 1.5])
     with pytest.raises(MeshError, match="not convex"):
-        mesh.polyhedron("a", [*corners, [0.5, 1, 1.4]])
+        primitives.polyhedron("a", [*corners, [0.5, 1, 1.4]])
 
 
 @settings(max_examples=60, deadline=None)
@@ -104,9 +104,9 @@ def test_overlap_shares_area_and_centroid_exactly(dx, dy, angle, size):
 
 
 def test_nodes_of_a_large_block_lie_as_its_elements_come_to_them(monkeypatch):
-    box = mesh.box("a", (2, 1, 1), (4, 3, 3), shape="tet4")
+    box = primitives.box("a", (2, 1, 1), (4, 3, 3), shape="tet4")
     small = build_topology(box, {})
-    monkeypatch.setattr("cdem.topology.LARGE_BLOCK", 10)
+    monkeypatch.setattr("cdem.mesh.blocks.LARGE_BLOCK", 10)
     large = build_topology(box, {})
     seen = large.element_nodes["tet4"].ravel()
     _, first = np.unique(seen, return_index=True)

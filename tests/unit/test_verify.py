@@ -7,9 +7,9 @@ import math
 
 import pytest
 
-from cdem import verify
 from cdem.errors import CaseError
-from cdem.verify import Check, Problem
+from cdem.verification import runner
+from cdem.verification.runner import Check, Problem
 
 CASE = """\
 model: {blocks: [{group: cube, box: {size: [1, 1, 1]}}]}
@@ -54,7 +54,7 @@ def test_errors_are_relative_or_absolute():
 
 
 def test_shipped_problems_are_whole():
-    found = verify.problems()
+    found = runner.problems()
     assert len(found) >= 10
     for problem in found:
         assert problem.page.startswith("# ")
@@ -115,17 +115,17 @@ def test_wrong_names_and_reports(fall, cdem):
 def test_the_list_names_all(cdem):
     status, out, _ = cdem("verify", "--list")
     assert status == 0
-    assert [line.split()[0] for line in out.splitlines()] == [p.name for p in verify.problems()]
+    assert [line.split()[0] for line in out.splitlines()] == [p.name for p in runner.problems()]
 
 
 def test_a_manual_without_the_extra_says_what_is_missing(fall, cdem, monkeypatch):
-    from cdem import view
     from cdem.errors import CdemError
+    from cdem.verification import manual
 
     def missing(*_):
         raise CdemError("plots need matplotlib")
 
-    monkeypatch.setattr(view, "pyplot", missing)
+    monkeypatch.setattr(manual, "pyplot", missing)
     status, _, _ = cdem("verify", str(fall), "--report", "manual.html")
     assert status == 0
     assert "not drawn, plots need matplotlib" in (fall.parent / "manual.html").read_text()
