@@ -27,6 +27,7 @@ lint: setup
 	$(BIN)/ruff format --check src tests tools
 	$(BIN)/clang-format --dry-run -Werror $$(find core bindings -name '*.[hc]pp' -o -name '*.cu')
 	$(BIN)/python tools/layers.py
+	$(BIN)/python tools/words.py
 	$(BIN)/mypy src/cdem
 	$(BIN)/lizard -L 80 -C 26 -w core src/cdem
 	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md core bindings src tests docs tools
