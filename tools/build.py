@@ -52,7 +52,7 @@ def build(folder: Path, settings: dict[str, str], targets: list[str]) -> None:
 def place(folder: Path, module: str) -> None:
     """Copy modules that are not those in place; old ones of other instruction sets leave."""
     PLACE.mkdir(parents=True, exist_ok=True)
-    built = {path.name: path for path in folder.glob(f"{module}.*.so")}
+    built = {p.name: p for p in folder.glob(f"{module}.*.so") if "own_laws" not in p.name}
     for old in PLACE.glob("_core_*.so"):
         if old.name not in built:
             old.unlink()
@@ -75,7 +75,7 @@ def main() -> None:
     targets = [module] if wants.native or wants.coverage else ["all"]
     settings = {}
     if wants.tests or wants.coverage:
-        targets.append("core_tests")
+        targets += ["core_tests", "_core_own_laws"]
         settings["CDEM_TESTS"] = native()
     folder = ROOT / "build" / "core"
     if wants.coverage:
