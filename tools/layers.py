@@ -90,7 +90,9 @@ except CycleError as cycle:
     problems.append("units include each other: " + " -> ".join(cycle.args[1]))
 
 for path in sorted(Path("tests/core").rglob("test_*.cpp")):
-    mirrored = Path("core") / path.relative_to("tests/core").parent / path.stem.removeprefix("test_")
+    mirrored = (
+        Path("core") / path.relative_to("tests/core").parent / path.stem.removeprefix("test_")
+    )
     if not any(mirrored.parent.glob(f"{mirrored.name}.[hc]pp")):
         problems.append(f"{path} mirrors nothing: there is no {mirrored}.hpp or .cpp")
 
