@@ -53,8 +53,10 @@ lint: setup
 	$(BIN)/ruff format --check src tests tools
 	$(BIN)/clang-format --dry-run -Werror $(CPP)
 	$(BIN)/python tools/layers.py
+	$(BIN)/python tools/package_layers.py
+	$(BIN)/python tools/words.py
 	$(BIN)/mypy src/cdem
-	$(BIN)/lizard -L 80 -C 26 -w core src/cdem
+	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools
 	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md core bindings src tests docs tools
 
 format: setup

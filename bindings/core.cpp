@@ -6,13 +6,21 @@
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
 #include "core/base/device.hpp"
 #include "core/base/machine_limits.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/report.hpp"
+#include "core/interfaces/laws.hpp"
+#include "core/materials/laws.hpp"
 #include "core/model/describe.hpp"
+#include "core/model/describe_scalars.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
@@ -47,6 +55,10 @@ void take_model(Core& core, const nb::dict& arrays) {
     const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
     column.assign(array.data(), array.size());
   });
+  for_each_element_set(core.model, core.state,
+                       [](const auto& kind, ElementSet& e, const ElementState&) {
+                         e.points = kind.points;  // one where there are hourglass springs
+                       });
 }
 
 /// Views of the model's arrays; only until one of them is changed.
@@ -75,29 +87,18 @@ void take_counts(Core& core, const nb::dict& c) {
   m.edge_count = number("edges");
   m.class_count = number("interface_classes");
   m.corner_rows = number("corner_rows");
-  const auto elements = [&](const std::string& name, ElementSet& e, Index corners, Index points) {
-    e.corners = corners;
-    e.points = points;
-    e.count = number((name + ".count").c_str());
-    e.stride = padded_stride(e.count);
-    e.corner_first = number((name + ".corner_first").c_str());
-  };
-  elements("tet4", m.tet4, 4, 1);
-  elements("pyramid5", m.pyramid5, 5, 5);
-  elements("wedge6", m.wedge6, 6, 6);
-  elements("hex8", m.hex8, 8, 8);
-  const auto pairs = [&](const std::string& name, PairSet& p, Index points, Index corners) {
-    p.count = number((name + ".count").c_str());
-    p.stride = padded_stride(p.count);
-    p.points = points;
-    p.corners = corners;
-    p.corner_first = number((name + ".corner_first").c_str());
-    p.point_stride = p.stride;
-  };
-  pairs("triangles", m.triangles, 3, 3);
-  pairs("quads", m.quads, 4, 4);
-  pairs("overlaps", m.overlaps, 1, 8);
-  m.overlaps.point_stride = padded_stride(number("overlaps.points"));
+  for_each_set(m, core.state, [&](const auto& kind, auto& set, const auto&) {
+    const std::string name = kind.name;
+    set.count = number((name + ".count").c_str());
+    set.stride = padded_stride(set.count);
+    set.corners = kind.corners;
+    set.points = kind.points;
+    set.corner_first = number((name + ".corner_first").c_str());
+  });
+  for_each_pair_set(m, core.state, [&](const auto& kind, PairSet& p, const PairState&) {
+    const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
+    p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
+  });
 }
 
 nb::object state_fields(nb::handle_t<Core> self) {
@@ -115,47 +116,116 @@ void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
     const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
     column.assign(array.data(), array.size());
   });
-  State& s = core.state;
-  const auto real = [&](const char* name) { return nb::cast<Real>(scalars[name]); };
-  const auto whole = [&](const char* name) { return nb::cast<std::int64_t>(scalars[name]); };
-  s.time = real("time"), s.dt = real("dt"), s.dt_last = real("dt_last");
-  s.dt_stable = real("dt_stable");
-  s.step = whole("step"), s.rebuilds = whole("rebuilds"), s.built_step = whole("built_step");
-  s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
-  s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
-  s.relax_damping = real("relax_damping"), s.stop_due = whole("stop_due") != 0;
-  s.search.outer.lookahead_time = real("horizon"), s.search.outer.built_time = real("built_time");
-  s.search.outer.least_skin = real("skin_least");
-  s.ledger_started = whole("ledger_started") != 0;
+  describe_scalars(core.state, [&]<class T>(const ScalarInfo& info, T& number) {
+    number = nb::cast<T>(scalars[info.name]);
+  });
 }
 
-nb::dict scalars(const Core& core) {
-  const State& s = core.state;
-  nb::dict d;
-  d["time"] = s.time, d["dt"] = s.dt, d["dt_last"] = s.dt_last;
-  d["dt_stable"] = s.dt_stable;
-  d["step"] = s.step, d["rebuilds"] = s.rebuilds, d["built_step"] = s.built_step;
-  d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
-  d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
-  d["relax_damping"] = s.relax_damping, d["stop_due"] = std::int64_t(s.stop_due);
-  d["horizon"] = s.search.outer.lookahead_time, d["built_time"] = s.search.outer.built_time;
-  d["skin_least"] = s.search.outer.least_skin;
-  d["ledger_started"] = std::int64_t(s.ledger_started);
-  return d;
+nb::dict scalars(Core& core) {
+  nb::dict numbers;
+  describe_scalars(
+      core.state, [&](const ScalarInfo& info, const auto& number) { numbers[info.name] = number; });
+  return numbers;
 }
 
-void set_interfaces(Core& core, const std::vector<std::vector<Real>>& rows) {
+nb::list scalar_infos(Core& core) {
+  nb::list infos;
+  describe_scalars(core.state, [&](const ScalarInfo& info, const auto&) {
+    nb::dict one;
+    one["name"] = info.name, one["unit"] = info.unit, one["meaning"] = info.meaning;
+    infos.append(one);
+  });
+  return infos;
+}
+
+/// Numbers of a law's parameters in the order of its declaration, from a dict by name.
+template <class Law>
+std::vector<Real> parameters_of(const nb::dict& values) {
+  std::vector<Real> row;
+  for (const Parameter& p : Law::parameters) row.push_back(nb::cast<Real>(values[p.name]));
+  return row;
+}
+
+/// Call act.template operator()<Law, number>() for the law of this name.
+template <class Laws, class Act>
+void with_law(const std::string& name, const Act& act) {
+  bool found = false;
+  Laws::for_each([&]<template <class> class Law, Index number>() {
+    if (name != Law<Real>::text.name) return;
+    found = true;
+    act.template operator()<Law, number>();
+  });
+  if (!found) throw nb::value_error("unknown law");
+}
+
+/// Why parameters of a law, as the core takes them, contradict each other, or an empty text.
+template <class Laws>
+std::string contradiction(const std::string& law, const nb::dict& values) {
+  std::string why;
+  with_law<Laws>(law, [&]<template <class> class Law, Index>() {
+    const char* text = Law<Real>::contradiction(parameters_of<Law<Real>>(values).data());
+    if (text) why = text;
+  });
+  return why;
+}
+
+/// What the laws of a list say of themselves.
+template <class Laws>
+nb::list declarations() {
+  nb::list laws;
+  Laws::for_each([&]<template <class> class Law, Index>() {
+    nb::dict law;
+    law["name"] = Law<Real>::text.name;
+    law["meaning"] = Law<Real>::text.meaning;
+    law["flows"] = false;
+    if constexpr (requires { Law<Real>::inelastic; }) law["flows"] = Law<Real>::inelastic;
+    nb::list parameters, state;
+    for (const Parameter& p : Law<Real>::parameters) {
+      nb::dict d;
+      d["name"] = p.name, d["symbol"] = p.symbol;
+      d["unit"] = p.unit, d["meaning"] = p.meaning;
+      d["at_least"] = p.at_least;
+      d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
+      d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
+      d["is_tangent"] = p.form == Form::tangent;
+      d["is_strength"] = p.is_strength;
+      d["bonds"] = p.bonds;
+      parameters.append(d);
+    }
+    for (const StateVariable& v : Law<Real>::state) {
+      nb::dict d;
+      d["name"] = v.name, d["unit"] = v.unit, d["meaning"] = v.meaning;
+      state.append(d);
+    }
+    law["parameters"] = parameters;
+    law["state"] = state;
+    laws.append(law);
+  });
+  return laws;
+}
+
+/// The interfaces of the model: law, stiffness_n and stiffness_s as (value, factor), parameters.
+void set_interfaces(Core& core, const nb::list& interfaces) {
   Model& m = core.model;
-  m.interfaces.resize(rows.size());
+  constexpr std::size_t width = InterfaceLaws::most_parameters;
+  m.interfaces.resize(interfaces.size());
+  m.interface_parameters.resize(width * interfaces.size());
   m.rules.lifted = 0;
-  for (Column<Real>* column : {&m.cohesion, &m.tensile_strength, &m.tan_friction})
-    column->resize(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::vector<Real>& r = rows[i];
-    m.interfaces[i] = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4),
-                       r.at(5), r.at(6), r.at(7), r.at(8)};
-    m.rules.lifted = std::max(m.rules.lifted, 2 * r.at(8));
-    m.cohesion[i] = r[0], m.tensile_strength[i] = r[1], m.tan_friction[i] = r[2];
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
+    const auto entry = nb::cast<nb::dict>(interfaces[i]);
+    const auto stiffness = [&](const char* name) {
+      return nb::cast<std::tuple<Real, Real>>(entry[name]);
+    };
+    Interface& interface = m.interfaces[i];
+    std::tie(interface.stiffness_n_value, interface.stiffness_n_factor) = stiffness("stiffness_n");
+    std::tie(interface.stiffness_s_value, interface.stiffness_s_factor) = stiffness("stiffness_s");
+    const auto name = nb::cast<std::string>(entry["law"]);
+    with_law<InterfaceLaws>(name, [&]<template <class> class Law, Index number>() {
+      interface.law = number;
+      const auto row = parameters_of<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
+      std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
+      m.rules.lifted = std::max(m.rules.lifted, 2 * Law<Real>::rise_most(row.data()));
+    });
   }
 }
 
@@ -213,6 +283,30 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
+/// A term that is zero whatever happens is not told of.
+bool is_told(const EnergyTerm& term) { return any_law_flows || !term.needs_flow; }
+
+nb::dict energy_ledger(const Core& core) {
+  const Energies e = energies(core.model, core.state);
+  nb::dict ledger;
+  for (std::size_t k = 0; k < energy_term_count; ++k)
+    if (is_told(energy_terms[k])) ledger[energy_terms[k].name] = e.terms[k];
+  ledger["start"] = e.start, ledger["error"] = e.error;
+  return ledger;
+}
+
+nb::list energy_term_infos() {
+  static constexpr const char* kinds[] = {"stored", "lost", "supplied"};
+  nb::list infos;
+  for (const EnergyTerm& term : energy_terms) {
+    if (!is_told(term)) continue;
+    nb::dict one;
+    one["name"] = term.name, one["kind"] = kinds[int(term.kind)], one["meaning"] = term.meaning;
+    infos.append(one);
+  }
+  return infos;
+}
+
 }  // namespace
 }  // namespace cdem
 
@@ -220,7 +314,17 @@ NB_MODULE(CDEM_MODULE, module) {
   using namespace cdem;
   module.attr("lanes") = lanes;
   module.def("padded_stride", &padded_stride, "count"_a);
+  module.def("interface_laws", &declarations<InterfaceLaws>,
+             "What the interface laws say of themselves.");
+  module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
+  module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
+  module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
+  module.attr("block_law_parameters") = BlockLaws::most_parameters;
+  module.attr("interface_law_state") = InterfaceLaws::most_state;
+  module.attr("point_history") = point_history;
   module.def("device_name", &device_name);
+  module.def("energy_terms", &energy_term_infos,
+             "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,
              "Memory bandwidth of a triad over arrays of so many bytes together [B/s].");
@@ -234,7 +338,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("update_model", &update_model, "arrays"_a)
       .def("model", &model_arrays)
       .def("set_options", &set_options, "options"_a)
-      .def("set_interfaces", &set_interfaces, "rows"_a)
+      .def("set_interfaces", &set_interfaces, "interfaces"_a)
       .def("set_curves",
            [](Core& c, const std::vector<std::vector<Real>>& times,
               const std::vector<std::vector<Real>>& factors) {
@@ -261,6 +365,7 @@ NB_MODULE(CDEM_MODULE, module) {
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("fields", &state_fields)
       .def("scalars", &scalars)
+      .def("describe_scalars", &scalar_infos)
       .def(
           "run",
           [](Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
@@ -275,15 +380,7 @@ NB_MODULE(CDEM_MODULE, module) {
           },
           "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0, "check_interval"_a = 20,
           "relaxation"_a = "none")
-      .def("energies",
-           [](Core& c) {
-             const Energies e = energies(c.model, c.state);
-             nb::dict d;
-             d["kinetic"] = e.kinetic, d["strain"] = e.strain, d["contact"] = e.contact;
-             d["friction"] = e.friction, d["damping"] = e.damping, d["fracture"] = e.fracture;
-             d["external"] = e.external, d["start"] = e.start, d["error"] = e.error;
-             return d;
-           })
+      .def("energies", &energy_ledger)
       .def("seconds",
            [](const Core& c) {
              const Real* t = c.state.seconds;
@@ -305,10 +402,10 @@ NB_MODULE(CDEM_MODULE, module) {
              Core& c = nb::cast<Core&>(self);
              report_stress(c.model, c.state);
              nb::dict d;
-             d["tet4"] = view(c.state.tet4.stress, self);
-             d["pyramid5"] = view(c.state.pyramid5.stress, self);
-             d["wedge6"] = view(c.state.wedge6.stress, self);
-             d["hex8"] = view(c.state.hex8.stress, self);
+             for_each_element_set(c.model, c.state,
+                                  [&](const auto& kind, const ElementSet&, ElementState& es) {
+                                    d[kind.name] = view(es.stress, self);
+                                  });
              return d;
            })
       .def("adopt_overlaps",

@@ -8,9 +8,9 @@
 
 namespace cdem {
 
-/// Visit every array that Python hands over, by name; the shapes are in cdem/build.py.
+/// Masses of the nodes and the elements between them: part of `describe`.
 template <class Visit>
-void describe(Model& m, Visit&& field) {
+void describe_bodies(Model& m, Visit&& field) {
   field("node.block", m.node_block);
   field("node.place", m.node_place);
   field("node.mass", m.mass);
@@ -26,6 +26,8 @@ void describe(Model& m, Visit&& field) {
   field("mass.matrix", m.mass_matrix);
   field("material.lambda", m.material_lambda);
   field("material.mu", m.material_mu);
+  field("material.law", m.material_law);
+  field("material.parameters", m.material_parameters);
   const auto elements = [&](const char* shape, ElementSet& e) {
     const std::string name = std::string(shape) + ".";
     field(name + "nodes", e.nodes);
@@ -38,6 +40,11 @@ void describe(Model& m, Visit&& field) {
   elements("pyramid5", m.pyramid5);
   elements("wedge6", m.wedge6);
   elements("hex8", m.hex8);
+}
+
+/// Exterior faces and edges, and pairs of faces: part of `describe`.
+template <class Visit>
+void describe_surfaces(Model& m, Visit&& field) {
   field("face.nodes", m.face_nodes);
   field("face.edges", m.face_edges);
   field("face.interface_class", m.face_interface_class);
@@ -69,6 +76,13 @@ void describe(Model& m, Visit&& field) {
   pairs("triangles", m.triangles);
   pairs("quads", m.quads);
   pairs("overlaps", m.overlaps);
+}
+
+/// Visit every array that Python hands over, by name; the shapes are in cdem/build.py.
+template <class Visit>
+void describe(Model& m, Visit&& field) {
+  describe_bodies(m, field);
+  describe_surfaces(m, field);
   field("interface.of", m.interface_of);
   field("corner.first", m.corner_first);
   field("corner.row", m.corner);
@@ -118,24 +132,16 @@ void describe_search(S& search, Visit&& field) {
         "their position at the last, skin squared [m2], velocity foreseen, skin [m]");
 }
 
-/// Visit every array that must survive a restart, by name: checkpoint and Python views come from
-/// it.
+/// Elements and bonded pairs: part of `describe`.
 template <class S, class Visit>
-void describe(S& s, Visit&& field) {
-  field("node.motion", s.nodes.motion, "position [m], pad, velocity [m/s], pad");
-  field("node.work_external", s.nodes.work_external, "work of loads and supports [J]");
-  field("node.work_damping", s.nodes.work_damping, "work taken out by damping [J]");
-  field("node.reaction", s.nodes.reaction, "force of supports [N]");
-  field("node.relax", s.nodes.relax, "force and velocity of the last step, adaptive relaxation");
-  field("node.relax_mass", s.nodes.relax_mass, "scaled masses of adaptive relaxation [kg]");
-  field("node.bonded_node", s.nodes.bonded_node,
-        "label shared by nodes that intact bonds hold together");
-
+void describe_sets(S& s, Visit&& field) {
   const auto elements = [&](const char* shape, auto& e) {
     const std::string name = std::string(shape) + ".";
     field(name + "point_stress", e.point_stress, "stress at Gauss points [Pa]");
     field(name + "energy", e.energy, "stored energy [J]");
     field(name + "damping_work", e.damping_work, "work of the stiffness dashpot [J]");
+    field(name + "history", e.history, "inelastic strain and state of the laws at Gauss points");
+    field(name + "plastic_work", e.plastic_work, "work of inelastic strain [J]");
   };
   elements("tet4", s.tet4);
   elements("pyramid5", s.pyramid5);
@@ -155,11 +161,16 @@ void describe(S& s, Visit&& field) {
     field(name + "stored", p.stored, "elastic energy [J]");
     field(name + "fracture", p.fracture, "energy of fracture [J]");
     field(name + "friction", p.friction, "frictional work [J]");
+    field(name + "history", p.history, "what the laws of the bond points remember");
   };
   pairs("triangles", s.triangles);
   pairs("quads", s.quads);
   pairs("overlaps", s.overlaps);
+}
 
+/// Contacts of semi-springs and semi-edges: part of `describe`.
+template <class S, class Visit>
+void describe_contacts(S& s, Visit&& field) {
   field("spring.target", s.springs.target, "exposed face in contact, or -1");
   field("spring.target_before", s.springs.target_before, "the same, one step ago");
   field("spring.state", s.springs.state,
@@ -168,6 +179,9 @@ void describe(S& s, Visit&& field) {
   field("spring.dashpot", s.springs.dashpot, "work of the contact dashpot [J]");
   field("spring.reaction", s.springs.reaction, "force, stiffness, weights on the target");
   field("spring.lost", s.springs.lost, "1: lost by depth");
+  field("spring.history", s.springs.history.rows, "what the laws at the vertices remember");
+  field("spring.history_law", s.springs.history.law,
+        "number of the law whose history it is, or -1");
 
   field("edge.first", s.edges.first, "place of a face's first contact");
   field("edge.contact", s.edges.contact,
@@ -179,7 +193,25 @@ void describe(S& s, Visit&& field) {
   field("edge.friction", s.edges.friction, "frictional work [J]");
   field("edge.dashpot", s.edges.dashpot, "work of the contact dashpot [J]");
   field("edge.lost", s.edges.lost, "1: lost by depth");
+  field("edge.history", s.edges.side_history.rows, "what the laws at the sides remember");
+  field("edge.history_law", s.edges.side_history.law,
+        "number of the law whose history it is, or -1");
+}
 
+/// Visit every array that must survive a restart, by name: checkpoint and Python views come from
+/// it.
+template <class S, class Visit>
+void describe(S& s, Visit&& field) {
+  field("node.motion", s.nodes.motion, "position [m], pad, velocity [m/s], pad");
+  field("node.work_external", s.nodes.work_external, "work of loads and supports [J]");
+  field("node.work_damping", s.nodes.work_damping, "work taken out by damping [J]");
+  field("node.reaction", s.nodes.reaction, "force of supports [N]");
+  field("node.relax", s.nodes.relax, "force and velocity of the last step, adaptive relaxation");
+  field("node.relax_mass", s.nodes.relax_mass, "scaled masses of adaptive relaxation [kg]");
+  field("node.bonded_node", s.nodes.bonded_node,
+        "label shared by nodes that intact bonds hold together");
+  describe_sets(s, field);
+  describe_contacts(s, field);
   describe_search(s.search, field);
 }
 

@@ -9,9 +9,9 @@ from scenes import case
 from typer.testing import CliRunner
 
 from cdem.cli import app
-from cdem.criterion import Criterion
-from cdem.critical import find_critical, parameter, strength_reduction
 from cdem.errors import CaseError
+from cdem.study.criterion import Criterion
+from cdem.study.critical import find_critical, parameter, strength_reduction
 
 SLOPE = 30.0  # [deg]
 

@@ -6,7 +6,7 @@ import pytest
 from scenes import ROCK, simulate
 
 import cdem
-from cdem.mesh import box
+from cdem.mesh.primitives import box
 
 
 @pytest.mark.parametrize("hexahedra", ["full", "one-point"])

@@ -21,7 +21,7 @@ def spinning(shape, spin, **more):
 
 
 def volume(sim):
-    from cdem.shapes import NODES, reference_gradients
+    from cdem.mesh.element_shapes import NODES, reference_gradients
 
     x, t = sim.fields["position"], sim.build.topology
     return sum(reference_gradients(s, x[t.element_nodes[s]])[1].sum() for s in NODES)

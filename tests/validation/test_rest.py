@@ -6,7 +6,7 @@ from scenes import case, irregular_tets, simulate
 
 import cdem
 from cdem.errors import UnstableError
-from cdem.series import SurfaceSeries
+from cdem.output.reader import SurfaceSeries
 
 BOND = {"friction_angle": 30, "cohesion": "1 GPa", "tensile_strength": "1 GPa"}
 SLOPE = [{"group": "slope", "box": {"size": [22, 15, 16], "divisions": [22, 15, 16]}}]

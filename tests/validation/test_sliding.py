@@ -145,7 +145,7 @@ def test_crossed_contacts(kind):
 
 def test_a_slightly_uneven_bed_does_not_trip_the_block(monkeypatch):
     """Facets tilted by up to about 1 degree at random: the mean acceleration stays within 2 %."""
-    from cdem import build
+    from cdem.model import build
 
     flat = build.read_model
 
@@ -224,7 +224,7 @@ def test_a_bar_rides_a_ridge_that_begins_flat(monkeypatch):
     The bar was then deeper than contacts might begin, and its ends, each below the plane of the other side,
     touched nothing: it fell through the bed.
     """
-    from cdem import build
+    from cdem.model import build
 
     flat = build.read_model
 

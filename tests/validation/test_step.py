@@ -5,7 +5,7 @@ import pytest
 from scenes import irregular_tets, simulate
 
 from cdem.errors import UnstableError
-from cdem.shapes import mass_matrices, reference_gradients
+from cdem.mesh.element_shapes import mass_matrices, reference_gradients
 
 TET = [[0, 0, 0], [1, 0, 0], [0.2, 1.1, 0], [0.1, 0.2, 0.9]]
 SCENES = {

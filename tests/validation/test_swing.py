@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scenes import simulate
 
-from cdem.verify import problems
+from cdem.verification.runner import problems
 
 PROBLEM = problems(["swing"])[0].module  # pendulum, volume, and how the square is followed
 SIDE = PROBLEM.SIDE

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 LENGTH, SIDE = 10.0, 1.0  # [m]
 SPEED = 1e-3  # of the greatest motion at the start [m/s]
@@ -86,7 +86,7 @@ def frequency(simulation, kind):
 def mode(simulation, kind):
     """The surface when the motion is greatest, drawn as if it were 1 m at most."""
     simulation.run_until(simulation.time + 0.25 / theory(kind, simulation.case.materials["rock"]))
-    surface = view.snapshot(simulation)
+    surface = snapshot(simulation)
     drawn = surface.point_data["displacement"]
     drawn = drawn / np.linalg.norm(drawn, axis=1).max()
     surface.points, surface.point_data["displacement"] = surface.points + drawn, drawn

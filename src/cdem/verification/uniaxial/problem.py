@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.results import stress_of
+from cdem.output.render import snapshot
+from cdem.run.fields import stress_of
 from cdem.verification import plane
 
 HEIGHT, WIDTH, DEPTH = 2.0, 1.0, 0.5  # [m]
@@ -181,7 +181,7 @@ def run(study):
     study.curve("Strength of irregular specimens", "spacing [m]", "over Coulomb's [1]",
                 {".weakest bond, eight meshes": tuple(np.transpose(spread)),
                  ".cdem": tuple(np.transpose(found))})  # fmt: skip
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     press(simulation, 0.3)
-    shown.append(view.snapshot(simulation))
+    shown.append(snapshot(simulation))
     study.picture("The last of them just after its peak, and broken", *shown, field="damage")
