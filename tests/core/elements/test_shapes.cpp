@@ -74,7 +74,7 @@ TEST_CASE("hourglass springs let a cube of one point bend like a beam") {
   const Real inertia = std::pow(side, 4) / 12;
   CHECK(relative_error(0.5 * modes.stiffness * modes.square(),
                        0.5 * rock.young_modulus() * inertia * curvature * curvature * side) <
-        1e-12);
+        5e-13);
 }
 
 TEST_CASE("hourglass forces are the derivative of their energy") {
