@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
+#include <utility>
 #include <vector>
 
 #include "core/model/model.hpp"
@@ -29,8 +31,9 @@ class Scene {
 
   /// Make the model, and a state in which all stands still.
   void build();
-  /// The one interface; its stiffness is the stiffer side's modulus over its height.
-  void set_interface(Real cohesion, Real tensile_strength, Real tan_friction);
+  /// Parameters of the one interface by name, those that are not named being 0 (an angle is its
+  /// tangent). Its stiffness is the stiffer side's modulus over its height.
+  void set_interface(std::initializer_list<std::pair<const char*, Real>> parameters);
   /// Ready for steps.
   void start() { prepare(model, state); }
   void step(std::int64_t steps) { run(model, state, {.steps = steps}); }
