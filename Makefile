@@ -29,7 +29,7 @@ lint: setup
 	$(BIN)/python tools/layers.py
 	$(BIN)/python tools/package_layers.py
 	$(BIN)/mypy src/cdem
-	$(BIN)/lizard -L 80 -C 26 -w core src/cdem
+	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools
 	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md core bindings src tests docs tools
 
 format: setup
