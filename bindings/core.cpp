@@ -1,71 +1,30 @@
 // core.cpp - names and shapes for Python, and nothing else.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
+#include "bindings/arrays.hpp"
+#include "bindings/laws.hpp"
 #include "core/base/device.hpp"
 #include "core/base/machine_limits.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/report.hpp"
-#include "core/model/describe.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/run/run.hpp"
 
-namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace cdem {
 
-/// A model and its state: what one simulation holds.
-struct Core {
-  Model model;
-  State state;
-};
-
 namespace {
-
-template <class T>
-using Array = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
-
-template <class T>
-nb::object view(Column<T>& column, nb::handle owner) {
-  const std::size_t shape[1] = {column.size()};
-  return nb::cast(nb::ndarray<nb::numpy, T>(column.data(), 1, shape, owner));
-}
-
-/// Copy every array of the model from a dict of flat arrays; a missing one is our own mistake.
-void take_model(Core& core, const nb::dict& arrays) {
-  describe(core.model, [&]<class T>(const std::string& name, Column<T>& column) {
-    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
-    column.assign(array.data(), array.size());
-  });
-}
-
-/// Views of the model's arrays; only until one of them is changed.
-nb::object model_arrays(nb::handle_t<Core> self) {
-  nb::dict arrays;
-  describe(nb::cast<Core&>(self).model, [&]<class T>(const std::string& name, Column<T>& column) {
-    arrays[name.c_str()] = view(column, self);
-  });
-  return arrays;
-}
-
-/// Copy those arrays of the model that the dict holds: what a stage may change.
-void update_model(Core& core, const nb::dict& arrays) {
-  describe(core.model, [&]<class T>(const std::string& name, Column<T>& column) {
-    if (!arrays.contains(name.c_str())) return;
-    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
-    column.assign(array.data(), array.size());
-  });
-}
 
 void take_counts(Core& core, const nb::dict& c) {
   const auto number = [&](const char* name) { return nb::cast<Index>(c[name]); };
@@ -75,88 +34,18 @@ void take_counts(Core& core, const nb::dict& c) {
   m.edge_count = number("edges");
   m.class_count = number("interface_classes");
   m.corner_rows = number("corner_rows");
-  const auto elements = [&](const std::string& name, ElementSet& e, Index corners, Index points) {
-    e.corners = corners;
-    e.points = points;
-    e.count = number((name + ".count").c_str());
-    e.stride = padded_stride(e.count);
-    e.corner_first = number((name + ".corner_first").c_str());
-  };
-  elements("tet4", m.tet4, 4, 1);
-  elements("pyramid5", m.pyramid5, 5, 5);
-  elements("wedge6", m.wedge6, 6, 6);
-  elements("hex8", m.hex8, 8, 8);
-  const auto pairs = [&](const std::string& name, PairSet& p, Index points, Index corners) {
-    p.count = number((name + ".count").c_str());
-    p.stride = padded_stride(p.count);
-    p.points = points;
-    p.corners = corners;
-    p.corner_first = number((name + ".corner_first").c_str());
-    p.point_stride = p.stride;
-  };
-  pairs("triangles", m.triangles, 3, 3);
-  pairs("quads", m.quads, 4, 4);
-  pairs("overlaps", m.overlaps, 1, 8);
-  m.overlaps.point_stride = padded_stride(number("overlaps.points"));
-}
-
-nb::object state_fields(nb::handle_t<Core> self) {
-  Core& core = nb::cast<Core&>(self);
-  nb::dict fields;
-  describe(core.state, [&]<class T>(const std::string& name, Column<T>& column, const char*) {
-    fields[name.c_str()] = view(column, self);
+  for_each_set(m, core.state, [&](const auto& kind, auto& set, const auto&) {
+    const std::string name = kind.name;
+    set.count = number((name + ".count").c_str());
+    set.stride = padded_stride(set.count);
+    set.corners = kind.corners;
+    set.points = kind.points;
+    set.corner_first = number((name + ".corner_first").c_str());
   });
-  return fields;
-}
-
-/// Bring back every array and scalar of a checkpoint.
-void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
-  describe(core.state, [&]<class T>(const std::string& name, Column<T>& column, const char*) {
-    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
-    column.assign(array.data(), array.size());
+  for_each_pair_set(m, core.state, [&](const auto& kind, PairSet& p, const PairState&) {
+    const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
+    p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
   });
-  State& s = core.state;
-  const auto real = [&](const char* name) { return nb::cast<Real>(scalars[name]); };
-  const auto whole = [&](const char* name) { return nb::cast<std::int64_t>(scalars[name]); };
-  s.time = real("time"), s.dt = real("dt"), s.dt_last = real("dt_last");
-  s.dt_stable = real("dt_stable");
-  s.step = whole("step"), s.rebuilds = whole("rebuilds"), s.built_step = whole("built_step");
-  s.energy_start = real("energy_start"), s.energy_scale = real("energy_scale");
-  s.stopped_energy = real("stopped_energy"), s.kinetic_peak = real("kinetic_peak");
-  s.relax_damping = real("relax_damping"), s.stop_due = whole("stop_due") != 0;
-  s.search.outer.lookahead_time = real("horizon"), s.search.outer.built_time = real("built_time");
-  s.search.outer.least_skin = real("skin_least");
-  s.ledger_started = whole("ledger_started") != 0;
-}
-
-nb::dict scalars(const Core& core) {
-  const State& s = core.state;
-  nb::dict d;
-  d["time"] = s.time, d["dt"] = s.dt, d["dt_last"] = s.dt_last;
-  d["dt_stable"] = s.dt_stable;
-  d["step"] = s.step, d["rebuilds"] = s.rebuilds, d["built_step"] = s.built_step;
-  d["energy_start"] = s.energy_start, d["energy_scale"] = s.energy_scale;
-  d["stopped_energy"] = s.stopped_energy, d["kinetic_peak"] = s.kinetic_peak;
-  d["relax_damping"] = s.relax_damping, d["stop_due"] = std::int64_t(s.stop_due);
-  d["horizon"] = s.search.outer.lookahead_time, d["built_time"] = s.search.outer.built_time;
-  d["skin_least"] = s.search.outer.least_skin;
-  d["ledger_started"] = std::int64_t(s.ledger_started);
-  return d;
-}
-
-void set_interfaces(Core& core, const std::vector<std::vector<Real>>& rows) {
-  Model& m = core.model;
-  m.interfaces.resize(rows.size());
-  m.rules.lifted = 0;
-  for (Column<Real>* column : {&m.cohesion, &m.tensile_strength, &m.tan_friction})
-    column->resize(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::vector<Real>& r = rows[i];
-    m.interfaces[i] = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4),
-                       r.at(5), r.at(6), r.at(7), r.at(8)};
-    m.rules.lifted = std::max(m.rules.lifted, 2 * r.at(8));
-    m.cohesion[i] = r[0], m.tensile_strength[i] = r[1], m.tan_friction[i] = r[2];
-  }
 }
 
 Formulation formulation(const std::string& name) {
@@ -213,6 +102,136 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
+/// A term that is zero whatever happens is not told of.
+bool is_told(const EnergyTerm& term) { return any_law_flows || !term.needs_flow; }
+
+nb::dict energy_ledger(const Core& core) {
+  const Energies e = energies(core.model, core.state);
+  nb::dict ledger;
+  for (std::size_t k = 0; k < energy_term_count; ++k)
+    if (is_told(energy_terms[k])) ledger[energy_terms[k].name] = e.terms[k];
+  ledger["start"] = e.start, ledger["error"] = e.error;
+  return ledger;
+}
+
+nb::list energy_term_infos() {
+  static constexpr const char* kinds[] = {"stored", "lost", "supplied"};
+  nb::list infos;
+  for (const EnergyTerm& term : energy_terms) {
+    if (!is_told(term)) continue;
+    nb::dict one;
+    one["name"] = term.name, one["kind"] = kinds[int(term.kind)], one["meaning"] = term.meaning;
+    infos.append(one);
+  }
+  return infos;
+}
+
+void set_curves(Core& c, const std::vector<std::vector<Real>>& times,
+                const std::vector<std::vector<Real>>& factors) {
+  c.model.curve_time = times;
+  c.model.curve_factor = factors;
+  set_loads_and_supports(c.model, c.state);
+}
+
+void set_gravity(Core& c, const std::vector<Real>& g) {
+  c.model.gravity = {g.at(0), g.at(1), g.at(2)};
+}
+
+void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
+  c.model.damping = {local, mass};
+  c.model.stiffness_damping = stiffness;
+  c.model.contact_damping = contact;
+}
+
+auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
+              std::int64_t check_interval, const std::string& way) {
+  const Goal goal{.steps = steps,
+                  .end_time = end_time,
+                  .unbalance_limit = unbalance_limit,
+                  .check_interval = check_interval,
+                  .relaxation = relaxation(way)};
+  Report r;
+  {
+    nb::gil_scoped_release release;
+    r = run(c.model, c.state, goal);
+  }
+  return std::make_tuple(std::string(name_of(r.outcome)), r.culprit, r.value);
+}
+
+/// Mean stress of all elements by shape.
+nb::dict stress(nb::handle_t<Core> self) {
+  Core& c = nb::cast<Core&>(self);
+  report_stress(c.model, c.state);
+  nb::dict tables;
+  for_each_element_set(c.model, c.state,
+                       [&](const auto& kind, const ElementSet&, ElementState& es) {
+                         tables[kind.name] = view(es.stress, self);
+                       });
+  return tables;
+}
+
+/// What is handed over and set before a run.
+void bind_setup(nb::class_<Core>& core) {
+  core.def("take_counts", &take_counts, "counts"_a)
+      .def("take_model", &take_model, "arrays"_a)
+      .def("update_model", &update_model, "arrays"_a)
+      .def("set_options", &set_options, "options"_a)
+      .def("set_interfaces", &set_interfaces, "interfaces"_a)
+      .def("set_curves", &set_curves)
+      .def("set_gravity", &set_gravity)
+      .def("set_damping", &set_damping)
+      .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
+      .def("start",
+           [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
+      .def("restore", &restore)
+      .def("prepare", [](Core& c) { prepare(c.model, c.state); })
+      .def("adopt_overlaps", [](Core& c) {
+        const InitialOverlaps found = adopt_overlaps(c.model, c.state);
+        return std::make_tuple(found.deepest, found.count, found.face);
+      });
+}
+
+/// The loop, and what changes between two runs of it.
+void bind_run(nb::class_<Core>& core) {
+  core.def("run", &run_core, "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0,
+           "check_interval"_a = 20, "relaxation"_a = "none")
+      .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
+      .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
+      .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
+}
+
+/// Views of arrays, and what they hold.
+void bind_views(nb::class_<Core>& core) {
+  core.def("model", &model_arrays)
+      .def("fields", &stored_arrays)
+      .def("rebuilt", &rebuilt_arrays)
+      .def("scalars", &scalars)
+      .def("describe", &describe_arrays)
+      .def("describe_rows", &describe_row_kinds)
+      .def("describe_scalars", &scalar_infos)
+      .def("node_force",
+           [](nb::handle_t<Core> self) {
+             return view(nb::cast<Core&>(self).state.nodes.force, self);
+           })
+      .def("stress", &stress);
+}
+
+/// What is worked out from the state.
+void bind_diagnostics(nb::class_<Core>& core) {
+  core.def("energies", &energy_ledger)
+      .def("seconds",
+           [](const Core& c) {
+             const Real* t = c.state.seconds;
+             return std::make_tuple(t[0], t[1], t[2], t[3], t[4]);
+           })
+      .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
+      .def("step_limit", [](const Core& c) {
+        const StepLimit l = step_limit(c.model, c.state);
+        return std::make_tuple(l.dt, l.node, l.element_frequency_squared,
+                               l.contact_frequency_squared);
+      });
+}
+
 }  // namespace
 }  // namespace cdem
 
@@ -220,101 +239,27 @@ NB_MODULE(CDEM_MODULE, module) {
   using namespace cdem;
   module.attr("lanes") = lanes;
   module.def("padded_stride", &padded_stride, "count"_a);
+  module.def("interface_laws", &declarations<InterfaceLaws>,
+             "What the interface laws say of themselves.");
+  module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
+  module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
+  module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
+  module.attr("block_law_parameters") = BlockLaws::most_parameters;
+  module.attr("interface_law_state") = InterfaceLaws::most_state;
+  module.attr("point_history") = point_history;
   module.def("device_name", &device_name);
+  module.def("energy_terms", &energy_term_infos,
+             "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,
              "Memory bandwidth of a triad over arrays of so many bytes together [B/s].");
   module.def("measure_flops", &measure_flops, "Peak rate of fused multiply-adds [flop/s].");
   module.def("max_threads", [] { return omp_get_max_threads(); });
 
-  nb::class_<Core>(module, "Core")
-      .def(nb::init<>())
-      .def("take_counts", &take_counts, "counts"_a)
-      .def("take_model", &take_model, "arrays"_a)
-      .def("update_model", &update_model, "arrays"_a)
-      .def("model", &model_arrays)
-      .def("set_options", &set_options, "options"_a)
-      .def("set_interfaces", &set_interfaces, "rows"_a)
-      .def("set_curves",
-           [](Core& c, const std::vector<std::vector<Real>>& times,
-              const std::vector<std::vector<Real>>& factors) {
-             c.model.curve_time = times;
-             c.model.curve_factor = factors;
-             set_loads_and_supports(c.model, c.state);
-           })
-      .def("set_gravity",
-           [](Core& c, const std::vector<Real>& g) {
-             c.model.gravity = {g.at(0), g.at(1), g.at(2)};
-           })
-      .def("set_damping",
-           [](Core& c, Real local, Real mass, Real stiffness, Real contact) {
-             c.model.damping = {local, mass};
-             c.model.stiffness_damping = stiffness;
-             c.model.contact_damping = contact;
-           })
-      .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
-      .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
-      .def("start",
-           [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
-      .def("restore", &restore)
-      .def("prepare", [](Core& c) { prepare(c.model, c.state); })
-      .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
-      .def("fields", &state_fields)
-      .def("scalars", &scalars)
-      .def(
-          "run",
-          [](Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
-             std::int64_t check_interval, const std::string& way) {
-            const Relaxation relax = relaxation(way);
-            Report r;
-            {
-              nb::gil_scoped_release release;
-              r = run(c.model, c.state, {steps, end_time, unbalance_limit, check_interval, relax});
-            }
-            return std::make_tuple(std::string(name_of(r.outcome)), r.culprit, r.value);
-          },
-          "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0, "check_interval"_a = 20,
-          "relaxation"_a = "none")
-      .def("energies",
-           [](Core& c) {
-             const Energies e = energies(c.model, c.state);
-             nb::dict d;
-             d["kinetic"] = e.kinetic, d["strain"] = e.strain, d["contact"] = e.contact;
-             d["friction"] = e.friction, d["damping"] = e.damping, d["fracture"] = e.fracture;
-             d["external"] = e.external, d["start"] = e.start, d["error"] = e.error;
-             return d;
-           })
-      .def("seconds",
-           [](const Core& c) {
-             const Real* t = c.state.seconds;
-             return std::make_tuple(t[0], t[1], t[2], t[3], t[4]);
-           })
-      .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
-      .def("step_limit",
-           [](const Core& c) {
-             const StepLimit l = step_limit(c.model, c.state);
-             return std::make_tuple(l.dt, l.node, l.element_frequency_squared,
-                                    l.contact_frequency_squared);
-           })
-      .def("node_force",
-           [](nb::handle_t<Core> self) {
-             return view(nb::cast<Core&>(self).state.nodes.force, self);
-           })
-      .def("stress",
-           [](nb::handle_t<Core> self) {
-             Core& c = nb::cast<Core&>(self);
-             report_stress(c.model, c.state);
-             nb::dict d;
-             d["tet4"] = view(c.state.tet4.stress, self);
-             d["pyramid5"] = view(c.state.pyramid5.stress, self);
-             d["wedge6"] = view(c.state.wedge6.stress, self);
-             d["hex8"] = view(c.state.hex8.stress, self);
-             return d;
-           })
-      .def("adopt_overlaps",
-           [](Core& c) {
-             const InitialOverlaps found = adopt_overlaps(c.model, c.state);
-             return std::make_tuple(found.deepest, found.count, found.face);
-           })
-      .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
+  nb::class_<Core> core(module, "Core");
+  core.def(nb::init<>());
+  bind_setup(core);
+  bind_run(core);
+  bind_views(core);
+  bind_diagnostics(core);
 }

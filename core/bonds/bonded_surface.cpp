@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/reduce.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -15,12 +16,10 @@ namespace {
 /// Visit the conforming pairs that are still live.
 template <class Visit>
 void for_live_pairs(const Model& m, const State& s, Visit&& visit) {
-  const auto all = [&](const PairSet& p, const PairState& ps) {
-    for (Index i = 0; i < p.count; ++i)
-      if (ps.live[i] > 0) visit(p, ps, i);
-  };
-  all(m.triangles, s.triangles);
-  all(m.quads, s.quads);
+  for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
+    for (Index i = 0; conforms(p) && i < p.count; ++i)
+      if (is_active(ps, i)) visit(p, ps, i);
+  });
 }
 
 void join_nodes(const Model& m, State& s) {
@@ -120,16 +119,20 @@ void find_across(const Model& m, State& s) {
     }
 }
 
-/// How many bond points are intact.
-Real bonded_points(const PairState& ps) {
-  return ordered_sum(Index(ps.bond.size()), [&](Index i) { return ps.bond[i]; });
+/// How many bond points of conforming pairs are intact.
+Real bonded_points(const Model& m, const State& s) {
+  Real sum = 0;
+  for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
+    if (conforms(p)) sum += ordered_sum(Index(ps.bond.size()), [&](Index i) { return ps.bond[i]; });
+  });
+  return sum;
 }
 
 }  // namespace
 
 void join_surfaces(const Model& m, State& s, bool released) {
   const Index faces = Index(s.search.exposed_face.size());
-  const Real points = bonded_points(s.triangles) + bonded_points(s.quads);
+  const Real points = bonded_points(m, s);
   if (!released && faces == s.search.joined_faces && points == s.search.joined_points) return;
   s.search.joined_faces = faces;
   s.search.joined_points = points;

@@ -5,41 +5,54 @@
 #include "core/bonds/views.hpp"
 #include "core/contact/geometry/views.hpp"
 #include "core/model/block_lists.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/phase_timer.hpp"
 
 namespace cdem {
 
 namespace {
 
+/// Is the energy of pairs wanted that are intact?
+bool wants_energy(const StepPlan& plan) { return plan.sample || plan.everything_awake; }
+
+OutForces corner_forces(State& s, const PairSet& p) {
+  return {s.corner_force.data() + std::size_t(p.corner_first) * 4};
+}
+
 template <Index count>
-void update_conforming(const Model& m, State& s, Queue q, const PairSet& p, PairState& ps,
-                       Real indentation, const StepPlan& plan) {
+void update_bonds(PairKind<ConformingBonds<count>>, const Model& m, State& s, Queue q,
+                  const StepPlan& plan, const PairSet& p, PairState& ps) {
+  const Real indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad;
   for_each_lane(q, p.count, awake(plan, ps.awake),
-                ConformingBonds<count>{{s.nodes.motion.data()},
-                                       {p.nodes.data(), p.stride},
-                                       pair_columns(m, p, ps),
-                                       indentation,
-                                       s.dt_last,
-                                       plan.sample || plan.everything_awake,
-                                       {s.corner_force.data() + std::size_t(p.corner_first) * 4}});
+                ConformingBonds<count>{.nodes = {s.nodes.motion.data()},
+                                       .pair_nodes = {p.nodes.data(), p.stride},
+                                       .pairs = pair_columns(m, p, ps),
+                                       .indentation = indentation,
+                                       .dt = s.dt_last,
+                                       .sampled = wants_energy(plan),
+                                       .corner_force = corner_forces(s, p)});
+}
+
+void update_bonds(PairKind<OverlapBonds>, const Model& m, State& s, Queue q, const StepPlan& plan,
+                  const PairSet& p, PairState& ps) {
+  for_each_item(q, p.count, awake(plan, ps.awake),
+                OverlapBonds{.faces = face_columns(m, s),
+                             .pair_faces = p.faces.data(),
+                             .point_first = p.point_first.data(),
+                             .weights_a = p.weights_a.data(),
+                             .weights_b = p.weights_b.data(),
+                             .point_area = p.point_area.data(),
+                             .pairs = pair_columns(m, p, ps),
+                             .corner_force = corner_forces(s, p)});
 }
 
 }  // namespace
 
 void update_bond_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
   const PhaseTimer timer(s, Phase::contact);
-  update_conforming<3>(m, s, q, m.triangles, s.triangles, m.bond_indentation_triangle, plan);
-  update_conforming<4>(m, s, q, m.quads, s.quads, m.bond_indentation_quad, plan);
-  const PairSet& p = m.overlaps;
-  for_each_item(q, p.count, awake(plan, s.overlaps.awake),
-                OverlapBonds{face_columns(m, s),
-                             p.faces.data(),
-                             p.point_first.data(),
-                             p.weights_a.data(),
-                             p.weights_b.data(),
-                             p.point_area.data(),
-                             pair_columns(m, p, s.overlaps),
-                             {s.corner_force.data() + std::size_t(p.corner_first) * 4}});
+  for_each_pair_set(m, s, [&](auto kind, const PairSet& p, PairState& ps) {
+    update_bonds(kind, m, s, q, plan, p, ps);
+  });
 }
 
 }  // namespace cdem

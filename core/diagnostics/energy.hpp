@@ -3,13 +3,13 @@
 
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
+#include "core/records/energy_terms.hpp"
 
 namespace cdem {
 
-/// Energies at the time of the last sampled forces  [J]. Lost and stored energy count positive.
+/// Energies at the time of the last sampled forces  [J]. All terms count positive.
 struct Energies {
-  Real kinetic = 0, strain = 0, contact = 0;
-  Real friction = 0, damping = 0, fracture = 0, external = 0;
+  Real terms[energy_term_count] = {};
   Real start = 0;  // stored and kinetic energy when the ledger was opened
   Real error = 0;  // what does not close, as a fraction of the largest term so far
 };

@@ -6,6 +6,7 @@
 #include "core/elements/incremental.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/phase_timer.hpp"
 
 namespace cdem {
@@ -19,16 +20,17 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const OutForces out{s.corner_force.data() + std::size_t(e.corner_first) * 4};
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
+  const PointFlow<Shape> flow = point_flow<Shape>(s, e, es);
   const Real damping_time = m.stiffness_damping * s.dt;
   switch (m.formulation) {
     case Formulation::corotational:
       return for_each_lane(
           q, e.count, some,
-          CorotationalForce<Shape, FollowRotation>{columns, damping_time, s.dt, work, out});
+          CorotationalForce<Shape, FollowRotation>{columns, damping_time, s.dt, work, flow, out});
     case Formulation::paper_total:
       return for_each_lane(
           q, e.count, some,
-          CorotationalForce<Shape, IgnoreRotation>{columns, damping_time, s.dt, work, out});
+          CorotationalForce<Shape, IgnoreRotation>{columns, damping_time, s.dt, work, flow, out});
     case Formulation::incremental:
       return for_each_lane(
           q, e.count, some,
@@ -45,16 +47,11 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
 void update_element_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
   const PhaseTimer timer(s, Phase::element);
   const bool fuses = fuses_blocks(s, plan);
-  const auto others = [&](const ElementState& es) {
-    return awake(plan, fuses ? es.fused.general : es.awake);
-  };
-  update_elements<Tet4>(m, s, q, m.tet4, s.tet4, others(s.tet4));
-  update_elements<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5, awake(plan, s.pyramid5.awake));
-  update_elements<Wedge6>(m, s, q, m.wedge6, s.wedge6, awake(plan, s.wedge6.awake));
-  if (m.hex8.hourglass.size() > 0)
-    update_elements<Hex8OnePoint>(m, s, q, m.hex8, s.hex8, others(s.hex8));
-  else
-    update_elements<Hex8>(m, s, q, m.hex8, s.hex8, others(s.hex8));
+  for_each_element_set(m, s,
+                       [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
+                         const Blocks some = awake(plan, fuses ? es.fused.general : es.awake);
+                         update_elements<Shape>(m, s, q, e, es, some);
+                       });
 }
 
 }  // namespace cdem

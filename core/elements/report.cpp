@@ -7,6 +7,7 @@
 #include "core/base/parallel.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/views.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -17,7 +18,8 @@ void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementS
   for_each_lane(q, e.count,
                 CorotationalReport<Shape, Rotation>{element_columns<Shape>(m, s, e),
                                                     {es.stress.data(), e.stride},
-                                                    {es.energy.data(), e.stride}});
+                                                    {es.energy.data(), e.stride},
+                                                    point_flow<Shape>(s, e, es)});
 }
 
 /// Mean over the Gauss points of the stress that the incremental forms keep.
@@ -51,24 +53,25 @@ void report_shape(const Model& m, State& s, Queue q, const ElementSet& e, Elemen
 
 /// Stress and strain energy of every element where the nodes are now.
 void report_elements(const Model& m, State& s, Queue q) {
-  report_shape<Tet4>(m, s, q, m.tet4, s.tet4);
-  report_shape<Pyramid5>(m, s, q, m.pyramid5, s.pyramid5);
-  report_shape<Wedge6>(m, s, q, m.wedge6, s.wedge6);
-  if (m.hex8.hourglass.size() > 0)
-    report_shape<Hex8OnePoint>(m, s, q, m.hex8, s.hex8);
-  else
-    report_shape<Hex8>(m, s, q, m.hex8, s.hex8);
+  for_each_element_set(m, s,
+                       [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
+                         report_shape<Shape>(m, s, q, e, es);
+                       });
   finish(q);
 }
 
 void report_stress(const Model& m, State& s) {
-  ElementState* sets[] = {&s.tet4, &s.pyramid5, &s.wedge6, &s.hex8};
   // the ledger's strain energy belongs to the last sampled step, the stress to where nodes are now
-  std::vector<Real> energy[4];
-  for (int k = 0; k < 4; ++k)
-    energy[k].assign(sets[k]->energy.data(), sets[k]->energy.data() + sets[k]->energy.size());
+  std::vector<std::vector<Real>> energy;
+  for_each_element_set(m, s, [&](auto, const ElementSet&, const ElementState& es) {
+    energy.emplace_back(es.energy.data(), es.energy.data() + es.energy.size());
+  });
   report_elements(m, s, {});
-  for (int k = 0; k < 4; ++k) std::copy(energy[k].begin(), energy[k].end(), sets[k]->energy.data());
+  auto before = energy.begin();
+  for_each_element_set(m, s, [&](auto, const ElementSet&, ElementState& es) {
+    std::copy(before->begin(), before->end(), es.energy.data());
+    ++before;
+  });
 }
 
 }  // namespace cdem

@@ -12,8 +12,8 @@ template <class Test>
 void list_blocks(Index count, Column<Index>& list, Test&& is_awake) {
   list.resize(0);
   for (Index first = 0; first < count; first += block_size) {
-    bool any = false;  // every item must be asked: the test takes notes
-    for (Index i = first; i < first + block_size && i < count; ++i) any = is_awake(i) || any;
+    bool any = false;
+    for (Index i = first; !any && i < first + block_size && i < count; ++i) any = is_awake(i);
     if (any) list.push(first / block_size);
   }
 }

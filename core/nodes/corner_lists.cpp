@@ -4,18 +4,19 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/model/force_sets.hpp"
+
 namespace cdem {
 
 void list_corners(const Model& m, State& s) {
   std::vector<Flag> released(m.corner_rows);
-  const auto mark = [&](const PairSet& p, const PairState& ps) {
-    for (Index i = 0; i < p.count; ++i)
-      if (!(ps.live[i] > 0))
-        std::fill_n(released.begin() + p.corner_first + i * p.corners, p.corners, Flag(1));
-  };
-  mark(m.triangles, s.triangles);
-  mark(m.quads, s.quads);
-  mark(m.overlaps, s.overlaps);
+  for_each_set(m, s, [&](auto, const auto& set, const auto& state) {
+    for (Index i = 0; i < set.count; ++i) {
+      const Range rows = corner_rows(set, i);
+      if (!is_active(state, i))
+        std::fill(released.begin() + rows.first, released.begin() + rows.last, Flag(1));
+    }
+  });
   Column<Index>&first = s.nodes.corner_first, &corner = s.nodes.corner;
   first.resize(m.node_count + 1);
   corner.resize(0);

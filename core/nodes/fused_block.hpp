@@ -25,11 +25,16 @@ struct FusedRows {
   }
 };
 
+/// Elements of these shapes have a fused kernel: it reads and writes their nodes by fours.
+template <class Shape>
+inline constexpr bool has_fused_kernel = Shape::nodes % 4 == 0;
+
 /// Force and motion of blocks of one element that no load, support, contact or damping knows of: no
 /// other block reads or writes their nodes in this pass, so nothing is stored in between. The
 /// arithmetic is that of SumNodeForces and MoveNodes.
 template <class Shape>
 struct AdvanceFused {
+  static_assert(has_fused_kernel<Shape>);
   static constexpr Index count = Shape::nodes;
   CorotationalForce<Shape, FollowRotation> element;
   FusedRows rows;

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "core/model/force_sets.hpp"
+#include "core/nodes/fused_block.hpp"
 
 namespace cdem {
 
@@ -15,7 +17,8 @@ struct Elements {
   const Model& m;
   const State& s;
   const ElementSet& e;
-  Index corners;
+  Index corners = e.corners;
+  Index rows_of_elements = element_row_count(m, s);  // those of bonds follow
 
   Index first_node(Index i) const { return e.nodes[i]; }
   /// The rows of bonds that a node sums: all after the one of its element.
@@ -56,14 +59,14 @@ struct Elements {
   }
 
  private:
-  bool is_of_element(Index row) const { return row >= 0 && row < m.triangles.corner_first; }
+  bool is_of_element(Index row) const { return row >= 0 && row < rows_of_elements; }
 };
 
 /// List what the nodes of free blocks sum, see FusedRows.
 void list_rows(const Elements& of, FusedBlocks& fused) {
   const State& s = of.s;
   Column<Index>&first = fused.row_first, &rows = fused.row;
-  first.resize(of.e.count / block_size + 2);
+  first.resize((of.e.count + block_size - 1) / block_size + 1);
   first.fill(0);
   for (std::size_t b = 0; b < fused.blocks.size(); ++b) {
     Index most = 0;
@@ -88,10 +91,9 @@ void list_rows(const Elements& of, FusedBlocks& fused) {
   }
 }
 
-void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementState& es,
-                         Index corners) {
+void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementState& es) {
   FusedBlocks& fused = es.fused;
-  const Elements of{m, s, e, corners};
+  const Elements of{m, s, e};
   const Index count = Index(es.awake.size());
   std::vector<Flag> are_fused(count);
 #pragma omp parallel for schedule(static) if (count * block_size >= worth_threads)
@@ -115,8 +117,13 @@ void find_fused_blocks(const Model& m, State& s) {
   NodeState& nodes = s.nodes;
   nodes.fused.resize(0);
   if (m.lumped || m.formulation != Formulation::corotational) return;
-  find_fused_elements(m, s, m.tet4, s.tet4, 4);
-  find_fused_elements(m, s, m.hex8, s.hex8, 8);
+  for_each_element_set(m, s,
+                       [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
+                         if constexpr (has_fused_kernel<Shape>)
+                           find_fused_elements(m, s, e, es);
+                         else
+                           es.fused.general.assign(es.awake.data(), es.awake.size());
+                       });
   if (nodes.fused.size() == 0) return;
   nodes.general.resize(0);
   for (std::size_t b = 0; b < nodes.awake.size(); ++b) {

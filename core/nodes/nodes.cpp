@@ -6,6 +6,7 @@
 #include "core/elements/report.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/phase_timer.hpp"
 #include "core/nodes/central_difference.hpp"
 #include "core/nodes/fused_block.hpp"
@@ -26,11 +27,13 @@ template <class Shape>
 void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
                    ElementState& es) {
   const FusedBlocks& fused = es.fused;
-  const CorotationalForce<Shape, FollowRotation> element{element_columns<Shape>(m, s, e),
-                                                         m.stiffness_damping * s.dt,
-                                                         s.dt,
-                                                         {es.damping_work.data(), e.stride},
-                                                         {}};
+  const CorotationalForce<Shape, FollowRotation> element{
+      .columns = element_columns<Shape>(m, s, e),
+      .damping_time = m.stiffness_damping * s.dt,
+      .dt = s.dt,
+      .damping_work = {es.damping_work.data(), e.stride},
+      .flow = point_flow<Shape>(s, e, es),
+      .corner_force = {}};
   for_each_lane(q, e.count, awake(plan, fused.blocks),
                 AdvanceFused<Shape>{element,
                                     {fused.row_first.data(), fused.row.data()},
@@ -44,11 +47,11 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
 }
 
 void advance_fused_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
-  advance_fused<Tet4>(m, s, q, plan, m.tet4, s.tet4);
-  if (m.hex8.hourglass.size() > 0)
-    advance_fused<Hex8OnePoint>(m, s, q, plan, m.hex8, s.hex8);
-  else
-    advance_fused<Hex8>(m, s, q, plan, m.hex8, s.hex8);
+  for_each_element_set(m, s,
+                       [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
+                         if constexpr (has_fused_kernel<Shape>)
+                           advance_fused<Shape>(m, s, q, plan, e, es);
+                       });
 }
 
 SumNodeForces node_forces(const Model& m, State& s, bool sampled) {

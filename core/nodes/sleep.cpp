@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/block_lists.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/nodes/fused_blocks.hpp"
 
 namespace cdem {
@@ -26,34 +27,13 @@ bool is_fixed(const Model& m, const State& s, Index node) {
 void find_awake(const Model& m, State& s) {
   std::vector<Flag> fixed(m.node_count), pulled(m.node_count);
   for (Index i = 0; i < m.node_count; ++i) fixed[i] = is_fixed(m, s, i);
-  /// Is one of the item's nodes free? Then all are pulled.
-  const auto note = [&](Index corners, auto&& node) {
-    bool moves = false;
-    for (Index k = 0; k < corners; ++k) moves = moves || !fixed[node(k)];
-    for (Index k = 0; moves && k < corners; ++k) pulled[node(k)] = 1;
-    return moves;
-  };
-  const auto elements = [&](const ElementSet& e, ElementState& es, Index corners) {
-    list_blocks(e.count, es.awake, [&](Index i) {
-      return note(corners, [&](Index k) { return e.nodes[std::size_t(k) * e.stride + i]; });
-    });
-  };
-  elements(m.tet4, s.tet4, 4);
-  elements(m.pyramid5, s.pyramid5, 5);
-  elements(m.wedge6, s.wedge6, 6);
-  elements(m.hex8, s.hex8, 8);
-  const auto pairs = [&](const PairSet& p, PairState& ps) {
-    list_blocks(p.count, ps.awake, [&](Index i) {
-      return note(2 * p.points, [&](Index k) { return p.nodes[std::size_t(k) * p.stride + i]; });
-    });
-  };
-  pairs(m.triangles, s.triangles);
-  pairs(m.quads, s.quads);
-  list_blocks(m.overlaps.count, s.overlaps.awake, [&](Index i) {
-    return note(8, [&](Index k) {
-      const Index* nodes = m.face_nodes.data() + 4 * m.overlaps.faces[2 * i + k / 4];
-      return nodes[k % 4] < 0 ? nodes[0] : nodes[k % 4];
-    });
+  for_each_set(m, s, [&](auto, const auto& set, auto& state) {
+    std::vector<Flag> moves(set.count);
+    for (Index i = 0; i < set.count; ++i) {
+      for_each_node(m, set, i, [&](Index node) { moves[i] |= !fixed[node]; });
+      if (moves[i]) for_each_node(m, set, i, [&](Index node) { pulled[node] = 1; });
+    }
+    list_blocks(set.count, state.awake, [&](Index i) { return moves[i] != 0; });
   });
   s.nodes.sleeps.resize(m.node_count);
   for (Index i = 0; i < m.node_count; ++i)

@@ -17,7 +17,19 @@ struct ContactState {
 
   CDEM_HD static ContactState at(const Real* rows, std::size_t place) {
     const Real* r = rows + 8 * place;
-    return {r[0], r[1], r[2], r[3], r[4], r[5], r[6]};
+    return {.force_n = r[0],
+            .penetration = r[1],
+            .shear1 = r[2],
+            .shear2 = r[3],
+            .stress_free_gap = r[4],
+            .energy_n = r[5],
+            .energy_s = r[6]};
+  }
+  /// That of a contact that was none.
+  CDEM_HD static ContactState none() {
+    ContactState s{};
+    s.penetration = -1;
+    return s;
   }
   CDEM_HD void store(Real* rows, std::size_t place) const {
     Real* r = rows + 8 * place;

@@ -41,67 +41,102 @@ std::vector<Box> side_boxes(const Model& m, const State& s) {
   return boxes;
 }
 
-Index count_missed_contacts(const Model& m, State& s) {
-  update_all_face_geometry(m, s, {});
-  finish({});
-  const ResolveTargets springs{face_search(m, s)};
-  const ResolveTargetEdges edges = edge_search(m, s);
-  const Index count = Index(s.search.exposed_face.size());
-  const Bonded bonded = live_overlaps(m, s);
-  const auto block = [&](Index x) { return m.face_block[s.search.exposed_face[x]]; };
-  const auto movable = [&](Index x) { return m.face_movable[s.search.exposed_face[x]] != 0; };
-  // spheres around two faces, with room for any depth of contact: what is farther off cannot touch
-  const auto near = [&](Index x, Index t) {
-    const Index face = s.search.exposed_face[x], other = s.search.exposed_face[t];
+/// Compares the contacts of every exposed face with those that a search of all others finds.
+class AllPairs {
+ public:
+  AllPairs(const Model& model, State& state)
+      : m(model),
+        s(state),
+        springs{face_search(model, state)},
+        edges(edge_search(model, state)),
+        bonded(live_overlaps(model, state)),
+        sides(side_boxes(model, state)) {}
+
+  /// Contacts of an exposed face that either search has missed.
+  Index count_missed(Index x) const {
+    const std::vector<Index> others = faces_near(x);
+    const Index missed = count_missed_springs(x, others);
+    return m.semi_edges ? missed + count_missed_edges(x, others) : missed;
+  }
+
+ private:
+  Index face(Index x) const { return s.search.exposed_face[x]; }
+  bool is_movable(Index x) const { return m.face_movable[face(x)] != 0; }
+  /// Do spheres around two faces overlap, with room for any depth of contact?
+  bool are_near(Index x, Index t) const {
     const Vec3<Real> apart = springs.geometry.center(x) - springs.geometry.center(t);
-    const Real reach =
-        m.face_reach[face] + m.face_reach[other] + m.face_length[face] + m.face_length[other];
+    const Real reach = m.face_reach[face(x)] + m.face_reach[face(t)] + m.face_length[face(x)] +
+                       m.face_length[face(t)];
     return dot(apart, apart) < reach * reach;
-  };
-  const std::vector<Box> sides = side_boxes(m, s);
-  Index missed = 0;
-#pragma omp parallel for schedule(dynamic, 8) reduction(+ : missed)
-  for (Index x = 0; x < count; ++x) {
-    std::vector<Index> all, open;
+  }
+  std::vector<Index> faces_near(Index x) const {
+    const Index count = Index(s.search.exposed_face.size());
+    std::vector<Index> others;
     for (Index t = 0; t < count; ++t)
-      if (block(t) != block(x) && (movable(t) || movable(x)) && near(x, t) &&
-          !Bonded::among(bonded.faces, x, t))
-        all.push_back(t);
+      if (m.face_block[face(t)] != m.face_block[face(x)] && (is_movable(t) || is_movable(x)) &&
+          are_near(x, t) && !Bonded::among(bonded.faces, x, t))
+        others.push_back(t);
+    return others;
+  }
+  Index count_missed_springs(Index x, const std::vector<Index>& others) const {
+    Index missed = 0;
     Flag ignored = 0;
-    for (Index k = 0; k < springs.faces.vertex_count(s.search.exposed_face[x]); ++k) {
-      const Index node = springs.faces.vertex(s.search.exposed_face[x], k);
+    std::vector<Index> open;
+    for (Index k = 0; k < springs.faces.vertex_count(face(x)); ++k) {
+      const Index node = springs.faces.vertex(face(x), k);
       open.clear();
-      std::copy_if(all.begin(), all.end(), std::back_inserter(open),
+      std::copy_if(others.begin(), others.end(), std::back_inserter(open),
                    [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
       const FaceList list{open.data(), nullptr, Index(open.size())};
       missed += s.springs.target[4 * x + k] != springs.choose(x, k, list, &ignored);
     }
-    if (!m.semi_edges) continue;
-    const auto touch = [&](Index t, Index k, Index j) {
-      SidePair pair;
-      const Index face = s.search.exposed_face[x], other = s.search.exposed_face[t];
-      if (!pair_sides(edges.faces, face, k, other, j, pair)) return false;
-      const Index edge = m.face_edges[4 * other + j];
-      return edges.test(TwoSides<Index>{x, t, pair.code(), edges.held_place(x, k, edge)}).touches;
-    };
-    const auto found = [&](Index t, Index k, Index j) {
-      for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
-        const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
-        if (contact.mother == 4 * x + k && contact.face == t &&
-            contact.edge == m.face_edges[4 * s.search.exposed_face[t] + j])
-          return true;
-      }
-      return false;
-    };
-    Index known = 0;  // of those that are listed
-    for (const Index t : all)
-      for (Index k = 0; k < edges.faces.vertex_count(s.search.exposed_face[x]); ++k)
-        for (Index j = 0; j < edges.faces.vertex_count(s.search.exposed_face[t]); ++j) {
-          if (!sides[4 * std::size_t(x) + k].overlaps(sides[4 * std::size_t(t) + j])) continue;
-          if (touch(t, k, j)) found(t, k, j) ? ++known : ++missed;
-        }
-    missed += s.edges.first[x + 1] - s.edges.first[x] - known;
+    return missed;
   }
+  /// Do side k of exposed face x and side j of t touch?
+  bool touch(Index x, Index k, Index t, Index j) const {
+    SidePair pair;
+    if (!pair_sides(edges.faces, face(x), k, face(t), j, pair)) return false;
+    const Index before = edges.held_place(x, k, m.face_edges[4 * face(t) + j]);
+    return edges.test(TwoSides<Index>{.m = x, .t = t, .sides = pair.code(), .before = before})
+        .touches;
+  }
+  /// Has the step found that they do?
+  bool is_found(Index x, Index k, Index t, Index j) const {
+    for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
+      if (contact.mother == 4 * x + k && contact.face == t &&
+          contact.edge == m.face_edges[4 * face(t) + j])
+        return true;
+    }
+    return false;
+  }
+  Index count_missed_edges(Index x, const std::vector<Index>& others) const {
+    Index missed = 0, known = 0;  // of those that are listed
+    for (const Index t : others)
+      for (Index k = 0; k < edges.faces.vertex_count(face(x)); ++k)
+        for (Index j = 0; j < edges.faces.vertex_count(face(t)); ++j)
+          if (sides[4 * std::size_t(x) + k].overlaps(sides[4 * std::size_t(t) + j]) &&
+              touch(x, k, t, j))
+            is_found(x, k, t, j) ? ++known : ++missed;
+    return missed + s.edges.first[x + 1] - s.edges.first[x] - known;
+  }
+
+  const Model& m;
+  const State& s;
+  const ResolveTargets springs;
+  const ResolveTargetEdges edges;
+  const Bonded bonded;
+  const std::vector<Box> sides;
+};
+
+Index count_missed_contacts(const Model& m, State& s) {
+  update_all_face_geometry(m, s, {});
+  finish({});
+  const AllPairs all(m, s);
+  const Index count = Index(s.search.exposed_face.size());
+  Index missed = 0;
+#pragma omp parallel for schedule(dynamic, 8) reduction(+ : missed)
+  for (Index x = 0; x < count; ++x) missed += all.count_missed(x);
   return missed;
 }
 

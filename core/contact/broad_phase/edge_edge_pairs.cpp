@@ -266,6 +266,36 @@ PairBuffer::EdgePair near_edges(const PairContext& f, const Patch& a, Index e, c
                             first_p | first_q << 1)};
 }
 
+/// Are the lines of two edges farther apart than `room` [m]?
+bool lines_are_far(const MovingEdge& p, const MovingEdge& q, Real room) {
+  const Vec3<Real> normal = cross(p.along, q.along);
+  const Real off = dot(normal, p.end[0] - q.end[0]);
+  return off * off > room * room * dot(normal, normal);
+}
+
+/// Do shared ends stay so close that the edges are no edges on each other, see ResolveTargetEdges?
+bool stay_together(const SearchRules& rules, const MovingEdge& p, const MovingEdge& q,
+                   const SharedEnds& ends) {
+  return ends.parted < rules.indentation * std::min(p.indented.length, q.indented.length);
+}
+
+/// On which sides of each other two edges may touch before the next rebuild, see TwoLines::sides:
+/// both where they may become parallel; 0 where they cannot touch. Edges in contact go on.
+int touching_sides(const PairContext& f, const Patch& a, const Patch::Edge& of_a,
+                   const MovingEdge& p, const Patch& b, const Patch::Edge& of_b,
+                   const MovingEdge& q, Real room) {
+  const Vec3<Real> normal = cross(p.along, q.along);
+  const Real sine = norm(normal), rotations = p.rotation + q.rotation;
+  if (sine + rotations < parallel_edges) return 0;
+  if (!(sine > rotations)) return distance2(p, q) > room * room ? 0 : 3;
+  const TwoLines lines(p, q, normal, sine);
+  const int sides = lines.sides(f.m.rules);
+  if (sides && lines.pass_by() && !in_contact(f, a, of_a, of_b.id) &&
+      !in_contact(f, b, of_b, of_a.id))
+    return 0;
+  return sides;
+}
+
 }  // namespace
 
 void list_edges(const PairContext& f, const Patch& a, const Patch& b, const FacePairMask& pairs,
@@ -281,30 +311,13 @@ void list_edges(const PairContext& f, const Patch& a, const Patch& b, const Face
     for (Index g = 0; g < b.edge_count; ++g) {
       if (separated.edge[1][g] || !(opposite & FacePairMask::at(b.edge[g]))) continue;
       const MovingEdge& q = of_b[g];
-      if (!q.side->sharp) continue;
-      const Vec3<Real> normal = cross(p.along, q.along);
-      const Real sine2 = dot(normal, normal), off = dot(normal, p.end[0] - q.end[0]);
-      if (off * off > room * room * sine2) continue;  // so far are even the lines
+      if (!q.side->sharp || lines_are_far(p, q, room)) continue;
       const SharedEnds ends(p, q);
-      if (ends.glued) continue;
-      // ends that stay together are no edges on each other, see ResolveTargetEdges
-      const Real length = std::min(p.indented.length, q.indented.length);
-      if (ends.parted < f.m.rules.indentation * length) continue;
-      int on = 3;
-      const Real sine = std::sqrt(sine2), rotations = p.rotation + q.rotation;
-      if (sine + rotations < parallel_edges) continue;
-      if (sine > rotations) {
-        const TwoLines lines(p, q, normal, sine);
-        on = lines.sides(f.m.rules);
-        if (!on) continue;
-        if (lines.pass_by() && !in_contact(f, a, a.edge[e], b.edge[g].id) &&
-            !in_contact(f, b, b.edge[g], a.edge[e].id))
-          continue;
-      } else if (distance2(p, q) > room * room) {
-        continue;
-      }
+      if (ends.glued || stay_together(f.m.rules, p, q, ends)) continue;
+      const int sides = touching_sides(f, a, a.edge[e], p, b, b.edge[g], q, room);
+      if (!sides) continue;
       const Index ways = ways_to_touch(f, a, a.edge[e], b, b.edge[g], pairs, ends, listed);
-      if (ways) found.edges.push_back(near_edges(f, a, e, p, b, g, q, ends, on, ways));
+      if (ways) found.edges.push_back(near_edges(f, a, e, p, b, g, q, ends, sides, ways));
     }
   }
 }

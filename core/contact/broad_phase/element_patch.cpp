@@ -8,6 +8,7 @@
 #include "core/base/parallel.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
 #include "core/contact/geometry/views.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -140,7 +141,10 @@ void list_exposed_faces(const Model& m, const State& s, Unset<ExposedFace>& expo
 
 void list_patches(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
                   Unset<Patch>& patches) {
-  std::vector<Index> patch_of(m.tet4.count + m.pyramid5.count + m.wedge6.count + m.hex8.count, -1);
+  Index element_count = 0;
+  for_each_element_set(
+      m, s, [&](auto, const ElementSet& e, const ElementState&) { element_count += e.count; });
+  std::vector<Index> patch_of(element_count, -1);
   struct Faces {
     Index count, place[6];
   };

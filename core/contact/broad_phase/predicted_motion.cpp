@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/views.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -21,15 +22,13 @@ struct RigidMotion {
       : s(state),
         sum(s.search.outer.predicted_nodes.size(), Vec3<Real>{0, 0, 0}),
         weight(sum.size()) {
-    add(m.tet4, 4);
-    add(m.pyramid5, 5);
-    add(m.wedge6, 6);
-    add(m.hex8, 8);
+    for_each_element_set(m, s, [&](auto, const ElementSet& e, const ElementState&) { add(e); });
   }
   Vec3<Real> at(std::size_t place) const { return Real(1.0) / weight[place] * sum[place]; }
 
  private:
-  void add(const ElementSet& e, Index corners) {
+  void add(const ElementSet& e) {
+    const Index corners = e.corners;
     const InMotion nodes{s.nodes.motion.data()};
     for (Index i = 0; i < e.count; ++i) {
       Index id[8], place[8];

@@ -127,53 +127,82 @@ PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index p
            reach + motion, motion}};
 }
 
+/// The faces of a patch that meet at one of its vertices and may touch a face of another patch.
+struct FacesAtVertex {
+  Index first = -1;      // of the patch; -1: there is none
+  Real least = 1e300;    // L of the smallest  [m]
+  bool touches = false;  // does the vertex have a contact there through one of them?
+};
+
+/// How far the indented points of a vertex are from it and may deviate, at most  [m].
+struct IndentedPoints {
+  Real shift = 0, deviation = 0;
+};
+
+/// Vertices of patch a on faces of patch b; `reverse` where a is the second one of `pairs`.
+struct VertexFaceSearch {
+  const PairContext& f;
+  const Patch &a, &b;
+  const FacePairMask& pairs;
+  bool reverse;
+
+  bool may_meet(Index i, Index j) const {
+    return (reverse ? pairs.row[j] >> i : pairs.row[i] >> j) & 1;
+  }
+  FacesAtVertex faces_at(Index v, Index j) const {
+    FacesAtVertex at;
+    for (Index i = a.face_count - 1; i >= 0; --i) {
+      if (a.corner[v][i] < 0 || !may_meet(i, j)) continue;
+      at.first = i;
+      at.least = std::min(at.least, f.exposed[a.face[i]].length);
+      const std::size_t slot = 4 * std::size_t(a.face[i]) + a.corner[v][i];
+      at.touches = at.touches || f.s.springs.target[slot] == b.face[j];
+    }
+    return at;
+  }
+  /// List the semi-springs of a vertex that may touch face j, as candidates of the next pair.
+  IndentedPoints list_semi_springs(Index v, Index j, bool touches, Real length,
+                                   ListedFacePairs& listed, PairBuffer& found) const {
+    const Vec3<Real> at = f.faces.nodes.position(a.vertex[v]);
+    IndentedPoints points;
+    for (Index i = 0; i < a.face_count; ++i) {
+      if (a.corner[v][i] < 0 || !may_meet(i, j)) continue;
+      const ExposedFace &x = f.exposed[a.face[i]], &y = f.exposed[b.face[j]];
+      const Vec3<Real> arm = x.center - at, indented = at + f.m.rules.indentation * arm;
+      if (!touches && stays_beside(f, at, indented, x, b.face[j],
+                                   f.m.rules.tolerance * length + motion_between(x, y)))
+        continue;
+      points.shift = std::max(points.shift, f.m.rules.indentation * (norm(arm) + 2 * x.deviation));
+      points.deviation = std::max(points.deviation, x.deviation_soon);
+      listed.add(reverse, i, j);
+      found.candidates.push_back(
+          {a.face[i], a.corner[v][i], b.face[j], Index(found.vertex_faces.size())});
+    }
+    return points;
+  }
+  void list(Index v, Index j, ListedFacePairs& listed, PairBuffer& found) const {
+    const FacesAtVertex at = faces_at(v, j);
+    if (at.first < 0) return;
+    const Real length = std::min(a.length, f.exposed[b.face[j]].length);
+    if (!at.touches && !may_touch(f, a.vertex[v], f.exposed[a.face[at.first]], length, a.reach,
+                                  at.least, b.face[j]))
+      return;
+    const IndentedPoints points = list_semi_springs(v, j, at.touches, length, listed, found);
+    if (points.shift == 0) return;  // nothing is listed
+    found.vertex_faces.push_back(
+        vertex_face(f, a.vertex[v], b.face[j], length, points.shift, points.deviation, at.least));
+  }
+};
+
 }  // namespace
 
-/// Vertices of one patch on faces of another.
 void list_vertex_face_pairs(const PairContext& f, const Patch& a, const Patch& b,
                             const FacePairMask& pairs, const SeparatedParts& separated,
                             bool reverse, ListedFacePairs& listed, PairBuffer& found) {
-  const auto met = [&](Index i, Index j) {
-    return (reverse ? pairs.row[j] >> i : pairs.row[i] >> j) & 1;
-  };
-  for (Index j = 0; j < b.face_count; ++j) {
-    for (Index v = 0; v < a.vertex_count; ++v) {
-      if (separated.vertex[reverse][v]) continue;
-      Index first = -1;  // of the faces at the vertex
-      Real least = 1e300;
-      bool touches = false;  // already
-      for (Index i = a.face_count - 1; i >= 0; --i)
-        if (a.corner[v][i] >= 0 && met(i, j)) {
-          first = i;
-          least = std::min(least, f.exposed[a.face[i]].length);
-          const std::size_t slot = 4 * std::size_t(a.face[i]) + a.corner[v][i];
-          touches = touches || f.s.springs.target[slot] == b.face[j];
-        }
-      if (first < 0) continue;
-      const Real length = std::min(a.length, f.exposed[b.face[j]].length);
-      if (!touches &&
-          !may_touch(f, a.vertex[v], f.exposed[a.face[first]], length, a.reach, least, b.face[j]))
-        continue;
-      const Vec3<Real> at = f.faces.nodes.position(a.vertex[v]);
-      Real shift = 0, deviation = 0;  // of the indented points
-      for (Index i = 0; i < a.face_count; ++i) {
-        if (a.corner[v][i] < 0 || !met(i, j)) continue;
-        const ExposedFace &x = f.exposed[a.face[i]], &y = f.exposed[b.face[j]];
-        const Vec3<Real> arm = x.center - at, indented = at + f.m.rules.indentation * arm;
-        if (!touches && stays_beside(f, at, indented, x, b.face[j],
-                                     f.m.rules.tolerance * length + motion_between(x, y)))
-          continue;
-        shift = std::max(shift, f.m.rules.indentation * (norm(arm) + 2 * x.deviation));
-        deviation = std::max(deviation, x.deviation_soon);
-        listed.add(reverse, i, j);
-        found.candidates.push_back(
-            {a.face[i], a.corner[v][i], b.face[j], Index(found.vertex_faces.size())});
-      }
-      if (shift == 0) continue;  // nothing is listed
-      found.vertex_faces.push_back(
-          vertex_face(f, a.vertex[v], b.face[j], length, shift, deviation, least));
-    }
-  }
+  const VertexFaceSearch search{.f = f, .a = a, .b = b, .pairs = pairs, .reverse = reverse};
+  for (Index j = 0; j < b.face_count; ++j)
+    for (Index v = 0; v < a.vertex_count; ++v)
+      if (!separated.vertex[reverse][v]) search.list(v, j, listed, found);
 }
 
 }  // namespace cdem

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <vector>
 
 #include "core/base/parallel.hpp"
 #include "core/contact/force/views.hpp"
 #include "core/contact/geometry/views.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -27,29 +27,11 @@ void raise_to(Real& most, Real value) {
 void sum_stiffness(const Model& m, State& s) {
   s.node_bonds.resize(m.node_count);
   s.node_bonds.fill(0);
-  const auto conforming = [&](const PairSet& p, const PairState& ps) {
-    for (Index i = 0; i < p.count; ++i) {
-      if (!(ps.live[i] > 0)) continue;
-      const Real k = std::max(p.stiffness[i], p.stiffness[std::size_t(p.stride) + i]);
-      for (Index c = 0; c < 2 * p.points; ++c)
-        s.node_bonds[p.nodes[std::size_t(c) * p.stride + i]] += k * p.area[i] / p.points;
-    }
-  };
-  conforming(m.triangles, s.triangles);
-  conforming(m.quads, s.quads);
-  const PairSet& p = m.overlaps;
-  for (Index i = 0; i < p.count; ++i) {
-    if (!(s.overlaps.live[i] > 0)) continue;
-    const Real k = std::max(p.stiffness[i], p.stiffness[std::size_t(p.stride) + i]);
-    for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
-      for (Index v = 0; v < 4; ++v) {
-        const Index a = m.face_nodes[4 * p.faces[2 * i] + v];
-        const Index b = m.face_nodes[4 * p.faces[2 * i + 1] + v];
-        if (a >= 0) s.node_bonds[a] += k * p.point_area[c] * std::abs(p.weights_a[4 * c + v]);
-        if (b >= 0) s.node_bonds[b] += k * p.point_area[c] * std::abs(p.weights_b[4 * c + v]);
-      }
-  }
-
+  for_each_set(m, s, [&](auto, const auto& set, const auto& state) {
+    for (Index i = 0; i < set.count; ++i)
+      if (is_active(state, i))
+        for_each_stiffness(m, set, i, [&](Index node, Real k) { s.node_bonds[node] += k; });
+  });
   s.node_potential.resize(m.node_count);
   s.node_potential.fill(0);
   const FaceColumns faces = face_columns(m, s);
@@ -61,9 +43,8 @@ void sum_stiffness(const Model& m, State& s) {
   for (Index y = 0; y < exposed; ++y)
     for (Index c = s.search.outer.acting_first[y]; c < s.search.outer.acting_first[y + 1]; ++c) {
       const Index x = s.search.outer.faces_acting_on[c];
-      const auto stiffness = laws.stiffness(geometry, laws.between(geometry, x, y), x, y);
-      for (const Index face : {x, y})
-        raise_to(stiffest_of[face], std::max(stiffness.n, stiffness.s));
+      const auto spring = laws.spring(geometry, laws.between(geometry, x, y), x, y);
+      for (const Index face : {x, y}) raise_to(stiffest_of[face], std::max(spring.n(), spring.s()));
     }
   for (Index x = 0; x < exposed; ++x) {  // either side's semi-springs, as much again for semi-edges
     const Index face = s.search.exposed_face[x];

@@ -10,7 +10,6 @@ from typing import Any
 from pydantic import PrivateAttr, ValidationError
 
 from cdem.case import checks
-from cdem.case.interface_schema import Interface
 from cdem.case.reader import (
     Source,
     explain,
@@ -151,7 +150,7 @@ class Case(CaseParts):
             for pair, written in zip(
                 self.interfaces.pairs, data["interfaces"]["pairs"], strict=True
             ):
-                for field in Interface.model_fields.keys() - pair.model_fields_set:
+                for field in pair.inherited():
                     written.pop(field, None)
         yaml, text = YAML(typ="safe", pure=True), StringIO()
         yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]

@@ -8,6 +8,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
+from cdem.case.laws import BLOCK_LAWS, block_contradiction
 from cdem.case.schema import CaseParts
 from cdem.errors import CaseError
 
@@ -50,6 +51,16 @@ def _materials(case: CaseParts) -> Iterator[Problem]:
     for name, group in case.groups.items():
         if group.material not in case.materials:
             yield ("groups", name, "material"), _no("material", group.material, case.materials)
+
+    for name, material in case.materials.items():
+        if why := block_contradiction(material):
+            yield ("materials", name), why
+        rotates = case.elements.formulation == "corotational"
+        if BLOCK_LAWS[material.law].flows and not rotates:
+            yield (
+                ("elements", "formulation"),
+                f"must be corotational: material {name} has the law {material.law}, which flows",
+            )
 
 
 def _groups(case: CaseParts) -> Iterator[Problem]:
@@ -129,12 +140,15 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
 
 
 def _fixed_at_the_start(path: str, value: Any) -> str:
-    """Which entry of a group a setting would change that only the start of a run knows, or ""."""
+    """Which entry of a group or interface a setting would change that only the start of a run knows, or ""."""
     keys = path.split(".")
+    if keys[0] == "interfaces":
+        return "'law' of an interface" if keys[-1] == "law" else ""
     if keys[0] != "groups":
         return ""
     inside = value if len(keys) == 2 and isinstance(value, dict) else {}
-    return next((key for key in AT_START if key in keys[2:3] or key in inside), "")
+    found = next((key for key in AT_START if key in keys[2:3] or key in inside), "")
+    return f"'{found}' of a group" if found else ""
 
 
 def stage_settings(
@@ -156,9 +170,7 @@ def stage_settings(
                 problems.append((keys, f"a stage can change {allowed} only"))
                 continue
             if fixed := _fixed_at_the_start(path, value):
-                problems.append(
-                    (keys, f"'{fixed}' of a group holds from the start and cannot change")
-                )
+                problems.append((keys, f"{fixed} holds from the start and cannot change"))
                 continue
             try:
                 put(path, value)

@@ -1,44 +1,26 @@
-"""Interfaces of a case: friction, bonds and stiffness, by pair of groups or set of joints."""
+"""Interfaces of a case: law and stiffness, by pair of groups or set of joints."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field, model_validator
 
 from cdem.case.bodies_schema import exactly_one
-from cdem.case.types import (
-    AUTO_STIFFNESS,
-    Name,
-    Part,
-    Quantity,
-    Stiffness,
-)
+from cdem.case.laws import INTERFACE_LAWS, choice, interface_contradiction, models
+from cdem.case.types import AUTO_STIFFNESS, Name, Part, Stiffness
 
 
 class Interface(Part):
-    """Coulomb friction with bonds that break in tension or shear: Feng et al. (2014), Eq. 14."""
+    """What every interface has; the parameters of its law come with the model of the law."""
 
-    friction_angle: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
-        description="Friction angle [deg]"
-    )
-    cohesion: Annotated[float, Quantity("Pa", at_least=0)] = Field(
-        0.0, description="Cohesion of the intact bond [Pa]"
-    )
-    tensile_strength: Annotated[float, Quantity("Pa", at_least=0)] = Field(
-        0.0, description="Tensile strength of the intact bond [Pa]"
-    )
+    if TYPE_CHECKING:
+        law: str
     stiffness_n: Stiffness = Field(
         AUTO_STIFFNESS, description="Normal stiffness: auto (10 E/h), a number [Pa/m], or '5 E/h'"
     )
     stiffness_s: Stiffness = Field(
         AUTO_STIFFNESS, description="Shear stiffness: auto (10 E/h), a number [Pa/m], or '5 E/h'"
-    )
-    dilation_angle: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
-        0.0, description="Dilation angle [deg]: a sliding joint lifts by its tangent times the slip"
-    )
-    dilation_slip: Annotated[float, Quantity("m", at_least=0)] = Field(
-        0.0, description="Slip after which a joint dilates no more [m]"
     )
 
 
@@ -52,35 +34,44 @@ class InterfacePair(Interface):
     joint: Name | None = Field(
         None, description="Set of joints instead of groups: where two of its faces touch"
     )
-    friction_angle: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
-        None,  # type: ignore[assignment]  # until inherit() fills it in
-        validate_default=False,
-        description="Friction angle [deg]",
-    )
 
     @model_validator(mode="after")
     def _one_place(self) -> InterfacePair:
         exactly_one(self, ("between", "joint"))
         return self
 
+    def inherited(self) -> set[str]:
+        """Fields that are as in the default: those of any interface that the case left out."""
+        own = {p.name for p in INTERFACE_LAWS[self.law].parameters} | Interface.model_fields.keys()
+        return own - self.model_fields_set
 
-def _check_dilation(law: Interface, where: str) -> None:
-    """A joint that lifts more than it slips against friction would make energy."""
-    if law.dilation_angle > law.friction_angle:
-        raise ValueError(
-            f"{where}dilation_angle must not be larger than friction_angle, {law.friction_angle:g}"
-        )
-    if law.dilation_angle > 0 and not law.dilation_slip > 0:
-        raise ValueError(
-            f"{where}dilation_angle needs dilation_slip, the slip after which it dilates no more"
-        )
+
+if TYPE_CHECKING:
+    AnyInterface = Interface
+    AnyPair = InterfacePair
+else:
+    AnyInterface = choice(models(Interface, INTERFACE_LAWS), INTERFACE_LAWS)
+    AnyPair = choice(models(InterfacePair, INTERFACE_LAWS, required=False), INTERFACE_LAWS)
 
 
 class Interfaces(Part):
     """Interfaces by pair of groups, or by set of joints."""
 
-    default: Interface | None = Field(None, description="For pairs of groups not listed in pairs")
-    pairs: list[InterfacePair] = Field([], description="For the pairs of groups named")
+    default: AnyInterface | None = Field(
+        None, description="For pairs of groups not listed in pairs"
+    )
+    pairs: list[AnyPair] = Field([], description="For the pairs of groups named")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _pairs_have_the_law_of_the_default(cls, data: Any) -> Any:
+        default = data.get("default") if isinstance(data, dict) else None
+        law = default.get("law") if isinstance(default, dict) else getattr(default, "law", None)
+        pairs = data.get("pairs") if law is not None else None
+        if not isinstance(pairs, list):
+            return data
+        same = [{"law": law} | p if isinstance(p, dict) else p for p in pairs]
+        return data | {"pairs": same}
 
     @model_validator(mode="after")
     def _complete_and_single(self) -> Interfaces:
@@ -91,23 +82,26 @@ class Interfaces(Part):
                 what = f"{' and '.join(pair.between)} are" if pair.between else f"{pair.joint} is"
                 raise ValueError(f"pairs.{number}: {what} listed twice")
             seen.add(key)
-            if self.default is None and "friction_angle" not in pair.model_fields_set:
-                raise ValueError(
-                    f"pairs.{number}: friction_angle is missing, and so is interfaces.default"
-                )
         self.inherit()
-        if self.default is not None:
-            _check_dilation(self.default, "default: ")
         for number, pair in enumerate(self.pairs):
-            _check_dilation(pair, f"pairs.{number}: ")
+            for parameter in INTERFACE_LAWS[pair.law].parameters:
+                if getattr(pair, parameter.name) is None:
+                    raise ValueError(
+                        f"pairs.{number}: {parameter.name} is missing, and so is interfaces.default"
+                    )
+        named = {} if self.default is None else {"default": self.default}
+        for place, law in (named | {f"pairs.{i}": p for i, p in enumerate(self.pairs)}).items():
+            if why := interface_contradiction(law):
+                raise ValueError(f"{place}: {why}")
         return self
 
     def inherit(self) -> None:
         """Give each pair the default's value for every field that the case left out."""
         for pair in self.pairs if self.default else []:
-            for field in Interface.model_fields.keys() - pair.model_fields_set:
-                # Not by assignment: the field must keep counting as left out.
-                pair.__dict__[field] = getattr(self.default, field)
+            for field in pair.inherited():
+                if hasattr(self.default, field):  # another law may have no such parameter
+                    # Not by assignment: the field must keep counting as left out.
+                    pair.__dict__[field] = getattr(self.default, field)
 
     def between(self, group_a: str, group_b: str) -> Interface | None:
         """Return the interface of two groups, or None when the case says nothing about them."""

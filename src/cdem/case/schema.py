@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from cdem.case.bodies_schema import Model, exactly_one
 from cdem.case.interface_schema import Interfaces
+from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
 from cdem.case.types import (
     Length3,
@@ -29,7 +30,14 @@ class Material(Part):
     poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(
         description="Poisson's ratio [1]"
     )
-    law: Literal["elastic"] = Field("elastic", description="Stress-strain law")
+    if TYPE_CHECKING:
+        law: str
+
+
+if TYPE_CHECKING:
+    AnyMaterial = Material
+else:
+    AnyMaterial = choice(models(Material, BLOCK_LAWS), BLOCK_LAWS)
 
 
 class Group(Part):
@@ -213,7 +221,7 @@ class CaseParts(Part):
     title: str = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
     model: Model = Field(description="The bodies")
-    materials: dict[str, Material] = Field(description="Materials by name")
+    materials: dict[str, AnyMaterial] = Field(description="Materials by name")
     groups: dict[str, Group] = Field(description="Groups by name; every body is in one")
     interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
     loads: Loads = Field(Loads(), description="What acts from outside")

@@ -36,6 +36,8 @@ def assemble(topology: Topology, properties: Properties, padded_stride: Stride) 
     }
     out.arrays["material.lambda"] = properties.lame
     out.arrays["material.mu"] = properties.shear
+    out.arrays["material.law"] = properties.law
+    out.arrays["material.parameters"] = properties.law_parameters.ravel()
     _elements(topology, properties, padded_stride, out)
     _faces(topology, properties, out)
     _pairs(topology, properties, padded_stride, out)

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
+from cdem.case.laws import BLOCK_LAWS
+from cdem.case.schema import Material
 from cdem.mesh.blocks import build_topology, snap_mates
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.topology import Topology
@@ -23,7 +25,7 @@ from cdem.model.flat_arrays import Assembly, Properties
 from cdem.model.interfaces import (
     bonded_pairs,
     check_interfaces,
-    interface_row,
+    interface_entry,
     interfaces_of,
     stiffness_row,
 )
@@ -120,7 +122,7 @@ def build(case: Case) -> Build:
     parts.arrays.clear()  # the core has its own
     _share(topology, core.model())
     core.set_curves([c[0] for c in curves], [c[1] for c in curves])
-    core.set_interfaces([interface_row(law) for law in laws])
+    core.set_interfaces([interface_entry(law) for law in laws])
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(topology.node_position)
     built = Build(case, merged, topology, parts, core, curves, topology.node_position, bonds)
@@ -154,6 +156,8 @@ def _assemble(
         density=np.array([m.density for m in materials]),
         young_modulus=np.array([m.young_modulus for m in materials]),
         poisson_ratio=np.array([m.poisson_ratio for m in materials]),
+        law=np.array([list(BLOCK_LAWS).index(m.law) for m in materials], np.int32),
+        law_parameters=np.array([_law_row(m) for m in materials]),
         interface_of=np.maximum(interface_of, 0),
         bonded=bonds,
         stiffness=np.array([stiffness_row(law) for law in laws]).reshape(-1, 4),
@@ -167,6 +171,12 @@ def _assemble(
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
     return parts
+
+
+def _law_row(material: Material) -> list[float]:
+    """Parameters of a material's law, filled up to the most that any law has."""
+    numbers = list(BLOCK_LAWS[material.law].numbers(material).values())
+    return numbers + [0.0] * (native.block_law_parameters - len(numbers))
 
 
 def change(built: Build) -> dict[str, NDArray]:

@@ -21,6 +21,8 @@ class Properties:
         density: [kg/m3], shape (groups,).
         young_modulus: [Pa], shape (groups,).
         poisson_ratio: shape (groups,).
+        law: Number of the block law in the core, shape (groups,).
+        law_parameters: Its parameters, shape (groups, most parameters of a law).
         interface_of: Index of the interface between two kinds of faces (see
             `Topology.face_kind`), shape (kinds, kinds).
         bonded: Whether that interface starts bonded (has cohesion or tension), the same shape.
@@ -34,6 +36,8 @@ class Properties:
     density: Floats
     young_modulus: Floats
     poisson_ratio: Floats
+    law: Ints
+    law_parameters: Floats
     interface_of: Ints
     bonded: NDArray[np.bool_]
     stiffness: Floats

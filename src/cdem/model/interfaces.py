@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
+from cdem.case.laws import INTERFACE_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.topology import Topology, group_touching
 
@@ -70,23 +73,20 @@ def check_interfaces(
 
 def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.bool_]:
     """Which pairs of groups have strength, shape (groups, groups); those without a law have none."""
-    strong = [law.cohesion > 0 or law.tensile_strength > 0 for law in laws]
+    strong = [INTERFACE_LAWS[law.law].bonds(law) for law in laws]
     return np.array([*strong, False])[table]
 
 
-def interface_row(law: Interface) -> list[float]:
-    """The numbers of an interface that the core keeps."""
-    tangent = float(np.tan(np.radians(law.friction_angle)))
-    dilation = float(np.tan(np.radians(law.dilation_angle)))
-    return [
-        *(law.cohesion, law.tensile_strength, tangent, *stiffness_row(law)),
-        *(dilation, dilation * law.dilation_slip),
-    ]
+def interface_entry(law: Interface) -> dict[str, Any]:
+    """An interface as the core takes it."""
+    return {
+        "law": law.law,
+        "stiffness_n": law.stiffness_n.as_pair(),
+        "stiffness_s": law.stiffness_s.as_pair(),
+        "parameters": INTERFACE_LAWS[law.law].numbers(law),
+    }
 
 
 def stiffness_row(law: Interface) -> list[float]:
     """Value and factor of k_n, then of k_s; a value of 0 means factor times E / h."""
-    numbers: list[float] = []
-    for k in (law.stiffness_n, law.stiffness_s):
-        numbers += [0.0, k.value] if k.relative else [k.value, 0.0]
-    return numbers
+    return [*law.stiffness_n.as_pair(), *law.stiffness_s.as_pair()]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.interfaces import interfaces_of
 from cdem.output.render import color, legend, load_pyvista, snapshot
 
@@ -175,11 +176,8 @@ def _interfaces(panel: _Panel, sim: RunState) -> None:
         faces = pairs[(where == (a, b, index)).all(axis=1), 0]
         law = laws[index]
         joint = f", joint {law.joint}" if getattr(law, "joint", None) else ""
-        label = (
-            f"{names[a]} - {names[b]}{joint}: {len(faces):,} pair(s), {law.friction_angle:g} deg"
-        )
-        if law.cohesion > 0 or law.tensile_strength > 0:
-            label += f", bonded c {law.cohesion:.3g} T {law.tensile_strength:.3g} Pa"
+        label = f"{names[a]} - {names[b]}{joint}: {len(faces):,} pair(s), "
+        label += INTERFACE_LAWS[law.law].summary(law)
         if a == b and len(faces) > MOST_INNER:
             panel.legend.append((label + " (not drawn)", "#ffffff"))
             continue

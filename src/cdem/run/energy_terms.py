@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from cdem._native import core as native
+
 
 @dataclass(frozen=True)
 class EnergyTerm:
@@ -25,11 +27,7 @@ class EnergyTerm:
 
 
 ENERGY_TERMS = [
-    EnergyTerm("kinetic", "energy"),
-    EnergyTerm("strain", "energy"),
-    EnergyTerm("contact", "energy"),
-    EnergyTerm("friction", "work"),
-    EnergyTerm("damping", "work"),
-    EnergyTerm("fracture", "work"),
-    EnergyTerm("external", "work"),
+    EnergyTerm(term["name"], "energy" if term["kind"] == "stored" else "work")
+    for term in native.energy_terms()
 ]
+"""As the core lists them."""

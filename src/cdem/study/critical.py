@@ -10,6 +10,8 @@ import numpy as np
 
 from cdem.case.case import Case
 from cdem.case.checks import SETTABLE
+from cdem.case.interface_schema import Interface
+from cdem.case.laws import INTERFACE_LAWS
 from cdem.errors import CaseError, UnstableError
 from cdem.run import stages
 from cdem.run.simulation import CHECK_INTERVAL, Simulation
@@ -92,31 +94,30 @@ def parameter(path: str) -> Apply:
 
 
 def strength_reduction() -> Apply:
-    """Divide cohesion, tensile strength and tan(phi) of all interfaces by the varied factor.
+    """Divide the strengths of all interfaces by the varied factor; of an angle, the tangent.
 
-    The strengths are those that hold in the last stage, its own settings included.
+    Which parameters are strengths says the law. They are those that hold in the last stage, its own
+    settings included.
     """
-    strength: dict[str, tuple[float, float, float]] = {}
+    whole: dict[str, Interface] = {}
 
     def apply(case: Case, factor: float) -> None:
         if factor <= 0:
             raise CaseError(
                 f"a factor that strengths are divided by must be above 0, got {factor:g}"
             )
-        if not strength:  # the first trial: nothing is reduced yet
+        if not whole:  # the first trial: nothing is reduced yet
             laws = {"default": case.interfaces.default} | {
                 f"pairs.{i}": law for i, law in enumerate(case.interfaces.pairs)
             }
-            strength.update(
-                (f"interfaces.{place}", (law.cohesion, law.tensile_strength, law.friction_angle))
+            whole.update(
+                (f"interfaces.{place}", law.model_copy())
                 for place, law in laws.items()
                 if law is not None
             )
-        for path, (cohesion, tension, angle) in strength.items():
-            case.set(f"{path}.cohesion", cohesion / factor)
-            case.set(f"{path}.tensile_strength", tension / factor)
-            less = np.degrees(np.arctan(np.tan(np.radians(angle)) / factor))
-            case.set(f"{path}.friction_angle", float(less))
+        for path, law in whole.items():
+            for name, strength in INTERFACE_LAWS[law.law].reduced(law, factor).items():
+                case.set(f"{path}.{name}", strength)
 
     return apply
 

@@ -1,0 +1,49 @@
+// energy_terms.hpp - the terms of the energy ledger.
+#pragma once
+
+#include <cstddef>
+#include <iterator>
+#include <string_view>
+
+namespace cdem {
+
+/// How a term counts: what is stored or lost must have been supplied.
+enum class EnergyKind { stored, lost, supplied };
+
+struct EnergyTerm {
+  const char* name;
+  EnergyKind kind;
+  const char* meaning;
+  bool needs_flow = false;  // is zero where no block law flows
+};
+
+/// All terms  [J]. Ledger, checks and Python read this list.
+inline constexpr EnergyTerm energy_terms[] = {
+    {.name = "kinetic", .kind = EnergyKind::stored, .meaning = "motion of the nodes"},
+    {.name = "strain", .kind = EnergyKind::stored, .meaning = "strain of the elements"},
+    {.name = "contact",
+     .kind = EnergyKind::stored,
+     .meaning = "springs of contacts and of bonds that hold"},
+    {.name = "friction", .kind = EnergyKind::lost, .meaning = "slip of contacts and broken bonds"},
+    {.name = "damping",
+     .kind = EnergyKind::lost,
+     .meaning = "damping of nodes, elements and contacts, and motion that was stopped"},
+    {.name = "plastic",
+     .kind = EnergyKind::lost,
+     .meaning = "inelastic strain of the elements",
+     .needs_flow = true},
+    {.name = "fracture", .kind = EnergyKind::lost, .meaning = "breaking of bonds"},
+    {.name = "external",
+     .kind = EnergyKind::supplied,
+     .meaning = "work of loads, gravity and supports"},
+};
+inline constexpr std::size_t energy_term_count = std::size(energy_terms);
+
+/// Place of a term in the list; a name that is not there does not compile.
+consteval std::size_t energy_term(std::string_view name) {
+  std::size_t place = 0;
+  while (energy_terms[place].name != name) ++place;
+  return place;
+}
+
+}  // namespace cdem
