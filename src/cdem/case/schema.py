@@ -10,6 +10,7 @@ from cdem.case.bodies_schema import Model, exactly_one
 from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
+from cdem.case.output_fields import CHOICE
 from cdem.case.types import (
     Length3,
     Name,
@@ -174,7 +175,10 @@ class Time(Part):
     mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst elements")
 
 
-OutputField = Literal["displacement", "velocity", "stress", "damage", "piece"]
+if TYPE_CHECKING:
+    FieldName = str
+else:
+    FieldName = Literal[tuple(CHOICE)]
 
 
 class Output(Part):
@@ -183,9 +187,7 @@ class Output(Part):
     every: Annotated[float, Quantity("s", above=0)] | None = Field(
         None, description="Time between frames [s]; by default a fiftieth of each dynamic stage"
     )
-    fields: list[OutputField] = Field(
-        ["displacement", "velocity", "stress", "damage", "piece"], description="Fields of a frame"
-    )
+    fields: list[FieldName] = Field(CHOICE, description="Fields of a frame")
     checkpoint_every: Annotated[float, Quantity("s", above=0)] = Field(
         300.0, description="Wall time between checkpoints [s]"
     )

@@ -12,22 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS
 from cdem.errors import CdemError
 from cdem.output.reader import Surface, SurfaceSeries
 
 if TYPE_CHECKING:
     from cdem.run.state import RunState
 
-UNITS = {
-    "displacement": "m",
-    "velocity": "m/s",
-    "damage": "1",
-    "group": "",
-    "block": "",
-    "piece": "",
-    "joint": "",
-}
-"""Fields that `render` can colour by, with their units."""
+DRAWN = {field.name: field for field in OUTPUT_FIELDS if field.colors}
+"""Fields that `render` can colour by."""
+COLOR_MAPS = {
+    "amount": "YlOrBr", "whole range": "YlOrBr", "label": "tab10", "scattered label": "tab20"
+}  # fmt: skip
 GOLDEN = 0.6180339887
 """Its multiples, modulo 1, lie far from one another."""
 ROW = 28
@@ -37,12 +33,9 @@ OPENGL_HINT = "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install
 
 def snapshot(sim: RunState) -> Surface:
     """The surface of a simulation as it is now."""
-    from cdem.run.fields import damage_of, pieces_of, surface_of
+    from cdem.run.fields import surface_of, values_of
 
-    points = {name: sim.fields[name] for name in ("displacement", "velocity")}
-    places, vertices, point_data, cell_data = surface_of(
-        sim, points, {"damage": damage_of(sim), "piece": pieces_of(sim)}
-    )
+    places, vertices, point_data, cell_data = surface_of(sim, values_of(sim, CARRIED))
     counts = (vertices >= 0).sum(axis=1)
     faces = np.column_stack([counts, vertices])
     return Surface(
@@ -104,14 +97,14 @@ def render(folder: Path, *, field: str = "displacement", movie: bool = False) ->
 
     Args:
         folder: Result folder.
-        field: One of `UNITS`.
+        field: One of `DRAWN`.
         movie: Also draw every frame into an animation.
 
     Returns:
         The files: PNG pictures, and a GIF for the movie.
     """
-    if field not in UNITS:
-        raise CdemError(f"no field {field!r} to draw; choose one of: {', '.join(UNITS)}")
+    if field not in DRAWN:
+        raise CdemError(f"no field {field!r} to draw; choose one of: {', '.join(DRAWN)}")
     folder = Path(folder)
     series = SurfaceSeries(folder)
     last = len(series) - 1
@@ -173,10 +166,13 @@ class _Scene:
 
     def __init__(self, pyvista: Any, series: Sequence[Surface] | SurfaceSeries, field: str) -> None:
         self.pyvista, self.field = pyvista, field
+        known = DRAWN.get(field)  # a field of a study may be any, and names its own unit
+        self.unit = known.unit if known else ""
+        self.colors = (known.colors if known else None) or "amount"
         last = series[len(series) - 1]
         values = self._values(last)
         self.high = float(np.nanpercentile(values, 99.5)) if len(values) else 1.0
-        if field in ("group", "block", "joint", "damage", "piece"):
+        if self.colors != "amount":
             self.high = max(float(values.max()), 1.0)
         first = series[0]
         middle = series[(len(series) - 1) // 2]
@@ -190,7 +186,7 @@ class _Scene:
             raise CdemError(f"the run did not record {self.field!r}; add it to output.fields")
         values = surface.cell_data[self.field].astype(float)
         # neighbours in space have similar numbers: spread them over the palette
-        return values * GOLDEN % 1 if self.field == "piece" else values
+        return values * GOLDEN % 1 if self.colors == "scattered label" else values
 
     @staticmethod
     def _bounds(*frames: Surface) -> tuple[NDArray, NDArray]:
@@ -227,8 +223,7 @@ class _Scene:
         pyvista = self.pyvista
         mesh = pyvista.PolyData(surface.points, faces=surface.faces)
         values = self._values(surface)
-        unit = UNITS.get(self.field)  # a field of a study may be any, and names its own unit
-        name = f"{self.field} [{unit}]" if unit else self.field
+        name = f"{self.field} [{self.unit}]" if self.unit else self.field
         on_points = len(values) == len(surface.points) and self.field in surface.point_data
         (mesh.point_data if on_points else mesh.cell_data)[name] = values
         plotter = pyvista.Plotter(off_screen=True, window_size=(1100, 800))
@@ -238,9 +233,8 @@ class _Scene:
             last = len(surface.group_names) - 1
             look = {"cmap": [color(i) for i in range(last + 1)], "clim": (-0.5, last + 0.5)}
         else:
-            maps = {"group": "tab10", "joint": "tab10", "piece": "tab20"}
             look = {
-                "cmap": maps.get(self.field, "YlOrBr"),
+                "cmap": COLOR_MAPS[self.colors],
                 "clim": (0.0, max(self.high, 1e-12)),
             }
         plotter.add_mesh(
@@ -250,7 +244,8 @@ class _Scene:
             show_edges=mesh.n_cells < 20000,
             edge_color="#444444",
             line_width=0.4,
-            show_scalar_bar=self.field != "piece" and not by_group,  # whose numbers mean nothing
+            show_scalar_bar=self.colors != "scattered label"
+            and not by_group,  # whose numbers mean nothing
             # labels that leave room for the title in the middle
             scalar_bar_args={"color": "black", "vertical": False, "fmt": "%.3g", "n_labels": 4},
         )

@@ -2,23 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
 from cdem.mesh.arrays import components
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.run.state import RunState
 
+Values = Callable[[RunState], NDArray]
+_VALUES: dict[str, Values] = {}
+
+
+def output_field(name: str) -> Callable[[Values], Values]:
+    """The function below gives the values of this field on nodes or elements."""
+
+    def keep(function: Values) -> Values:
+        _VALUES[name] = function
+        return function
+
+    return keep
+
+
+def values_of(sim: RunState, fields: Iterable[OutputField]) -> dict[str, NDArray]:
+    """Values of fields by name; those of elements have the shapes one after the other."""
+    return {field.name: _VALUES[field.name](sim) for field in fields}
+
 
 def surface_of(
-    sim: RunState, points: dict[str, NDArray], elements: dict[str, NDArray]
+    sim: RunState, values: Mapping[str, NDArray]
 ) -> tuple[NDArray, NDArray, dict[str, NDArray], dict[str, NDArray]]:
     """Outer and broken faces now: positions, vertices of the faces (-1 after a triangle's), fields.
 
     Args:
         sim: The simulation.
-        points: Fields on its nodes, to be carried over to the points of the surface.
-        elements: Fields on its elements, to be carried over to their faces.
+        values: Fields on its nodes and elements, to be carried over to points and faces.
     """
     t = sim.build.topology
     faces, broken = visible_faces(sim)
@@ -26,18 +46,42 @@ def surface_of(
     used = np.unique(nodes[nodes >= 0])
     number = np.full(len(t.node_position) + 1, -1, np.int32)
     number[used] = np.arange(len(used))
+    on_nodes = {field.name for field in OUTPUT_FIELDS if field.on == "nodes"}
+    element = t.face_element[faces]
     return (
-        sim.fields["position"][used],
+        sim.motion[used, :3],
         number[nodes],
-        {name: values[used] for name, values in points.items()},
-        {
-            "group": t.face_group[faces],
-            "block": t.face_block[faces],
-            **{name: values[t.face_element[faces]] for name, values in elements.items()},
+        {name: of[used] for name, of in values.items() if name in on_nodes},
+        {name: of[element] for name, of in values.items() if name not in on_nodes}
+        | {
             "broken": broken.astype(np.int8),
-            "joint": (t.face_kind // len(t.group_names))[faces],  # 0: not made by a set of joints
+            "joint": (t.face_kind // len(t.group_names))[faces],
         },
     )
+
+
+@output_field("displacement")
+def displacement_of(sim: RunState) -> NDArray[np.float64]:
+    """Displacement of each node since the last reset [m], shape (nodes, 3)."""
+    return sim.motion[:, :3] - sim.reference
+
+
+@output_field("velocity")
+def velocity_of(sim: RunState) -> NDArray[np.float64]:
+    """Velocity of each node [m/s], shape (nodes, 3)."""
+    return sim.motion[:, 4:7]
+
+
+@output_field("group")
+def group_of(sim: RunState) -> NDArray[np.int32]:
+    """Group of each element."""
+    return np.concatenate(list(sim.build.topology.element_group.values()))
+
+
+@output_field("block")
+def block_of(sim: RunState) -> NDArray[np.int32]:
+    """Block of each element."""
+    return np.concatenate(list(sim.build.topology.element_block.values()))
 
 
 def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
@@ -56,6 +100,7 @@ def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     return np.concatenate(faces), np.concatenate(intact)
 
 
+@output_field("damage")
 def damage_of(sim: RunState) -> NDArray[np.float64]:
     """Broken part of the bonded faces of each element, 0 to 1, shapes one after the other."""
     t = sim.build.topology
@@ -69,6 +114,7 @@ def damage_of(sim: RunState) -> NDArray[np.float64]:
     return broken / np.maximum(total, 1)
 
 
+@output_field("piece")
 def pieces_of(sim: RunState) -> NDArray[np.int32]:
     """Piece of each element, shapes one after the other: the least block that it hangs together with.
 
@@ -85,6 +131,7 @@ def pieces_of(sim: RunState) -> NDArray[np.int32]:
     return piece[np.concatenate(list(t.element_block.values()))].astype(np.int32)
 
 
+@output_field("stress")
 def stress_of(sim: RunState) -> NDArray[np.float64]:
     """Mean stress of each element [Pa], xx yy zz xy yz zx, shapes one after the other."""
     tables = sim.core.stress()

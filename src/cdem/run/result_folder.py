@@ -7,14 +7,14 @@ import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from cdem._version import __version__
+from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS
 from cdem.errors import CdemError
 from cdem.run.checkpoint import read_checkpoint, write_checkpoint, write_json_atomic
 from cdem.run.energy_terms import ENERGY_TERMS
-from cdem.run.fields import damage_of, pieces_of, stress_of, surface_of
+from cdem.run.fields import surface_of, values_of
 from cdem.run.histories import tracks
 from cdem.run.state import RunState
 from cdem.run.writers import FrameWriter, HistoryWriter, SurfaceWriter
@@ -94,10 +94,7 @@ class Results:
         self._history = HistoryWriter(self.folder / "histories.csv", columns, keep_rows=rows)
         if not sim.case.output.frames:
             return
-        static = {
-            "group": np.concatenate(list(t.element_group.values())),
-            "block": np.concatenate(list(t.element_block.values())),
-        }
+        static = values_of(sim, (f for f in OUTPUT_FIELDS if f.frames == "always"))
         self._volume = FrameWriter(
             self.folder / "frames.vtkhdf", t.element_nodes, static, resume_steps=frames
         )
@@ -122,20 +119,21 @@ class Results:
         self._history.append(row)
         self.rows += 1
         if frame and self._volume is not None and self._surface is not None:
-            fields = sim.fields
-            wanted = sim.case.output.fields
-            points: dict[str, NDArray] = {
-                n: fields[n] for n in ("displacement", "velocity") if n in wanted
-            }
-            whole: dict[str, NDArray] = {"damage": damage_of(sim), "piece": pieces_of(sim)}
-            cells: dict[str, NDArray] = {n: v for n, v in whole.items() if n in wanted}
-            if "stress" in wanted:
-                cells["stress"] = stress_of(sim)
-            self._volume.append(sim.time, fields["position"], points, cells)
-            self._surface.append(sim.time, *surface_of(sim, points, whole))
-            if self._surface.frames == 1:
-                self._surface.name_groups(sim.build.group_names)
-            self.frames += 1
+            self._record_frame(sim, self._volume, self._surface)
+
+    def _record_frame(self, sim: RunState, volume: FrameWriter, surface: SurfaceWriter) -> None:
+        wanted = sim.case.output.fields
+        kept = [f for f in OUTPUT_FIELDS if f.frames == "chosen" and f.name in wanted]
+        shown = [f for f in CARRIED if f.surface == "always" or f.name in wanted]
+        values = values_of(sim, [f for f in OUTPUT_FIELDS if f in kept or f in shown])
+        nodes, elements = (
+            {f.name: values[f.name] for f in kept if f.on == on} for on in ("nodes", "elements")
+        )
+        volume.append(sim.time, sim.motion[:, :3], nodes, elements)
+        surface.append(sim.time, *surface_of(sim, {f.name: values[f.name] for f in shown}))
+        if surface.frames == 1:
+            surface.name_groups(sim.build.group_names)
+        self.frames += 1
 
     def checkpoint(self, sim: RunState) -> None:
         """Write the checkpoint."""

@@ -110,6 +110,11 @@ class RunState:
         return int(self.core.scalars()["step"])
 
     @property
+    def motion(self) -> NDArray[np.float64]:
+        """The core's rows of position and velocity, each and a pad; a view of shape (nodes, 8)."""
+        return self.core.fields()["node.motion"].reshape(-1, 8)
+
+    @property
     def fields(self) -> dict[str, NDArray[np.float64]]:
         """Fields on nodes: views or fresh arrays.
 
@@ -117,8 +122,7 @@ class RunState:
         from the last reset; "force" [N] is the last unbalanced force, "reaction" [N] that of
         supports; "mass" [kg].
         """
-        state = self.core.fields()
-        motion = state["node.motion"].reshape(-1, 8)
+        state, motion = self.core.fields(), self.motion
         return {
             "position": motion[:, :3],
             "velocity": motion[:, 4:7],
