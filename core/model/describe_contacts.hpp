@@ -7,8 +7,8 @@
 namespace cdem {
 
 /// Contacts of semi-springs: part of `describe_contacts`.
-template <class Stored>
-void describe_springs(SpringState& c, Stored&& stored) {
+template <class Stored, class Rebuilt>
+void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
   stored({.name = "spring.target",
           .meaning = "exposed face in contact, or -1",
           .rows = "slots",
@@ -42,6 +42,11 @@ void describe_springs(SpringState& c, Stored&& stored) {
           .meaning = "1: a loaded contact was lost by its depth",
           .rows = "slots"},
          c.lost);
+  rebuilt("find_target_faces",
+          {.name = "spring.unresolved",
+           .meaning = "1: the step had to look for its target",
+           .rows = "slots"},
+          c.unresolved);
 }
 
 /// Contacts of semi-edges: part of `describe_contacts`.
@@ -167,7 +172,7 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
 /// Call stored(info, column) or rebuilt(by, info, column) for every array of contacts.
 template <class Stored, class Rebuilt>
 void describe_contacts(State& s, Stored&& stored, Rebuilt&& rebuilt) {
-  describe_springs(s.springs, stored);
+  describe_springs(s.springs, stored, rebuilt);
   describe_edges(s.edges, stored);
   describe_found_edges(s.edges, rebuilt);
   describe_forces(s, rebuilt);

@@ -49,7 +49,7 @@ struct SpringState {
   Column<Index> target, target_before;
   Column<Real> state, reaction;  // rows of 8
   Column<Real> friction, dashpot;
-  Column<Flag> lost;
+  Column<Flag> lost, unresolved;
 };
 
 /// Contacts of semi-edges, see EdgeColumns; a step makes the list anew from the one before.

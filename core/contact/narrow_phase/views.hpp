@@ -23,8 +23,14 @@ inline EdgePairs edge_pairs(State& s) {
 
 inline SpringColumns spring_columns(State& s) {
   SpringState& c = s.springs;
-  return {c.target.data(),  c.target_before.data(), c.state.data(), c.friction.data(),
-          c.dashpot.data(), c.reaction.data(),      c.lost.data()};
+  return {.target = c.target.data(),
+          .target_before = c.target_before.data(),
+          .state = c.state.data(),
+          .friction = c.friction.data(),
+          .dashpot = c.dashpot.data(),
+          .reaction = c.reaction.data(),
+          .lost = c.lost.data(),
+          .unresolved = c.unresolved.data()};
 }
 
 inline EdgeColumns edge_columns(State& s) {

@@ -67,6 +67,7 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                            inner.motion.data(),
                            search.outer.rotation_soon.data()};
   inner.candidates.resize(search.outer.slot_faces.size());
+  inner.candidates.fill(0);
   for_each_selected(q, count,
                     MarkInnerFaces{face_columns(m, s), face_geometry(s), m.rules, listed,
                                    inner.candidates.data()});

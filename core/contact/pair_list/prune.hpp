@@ -84,13 +84,10 @@ struct MarkInnerFaces {
   FaceGeometry geometry;
   SearchRules rules;
   ListedFaces listed;
-  Flag* close;  // [listed]
+  Flag* close;  // [listed] set where selected, 0 before
 
   CDEM_HD Range items(Index m) const { return {listed.first[4 * m], listed.first[4 * m + 4]}; }
-  CDEM_HD bool selects(Index, Index c) const {
-    close[c] = 0;
-    return listed.near[listed.pair[c]];
-  }
+  CDEM_HD bool selects(Index, Index c) const { return listed.near[listed.pair[c]]; }
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
