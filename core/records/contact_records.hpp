@@ -17,7 +17,13 @@ struct ContactState {
 
   CDEM_HD static ContactState at(const Real* rows, std::size_t place) {
     const Real* r = rows + 8 * place;
-    return {r[0], r[1], r[2], r[3], r[4], r[5], r[6]};
+    return {.force_n = r[0],
+            .penetration = r[1],
+            .shear1 = r[2],
+            .shear2 = r[3],
+            .stress_free_gap = r[4],
+            .energy_n = r[5],
+            .energy_s = r[6]};
   }
   CDEM_HD void store(Real* rows, std::size_t place) const {
     Real* r = rows + 8 * place;
@@ -35,7 +41,7 @@ struct EdgeContact {
 
   CDEM_HD static EdgeContact at(const Index* rows, std::size_t place) {
     const Index* r = rows + 4 * place;
-    return {r[0], r[1], r[2], r[3]};
+    return {.mother = r[0], .face = r[1], .edge = r[2], .before = r[3]};
   }
   CDEM_HD void store(Index* rows, std::size_t place) const {
     Index* r = rows + 4 * place;

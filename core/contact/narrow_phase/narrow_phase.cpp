@@ -25,18 +25,21 @@ void find_target_edges(const Model& m, State& s, Queue q) {
   begin_edges(s);
   const Index pairs = Index(s.search.inner.near_edges.size());
   for_each_lane(q, pairs,
-                FilterEdgePairs{{s.nodes.motion.data()},
-                                face_geometry(s),
-                                edge_pairs(s),
-                                m.rules,
-                                s.edges.old_first.data()});
+                FilterEdgePairs{.nodes = {s.nodes.motion.data()},
+                                .geometry = face_geometry(s),
+                                .pairs = edge_pairs(s),
+                                .rules = m.rules,
+                                .held = s.edges.old_first.data()});
   do {
     for_each_selected(q, pairs, edge_search(m, s));
     finish(q);
   } while (!make_room_for_edges(s));
   for_each_item(q, Index(s.search.exposed_face.size()),
-                ListEdgeContacts{edge_search(m, s), s.edges.first.data(), s.edges.contact.data(),
-                                 s.edges.friction.data(), s.edges.dashpot.data()});
+                ListEdgeContacts{.touch = edge_search(m, s),
+                                 .first = s.edges.first.data(),
+                                 .contact = s.edges.contact.data(),
+                                 .friction = s.edges.friction.data(),
+                                 .dashpot = s.edges.dashpot.data()});
 }
 
 }  // namespace cdem

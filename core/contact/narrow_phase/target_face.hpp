@@ -223,7 +223,15 @@ struct ResolveTargets : FaceSearch {
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
     const Index slot = 4 * m + k, current = springs.target_before[slot];
-    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, current < 0};
+    Seeker s{.node = faces.vertex(exposed_face[m], k),
+             .best = -1,
+             .v = {},
+             .p = {},
+             .gap = -1e300,
+             .turn_depth = 0,
+             .lifted = 0,
+             .kept = false,
+             .free = current < 0};
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;
