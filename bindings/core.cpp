@@ -1,25 +1,18 @@
 // core.cpp - names and shapes for Python, and nothing else.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
-#include <algorithm>
-#include <cmath>
-#include <tuple>
-
+#include "bindings/arrays.hpp"
+#include "bindings/laws.hpp"
 #include "core/base/device.hpp"
 #include "core/base/machine_limits.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/report.hpp"
-#include "core/interfaces/laws.hpp"
-#include "core/materials/laws.hpp"
-#include "core/model/describe.hpp"
-#include "core/model/describe_scalars.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
 #include "core/nodes/curves.hpp"
@@ -27,57 +20,11 @@
 #include "core/nodes/time_step.hpp"
 #include "core/run/run.hpp"
 
-namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace cdem {
 
-/// A model and its state: what one simulation holds.
-struct Core {
-  Model model;
-  State state;
-};
-
 namespace {
-
-template <class T>
-using Array = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
-
-template <class T>
-nb::object view(Column<T>& column, nb::handle owner) {
-  const std::size_t shape[1] = {column.size()};
-  return nb::cast(nb::ndarray<nb::numpy, T>(column.data(), 1, shape, owner));
-}
-
-/// Copy every array of the model from a dict of flat arrays; a missing one is our own mistake.
-void take_model(Core& core, const nb::dict& arrays) {
-  describe(core.model, [&]<class T>(const std::string& name, Column<T>& column) {
-    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
-    column.assign(array.data(), array.size());
-  });
-  for_each_element_set(core.model, core.state,
-                       [](const auto& kind, ElementSet& e, const ElementState&) {
-                         e.points = kind.points;  // one where there are hourglass springs
-                       });
-}
-
-/// Views of the model's arrays; only until one of them is changed.
-nb::object model_arrays(nb::handle_t<Core> self) {
-  nb::dict arrays;
-  describe(nb::cast<Core&>(self).model, [&]<class T>(const std::string& name, Column<T>& column) {
-    arrays[name.c_str()] = view(column, self);
-  });
-  return arrays;
-}
-
-/// Copy those arrays of the model that the dict holds: what a stage may change.
-void update_model(Core& core, const nb::dict& arrays) {
-  describe(core.model, [&]<class T>(const std::string& name, Column<T>& column) {
-    if (!arrays.contains(name.c_str())) return;
-    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
-    column.assign(array.data(), array.size());
-  });
-}
 
 void take_counts(Core& core, const nb::dict& c) {
   const auto number = [&](const char* name) { return nb::cast<Index>(c[name]); };
@@ -99,134 +46,6 @@ void take_counts(Core& core, const nb::dict& c) {
     const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
     p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
   });
-}
-
-nb::object state_fields(nb::handle_t<Core> self) {
-  Core& core = nb::cast<Core&>(self);
-  nb::dict fields;
-  describe(core.state, [&]<class T>(const std::string& name, Column<T>& column, const char*) {
-    fields[name.c_str()] = view(column, self);
-  });
-  return fields;
-}
-
-/// Bring back every array and scalar of a checkpoint.
-void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
-  describe(core.state, [&]<class T>(const std::string& name, Column<T>& column, const char*) {
-    const auto array = nb::cast<Array<T>>(arrays[name.c_str()]);
-    column.assign(array.data(), array.size());
-  });
-  describe_scalars(core.state, [&]<class T>(const ScalarInfo& info, T& number) {
-    number = nb::cast<T>(scalars[info.name]);
-  });
-}
-
-nb::dict scalars(Core& core) {
-  nb::dict numbers;
-  describe_scalars(
-      core.state, [&](const ScalarInfo& info, const auto& number) { numbers[info.name] = number; });
-  return numbers;
-}
-
-nb::list scalar_infos(Core& core) {
-  nb::list infos;
-  describe_scalars(core.state, [&](const ScalarInfo& info, const auto&) {
-    nb::dict one;
-    one["name"] = info.name, one["unit"] = info.unit, one["meaning"] = info.meaning;
-    infos.append(one);
-  });
-  return infos;
-}
-
-/// Numbers of a law's parameters in the order of its declaration, from a dict by name.
-template <class Law>
-std::vector<Real> parameters_of(const nb::dict& values) {
-  std::vector<Real> row;
-  for (const Parameter& p : Law::parameters) row.push_back(nb::cast<Real>(values[p.name]));
-  return row;
-}
-
-/// Call act.template operator()<Law, number>() for the law of this name.
-template <class Laws, class Act>
-void with_law(const std::string& name, const Act& act) {
-  bool found = false;
-  Laws::for_each([&]<template <class> class Law, Index number>() {
-    if (name != Law<Real>::text.name) return;
-    found = true;
-    act.template operator()<Law, number>();
-  });
-  if (!found) throw nb::value_error("unknown law");
-}
-
-/// Why parameters of a law, as the core takes them, contradict each other, or an empty text.
-template <class Laws>
-std::string contradiction(const std::string& law, const nb::dict& values) {
-  std::string why;
-  with_law<Laws>(law, [&]<template <class> class Law, Index>() {
-    const char* text = Law<Real>::contradiction(parameters_of<Law<Real>>(values).data());
-    if (text) why = text;
-  });
-  return why;
-}
-
-/// What the laws of a list say of themselves.
-template <class Laws>
-nb::list declarations() {
-  nb::list laws;
-  Laws::for_each([&]<template <class> class Law, Index>() {
-    nb::dict law;
-    law["name"] = Law<Real>::text.name;
-    law["meaning"] = Law<Real>::text.meaning;
-    law["flows"] = false;
-    if constexpr (requires { Law<Real>::inelastic; }) law["flows"] = Law<Real>::inelastic;
-    nb::list parameters, state;
-    for (const Parameter& p : Law<Real>::parameters) {
-      nb::dict d;
-      d["name"] = p.name, d["symbol"] = p.symbol;
-      d["unit"] = p.unit, d["meaning"] = p.meaning;
-      d["at_least"] = p.at_least;
-      d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
-      d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
-      d["is_tangent"] = p.form == Form::tangent;
-      d["is_strength"] = p.is_strength;
-      d["bonds"] = p.bonds;
-      parameters.append(d);
-    }
-    for (const StateVariable& v : Law<Real>::state) {
-      nb::dict d;
-      d["name"] = v.name, d["unit"] = v.unit, d["meaning"] = v.meaning;
-      state.append(d);
-    }
-    law["parameters"] = parameters;
-    law["state"] = state;
-    laws.append(law);
-  });
-  return laws;
-}
-
-/// The interfaces of the model: law, stiffness_n and stiffness_s as (value, factor), parameters.
-void set_interfaces(Core& core, const nb::list& interfaces) {
-  Model& m = core.model;
-  constexpr std::size_t width = InterfaceLaws::most_parameters;
-  m.interfaces.resize(interfaces.size());
-  m.interface_parameters.resize(width * interfaces.size());
-  m.rules.lifted = 0;
-  for (std::size_t i = 0; i < interfaces.size(); ++i) {
-    const auto entry = nb::cast<nb::dict>(interfaces[i]);
-    const auto stiffness = [&](const char* name) {
-      return nb::cast<std::tuple<Real, Real>>(entry[name]);
-    };
-    Interface& interface = m.interfaces[i];
-    std::tie(interface.stiffness_n_value, interface.stiffness_n_factor) = stiffness("stiffness_n");
-    std::tie(interface.stiffness_s_value, interface.stiffness_s_factor) = stiffness("stiffness_s");
-    const auto name = nb::cast<std::string>(entry["law"]);
-    with_law<InterfaceLaws>(name, [&]<template <class> class Law, Index number>() {
-      interface.law = number;
-      const auto row = parameters_of<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
-      std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
-      m.rules.lifted = std::max(m.rules.lifted, 2 * Law<Real>::rise_most(row.data()));
-    });
-  }
 }
 
 Formulation formulation(const std::string& name) {
@@ -307,6 +126,112 @@ nb::list energy_term_infos() {
   return infos;
 }
 
+void set_curves(Core& c, const std::vector<std::vector<Real>>& times,
+                const std::vector<std::vector<Real>>& factors) {
+  c.model.curve_time = times;
+  c.model.curve_factor = factors;
+  set_loads_and_supports(c.model, c.state);
+}
+
+void set_gravity(Core& c, const std::vector<Real>& g) {
+  c.model.gravity = {g.at(0), g.at(1), g.at(2)};
+}
+
+void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
+  c.model.damping = {local, mass};
+  c.model.stiffness_damping = stiffness;
+  c.model.contact_damping = contact;
+}
+
+auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
+              std::int64_t check_interval, const std::string& way) {
+  const Goal goal{.steps = steps,
+                  .end_time = end_time,
+                  .unbalance_limit = unbalance_limit,
+                  .check_interval = check_interval,
+                  .relaxation = relaxation(way)};
+  Report r;
+  {
+    nb::gil_scoped_release release;
+    r = run(c.model, c.state, goal);
+  }
+  return std::make_tuple(std::string(name_of(r.outcome)), r.culprit, r.value);
+}
+
+/// Mean stress of all elements by shape.
+nb::dict stress(nb::handle_t<Core> self) {
+  Core& c = nb::cast<Core&>(self);
+  report_stress(c.model, c.state);
+  nb::dict tables;
+  for_each_element_set(c.model, c.state,
+                       [&](const auto& kind, const ElementSet&, ElementState& es) {
+                         tables[kind.name] = view(es.stress, self);
+                       });
+  return tables;
+}
+
+/// What is handed over and set before a run.
+void bind_setup(nb::class_<Core>& core) {
+  core.def("take_counts", &take_counts, "counts"_a)
+      .def("take_model", &take_model, "arrays"_a)
+      .def("update_model", &update_model, "arrays"_a)
+      .def("set_options", &set_options, "options"_a)
+      .def("set_interfaces", &set_interfaces, "interfaces"_a)
+      .def("set_curves", &set_curves)
+      .def("set_gravity", &set_gravity)
+      .def("set_damping", &set_damping)
+      .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
+      .def("start",
+           [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
+      .def("restore", &restore)
+      .def("prepare", [](Core& c) { prepare(c.model, c.state); })
+      .def("adopt_overlaps", [](Core& c) {
+        const InitialOverlaps found = adopt_overlaps(c.model, c.state);
+        return std::make_tuple(found.deepest, found.count, found.face);
+      });
+}
+
+/// The loop, and what changes between two runs of it.
+void bind_run(nb::class_<Core>& core) {
+  core.def("run", &run_core, "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0,
+           "check_interval"_a = 20, "relaxation"_a = "none")
+      .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
+      .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
+      .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
+}
+
+/// Views of arrays, and what they hold.
+void bind_views(nb::class_<Core>& core) {
+  core.def("model", &model_arrays)
+      .def("fields", &stored_arrays)
+      .def("rebuilt", &rebuilt_arrays)
+      .def("scalars", &scalars)
+      .def("describe", &describe_arrays)
+      .def("describe_rows", &describe_row_kinds)
+      .def("describe_scalars", &scalar_infos)
+      .def("node_force",
+           [](nb::handle_t<Core> self) {
+             return view(nb::cast<Core&>(self).state.nodes.force, self);
+           })
+      .def("stress", &stress);
+}
+
+/// What is worked out from the state.
+void bind_diagnostics(nb::class_<Core>& core) {
+  core.def("energies", &energy_ledger)
+      .def("seconds",
+           [](const Core& c) {
+             const Real* t = c.state.seconds;
+             return std::make_tuple(t[0], t[1], t[2], t[3], t[4]);
+           })
+      .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
+      .def("step_limit", [](const Core& c) {
+        const StepLimit l = step_limit(c.model, c.state);
+        return std::make_tuple(l.dt, l.node, l.element_frequency_squared,
+                               l.contact_frequency_squared);
+      });
+}
+
 }  // namespace
 }  // namespace cdem
 
@@ -331,87 +256,10 @@ NB_MODULE(CDEM_MODULE, module) {
   module.def("measure_flops", &measure_flops, "Peak rate of fused multiply-adds [flop/s].");
   module.def("max_threads", [] { return omp_get_max_threads(); });
 
-  nb::class_<Core>(module, "Core")
-      .def(nb::init<>())
-      .def("take_counts", &take_counts, "counts"_a)
-      .def("take_model", &take_model, "arrays"_a)
-      .def("update_model", &update_model, "arrays"_a)
-      .def("model", &model_arrays)
-      .def("set_options", &set_options, "options"_a)
-      .def("set_interfaces", &set_interfaces, "interfaces"_a)
-      .def("set_curves",
-           [](Core& c, const std::vector<std::vector<Real>>& times,
-              const std::vector<std::vector<Real>>& factors) {
-             c.model.curve_time = times;
-             c.model.curve_factor = factors;
-             set_loads_and_supports(c.model, c.state);
-           })
-      .def("set_gravity",
-           [](Core& c, const std::vector<Real>& g) {
-             c.model.gravity = {g.at(0), g.at(1), g.at(2)};
-           })
-      .def("set_damping",
-           [](Core& c, Real local, Real mass, Real stiffness, Real contact) {
-             c.model.damping = {local, mass};
-             c.model.stiffness_damping = stiffness;
-             c.model.contact_damping = contact;
-           })
-      .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
-      .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
-      .def("start",
-           [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
-      .def("restore", &restore)
-      .def("prepare", [](Core& c) { prepare(c.model, c.state); })
-      .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
-      .def("fields", &state_fields)
-      .def("scalars", &scalars)
-      .def("describe_scalars", &scalar_infos)
-      .def(
-          "run",
-          [](Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
-             std::int64_t check_interval, const std::string& way) {
-            const Relaxation relax = relaxation(way);
-            Report r;
-            {
-              nb::gil_scoped_release release;
-              r = run(c.model, c.state, {steps, end_time, unbalance_limit, check_interval, relax});
-            }
-            return std::make_tuple(std::string(name_of(r.outcome)), r.culprit, r.value);
-          },
-          "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0, "check_interval"_a = 20,
-          "relaxation"_a = "none")
-      .def("energies", &energy_ledger)
-      .def("seconds",
-           [](const Core& c) {
-             const Real* t = c.state.seconds;
-             return std::make_tuple(t[0], t[1], t[2], t[3], t[4]);
-           })
-      .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
-      .def("step_limit",
-           [](const Core& c) {
-             const StepLimit l = step_limit(c.model, c.state);
-             return std::make_tuple(l.dt, l.node, l.element_frequency_squared,
-                                    l.contact_frequency_squared);
-           })
-      .def("node_force",
-           [](nb::handle_t<Core> self) {
-             return view(nb::cast<Core&>(self).state.nodes.force, self);
-           })
-      .def("stress",
-           [](nb::handle_t<Core> self) {
-             Core& c = nb::cast<Core&>(self);
-             report_stress(c.model, c.state);
-             nb::dict d;
-             for_each_element_set(c.model, c.state,
-                                  [&](const auto& kind, const ElementSet&, ElementState& es) {
-                                    d[kind.name] = view(es.stress, self);
-                                  });
-             return d;
-           })
-      .def("adopt_overlaps",
-           [](Core& c) {
-             const InitialOverlaps found = adopt_overlaps(c.model, c.state);
-             return std::make_tuple(found.deepest, found.count, found.face);
-           })
-      .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
+  nb::class_<Core> core(module, "Core");
+  core.def(nb::init<>());
+  bind_setup(core);
+  bind_run(core);
+  bind_views(core);
+  bind_diagnostics(core);
 }

@@ -116,8 +116,8 @@ struct InnerList {
   Column<Index> candidate;       // exposed faces
   Column<Flag> may_begin;        // [candidate] see FilterNewTargets; made in every step
   Column<Index> near_edges;      // outer pairs of edges
-  Column<Index> edge_pairs;      // [9][inner pair of edges] see CopyInnerEdges
-  Column<Flag> open;             // [inner pair] see FilterEdgePairs; made in every step
+  Column<Index> edge_ends, edge_sides, edge_codes;  // of the inner pairs of edges, see EdgePairs
+  Column<Flag> open;  // [inner pair] see FilterEdgePairs; made in every step
 };
 
 /// Exposed faces, the surface that they make, and the pair lists.

@@ -66,7 +66,7 @@ struct Elements {
 void list_rows(const Elements& of, FusedBlocks& fused) {
   const State& s = of.s;
   Column<Index>&first = fused.row_first, &rows = fused.row;
-  first.resize(of.e.count / block_size + 2);
+  first.resize((of.e.count + block_size - 1) / block_size + 1);
   first.fill(0);
   for (std::size_t b = 0; b < fused.blocks.size(); ++b) {
     Index most = 0;

@@ -14,12 +14,11 @@ inline Candidates candidate_columns(State& s) {
 
 inline EdgePairs edge_pairs(State& s) {
   InnerList& inner = s.search.inner;
-  const Index count = Index(inner.near_edges.size()), stride = padded_stride(count);
-  const Index* rows = inner.edge_pairs.data();
-  return {{rows, stride},
-          {rows + 4 * std::size_t(stride), stride},
-          {rows + 8 * std::size_t(stride), stride},
-          inner.open.data()};
+  const Index stride = padded_stride(Index(inner.near_edges.size()));
+  return {.ends = {inner.edge_ends.data(), stride},
+          .sides = {inner.edge_sides.data(), stride},
+          .code = {inner.edge_codes.data(), stride},
+          .open = inner.open.data()};
 }
 
 inline SpringColumns spring_columns(State& s) {

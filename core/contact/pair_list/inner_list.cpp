@@ -137,11 +137,17 @@ void prune_edges(const Model& m, State& s, Queue q) {
   }
   inner.near_edges.resize(count);
   const Index near_stride = padded_stride(count);
-  inner.edge_pairs.resize(9 * std::size_t(near_stride));
+  inner.edge_ends.resize(4 * std::size_t(near_stride));
+  inner.edge_sides.resize(4 * std::size_t(near_stride));
+  inner.edge_codes.resize(near_stride);
   inner.open.resize(count);
-  for_each_item(
-      q, count,
-      CopyInnerEdges{inner.near_edges.data(), listed, inner.edge_pairs.data(), near_stride});
+  for_each_item(q, count,
+                CopyInnerEdges{.near = inner.near_edges.data(),
+                               .listed = listed,
+                               .ends = inner.edge_ends.data(),
+                               .sides = inner.edge_sides.data(),
+                               .codes = inner.edge_codes.data(),
+                               .stride = near_stride});
 }
 
 }  // namespace

@@ -267,23 +267,23 @@ struct MarkHeldEdges {
 struct CopyInnerEdges {
   const Index* near;  // [pair]
   ListedEdges listed;
-  Index* pairs;  // [9][pair]: ends, sides, code of EdgePairs
+  Index *ends, *sides, *codes;  // of EdgePairs
   Index stride;
 
   CDEM_HD void operator()(One pair) const {
     const One from{near[pair.i]};
-    for (Index k = 0; k < 4; ++k) set(k, pair, listed.end(k, from));
+    for (Index k = 0; k < 4; ++k) ends[place(k, pair)] = listed.end(k, from);
     for (Index e = 0; e < 2; ++e) {
-      const Index* sides = listed.sides + 2 * listed.of.at(e, from);
-      set(4 + 2 * e, pair, sides[0]);
-      set(5 + 2 * e, pair, sides[1] >= 0 ? sides[1] : sides[0]);
+      const Index* of_edge = listed.sides + 2 * listed.of.at(e, from);
+      sides[place(2 * e, pair)] = of_edge[0];
+      sides[place(2 * e + 1, pair)] = of_edge[1] >= 0 ? of_edge[1] : of_edge[0];
     }
-    set(8, pair, listed.code[from.i]);
+    codes[pair.i] = listed.code[from.i];
   }
 
  private:
-  CDEM_HD void set(Index row, One pair, Index value) const {
-    pairs[std::size_t(row) * stride + pair.i] = value;
+  CDEM_HD std::size_t place(Index row, One pair) const {
+    return std::size_t(row) * stride + pair.i;
   }
 };
 

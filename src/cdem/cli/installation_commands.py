@@ -12,7 +12,7 @@ import typer
 from cdem.cli.options import Threads
 
 if TYPE_CHECKING:
-    from cdem.verification.runner import Outcome
+    from cdem.verification.runner import Outcome, Problem
 
 
 def verify(
@@ -37,8 +37,7 @@ def verify(
 
     chosen = verification.problems(names or [])
     if listing:
-        for problem in chosen:
-            print(f"{problem.name:<20}{'' if problem.quick else '(full) '}{problem.title}")
+        _print_list(chosen)
         return
     manual = None
     if report:
@@ -47,13 +46,9 @@ def verify(
         manual = Manual(report)
     if not names and not full:
         chosen = [problem for problem in chosen if problem.quick]
-    outcomes: list[verification.Outcome] = []
+    outcomes = []
     for problem in chosen:
-        if not as_json:
-            print(f"{problem.name}: {problem.title}", flush=True)
-        outcomes.append(problem.run(full=full, threads=threads))
-        if not as_json:
-            _print_outcome(outcomes[-1])
+        outcomes.append(_compute(problem, full=full, threads=threads, silent=as_json))
         if manual:  # after each, so that nothing is lost if the next one is stopped
             manual.add(outcomes[-1])
     passed = sum(outcome.passed for outcome in outcomes)
@@ -63,6 +58,21 @@ def verify(
         print(f"{passed} of {len(outcomes)} problems pass" + (f"; see {report}" if report else ""))
     if passed < len(outcomes):
         raise typer.Exit(3)
+
+
+def _print_list(chosen: list[Problem]) -> None:
+    for problem in chosen:
+        print(f"{problem.name:<20}{'' if problem.quick else '(full) '}{problem.title}")
+
+
+def _compute(problem: Problem, *, full: bool, threads: int | None, silent: bool) -> Outcome:
+    """Run a problem and say how it went."""
+    if silent:
+        return problem.run(full=full, threads=threads)
+    print(f"{problem.name}: {problem.title}", flush=True)
+    outcome = problem.run(full=full, threads=threads)
+    _print_outcome(outcome)
+    return outcome
 
 
 def _print_outcome(outcome: Outcome) -> None:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import json
 import sys
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cdem.cli.options import STOPPED, CaseFile, Settings, Threads, print_paths, stop_on_signal
 from cdem.errors import CaseError, CdemError
+
+if TYPE_CHECKING:
+    from cdem.study.critical import Trial
+    from cdem.study.results_table import Table
 
 
 def critical(
@@ -56,15 +61,6 @@ def critical(
     criterion = Criterion.read(limits or [])
     print(f"a trial {criterion.text()}", file=sys.stderr)
 
-    def report(trial: search.Trial, stable: float, failed: float) -> None:
-        verdict = "stable" if trial.stable else "fails"
-        print(
-            f"{name} = {trial.value:.6g}: {verdict} ({trial.steps:,} steps, {trial.why}); "
-            f"between {min(stable, failed):.6g} and {max(stable, failed):.6g}",
-            file=sys.stderr,
-            flush=True,
-        )
-
     found = search.find_critical(
         case,
         vary,
@@ -72,12 +68,22 @@ def critical(
         tolerance=tolerance,
         criterion=criterion,
         threads=threads,
-        report=report,
+        report=partial(_print_trial, name),
     )
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:
         print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+
+
+def _print_trial(name: str, trial: Trial, stable: float, failed: float) -> None:
+    verdict = "stable" if trial.stable else "fails"
+    print(
+        f"{name} = {trial.value:.6g}: {verdict} ({trial.steps:,} steps, {trial.why}); "
+        f"between {min(stable, failed):.6g} and {max(stable, failed):.6g}",
+        file=sys.stderr,
+        flush=True,
+    )
 
 
 def sweep(
@@ -139,7 +145,7 @@ def sweep(
         raise typer.Exit(3)
 
 
-def _draw_plots(table: Any, folder: Path) -> list[Path]:
+def _draw_plots(table: Table, folder: Path) -> list[Path]:
     """Draw a study's plots; the table is whole without them, so a missing extra is only said."""
     from cdem.study.plots import draw_all
 

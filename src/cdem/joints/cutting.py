@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 
 from cdem.joints.convex_cells import Cells, Floats, Ints
 
+Part = tuple[Ints, Ints, Ints]
+"""Corners of some faces, how many each has, and which faces they are parts of."""
+
 
 def cut(
     c: Cells,
@@ -128,7 +131,9 @@ def _crossings(c: Cells, distance: Floats, side: NDArray, some: NDArray) -> tupl
     return np.concatenate([c.points, c.points[a] + way * (c.points[b] - c.points[a])]), made
 
 
-def _part(c: Cells, side, sign: int, some, made: Ints, owner: Ints) -> tuple[Ints, Ints, Ints]:
+def _part(
+    c: Cells, side: NDArray[np.int8], sign: int, some: NDArray[np.bool_], made: Ints, owner: Ints
+) -> Part:
     """Parts of the faces on one side: their corners, how many each has, and which faces."""
     corner, face = c.corner[some], owner[some]
     kept = np.zeros(len(c.cell), bool)
@@ -139,12 +144,14 @@ def _part(c: Cells, side, sign: int, some, made: Ints, owner: Ints) -> tuple[Int
     return both[use], count, faces
 
 
-def _caps(c: Cells, side, upper, lower, where: Ints) -> tuple[tuple[Ints, Ints], Ints]:
+def _caps(
+    c: Cells, side: NDArray[np.int8], upper: Part, lower: Part, where: Ints
+) -> tuple[tuple[Ints, Ints], Ints]:
     """The new face of each upper part, in order of the divided cells; and cells that have none."""
     place = np.full(len(c.block), -1)
     place[where] = np.arange(len(where))
 
-    def edges(part, a: int, b: int) -> tuple[Ints, Ints]:
+    def edges(part: Part, a: int, b: int) -> tuple[Ints, Ints]:
         corner, count, face = part
         first = np.concatenate([[0], np.cumsum(count)])
         after = np.arange(1, len(corner) + 1)

@@ -163,9 +163,7 @@ def cut_model(
         One mesh: what no set may cut as it was, all else as tets. Faces made by a set form a
         surface of its name.
     """
-    names: list[str] = []
-    for piece, _ in pieces:
-        names += [name for name in piece.group_names if name not in names]
+    names = list(dict.fromkeys(name for piece, _ in pieces for name in piece.group_names))
     jointed = set(names)
     if all(joint.group is not None for joint in model.joints):
         jointed = {str(joint.group) for joint in model.joints}
@@ -178,16 +176,25 @@ def cut_model(
         inside, outside = _divide(piece, jointed)
         if outside.cells:
             rest.append(outside)
-        if not inside.cells:
-            continue
-        inside.surfaces = {name: piece.surfaces.get(name, []) for name in surfaces}
-        if faces is None:
-            parts.append(from_mesh(inside, names, block_labels(inside, model.split)))
-        else:
-            (group,) = inside.group_names
-            used = 1 + max(max(face) for face in faces)
-            parts.append(from_polyhedron(inside.points[:used], faces, names.index(group)))
-    c = join(parts)
+        if inside.cells:
+            inside.surfaces = {name: piece.surfaces.get(name, []) for name in surfaces}
+            parts.append(_cells_of(inside, faces, names, model))
+    return merge([*rest, _cut_and_mesh(join(parts), model, names, surfaces)])
+
+
+def _cells_of(
+    piece: Mesh, faces: Sequence[Sequence[int]] | None, names: list[str], model: Model
+) -> Cells:
+    """Cells of a mesh, or the one of a polyhedron with these faces."""
+    if faces is None:
+        return from_mesh(piece, names, block_labels(piece, model.split))
+    (group,) = piece.group_names
+    used = 1 + max(max(face) for face in faces)
+    return from_polyhedron(piece.points[:used], faces, names.index(group))
+
+
+def _cut_and_mesh(c: Cells, model: Model, names: list[str], surfaces: list[str]) -> Mesh:
+    """Cut cells by all sets and mesh what that leaves; notes say what was not as the sets want it."""
     thinnest = thinnest_of(model, c.points)
     c, of_plane, thin = cut_by_sets(c, model.joints, names, thinnest)
     whole = c.volumes().sum()
@@ -198,7 +205,7 @@ def cut_model(
         made.surfaces.setdefault(joint.name, [])
         if not any(len(part) for part in made.surfaces[joint.name]):
             made.notes.append(f"joint set {joint.name} cuts nothing; look at its origin and group")
-    return merge([*rest, made])
+    return made
 
 
 def _divide(piece: Mesh, jointed: set[str]) -> tuple[Mesh, Mesh]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from cdem.mesh.arrays import components, first_of_each, in_pieces, order_of_rows
 from cdem.mesh.element_shapes import FACES, NODES, volumes
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.overlap import Overlaps, find_overlaps
-from cdem.mesh.topology import Floats, Topology
+from cdem.mesh.topology import Floats, Ints, Topology
 
 SAME_PLACE = 1e-9
 """Points of different pieces closer than this, over the model's size, are at the same place."""
@@ -138,57 +138,25 @@ def _morton(points: Floats) -> NDArray[np.uint64]:
     return code
 
 
+@dataclass
+class _Elements:
+    """Elements in their order: by shape, the rows of the mesh, corners as mesh points, block and
+    group."""
+
+    cell: dict[str, Ints]
+    points: dict[str, NDArray[np.int64]]
+    block: dict[str, Ints]
+    group: dict[str, Ints]
+
+
 def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
     """Give every block its nodes; order blocks, and elements inside them, along a Morton curve."""
-    shapes = [s for s in NODES if s in mesh.cells]
-    center = np.concatenate([mesh.points[mesh.cells[s]].mean(axis=1) for s in shapes])
-    group = np.concatenate([mesh.cell_group[s] for s in shapes])
-    _, block = np.unique(label, return_inverse=True)
-    count = block.max() + 1
-    members = np.bincount(block, minlength=count)
-    middle = np.stack([np.bincount(block, c, count) / members for c in center.T], axis=1)
-    order = np.lexsort((np.arange(count), _morton(middle)))
-    rank = np.empty(count, np.int64)
-    rank[order] = np.arange(count)
-    block = rank[block]
-    curve = _morton(center)
-
-    element_nodes: dict[str, Any] = {}
-    element_block, element_group, element_cell = {}, {}, {}
-    keys = []
-    start = 0
-    for shape in NODES:
-        cells = mesh.cells.get(shape, np.zeros((0, NODES[shape]), np.int64))
-        here = slice(start, start + len(cells))
-        start += len(cells)
-        sort = np.lexsort((np.arange(len(cells)), curve[here], block[here]))
-        element_cell[shape] = sort.astype(np.int32)
-        element_block[shape] = block[here][sort].astype(np.int32)
-        element_group[shape] = group[here][sort].astype(np.int32)
-        element_nodes[shape] = cells[sort]
-        keys.append(element_block[shape][:, None].astype(np.int64) * len(mesh.points) + cells[sort])
-    flat = np.concatenate([k.ravel() for k in keys])
-    unique, first, inverse = np.unique(flat, return_index=True, return_inverse=True)
-    # nodes of a large block in the order in which its elements come to them, so that what is near
-    # lies together, and those of a block of one element in the order of its corners, as free blocks
-    # need it (core/nodes/fused_blocks.hpp); the others fit into a cache, and stay in the order of the mesh
-    owner = unique // len(mesh.points)
-    follows = (np.bincount(owner) > LARGE_BLOCK) | (np.bincount(block) == 1)
-    order = np.lexsort((np.where(follows[owner], first, np.arange(len(unique))), owner))
-    rank = np.empty(len(order), np.int64)
-    rank[order] = np.arange(len(order))
-    unique, inverse = unique[order], rank[inverse]
-    start = 0
-    for shape in NODES:
-        size = element_nodes[shape].size
-        nodes = inverse[start : start + size].reshape(element_nodes[shape].shape)
-        element_nodes[shape] = nodes.astype(np.int32)
-        start += size
-    node_block = (unique // len(mesh.points)).astype(np.int32)
-    node_point = (unique % len(mesh.points)).astype(np.int32)
+    elements = _ordered_elements(mesh, label)
+    node_block, node_point, element_nodes = _own_nodes(len(mesh.points), elements)
+    count = 1 + int(node_block[-1])
     block_group = np.zeros(count, np.int32)
     for shape in NODES:
-        block_group[element_block[shape]] = element_group[shape]
+        block_group[elements.block[shape]] = elements.group[shape]
     return Topology(
         node_position=mesh.points[node_point].astype(np.float64),
         node_block=node_block,
@@ -196,11 +164,74 @@ def _nodes_and_elements(mesh: Mesh, label: NDArray) -> Topology:
         block_first_node=np.searchsorted(node_block, np.arange(count + 1)).astype(np.int32),
         block_group=block_group,
         element_nodes=element_nodes,
-        element_block=element_block,
-        element_group=element_group,
-        element_cell=element_cell,
+        element_block=elements.block,
+        element_group=elements.group,
+        element_cell=elements.cell,
         group_names=list(mesh.group_names),
     )
+
+
+def _ordered_elements(mesh: Mesh, label: NDArray) -> _Elements:
+    shapes = [s for s in NODES if s in mesh.cells]
+    center = np.concatenate([mesh.points[mesh.cells[s]].mean(axis=1) for s in shapes])
+    group = np.concatenate([mesh.cell_group[s] for s in shapes])
+    block, curve = _ordered_blocks(label, center), _morton(center)
+    found = _Elements({}, {}, {}, {})
+    start = 0
+    for shape in NODES:
+        cells = mesh.cells.get(shape, np.zeros((0, NODES[shape]), np.int64))
+        here = slice(start, start + len(cells))
+        start += len(cells)
+        order = np.lexsort((np.arange(len(cells)), curve[here], block[here]))
+        found.cell[shape] = order.astype(np.int32)
+        found.points[shape] = cells[order]
+        found.block[shape] = block[here][order].astype(np.int32)
+        found.group[shape] = group[here][order].astype(np.int32)
+    return found
+
+
+def _ordered_blocks(label: NDArray, center: Floats) -> NDArray[np.int64]:
+    """Number of each element's block: blocks lie along a Morton curve by the mean of their elements."""
+    _, block = np.unique(label, return_inverse=True)
+    count = block.max() + 1
+    members = np.bincount(block, minlength=count)
+    middle = np.stack([np.bincount(block, c, count) / members for c in center.T], axis=1)
+    order = np.lexsort((np.arange(count), _morton(middle)))
+    return _ranks(order)[block]
+
+
+def _ranks(order: NDArray) -> NDArray[np.int64]:
+    """Place of each item in an order."""
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    return rank
+
+
+def _own_nodes(points: int, elements: _Elements) -> tuple[Ints, Ints, dict[str, Ints]]:
+    """Block and mesh point of each node, and the elements' corners as nodes.
+
+    Nodes of a large block are in the order in which its elements come to them, so that what is near
+    lies together, and those of a block of one element in the order of its corners, as fused blocks
+    need it (core/nodes/fused_blocks.hpp); the others fit into a cache, and stay in the order of the
+    mesh.
+    """
+    keys = [
+        elements.block[shape][:, None].astype(np.int64) * points + elements.points[shape]
+        for shape in NODES
+    ]
+    flat = np.concatenate([k.ravel() for k in keys])
+    unique, first, inverse = np.unique(flat, return_index=True, return_inverse=True)
+    owner = unique // points
+    members = np.bincount(np.concatenate([elements.block[shape] for shape in NODES]))
+    follows = (np.bincount(owner) > LARGE_BLOCK) | (members == 1)
+    order = np.lexsort((np.where(follows[owner], first, np.arange(len(unique))), owner))
+    unique, inverse = unique[order], _ranks(order)[inverse]
+    ends = np.cumsum([key.size for key in keys])[:-1]
+    corners = {
+        shape: nodes.reshape(key.shape).astype(np.int32)
+        for shape, key, nodes in zip(NODES, keys, np.split(inverse, ends), strict=True)
+    }
+    return (unique // points).astype(np.int32), (unique % points).astype(np.int32), corners
 
 
 def _faces(t: Topology) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.bodies_schema import Rotate
 from cdem.mesh.element_shapes import NODES
 
 Floats = NDArray[np.float64]
@@ -49,7 +50,9 @@ def drop_unused(mesh: Mesh) -> Mesh:
     return mesh
 
 
-def place(mesh: Mesh, rotate=None, translate: Sequence[float] | None = None) -> Mesh:
+def place(
+    mesh: Mesh, rotate: Rotate | None = None, translate: Sequence[float] | None = None
+) -> Mesh:
     """Rotate about an axis (right-hand, degrees) through its origin, then translate [m]."""
     if rotate is not None:
         axis = np.asarray(rotate.axis, float)
@@ -66,24 +69,22 @@ def place(mesh: Mesh, rotate=None, translate: Sequence[float] | None = None) -> 
 
 def merge(pieces: Sequence[Mesh]) -> Mesh:
     """All pieces in one mesh; points are not merged, groups of the same name are."""
-    names: list[str] = []
-    for piece in pieces:
-        names += [n for n in piece.group_names if n not in names]
+    names = list(dict.fromkeys(name for piece in pieces for name in piece.group_names))
     out = Mesh(np.concatenate([p.points for p in pieces]), group_names=names)
     start = np.cumsum([0] + [len(p.points) for p in pieces])
     for shape in NODES:
         some = [(p, s) for p, s in zip(pieces, start, strict=False) if shape in p.cells]
-        if not some:
-            continue
-        out.cells[shape] = np.concatenate([p.cells[shape] + s for p, s in some])
-        out.cell_group[shape] = np.concatenate(
-            [
-                np.array([names.index(n) for n in p.group_names], np.int32)[p.cell_group[shape]]
-                for p, _ in some
-            ]
-        )
+        if some:
+            out.cells[shape] = np.concatenate([p.cells[shape] + s for p, s in some])
+            out.cell_group[shape] = np.concatenate([_renumbered(p, shape, names) for p, _ in some])
     for piece, s in zip(pieces, start, strict=False):
         for name, parts in piece.surfaces.items():
             out.surfaces.setdefault(name, []).extend(part + s for part in parts)
         out.notes += piece.notes
     return out
+
+
+def _renumbered(piece: Mesh, shape: str, names: list[str]) -> NDArray[np.int32]:
+    """Groups of the cells of one shape by their numbers among all names."""
+    numbers = np.array([names.index(name) for name in piece.group_names], np.int32)
+    return numbers[piece.cell_group[shape]]

@@ -8,6 +8,7 @@ import io
 import shutil
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from cdem.mesh.element_shapes import NODES
 from cdem.mesh.mesh import Mesh, drop_unused
 
 _MESHIO_SHAPES = {"tetra": "tet4", "pyramid": "pyramid5", "wedge": "wedge6", "hexahedron": "hex8"}
+_MESHIO_FACES = ("triangle", "quad")
 
 
 def read_mesh(path: str | Path) -> Mesh:
@@ -33,40 +35,23 @@ def read_mesh(path: str | Path) -> Mesh:
     if not path.is_file():
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
     raw = _read_zipped(path) if path.suffix == ".gz" else read_raw(path)
-    groups = _cell_groups(raw)
-    names: list[str] = []
-    mesh = Mesh(np.asarray(raw.points, float).reshape(len(raw.points), -1))
-    if mesh.points.shape[1] == 2:
+    points = np.asarray(raw.points, float).reshape(len(raw.points), -1)
+    if points.shape[1] == 2:
         raise MeshError(f"{path}: a mesh in a plane; cdem needs a volume mesh")
-    cells: dict[str, list] = {s: [] for s in NODES}
-    group: dict[str, list] = {s: [] for s in NODES}
-    unknown = set()
-    for index, block in enumerate(raw.cells):
-        labels = groups.get(index)
-        if block.type in _MESHIO_SHAPES:
-            label = labels if labels is not None else np.full(len(block.data), "default", object)
-            for name in label:
-                if name not in names:
-                    names.append(name)
-            shape = _MESHIO_SHAPES[block.type]
-            cells[shape].append(np.asarray(block.data, np.int64))
-            number = {name: i for i, name in enumerate(names)}
-            group[shape].append(np.array([number[name] for name in label], np.int32))
-        elif block.type in ("triangle", "quad"):
-            for name in sorted(set(labels)) if labels is not None else ():
-                faces = np.asarray(block.data, np.int64)[labels == name]
-                if name != "default":
-                    mesh.surfaces.setdefault(name, []).append(faces)
-        elif block.type not in ("vertex", "line"):
-            unknown.add(block.type)
-    if unknown:
+    others = {block.type for block in raw.cells} - {
+        *_MESHIO_SHAPES,
+        *_MESHIO_FACES,
+        "vertex",
+        "line",
+    }
+    if others:
         raise MeshError(
-            f"{path}: elements of kind {', '.join(sorted(unknown))} are not supported; use linear "
+            f"{path}: elements of kind {', '.join(sorted(others))} are not supported; use linear "
             "tetrahedra, pyramids, wedges and hexahedra (in gmsh: Mesh.ElementOrder = 1)"
         )
-    mesh.cells = {s: np.concatenate(c) for s, c in cells.items() if c}
-    mesh.cell_group = {s: np.concatenate(g) for s, g in group.items() if g}
-    mesh.group_names = names
+    groups = _cell_groups(raw)
+    mesh = Mesh(points, surfaces=_surfaces(raw, groups))
+    _take_volumes(mesh, raw, groups)
     if not mesh.cells:
         raise MeshError(
             f"{path}: holds no volume elements; export the volume mesh, not its surface"
@@ -75,7 +60,38 @@ def read_mesh(path: str | Path) -> Mesh:
     return drop_unused(mesh)
 
 
-def _several_groups(raw, path: Path) -> list[str]:
+def _take_volumes(mesh: Mesh, raw: Any, groups: dict[int, NDArray]) -> None:
+    """Cells of the four shapes, and their groups in the order in which they occur."""
+    cells: dict[str, list[NDArray]] = {s: [] for s in NODES}
+    group: dict[str, list[NDArray]] = {s: [] for s in NODES}
+    number: dict[str, int] = {}
+    for index, block in enumerate(raw.cells):
+        if block.type not in _MESHIO_SHAPES:
+            continue
+        shape = _MESHIO_SHAPES[block.type]
+        names = groups.get(index, np.full(len(block.data), "default", object))
+        cells[shape].append(np.asarray(block.data, np.int64))
+        group[shape].append(
+            np.array([number.setdefault(name, len(number)) for name in names], np.int32)
+        )
+    mesh.cells = {s: np.concatenate(c) for s, c in cells.items() if c}
+    mesh.cell_group = {s: np.concatenate(g) for s, g in group.items() if g}
+    mesh.group_names = list(number)
+
+
+def _surfaces(raw: Any, groups: dict[int, NDArray]) -> dict[str, list[NDArray[np.int64]]]:
+    """Triangles and quadrilaterals of the named groups of surfaces."""
+    surfaces: dict[str, list[NDArray[np.int64]]] = {}
+    for index, block in enumerate(raw.cells):
+        if block.type not in _MESHIO_FACES or index not in groups:
+            continue
+        for name in sorted(set(groups[index]) - {"default"}):
+            faces = np.asarray(block.data, np.int64)[groups[index] == name]
+            surfaces.setdefault(name, []).append(faces)
+    return surfaces
+
+
+def _several_groups(raw: Any, path: Path) -> list[str]:
     """A note if volume elements are in more than one group, for only one of them can count."""
     sets = {n: s for n, s in raw.cell_sets.items() if not n.startswith("gmsh:")}
     cells, names = 0, set()
@@ -93,7 +109,7 @@ def _several_groups(raw, path: Path) -> list[str]:
     return [f"{path}: {cells} elements are in several of the groups {sorted(names)}; one counts"]
 
 
-def _read_zipped(path: Path):
+def _read_zipped(path: Path) -> Any:
     """Read ``name.msh.gz`` as ``name.msh``."""
     with tempfile.TemporaryDirectory() as folder:
         plain = Path(folder) / path.stem
@@ -105,7 +121,12 @@ def _read_zipped(path: Path):
         return read_raw(plain)
 
 
-def read_raw(path: Path):
+def read_raw(path: Path) -> Any:
+    """Read a file with meshio, in silence.
+
+    Raises:
+        MeshError: It cannot be read.
+    """
     import meshio
 
     try:
@@ -123,7 +144,7 @@ def read_raw(path: Path):
         ) from error
 
 
-def _cell_groups(raw) -> dict[int, NDArray]:
+def _cell_groups(raw: Any) -> dict[int, NDArray]:
     """Group name of each cell, by meshio cell block; blocks without groups are left out."""
     out: dict[int, NDArray] = {}
     tags = raw.cell_data.get("gmsh:physical")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,11 +13,13 @@ from cdem.mesh.topology import Topology
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
 from cdem.model.masses import node_masses
 
+Stride = Callable[[int], int]
+"""The core's function from item count to table stride."""
 DEFORMED = 1.5
 """How much larger than in the stress-free mesh a face may become."""
 
 
-def assemble(topology: Topology, properties: Properties, padded_stride) -> Assembly:
+def assemble(topology: Topology, properties: Properties, padded_stride: Stride) -> Assembly:
     """Build every array that the core's `take_model` wants.
 
     Args:
@@ -41,7 +45,7 @@ def assemble(topology: Topology, properties: Properties, padded_stride) -> Assem
     return out
 
 
-def _elements(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
+def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
     row = 0
     mass: dict[str, Floats] = {}
     gravity_mass = np.zeros(len(t.node_position))
@@ -144,7 +148,7 @@ def _movable(t: Topology, p: Properties) -> NDArray[np.int8]:
     return free[t.face_block]
 
 
-def _pairs(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
+def _pairs(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
     a, b = t.pair_faces.T
     bonded = p.bonded[t.face_kind[a], t.face_kind[b]] if len(a) else np.zeros(0, bool)
     corners = (t.face_nodes >= 0).sum(axis=1)
@@ -188,7 +192,15 @@ def _pairs(t: Topology, p: Properties, padded_stride, out: Assembly) -> None:
     out.counts["corner_rows"] += count * 8
 
 
-def _pair_set(kind, faces, area, t: Topology, p: Properties, stride: int, out: Assembly) -> None:
+def _pair_set(
+    kind: str,
+    faces: Ints,
+    area: Floats,
+    t: Topology,
+    p: Properties,
+    stride: int,
+    out: Assembly,
+) -> None:
     sides = t.face_kind[faces].reshape(-1, 2)
     interface = p.interface_of[sides[:, 0], sides[:, 1]].astype(np.int32)
     out.pair_faces[kind] = faces

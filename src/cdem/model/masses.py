@@ -9,6 +9,8 @@ from cdem.mesh import element_shapes
 from cdem.mesh.topology import Topology
 from cdem.model.flat_arrays import Assembly, Floats, Properties
 
+Geometry = tuple[Floats, Floats, Floats]
+"""Gradients, volumes of the Gauss points, and hourglass rows of elements, see `element_shapes`."""
 DENSE_NODES = 16
 """Blocks of up to this many nodes get the full mass matrix: exact inertia at little cost."""
 DENSE_NODES_MOST = 256
@@ -17,7 +19,13 @@ LEAST_LUMP = 0.3
 """A corrected lumped mass may not fall below this part of the uncorrected one."""
 
 
-def node_masses(t: Topology, p: Properties, matrices, geometry, out: Assembly) -> None:
+def node_masses(
+    t: Topology,
+    p: Properties,
+    matrices: dict[str, Floats],
+    geometry: dict[str, Geometry],
+    out: Assembly,
+) -> None:
     """Masses of the nodes, and the squared frequency that bounds the time step."""
     first = t.block_first_node
     size = np.diff(first)
@@ -51,7 +59,14 @@ def node_masses(t: Topology, p: Properties, matrices, geometry, out: Assembly) -
     _dense_blocks(t, p, scaled, stiffness, dense_block, out)
 
 
-def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, out: Assembly):
+def _scaled_masses(
+    t: Topology,
+    p: Properties,
+    matrices: dict[str, Floats],
+    geometry: dict[str, Geometry],
+    dense_block: NDArray[np.bool_],
+    out: Assembly,
+) -> tuple[dict[str, Floats], Floats, Floats, Floats]:
     """Mass matrices after mass scaling; for each node its lumped mass, the sum of w_e^2 m_e over its
     elements, with the frequencies of lumped masses, and their largest w_e^2.
 
@@ -99,7 +114,9 @@ def _scaled_masses(t: Topology, p: Properties, matrices, geometry, dense_block, 
     return scaled, lumped, stiffness, frequency2
 
 
-def _second_moments(t: Topology, scaled, blocks: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+def _second_moments(
+    t: Topology, scaled: dict[str, Floats], blocks: NDArray[np.bool_]
+) -> tuple[Floats, Floats]:
     """Exact centre (sum m x) and second moments (sum m x x^T) of blocks about their first node."""
     origin = t.node_position[t.block_first_node[:-1]]
     second = np.zeros((len(blocks), 3, 3))
@@ -114,7 +131,12 @@ def _second_moments(t: Topology, scaled, blocks: NDArray[np.bool_]) -> tuple[Flo
 
 
 def _correct_lumps(
-    t: Topology, scaled, lumped: Floats, mass: Floats, skip, out: Assembly
+    t: Topology,
+    scaled: dict[str, Floats],
+    lumped: Floats,
+    mass: Floats,
+    skip: NDArray[np.bool_],
+    out: Assembly,
 ) -> NDArray[np.intp]:
     """Shift the lumped masses of larger blocks, as little as possible, to their exact inertia.
 
@@ -153,70 +175,81 @@ def _correct_lumps(
     return np.array(without, np.intp)
 
 
+class _MatrixTable:
+    """The mass matrices of small blocks as the core reads them, one after the other.
+
+    Attributes:
+        first: By node, where its row of the matrix starts, or -1.
+        step: By node, from one axis's matrix to the next; 0 where all axes have the same.
+        inverse: Inverses, each row times its node's mass.
+        matrix: Matrices, each row over its node's mass.
+    """
+
+    def __init__(self, nodes: int) -> None:
+        self.first = np.full(nodes, -1, np.int32)
+        self.step = np.zeros(nodes, np.int32)
+        self.inverse, self.matrix = [np.zeros(0)], [np.zeros(0)]
+        self._size = 0
+
+    def keep(self, nodes: NDArray, inverses: Floats, matrices: Floats) -> None:
+        """Nodes of blocks, (blocks, n), with a matrix for each or for all, or one for each axis."""
+        n = nodes.shape[1]
+        rows = self._size + matrices[0].size * np.arange(len(matrices))[:, None] + n * np.arange(n)
+        self.first[nodes] = rows
+        self.step[nodes] = n * n if matrices.ndim == 4 else 0
+        self.inverse.append(inverses.ravel())
+        self.matrix.append(matrices.ravel())
+        self._size += matrices.size
+
+
 def _dense_blocks(
-    t: Topology, p: Properties, scaled, stiffness: Floats, dense_block, out: Assembly
+    t: Topology,
+    p: Properties,
+    scaled: dict[str, Floats],
+    stiffness: Floats,
+    dense_block: NDArray[np.bool_],
+    out: Assembly,
 ) -> None:
-    """Mass matrices of small blocks, each row over its node's mass, and their inverses, each row
-    times its node's mass, with supported nodes taken out."""
+    """Mass matrices of small blocks and their inverses, with supported nodes taken out."""
     mass, frequency2 = out.arrays["node.mass"], out.arrays["node.frequency_squared"]
     first, size = t.block_first_node, np.diff(t.block_first_node)
-    dense_first = np.full(len(mass), -1, np.int32)
-    dense_step = np.zeros(len(mass), np.int32)
     bound = 1 / mass
     held = np.zeros(len(size), bool)
     held[t.node_block[p.supported.any(axis=1)]] = True
-
-    inverse, matrix, place = [np.zeros(0)], [np.zeros(0)], 0
-
-    def keep(nodes: NDArray, inverses: Floats, matrices: Floats) -> None:
-        """Nodes of blocks, (blocks, n), with a matrix for each or for all, or one for each axis."""
-        nonlocal place
-        n = nodes.shape[1]
-        step = matrices[0].size
-        rows = place + step * np.arange(len(matrices))[:, None] + n * np.arange(n)
-        dense_first[nodes] = rows
-        dense_step[nodes] = n * n if matrices.ndim == 4 else 0
-        inverse.append(inverses.ravel())
-        matrix.append(matrices.ravel())
-        place += matrices.size
-
-    for n in np.unique(size[dense_block]):
+    table = _MatrixTable(len(mass))
+    for n in np.unique(size[dense_block]).tolist():
         free = np.flatnonzero(dense_block & ~held & (size == n))
         bound_to = np.flatnonzero(dense_block & held & (size == n))
         if n == 4 and len(free):  # tets: all have the same over their mass
             nodes = first[free][:, None] + np.arange(n)
             bound[nodes] = 5 / mass[nodes]
-            keep(nodes, (5 * np.eye(4) - 1)[None], ((1 + np.eye(4)) / 5)[None])
+            table.keep(nodes, (5 * np.eye(4) - 1)[None], ((1 + np.eye(4)) / 5)[None])
             free = free[:0]
         for blocks in (free, bound_to):
             if len(blocks) == 0:
                 continue
             nodes = first[blocks][:, None] + np.arange(n)
-            m = _block_matrices(t, scaled, blocks, int(n))
+            m = _block_matrices(t, scaled, blocks, n)
             bound[nodes] = (1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
             # K <= diag(stiffness) as well, which the worst element alone often exceeds
             root = np.sqrt(stiffness[nodes])
             least = np.linalg.eigvalsh(m / root[:, :, None] / root[:, None])[:, 0]
             frequency2[nodes] = np.minimum(frequency2[nodes], 1 / least[:, None])
-            if blocks is bound_to:
-                inverses = np.array([
-                    _supported_inverse(one, p.supported[first[b] : first[b + 1]])
-                    for one, b in zip(m, blocks, strict=True)
-                ])  # fmt: skip
-                m = np.repeat(m[:, None], 3, axis=1)
-                per_row = mass[nodes][:, None, :, None]
-            else:
-                inverses = np.linalg.inv(m)
+            if blocks is free:
                 per_row = mass[nodes][:, :, None]
-            keep(nodes, inverses * per_row, m / per_row)
-    out.arrays["node.mass_row_first"] = dense_first
-    out.arrays["node.mass_axis_stride"] = dense_step
+                table.keep(nodes, np.linalg.inv(m) * per_row, m / per_row)
+            else:
+                per_row = mass[nodes][:, None, :, None]
+                inverses = _supported_inverses(m, p.supported[nodes])
+                table.keep(nodes, inverses * per_row, np.repeat(m[:, None], 3, axis=1) / per_row)
+    out.arrays["node.mass_row_first"] = table.first
+    out.arrays["node.mass_axis_stride"] = table.step
     out.arrays["node.inverse_mass_bound"] = bound
-    out.arrays["mass.inverse"] = np.concatenate(inverse)
-    out.arrays["mass.matrix"] = np.concatenate(matrix)
+    out.arrays["mass.inverse"] = np.concatenate(table.inverse)
+    out.arrays["mass.matrix"] = np.concatenate(table.matrix)
 
 
-def _block_matrices(t: Topology, scaled, blocks: NDArray, n: int) -> Floats:
+def _block_matrices(t: Topology, scaled: dict[str, Floats], blocks: NDArray, n: int) -> Floats:
     place = np.full(len(t.block_first_node) - 1, -1)
     place[blocks] = np.arange(len(blocks))
     m = np.zeros((len(blocks), n, n))
@@ -233,11 +266,17 @@ def _block_matrices(t: Topology, scaled, blocks: NDArray, n: int) -> Floats:
     return m
 
 
-def _supported_inverse(m: Floats, supported: NDArray[np.bool_]) -> Floats:
-    """Inverse per axis of the part of a mass matrix that is free along it, zero elsewhere."""
-    out = np.zeros((3, *m.shape))
-    for axis in range(3):
-        free = np.flatnonzero(~supported[:, axis])
-        if len(free):
-            out[axis][np.ix_(free, free)] = np.linalg.inv(m[np.ix_(free, free)])
+def _supported_inverses(matrices: Floats, supported: NDArray[np.bool_]) -> Floats:
+    """Inverses per axis of the parts of mass matrices that are free along it, zero elsewhere.
+
+    Args:
+        matrices: [kg], shape (blocks, n, n).
+        supported: Components of the blocks' nodes that are held or moved, shape (blocks, n, 3).
+    """
+    out = np.zeros((len(matrices), 3, *matrices.shape[1:]))
+    for b, m in enumerate(matrices):
+        for axis in range(3):
+            free = np.flatnonzero(~supported[b, :, axis])
+            if len(free):
+                out[b, axis][np.ix_(free, free)] = np.linalg.inv(m[np.ix_(free, free)])
     return out

@@ -20,7 +20,7 @@ def supports_of(
     velocity = np.zeros((count, 3))
     curve = np.zeros((count, 3), np.int32)
 
-    def hold(nodes, axes, speeds, index) -> None:
+    def hold(nodes: NDArray, axes: list[int], speeds: list[float], index: int) -> None:
         for axis, speed in zip(axes, speeds, strict=True):
             component[nodes, axis] = 1
             velocity[nodes, axis] = speed

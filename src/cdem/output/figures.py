@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cdem.errors import CdemError
 from cdem.output.reader import read_histories
@@ -50,14 +51,14 @@ def plot(folder: Path) -> list[Path]:
     return paths
 
 
-def _save(plt, figure, path: Path) -> Path:
+def _save(plt: Any, figure: Any, path: Path) -> Path:
     figure.tight_layout()
     figure.savefig(path)
     plt.close(figure)
     return path
 
 
-def _plot_energies(plt, folder: Path, time, columns) -> Path:
+def _plot_energies(plt: Any, folder: Path, time: NDArray, columns: dict[str, NDArray]) -> Path:
     figure, (upper, lower) = plt.subplots(
         2, 1, figsize=(6.4, 5.2), sharex=True, height_ratios=[3, 1]
     )
@@ -72,7 +73,14 @@ def _plot_energies(plt, folder: Path, time, columns) -> Path:
     return _save(plt, figure, folder / "energies.png")
 
 
-def _plot_history(plt, folder: Path, name: str, members: list[str], time, columns) -> Path:
+def _plot_history(
+    plt: Any,
+    folder: Path,
+    name: str,
+    members: list[str],
+    time: NDArray,
+    columns: dict[str, NDArray],
+) -> Path:
     quantities: dict[str, list[str]] = {}
     for column in members:
         label = column.split(".", 1)[1]

@@ -171,7 +171,7 @@ def _write_movie(path: Path, scene: _Scene, series: SurfaceSeries) -> Path:
 class _Scene:
     """One view and one colour range for all frames of a run."""
 
-    def __init__(self, pyvista, series: Sequence[Surface] | SurfaceSeries, field: str) -> None:
+    def __init__(self, pyvista: Any, series: Sequence[Surface] | SurfaceSeries, field: str) -> None:
         self.pyvista, self.field = pyvista, field
         last = series[len(series) - 1]
         values = self._values(last)
@@ -210,7 +210,7 @@ class _Scene:
         margin = 0.5 * (far - near).max()
         return np.maximum(low, near - margin), np.minimum(high, far + margin)
 
-    def _camera(self, first: Surface, last: Surface):
+    def _camera(self, first: Surface, last: Surface) -> list[Any]:
         """Look across the main motion from above; along -y when nothing moves in plan."""
         moved = last.point_data.get("displacement", np.zeros((1, 3)))
         way = moved.mean(axis=0)[:2]

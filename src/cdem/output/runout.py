@@ -260,16 +260,42 @@ def measure(
     way = np.array([np.sin(np.radians(direction)), np.cos(np.radians(direction)), 0.0])
     crown = _crown(body.series.points(body.frames[0])[body.nodes], way)
     lines = [Line(line, way[:2], body.start) for line in sections]
+    history, fragments = _follow(body, way, crown @ way, lines)
+    deposit = Deposit.of(end, cell)
+    return RunOut(
+        groups=body.groups,
+        direction=float(direction % 360),
+        crown=crown,
+        front=_front(body, body.frames[-1], way),
+        history=history | _broken(folder, history["time"]),
+        fragments=fragments,
+        sections=[line.section() for line in lines],
+        deposit=deposit,
+        source=Deposit.of(body.start, deposit.cell),
+    )
 
+
+def _follow(
+    body: Body, way: Floats, origin: float, lines: Sequence[Line]
+) -> tuple[dict[str, Floats], dict[str, NDArray]]:
+    """Columns `HISTORY` frame by frame, and the pieces at the end; lines see every frame, too.
+
+    Args:
+        body: The moving elements.
+        way: Unit vector along the motion.
+        origin: Where distances along it count from [m].
+        lines: Sections through which rock is followed.
+    """
     rows, before = [], body.start.centroids()
     for frame in body.frames:
-        time = body.series.times[frame]
-        solids = body.solids(frame)
+        time, solids, velocity = (
+            body.series.times[frame],
+            body.solids(frame),
+            body.velocities(frame),
+        )
         volume, centroid = solids.volumes(), solids.centroids()
-        velocity = body.velocities(frame)
         centre = body.mass @ centroid / body.mass.sum()
         places = body.series.points(frame)[body.nodes] @ way
-        origin = crown @ way
         density = body.mass / volume  # the mass stays while the volume changes
         pieces = body.pieces(frame, volume)
         rows.append(
@@ -289,19 +315,7 @@ def measure(
             line.follow(time, solids, velocity, before, centroid)
         before = centroid
     history = dict(zip(list(HISTORY)[: len(rows[0])], np.array(rows).T, strict=True))
-    history |= _broken(folder, history["time"])
-    deposit = Deposit.of(end, cell)
-    return RunOut(
-        groups=body.groups,
-        direction=float(direction % 360),
-        crown=crown,
-        front=_front(body, body.frames[-1], way),
-        history=history,
-        fragments={} if pieces is None else pieces.table(body.mass, centroid),
-        sections=[line.section() for line in lines],
-        deposit=deposit,
-        source=Deposit.of(body.start, deposit.cell),
-    )
+    return history, {} if pieces is None else pieces.table(body.mass, centroid)
 
 
 def _direction(body: Body, end: Solids) -> float:

@@ -32,7 +32,7 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
     return out
 
 
-def _value(sim: RunState, quantity: str, nodes) -> NDArray[np.float64]:
+def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:
     fields = sim.fields
     if quantity == "force":  # of supports, which is what a user measures at a loading plate
         return fields["reaction"][nodes].sum(axis=0)
@@ -41,6 +41,6 @@ def _value(sim: RunState, quantity: str, nodes) -> NDArray[np.float64]:
     return mass @ fields[name][nodes] / mass.sum()
 
 
-def _kinetic(sim: RunState, nodes) -> float:
+def _kinetic(sim: RunState, nodes: NDArray[np.intp]) -> float:
     fields = sim.fields
     return float(0.5 * (fields["mass"][nodes, None] * fields["velocity"][nodes] ** 2).sum())

@@ -147,7 +147,12 @@ class Simulation(RunState):
         """Do a number of steps with the present settings, recording nothing and ending no stage."""
         self._guard(partial(self.core.run, count, check_interval=CHECK_INTERVAL))
 
-    def _run_stage(self, progress, should_stop, until: float = np.inf) -> str:
+    def _run_stage(
+        self,
+        progress: Callable[[Progress], None] | None,
+        should_stop: Callable[[], bool] | None,
+        until: float = np.inf,
+    ) -> str:
         if self.stage is None:
             self.stage = stages.begin(self)
             self._record()

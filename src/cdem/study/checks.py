@@ -7,7 +7,7 @@ from typing import Any
 
 from cdem.case.reader import Keys
 from cdem.study.formula import Formula, is_formula, unknown
-from cdem.study.schema import COLUMNS, CRITICAL_RESULTS, StudyParts
+from cdem.study.schema import COLUMNS, CRITICAL_RESULTS, CriticalSearch, Parameter, StudyParts
 
 
 def formulas(study: StudyParts) -> Iterator[tuple[Keys, str]]:
@@ -26,9 +26,23 @@ def _inside(value: Any, keys: Keys) -> Iterator[tuple[Keys, str]]:
 
 
 def contradictions(study: StudyParts) -> Iterator[tuple[Keys, str]]:
-    used: set[str] = set()
+    """Every mismatch between parts of a study, and its place."""
+    used: set[str] = set()  # names in formulas
     for keys, text in formulas(study):
         yield from _formula(keys, text, study.parameters, used)
+    yield from _results(study, used)
+    for field, names in (("parameters", study.parameters), ("results", study.results)):
+        for name in set(names) & set(COLUMNS):
+            yield (field, name), "is the name of a column of every table; choose another"
+    for name, parameter in study.parameters.items():
+        yield from _parameter(study, name, parameter, used)
+    yield from _sampling(study)
+    yield from _plots(study)
+    if study.critical:
+        yield from _critical(study, study.critical)
+
+
+def _results(study: StudyParts, used: set[str]) -> Iterator[tuple[Keys, str]]:
     known = [*study.parameters, *(CRITICAL_RESULTS if study.critical else ())]
     for name, text in study.results.items():
         if is_formula(text):
@@ -38,22 +52,16 @@ def contradictions(study: StudyParts) -> Iterator[tuple[Keys, str]]:
         if name in study.parameters:
             yield ("results", name), "is the name of a parameter, too"
         known.append(name)
-    for field, names in (("parameters", study.parameters), ("results", study.results)):
-        for name in set(names) & set(COLUMNS):
-            yield (field, name), "is the name of a column of every table; choose another"
-    yield from _parameters(study, used)
-    yield from _plots(study)
-    if study.critical:
-        for i, value in enumerate(study.critical.between):
-            if not is_formula(value) and not isinstance(value, int | float):
-                yield ("critical", "between", i), f"must be a number or a formula, got '{value}'"
-        sought = study.critical.parameter
-        for field, names in (("parameters", study.parameters), ("set", study.set)):
-            if sought in names:
-                yield (
-                    ("critical", "parameter"),
-                    f"'{sought}' is also given by {field}; vary it once",
-                )
+
+
+def _critical(study: StudyParts, search: CriticalSearch) -> Iterator[tuple[Keys, str]]:
+    for i, value in enumerate(search.between):
+        if not is_formula(value) and not isinstance(value, int | float):
+            yield ("critical", "between", i), f"must be a number or a formula, got '{value}'"
+    sought = search.parameter
+    for field, names in (("parameters", study.parameters), ("set", study.set)):
+        if sought in names:
+            yield ("critical", "parameter"), f"'{sought}' is also given by {field}; vary it once"
 
 
 def _formula(
@@ -69,24 +77,26 @@ def _formula(
         yield keys, f"'{text.strip()}': {unknown(name, known)}"
 
 
-def _parameters(study: StudyParts, used: set[str]) -> Iterator[tuple[Keys, str]]:
-    lengths: dict[str, int] = {}
-    for name, parameter in study.parameters.items():
-        keys: Keys = ("parameters", name)
-        if "." not in name and name not in used:
-            yield keys, "is used by no formula, and a path in the case has a dot"
-        if parameter.is_drawn and study.sampling is None:
-            yield keys, "is drawn, so the study needs sampling: {count: 100}"
-        if parameter.is_drawn and study.combine == "one-at-a-time":
-            yield keys, "is drawn, which one-at-a-time does not go with; give values or a grid"
-        if not parameter.is_drawn:
-            lengths[name] = len(parameter.values) if parameter.values else parameter.grid.count  # type: ignore[union-attr]
-        if name in study.set:
-            yield ("set", name), "is a parameter, too"
+def _parameter(
+    study: StudyParts, name: str, parameter: Parameter, used: set[str]
+) -> Iterator[tuple[Keys, str]]:
+    keys: Keys = ("parameters", name)
+    if "." not in name and name not in used:
+        yield keys, "is used by no formula, and a path in the case has a dot"
+    if parameter.is_drawn and study.sampling is None:
+        yield keys, "is drawn, so the study needs sampling: {count: 100}"
+    if parameter.is_drawn and study.combine == "one-at-a-time":
+        yield keys, "is drawn, which one-at-a-time does not go with; give values or a grid"
+    if name in study.set:
+        yield ("set", name), "is a parameter, too"
+
+
+def _sampling(study: StudyParts) -> Iterator[tuple[Keys, str]]:
+    lengths = {n: p.count for n, p in study.parameters.items() if not p.is_drawn}
     if study.combine == "together" and len(set(lengths.values())) > 1:
         counts = ", ".join(f"{name} {count}" for name, count in lengths.items())
         yield ("combine",), f"together needs as many values of each parameter; there are: {counts}"
-    if study.sampling and not any(p.is_drawn for p in study.parameters.values()):
+    if study.sampling and len(lengths) == len(study.parameters):
         yield ("sampling",), "no parameter has a distribution to draw from"
 
 

@@ -69,6 +69,10 @@ class Critical:
         }
 
 
+Report = Callable[[Trial, float, float], None]
+"""Takes a trial and the bracket (stable, failed) so far."""
+
+
 @dataclass(frozen=True)
 class _OneValue:
     """Put one value into a case."""
@@ -133,7 +137,7 @@ def find_critical(
     tolerance: float,
     criterion: Criterion | None = None,
     threads: int | None = None,
-    report: Callable[[Trial, float, float], None] | None = None,
+    report: Report | None = None,
 ) -> Critical:
     """Bisect between a value at which a case rests and one at which it fails.
 
@@ -162,33 +166,36 @@ def find_critical(
     criterion = criterion or Criterion()
     cold = isinstance(apply, _OneValue) and apply.makes_a_model
     search = (_Cold if cold else _Warm)(case, apply, criterion, threads)
-    trials: list[Trial] = []
-
-    def attempt(value: float) -> Trial:
-        trials.append(search.attempt(float(value)))
-        return trials[-1]
-
-    ends = []
-    for value in between:
-        ends.append(attempt(value))
-        if report:
-            report(ends[-1], *between)
-    if ends[0].stable == ends[1].stable:
-        what = "come to rest" if ends[0].stable else "fail"
-        raise CaseError(
-            f"both {between[0]:g} and {between[1]:g} {what} ({ends[1].why}); give a wider range"
-        )
-    stable, failed = between if ends[0].stable else between[::-1]
+    found = Critical(between[0], between[1], criterion)
+    _try_ends(search, found, report)
     search.begin_bisection()
-    while abs(stable - failed) > tolerance:
-        trial = attempt(0.5 * (stable + failed))
+    while abs(found.stable - found.failed) > tolerance:
+        trial = search.attempt(found.value)
+        found.trials.append(trial)
         if trial.stable:
-            stable = trial.value
+            found.stable = trial.value
         else:
-            failed = trial.value
+            found.failed = trial.value
         if report:
-            report(trial, stable, failed)
-    return Critical(float(stable), float(failed), criterion, trials)
+            report(trial, found.stable, found.failed)
+    return found
+
+
+def _try_ends(search: _Warm | _Cold, found: Critical, report: Report | None) -> None:
+    """Try both ends of the bracket, and put the one that rests first."""
+    between = found.stable, found.failed
+    for value in between:
+        found.trials.append(search.attempt(float(value)))
+        if report:
+            report(found.trials[-1], *between)
+    first, last = found.trials
+    if first.stable == last.stable:
+        what = "come to rest" if first.stable else "fail"
+        raise CaseError(
+            f"both {between[0]:g} and {between[1]:g} {what} ({last.why}); give a wider range"
+        )
+    ends = (first, last) if first.stable else (last, first)
+    found.stable, found.failed = (end.value for end in ends)
 
 
 class _Warm:

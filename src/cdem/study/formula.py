@@ -95,16 +95,7 @@ class Formula:
         if name is not None:
             self.names |= {name} - {"pi"}
         elif isinstance(node, ast.Call) and not node.keywords:
-            called = _dotted(node.func)
-            if called not in FUNCTIONS:
-                raise ValueError(f"'{self.text}': function {unknown(called or '?', FUNCTIONS)}")
-            wanted = ARGUMENTS.get(called, 1)
-            if len(node.args) != wanted and not (called in ("min", "max") and node.args):
-                raise ValueError(
-                    f"'{self.text}': {called} takes {wanted} number(s), got {len(node.args)}"
-                )
-            for argument in node.args:
-                self._check(argument)
+            self._check_call(node)
         elif isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
             self._check(node.left)
             self._check(node.right)
@@ -115,6 +106,18 @@ class Formula:
                 f"'{self.text}': a formula is made of numbers, names, + - * / **, brackets and "
                 f"{', '.join(FUNCTIONS)}"
             )
+
+    def _check_call(self, node: ast.Call) -> None:
+        called = _dotted(node.func)
+        if called not in FUNCTIONS:
+            raise ValueError(f"'{self.text}': function {unknown(called or '?', FUNCTIONS)}")
+        wanted = ARGUMENTS.get(called, 1)
+        if len(node.args) != wanted and not (called in ("min", "max") and node.args):
+            raise ValueError(
+                f"'{self.text}': {called} takes {wanted} number(s), got {len(node.args)}"
+            )
+        for argument in node.args:
+            self._check(argument)
 
     def _compute(self, node: Any, numbers: Mapping[str, Any]) -> float:
         name = _dotted(node)

@@ -124,6 +124,11 @@ class Parameter(Part):
         """Whether its values are drawn from a distribution."""
         return self.kind not in ("values", "grid")
 
+    @property
+    def count(self) -> int:
+        """How many values are listed; 0 of a distribution."""
+        return len(self.values) if self.values else self.grid.count if self.grid else 0
+
 
 class Sampling(Part):
     """How values are drawn from distributions."""

@@ -141,6 +141,55 @@ def _cluster(workers: int | None, scheduler: str | None) -> Iterator[Any]:
         yield client
 
 
+class _Execution:
+    """Runs on a cluster, as many at a time as it has threads.
+
+    Args:
+        study: The study.
+        waiting: Runs to execute; those of the same case, by its identity, are executed once.
+        client: Of the cluster.
+    """
+
+    def __init__(self, study: Study, waiting: dict[str, list[Run]], client: Any) -> None:
+        self._study, self._client = study, client
+        self._left, self._count = list(waiting.values()), len(waiting)
+        self._under_way: dict[Any, list[Run]] = {}
+        self._began = time.perf_counter()
+
+    @property
+    def going(self) -> bool:
+        """Whether there is anything left to do."""
+        return bool(self._left or self._under_way)
+
+    def submit(self, threads: int) -> None:
+        """Keep so many threads busy, and no more: a worker that dies takes only its own run along."""
+        while self._left and len(self._under_way) < threads:
+            same = self._left.pop(0)
+            self._under_way[self._client.submit(execute, same[0].task, pure=False)] = same
+
+    def collect(self) -> None:
+        """Take over what is finished.
+
+        Raises:
+            CaseError: A result shows that the study asks for what is not there.
+        """
+        for future in [f for f in self._under_way if f.status != "pending"]:
+            for run in (same := self._under_way.pop(future)):
+                _settle(run, future)
+            check_results(self._study, same[0])
+
+    def cancel(self) -> None:
+        """Give up what is under way."""
+        self._client.cancel(list(self._under_way))
+
+    def time_left(self) -> float | None:
+        """Estimate of the remaining wall time [s], or None before anything is finished."""
+        done = self._count - len(self._left) - len(self._under_way)
+        if not done:
+            return None
+        return (time.perf_counter() - self._began) / done * (self._count - done)
+
+
 def _execute_all(
     study: Study,
     runs: list[Run],
@@ -150,28 +199,18 @@ def _execute_all(
     should_stop: Callable[[], bool] | None,
 ) -> None:
     """Keep every thread of the cluster busy until all runs are done or the user wants to stop."""
-    began = looked = time.perf_counter()
-    left, todo, threads = list(waiting.values()), len(waiting), _threads(client)
-    under_way: dict[Any, list[Run]] = {}
-    while left or under_way:
-        # No more than there are threads: a worker that dies then takes only its own run with it.
-        while left and len(under_way) < threads:
-            same = left.pop(0)
-            under_way[client.submit(execute, same[0].task, pure=False)] = same
-        for future in [f for f in under_way if f.status != "pending"]:
-            for run in (same := under_way.pop(future)):
-                _settle(run, future)
-            check_results(study, same[0])
+    execution = _Execution(study, waiting, client)
+    looked, threads = time.perf_counter(), _threads(client)
+    while execution.going:
+        execution.submit(threads)
+        execution.collect()
         if should_stop and should_stop():
-            client.cancel(list(under_way))
+            execution.cancel()
             return
-        if time.perf_counter() > looked + LOOK_SECONDS or not (left or under_way):
-            looked = time.perf_counter()
-            threads = _threads(client)
+        if time.perf_counter() > looked + LOOK_SECONDS or not execution.going:
+            looked, threads = time.perf_counter(), _threads(client)
             if progress:
-                done = todo - len(left) - len(under_way)
-                rate = (looked - began) / done if done else None
-                progress(_progress(runs, client, rate and rate * (todo - done)))
+                progress(_progress(runs, client, execution.time_left()))
         time.sleep(POLL_SECONDS)
 
 

@@ -32,12 +32,12 @@ def under_jaws(x, force):
 
 def rings(count):
     """Concentric rings of 6, 12, 18 ... points; sides of triangles lie along the loaded diameter."""
-    points = [[0.0, 0.0]]
+    rows = [[0.0, 0.0]]
     for ring in range(1, count + 1):
         angle = np.pi / 2 + 2 * np.pi * np.arange(6 * ring) / (6 * ring)
         r = RADIUS * ring / count
-        points += list(r * np.column_stack([np.cos(angle), np.sin(angle)]))
-    points = np.array(points)
+        rows += list(r * np.column_stack([np.cos(angle), np.sin(angle)]))
+    points = np.array(rows)
     points[np.abs(points[:, 0]) < 1e-9, 0] = 0
     return points, plane.delaunay(points)
 

@@ -32,7 +32,7 @@ def slide(simulation, until, after=0.1, every=200):
 def run(study):
     """Three beds; sliders of one and of eight elements when full, and half the time step."""
     lines = {}
-    variants = {"": []}
+    variants: dict[str, list[str]] = {"": []}
     if study.full:
         variants |= {
             ", slider of 8 elements": ["model.blocks.1.box.divisions=[2, 2, 2]"],

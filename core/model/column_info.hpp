@@ -1,0 +1,38 @@
+// column_info.hpp - what an array of model or state holds.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "core/base/lanes.hpp"
+
+namespace cdem {
+
+/// How the numbers lie in memory.
+enum class Layout {
+  rows,     // row after row
+  columns,  // number after number, each for all rows and padded, see padded_stride
+  starts,   // where the list of each row begins, and where the last one ends
+};
+
+/// What an array holds. Kinds of rows are listed in describe_rows.
+struct ColumnInfo {
+  std::string name = {};
+  const char* unit = "1";
+  const char* meaning = "";
+  std::string rows = {};  // kind of its rows; none: a list with a length of its own
+  Index numbers = 1;      // of a row
+  Layout layout = Layout::rows;
+  // kind of rows that its indices mean: one for all numbers, or one for each; -1 means none
+  std::array<std::string, 4> refers_to = {};
+  bool opposite = false;  // index ~i means the opposite of what stands in row i
+  bool optional = false;  // empty where nothing asks for it
+};
+
+/// A kind of rows.
+struct RowKind {
+  std::string name;
+  const char* meaning;
+};
+
+}  // namespace cdem

@@ -1,0 +1,215 @@
+// describe_contacts.hpp - the arrays of contacts, and the forces of exposed faces.
+#pragma once
+
+#include "core/interfaces/laws.hpp"
+#include "core/model/column_info.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// What walls remember for the laws of their interfaces: part of `describe_contacts`.
+template <class Stored>
+void describe_history(const std::string& set, HistoryColumns& history, Stored&& stored) {
+  stored({.name = set + ".history",
+          .unit = "of the law",
+          .meaning = "what the law remembers at a vertex or side",
+          .rows = "slots",
+          .numbers = InterfaceLaws::most_state},
+         history.rows);
+  stored({.name = set + ".history_law",
+          .meaning = "number of the law whose history it is, or -1",
+          .rows = "slots",
+          .numbers = InterfaceLaws::most_state > 0 ? 1 : 0},
+         history.law);
+}
+
+/// Contacts of semi-springs: part of `describe_contacts`.
+template <class Stored>
+void describe_springs(SpringState& c, Stored&& stored) {
+  stored({.name = "spring.target",
+          .meaning = "exposed face in contact, or -1",
+          .rows = "slots",
+          .refers_to = {"exposed"}},
+         c.target);
+  stored({.name = "spring.target_before",
+          .meaning = "the same, one step ago",
+          .rows = "slots",
+          .refers_to = {"exposed"}},
+         c.target_before);
+  stored({.name = "spring.state",
+          .unit = "N, m, N, N, m, J, J, -",
+          .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies",
+          .rows = "slots",
+          .numbers = 8},
+         c.state);
+  stored({.name = "spring.friction", .unit = "J", .meaning = "frictional work", .rows = "slots"},
+         c.friction);
+  stored({.name = "spring.dashpot",
+          .unit = "J",
+          .meaning = "work of the contact dashpot",
+          .rows = "slots"},
+         c.dashpot);
+  stored({.name = "spring.reaction",
+          .unit = "N, N, N, N/m, 1, 1, 1, 1",
+          .meaning = "force on the mother, stiffness, weights on the target",
+          .rows = "slots",
+          .numbers = 8},
+         c.reaction);
+  stored({.name = "spring.lost",
+          .meaning = "1: a loaded contact was lost by its depth",
+          .rows = "slots"},
+         c.lost);
+}
+
+/// Contacts of semi-edges: part of `describe_contacts`.
+template <class Stored>
+void describe_edges(EdgeState& e, Stored&& stored) {
+  stored({.name = "edge.first",
+          .meaning = "contacts of the semi-edges of a mother face",
+          .rows = "exposed",
+          .layout = Layout::starts,
+          .refers_to = {"edge_contacts"}},
+         e.first);
+  stored({.name = "edge.contact",
+          .meaning = "mother side, target face, target edge, place one step ago or -1",
+          .rows = "edge_contacts",
+          .numbers = 4,
+          .refers_to = {"slots", "exposed", "edges", "old_edge_states"}},
+         e.contact);
+  stored({.name = "edge.state",
+          .unit = "N, m, N, N, m, J, J, -",
+          .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies",
+          .rows = "edge_contacts",
+          .numbers = 8},
+         e.state);
+  stored({.name = "edge.reaction",
+          .unit = "N, N, N, N/m, 1, 1, J, J",
+          .meaning = "force on the mother, stiffness, places on both sides, losses of the step",
+          .rows = "edge_contacts",
+          .numbers = 8},
+         e.reaction);
+  stored({.name = "edge.friction", .unit = "J", .meaning = "frictional work", .rows = "exposed"},
+         e.friction);
+  stored({.name = "edge.dashpot",
+          .unit = "J",
+          .meaning = "work of the contact dashpot",
+          .rows = "exposed"},
+         e.dashpot);
+  stored({.name = "edge.lost",
+          .meaning = "1: a loaded contact was lost by its depth",
+          .rows = "exposed"},
+         e.lost);
+}
+
+/// What a step works with to find the contacts of semi-edges: part of `describe_contacts`.
+template <class Rebuilt>
+void describe_found_edges(EdgeState& e, Rebuilt&& rebuilt) {
+  rebuilt("find_target_edges",
+          {.name = "edge.old_first",
+           .meaning = "contacts of a mother face one step ago",
+           .rows = "exposed",
+           .layout = Layout::starts,
+           .refers_to = {"old_edge_contacts"}},
+          e.old_first);
+  rebuilt("find_target_edges",
+          {.name = "edge.old_contact",
+           .meaning = "edge.contact, one step ago",
+           .rows = "old_edge_contacts",
+           .numbers = 4,
+           .refers_to = {"slots", "exposed", "edges", ""}},
+          e.old_contact);
+  rebuilt("find_target_edges",
+          {.name = "edge.old_state",
+           .unit = "N, m, N, N, m, J, J, -",
+           .meaning = "edge.state, one step ago",
+           .rows = "old_edge_states",
+           .numbers = 8},
+          e.old_state);
+  rebuilt("find_target_edges",
+          {.name = "edge.found_count",
+           .meaning = "contacts of a mother face that the step has found",
+           .rows = "exposed"},
+          e.found_count);
+  rebuilt("find_target_edges",
+          {.name = "edge.found",
+           .meaning = "mother side, target side, place one step ago or -1; the rest is unused",
+           .rows = "found_edges",
+           .numbers = 3},
+          e.found);
+}
+
+/// Histories that contacts of one side write, before the side takes the largest: part of
+/// `describe_contacts`.
+template <class Rebuilt>
+void describe_contact_history(HistoryColumns& history, Rebuilt&& rebuilt) {
+  rebuilt("update_contact_forces",
+          {.name = "edge.contact_history",
+           .unit = "of the law",
+           .meaning = "what the law of a contact wrote",
+           .rows = "edge_contacts",
+           .numbers = InterfaceLaws::most_state},
+          history.rows);
+  rebuilt("update_contact_forces",
+          {.name = "edge.contact_history_law",
+           .meaning = "number of that law",
+           .rows = "edge_contacts",
+           .numbers = InterfaceLaws::most_state > 0 ? 1 : 0},
+          history.law);
+}
+
+/// Forces, and the contacts that they come from: part of `describe_contacts`.
+template <class Rebuilt>
+void describe_forces(State& s, Rebuilt&& rebuilt) {
+  ContactsByTargetState& acting = s.contacts_by_target;
+  rebuilt("update_face_geometry",
+          {.name = "exposed.geometry",
+           .unit = "m, -, 1, m",
+           .meaning = "centre x y z, sharp sides as bits, normal x y z, L (< 0: quadrilateral)",
+           .rows = "exposed",
+           .numbers = 8},
+          s.face_geometry);
+  rebuilt("update_contact_forces",
+          {.name = "exposed.contact_force",
+           .unit = "N, N/m",
+           .meaning = "force x y z of all contacts on a vertex, and their stiffness",
+           .rows = "slots",
+           .numbers = 4},
+          s.contact_force);
+  rebuilt("update_contact_forces",
+          {.name = "contacts_by_target.count",
+           .meaning = "contacts that act on a face",
+           .rows = "exposed"},
+          acting.count);
+  rebuilt("update_contact_forces",
+          {.name = "contacts_by_target.first",
+           .meaning = "contacts that act on a face",
+           .rows = "exposed",
+           .layout = Layout::starts,
+           .refers_to = {"acting_contacts"}},
+          acting.first);
+  rebuilt("update_contact_forces",
+          {.name = "contacts_by_target.place",
+           .meaning = "place of a contact among those of its target",
+           .rows = "contacts"},
+          acting.place);
+  rebuilt("update_contact_forces",
+          {.name = "contacts_by_target.contact",
+           .meaning = "contact that acts on the face",
+           .rows = "acting_contacts",
+           .refers_to = {"contacts"}},
+          acting.contact);
+}
+
+/// Call stored(info, column) or rebuilt(by, info, column) for every array of contacts.
+template <class Stored, class Rebuilt>
+void describe_contacts(State& s, Stored&& stored, Rebuilt&& rebuilt) {
+  describe_springs(s.springs, stored);
+  describe_history("spring", s.springs.history, stored);
+  describe_edges(s.edges, stored);
+  describe_history("edge", s.edges.side_history, stored);
+  describe_found_edges(s.edges, rebuilt);
+  describe_contact_history(s.edges.contact_history, rebuilt);
+  describe_forces(s, rebuilt);
+}
+
+}  // namespace cdem

@@ -1,0 +1,101 @@
+// describe_rows.hpp - the kinds of rows that arrays have, and how many there are of each.
+#pragma once
+
+#include "core/base/parallel.hpp"
+#include "core/model/column_info.hpp"
+#include "core/model/force_sets.hpp"
+
+namespace cdem {
+
+/// Kind of rows for blocks of `block_size` consecutive rows of another kind, see Blocks.
+inline std::string blocks_of(const std::string& rows) { return rows + "/8"; }
+static_assert(block_size == 8);
+/// Kind of rows for what the nodes of fused elements sum, see FusedRows.
+inline std::string fused_rows_of(const std::string& rows) { return rows + ".fused_rows"; }
+
+/// Visit the rows that the model has: part of `describe_rows`.
+template <class Visit>
+void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
+  const auto blocks = [](Index count) { return (count + block_size - 1) / block_size; };
+  const auto last = [](const Column<Index>& starts) {
+    return starts.size() > 0 ? starts[starts.size() - 1] : 0;
+  };
+  const auto total = [](const auto& column) { return Index(column.size()); };
+  visit(RowKind{"nodes", "nodes of all blocks"}, m.node_count);
+  visit(RowKind{blocks_of("nodes"), "eight nodes after each other"}, blocks(m.node_count));
+  visit(RowKind{"node_corners", "corner rows that a node sums"}, last(m.corner_first));
+  visit(RowKind{"mass_entries", "entries of mass matrices"}, total(m.mass_inverse));
+  visit(RowKind{"materials", "elastic materials"}, total(m.material_lambda));
+  for_each_set(m, s, [&](const auto& kind, const auto& set, const auto&) {
+    visit(RowKind{kind.name, "items of this set"}, set.count);
+    visit(RowKind{blocks_of(kind.name), "eight of them after each other"}, blocks(set.count));
+  });
+  for_each_element_set(m, s, [&](const auto& kind, const auto&, const ElementState& e) {
+    visit(RowKind{fused_rows_of(kind.name), "corner rows of bonds by fused block"},
+          last(e.fused.row_first));
+  });
+  visit(RowKind{"overlap_points", "bond points of overlaps"}, last(m.overlaps.point_first));
+  visit(RowKind{"corner_rows", "forces of a set on a node; the last one adds nothing"},
+        m.corner_rows + 1);
+  visit(RowKind{"faces", "exterior faces of all blocks"}, m.face_count);
+  visit(RowKind{"edges", "exterior edges of all blocks"}, m.edge_count);
+  visit(RowKind{"edge_ends", "other ends of the edges that leave a node"}, last(m.edge_star_first));
+  visit(RowKind{"class_pairs", "pairs of interface classes of faces"},
+        m.class_count * m.class_count);
+  visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));
+  visit(RowKind{"loads", "forces on nodes"}, last(m.load_first));
+  visit(RowKind{"supports", "nodes of which a component is given"}, total(m.support_component) / 3);
+  visit(RowKind{"curves", "histories of loads and supports"}, Index(m.curve_time.size()));
+}
+
+/// Visit the rows that the search makes: part of `describe_rows`.
+template <class Visit>
+void describe_search_rows(const State& s, Visit&& visit) {
+  const auto last = [](const Column<Index>& starts) {
+    return starts.size() > 0 ? starts[starts.size() - 1] : 0;
+  };
+  const auto total = [](const auto& column) { return Index(column.size()); };
+  const OuterList& outer = s.search.outer;
+  const InnerList& inner = s.search.inner;
+  const Index exposed = total(s.search.exposed_face);
+  visit(RowKind{"live_corners", "corner rows of elements and live pairs that a node sums"},
+        last(s.nodes.corner_first));
+  visit(RowKind{"exposed", "faces that can be touched"}, exposed);
+  visit(RowKind{"slots", "vertex or side k of exposed face x: 4 x + k"}, 4 * exposed);
+  visit(RowKind{"star_ends", "other ends of the edges that leave a bonded node"},
+        last(s.search.edge_star_first));
+  visit(RowKind{"contact_corners", "slots that a node sums"}, last(s.search.contact_first));
+  visit(RowKind{"edge_contacts", "contacts of semi-edges"}, last(s.edges.first));
+  visit(RowKind{"old_edge_contacts", "those of one step ago"}, last(s.edges.old_first));
+  visit(RowKind{"old_edge_states", "their states, then what released overlaps handed over"},
+        total(s.edges.old_state) / 8);
+  visit(RowKind{"found_edges", "places for contacts of semi-edges that a step finds"},
+        s.edges.slots * total(s.edges.found_count));
+  visit(RowKind{"contacts", "slots, then contacts of semi-edges"},
+        4 * exposed + last(s.edges.first));
+  visit(RowKind{"acting_contacts", "contacts by the face that they act on"},
+        last(s.contacts_by_target.first));
+  visit(RowKind{"outer_faces", "faces that a vertex may touch before the next rebuild"},
+        last(outer.slot_first));
+  visit(RowKind{"outer_vertex_faces", "pairs of vertex and face of the outer list, padded"},
+        total(outer.vf_pairs) / 2);
+  visit(RowKind{"outer_edge_pairs", "pairs of edges of the outer list"}, total(outer.ee_codes));
+  visit(RowKind{"outer_edges", "edges of the exposed faces of one element"},
+        total(outer.ee_sides) / 2);
+  visit(RowKind{"pairs_of_edges", "pairs that an edge is of"}, last(outer.edge_first));
+  visit(RowKind{"acting_faces", "exposed faces whose contacts may act on a face"},
+        last(outer.acting_first));
+  visit(RowKind{"predicted", "nodes of exposed faces"}, total(outer.predicted_nodes));
+  visit(RowKind{"inner_faces", "faces that a vertex may touch in the next steps"},
+        last(inner.first));
+  visit(RowKind{"inner_edge_pairs", "pairs of edges of the inner list"}, total(inner.near_edges));
+}
+
+/// Call visit(kind, count) for every kind of rows.
+template <class Visit>
+void describe_rows(const Model& m, const State& s, Visit&& visit) {
+  describe_model_rows(m, s, visit);
+  describe_search_rows(s, visit);
+}
+
+}  // namespace cdem

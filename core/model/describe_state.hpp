@@ -1,0 +1,310 @@
+// describe_state.hpp - the arrays of nodes, elements and bonded pairs.
+#pragma once
+
+#include "core/interfaces/laws.hpp"
+#include "core/materials/laws.hpp"
+#include "core/model/column_info.hpp"
+#include "core/model/describe_rows.hpp"
+#include "core/model/force_sets.hpp"
+
+namespace cdem {
+
+/// Motion of the nodes: part of `describe_state`.
+template <class Stored>
+void describe_motion(NodeState& n, Stored&& stored) {
+  stored({.name = "node.motion",
+          .unit = "m, m/s",
+          .meaning = "position x y z, pad, velocity x y z, pad",
+          .rows = "nodes",
+          .numbers = 8},
+         n.motion);
+  stored({.name = "node.work_external",
+          .unit = "J",
+          .meaning = "work of loads and supports",
+          .rows = "nodes"},
+         n.work_external);
+  stored({.name = "node.work_damping",
+          .unit = "J",
+          .meaning = "work taken out by damping",
+          .rows = "nodes"},
+         n.work_damping);
+  stored({.name = "node.reaction",
+          .unit = "N",
+          .meaning = "force of its support, and a pad",
+          .rows = "nodes",
+          .numbers = 4},
+         n.reaction);
+  stored({.name = "node.relax",
+          .unit = "N, m/s",
+          .meaning = "force and velocity of the last step, of adaptive relaxation",
+          .rows = "nodes",
+          .numbers = 8,
+          .optional = true},
+         n.relax);
+  stored({.name = "node.relax_mass",
+          .unit = "kg",
+          .meaning = "scaled mass of adaptive relaxation",
+          .rows = "nodes",
+          .optional = true},
+         n.relax_mass);
+  stored({.name = "node.bonded_node",
+          .meaning = "label shared by nodes that intact bonds hold together",
+          .rows = "nodes",
+          .refers_to = {"nodes"}},
+         n.bonded_node);
+}
+
+/// Forces of the nodes: part of `describe_state`.
+template <class Rebuilt>
+void describe_node_forces(NodeState& n, Rebuilt&& rebuilt) {
+  rebuilt("advance_nodes",
+          {.name = "node.force",
+           .unit = "N, N/m",
+           .meaning = "force x y z, stiffness of its contacts",
+           .rows = "nodes",
+           .numbers = 4},
+          n.force);
+  rebuilt("advance_nodes",
+          {.name = "node.damping_force",
+           .unit = "N",
+           .meaning = "damping force x y z, and a pad",
+           .rows = "nodes",
+           .numbers = 4,
+           .optional = true},
+          n.damping_force);
+  rebuilt("advance_nodes",
+          {.name = "node.sample",
+           .unit = "J",
+           .meaning = "kinetic energy; external and damping work of the half step to come; pad",
+           .rows = "nodes",
+           .numbers = 4},
+          n.sample);
+  rebuilt("advance_nodes",
+          {.name = "node.unbalance",
+           .unit = "N",
+           .meaning = "|x| + |y| + |z| of the unbalanced force on free components",
+           .rows = "nodes"},
+          n.unbalance);
+}
+
+/// Lists of nodes: part of `describe_state`.
+template <class Rebuilt>
+void describe_node_lists(State& s, Rebuilt&& rebuilt) {
+  NodeState& n = s.nodes;
+  rebuilt("find_awake",
+          {.name = "node.sleeps", .meaning = "1: held, and nothing awake pulls", .rows = "nodes"},
+          n.sleeps);
+  rebuilt("list_awake_nodes",
+          {.name = "node.listed", .meaning = "1: of a face on a pair list", .rows = "nodes"},
+          n.listed);
+  rebuilt("list_awake_nodes",
+          {.name = "node.awake",
+           .meaning = "blocks of nodes that are computed",
+           .refers_to = {blocks_of("nodes")}},
+          n.awake);
+  rebuilt("find_fused_blocks",
+          {.name = "node.fused",
+           .meaning = "1: moved by the fused kernel",
+           .rows = "nodes",
+           .optional = true},
+          n.fused);
+  rebuilt("find_fused_blocks",
+          {.name = "node.general",
+           .meaning = "awake blocks of nodes but those that are fused as a whole",
+           .refers_to = {blocks_of("nodes")}},
+          n.general);
+  rebuilt("list_corners",
+          {.name = "node.corner_first",
+           .meaning = "corner rows of elements and live pairs at a node",
+           .rows = "nodes",
+           .layout = Layout::starts,
+           .refers_to = {"live_corners"}},
+          n.corner_first);
+  rebuilt("list_corners",
+          {.name = "node.corner",
+           .meaning = "corner row that the node adds",
+           .rows = "live_corners",
+           .refers_to = {"corner_rows"},
+           .opposite = true},
+          n.corner);
+  rebuilt("sum_stiffness",
+          {.name = "node.contact_stiffness",
+           .unit = "N/m",
+           .meaning = "stiffness that contacts may put on it before the next rebuild",
+           .rows = "nodes"},
+          s.node_potential);
+  rebuilt("sum_stiffness",
+          {.name = "node.bond_stiffness",
+           .unit = "N/m",
+           .meaning = "stiffness of its live bonds",
+           .rows = "nodes"},
+          s.node_bonds);
+  rebuilt("set_loads_and_supports",
+          {.name = "curve.load_factor", .meaning = "factor in this step", .rows = "curves"},
+          s.load_factor);
+  rebuilt("set_loads_and_supports",
+          {.name = "curve.velocity_factor",
+           .meaning = "factor in the middle of the coming step",
+           .rows = "curves"},
+          s.velocity_factor);
+}
+
+/// Blocks of elements that the fused kernel moves: part of `describe_state`.
+template <class Rebuilt>
+void describe_fused(const char* rows, FusedBlocks& fused, Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".", blocks = blocks_of(rows);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.blocks",
+           .meaning = "blocks of elements that the fused kernel moves",
+           .refers_to = {blocks}},
+          fused.blocks);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.general",
+           .meaning = "awake blocks of the other elements",
+           .refers_to = {blocks}},
+          fused.general);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.row_first",
+           .meaning = "corner rows of bonds at a fused block",
+           .rows = blocks,
+           .layout = Layout::starts,
+           .refers_to = {fused_rows_of(rows)}},
+          fused.row_first);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.row",
+           .meaning = "corner row of a bond, or the one that adds nothing",
+           .rows = fused_rows_of(rows),
+           .refers_to = {"corner_rows"},
+           .opposite = true},
+          fused.row);
+}
+
+/// One set of elements: part of `describe_state`.
+template <class Stored, class Rebuilt>
+void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stored&& stored,
+                  Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".";
+  stored({.name = name + "point_stress",
+          .unit = "Pa",
+          .meaning = "stress at the Gauss points, of incremental formulations",
+          .rows = rows,
+          .numbers = 6 * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.point_stress);
+  stored({.name = name + "energy",
+          .unit = "J",
+          .meaning = "stored energy",
+          .rows = rows,
+          .layout = Layout::columns},
+         e.energy);
+  stored({.name = name + "damping_work",
+          .unit = "J",
+          .meaning = "work of the stiffness dashpot",
+          .rows = rows,
+          .layout = Layout::columns},
+         e.damping_work);
+  stored({.name = name + "history",
+          .unit = "1, and of the law",
+          .meaning = "inelastic strain and state of the law at the Gauss points",
+          .rows = rows,
+          .numbers = point_history * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.history);
+  stored({.name = name + "plastic_work",
+          .unit = "J",
+          .meaning = "work of inelastic strain",
+          .rows = rows,
+          .layout = Layout::columns,
+          .optional = true},
+         e.plastic_work);
+  rebuilt("report_elements",
+          {.name = name + "stress",
+           .unit = "Pa",
+           .meaning = "mean stress, for output",
+           .rows = rows,
+           .numbers = 6,
+           .layout = Layout::columns},
+          e.stress);
+  rebuilt("find_awake",
+          {.name = name + "awake",
+           .meaning = "blocks of elements that are computed",
+           .refers_to = {blocks_of(rows)}},
+          e.awake);
+  describe_fused(rows, e.fused, rebuilt);
+}
+
+/// One set of bonded pairs: part of `describe_state`.
+template <class Stored, class Rebuilt>
+void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& stored,
+                  Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".";
+  const auto of_pair = [&](const char* column, const char* unit, const char* meaning,
+                           Column<Real>& numbers) {
+    stored({.name = name + column,
+            .unit = unit,
+            .meaning = meaning,
+            .rows = rows,
+            .layout = Layout::columns},
+           numbers);
+  };
+  const auto of_point = [&](const char* column, const char* unit, const char* meaning,
+                            Column<Real>& numbers) {
+    stored({.name = name + column,
+            .unit = unit,
+            .meaning = meaning,
+            .rows = conforms(set) ? rows : "overlap_points",
+            .numbers = set.points,
+            .layout = Layout::columns},
+           numbers);
+  };
+  of_pair("live", "1", "1 until released to the contact search, 2 as an open hinge", p.live);
+  of_point("bond", "1", "1 while intact, 0 once broken", p.bond);
+  of_point("slip1", "m", "plastic slip along the first axis of the pair", p.slip1);
+  of_point("slip2", "m", "plastic slip along the second axis of the pair", p.slip2);
+  stored({.name = name + "history",
+          .unit = "of the law",
+          .meaning = "what the law remembers at the bond points",
+          .rows = conforms(set) ? rows : "overlap_points",
+          .numbers = InterfaceLaws::most_state * set.points,
+          .layout = Layout::columns},
+         p.history);
+  of_pair("broken_tension", "1", "springs broken in tension", p.broken_tension);
+  of_pair("broken_shear", "1", "springs broken in shear", p.broken_shear);
+  of_pair("jump", "m", "change of a broken pair's largest jump since it broke", p.jump);
+  of_pair("jump_at_break", "m", "that jump when it broke, or -1", p.jump_at_break);
+  of_pair("stored", "J", "elastic energy", p.stored);
+  of_pair("fracture", "J", "energy of fracture", p.fracture);
+  of_pair("friction", "J", "frictional work", p.friction);
+  rebuilt("find_awake",
+          {.name = name + "awake",
+           .meaning = "blocks of pairs that are computed",
+           .refers_to = {blocks_of(rows)}},
+          p.awake);
+}
+
+/// Call stored(info, column) or rebuilt(by, info, column) for every array of nodes and force sets.
+template <class Stored, class Rebuilt>
+void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt) {
+  describe_motion(s.nodes, stored);
+  describe_node_forces(s.nodes, rebuilt);
+  describe_node_lists(s, rebuilt);
+  for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {
+    describe_set(kind.name, set, state, stored, rebuilt);
+  });
+  rebuilt("update_element_forces",
+          {.name = "corner.force",
+           .unit = "N",
+           .meaning = "force of an element or a pair on a node, and a pad",
+           .rows = "corner_rows",
+           .numbers = 4},
+          s.corner_force);
+  rebuilt("release_bonds",
+          {.name = "overlaps.released",
+           .meaning = "overlaps whose contacts are still to be found in the step",
+           .refers_to = {"overlaps"}},
+          s.released_overlaps);
+}
+
+}  // namespace cdem
