@@ -2,10 +2,8 @@
 #include "tests/core/scene.hpp"
 
 #include <map>
-#include <string_view>
 #include <utility>
 
-#include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
 #include "core/model/init_state.hpp"
 
@@ -346,23 +344,10 @@ void Scene::build_loads() {
   set_interface({});
 }
 
-void Scene::set_interface(std::initializer_list<std::pair<const char*, Real>> parameters) {
-  using Law = Brittle<Real>;
-  Model& m = model;
-  m.interfaces.resize(1);
-  m.interfaces[0] = {.law = 0,
-                     .stiffness_n_value = 0,
-                     .stiffness_n_factor = 1,
-                     .stiffness_s_value = 0,
-                     .stiffness_s_factor = 1};
-  m.interface_parameters.resize(InterfaceLaws::most_parameters);
-  m.interface_parameters.fill(0);
-  for (const auto& [name, value] : parameters) {
-    std::size_t k = 0;
-    while (k < Law::parameters.size() && std::string_view(Law::parameters[k].name) != name) ++k;
-    REQUIRE(k < Law::parameters.size());
-    m.interface_parameters[k] = value;
-  }
+void Scene::set_interface(const Named& parameters) {
+  const Joints joints{parameters};
+  model.interfaces.assign(joints.interfaces.data(), 1);
+  model.interface_parameters.assign(joints.parameters.data(), joints.parameters.size());
 }
 
 }  // namespace cdem::test

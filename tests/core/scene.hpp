@@ -2,14 +2,13 @@
 #pragma once
 
 #include <array>
-#include <initializer_list>
-#include <utility>
 #include <vector>
 
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 #include "core/run/run.hpp"
 #include "tests/core/elements/reference.hpp"
+#include "tests/core/interfaces/joint.hpp"
 
 namespace cdem::test {
 
@@ -33,7 +32,7 @@ class Scene {
   void build();
   /// Parameters of the one interface by name, those that are not named being 0 (an angle is its
   /// tangent). Its stiffness is the stiffer side's modulus over its height.
-  void set_interface(std::initializer_list<std::pair<const char*, Real>> parameters);
+  void set_interface(const Named& parameters);
   /// Ready for steps.
   void start() { prepare(model, state); }
   void step(std::int64_t steps) { run(model, state, {.steps = steps}); }

@@ -4,9 +4,10 @@
 
 namespace cdem::test {
 
-TEST_CASE("blocks with an item that is awake are listed") {
+TEST_CASE("blocks with an item that is awake are listed, the last one not beyond its end") {
   Column<Index> list;
   list_blocks(3 * block_size + 2, list, [&](Index i) {
+    CHECK(i < 3 * block_size + 2);
     return i == 1 || i == block_size - 1 || i == 3 * block_size + 1;
   });
   REQUIRE(list.size() == 2);
