@@ -6,15 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
-from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law, StateVariable
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
 from cdem.model.interfaces import interfaces_of
 from cdem.run.state import RunState
-
-
-def declared_states() -> dict[str, StateVariable]:
-    """State variables of all laws, by name."""
-    laws = (*BLOCK_LAWS.values(), *INTERFACE_LAWS.values())
-    return {variable.name: variable for law in laws for variable in law.state}
 
 
 def state_of(sim: RunState, name: str) -> NDArray[np.float64]:
