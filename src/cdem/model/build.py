@@ -182,7 +182,7 @@ def _law_row(material: Material) -> list[float]:
 def change(built: Build) -> dict[str, NDArray]:
     """Arrays of the core that follow from the parts of a case that a stage may change.
 
-    Supports change the inverse mass matrices of small blocks, so those are made anew too.
+    Supports change the inverse mass matrices of small blocks, so those are made again too.
     """
     case, names = built.case, built.group_names
     laws, interface_of = interfaces_of(case, names)

@@ -259,7 +259,7 @@ class Simulation(RunState):
             block = int(topology.face_block[face])
             group = names[topology.block_group[block]]
             raise UnstableError(
-                f"{when}a loaded contact of block {block} (group {group}) sank too deep to be "
+                f"{when}a loaded contact of block {block} (group {group}) penetrated too deep to be "
                 f"followed. Raise stiffness_n of its interface, or lower the impact speed.{kept}"
             )
         if outcome == "missed_contact":
@@ -297,7 +297,7 @@ class Simulation(RunState):
                 f"{self.results.folder}: its checkpoint was written by another version of cdem "
                 f"({attributes['version']}; this is {__version__}) and holds other fields "
                 f"({', '.join(other[:3])}, ...). Go on with the cdem that wrote it, or run the case "
-                f"anew in another folder (-o)"
+                f"again in another folder (-o)"
             )
         self.core.restore(arrays, attributes["core"])
         self.overlap = tuple(attributes["overlap"])

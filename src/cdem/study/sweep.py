@@ -249,9 +249,9 @@ def _settle(run: Run, future: Any) -> None:
     elif future.status == "error":
         error = future.exception()
         if isinstance(error, KilledWorker):
-            run.error = "its worker died again and again (out of memory?); tried anew next time"
+            run.error = "its worker died again and again (out of memory?); tried again next time"
         else:
             said = (
                 str(error) if isinstance(error, CdemError) else f"{type(error).__name__}: {error}"
             )
-            run.error = f"{said} (tried anew next time)"
+            run.error = f"{said} (tried again next time)"

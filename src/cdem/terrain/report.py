@@ -47,7 +47,7 @@ def measure(solid: Solid) -> dict[str, Any]:
 
 
 def _bed(solid: Solid) -> dict[str, float]:
-    """Dip and dip direction [deg] of the plane that fits the bed best, and how far it strays [m]."""
+    """Dip and dip direction [deg] of the plane that fits the bed best, and how far it deviates [m]."""
     faces = np.concatenate([f for n, f in solid.surfaces.items() if n.startswith("bed_")])
     corners = solid.points[faces]
     weight = np.linalg.norm(

@@ -26,5 +26,5 @@ def test_pictures_show_what_the_surface_holds():
 
 def test_names_are_unique_and_the_table_of_the_documents_is_up_to_date():
     assert len({field.name for field in OUTPUT_FIELDS}) == len(OUTPUT_FIELDS)
-    tool = [sys.executable, str(ROOT / "tools" / "field_table.py"), "--check"]
+    tool = [sys.executable, str(ROOT / "tools" / "tables.py"), "--check"]
     assert subprocess.run(tool, check=False).returncode == 0

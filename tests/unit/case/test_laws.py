@@ -1,0 +1,79 @@
+"""Laws as the core declares them."""
+
+import math
+
+import pytest
+
+from cdem import Case, CaseError
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
+
+
+def interface(**values):
+    """The default interface of a case."""
+    return Case(
+        model={"blocks": [{"group": "rock", "box": {"size": [1, 1, 1]}}]},
+        materials={"m": {"density": 2700, "young_modulus": 1e9, "poisson_ratio": 0.25}},
+        groups={"rock": {"material": "m"}},
+        interfaces={"default": values},
+        stages=[{"name": "fall", "mode": "dynamic", "duration": 1}],
+    ).interfaces.default
+
+
+def test_the_core_has_the_laws_of_the_documents():
+    assert list(INTERFACE_LAWS) == ["brittle"] and list(BLOCK_LAWS) == ["elastic"]
+    assert [p.name for p in INTERFACE_LAWS["brittle"].parameters] == [
+        "friction_angle", "cohesion", "tensile_strength", "dilation_angle", "dilation_slip"
+    ]  # fmt: skip
+
+
+def test_the_core_takes_tangents_of_angles():
+    law = interface(friction_angle=30, cohesion="1 kPa")
+    numbers = INTERFACE_LAWS["brittle"].numbers(law)
+    assert numbers["friction_angle"] == math.tan(math.radians(30))
+    assert numbers["cohesion"] == 1000 and numbers["tensile_strength"] == 0
+
+
+@pytest.mark.parametrize(
+    "strengths, bonds",
+    [({}, False), ({"cohesion": 1}, True), ({"tensile_strength": 1}, True)],
+)
+def test_faces_are_bonded_where_the_law_has_a_strength_that_bonds(strengths, bonds):
+    law = interface(friction_angle=30, **strengths)
+    assert INTERFACE_LAWS["brittle"].bonds(law) == bonds
+
+
+def test_a_factor_of_safety_divides_strengths_and_the_tangent_of_friction():
+    law = interface(friction_angle=45, cohesion=3e3, dilation_angle=10, dilation_slip=0.1)
+    reduced = INTERFACE_LAWS["brittle"].reduced(law, 2)
+    assert set(reduced) == {"friction_angle", "cohesion", "tensile_strength"}
+    assert reduced["friction_angle"] == pytest.approx(math.degrees(math.atan(0.5)), rel=1e-15)
+    assert reduced["cohesion"] == 1.5e3
+
+
+def test_strengths_in_words():
+    law = interface(friction_angle=20, cohesion="2 MPa", tensile_strength="0.5 MPa")
+    assert INTERFACE_LAWS["brittle"].summary(law) == "20 deg, bonded c 2e+06 T 5e+05 Pa"
+    assert INTERFACE_LAWS["brittle"].summary(interface(friction_angle=30)) == "30 deg"
+
+
+def test_an_unknown_law_is_refused():
+    with pytest.raises(CaseError, match="law"):
+        interface(law="britle", friction_angle=30)
+
+
+def test_a_stage_cannot_change_the_law():
+    with pytest.raises(CaseError, match="'law' of an interface holds from the start"):
+        Case(
+            model={"blocks": [{"group": "rock", "box": {"size": [1, 1, 1]}}]},
+            materials={"m": {"density": 2700, "young_modulus": 1e9, "poisson_ratio": 0.25}},
+            groups={"rock": {"material": "m"}},
+            interfaces={"default": {"friction_angle": 30}},
+            stages=[
+                {
+                    "name": "fall",
+                    "mode": "dynamic",
+                    "duration": 1,
+                    "set": {"interfaces.default.law": "brittle"},
+                }
+            ],
+        )

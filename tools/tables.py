@@ -1,0 +1,61 @@
+"""Renew the tables of the documents that follow from lists in the code; --check: compare them."""
+
+import sys
+from pathlib import Path
+
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
+from cdem.case.output_fields import OUTPUT_FIELDS
+
+DOCS = Path(__file__).parent.parent / "docs"
+BEGIN, END = "<!-- table -->\n\n", "\n<!-- end of table -->"
+
+
+def fields_table() -> str:
+    """The output fields that do not depend on a law."""
+    rows = [
+        f"| `{f.name}` | {f.unit} | {f.on} | {f.frames} | {f.surface} | {f.meaning} |"
+        for f in OUTPUT_FIELDS
+    ]
+    head = "| field | unit | on | frames.vtkhdf | surface.vtkhdf | meaning |\n|---|---|---|---|---|---|"
+    return "\n".join([head, *rows, ""])
+
+
+def law_rows(key: str, law: Law) -> list[str]:
+    """A law and its parameters as rows of a table."""
+    rows = [f"| **{key}: {law.name}** | | | | {law.meaning} |"]
+    for p in law.parameters:
+        upper = "" if p.below is None else f", below {p.below:g}"
+        default = "required" if p.default is None else f"{p.default:g}"
+        limits = f"at least {p.at_least:g}{upper}"
+        rows.append(f"| `{p.name}` | {p.unit} | {limits} | {default} | {p.meaning} |")
+    rows += [f"| state `{v.name}` | {v.unit} | | | {v.meaning} |" for v in law.state]
+    return rows
+
+
+def laws_table() -> str:
+    """All laws that the core declares."""
+    rows = ["| | unit | range | default | meaning |", "|---|---|---|---|---|"]
+    for law in INTERFACE_LAWS.values():
+        rows += law_rows("interface", law)
+    for law in BLOCK_LAWS.values():
+        rows += law_rows("material", law)
+    return "\n".join([*rows, ""])
+
+
+TABLES = {"output_fields.md": fields_table, "laws.md": laws_table}
+
+
+def main() -> None:
+    """Put every table into its page; with --check, only fail where one is out of date."""
+    for name, table in TABLES.items():
+        page = DOCS / name
+        text = page.read_text()
+        before, rest = text.split(BEGIN)
+        new = before + BEGIN + table() + END + rest.split(END)[1]
+        if "--check" in sys.argv and new != text:
+            sys.exit(f"docs/{name}: the table is out of date; run tools/tables.py")
+        page.write_text(new)
+
+
+if __name__ == "__main__":
+    main()
