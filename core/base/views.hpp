@@ -63,6 +63,20 @@ struct InOutTable {
 #endif
 };
 
+/// Read view of flags, one an item.
+struct InFlags {
+  const Flag* data;
+  /// The items whose flag has this value.
+  CDEM_HD bool equal(Flag value, One item) const { return data[item.i] == value; }
+#if !defined(__CUDACC__)
+  Mask equal(Flag value, Lane item) const {
+    Flag __attribute__((vector_size(CDEM_LANES))) flags;
+    std::memcpy(&flags, data + item.i, sizeof flags);
+    return {__builtin_convertvector(flags == value, Mask::Bits)};
+  }
+#endif
+};
+
 /// Connectivity: index k of item i is data[k*stride + i].
 struct InIndices {
   const Index* data;

@@ -3,6 +3,7 @@
 
 #include "core/bonds/bond_point.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
+#include "core/records/pair_status.hpp"
 
 namespace cdem {
 
@@ -30,8 +31,7 @@ CDEM_HD inline void move_inside(Real indentation, Vec3<T>* values) {
 struct PairColumns {
   InIndices interface;  // [1][pair]: index of the interface's properties
   InTable area;         // [1][pair] true overlap area  [m2]
-  InTable live;         // [1][pair] 1 until the pair is released to the contact search; 2 while it
-                        // is an open hinge: points hold, but the search has its faces
+  InFlags status;       // [pair] PairStatus
   InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
   InterfaceTable interfaces;
   InOutTable bond, slip1, slip2;            // [point][pair]
@@ -41,6 +41,15 @@ struct PairColumns {
   InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
   InOutTable stored, fracture, friction;  // [1][pair]  [J]
 
+  /// Which pairs are not released, and which are open hinges.
+  template <class I>
+  CDEM_HD auto are_live(I p) const {
+    return !status.equal(Flag(PairStatus::released), p);
+  }
+  template <class I>
+  CDEM_HD auto are_hinges(I p) const {
+    return status.equal(Flag(PairStatus::hinge), p);
+  }
   /// What the law of a pair remembers of point k of `points`; the point's number is its row.
   template <class I, class T>
   CDEM_HD void load_history(I p, Index k, Index points, T* state) const {
@@ -86,7 +95,7 @@ struct ConformingBonds {
   template <class I>
   CDEM_HD void operator()(I p) const {
     using T = Number<I>;
-    const auto live = pairs.live.at(0, p) > T(0.0);
+    const auto live = pairs.are_live(p);
     if (!any_of(live)) return;
     Vec3<T> mean[count], jump[count], force[count];
     gather_jumps(p, mean, jump);
@@ -144,7 +153,7 @@ struct ConformingBonds {
     const T zero(0.0);
     const auto interface = pairs.interface.at(0, p);
     const BondSpring<T> own = spring(p);
-    const auto open = pairs.live.at(0, p) > T(1.5);
+    const auto open = pairs.are_hinges(p);
     Vec3<T> rate[count];
     gather_rates(p, rate);
     BondForce<T> total{{zero, zero, zero}, zero, zero, zero, zero, zero};
@@ -212,7 +221,7 @@ struct OverlapBonds {
   OutForces corner_force;    // [pair][8]: four vertices of either face
 
   CDEM_HD void operator()(One p) const {
-    if (!(pairs.live.at(0, p) > 0)) return;
+    if (!pairs.are_live(p)) return;
     const Index a = pair_faces[2 * p.i], b = pair_faces[2 * p.i + 1];
     const Vec3<Real> none{0.0, 0.0, 0.0};
     Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};

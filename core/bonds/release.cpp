@@ -12,6 +12,8 @@ namespace cdem {
 
 namespace {
 
+PairStatus status_of(const PairState& s, Index pair) { return PairStatus(s.status[pair]); }
+
 /// A pair whose points are all broken has its faces released once they have moved apart or along
 /// each other by this part of the indentation; by the whole indentation, at once.
 constexpr Real release_part = 0.1;
@@ -44,7 +46,7 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
     const auto holds = [&](Index k) { return ps.bond[point(k)] > 0; };
     Index holding = 0;
     for (Index k = 0; k < count; ++k) holding += holds(k);
-    if (ps.live[i] != 1 || holding == 0 || holding == count) continue;
+    if (status_of(ps, i) != PairStatus::bonded || holding == 0 || holding == count) continue;
     Vec3<Real> mean[count], jump[count];
     bonds.gather_jumps(One{i}, mean, jump);
     Real widest = 0;
@@ -64,7 +66,7 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
       ps.friction[i] += held;
       ps.stored[i] -= held;
     }
-    ps.live[i] = 2;
+    ps.status[i] = Flag(PairStatus::hinge);
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
     give_history(m, s, p, ps, i);
@@ -75,7 +77,7 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
 bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
   bool any = false;
   for (Index i = 0; i < p.count; ++i) {
-    if (!(ps.live[i] > 0)) continue;
+    if (!is_live(status_of(ps, i))) continue;
     if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
@@ -83,11 +85,13 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     if (p.point_first.size() > 0) {
       s.released_overlaps.push(i);
     } else {
-      if (ps.live[i] == 1) ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);
+      if (status_of(ps, i) == PairStatus::bonded)
+        ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);
       ps.friction[i] += ps.stored[i];
       ps.stored[i] = 0;
     }
-    ps.live[i] = ps.jump[i] = 0;
+    ps.status[i] = Flag(PairStatus::released);
+    ps.jump[i] = 0;
     ps.jump_at_break[i] = -1;
     any = true;
   }

@@ -13,7 +13,7 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
   const auto point = [&](Column<Real>& c) { return InOutTable{c.data(), p.point_stride}; };
   return {.interface = {p.interface.data(), p.stride},
           .area = in(p.area),
-          .live = in(s.live),
+          .status = {s.status.data()},
           .stiffness = in(p.stiffness),
           .interfaces = interface_table(m),
           .bond = point(s.bond),

@@ -259,7 +259,11 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
             .layout = Layout::columns},
            numbers);
   };
-  of_pair("live", "1", "1 until released to the contact search, 2 as an open hinge", p.live);
+  stored({.name = name + "status",
+          .meaning = "0: released to the contact search, 1: bonded, 2: open hinge",
+          .rows = rows,
+          .layout = Layout::columns},
+         p.status);
   of_point("bond", "1", "1 while intact, 0 once broken", p.bond);
   of_point("slip1", "m", "plastic slip along the first axis of the pair", p.slip1);
   of_point("slip2", "m", "plastic slip along the second axis of the pair", p.slip2);

@@ -73,7 +73,9 @@ inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
 
 /// Does an item act on its nodes? Pairs do until they are released.
 inline bool is_active(const ElementState&, Index) { return true; }
-inline bool is_active(const PairState& s, Index pair) { return s.live[pair] > 0; }
+inline bool is_active(const PairState& s, Index pair) {
+  return is_live(PairStatus(s.status[pair]));
+}
 
 /// Corner rows of an item.
 template <class Set>

@@ -56,8 +56,8 @@ void size(const Model& m, const PairSet& p, PairState& s) {
        {&s.broken_tension, &s.broken_shear, &s.jump, &s.stored, &s.fracture, &s.friction})
     column->resize(row);
   s.jump_at_break.resize(row, -1.0);
-  s.live.resize(row);
-  for (Index i = 0; i < p.count; ++i) s.live[i] = 1;
+  s.status.resize(row);
+  for (Index i = 0; i < p.count; ++i) s.status[i] = Flag(PairStatus::bonded);
   s.bond.resize(points, 1.0);
   s.slip1.resize(points);
   s.slip2.resize(points);

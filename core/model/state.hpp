@@ -5,6 +5,7 @@
 
 #include "core/base/column.hpp"
 #include "core/records/contact_records.hpp"
+#include "core/records/pair_status.hpp"
 
 namespace cdem {
 
@@ -48,7 +49,8 @@ struct HistoryColumns {
 };
 
 struct PairState {
-  Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
+  Column<Flag> status;  // PairStatus
+  Column<Real> bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> stored, fracture, friction;
   Column<Real> history;  // [variable * points + point][pair], of the pair's law
   Column<Index> awake;   // blocks of pairs, see rest.hpp

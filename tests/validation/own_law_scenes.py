@@ -126,7 +126,7 @@ def bonds():
         points = state["overlaps.history"]
         if points.max() > 0 and broken_at is None:
             broken_at = points.max()
-        if (state["overlaps.live"][:1] == 0).all():
+        if (state["overlaps.status"][:1] == 0).all():
             released_at = points.max()
             break
     assert broken_at is not None and released_at is not None

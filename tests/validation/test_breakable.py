@@ -241,7 +241,7 @@ def test_open_bond_that_breaks_transfers_no_force():
         state[f"quads.{name}"][:] = value
     sim.step(5)
     state = sim.core.fields()
-    assert state["quads.live"][0] == 0 and (state["spring.target"] >= 0).any()
+    assert state["quads.status"][0] == 0 and (state["spring.target"] >= 0).any()
     assert not state["spring.friction"].any()
 
 
@@ -290,7 +290,7 @@ def test_bonds_of_nonconforming_faces_transfer_their_force_to_contacts(over, sha
         return sim.fields["reaction"][:, 2].sum() - 7 * 2500 * length * width * height
 
     sim.run_until(sim.time + 1e-9)
-    bonds = sim.core.fields()["overlaps.live"]
+    bonds = sim.core.fields()["overlaps.status"]
     while bonds[0] > 0:
         before = pressure()
         sim.step()
@@ -335,4 +335,4 @@ def test_contact_search_finds_the_faces_of_an_open_hinge():
         least = np.minimum(least, stone.min(axis=0))
     assert least[2] == pytest.approx(0, abs=2e-4)  # hit the base
     assert least[0] == pytest.approx(0, abs=2e-4)  # and the lid
-    assert sim.core.fields()["quads.live"][0] == 2
+    assert sim.core.fields()["quads.status"][0] == 2

@@ -89,7 +89,7 @@ TEST_CASE_TEMPLATE("pairs give the same bits one by one and in lanes, broken or 
                    Pairs<3>, Pairs<4>) {
   const auto fill = [](Scene& pairs) {
     for (Index p = 0; p < pairs.set().count; ++p)
-      pairs.pairs().live[p] = p % 4 == 3 ? 0 : p % 3 == 2 ? 2 : 1;
+      pairs.pairs().status[p] = p % 4 == 3 ? 0 : p % 3 == 2 ? 2 : 1;
   };
   Random random(3), again(3);
   Scene in_lanes(2 * lanes + 3, random, 0.005), one_by_one(2 * lanes + 3, again, 0.005);
@@ -108,7 +108,7 @@ TEST_CASE_TEMPLATE("pairs give the same bits one by one and in lanes, broken or 
   PairState &a = in_lanes.pairs(), &b = one_by_one.pairs();
   const PairSet& set = in_lanes.set();
   for (Index p = 0; p < count; ++p) {
-    if (a.live[p] == 0) continue;  // one by one, a released pair writes nothing
+    if (a.status[p] == 0) continue;  // one by one, a released pair writes nothing
     for (Index k = 0; k < set.points; ++k) {
       const std::size_t row = std::size_t(k) * set.point_stride + p;
       CHECK(same_bits(a.bond[row], b.bond[row]));
@@ -131,7 +131,7 @@ TEST_CASE_TEMPLATE("pairs give the same bits one by one and in lanes, broken or 
 TEST_CASE("a released pair exerts nothing and keeps its history") {
   Random random(4);
   Pairs<4> pairs(1, random, 0.01);
-  pairs.pairs().live[0] = 0;
+  pairs.pairs().status[0] = 0;
   for_each_lane({}, 1, Blocks{}, pairs.kernel());
   for (Index k = 0; k < 4; ++k) {
     CHECK(norm(pairs.force(0, k)) == 0);

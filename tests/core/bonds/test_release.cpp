@@ -34,7 +34,7 @@ TEST_CASE("a pair that is torn apart is released, and its faces can be touched")
   CHECK(!release_is_due(torn.model, torn.state));
   torn.step(100);
   CHECK(torn.intact() == 0);
-  CHECK(torn.state.quads.live[0] == 0);
+  CHECK(torn.state.quads.status[0] == 0);
   CHECK(torn.state.quads.broken_tension[0] == 4);
   CHECK(torn.state.search.exposed_face.size() == 12);
   CHECK(torn.velocity(12).z > 4);
@@ -44,14 +44,14 @@ TEST_CASE("a pair that bears is not released") {
   Torn torn({0, 0, 0.01}, 1e9);
   torn.step(200);
   CHECK(torn.intact() == 4);
-  CHECK(torn.state.quads.live[0] == 1);
+  CHECK(torn.state.quads.status[0] == 1);
 }
 
 TEST_CASE("a pair that is sheared off slides on as a contact, and its energy is accounted for") {
   Torn torn({2, 0, -0.5});
   torn.model.gravity = {0, 0, -10};
   torn.step(150);
-  CHECK(torn.state.quads.live[0] == 0);
+  CHECK(torn.state.quads.status[0] == 0);
   CHECK(torn.state.quads.broken_shear[0] > 0);
   const Energies e = energies(torn.model, torn.state);
   CHECK(e.terms[energy_term("fracture")] > 0);

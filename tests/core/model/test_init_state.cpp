@@ -15,7 +15,7 @@ TEST_CASE("nodes are in place and at rest; pairs are bonded; nothing is stored o
   CHECK(distance(scene.position(15), Vec{0, 1, 2}) == 0);
   for (Index i = 0; i < 16; ++i) CHECK(norm(scene.velocity(i)) == 0);
   REQUIRE(scene.model.quads.count == 1);
-  CHECK(s.quads.live[0] == 1);
+  CHECK(s.quads.status[0] == 1);
   CHECK(s.quads.jump_at_break[0] == -1);
   for (Index k = 0; k < 4; ++k) {
     CHECK(s.quads.bond[k * scene.model.quads.point_stride] == 1);

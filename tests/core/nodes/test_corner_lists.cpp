@@ -39,7 +39,7 @@ TEST_CASE("a node lists the row of its element, and of its pair with opposite si
 
 TEST_CASE("rows of a released pair are on no list") {
   Stack stack;
-  stack.state.quads.live[0] = 0;
+  stack.state.quads.status[0] = 0;
   list_corners(stack.model, stack.state);
   const Column<Index>& first = stack.state.nodes.corner_first;
   for (Index i = 0; i < stack.model.node_count; ++i) CHECK(first[i + 1] - first[i] == 1);
