@@ -27,7 +27,7 @@ check: setup
 
 # All tests, or with T=path (and any other words for pytest) some of those in Python.
 test: setup
-	$(BIN)/python tools/build.py $(if $(T),,--tests)
+	$(BIN)/python tools/build.py --own-laws $(if $(T),,--tests)
 	$(if $(T),,build/core/core_tests)
 	$(BIN)/python -m pytest $(T)
 

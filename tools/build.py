@@ -67,6 +67,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--native", action="store_true", help="only the module for this CPU")
     parser.add_argument("--tests", action="store_true", help="core_tests as well")
+    parser.add_argument("--own-laws", action="store_true", help="the core with laws of tests/core")
     parser.add_argument(
         "--coverage", action="store_true", help="module and tests that count executed lines"
     )
@@ -75,7 +76,10 @@ def main() -> None:
     targets = [module] if wants.native or wants.coverage else ["all"]
     settings = {}
     if wants.tests or wants.coverage:
-        targets += ["core_tests", "_core_own_laws"]
+        targets.append("core_tests")
+    if wants.own_laws:
+        targets.append("_core_own_laws")
+    if wants.tests or wants.coverage or wants.own_laws:
         settings["CDEM_TESTS"] = native()
     folder = ROOT / "build" / "core"
     if wants.coverage:

@@ -6,6 +6,7 @@
 
 namespace cdem {
 
+template void for_each_item(Queue, Index, const BeginTargets&);
 template void for_each_selected(Queue, Index, const UpdateHeldTargets&);
 template void for_each_selected(Queue, Index, const FilterNewTargets&);
 template void for_each_item(Queue, Index, const ResolveTargets&);

@@ -24,8 +24,8 @@ void describe_history(const std::string& set, HistoryColumns& history, Stored&& 
 }
 
 /// Contacts of semi-springs: part of `describe_contacts`.
-template <class Stored>
-void describe_springs(SpringState& c, Stored&& stored) {
+template <class Stored, class Rebuilt>
+void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
   stored({.name = "spring.target",
           .meaning = "exposed face in contact, or -1",
           .rows = "slots",
@@ -59,6 +59,11 @@ void describe_springs(SpringState& c, Stored&& stored) {
           .meaning = "1: a loaded contact was lost by its depth",
           .rows = "slots"},
          c.lost);
+  rebuilt("find_target_faces",
+          {.name = "spring.unresolved",
+           .meaning = "1: the step had to look for its target",
+           .rows = "slots"},
+          c.unresolved);
 }
 
 /// Contacts of semi-edges: part of `describe_contacts`.
@@ -203,7 +208,7 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
 /// Call stored(info, column) or rebuilt(by, info, column) for every array of contacts.
 template <class Stored, class Rebuilt>
 void describe_contacts(State& s, Stored&& stored, Rebuilt&& rebuilt) {
-  describe_springs(s.springs, stored);
+  describe_springs(s.springs, stored, rebuilt);
   describe_history("spring", s.springs.history, stored);
   describe_edges(s.edges, stored);
   describe_history("edge", s.edges.side_history, stored);

@@ -58,7 +58,7 @@ struct SpringState {
   Column<Index> target, target_before;
   Column<Real> state, reaction;  // rows of 8
   Column<Real> friction, dashpot;
-  Column<Flag> lost;
+  Column<Flag> lost, unresolved;
   HistoryColumns history;  // [slot]
 };
 

@@ -35,15 +35,15 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
       .flow = point_flow<Shape>(s, e, es),
       .corner_force = {}};
   for_each_lane(q, e.count, awake(plan, fused.blocks),
-                AdvanceFused<Shape>{element,
-                                    {fused.row_first.data(), fused.row.data()},
-                                    {s.corner_force.data()},
-                                    load_columns(m, s),
-                                    mass_columns(m, s),
-                                    s.dt_last,
-                                    s.dt,
-                                    s.nodes.motion.data(),
-                                    s.nodes.work_external.data()});
+                AdvanceFused<Shape>{.element = element,
+                                    .rows = {fused.row_first.data(), fused.row.data()},
+                                    .bond_force = {s.corner_force.data()},
+                                    .loads = load_columns(m, s),
+                                    .mass = mass_columns(m, s),
+                                    .dt_before = s.dt_last,
+                                    .dt = s.dt,
+                                    .motion = s.nodes.motion.data(),
+                                    .work_external = s.nodes.work_external.data()});
 }
 
 void advance_fused_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
@@ -59,30 +59,30 @@ SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
   const bool damps = damps_nodes(m, s);
   if (damps) s.nodes.damping_force.resize(s.nodes.force.size());
   s.nodes.damped = damps;
-  return {{s.nodes.motion.data()},
-          corner_lists(s),
-          load_columns(m, s),
-          support_columns(m, s),
-          damping,
-          mass_columns(m, s),
-          0.5 * (s.dt_last + s.dt),
-          s.nodes.force.data(),
-          damps ? s.nodes.damping_force.data() : nullptr,
-          sampled ? s.nodes.unbalance.data() : nullptr};
+  return {.nodes = {s.nodes.motion.data()},
+          .corners = corner_lists(s),
+          .loads = load_columns(m, s),
+          .supports = support_columns(m, s),
+          .damping = damping,
+          .mass = mass_columns(m, s),
+          .kick = 0.5 * (s.dt_last + s.dt),
+          .force = s.nodes.force.data(),
+          .damping_force = damps ? s.nodes.damping_force.data() : nullptr,
+          .unbalance = sampled ? s.nodes.unbalance.data() : nullptr};
 }
 
 MoveNodes node_motion(const Model& m, State& s) {
-  return {mass_columns(m, s),
-          load_columns(m, s),
-          support_columns(m, s),
-          s.nodes.force.data(),
-          damping_forces(s),
-          s.dt_last,
-          s.dt,
-          s.nodes.motion.data(),
-          s.nodes.reaction.data(),
-          s.nodes.work_external.data(),
-          s.nodes.work_damping.data()};
+  return {.mass = mass_columns(m, s),
+          .loads = load_columns(m, s),
+          .supports = support_columns(m, s),
+          .force = s.nodes.force.data(),
+          .damping_force = damping_forces(s),
+          .dt_before = s.dt_last,
+          .dt = s.dt,
+          .motion = s.nodes.motion.data(),
+          .reaction = s.nodes.reaction.data(),
+          .work_external = s.nodes.work_external.data(),
+          .work_damping = s.nodes.work_damping.data()};
 }
 
 void sample_before(const Model& m, State& s, Queue q) {
@@ -93,13 +93,13 @@ void sample_before(const Model& m, State& s, Queue q) {
 
 void sample_after(const Model& m, State& s, Queue q) {
   for_each_item(q, m.node_count,
-                SampleNodes{{s.nodes.motion.data()},
-                            load_columns(m, s),
-                            support_columns(m, s),
-                            s.nodes.reaction.data(),
-                            damping_forces(s),
-                            s.dt,
-                            s.nodes.sample.data()});
+                SampleNodes{.nodes = {s.nodes.motion.data()},
+                            .loads = load_columns(m, s),
+                            .supports = support_columns(m, s),
+                            .reaction = s.nodes.reaction.data(),
+                            .damping_force = damping_forces(s),
+                            .dt = s.dt,
+                            .sample = s.nodes.sample.data()});
   finish(q);
 }
 

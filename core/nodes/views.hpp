@@ -16,14 +16,14 @@ inline const Column<Real>& lumped_masses(const Model& m, const State& s) {
 }
 
 inline MassColumns mass_columns(const Model& m, const State& s) {
-  return {m.lumped,
-          lumped_masses(m, s).data(),
-          m.mass_row_first.data(),
-          m.mass_axis_stride.data(),
-          m.block_first.data(),
-          m.block_count.data(),
-          m.mass_inverse.data(),
-          m.mass_matrix.data()};
+  return {.lumped = m.lumped,
+          .mass = lumped_masses(m, s).data(),
+          .mass_row_first = m.mass_row_first.data(),
+          .mass_axis_stride = m.mass_axis_stride.data(),
+          .block_first = m.block_first.data(),
+          .block_count = m.block_count.data(),
+          .inverse = m.mass_inverse.data(),
+          .matrix = m.mass_matrix.data()};
 }
 
 /// Damping forces of the last step, or null if nothing damped.
@@ -32,18 +32,29 @@ inline const Real* damping_forces(const State& s) {
 }
 
 inline SupportColumns support_columns(const Model& m, const State& s) {
-  return {m.support.data(), m.support_component.data(), m.support_curve.data(),
-          m.support_velocity.data(), s.velocity_factor.data()};
+  return {.support = m.support.data(),
+          .component = m.support_component.data(),
+          .curve = m.support_curve.data(),
+          .velocity = m.support_velocity.data(),
+          .curve_velocity = s.velocity_factor.data()};
 }
 
 inline LoadColumns load_columns(const Model& m, const State& s) {
-  return {m.gravity,           m.gravity_mass.data(), m.load_first.data(),
-          m.load_curve.data(), m.load_force.data(),   s.load_factor.data()};
+  return {.gravity = m.gravity,
+          .gravity_mass = m.gravity_mass.data(),
+          .load_first = m.load_first.data(),
+          .load_curve = m.load_curve.data(),
+          .load_force = m.load_force.data(),
+          .curve_value = s.load_factor.data()};
 }
 
 inline CornerLists corner_lists(const State& s) {
-  return {s.nodes.corner_first.data(),   s.nodes.corner.data(),          {s.corner_force.data()},
-          s.search.contact_first.data(), s.search.contact_corner.data(), {s.contact_force.data()}};
+  return {.first = s.nodes.corner_first.data(),
+          .corner = s.nodes.corner.data(),
+          .corner_force = {s.corner_force.data()},
+          .contact_first = s.search.contact_first.data(),
+          .contact_corner = s.search.contact_corner.data(),
+          .contact_force = {s.contact_force.data()}};
 }
 
 }  // namespace cdem

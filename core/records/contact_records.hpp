@@ -47,7 +47,7 @@ struct EdgeContact {
 
   CDEM_HD static EdgeContact at(const Index* rows, std::size_t place) {
     const Index* r = rows + 4 * place;
-    return {r[0], r[1], r[2], r[3]};
+    return {.mother = r[0], .face = r[1], .edge = r[2], .before = r[3]};
   }
   CDEM_HD void store(Index* rows, std::size_t place) const {
     Index* r = rows + 4 * place;

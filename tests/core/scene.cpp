@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "core/materials/laws.hpp"
 #include "core/model/init_state.hpp"
 
 namespace cdem::test {
@@ -154,6 +155,8 @@ void Scene::build_elements() {
   build_shape(model.hex8, 8, 8);
   model.material_lambda.push(rock.lambda);
   model.material_mu.push(rock.mu);
+  model.material_law.push(0);
+  model.material_parameters.resize(BlockLaws::most_parameters);
 }
 
 void Scene::build_shape(ElementSet& e, Index nodes, Index points) {
@@ -338,26 +341,13 @@ void Scene::build_loads() {
   m.curve_factor = {{1}};
   m.class_count = 1;
   m.interface_of.push(0);
-  set_interface(0, 0, 0);
+  set_interface({});
 }
 
-void Scene::set_interface(Real cohesion, Real tensile_strength, Real tan_friction) {
-  Model& m = model;
-  m.interfaces.resize(1);
-  m.interfaces[0] = {.cohesion = cohesion,
-                     .tensile_strength = tensile_strength,
-                     .tan_friction = tan_friction,
-                     .stiffness_n_value = 0,
-                     .stiffness_n_factor = 1,
-                     .stiffness_s_value = 0,
-                     .stiffness_s_factor = 1,
-                     .tan_dilation = 0,
-                     .dilation_most = 0};
-  for (Column<Real>* column : {&m.cohesion, &m.tensile_strength, &m.tan_friction})
-    column->resize(1);
-  m.cohesion[0] = cohesion;
-  m.tensile_strength[0] = tensile_strength;
-  m.tan_friction[0] = tan_friction;
+void Scene::set_interface(const Named& parameters) {
+  const Joints joints{parameters};
+  model.interfaces.assign(joints.interfaces.data(), 1);
+  model.interface_parameters.assign(joints.parameters.data(), joints.parameters.size());
 }
 
 }  // namespace cdem::test

@@ -8,6 +8,7 @@
 #include "core/model/state.hpp"
 #include "core/run/run.hpp"
 #include "tests/core/elements/reference.hpp"
+#include "tests/core/interfaces/joint.hpp"
 
 namespace cdem::test {
 
@@ -29,8 +30,9 @@ class Scene {
 
   /// Make the model, and a state in which all stands still.
   void build();
-  /// The one interface; its stiffness is the stiffer side's modulus over its height.
-  void set_interface(Real cohesion, Real tensile_strength, Real tan_friction);
+  /// Parameters of the one interface by name, those that are not named being 0 (an angle is its
+  /// tangent). Its stiffness is the stiffer side's modulus over its height.
+  void set_interface(const Named& parameters);
   /// Ready for steps.
   void start() { prepare(model, state); }
   void step(std::int64_t steps) { run(model, state, {.steps = steps}); }

@@ -109,7 +109,7 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
       const Index id = m.face_edges[4 * e.face + k];
       Patch::Edge* last = p.edge + p.edge_count;
       Patch::Edge* edge = std::find_if(p.edge, last, [&](const auto& o) { return o.id == id; });
-      if (edge == last) p.edge[p.edge_count++] = {id, 0, {}, {}, {}, {}};
+      if (edge == last) p.edge[p.edge_count++] = {.id = id};
       edge->face[edge->faces] = i;
       edge->side[edge->faces++] = k;
       edge->indented = edge->indented.and_of(indented_at(m, e, k));

@@ -45,10 +45,10 @@ struct Indented {
 struct Patch {
   /// An edge: the faces of the patch that meet there, and which of their sides it is.
   struct Edge {
-    Index id, faces;
-    Index face[2], side[2];
-    Index vertex[2];
-    Indented indented;
+    Index id = -1, faces = 0;
+    Index face[2] = {}, side[2] = {};
+    Index vertex[2] = {};
+    Indented indented = {};
   };
   Index face_count, vertex_count, edge_count;
   Index face[6];  // exposed

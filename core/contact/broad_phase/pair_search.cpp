@@ -72,7 +72,12 @@ void search_pairs(const Model& m, const State& s, PairSearch& search) {
   list_exposed_sides(s, exposed, sides);
   list_patches(m, s, exposed, patches);
   const Bonded bonded = live_overlaps(m, s);
-  const PairContext f{m, s, face_columns(m, s), exposed, sides, bonded};
+  const PairContext f{.m = m,
+                      .s = s,
+                      .faces = face_columns(m, s),
+                      .exposed = exposed,
+                      .sides = sides,
+                      .bonded = bonded};
   const Index count = Index(patches.size());
   std::vector<Box> boxes(count);
   for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;

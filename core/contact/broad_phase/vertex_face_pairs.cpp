@@ -175,8 +175,10 @@ struct VertexFaceSearch {
       points.shift = std::max(points.shift, f.m.rules.indentation * (norm(arm) + 2 * x.deviation));
       points.deviation = std::max(points.deviation, x.deviation_soon);
       listed.add(reverse, i, j);
-      found.candidates.push_back(
-          {a.face[i], a.corner[v][i], b.face[j], Index(found.vertex_faces.size())});
+      found.candidates.push_back({.mother = a.face[i],
+                                  .vertex = a.corner[v][i],
+                                  .face = b.face[j],
+                                  .pair = Index(found.vertex_faces.size())});
     }
     return points;
   }

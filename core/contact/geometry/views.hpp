@@ -8,19 +8,19 @@
 namespace cdem {
 
 inline FaceColumns face_columns(const Model& m, const State& s) {
-  return {{s.nodes.motion.data()},
-          m.face_nodes.data(),
-          m.face_edges.data(),
-          m.face_length.data(),
-          m.face_height.data(),
-          m.edge_nodes.data(),
-          s.search.across.data(),
-          s.search.edge_star_first.data(),
-          s.search.edge_star.data(),
-          s.nodes.bonded_node.data(),
-          m.node_place.data(),
-          s.search.face_exposed.data(),
-          s.dt_last};
+  return {.nodes = {s.nodes.motion.data()},
+          .face_nodes = m.face_nodes.data(),
+          .face_edges = m.face_edges.data(),
+          .face_length = m.face_length.data(),
+          .face_height = m.face_height.data(),
+          .edge_nodes = m.edge_nodes.data(),
+          .beyond = s.search.across.data(),
+          .edge_star_first = s.search.edge_star_first.data(),
+          .edge_star = s.search.edge_star.data(),
+          .bonded_node = s.nodes.bonded_node.data(),
+          .node_place = m.node_place.data(),
+          .face_exposed = s.search.face_exposed.data(),
+          .dt = s.dt_last};
 }
 
 inline FaceGeometry face_geometry(const State& s) {

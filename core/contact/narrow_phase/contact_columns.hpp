@@ -8,16 +8,14 @@ namespace cdem {
 
 /// State of the semi-springs of exposed faces: slot = 4 * exposed face + vertex.
 struct SpringColumns {
-  /// Target of a semi-spring that the step has still to look for.
-  static constexpr Index sought = -2;
-
   Index* target;         // exposed face in contact, or -1
   Index* target_before;  // the same one step ago
   Real* state;           // rows of ContactState
   Real* friction;        // lost so far  [J]
   Real* dashpot;         // lost in the contact dashpot so far  [J]
   Real* reaction;        // row of 8: force on the mother x y z, stiffness, weights on the target
-  Flag* lost;            // 1: a loaded contact was lost because it sank too deep
+  Flag* lost;            // 1: a loaded contact was lost because it penetrated too deep
+  Flag* unresolved;      // 1: ResolveTargets has still to find the target of this step
 };
 
 /// The semi-edge contacts, in the order of their mother faces: first[m] to first[m + 1] are those

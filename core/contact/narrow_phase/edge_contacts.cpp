@@ -67,8 +67,11 @@ void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Inde
     e.first[x] = next;
     for (Index c = e.old_first[from[x]]; c < e.old_first[from[x] + 1]; ++c, ++next) {
       const EdgeContact old = EdgeContact::at(e.old_contact.data(), c);
-      EdgeContact{4 * Index(x) + old.mother % 4, to[old.face], old.edge, old.before}.store(
-          e.contact.data(), next);
+      EdgeContact{.mother = 4 * Index(x) + old.mother % 4,
+                  .face = to[old.face],
+                  .edge = old.edge,
+                  .before = old.before}
+          .store(e.contact.data(), next);
       ContactState::at(e.old_state.data(), c).store(e.state.data(), next);
     }
   }

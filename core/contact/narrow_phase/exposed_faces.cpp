@@ -42,11 +42,15 @@ void launch_geometry(const Model& m, State& s, Queue q, const Flag* listed) {
   const Index count = Index(s.search.exposed_face.size());
   const Index* exposed = s.search.exposed_face.data();
   for_each_item(q, count,
-                UpdateFaceGeometry{face_columns(m, s), exposed, s.search.exposed.data(),
-                                   s.face_geometry.data()});
-  for_each_item(
-      q, count,
-      MarkSharpSides{face_columns(m, s), listed, s.search.exposed.data(), s.face_geometry.data()});
+                UpdateFaceGeometry{.faces = face_columns(m, s),
+                                   .exposed_face = exposed,
+                                   .table = s.search.exposed.data(),
+                                   .rows = s.face_geometry.data()});
+  for_each_item(q, count,
+                MarkSharpSides{.faces = face_columns(m, s),
+                               .listed = listed,
+                               .table = s.search.exposed.data(),
+                               .rows = s.face_geometry.data()});
 }
 
 }  // namespace

@@ -11,7 +11,9 @@ namespace cdem {
 void find_target_faces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::search);
   const Index count = Index(s.search.exposed_face.size());
+  s.springs.unresolved.resize(s.springs.target.size());
   const FaceSearch search = face_search(m, s);
+  for_each_item(q, 4 * count, BeginTargets{search.springs});
   for_each_selected(q, count, UpdateHeldTargets{search});
   for_each_selected(q, count, FilterNewTargets{search});
   for_each_item(q, 4 * count, ResolveTargets{search});
@@ -23,18 +25,21 @@ void find_target_edges(const Model& m, State& s, Queue q) {
   begin_edges(s);
   const Index pairs = Index(s.search.inner.near_edges.size());
   for_each_lane(q, pairs,
-                FilterEdgePairs{{s.nodes.motion.data()},
-                                face_geometry(s),
-                                edge_pairs(s),
-                                m.rules,
-                                s.edges.old_first.data()});
+                FilterEdgePairs{.nodes = {s.nodes.motion.data()},
+                                .geometry = face_geometry(s),
+                                .pairs = edge_pairs(s),
+                                .rules = m.rules,
+                                .held = s.edges.old_first.data()});
   do {
     for_each_selected(q, pairs, edge_search(m, s));
     finish(q);
   } while (!make_room_for_edges(s));
   for_each_item(q, Index(s.search.exposed_face.size()),
-                ListEdgeContacts{edge_search(m, s), s.edges.first.data(), s.edges.contact.data(),
-                                 s.edges.friction.data(), s.edges.dashpot.data()});
+                ListEdgeContacts{.touch = edge_search(m, s),
+                                 .first = s.edges.first.data(),
+                                 .contact = s.edges.contact.data(),
+                                 .friction = s.edges.friction.data(),
+                                 .dashpot = s.edges.dashpot.data()});
 }
 
 }  // namespace cdem

@@ -179,7 +179,7 @@ struct ResolveTargetEdges {
       return indices_of([&](Index x, Index code) { return of(x, SidePair::of(code).j); }, pair.t,
                         pair.sides);
     };
-    return {m(start), m(end), t(start), t(end)};
+    return {.m0 = m(start), .m1 = m(end), .t0 = t(start), .t1 = t(end)};
   }
   template <class T, class Ids>
   CDEM_HD auto are_sharp(const TwoSides<Ids>& pair) const {
@@ -261,7 +261,7 @@ struct ResolveTargetEdges {
         pair.t, pair.sides);
     const auto first = numbers_of([](Index y, Index x) { return x <= y; }, other, pair.t);
     const T there = dot(nm, geometry.normal(other));
-    return (here < there) | (!(here > there) & (first > T(0.0)));
+    return (here < there) | ((!(here > there)) & (first > T(0.0)));
   }
 };
 
@@ -281,8 +281,11 @@ struct ListEdgeContacts {
     sort(row, found.count[m.i]);
     for (Index j = 0; j < found.count[m.i]; ++j) {
       const FoundEdge edge = FoundEdge::at(row, j);
-      EdgeContact{edge.mother, edge.target / 4, touch.edge_of(edge.target), edge.before}.store(
-          contact, first[m.i] + j);
+      EdgeContact{.mother = edge.mother,
+                  .face = edge.target / 4,
+                  .edge = touch.edge_of(edge.target),
+                  .before = edge.before}
+          .store(contact, first[m.i] + j);
     }
     for (Index c = held.first[m.i]; c < held.first[m.i + 1]; ++c) {
       bool goes_on = false;
@@ -327,8 +330,10 @@ struct ListEdgeContacts {
   CDEM_HD Side side(Index a, Index b) const {
     const FaceColumns& faces = touch.faces;
     const Vec3<Real> x = faces.position_before(a);
-    return {x, faces.position_before(b) - x, faces.dt * faces.nodes.velocity(a),
-            faces.dt * faces.nodes.velocity(b)};
+    return {.x = x,
+            .along = faces.position_before(b) - x,
+            .way0 = faces.dt * faces.nodes.velocity(a),
+            .way1 = faces.dt * faces.nodes.velocity(b)};
   }
 };
 

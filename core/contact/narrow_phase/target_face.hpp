@@ -16,14 +16,21 @@ struct FaceSearch {
   SpringColumns springs;
 };
 
+/// Begin the search of a step: what was the target is now that of one step ago.
+struct BeginTargets {
+  SpringColumns springs;
+
+  CDEM_HD void operator()(One slot) const {
+    springs.target_before[slot.i] = springs.target[slot.i];
+    springs.unresolved[slot.i] = 0;
+  }
+};
+
 /// Keep the target of a semi-spring that is in contact, as most go on: see ResolveTargets. What
 /// takes a closer look is left to it.
 struct UpdateHeldTargets : FaceSearch {
   CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
-  CDEM_HD bool selects(Index, Index slot) const {
-    springs.target_before[slot] = springs.target[slot];
-    return springs.target[slot] >= 0;
-  }
+  CDEM_HD bool selects(Index, Index slot) const { return springs.target_before[slot] >= 0; }
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
@@ -46,7 +53,7 @@ struct UpdateHeldTargets : FaceSearch {
                       !((gap > lifted) | (gap < -depth)) & other_node(0) & other_node(1) &
                       other_node(2) & other_node(3);
     for_lanes(item, [&](Index lane, Index, Index id) {
-      if (!holds(kept, lane)) springs.target[id] = SpringColumns::sought;
+      if (!holds(kept, lane)) springs.unresolved[id] = 1;
     });
   }
 };
@@ -107,9 +114,7 @@ struct FilterNewTargets : FaceSearch {
   CDEM_HD void mark(const I& item, const M& may) const {
     for_lanes(item, [&](Index lane, Index m, Index c) {
       candidates.may_begin[c] = holds(may, lane);
-      const Index slot = 4 * m + vertex_of(candidates.first, m, c);
-      if (holds(may, lane) && springs.target[slot] < 0)
-        springs.target[slot] = SpringColumns::sought;
+      if (holds(may, lane)) springs.unresolved[4 * m + vertex_of(candidates.first, m, c)] = 1;
     });
   }
   template <class T, class Ids>
@@ -158,7 +163,7 @@ struct FilterNewTargets : FaceSearch {
 /// whatever its edges do; like all that begins inside it is free of stress there.
 struct ResolveTargets : FaceSearch {
   CDEM_HD void operator()(One slot) const {
-    if (springs.target[slot.i] != SpringColumns::sought) return;
+    if (!springs.unresolved[slot.i]) return;
     FaceList listed = listed_for(slot.i);
     if (springs.target_before[slot.i] < 0)
       listed.may_begin = candidates.may_begin + candidates.first[slot.i];
@@ -218,7 +223,15 @@ struct ResolveTargets : FaceSearch {
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
     const Index slot = 4 * m + k, current = springs.target_before[slot];
-    Seeker s{faces.vertex(exposed_face[m], k), -1, {}, {}, -1e300, 0, 0, false, current < 0};
+    Seeker s{.node = faces.vertex(exposed_face[m], k),
+             .best = -1,
+             .v = {},
+             .p = {},
+             .gap = -1e300,
+             .turn_depth = 0,
+             .lifted = 0,
+             .kept = false,
+             .free = current < 0};
     s.v = faces.nodes.position(s.node);
     s.p = s.v + rules.indentation * (geometry.center(m) - s.v);
     if (current < 0) return s;

@@ -9,7 +9,9 @@ namespace cdem {
 
 inline Candidates candidate_columns(State& s) {
   InnerList& inner = s.search.inner;
-  return {inner.first.data(), inner.candidate.data(), inner.may_begin.data()};
+  return {.first = inner.first.data(),
+          .other = inner.candidate.data(),
+          .may_begin = inner.may_begin.data()};
 }
 
 inline EdgePairs edge_pairs(State& s) {
@@ -23,33 +25,55 @@ inline EdgePairs edge_pairs(State& s) {
 
 inline SpringColumns spring_columns(State& s) {
   SpringState& c = s.springs;
-  return {c.target.data(),  c.target_before.data(), c.state.data(), c.friction.data(),
-          c.dashpot.data(), c.reaction.data(),      c.lost.data()};
+  return {.target = c.target.data(),
+          .target_before = c.target_before.data(),
+          .state = c.state.data(),
+          .friction = c.friction.data(),
+          .dashpot = c.dashpot.data(),
+          .reaction = c.reaction.data(),
+          .lost = c.lost.data(),
+          .unresolved = c.unresolved.data()};
 }
 
 inline EdgeColumns edge_columns(State& s) {
   EdgeState& c = s.edges;
-  return {c.first.data(), c.contact.data(), c.state.data(), c.reaction.data()};
+  return {.first = c.first.data(),
+          .contact = c.contact.data(),
+          .state = c.state.data(),
+          .reaction = c.reaction.data()};
 }
 
 inline EdgesBefore edges_before(const State& s) {
   const EdgeState& c = s.edges;
-  return {c.old_first.data(), c.old_contact.data(), c.old_state.data()};
+  return {
+      .first = c.old_first.data(), .contact = c.old_contact.data(), .state = c.old_state.data()};
 }
 
 inline FaceSearch face_search(const Model& m, State& s) {
-  return {face_columns(m, s),   face_geometry(s), s.search.exposed_face.data(),
-          candidate_columns(s), m.rules,          spring_columns(s)};
+  return {.faces = face_columns(m, s),
+          .geometry = face_geometry(s),
+          .exposed_face = s.search.exposed_face.data(),
+          .candidates = candidate_columns(s),
+          .rules = m.rules,
+          .springs = spring_columns(s)};
 }
 
 inline FoundEdges found_edges(State& s) {
-  return {s.edges.slots, s.edges.found_count.data(), s.edges.found.data(), runs_alone()};
+  return {.slots = s.edges.slots,
+          .count = s.edges.found_count.data(),
+          .rows = s.edges.found.data(),
+          .alone = runs_alone()};
 }
 
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {
-  return {face_columns(m, s),  face_geometry(s), s.search.exposed_face.data(),
-          edge_pairs(s),       m.rules,          edges_before(s),
-          s.edges.lost.data(), found_edges(s)};
+  return {.faces = face_columns(m, s),
+          .geometry = face_geometry(s),
+          .exposed_face = s.search.exposed_face.data(),
+          .pairs = edge_pairs(s),
+          .rules = m.rules,
+          .held = edges_before(s),
+          .lost = s.edges.lost.data(),
+          .found = found_edges(s)};
 }
 
 }  // namespace cdem

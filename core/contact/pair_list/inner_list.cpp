@@ -51,25 +51,29 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
   inner.faces.resize(pairs);
   inner.motion.resize(pairs);
   for_each_lane(q, pairs,
-                MarkNearFaces{{s.nodes.motion.data()},
-                              face_geometry(s),
-                              {search.outer.vf_pairs.data(), stride},
-                              {search.outer.vf_bounds.data(), stride},
-                              search.outer.rotation_soon.data(),
-                              inner.skin.data(),
-                              inner.faces.data(),
-                              inner.motion.data()});
+                MarkNearFaces{.nodes = {s.nodes.motion.data()},
+                              .geometry = face_geometry(s),
+                              .of = {search.outer.vf_pairs.data(), stride},
+                              .room = {search.outer.vf_bounds.data(), stride},
+                              .rotation = search.outer.rotation_soon.data(),
+                              .skin = inner.skin.data(),
+                              .near = inner.faces.data(),
+                              .motion = inner.motion.data()});
   const Index count = Index(search.exposed_face.size()), slots = 4 * count;
-  const ListedFaces listed{search.outer.slot_first.data(),
-                           search.outer.slot_faces.data(),
-                           search.outer.slot_pairs.data(),
-                           inner.faces.data(),
-                           inner.motion.data(),
-                           search.outer.rotation_soon.data()};
+  const ListedFaces listed{.first = search.outer.slot_first.data(),
+                           .other = search.outer.slot_faces.data(),
+                           .pair = search.outer.slot_pairs.data(),
+                           .near = inner.faces.data(),
+                           .motion = inner.motion.data(),
+                           .rotation = search.outer.rotation_soon.data()};
   inner.candidates.resize(search.outer.slot_faces.size());
+  inner.candidates.fill(0);
   for_each_selected(q, count,
-                    MarkInnerFaces{face_columns(m, s), face_geometry(s), m.rules, listed,
-                                   inner.candidates.data()});
+                    MarkInnerFaces{.faces = face_columns(m, s),
+                                   .geometry = face_geometry(s),
+                                   .rules = m.rules,
+                                   .listed = listed,
+                                   .close = inner.candidates.data()});
   inner.count.resize(slots);
   for_each_item(q, slots,
                 CountInnerFaces{listed.first, inner.candidates.data(), inner.count.data()});
@@ -78,9 +82,11 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
   for (Index i = 0; i < slots; ++i) inner.first[i + 1] = inner.first[i] + inner.count[i];
   inner.candidate.resize(inner.first[slots]);
   inner.may_begin.resize(inner.first[slots]);
-  for_each_item(
-      q, slots,
-      ListInnerFaces{listed, inner.candidates.data(), inner.first.data(), inner.candidate.data()});
+  for_each_item(q, slots,
+                ListInnerFaces{.listed = listed,
+                               .close = inner.candidates.data(),
+                               .first = inner.first.data(),
+                               .other = inner.candidate.data()});
 }
 
 /// Where faces of two elements meet at an edge, the pair that finds it may be another one than that
@@ -109,24 +115,27 @@ void prune_edges(const Model& m, State& s, Queue q) {
   SearchState& search = s.search;
   InnerList& inner = search.inner;
   const Index pairs = Index(search.outer.ee_codes.size()), stride = padded_stride(pairs);
-  const ListedEdges listed{{search.outer.ee_pairs.data(), stride},
-                           search.outer.ee_codes.data(),
-                           search.outer.ee_sides.data(),
-                           search.exposed.data()};
+  const ListedEdges listed{.of = {search.outer.ee_pairs.data(), stride},
+                           .code = search.outer.ee_codes.data(),
+                           .sides = search.outer.ee_sides.data(),
+                           .table = search.exposed.data()};
   inner.edges.resize(pairs);
   for_each_lane(q, pairs,
-                MarkNearEdges{{s.nodes.motion.data()},
-                              listed,
-                              {search.outer.ee_bounds.data(), stride},
-                              inner.skin.data(),
-                              m.rules,
-                              s.dt_last,
-                              inner.edges.data()});
+                MarkNearEdges{.nodes = {s.nodes.motion.data()},
+                              .listed = listed,
+                              .room = {search.outer.ee_bounds.data(), stride},
+                              .skin = inner.skin.data(),
+                              .rules = m.rules,
+                              .dt = s.dt_last,
+                              .near = inner.edges.data()});
   if (pairs > 0)
     for_each_item(q, Index(s.edges.contact.size() / 4),
-                  MarkHeldEdges{search.exposed_face.data(), m.face_edges.data(),
-                                s.edges.contact.data(), search.outer.edge_first.data(),
-                                search.outer.edge_pairs.data(), inner.edges.data()});
+                  MarkHeldEdges{.exposed_face = search.exposed_face.data(),
+                                .face_edges = m.face_edges.data(),
+                                .contact = s.edges.contact.data(),
+                                .first = search.outer.edge_first.data(),
+                                .listed = search.outer.edge_pairs.data(),
+                                .near = inner.edges.data()});
   finish(q);
   join_pairs_of_edges(m, search);
   inner.near_edges.resize(pairs);

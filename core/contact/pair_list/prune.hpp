@@ -84,13 +84,10 @@ struct MarkInnerFaces {
   FaceGeometry geometry;
   SearchRules rules;
   ListedFaces listed;
-  Flag* close;  // [listed]
+  Flag* close;  // [listed] set where selected, 0 before
 
   CDEM_HD Range items(Index m) const { return {listed.first[4 * m], listed.first[4 * m + 4]}; }
-  CDEM_HD bool selects(Index, Index c) const {
-    close[c] = 0;
-    return listed.near[listed.pair[c]];
-  }
+  CDEM_HD bool selects(Index, Index c) const { return listed.near[listed.pair[c]]; }
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
@@ -229,7 +226,7 @@ struct MarkNearEdges {
     const T inset = room.at(3, p) - shift * cot - off, beside = -shift / least - off;
     const auto crosses = (within(on_a, inset, long_a) & within(on_b, beside, long_b)) |
                          (within(on_b, inset, long_b) & within(on_a, beside, long_a));
-    set_flags(near, p, !(far | parallel) & (open | crosses));
+    set_flags(near, p, (!(far | parallel)) & (open | crosses));
   }
 
  private:

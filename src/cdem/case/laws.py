@@ -133,6 +133,12 @@ def _declared(laws: list[dict[str, Any]]) -> dict[str, Law]:
 
 INTERFACE_LAWS = _declared(native.interface_laws())
 BLOCK_LAWS = _declared(native.block_laws())
+STATES = {
+    variable.name: variable
+    for law in (*BLOCK_LAWS.values(), *INTERFACE_LAWS.values())
+    for variable in law.state
+}
+"""State variables of all laws, by name: each is an output field."""
 
 
 def interface_contradiction(part: Part) -> str:

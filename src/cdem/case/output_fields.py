@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from cdem.case.laws import STATES
+
 Recorded = Literal["always", "chosen", "never"]
 """When a file holds a field: "chosen" where `output.fields` of the case names it."""
 Colors = Literal["amount", "whole range", "label", "scattered label"]
@@ -77,6 +79,13 @@ OUTPUT_FIELDS = [
         "broken", "1 where all bonds of the face are broken, 0 on the outside", "", "faces",
         frames="never", surface="always", colors=None,
     ),
+]  # fmt: skip
+OUTPUT_FIELDS += [
+    OutputField(
+        state.name, f"{state.meaning}; the largest in the element", state.unit, "elements",
+        frames="chosen", surface="chosen", colors="amount",
+    )
+    for state in STATES.values()
 ]  # fmt: skip
 """In the order in which they are listed everywhere."""
 

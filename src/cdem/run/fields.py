@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.laws import STATES
 from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
 from cdem.mesh.arrays import components
 from cdem.model.interfaces import bonded_pairs, interfaces_of
+from cdem.run.law_fields import state_of
 from cdem.run.state import RunState
 
 Values = Callable[[RunState], NDArray]
@@ -24,6 +27,10 @@ def output_field(name: str) -> Callable[[Values], Values]:
         return function
 
     return keep
+
+
+for state in STATES:
+    output_field(state)(partial(state_of, name=state))
 
 
 def values_of(sim: RunState, fields: Iterable[OutputField]) -> dict[str, NDArray]:

@@ -173,7 +173,7 @@ struct Elements {
   Index count, stride;
   std::vector<Vec> reference;  // stress-free positions  [m]
   std::vector<Real> motion;    // rows of 8
-  std::vector<Index> node, material;
+  std::vector<Index> node, material, law{0};
   std::vector<Real> gradient, volume, hourglass, lambda, mu;
   std::vector<ElementGeometry<Shape>> geometry;
 
@@ -218,8 +218,9 @@ struct Elements {
     return vector_at(motion.data() + 8 * (e * nodes + k) + 4);
   }
   ElementColumns<Shape> columns() const {
-    return {{motion.data()},           {node.data(), stride},     {gradient.data(), stride},
-            {volume.data(), stride},   {material.data(), stride}, {lambda.data(), mu.data()},
+    return {{motion.data()},           {node.data(), stride},
+            {gradient.data(), stride}, {volume.data(), stride},
+            {material.data(), stride}, {lambda.data(), mu.data(), law.data(), nullptr},
             {hourglass.data(), stride}};
   }
 };

@@ -20,14 +20,11 @@ struct Loaded : Elements<Shape> {
   Real damping_time = 0, dt = 1;
 
   CorotationalForce<Shape, Rotation> force_kernel() {
-    return {this->columns(),
-            damping_time,
-            dt,
-            {damping_work.data(), this->stride},
+    return {this->columns(),      damping_time, dt, {damping_work.data(), this->stride}, {},
             {corner_force.data()}};
   }
   CorotationalReport<Shape, Rotation> report_kernel() {
-    return {this->columns(), {stress.data(), this->stride}, {energy.data(), this->stride}};
+    return {this->columns(), {stress.data(), this->stride}, {energy.data(), this->stride}, {}};
   }
   void update() {
     for_each_lane({}, this->count, Blocks{}, force_kernel());

@@ -142,7 +142,7 @@ TEST_CASE_TEMPLATE("the incremental forms agree with the total one for small ste
     for (Index q = 0; q < Shape::points; ++q)
       expected.add(
           columns, One{e}, q,
-          elements.geometry[e].volume[q] * full(columns.material(One{e}).stress(strain[q])));
+          elements.geometry[e].volume[q] * full(columns.elastic(One{e}).stress(strain[q])));
     if constexpr (Shape::hourglass)
       Hourglass<Real>(columns, One{e}, arms).add(columns, One{e}, 1.0, expected);
     for (Index k = 0; k < Shape::nodes; ++k)

@@ -4,14 +4,12 @@
 
 namespace cdem::test {
 
-TEST_CASE("blocks with an item that is awake are listed, and every item is asked") {
+TEST_CASE("blocks with an item that is awake are listed, the last one not beyond its end") {
   Column<Index> list;
-  Index asked = 0;
   list_blocks(3 * block_size + 2, list, [&](Index i) {
-    ++asked;
+    CHECK(i < 3 * block_size + 2);
     return i == 1 || i == block_size - 1 || i == 3 * block_size + 1;
   });
-  CHECK(asked == 3 * block_size + 2);
   REQUIRE(list.size() == 2);
   CHECK(list[0] == 0);
   CHECK(list[1] == 3);

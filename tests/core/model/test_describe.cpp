@@ -1,4 +1,4 @@
-// The lists that name every array.
+// The list that names every array.
 #include <set>
 
 #include "core/model/describe.hpp"
@@ -6,33 +6,25 @@
 
 namespace cdem::test {
 
-TEST_CASE("every array of the model has a name and a column of its own") {
+TEST_CASE("every array of model and state has a name, a column and a meaning of its own") {
   Model m;
-  std::set<std::string> names;
-  std::set<const void*> columns;
-  int count = 0;
-  describe(m, [&](const std::string& name, auto& column) {
-    names.insert(name);
-    columns.insert(&column);
-    ++count;
-  });
-  CHECK(count > 60);
-  CHECK(int(names.size()) == count);
-  CHECK(int(columns.size()) == count);
-}
-
-TEST_CASE("every array of the state has a name, a column and a meaning of its own") {
   State s;
   std::set<std::string> names;
   std::set<const void*> columns;
-  int count = 0;
-  describe(s, [&](const std::string& name, auto& column, const char* meaning) {
-    names.insert(name);
+  int count = 0, rebuilt = 0;
+  const auto note = [&](const ColumnInfo& info, const auto& column) {
+    names.insert(info.name);
     columns.insert(&column);
-    CHECK(std::string(meaning).size() > 3);
+    CHECK(std::string(info.meaning).size() > 3);
     ++count;
+  };
+  describe(m, s, note, note, [&](const char* by, const ColumnInfo& info, const auto& column) {
+    CHECK(std::string(by).size() > 3);
+    note(info, column);
+    ++rebuilt;
   });
-  CHECK(count > 60);
+  CHECK(count > 150);
+  CHECK(rebuilt > 40);
   CHECK(int(names.size()) == count);
   CHECK(int(columns.size()) == count);
 }

@@ -13,7 +13,7 @@ struct Stack : Scene {
     add_box({0, 0, 0}, {1, 1, 1});
     add_box({0, 0, 1}, {1, 1, 1});
     build();
-    set_interface(1e9, 1e9, 0.5);
+    set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}, {"friction_angle", 0.5}});
     start();
   }
 };

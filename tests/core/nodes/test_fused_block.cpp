@@ -22,7 +22,7 @@ struct Swarm : Scene {
     }
     for (Index b = 0; b < 3 * block_size - 5; ++b) add_tet(random, {10.0 + 5 * b, 0, 0}, 1);
     build();
-    set_interface(1e9, 1e9, 0.5);
+    set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}, {"friction_angle", 0.5}});
     model.gravity = {0, 0, -9.81};
     for (Index b = 0; b < 3 * block_size + 1; ++b)
       set_motion(b, random.vector(0.1), random.vector(0.1));

@@ -15,7 +15,7 @@ void fill(Scene& scene, Random& random) {
   scene.build();
   scene.model.gravity = {0, 0, -9.81};
   scene.model.rules.lifted = 0;
-  scene.set_interface(0, 0, 0.5);
+  scene.set_interface({{"friction_angle", 0.5}});
   scene.set_motion(box, {0.5, 0, -1}, {0.2, 0.3, 0.1});
   scene.set_motion(tet, {-3, 0, 0}, {1, 2, 3});
   scene.model.check_search = true;
@@ -45,7 +45,7 @@ TEST_CASE("energies of a collision close") {
   const Report report = run(scene.model, scene.state, {.steps = 2000});
   CHECK(report.outcome == Outcome::steps_done);
   const Energies e = energies(scene.model, scene.state);
-  CHECK(e.friction > 0);
+  CHECK(e.terms[energy_term("friction")] > 0);
   CHECK(std::abs(e.error) < 1e-2);
 }
 

@@ -19,7 +19,7 @@ struct Rubble : Scene {
         add_tet(random, at, 0.7);
     }
     build();
-    set_interface(0, 0, 0.3);
+    set_interface({{"friction_angle", 0.3}});
     const Vec middle{0.5, 0.5, 0.5};
     for (Index b = 0; b < 8; ++b) {
       const Vec at{Real(b % 2), Real(b / 2 % 2), Real(b / 4)};

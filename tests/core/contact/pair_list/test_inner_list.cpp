@@ -15,7 +15,7 @@ struct Landing : Scene {
     add_box({-1, -1, -1}, {2, 2, 1}, true);
     const Index tet = add_tet(random, {0, 0, 0.8}, 1);
     build();
-    set_interface(0, 0, 0.4);
+    set_interface({{"friction_angle", 0.4}});
     set_motion(tet, {0.2, 0.1, -1}, {1, 2, 0});
     model.gravity = {0, 0, -9.81};
     start();

@@ -1,0 +1,88 @@
+// What intact bonds join is one body: its points, and the surface around them.
+#include "core/bonds/bonded_surface.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// Two boxes on each other.
+struct Stack : Scene {
+  Stack() {
+    bonded = true;
+    add_box({0, 0, 0}, {1, 1, 1});
+    add_box({0, 0, 1}, {1, 1, 1});
+    build();
+    set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}});
+    start();
+  }
+  /// The exposed face of a block that has a normal.
+  Index exposed(Index block, const Vec& normal) const {
+    for (Index f = 0; f < model.face_count; ++f) {
+      const Index* n = model.face_nodes.data() + 4 * f;
+      const Vec out = unit(cross(position(n[1]) - position(n[0]), position(n[2]) - position(n[1])));
+      if (model.face_block[f] == block && distance(out, normal) < 1e-9)
+        return state.search.face_exposed[f];
+    }
+    return -1;
+  }
+  /// Faces beyond the sides of an exposed one.
+  std::vector<Index> beyond(Index place) const {
+    const Index* across = state.search.across.data() + 4 * place;
+    std::vector<Index> places;
+    for (Index k = 0; k < 4; ++k)
+      places.push_back(across[k] < 0 ? -1 : state.search.face_exposed[across[k]]);
+    return places;
+  }
+};
+
+bool has(const std::vector<Index>& list, Index value) {
+  return std::count(list.begin(), list.end(), value) > 0;
+}
+
+}  // namespace
+
+TEST_CASE("nodes that intact bonds hold together share a label") {
+  Stack stack;
+  for (Index i = 0; i < 16; ++i)
+    for (Index j = 0; j < i; ++j)
+      CHECK((stack.state.nodes.bonded_node[i] == stack.state.nodes.bonded_node[j]) ==
+            (distance(stack.position(i), stack.position(j)) == 0));
+}
+
+TEST_CASE("beyond a side at a bond lies the face of the other block, flush with it") {
+  const Stack stack;
+  for (const Vec& side : {Vec{1, 0, 0}, Vec{-1, 0, 0}, Vec{0, 1, 0}, Vec{0, -1, 0}}) {
+    const Index lower = stack.exposed(0, side), upper = stack.exposed(1, side);
+    REQUIRE(lower >= 0);
+    REQUIRE(upper >= 0);
+    CHECK(has(stack.beyond(lower), upper));
+    CHECK(has(stack.beyond(upper), lower));
+    CHECK(has(stack.beyond(lower), stack.exposed(0, {0, 0, -1})));
+    CHECK(!has(stack.beyond(lower), -1));
+  }
+}
+
+TEST_CASE("edges that leave a point are those of all nodes that are bonded there, each once") {
+  const Stack stack;
+  const Column<Index>&first = stack.state.search.edge_star_first,
+        &star = stack.state.search.edge_star;
+  for (Index i = 0; i < 16; ++i) {
+    const Index label = stack.state.nodes.bonded_node[i];
+    const Vec x = stack.position(i);
+    Index ends = 0;
+    for (Index r = first[label]; r < first[label + 1]; ++r, ++ends)
+      CHECK(std::abs(norm(stack.position(star[r]) - x) - 1) < 1e-15);
+    CHECK(ends == (x.z == 1 ? 4 : 3));
+  }
+}
+
+TEST_CASE("where the bond is broken the nodes part") {
+  Stack stack;
+  PairState& pairs = stack.state.quads;
+  for (Index k = 0; k < 4; ++k) pairs.bond[k * stack.model.quads.point_stride] = 0;
+  join_surfaces(stack.model, stack.state, false);
+  for (Index i = 0; i < 16; ++i) CHECK(stack.state.nodes.bonded_node[i] == i);
+}
+
+}  // namespace cdem::test
