@@ -10,16 +10,10 @@ from typing import Any
 from pydantic import PrivateAttr, ValidationError
 
 from cdem.case import checks
-from cdem.case.reader import (
-    Source,
-    explain,
-    load_case_data,
-    plain,
-    problems_of,
-    replace_at,
-    resolve,
-)
+from cdem.case.explain import explain, problems_of
+from cdem.case.reader import load_case_data, plain, replace_at, resolve
 from cdem.case.schema import CaseParts
+from cdem.case.source import Source
 from cdem.case.types import Part
 
 

@@ -1,103 +1,20 @@
-"""Reading a case file: YAML to plain data, and errors that say file, line, column and a mend."""
+"""Reading a case file: YAML to plain data, overrides, and dotted paths into it."""
 
 from __future__ import annotations
 
-import difflib
 import io
 import math
 import typing
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
-from cdem.errors import CaseError, CdemError
+from cdem.case.explain import unknown_key
+from cdem.case.source import Key, Keys, Source
+from cdem.errors import CaseError
 from cdem.units import describe
-
-Key = str | int
-Keys = tuple[Key, ...]
-MOST_PROBLEMS = 20  # more lines than this help nobody
-
-
-@dataclass
-class Source:
-    """Where the values of a case come from.
-
-    Attributes:
-        file: Name of the case file as the user typed it, or None for a case built in Python.
-        places: Line and column, from 1, of each key path in the file.
-        overrides: Who replaced the value at a key path: ``--set KEY=VALUE``, or a study.
-    """
-
-    file: str | None = None
-    places: dict[Keys, tuple[int, int]] = field(default_factory=dict)
-    overrides: dict[Keys, str] = field(default_factory=dict)
-
-    @property
-    def folder(self) -> Path:
-        """Folder that relative paths in the case start at."""
-        return Path(".") if self.file is None else Path(self.file).parent
-
-    def where(self, path: str | Keys) -> str:
-        """Return ``file:line:col`` of a path, or of the nearest part of it that is written down."""
-        keys = self._known(path) if isinstance(path, str) else path
-        while keys:
-            if keys in self.overrides:
-                return self.overrides[keys]
-            if keys in self.places:
-                line, column = self.places[keys]
-                return f"{self.file}:{line}:{column}"
-            for longer, label in self.overrides.items():  # a mapping that an override has made
-                if longer[: len(keys)] == keys:
-                    return label
-            keys = keys[:-1]
-        return self.file or "case"
-
-    def error(self, problems: Iterable[tuple[Keys, str]]) -> CaseError:
-        """Make one error of (path, what is wrong) pairs, in the order of the file."""
-        last = (10**9, 0)
-        some = sorted(problems, key=lambda p: self.places.get(self._nearest(p[0]), last))
-        lines = [
-            f"{self.where(keys)}: {'.'.join(map(str, keys))}: {what}".replace(": : ", ": ")
-            for keys, what in some[:MOST_PROBLEMS]
-        ]
-        if len(some) > MOST_PROBLEMS:
-            lines.append(f"... and {len(some) - MOST_PROBLEMS} more")
-        return CaseError("\n".join(lines))
-
-    @contextmanager
-    def blame(self, path: str) -> Iterator[None]:
-        """Put ``file:line:col: path:`` before the message of a CdemError or ValueError inside."""
-        try:
-            yield
-        except CdemError as error:
-            error.args = (f"{self.where(path)}: {path}: {error}",)
-            raise
-        except ValueError as error:
-            raise CaseError(f"{self.where(path)}: {path}: {error}") from None
-
-    def _nearest(self, keys: Keys) -> Keys:
-        while keys and keys not in self.places:
-            keys = keys[:-1]
-        return keys
-
-    def _known(self, text: str) -> Keys:
-        """Split a dotted path; keys that contain dots themselves are found by what is known."""
-        parts: list[str] = text.split(".")
-        keys: Keys = ()
-        known = self.places.keys() | self.overrides.keys()
-        while parts:
-            for count in range(len(parts), 0, -1):
-                joined = ".".join(parts[:count])
-                number = joined.isdigit() and (*keys, int(joined)) in known
-                key: Key = int(joined) if number else joined
-                if count == 1 or (*keys, key) in known:
-                    break
-            keys, parts = (*keys, key), parts[count:]
-        return keys
 
 
 def load_case_data(
@@ -277,7 +194,7 @@ def resolve(root: Any, path: str, label: str | None = None) -> Keys:
             keys, node = (*keys, "pairs"), known.get("pairs") or []
             key = _list_index(node, str(key), label, ("interfaces",))
         elif isinstance(node, BaseModel) and key not in known:
-            raise CaseError(f"{label}: {key}: {_unknown(str(key), known)}")
+            raise CaseError(f"{label}: {key}: {unknown_key(str(key), known)}")
         elif not isinstance(node, dict | BaseModel) and node is not None:
             raise CaseError(f"{label}: {'.'.join(map(str, keys))} has nothing inside")
         node = node[int(key)] if isinstance(node, list | tuple) else known.get(str(key))
@@ -319,124 +236,3 @@ def replace_at(tree: Any, keys: Keys, value: Any) -> Any:
     old = copy.get(keys[0]) if isinstance(copy, dict) else copy[keys[0]]
     copy[keys[0]] = replace_at(old, keys[1:], value)
     return copy
-
-
-# ------------------------------------------------------------------ pydantic's errors in our words
-
-
-def explain(
-    error: ValidationError, source: Source, root: type[BaseModel], within: Keys = ()
-) -> CaseError:
-    """Turn pydantic's errors into ours.
-
-    Args:
-        error: What pydantic found.
-        source: Where the data came from.
-        root: The model of the whole data.
-        within: Path of the part that was validated, if not the whole.
-    """
-    return source.error(problems_of(error, root, within))
-
-
-def problems_of(
-    error: ValidationError, root: type[BaseModel], within: Keys = ()
-) -> list[tuple[Keys, str]]:
-    """Path of each error that pydantic found, and what is wrong there in our words."""
-    problems = []
-    for detail in error.errors(include_url=False):
-        keys, model = _real_path(root, (*within, *detail["loc"]))
-        problems.append((keys, _words(detail, keys, model)))
-    return problems
-
-
-def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] | None]:
-    """Drop what pydantic adds to a location (tags of unions, "[key]"), and find the last model."""
-    keys: Keys = ()
-    model, kind = None, root
-    for key in loc:
-        kind = _unwrap(kind)
-        if isinstance(kind, type) and issubclass(kind, BaseModel):
-            model = kind
-            keys = (*keys, key)
-            known = kind.model_fields.get(str(key))
-            kind = known.annotation if known else None
-        elif typing.get_origin(kind) in (dict, list, tuple):
-            if key == "[key]":
-                continue
-            model, keys = None, (*keys, key)
-            kind = next((a for a in reversed(typing.get_args(kind)) if a is not Ellipsis), None)
-        elif isinstance(kind, _Choice):
-            kind = kind.pick(key)
-        else:
-            break
-    return keys, model
-
-
-class _Choice:
-    """A union of several kinds; pydantic's tag in the location says which one was meant."""
-
-    def __init__(self, kinds: list[Any]) -> None:
-        self.kinds = kinds
-
-    def pick(self, tag: Any) -> Any:
-        for kind in self.kinds:
-            tags = [getattr(extra, "tag", None) for extra in getattr(kind, "__metadata__", ())]
-            if tag in tags:
-                return kind
-        return None
-
-
-def _unwrap(kind: Any) -> Any:
-    """Strip Annotated and ``| None``."""
-    while hasattr(kind, "__metadata__"):
-        kind = kind.__origin__
-    arguments = [a for a in typing.get_args(kind) if a is not type(None)]
-    if typing.get_origin(kind) in (typing.Union, type(int | str)):
-        return _unwrap(arguments[0]) if len(arguments) == 1 else _Choice(arguments)
-    return kind
-
-
-def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
-    kind, context, value = detail["type"], detail.get("ctx", {}), detail.get("input")
-    if kind == "extra_forbidden":
-        return _unknown(str(keys[-1]), model.model_fields if model else {})
-    if kind == "missing":
-        known = model.model_fields.get(str(keys[-1])) if model else None
-        meaning = f": {known.description}" if known and known.description else ""
-        return f"is missing{meaning}"
-    if kind == "value_error":
-        return str(context["error"])
-    if kind == "literal_error":
-        expected = str(context["expected"]).replace("'", "")
-        options = [word for part in expected.split(", ") for word in part.split(" or ")]
-        close = difflib.get_close_matches(str(value), options, n=1)
-        hint = f"; did you mean {close[0]}?" if close else ""
-        return f"must be {expected}, got {describe(value)}{hint}"
-    lengths = {"too_short": "at least", "too_long": "at most"}
-    if kind in lengths:
-        limit = context.get("min_length", context.get("max_length"))
-        entries = "entry" if limit == 1 else "entries"
-        return f"needs {lengths[kind]} {limit} {entries}, got {context['actual_length']}"
-    plain_words = {
-        "dict_type": "must be a mapping (key: value)",
-        "model_type": "must be a mapping (key: value)",
-        "model_attributes_type": "must be a mapping (key: value)",
-        "list_type": "must be a list, e.g. [a, b]",
-        "tuple_type": "must be a list, e.g. [a, b]",
-        "bool_type": "must be true or false",
-        "bool_parsing": "must be true or false",
-        "string_type": "must be a text",
-        "int_type": "must be a whole number",
-        "int_parsing": "must be a whole number",
-        "int_from_float": "must be a whole number",
-        "string_too_short": "must not be empty",
-        "greater_than_equal": f"must be at least {context.get('ge')}",
-    }
-    return f"{plain_words.get(kind, detail['msg'])}, got {describe(value)}"
-
-
-def _unknown(key: str, known: Iterable[str]) -> str:
-    close = difflib.get_close_matches(key, known, n=1)
-    if close:
-        return f"unknown key; did you mean {close[0]}?"
-    return f"unknown key; possible are {', '.join(known)}"

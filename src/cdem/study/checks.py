@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from cdem.case.reader import Keys
+from cdem.case.source import Keys
 from cdem.study.formula import Formula, is_formula, unknown
 from cdem.study.schema import COLUMNS, CRITICAL_RESULTS, CriticalSearch, Parameter, StudyParts
 

@@ -7,7 +7,8 @@ from typing import Annotated
 
 from pydantic import Field, ValidationError
 
-from cdem.case.reader import Source, explain
+from cdem.case.explain import explain
+from cdem.case.source import Source
 from cdem.case.types import Part, Quantity
 from cdem.errors import CaseError
 

@@ -11,7 +11,8 @@ from typing import Any
 
 from cdem._version import __version__
 from cdem.case.case import Case
-from cdem.case.reader import Source, load_case_data, put
+from cdem.case.reader import load_case_data, put
+from cdem.case.source import Source
 from cdem.errors import CaseError
 from cdem.study import sampling
 from cdem.study.formula import Formula, is_formula

@@ -7,7 +7,9 @@ from typing import Any
 
 from pydantic import PrivateAttr, ValidationError, model_validator
 
-from cdem.case.reader import Keys, Source, explain, load_case_data, plain
+from cdem.case.explain import explain
+from cdem.case.reader import load_case_data, plain
+from cdem.case.source import Keys, Source
 from cdem.errors import CaseError
 from cdem.study.checks import contradictions
 from cdem.study.schema import StudyParts

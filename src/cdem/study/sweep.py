@@ -173,9 +173,12 @@ class _Execution:
         Raises:
             CaseError: A result shows that the study asks for what is not there.
         """
-        for future in [f for f in self._under_way if f.status != "pending"]:
+        for future in list(self._under_way):
+            status = future.status
+            if status in ("pending", "lost"):  # lost with its worker: another one computes it again
+                continue
             for run in (same := self._under_way.pop(future)):
-                _settle(run, future)
+                _settle(run, future, status)
             check_results(self._study, same[0])
 
     def cancel(self) -> None:
@@ -240,13 +243,13 @@ def _progress(runs: list[Run], client: Any, time_left: float | None) -> SweepPro
     )
 
 
-def _settle(run: Run, future: Any) -> None:
-    """Take over what became of a run."""
+def _settle(run: Run, future: Any, status: str) -> None:
+    """Take over what became of a run whose future had this status."""
     from distributed.scheduler import KilledWorker
 
-    if future.status == "finished":
+    if status == "finished":
         run.result = future.result()
-    elif future.status == "error":
+    elif status == "error":
         error = future.exception()
         if isinstance(error, KilledWorker):
             run.error = "its worker died again and again (out of memory?); tried again next time"

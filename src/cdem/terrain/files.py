@@ -170,6 +170,8 @@ def _csv_lines(path: Path, text: str, elevation: str | None) -> Iterator[Floats]
     labelled = []
     for number, row in enumerate(rows[1:], start=2):
         point = _point(path, number, row, at)
+        if line_at is not None and line_at >= len(row):
+            raise CaseError(f"{path}: row {number} has no {head[line_at]}: {','.join(row)}")
         # without a column of lines each point stands for itself
         labelled.append((number if line_at is None else row[line_at], point))
     for _, line in groupby(labelled, key=itemgetter(0)):

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
-from cdem.case.reader import Source, explain, load_case_data, plain
+from cdem.case.explain import explain
+from cdem.case.reader import load_case_data, plain
+from cdem.case.source import Source
 from cdem.case.types import Angle, Length3, Listed, Name, Part, Quantity
 from cdem.errors import CaseError
 from cdem.terrain import files

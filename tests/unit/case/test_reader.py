@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from cdem.case.reader import Source, load_case_data, plain, replace_at, resolve
+from cdem.case.reader import load_case_data, plain, replace_at, resolve
+from cdem.case.source import Source
 from cdem.errors import CaseError
 
 
@@ -113,12 +114,6 @@ def test_replace_at_leaves_the_original():
     tree = {"a": [1, {"b": 2}]}
     assert replace_at(tree, ("a", 1, "b"), 3) == {"a": [1, {"b": 3}]}
     assert tree == {"a": [1, {"b": 2}]}
-
-
-def test_many_problems_are_cut_short():
-    error = Source().error([(("a", i), "is wrong") for i in range(50)])
-    assert str(error).count("\n") == 20
-    assert str(error).endswith("... and 30 more")
 
 
 def test_plain_refuses_infinite_numbers_in_python_data():

@@ -79,6 +79,7 @@ def test_an_outline_is_read_and_an_open_one_refused(tmp_path: Path):
     [
         ("a.csv", "a,b,c\n1,2,3\n", "must name the columns x, y and z"),
         ("a.csv", "x,y,z\n1,2,three\n", "row 2 has no numbers x, y, z: 1,2,three"),
+        ("a.csv", "x,y,z,line\n1,2,3\n", "row 2 has no line: 1,2,3"),
         ("a.csv", "x,y,z\n1,2,3\n4,5,3\n", "all points have the same height 3"),
         ("a.geojson", "{", r"a\.geojson:1:2: not JSON"),
         (

@@ -1,0 +1,132 @@
+"""Errors that pydantic finds, in our words."""
+
+from __future__ import annotations
+
+import difflib
+import typing
+from collections.abc import Iterable
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from cdem.case.source import Keys, Source
+from cdem.errors import CaseError
+from cdem.units import describe
+
+
+def explain(
+    error: ValidationError, source: Source, root: type[BaseModel], within: Keys = ()
+) -> CaseError:
+    """Turn pydantic's errors into ours.
+
+    Args:
+        error: What pydantic found.
+        source: Where the data came from.
+        root: The model of the whole data.
+        within: Path of the part that was validated, if not the whole.
+    """
+    return source.error(problems_of(error, root, within))
+
+
+def problems_of(
+    error: ValidationError, root: type[BaseModel], within: Keys = ()
+) -> list[tuple[Keys, str]]:
+    """Path of each error that pydantic found, and what is wrong there in our words."""
+    problems = []
+    for detail in error.errors(include_url=False):
+        keys, model = _real_path(root, (*within, *detail["loc"]))
+        problems.append((keys, _words(detail, keys, model)))
+    return problems
+
+
+def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] | None]:
+    """Drop what pydantic adds to a location (tags of unions, "[key]"), and find the last model."""
+    keys: Keys = ()
+    model, kind = None, root
+    for key in loc:
+        kind = _unwrap(kind)
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            model = kind
+            keys = (*keys, key)
+            known = kind.model_fields.get(str(key))
+            kind = known.annotation if known else None
+        elif typing.get_origin(kind) in (dict, list, tuple):
+            if key == "[key]":
+                continue
+            model, keys = None, (*keys, key)
+            kind = next((a for a in reversed(typing.get_args(kind)) if a is not Ellipsis), None)
+        elif isinstance(kind, _Choice):
+            kind = kind.pick(key)
+        else:
+            break
+    return keys, model
+
+
+class _Choice:
+    """A union of several kinds; pydantic's tag in the location says which one was meant."""
+
+    def __init__(self, kinds: list[Any]) -> None:
+        self.kinds = kinds
+
+    def pick(self, tag: Any) -> Any:
+        for kind in self.kinds:
+            tags = [getattr(extra, "tag", None) for extra in getattr(kind, "__metadata__", ())]
+            if tag in tags:
+                return kind
+        return None
+
+
+def _unwrap(kind: Any) -> Any:
+    """Strip Annotated and ``| None``."""
+    while hasattr(kind, "__metadata__"):
+        kind = kind.__origin__
+    arguments = [a for a in typing.get_args(kind) if a is not type(None)]
+    if typing.get_origin(kind) in (typing.Union, type(int | str)):
+        return _unwrap(arguments[0]) if len(arguments) == 1 else _Choice(arguments)
+    return kind
+
+
+def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
+    kind, context, value = detail["type"], detail.get("ctx", {}), detail.get("input")
+    if kind == "extra_forbidden":
+        return unknown_key(str(keys[-1]), model.model_fields if model else {})
+    if kind == "missing":
+        known = model.model_fields.get(str(keys[-1])) if model else None
+        meaning = f": {known.description}" if known and known.description else ""
+        return f"is missing{meaning}"
+    if kind == "value_error":
+        return str(context["error"])
+    if kind == "literal_error":
+        expected = str(context["expected"]).replace("'", "")
+        options = [word for part in expected.split(", ") for word in part.split(" or ")]
+        close = difflib.get_close_matches(str(value), options, n=1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        return f"must be {expected}, got {describe(value)}{hint}"
+    lengths = {"too_short": "at least", "too_long": "at most"}
+    if kind in lengths:
+        limit = context.get("min_length", context.get("max_length"))
+        entries = "entry" if limit == 1 else "entries"
+        return f"needs {lengths[kind]} {limit} {entries}, got {context['actual_length']}"
+    plain_words = {
+        "dict_type": "must be a mapping (key: value)",
+        "model_type": "must be a mapping (key: value)",
+        "model_attributes_type": "must be a mapping (key: value)",
+        "list_type": "must be a list, e.g. [a, b]",
+        "tuple_type": "must be a list, e.g. [a, b]",
+        "bool_type": "must be true or false",
+        "bool_parsing": "must be true or false",
+        "string_type": "must be a text",
+        "int_type": "must be a whole number",
+        "int_parsing": "must be a whole number",
+        "int_from_float": "must be a whole number",
+        "string_too_short": "must not be empty",
+        "greater_than_equal": f"must be at least {context.get('ge')}",
+    }
+    return f"{plain_words.get(kind, detail['msg'])}, got {describe(value)}"
+
+
+def unknown_key(key: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(key, known, n=1)
+    if close:
+        return f"unknown key; did you mean {close[0]}?"
+    return f"unknown key; possible are {', '.join(known)}"

@@ -1,0 +1,92 @@
+"""Where the values of a case come from, and errors that say file, line, column and a mend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cdem.errors import CaseError, CdemError
+
+Key = str | int
+Keys = tuple[Key, ...]
+MOST_PROBLEMS = 20  # more lines than this help nobody
+
+
+@dataclass
+class Source:
+    """Where the values of a case come from.
+
+    Attributes:
+        file: Name of the case file as the user typed it, or None for a case built in Python.
+        places: Line and column, from 1, of each key path in the file.
+        overrides: Who replaced the value at a key path: ``--set KEY=VALUE``, or a study.
+    """
+
+    file: str | None = None
+    places: dict[Keys, tuple[int, int]] = field(default_factory=dict)
+    overrides: dict[Keys, str] = field(default_factory=dict)
+
+    @property
+    def folder(self) -> Path:
+        """Folder that relative paths in the case start at."""
+        return Path(".") if self.file is None else Path(self.file).parent
+
+    def where(self, path: str | Keys) -> str:
+        """Return ``file:line:col`` of a path, or of the nearest part of it that is written down."""
+        keys = self._known(path) if isinstance(path, str) else path
+        while keys:
+            if keys in self.overrides:
+                return self.overrides[keys]
+            if keys in self.places:
+                line, column = self.places[keys]
+                return f"{self.file}:{line}:{column}"
+            for longer, label in self.overrides.items():  # a mapping that an override has made
+                if longer[: len(keys)] == keys:
+                    return label
+            keys = keys[:-1]
+        return self.file or "case"
+
+    def error(self, problems: Iterable[tuple[Keys, str]]) -> CaseError:
+        """Make one error of (path, what is wrong) pairs, in the order of the file."""
+        last = (10**9, 0)
+        some = sorted(problems, key=lambda p: self.places.get(self._nearest(p[0]), last))
+        lines = [
+            f"{self.where(keys)}: {'.'.join(map(str, keys))}: {what}".replace(": : ", ": ")
+            for keys, what in some[:MOST_PROBLEMS]
+        ]
+        if len(some) > MOST_PROBLEMS:
+            lines.append(f"... and {len(some) - MOST_PROBLEMS} more")
+        return CaseError("\n".join(lines))
+
+    @contextmanager
+    def blame(self, path: str) -> Iterator[None]:
+        """Put ``file:line:col: path:`` before the message of a CdemError or ValueError inside."""
+        try:
+            yield
+        except CdemError as error:
+            error.args = (f"{self.where(path)}: {path}: {error}",)
+            raise
+        except ValueError as error:
+            raise CaseError(f"{self.where(path)}: {path}: {error}") from None
+
+    def _nearest(self, keys: Keys) -> Keys:
+        while keys and keys not in self.places:
+            keys = keys[:-1]
+        return keys
+
+    def _known(self, text: str) -> Keys:
+        """Split a dotted path; keys that contain dots themselves are found by what is known."""
+        parts: list[str] = text.split(".")
+        keys: Keys = ()
+        known = self.places.keys() | self.overrides.keys()
+        while parts:
+            for count in range(len(parts), 0, -1):
+                joined = ".".join(parts[:count])
+                number = joined.isdigit() and (*keys, int(joined)) in known
+                key: Key = int(joined) if number else joined
+                if count == 1 or (*keys, key) in known:
+                    break
+            keys, parts = (*keys, key), parts[count:]
+        return keys
