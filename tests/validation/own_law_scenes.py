@@ -41,47 +41,56 @@ def tangent(slip):
     return residual + (peak - residual) * np.maximum(1 - np.asarray(slip) / SLIP, 0)
 
 
+SPEED = 0.05  # of the slider  [m/s]
+
+
 def slider(**interface):
-    """A block that slides on a bed: 1 m/s at the start, slow enough in z to feel its weight."""
+    """A block that comes to rest on a bed, then is drawn along it."""
     from scenes import simulate
 
+    damping = {"contact": 0.3, "stiffness": 0.3}
     return simulate(
         [
             {"group": "block", "box": {"size": [1, 1, 0.4]}, "translate": [-2, -0.5, 0]},
             {"group": "bed", "box": {"size": [5, 2, 0.5]}, "translate": [-3, -1, -0.5]},
         ],
-        {"block": {"velocity": [1, 0, 0]}, "bed": {"fix": ["x", "y", "z"]}},
+        {"block": {}, "bed": {"fix": ["x", "y", "z"]}},
         interfaces={"default": WEAK | interface},
         rock={"young_modulus": "1 GPa"},
-        loads=GRAVITY,
+        loads={
+            **GRAVITY,
+            "velocities": [{"group": "block", "velocity": [0, 0, 0], "components": ["x"]}],
+        },
         stages=[
+            {"name": "settle", "mode": "dynamic", "duration": 0.2, "damping": damping},
             {
                 "name": "slide",
                 "mode": "dynamic",
-                "duration": 1.0,
-                "damping": {"contact": 0.3, "stiffness": 0.3},
-            }
+                "duration": 1.4,
+                "damping": damping,
+                "set": {"loads.velocities.0.velocity": [SPEED, 0, 0]},
+            },
         ],
     )
 
 
-def travel_to_rest(speed):
-    """Theory: 1/2 v^2 = g integral of tan(phi(s)) ds."""
-    peak, residual = tangent([0, 1])
-    return SLIP + (speed**2 / 20 - 0.5 * (peak + residual) * SLIP) / residual
-
-
 def springs():
-    """Semi-springs: the block comes to rest where its weakened friction has spent its energy."""
+    """Semi-springs: the force that draws the block falls with its slip as the law says."""
     sim = slider()
-    start = sim.fields["position"][:, 0].copy()
-    sim.run()
-    nodes = sim.build.nodes_of("block")
-    moved = (sim.fields["position"][:, 0] - start)[nodes].mean()
-    assert abs(moved / travel_to_rest(1.0) - 1) < 0.02, (moved, travel_to_rest(1.0))
+    sim.run_stage("settle")
+    bed = sim.build.nodes_of("bed")
+    seen = []
+    for end in np.arange(0.25, 1.6, 0.05):
+        sim.run_until(end)
+        force = sim.core.fields()["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+        weight = 0.4 * 2500 * 10  # of the block; the bed carries its own as well
+        seen.append((SPEED * (sim.time - 0.2), abs(force[0]) / weight))
+    moved, ratio = np.array(seen).T
+    # the shear springs stretch by about 5e-6 m; the block still rocks a little
+    assert np.allclose(ratio, tangent(moved), rtol=0.02), np.c_[moved, ratio, tangent(moved)]
     state = sim.core.fields()
     slip = state["spring.history"][state["spring.history_law"] == 1]
-    assert len(slip) >= 4 and abs(slip.max() / moved - 1) < 0.02, (slip, moved)
+    assert np.allclose(slip, moved[-1], rtol=0.01), (slip, moved[-1])
     assert abs(sim.energies["error"]) < 0.01, sim.energies
 
 
@@ -111,7 +120,7 @@ def edges():
             if normal > 0 and history > 0:
                 seen.append((np.hypot(s1, s2) / normal, history))
     ratio, history = np.array(seen).T
-    assert history.max() > 2e-3 and np.ptp(ratio) > 0.01, (history.max(), ratio)
+    assert len(ratio) > 20 and np.ptp(ratio) > 0.01, (history.max(), ratio)
     # the limit of a step is that of the slip before it
     assert (ratio < tangent(history) + 0.01).all() and (ratio > tangent(history) - 0.01).any()
 
@@ -119,20 +128,18 @@ def edges():
 def bonds():
     """Bond points: a bond that breaks slides on, and its slip goes to the contacts at release."""
     sim = slider(cohesion="20 kPa")
-    broken_at = released_at = None
-    for _ in range(4000):
-        sim.step(5)
+    sim.run_stage("settle")
+    slipped = 0.0
+    for _ in range(2000):
+        sim.run_until(sim.time + 2e-4)
         state = sim.core.fields()
-        points = state["overlaps.history"]
-        if points.max() > 0 and broken_at is None:
-            broken_at = points.max()
-        if (state["overlaps.status"][:1] == 0).all():
-            released_at = points.max()
+        if state["overlaps.status"][0] == 0:
             break
-    assert broken_at is not None and released_at is not None
-    assert sum(sim.broken.values()) > 0
+        slipped = state["overlaps.history"].max()
+    assert state["overlaps.status"][0] == 0 and sum(sim.broken.values()) > 0
+    assert slipped > 1e-4
     walls = state["spring.history"][state["spring.history_law"] == 1]
-    assert len(walls) >= 8 and walls.max() >= 0.9 * released_at > 0, (walls, released_at)
+    assert len(walls) >= 8 and walls.max() >= 0.99 * slipped, (walls, slipped)
     assert abs(sim.energies["error"]) < 0.01, sim.energies
 
 
@@ -237,21 +244,25 @@ def results():
     with tempfile.TemporaryDirectory() as folder:
         from cdem.output.reader import FrameSeries
 
-        case = slider().case
-        case.stages[0].duration = 0.1
-        whole = cdem.Simulation(case, output=f"{folder}/a", threads=1)
+        def case():
+            short = slider().case
+            short.stages[0].duration, short.stages[1].duration = 0.02, 0.2
+            return short
+
+        whole = cdem.Simulation(case(), output=f"{folder}/a", threads=1)
         whole.run()
-        half = cdem.Simulation(case, output=f"{folder}/b", threads=1)
-        half.run_until(0.05)
+        half = cdem.Simulation(case(), output=f"{folder}/b", threads=1)
+        half.run_until(0.1)
         half.checkpoint()
-        rest = cdem.Simulation(case, output=f"{folder}/b", threads=1, resume=True)
+        rest = cdem.Simulation(case(), output=f"{folder}/b", threads=1, resume=True)
         rest.run()
         own, other = whole.core.fields(), rest.core.fields()
         assert own.keys() == other.keys()
-        assert all(np.array_equal(own[name], other[name]) for name in own)
+        differ = [name for name in own if not np.array_equal(own[name], other[name])]
+        assert differ == [], differ
         frames = FrameSeries(Path(folder) / "a")
         slip = frames.field("CellData", "joint_slip", len(frames) - 1)
-        assert 0.05 < slip.max() < 0.11, slip
+        assert 0.8 * SPEED * 0.2 < slip.max() < 1.01 * SPEED * 0.2, slip
 
 
 if __name__ == "__main__":

@@ -88,7 +88,7 @@ class RunState:
     audit: Audit
 
     def __init__(self, case: Case, threads: int) -> None:
-        self.case = case
+        self.case = case.model_copy(deep=True)  # stages change it; the caller's stays
         self.threads = threads
         self.build: Build = build(case)
         self.core = self.build.core
