@@ -1,42 +1,70 @@
 # A fresh clone needs one of: make demo, make test. Everything lands in .venv, build and demo.
 PYTHON ?= python3
 BIN := .venv/bin
+CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup test validate verify lint format demo cuda clean
+.PHONY: setup build dev check test validate coverage nightly verify lint format demo cuda clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
 
-.venv/installed: pyproject.toml CMakeLists.txt $(shell find core bindings -name '*.[hc]*')
+.venv/installed: pyproject.toml CMakeLists.txt tools/setup.sh
 	PYTHON=$(PYTHON) tools/setup.sh
 	touch $@
 
-test: setup
-	$(BIN)/python -m pytest
+build: setup
+	$(BIN)/python tools/build.py
 
-validate: setup
+# For work on the core: only the module for this CPU.
+dev: setup
+	$(BIN)/python tools/build.py --native
+
+# The tests of one file: make check F=core/contact/force/contact_force.hpp
+check: setup
+	$(BIN)/python tools/check.py $(F)
+
+# All tests, or with T=path (and any other words for pytest) some of those in Python.
+test: setup
+	$(BIN)/python tools/build.py --own-laws $(if $(T),,--tests)
+	$(if $(T),,build/core/core_tests)
+	$(BIN)/python -m pytest $(T)
+
+validate: build
 	$(BIN)/python -m pytest -m slow
 
-verify: setup
+# Which lines of core/ and src/cdem/ the quick tests run.
+coverage: setup
+	$(BIN)/python tools/build.py --coverage
+	build/coverage/core_tests
+	OMP_NUM_THREADS=1 $(BIN)/python -m coverage run --source=cdem -m pytest tests/unit tests/validation
+	$(BIN)/python tools/build.py --native
+	$(BIN)/python -m coverage report --sort=cover
+	$(BIN)/python -m gcovr --delete --filter core/ --sort uncovered-percent build/coverage
+
+nightly: test validate coverage
+
+verify: build
 	$(BIN)/cdem verify
 
 lint: setup
 	$(BIN)/ruff check src tests tools
 	$(BIN)/ruff format --check src tests tools
-	$(BIN)/clang-format --dry-run -Werror $$(find core bindings -name '*.[hc]pp' -o -name '*.cu')
+	$(BIN)/clang-format --dry-run -Werror $(CPP)
 	$(BIN)/python tools/layers.py
+	$(BIN)/python tools/package_layers.py
+	$(BIN)/python tools/words.py
 	$(BIN)/mypy src/cdem
-	$(BIN)/lizard -L 80 -C 26 -w core src/cdem
+	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools
 	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md core bindings src tests docs tools
 
 format: setup
 	$(BIN)/ruff check --fix src tests tools
 	$(BIN)/ruff format src tests tools
-	$(BIN)/clang-format -i $$(find core bindings -name '*.[hc]pp' -o -name '*.cu')
+	$(BIN)/clang-format -i $(CPP)
 
-demo: setup
+demo: build
 	mkdir -p demo
 	$(BIN)/cdem new landslide demo --force
 	$(BIN)/cdem run demo/landslide.yaml -o demo/landslide.results --overwrite

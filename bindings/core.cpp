@@ -6,6 +6,7 @@
 #include <omp.h>
 
 #include "bindings/arrays.hpp"
+#include "bindings/laws.hpp"
 #include "core/base/device.hpp"
 #include "core/base/machine_limits.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
@@ -45,21 +46,6 @@ void take_counts(Core& core, const nb::dict& c) {
     const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
     p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
   });
-}
-
-void set_interfaces(Core& core, const std::vector<std::vector<Real>>& rows) {
-  Model& m = core.model;
-  m.interfaces.resize(rows.size());
-  m.rules.lifted = 0;
-  for (Column<Real>* column : {&m.cohesion, &m.tensile_strength, &m.tan_friction})
-    column->resize(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::vector<Real>& r = rows[i];
-    m.interfaces[i] = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4),
-                       r.at(5), r.at(6), r.at(7), r.at(8)};
-    m.rules.lifted = std::max(m.rules.lifted, 2 * r.at(8));
-    m.cohesion[i] = r[0], m.tensile_strength[i] = r[1], m.tan_friction[i] = r[2];
-  }
 }
 
 Formulation formulation(const std::string& name) {
@@ -116,10 +102,14 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
+/// A term that is zero whatever happens is not told of.
+bool is_told(const EnergyTerm& term) { return any_law_flows || !term.needs_flow; }
+
 nb::dict energy_ledger(const Core& core) {
   const Energies e = energies(core.model, core.state);
   nb::dict ledger;
-  for (std::size_t k = 0; k < energy_term_count; ++k) ledger[energy_terms[k].name] = e.terms[k];
+  for (std::size_t k = 0; k < energy_term_count; ++k)
+    if (is_told(energy_terms[k])) ledger[energy_terms[k].name] = e.terms[k];
   ledger["start"] = e.start, ledger["error"] = e.error;
   return ledger;
 }
@@ -128,6 +118,7 @@ nb::list energy_term_infos() {
   static constexpr const char* kinds[] = {"stored", "lost", "supplied"};
   nb::list infos;
   for (const EnergyTerm& term : energy_terms) {
+    if (!is_told(term)) continue;
     nb::dict one;
     one["name"] = term.name, one["kind"] = kinds[int(term.kind)], one["meaning"] = term.meaning;
     infos.append(one);
@@ -185,7 +176,7 @@ void bind_setup(nb::class_<Core>& core) {
       .def("take_model", &take_model, "arrays"_a)
       .def("update_model", &update_model, "arrays"_a)
       .def("set_options", &set_options, "options"_a)
-      .def("set_interfaces", &set_interfaces, "rows"_a)
+      .def("set_interfaces", &set_interfaces, "interfaces"_a)
       .def("set_curves", &set_curves)
       .def("set_gravity", &set_gravity)
       .def("set_damping", &set_damping)
@@ -248,6 +239,14 @@ NB_MODULE(CDEM_MODULE, module) {
   using namespace cdem;
   module.attr("lanes") = lanes;
   module.def("padded_stride", &padded_stride, "count"_a);
+  module.def("interface_laws", &declarations<InterfaceLaws>,
+             "What the interface laws say of themselves.");
+  module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
+  module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
+  module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
+  module.attr("block_law_parameters") = BlockLaws::most_parameters;
+  module.attr("interface_law_state") = InterfaceLaws::most_state;
+  module.attr("point_history") = point_history;
   module.def("device_name", &device_name);
   module.def("energy_terms", &energy_term_infos,
              "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");

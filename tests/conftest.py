@@ -1,17 +1,15 @@
-"""Let tests import the shared scenes."""
+"""Fixtures of all tests; tests import what they share from this folder."""
 
 import sys
 from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
+from shared.cases import CUBE, WALL
 
 
 @pytest.fixture
-def cdem(monkeypatch, capsys):
+def run_cli(monkeypatch, capsys):
     """Call the program; returns exit status, stdout and stderr."""
-
     from cdem import cli
 
     def call(*words: str) -> tuple[int, str, str]:
@@ -25,3 +23,27 @@ def cdem(monkeypatch, capsys):
         return status, printed.out, printed.err
 
     return call
+
+
+@pytest.fixture
+def no_report(monkeypatch):
+    """Runs write no report.html, which takes seconds."""
+    from cdem.cli import run_commands
+
+    monkeypatch.setattr(run_commands, "write_report", lambda folder, silent: None)
+
+
+@pytest.fixture
+def cube_folder(tmp_path: Path, monkeypatch, no_report) -> Path:
+    """A working folder with cube.yaml, a cube that falls."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cube.yaml").write_text(CUBE)
+    return tmp_path
+
+
+@pytest.fixture
+def wall_folder(tmp_path: Path, monkeypatch) -> Path:
+    """A working folder with model.yaml, a wall of bonded tets that is pushed."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "model.yaml").write_text(WALL)
+    return tmp_path

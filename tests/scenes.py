@@ -6,7 +6,7 @@ import meshio
 import numpy as np
 
 import cdem
-from cdem import mesh
+from cdem.mesh import primitives
 
 ROCK = {"density": 2500, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
 
@@ -41,7 +41,7 @@ def simulate(blocks, groups, **more):
 
 def irregular_tets(path, size, divisions):
     """Write a box of tets whose inner points are shaken by almost half a cell; group "default"."""
-    box = mesh.box("default", size, divisions, shape="tet4")
+    box = primitives.box("default", size, divisions, shape="tet4")
     points, cell = box.points, np.divide(size, divisions)
     inner = (points > 1e-9) & (points < np.asarray(size) - 1e-9)
     rng = np.random.default_rng(1)

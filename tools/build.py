@@ -1,11 +1,12 @@
 """Build the compiled core incrementally and put it in place, without pip.
 
-`python tools/build.py` builds a module for every instruction set, `--native` only the one of this
-CPU: then those of the others leave, for they would be old.
+Without options it builds a module for every instruction set.
 """
 
+import argparse
 import importlib.util
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -13,12 +14,13 @@ import sysconfig
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-BUILD = ROOT / "build" / "core"
 PLACE = Path(sysconfig.get_path("platlib")) / "cdem"
 
 
 def native() -> str:
     """The best instruction set of this CPU, as the package chooses it."""
+    if platform.machine() not in ("x86_64", "AMD64"):
+        return "generic"
     path = ROOT / "src" / "cdem" / "_instruction_sets.py"
     spec = importlib.util.spec_from_file_location("instruction_sets", path)
     module = importlib.util.module_from_spec(spec)
@@ -26,24 +28,65 @@ def native() -> str:
     return module.native()
 
 
-def main() -> None:
-    """Configure once, build, copy what has changed."""
+def run(command: list[str]) -> None:
+    """Run a command with the tools of this Python; end with its status if it fails."""
     tools = Path(sys.executable).parent
     env = os.environ | {"PATH": f"{tools}:{os.environ['PATH']}"}
-    if not (BUILD / "build.ninja").exists():
-        configure = ["cmake", "-S", str(ROOT), "-B", str(BUILD), "-G", "Ninja"]
-        subprocess.run([*configure, f"-DPython_EXECUTABLE={sys.executable}"], env=env, check=True)
-    wanted = [f"_core_{native()}"] if "--native" in sys.argv else ["all"]
-    subprocess.run(["ninja", "-C", str(BUILD), *wanted], env=env, check=True)
+    status = subprocess.run(command, env=env, check=False).returncode
+    if status:
+        sys.exit(status)
+
+
+def build(folder: Path, settings: dict[str, str], targets: list[str]) -> None:
+    """Configure where a setting is new, and build."""
+    cache = folder / "CMakeCache.txt"
+    known = cache.read_text().splitlines() if (folder / "build.ninja").exists() else []
+    wanted = [f"{name}:STRING={value}" for name, value in settings.items()]
+    if not known or not set(wanted) <= set(known):
+        configure = ["cmake", "-S", str(ROOT), "-B", str(folder), "-G", "Ninja"]
+        configure += [f"-DPython_EXECUTABLE={sys.executable}", *(f"-D{one}" for one in wanted)]
+        run(configure)
+    run(["ninja", "-C", str(folder), *targets])
+
+
+def place(folder: Path, module: str) -> None:
+    """Copy modules that are not those in place; old ones of other instruction sets leave."""
     PLACE.mkdir(parents=True, exist_ok=True)
+    built = {p.name: p for p in folder.glob(f"{module}.*.so") if "own_laws" not in p.name}
     for old in PLACE.glob("_core_*.so"):
-        if wanted != ["all"] and not old.name.startswith(wanted[0]):
+        if old.name not in built:
             old.unlink()
-    pattern = "_core_*.so" if wanted == ["all"] else f"{wanted[0]}*.so"
-    for new in BUILD.glob(pattern):
-        old = PLACE / new.name
-        if not old.exists() or old.stat().st_mtime < new.stat().st_mtime:
+    for name, new in built.items():
+        old = PLACE / name
+        if not old.exists() or old.stat().st_mtime != new.stat().st_mtime:
             shutil.copy2(new, old)
+
+
+def main() -> None:
+    """Build what the options ask for."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--native", action="store_true", help="only the module for this CPU")
+    parser.add_argument("--tests", action="store_true", help="core_tests as well")
+    parser.add_argument("--own-laws", action="store_true", help="the core with laws of tests/core")
+    parser.add_argument(
+        "--coverage", action="store_true", help="module and tests that count executed lines"
+    )
+    wants = parser.parse_args()
+    module = f"_core_{native()}" if wants.native or wants.coverage else "_core_*"
+    targets = [module] if wants.native or wants.coverage else ["all"]
+    settings = {}
+    if wants.tests or wants.coverage:
+        targets.append("core_tests")
+    if wants.own_laws:
+        targets.append("_core_own_laws")
+    if wants.tests or wants.coverage or wants.own_laws:
+        settings["CDEM_TESTS"] = native()
+    folder = ROOT / "build" / "core"
+    if wants.coverage:
+        folder = ROOT / "build" / "coverage"
+        settings["CMAKE_BUILD_TYPE"] = "Coverage"
+    build(folder, settings, targets)
+    place(folder, module)
 
 
 if __name__ == "__main__":

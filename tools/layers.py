@@ -1,4 +1,7 @@
-"""Check the includes of core/: folders in one order, no cycles, no deep nesting, kernels without model."""
+"""Check the includes of core/: folders in one order, no cycles, no deep nesting, kernels without model.
+
+And every test_*.cpp of tests/core/ mirrors a file of core/.
+"""
 
 import re
 import sys
@@ -85,6 +88,13 @@ try:
     TopologicalSorter(units).prepare()
 except CycleError as cycle:
     problems.append("units include each other: " + " -> ".join(cycle.args[1]))
+
+for path in sorted(Path("tests/core").rglob("test_*.cpp")):
+    mirrored = (
+        Path("core") / path.relative_to("tests/core").parent / path.stem.removeprefix("test_")
+    )
+    if not any(mirrored.parent.glob(f"{mirrored.name}.[hc]pp")):
+        problems.append(f"{path} mirrors nothing: there is no {mirrored}.hpp or .cpp")
 
 deepest = max(sources, key=depth) if not problems else ""
 if deepest and depth(deepest) > DEEPEST:

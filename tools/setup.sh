@@ -12,6 +12,7 @@ command -v "$PYTHON" >/dev/null || missing+=(python3)
 "$PYTHON" -c 'import os, sysconfig, sys
 sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' 2>/dev/null ||
   missing+=(python3-dev)
+g++ -E -x c++ -include doctest/doctest.h /dev/null >/dev/null 2>&1 || missing+=(doctest-dev)
 # pyvista draws without a screen through OSMesa. ldconfig lies outside an ordinary user's PATH, and
 # piping it into grep -q fails now and then under pipefail (grep leaves first).
 libraries=$(PATH="$PATH:/usr/sbin:/sbin" ldconfig -p 2>/dev/null || true)
@@ -30,7 +31,7 @@ if ((${#missing[@]})) && ! install "${missing[@]}"; then
   echo "  sudo apt-get install ${missing[*]}" >&2
   case " ${missing[*]} " in
     *" g++ "* | *" make "* | *" python3"*) exit 1 ;;
-    *) echo "(only pictures need these; going on)" >&2 ;;
+    *) echo "(only pictures and the tests of the core need these; going on)" >&2 ;;
   esac
 fi
 

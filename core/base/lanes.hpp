@@ -180,6 +180,8 @@ using Truth = decltype(T() < T());
 
 /// Does a comparison hold for a lane?
 CDEM_HD inline bool holds(bool outcome, Index) { return outcome; }
+/// The number of a lane.
+CDEM_HD inline Real of_lane(Real number, Index) { return number; }
 /// The index of a lane.
 CDEM_HD inline Index& of_lane(Index& index, Index) { return index; }
 CDEM_HD inline Index of_lane(const Index& index, Index) { return index; }
@@ -193,10 +195,19 @@ template <class Do>
 CDEM_HD inline void for_lanes(One item, const Do& act) {
   act(0, item.i);
 }
+template <class Do>
+CDEM_HD inline void for_lanes(Index item, const Do& act) {
+  act(0, item);
+}
 #if !defined(__CUDACC__)
 CDEM_HD inline bool holds(const Mask& outcome, Index lane) { return outcome.bits[lane] != 0; }
 CDEM_HD inline Index& of_lane(IndexPack& index, Index lane) { return index.id[lane]; }
 CDEM_HD inline Index of_lane(const IndexPack& index, Index lane) { return index.id[lane]; }
+CDEM_HD inline Real of_lane(const Pack& number, Index lane) { return number.n[lane]; }
+template <class Do>
+CDEM_HD inline void for_lanes(const IndexPack& item, const Do& act) {
+  for (Index j = 0; j < lanes; ++j) act(j, item.id[j]);
+}
 template <class Do>
 CDEM_HD inline void for_lanes(const SelectedLane& item, const Do& act) {
   for (Index j = 0; j < lanes; ++j) act(j, item.row.id[j], item.id.id[j]);

@@ -183,6 +183,15 @@ CDEM_HD inline Sym3<T> operator+(const Sym3<T>& a, const Sym3<T>& b) {
   return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
 }
 template <class T>
+CDEM_HD inline Sym3<T> operator-(const Sym3<T>& a, const Sym3<T>& b) {
+  return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.zx - b.zx};
+}
+template <class M, class T>
+CDEM_HD inline Sym3<T> select(const M& mask, const Sym3<T>& yes, const Sym3<T>& no) {
+  return {select(mask, yes.xx, no.xx), select(mask, yes.yy, no.yy), select(mask, yes.zz, no.zz),
+          select(mask, yes.xy, no.xy), select(mask, yes.yz, no.yz), select(mask, yes.zx, no.zx)};
+}
+template <class T>
 CDEM_HD inline Sym3<T> operator*(const T& s, const Sym3<T>& a) {
   return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.yz, s * a.zx};
 }

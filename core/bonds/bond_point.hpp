@@ -3,20 +3,35 @@
 #pragma once
 
 #include "core/contact/geometry/face.hpp"
-#include "core/interfaces/brittle_coulomb.hpp"
+#include "core/interfaces/laws.hpp"
 
 namespace cdem {
 
-/// Stiffness and strength of one bond point: those of the interface times the point's share of the
-/// true overlap area, so that strength does not depend on which side is meshed finer.
+/// Spring of one bond point: its share of the true overlap area, so that strength does not depend
+/// on which side is meshed finer, and the interface's stiffness.
 template <class T>
-struct BondLaw {
-  T stiffness_n, stiffness_s;       // K_n, K_s  [N/m]
-  T tension_limit, cohesion_limit;  // T A, c A  [N]
-  T tan_friction;
+struct BondSpring {
+  T area;                      // [m2]
+  T stiffness_n, stiffness_s;  // [Pa/m]
+
+  /// What the law is asked for a jump of displacement x_b - x_a.
+  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump, const T& bond,
+                              const T& slip1, const T& slip2) const {
+    const T zero(0.0);
+    return {.opening = dot(frame.n, jump),
+            .shear1 = dot(frame.t1, jump) - slip1,
+            .shear2 = dot(frame.t2, jump) - slip2,
+            .stiffness_n = stiffness_n,
+            .stiffness_s = stiffness_s,
+            .damping = zero,
+            .bond = bond,
+            .risen = zero,
+            .may_rise = zero};
+  }
 };
 
-/// History of one bond point. While it is intact there is none: `slip` stays zero.
+/// History of one bond point that every law has. While it is intact there is none: the slip stays
+/// zero.
 template <class T>
 struct BondHistory {
   T bond;          // 1 while intact, then 0
@@ -32,36 +47,40 @@ struct BondForce {
   T tension, shear;      // 1 when the bond broke in this step, by that cause
 };
 
-/// Elastic energy of a bond point  [J].
-template <class T>
-CDEM_HD inline T stored_energy(const BondLaw<T>& law, const T& force_n, const T& force_s1,
-                               const T& force_s2) {
-  const T half(0.5), half_compliance_n = half / law.stiffness_n,
-                     half_compliance_s = half / law.stiffness_s;
-  return half_compliance_n * force_n * force_n +
-         half_compliance_s * (force_s1 * force_s1 + force_s2 * force_s2);
+/// Does an intact bond point bear this jump? Then `on_b` and `stored` are what bond_force gives,
+/// without the history that an intact point does not have.
+template <class T, class Ids>
+CDEM_HD inline auto bears(const InterfaceTable& table, const Ids& interface,
+                          const BondSpring<T>& spring, const Frame<T>& frame, const Vec3<T>& jump,
+                          Vec3<T>& on_b, T& stored) {
+  const T zero(0.0), one(1.0);
+  const Borne<T> joint = bears(table, interface, spring.input(frame, jump, one, zero, zero));
+  on_b = spring.area * (joint.normal * frame.n + joint.shear1 * frame.t1 + joint.shear2 * frame.t2);
+  stored = spring.area * joint.stored;
+  return joint.holds;
 }
 
-/// Does an intact bond point bear this jump? Then `on_b` is what bond_force gives, without the
-/// history that an intact point does not have.
-template <class T>
-CDEM_HD inline auto bears(const Frame<T>& frame, const Vec3<T>& jump, const BondLaw<T>& law,
-                          Vec3<T>& on_b) {
-  const T force_n = -law.stiffness_n * dot(frame.n, jump);
-  const T force_s1 = -law.stiffness_s * dot(frame.t1, jump);
-  const T force_s2 = -law.stiffness_s * dot(frame.t2, jump);
-  on_b = force_n * frame.n + force_s1 * frame.t1 + force_s2 * frame.t2;
-  const ForceLimit<T> limit(law.tension_limit, law.cohesion_limit, law.tan_friction, T(1.0),
-                            force_n);
-  return !(limit.opens(force_n) | limit.slips(force_s1 * force_s1 + force_s2 * force_s2));
-}
-
-/// Elastic energy of an intact bond point  [J].
-template <class T>
-CDEM_HD inline T intact_energy(const Frame<T>& frame, const Vec3<T>& jump, const BondLaw<T>& law) {
-  return stored_energy(law, law.stiffness_n * dot(frame.n, jump),
-                       law.stiffness_s * dot(frame.t1, jump),
-                       law.stiffness_s * dot(frame.t2, jump));
+/// Tractions of one step ago, without asking for limits again, which a stage may have changed: a
+/// law without state was elastic, and the slip of a broken point makes the elastic law give the
+/// limited traction.
+template <class T, class Ids>
+CDEM_HD inline JointAnswer<T> before_step(const InterfaceTable& table, const Ids& interface,
+                                          const JointInput<T>& in, T* state) {
+  const T zero(0.0), half(0.5), kn = in.stiffness_n, ks = in.stiffness_s;
+  JointAnswer<T> was{};
+  was.normal = -kn * in.opening;
+  was.shear1 = -ks * in.shear1;
+  was.shear2 = -ks * in.shear2;
+  const auto broken = in.bond < half;
+  was.normal = select(broken, max_of(was.normal, zero), was.normal);
+  const auto open = broken & !(was.normal > zero);
+  was.shear1 = select(open, zero, was.shear1);
+  was.shear2 = select(open, zero, was.shear2);
+  was.stored_n = half / kn * was.normal * was.normal;
+  was.stored_s = half / ks * (was.shear1 * was.shear1 + was.shear2 * was.shear2);
+  if constexpr (InterfaceLaws::most_state > 0)
+    was = select(remembers(table, interface) & !broken, respond(table, interface, in, state), was);
+  return was;
 }
 
 /// Force of one bond point from the jump of displacement x_b - x_a across it, Eq. 13-14.
@@ -71,60 +90,53 @@ CDEM_HD inline T intact_energy(const Frame<T>& frame, const Vec3<T>& jump, const
 /// to the search goes on as a frictional contact at the same place; in an open hinge (`searched`),
 /// whose faces the search has already, it carries nothing.
 /// `jump_old` is the jump one step ago; it serves only the energy ledger: what is lost is
-/// U_old - U_new + work done on the spring by the mean force.
-template <class T, class M>
-CDEM_HD inline BondForce<T> bond_force(const Frame<T>& frame, const Vec3<T>& jump,
-                                       const Vec3<T>& jump_old, const BondLaw<T>& law,
-                                       const M& searched, BondHistory<T>& h) {
+/// U_old - U_new + work done on the spring by the mean force. `state` is what the law remembers.
+template <class T, class Ids, class M>
+CDEM_HD inline BondForce<T> bond_force(const InterfaceTable& table, const Ids& interface,
+                                       const BondSpring<T>& spring, const Frame<T>& frame,
+                                       const Vec3<T>& jump, const Vec3<T>& jump_old,
+                                       const M& searched, BondHistory<T>& h, T* state) {
   const T zero(0.0), one(1.0), half(0.5);
-  const T opening = dot(frame.n, jump), along1 = dot(frame.t1, jump), along2 = dot(frame.t2, jump);
-  T force_n = -law.stiffness_n * opening;
-  T force_s1 = -law.stiffness_s * (along1 - h.slip1);
-  T force_s2 = -law.stiffness_s * (along2 - h.slip2);
+  const auto input_at = [&](const Vec3<T>& x) {
+    return spring.input(frame, x, h.bond, h.slip1, h.slip2);
+  };
+  constexpr Index size = InterfaceLaws::most_state;
+  T state_old[size + 1];
+  for (Index k = 0; k < size; ++k) state_old[k] = state[k];
 
   const T before = h.bond;
-  const auto pulled = -force_n > before * law.tension_limit;  // else it slipped
-  limit_force(law.tension_limit, law.cohesion_limit, law.tan_friction, h.bond, force_n, force_s1,
-              force_s2);
-  const auto carries = (h.bond > half) | !searched;
-  force_n = select(carries, force_n, zero);
-  force_s1 = select(carries, force_s1, zero);
-  force_s2 = select(carries, force_s2, zero);
+  const JointAnswer<T> now = respond(table, interface, input_at(jump), state);
+  const auto intact = now.bond > half;
+  const auto carries = intact | !searched;
+  const T normal = select(carries, now.normal, zero);
+  const T shear1 = select(carries, now.shear1, zero), shear2 = select(carries, now.shear2, zero);
+  const T stored_n = select(carries, now.stored_n, zero),
+          stored_s = select(carries, now.stored_s, zero);
 
   BondForce<T> out;
-  const auto broke = before > h.bond;
-  out.tension = select(broke & pulled, one, zero);
+  const auto broke = before > now.bond;
+  out.tension = select(broke & now.opens, one, zero);
   out.shear = select(broke, one, zero) - out.tension;
-
-  // the slip that makes the elastic law give the limited force
-  const T slip1 = select(h.bond > half, h.slip1, along1 + force_s1 / law.stiffness_s);
-  const T slip2 = select(h.bond > half, h.slip2, along2 + force_s2 / law.stiffness_s);
-
-  out.stored = stored_energy(law, force_n, force_s1, force_s2);
-  out.fracture = zero;
+  out.stored = spring.area * (stored_n + stored_s);
+  out.fracture = spring.area * now.fracture;
   out.friction = zero;
-  if (any_of(h.bond < half)) {
-    const T half_compliance_n = half / law.stiffness_n, half_compliance_s = half / law.stiffness_s;
-    const T stored_n = half_compliance_n * force_n * force_n;
-    const T stored_s = half_compliance_s * (force_s1 * force_s1 + force_s2 * force_s2);
-    const T old_n = dot(frame.n, jump_old);
-    const T old1 = dot(frame.t1, jump_old), old2 = dot(frame.t2, jump_old);
-    const T was_n =
-        select(before > half, -law.stiffness_n * old_n, max_of(-law.stiffness_n * old_n, zero));
-    const auto was_open = (!(was_n > zero)) & (before < half);
-    const T was_s1 = select(was_open, zero, -law.stiffness_s * (old1 - h.slip1));
-    const T was_s2 = select(was_open, zero, -law.stiffness_s * (old2 - h.slip2));
-    const T lost_s =
-        half_compliance_s * (was_s1 * was_s1 + was_s2 * was_s2) - stored_s -
-        half * ((was_s1 + force_s1) * (along1 - old1) + (was_s2 + force_s2) * (along2 - old2));
-    const T lost_n =
-        half_compliance_n * was_n * was_n - stored_n - half * (was_n + force_n) * (opening - old_n);
-    out.fracture = select(broke, lost_n + lost_s, zero);
-    out.friction = select((!broke) & (h.bond < half) & carries, lost_s, zero);
+  if (any_of(!intact)) {
+    const JointAnswer<T> was = before_step(table, interface, input_at(jump_old), state_old);
+    const Vec3<T> moved = jump - jump_old;
+    const T work_n = (was.normal + normal) * dot(frame.n, moved);
+    const T work_s =
+        (was.shear1 + shear1) * dot(frame.t1, moved) + (was.shear2 + shear2) * dot(frame.t2, moved);
+    const T lost_n = was.stored_n - stored_n - half * work_n;
+    const T lost_s = was.stored_s - stored_s - half * work_s;
+    out.fracture = select(broke, spring.area * (lost_n + lost_s), out.fracture);
+    out.friction = select((!broke) & (!intact) & carries, spring.area * lost_s, zero);
   }
-  h.slip1 = slip1;
-  h.slip2 = slip2;
-  out.on_b = force_n * frame.n + force_s1 * frame.t1 + force_s2 * frame.t2;
+  // the slip that makes the elastic law give the limited force
+  const T along1 = dot(frame.t1, jump), along2 = dot(frame.t2, jump);
+  h.slip1 = select(intact, h.slip1, along1 + shear1 / spring.stiffness_s);
+  h.slip2 = select(intact, h.slip2, along2 + shear2 / spring.stiffness_s);
+  h.bond = now.bond;
+  out.on_b = spring.area * (normal * frame.n + shear1 * frame.t1 + shear2 * frame.t2);
   return out;
 }
 

@@ -33,12 +33,30 @@ struct PairColumns {
   InTable live;         // [1][pair] 1 until the pair is released to the contact search; 2 while it
                         // is an open hinge: points hold, but the search has its faces
   InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
-  const Real *cohesion, *tensile_strength, *tan_friction;  // by interface
-  InOutTable bond, slip1, slip2;                           // [point][pair]
+  InterfaceTable interfaces;
+  InOutTable bond, slip1, slip2;            // [point][pair]
+  InOutTable history;                       // [variable * points + point][pair] of the laws
   InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
   InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
   InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
   InOutTable stored, fracture, friction;  // [1][pair]  [J]
+
+  /// What the law of a pair remembers of point k of `points`; the point's number is its row.
+  template <class I, class T>
+  CDEM_HD void load_history(I p, Index k, Index points, T* state) const {
+    for (Index v = 0; v < InterfaceLaws::most_state; ++v) state[v] = history.at(v * points + k, p);
+  }
+  template <class I, class M, class T>
+  CDEM_HD void store_history(I p, Index k, Index points, const M& live, const T* state) const {
+    for (Index v = 0; v < InterfaceLaws::most_state; ++v)
+      history.set(v * points + k, p, select(live, state[v], history.at(v * points + k, p)));
+  }
+  /// Spring of a point with this area  [m2].
+  template <class I>
+  CDEM_HD BondSpring<Number<I>> spring(I p, const Number<I>& point_area) const {
+    return {
+        .area = point_area, .stiffness_n = stiffness.at(0, p), .stiffness_s = stiffness.at(1, p)};
+  }
 
   /// A pair that opened as a hinge has a wide jump when its last point breaks: what counts for its
   /// release is how far it has moved since.
@@ -73,12 +91,10 @@ struct ConformingBonds {
     Vec3<T> mean[count], jump[count], force[count];
     gather_jumps(p, mean, jump);
     const Frame<T> frame = pair_frame<count>(mean);
-    const BondLaw<T> law = law_of(p);
-    if (any_of(live & !all_bear(p, frame, jump, law, force))) {
-      update_history(p, live, frame, jump, law, force);
+    T stored(0.0);
+    if (any_of(live & !all_bear(p, frame, jump, force, stored))) {
+      update_history(p, live, frame, jump, force);
     } else if (sampled) {
-      T stored(0.0);
-      for (Index k = 0; k < count; ++k) stored += intact_energy(frame, jump[k], law);
       pairs.stored.set(0, p, select(live, stored, T(0.0)));
     }
     write_forces(p, live, force);
@@ -102,29 +118,32 @@ struct ConformingBonds {
     move_inside<count>(indentation, jump);
   }
   template <class I>
-  CDEM_HD BondLaw<Number<I>> law_of(I p) const {
-    using T = Number<I>;
-    const auto interface = pairs.interface.at(0, p);
-    const T area = pairs.area.at(0, p) / T(Real(count));
-    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
-            area * look_up(pairs.tensile_strength, interface),
-            area * look_up(pairs.cohesion, interface), look_up(pairs.tan_friction, interface)};
+  CDEM_HD BondSpring<Number<I>> spring(I p) const {
+    return pairs.spring(p, pairs.area.at(0, p) / Number<I>(Real(count)));
   }
 
  private:
   /// The common case: all points of the pair were intact and stay so.
   template <class I, class T>
-  CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, const BondLaw<T>& law,
-                        Vec3<T>* force) const {
+  CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, Vec3<T>* force,
+                        T& stored) const {
+    const auto interface = pairs.interface.at(0, p);
+    const BondSpring<T> own = spring(p);
     auto all = pairs.bond.at(0, p) > T(0.5);
     for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
-    for (Index k = 0; k < count; ++k) all = all & bears(frame, jump[k], law, force[k]);
+    for (Index k = 0; k < count; ++k) {
+      T energy;
+      all = all & bears(pairs.interfaces, interface, own, frame, jump[k], force[k], energy);
+      stored += energy;
+    }
     return all;
   }
   template <class I, class M, class T>
   CDEM_HD void update_history(I p, const M& live, const Frame<T>& frame, const Vec3<T>* jump,
-                              const BondLaw<T>& law, Vec3<T>* force) const {
+                              Vec3<T>* force) const {
     const T zero(0.0);
+    const auto interface = pairs.interface.at(0, p);
+    const BondSpring<T> own = spring(p);
     const auto open = pairs.live.at(0, p) > T(1.5);
     Vec3<T> rate[count];
     gather_rates(p, rate);
@@ -133,8 +152,12 @@ struct ConformingBonds {
     for (Index k = 0; k < count; ++k) {
       const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
       BondHistory<T> h = old;
-      const BondForce<T> f = bond_force(frame, jump[k], jump[k] - T(dt) * rate[k], law, open, h);
+      T state[InterfaceLaws::most_state + 1];
+      pairs.load_history(p, k, count, state);
+      const BondForce<T> f = bond_force(pairs.interfaces, interface, own, frame, jump[k],
+                                        jump[k] - T(dt) * rate[k], open, h, state);
       // a released pair beside live ones in a lane keeps its history as it was
+      pairs.store_history(p, k, count, live, state);
       pairs.bond.set(k, p, select(live, h.bond, old.bond));
       pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
       pairs.slip2.set(k, p, select(live, h.slip2, old.slip2));
@@ -185,7 +208,7 @@ struct OverlapBonds {
   const Real* weights_a;     // [point][4] on the first face's vertices
   const Real* weights_b;     // [point][4] on the second's
   const Real* point_area;    // [point]  [m2]
-  PairColumns pairs;         // bond, slip1, slip2 are [1][point] here
+  PairColumns pairs;         // bond, slip1, slip2, history are [.][point] here
   OutForces corner_force;    // [pair][8]: four vertices of either face
 
   CDEM_HD void operator()(One p) const {
@@ -201,8 +224,12 @@ struct OverlapBonds {
       const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
       BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
                           pairs.slip2.at(0, point)};
+      Real state[InterfaceLaws::most_state + 1];
+      pairs.load_history(point, 0, 1, state);
       const BondForce<Real> f =
-          bond_force(frame, jump, jump - faces.dt * rate, law_of(p, point_area[c]), false, h);
+          bond_force(pairs.interfaces, pairs.interface.at(0, p), pairs.spring(p, point_area[c]),
+                     frame, jump, jump - faces.dt * rate, false, h, state);
+      pairs.store_history(point, 0, 1, true, state);
       pairs.bond.set(0, point, h.bond);
       pairs.slip1.set(0, point, h.slip1);
       pairs.slip2.set(0, point, h.slip2);
@@ -242,12 +269,6 @@ struct OverlapBonds {
     for (Index k = 0; k < faces.vertex_count(face); ++k)
       sum = sum + weights[4 * c + k] * faces.nodes.velocity(faces.vertex(face, k));
     return sum;
-  }
-  CDEM_HD BondLaw<Real> law_of(One p, Real area) const {
-    const Index interface = pairs.interface.at(0, p);
-    return {area * pairs.stiffness.at(0, p), area * pairs.stiffness.at(1, p),
-            area * look_up(pairs.tensile_strength, interface),
-            area * look_up(pairs.cohesion, interface), look_up(pairs.tan_friction, interface)};
   }
 };
 

@@ -32,13 +32,13 @@ constexpr Real hinge_part = 0.05;
 /// nothing any more; what little those held is lost to friction.
 template <Index count>
 void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real indentation) {
-  const ConformingBonds<count> bonds{{s.nodes.motion.data()},
-                                     {p.nodes.data(), p.stride},
-                                     pair_columns(m, p, ps),
-                                     indentation,
-                                     0,
-                                     false,
-                                     {}};
+  const ConformingBonds<count> bonds{.nodes = {s.nodes.motion.data()},
+                                     .pair_nodes = {p.nodes.data(), p.stride},
+                                     .pairs = pair_columns(m, p, ps),
+                                     .indentation = indentation,
+                                     .dt = 0,
+                                     .sampled = false,
+                                     .corner_force = {}};
   for (Index i = 0; i < p.count; ++i) {
     const auto point = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
     const auto holds = [&](Index k) { return ps.bond[point(k)] > 0; };
@@ -52,20 +52,22 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
       if (!holds(k)) widest = std::max(widest, norm(jump[k]));
     if (!(widest > hinge_part * pair_length(m, p, i))) continue;
     const Frame<Real> frame = pair_frame<count>(mean);
-    const BondLaw<Real> law = bonds.law_of(One{i});
+    const BondSpring<Real> spring = bonds.spring(One{i});
     for (Index k = 0; k < count; ++k) {
-      const Real opening = dot(frame.n, jump[k]);
-      if (holds(k) || opening >= 0) continue;
-      const Real held =
-          stored_energy(law, law.stiffness_n * opening,
-                        law.stiffness_s * (dot(frame.t1, jump[k]) - ps.slip1[point(k)]),
-                        law.stiffness_s * (dot(frame.t2, jump[k]) - ps.slip2[point(k)]));
+      if (holds(k)) continue;
+      Real state[InterfaceLaws::most_state + 1];
+      bonds.pairs.load_history(One{i}, k, count, state);
+      const JointAnswer<Real> joint =
+          respond(bonds.pairs.interfaces, p.interface[i],
+                  spring.input(frame, jump[k], 0.0, ps.slip1[point(k)], ps.slip2[point(k)]), state);
+      const Real held = spring.area * (joint.stored_n + joint.stored_s);
       ps.friction[i] += held;
       ps.stored[i] -= held;
     }
     ps.live[i] = 2;
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
+    give_history(m, s, p, ps, i);
   }
 }
 
@@ -77,6 +79,7 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
+    give_history(m, s, p, ps, i);
     if (p.point_first.size() > 0) {
       s.released_overlaps.push(i);
     } else {

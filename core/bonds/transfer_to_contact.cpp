@@ -2,6 +2,7 @@
 #include "core/bonds/transfer_to_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/contact/force/views.hpp"
@@ -61,6 +62,60 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairS
 
 namespace {
 
+/// Visit the bond points of a pair that bear on a vertex of one of its faces: place of the point in
+/// the point tables, and its weight there.
+template <class Visit>
+void for_points_at(const Model& m, const PairSet& p, Index i, Index side, Index vertex,
+                   Visit&& visit) {
+  if (p.point_first.size() > 0) {
+    const Column<Real>& weights = side == 0 ? p.weights_a : p.weights_b;
+    for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
+      visit(std::size_t(c), p.point_area[c] * std::abs(weights[4 * c + vertex]));
+    return;
+  }
+  const Index node = m.face_nodes[4 * p.faces[2 * i + side] + vertex];
+  for (Index k = 0; k < p.points; ++k)
+    if (p.nodes[std::size_t(side * p.points + k) * p.stride + i] == node)
+      visit(std::size_t(k) * p.point_stride + i, Real(1));
+}
+
+}  // namespace
+
+void give_history(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
+  constexpr Index width = HistoryRows::width;
+  if constexpr (width == 0) return;
+  const Index law = m.interfaces[p.interface[i]].law;
+  HistoryColumns &vertices = s.springs.history, &sides = s.edges.side_history;
+  const auto row = [](HistoryColumns& h, Index place) {
+    return h.rows.data() + std::size_t(place) * width;
+  };
+  for (Index side = 0; side < 2; ++side) {
+    const Index face = p.faces[2 * i + side];
+    const Index first = 4 * s.search.face_exposed[face];
+    const Index count = m.face_nodes[4 * face + 3] < 0 ? 3 : 4;
+    for (Index v = 0; v < count; ++v) {
+      std::vector<Real> sum(width);
+      Real total = 0;
+      for_points_at(m, p, i, side, v, [&](std::size_t point, Real weight) {
+        const std::size_t stride = std::size_t(p.points) * p.point_stride;
+        for (Index k = 0; k < width; ++k) sum[k] += weight * ps.history[k * stride + point];
+        total += weight;
+      });
+      for (Index k = 0; k < width && total > 0; ++k) row(vertices, first + v)[k] = sum[k] / total;
+      if (total > 0) vertices.law[first + v] = law;
+    }
+    for (Index v = 0; v < count; ++v) {
+      const Index end = v + 1 == count ? 0 : v + 1;
+      for (Index k = 0; k < width; ++k)
+        row(sides, first + v)[k] =
+            0.5 * (row(vertices, first + v)[k] + row(vertices, first + end)[k]);
+      sides.law[first + v] = law;
+    }
+  }
+}
+
+namespace {
+
 /// A contact that begins between the faces of a released overlap, as it was one step ago.
 struct Successor {
   Index place;         // spring: slot; semi-edge: place in the list
@@ -75,7 +130,7 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
   const FaceColumns faces = face_columns(m, s);
   const FaceGeometry geometry = face_geometry(s);
   const ContactLaws laws = contact_laws(m, s);
-  const auto stiffness = laws.stiffness(geometry, laws.between(geometry, x, y), x, y);
+  const auto spring = laws.spring(geometry, laws.between(geometry, x, y), x, y);
   const FaceShape<Real> mother = faces.shape_before(s.search.exposed_face[x]),
                         target = faces.shape_before(s.search.exposed_face[y]);
   const Frame<Real> frame = target.frame();
@@ -86,8 +141,8 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
     const Index slot = 4 * x + k;
     if (s.springs.target[slot] != y || s.springs.target_before[slot] >= 0) continue;
     const Vec3<Real> acting = mother.x[k] + m.rules.action * (mother.center() - mother.x[k]);
-    add({slot, false, on_b, frame, -project(target, acting, frame.n).gap, 0.5 * stiffness.n,
-         0.5 * stiffness.s});
+    add({slot, false, on_b, frame, -project(target, acting, frame.n).gap, 0.5 * spring.n(),
+         0.5 * spring.s()});
   }
   for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
     const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
@@ -100,7 +155,7 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
     const Frame<Real> at =
         edge_frame(edge_normal(along_m, along_t, frame.n - mother.normal()), along_t);
     add({c, true, on_b, at, -cross_edges(mother.x[k], along_m, start, along_t, at.n).gap,
-         stiffness.n, stiffness.s});
+         spring.n(), spring.s()});
   }
 }
 

@@ -17,9 +17,15 @@ Real pair_length(const Model& model, const PairSet& pairs, Index pair);
 Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs,
                          const PairState& bonds, Index pair);
 
-/// The same for overlaps that were released in this step, once the search has found what touches.
-/// Their contacts are not where their bond points were: what the pair carried is shared by the
-/// depths of the contacts, and none is pressed harder than its depth says.
+/// Give the vertices and sides of both faces of a pair what the laws of its bond points remember:
+/// each vertex that of its point, or the mean of the points by their weights on it; each side the
+/// mean of its ends.
+void give_history(const Model& model, State& state, const PairSet& pairs, const PairState& bonds,
+                  Index pair);
+
+/// The same as transfer_to_contact for overlaps that were released in this step, once the search
+/// has found what touches. Their contacts are not where their bond points were: what the pair
+/// carried is shared by the depths of the contacts, and none is pressed harder than its depth says.
 void transfer_released_bonds(const Model& model, State& state, Queue queue);
 
 }  // namespace cdem

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/elements/shapes.hpp"
+#include "core/materials/laws.hpp"
 
 namespace cdem {
 
@@ -29,8 +30,11 @@ struct PointStrains {
   Sym3<T> strain[Shape::points];
 
   template <class I>
-  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e) {
-    const Arms<Shape, T> arms = position_arms<Shape>(c, e);
+  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e)
+      : PointStrains(c, e, position_arms<Shape>(c, e)) {}
+  /// The same where the nodes are at these arms.
+  template <class I>
+  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, const Arms<Shape, T>& arms) {
     for (Index q = 0; q < Shape::points; ++q) {
       const Mat3<T> f = gradient_of<Shape>(c, e, q, arms);
       rotation[q] = Rotation::of(f);
@@ -40,13 +44,111 @@ struct PointStrains {
   }
 };
 
+/// Elastic part of the strains: all of them where no law flows.
+template <class Shape, class T>
+struct ElasticStrains {
+  bool differ = false;
+  Sym3<T> part[any_law_flows ? Shape::points : 1];
+
+  template <class Rotation>
+  CDEM_HD const Sym3<T>& of(const PointStrains<Shape, Rotation, T>& p, Index q) const {
+    if constexpr (any_law_flows)
+      if (differ) return part[q];
+    return p.strain[q];
+  }
+};
+
+/// Inelastic strain and state of the laws at the Gauss points; empty where no material flows.
+///
+/// Where the dilatation is the element's mean, so is its elastic part: the pressure is averaged
+/// with the operator that averages the dilatation, and the force stays the derivative of the
+/// energy.
+template <class Shape>
+struct PointFlow {
+  InOutTable history;  // [point * point_history + number][element]
+  InOutTable work;     // [1][element] spent so far  [J]
+  Real dt;             // of the last step  [s]
+
+  template <class I, class Rotation, class T = Number<I>>
+  CDEM_HD ElasticStrains<Shape, T> elastic_part(const ElementColumns<Shape>& c, I e,
+                                                const PointStrains<Shape, Rotation, T>& p) const {
+    ElasticStrains<Shape, T> strains;
+    if constexpr (any_law_flows) {
+      if (!history.data) return strains;
+      strains.differ = true;
+      for (Index q = 0; q < Shape::points; ++q) strains.part[q] = p.strain[q] - inelastic(e, q);
+      use_mean_dilatation<Shape>(c, e, strains.part);
+    }
+    return strains;
+  }
+
+  /// The laws move on by one step: returns the elastic strains after it. The work is that of the
+  /// mean stress of the step on the increment: exact for what central differences make of it.
+  template <class I, class Rotation, class T = Number<I>>
+  CDEM_HD ElasticStrains<Shape, T> move_on(const ElementColumns<Shape>& c, I e,
+                                           const PointStrains<Shape, Rotation, T>& p) const {
+    ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
+    if constexpr (any_law_flows)
+      if (strains.differ) flow_points(c, e, p, strains);
+    return strains;
+  }
+
+ private:
+  template <class I, class Rotation, class T>
+  CDEM_HD void flow_points(const ElementColumns<Shape>& c, I e,
+                           const PointStrains<Shape, Rotation, T>& p,
+                           ElasticStrains<Shape, T>& strains) const {
+    const auto material = c.element_material.at(0, e);
+    const ElasticConstants<T> elastic = c.materials.elastic(material);
+    Sym3<T> increment[Shape::points];
+    Truth<T> any = T(0.0) > T(0.0);
+    for (Index q = 0; q < Shape::points; ++q) {
+      T state[BlockLaws::most_state + 1];
+      for (Index k = 0; k < BlockLaws::most_state; ++k) state[k] = history.at(row(q, 6 + k), e);
+      increment[q] = flow(c.materials, material, elastic.stress(strains.part[q]), state);
+      for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
+      any = any | (contract(increment[q], increment[q]) > T(0.0));
+    }
+    if (!any_of(any)) return;
+    // where the nodes were one step ago
+    Arms<Shape, T> arms = position_arms<Shape>(c, e);
+    const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
+    for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
+    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, arms));
+    for (Index q = 0; q < Shape::points; ++q) strains.part[q] = strains.part[q] - increment[q];
+    use_mean_dilatation<Shape>(c, e, strains.part);
+    T spent(0.0);
+    for (Index q = 0; q < Shape::points; ++q) {
+      const Sym3<T> both = elastic.stress(was.part[q] + strains.part[q]);
+      spent += T(0.5) * c.point_volume.at(q, e) * contract(both, increment[q]);
+      set_inelastic(e, q, inelastic(e, q) + increment[q]);
+    }
+    work.set(0, e, work.at(0, e) + spent);
+  }
+  CDEM_HD static Index row(Index q, Index number) { return q * point_history + number; }
+  template <class I>
+  CDEM_HD Sym3<Number<I>> inelastic(I e, Index q) const {
+    return {history.at(row(q, 0), e), history.at(row(q, 1), e), history.at(row(q, 2), e),
+            history.at(row(q, 3), e), history.at(row(q, 4), e), history.at(row(q, 5), e)};
+  }
+  template <class I>
+  CDEM_HD void set_inelastic(I e, Index q, const Sym3<Number<I>>& strain) const {
+    history.set(row(q, 0), e, strain.xx);
+    history.set(row(q, 1), e, strain.yy);
+    history.set(row(q, 2), e, strain.zz);
+    history.set(row(q, 3), e, strain.xy);
+    history.set(row(q, 4), e, strain.yz);
+    history.set(row(q, 5), e, strain.zx);
+  }
+};
+
 /// Element forces of the total corotational form.
 ///
-/// With the strain E = sym(R^T F) - I and the law's stress S(E) in the unrotated frame, the force
-/// on node k is -sum_q w J (R S) dN_k/dX. That is the exact derivative of the stored energy sum_q w
-/// J W(E), because R is the closest rotation to F; so energy, linear and angular momentum are kept
-/// to round-off whatever the rotation. (Written with the current B instead, the force is no
-/// derivative of an energy: it differs by terms of the size of the strain.)
+/// With the strain E = sym(R^T F) - I and the elastic stress S(E - Ei) in the unrotated frame, the
+/// force on node k is -sum_q w J (R S) dN_k/dX. That is the exact derivative of the stored energy
+/// sum_q w J W(E), because R is the closest rotation to F; so energy, linear and angular momentum
+/// are kept to round-off whatever the rotation. (Written with the current B instead, the force is
+/// no derivative of an energy: it differs by terms of the size of the strain.)
 ///
 /// `damping_time` adds the stress of a Rayleigh dashpot, S(damping_time * rate of E) [s].
 template <class Shape, class Rotation>
@@ -55,7 +157,8 @@ struct CorotationalForce {
   Real damping_time;        // [s]
   Real dt;                  // [s]
   InOutTable damping_work;  // [1][element]  [J], taken out by the dashpot so far
-  OutForces corner_force;   // [N]
+  PointFlow<Shape> flow;
+  OutForces corner_force;  // [N]
 
   static constexpr Fetching fetching{4, 4096};
   /// Not of hexahedra: with their 170 columns of gradients it costs more than it gains.
@@ -73,22 +176,24 @@ struct CorotationalForce {
   template <class I>
   CDEM_HD CornerForces<Shape, Number<I>> forces(I e) const {
     using T = Number<I>;
-    const auto law = columns.material(e);
-    PointStrains<Shape, Rotation, T> p(columns, e);
+    const ElasticConstants<T> elastic = columns.elastic(e);
+    const PointStrains<Shape, Rotation, T> p(columns, e);
+    const ElasticStrains<Shape, T> strains = flow.move_on(columns, e, p);
     CornerForces<Shape, T> force;
     for (Index q = 0; q < Shape::points; ++q) {
-      const Sym3<T> stress = law.stress(p.strain[q]);
+      const Sym3<T> stress = elastic.stress(strains.of(p, q));
       force.add(columns, e, q, columns.point_volume.at(q, e) * (p.rotation[q] * full(stress)));
     }
     if constexpr (Shape::hourglass)
       Hourglass<T>(columns, e, position_arms<Shape>(columns, e)).add(columns, e, T(1.0), force);
-    if (damping_time > 0) add_dashpot(e, law, p, force);
+    if (damping_time > 0) add_dashpot(e, elastic, p, force);
     return force;
   }
 
  private:
-  template <class I, class Law, class T>
-  CDEM_HD void add_dashpot(I e, const Law& law, const PointStrains<Shape, Rotation, T>& p,
+  template <class I, class T>
+  CDEM_HD void add_dashpot(I e, const ElasticConstants<T>& elastic,
+                           const PointStrains<Shape, Rotation, T>& p,
                            CornerForces<Shape, T>& force) const {
     const Arms<Shape, T> arms = velocity_arms<Shape>(columns, e);
     Sym3<T> rate[Shape::points];
@@ -101,7 +206,7 @@ struct CorotationalForce {
     T power(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const T volume = columns.point_volume.at(q, e);
-      const Sym3<T> stress = T(damping_time) * law.stress(rate[q]);
+      const Sym3<T> stress = T(damping_time) * elastic.stress(rate[q]);
       force.add(columns, e, q, volume * (p.rotation[q] * full(stress)));
       power += volume * contract(stress, rate[q]);
     }
@@ -120,22 +225,24 @@ struct CorotationalReport {
   ElementColumns<Shape> columns;
   InOutTable stress;  // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
   InOutTable energy;  // [1][element]  [J]
+  PointFlow<Shape> flow;
 
   template <class I>
   CDEM_HD void operator()(I e) const {
     using T = Number<I>;
-    const auto law = columns.material(e);
-    PointStrains<Shape, Rotation, T> p(columns, e);
+    const ElasticConstants<T> elastic = columns.elastic(e);
+    const PointStrains<Shape, Rotation, T> p(columns, e);
+    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p);
     const T zero(0.0);
     Sym3<T> mean{zero, zero, zero, zero, zero, zero};
     T volume(0.0), stored(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const T w = columns.point_volume.at(q, e);
-      const Sym3<T> s = law.stress(p.strain[q]);
+      const Sym3<T> strain = strains.of(p, q), s = elastic.stress(strain);
       const Mat3<T>& r = p.rotation[q];
       mean = mean + w * symmetric(r * full(s) * transpose(r));
       volume += w;
-      stored += T(0.5) * w * contract(s, p.strain[q]);
+      stored += T(0.5) * w * contract(s, strain);
     }
     if constexpr (Shape::hourglass) {
       const Hourglass<T> modes(columns, e, position_arms<Shape>(columns, e));

@@ -20,16 +20,17 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const OutForces out{s.corner_force.data() + std::size_t(e.corner_first) * 4};
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
+  const PointFlow<Shape> flow = point_flow<Shape>(s, e, es);
   const Real damping_time = m.stiffness_damping * s.dt;
   switch (m.formulation) {
     case Formulation::corotational:
       return for_each_lane(
           q, e.count, some,
-          CorotationalForce<Shape, FollowRotation>{columns, damping_time, s.dt, work, out});
+          CorotationalForce<Shape, FollowRotation>{columns, damping_time, s.dt, work, flow, out});
     case Formulation::paper_total:
       return for_each_lane(
           q, e.count, some,
-          CorotationalForce<Shape, IgnoreRotation>{columns, damping_time, s.dt, work, out});
+          CorotationalForce<Shape, IgnoreRotation>{columns, damping_time, s.dt, work, flow, out});
     case Formulation::incremental:
       return for_each_lane(
           q, e.count, some,

@@ -27,15 +27,15 @@ struct TurnByHalves {
   CDEM_HD static Mat3<T> configuration(const Mat3<T>& f_old, const Mat3<T>& f_new) {
     return T(0.5) * (f_old + f_new);
   }
-  template <class T, class Law>
+  template <class T>
   CDEM_HD static Sym3<T> update(const Sym3<T>& stress, const Increment<T>& d, const Sym3<T>& strain,
-                                const Law& law) {
+                                const ElasticConstants<T>& elastic) {
     // half of the rotation, by Cayley: (I - W/4)^-1 (I + W/4)
     const Mat3<T> one = identity<T>(), quarter = T(0.5) * (T(0.5) * d.spin);
     const Mat3<T> half_turn = inverse(one - quarter) * (one + quarter);
     const Mat3<T> back = transpose(half_turn);
     const Sym3<T> turned = symmetric(half_turn * full(stress) * back);
-    const Sym3<T> loaded = turned + law.stress(strain);
+    const Sym3<T> loaded = turned + elastic.stress(strain);
     return symmetric(half_turn * full(loaded) * back);
   }
 };
@@ -47,10 +47,10 @@ struct NeverTurn {
   CDEM_HD static Mat3<T> configuration(const Mat3<T>&, const Mat3<T>& f_new) {
     return f_new;
   }
-  template <class T, class Law>
+  template <class T>
   CDEM_HD static Sym3<T> update(const Sym3<T>& stress, const Increment<T>&, const Sym3<T>& strain,
-                                const Law& law) {
-    return stress + law.stress(strain);
+                                const ElasticConstants<T>& elastic) {
+    return stress + elastic.stress(strain);
   }
 };
 
@@ -66,7 +66,7 @@ struct IncrementalForce {
   template <class I>
   CDEM_HD void operator()(I e) const {
     using T = Number<I>;
-    const auto law = columns.material(e);
+    const auto elastic = columns.elastic(e);
     const Arms<Shape, T> arms = position_arms<Shape>(columns, e);
     const Arms<Shape, T> velocities = velocity_arms<Shape>(columns, e);
     Increment<T> increment[Shape::points];
@@ -84,7 +84,7 @@ struct IncrementalForce {
     T work(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> before = stress_at(e, q);
-      const Sym3<T> after = Turning::update(before, increment[q], strain[q], law);
+      const Sym3<T> after = Turning::update(before, increment[q], strain[q], elastic);
       keep_stress(e, q, after);
       const T volume = columns.point_volume.at(q, e);
       const T current = determinant(f_new[q]) * volume;

@@ -18,7 +18,8 @@ void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementS
   for_each_lane(q, e.count,
                 CorotationalReport<Shape, Rotation>{element_columns<Shape>(m, s, e),
                                                     {es.stress.data(), e.stride},
-                                                    {es.energy.data(), e.stride}});
+                                                    {es.energy.data(), e.stride},
+                                                    point_flow<Shape>(s, e, es)});
 }
 
 /// Mean over the Gauss points of the stress that the incremental forms keep.

@@ -1,8 +1,9 @@
 // shapes.hpp - the four element shapes, and how an element reads its nodes and writes its forces.
 #pragma once
 
+#include "core/base/parallel.hpp"
 #include "core/base/views.hpp"
-#include "core/materials/linear_elastic.hpp"
+#include "core/materials/material_table.hpp"
 
 namespace cdem {
 
@@ -61,8 +62,8 @@ struct ElementColumns {
     for (Index row = 0; row < Shape::points * (Shape::nodes - 1) * 3; ++row) gradient.fetch(row, e);
   }
   template <class I>
-  CDEM_HD auto material(I e) const {
-    return materials.at(element_material.at(0, e));
+  CDEM_HD ElasticConstants<Number<I>> elastic(I e) const {
+    return materials.elastic(element_material.at(0, e));
   }
 };
 

@@ -1,7 +1,7 @@
 // views.hpp - what the kernels of elements see of model and state.
 #pragma once
 
-#include "core/elements/shapes.hpp"
+#include "core/elements/corotational.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 
@@ -9,10 +9,24 @@ namespace cdem {
 
 template <class Shape>
 ElementColumns<Shape> element_columns(const Model& m, const State& s, const ElementSet& e) {
-  return {{s.nodes.motion.data()},       {e.nodes.data(), e.stride},
-          {e.gradient.data(), e.stride}, {e.volume.data(), e.stride},
-          {e.material.data(), e.stride}, {m.material_lambda.data(), m.material_mu.data()},
-          {e.hourglass.data(), e.stride}};
+  return {.nodes = {s.nodes.motion.data()},
+          .element_nodes = {e.nodes.data(), e.stride},
+          .gradient = {e.gradient.data(), e.stride},
+          .point_volume = {e.volume.data(), e.stride},
+          .element_material = {e.material.data(), e.stride},
+          .materials = {.lambda = m.material_lambda.data(),
+                        .mu = m.material_mu.data(),
+                        .law = m.material_law.data(),
+                        .parameters = m.material_parameters.data()},
+          .hourglass = {e.hourglass.data(), e.stride}};
+}
+
+/// Inelastic strains of a set; empty where none of its materials flows.
+template <class Shape>
+PointFlow<Shape> point_flow(const State& s, const ElementSet& e, ElementState& es) {
+  return {.history = {es.history.size() > 0 ? es.history.data() : nullptr, e.stride},
+          .work = {es.plastic_work.data(), e.stride},
+          .dt = s.dt_last};
 }
 
 }  // namespace cdem

@@ -2,13 +2,16 @@
 // CUDA.
 #include "core/base/parallel_loops.hpp"
 #include "core/contact/force/accumulate.hpp"
+#include "core/contact/force/change_of_target.hpp"
 #include "core/contact/force/edge_force.hpp"
 #include "core/contact/force/spring_force.hpp"
 
 namespace cdem {
 
+template void for_each_item(Queue, Index, const ChangeTargets&);
 template void for_each_selected(Queue, Index, const UpdateSpringForces&);
 template void for_each_lane(Queue, Index, const UpdateEdgeForces&);
+template void for_each_item(Queue, Index, const MergeSideHistories&);
 template void for_each_item(Queue, Index, const CountContactsByTarget&);
 template void for_each_item(Queue, Index, const ListContactsByTarget&);
 template void for_each_item(Queue, Index, const AccumulateFaceForces&);

@@ -1,10 +1,27 @@
 // describe_contacts.hpp - the arrays of contacts, and the forces of exposed faces.
 #pragma once
 
+#include "core/interfaces/laws.hpp"
 #include "core/model/column_info.hpp"
 #include "core/model/state.hpp"
 
 namespace cdem {
+
+/// What walls remember for the laws of their interfaces: part of `describe_contacts`.
+template <class Stored>
+void describe_history(const std::string& set, HistoryColumns& history, Stored&& stored) {
+  stored({.name = set + ".history",
+          .unit = "of the law",
+          .meaning = "what the law remembers at a vertex or side",
+          .rows = "slots",
+          .numbers = InterfaceLaws::most_state},
+         history.rows);
+  stored({.name = set + ".history_law",
+          .meaning = "number of the law whose history it is, or -1",
+          .rows = "slots",
+          .numbers = InterfaceLaws::most_state > 0 ? 1 : 0},
+         history.law);
+}
 
 /// Contacts of semi-springs: part of `describe_contacts`.
 template <class Stored, class Rebuilt>
@@ -126,6 +143,25 @@ void describe_found_edges(EdgeState& e, Rebuilt&& rebuilt) {
           e.found);
 }
 
+/// Histories that contacts of one side write, before the side takes the largest: part of
+/// `describe_contacts`.
+template <class Rebuilt>
+void describe_contact_history(HistoryColumns& history, Rebuilt&& rebuilt) {
+  rebuilt("update_contact_forces",
+          {.name = "edge.contact_history",
+           .unit = "of the law",
+           .meaning = "what the law of a contact wrote",
+           .rows = "edge_contacts",
+           .numbers = InterfaceLaws::most_state},
+          history.rows);
+  rebuilt("update_contact_forces",
+          {.name = "edge.contact_history_law",
+           .meaning = "number of that law",
+           .rows = "edge_contacts",
+           .numbers = InterfaceLaws::most_state > 0 ? 1 : 0},
+          history.law);
+}
+
 /// Forces, and the contacts that they come from: part of `describe_contacts`.
 template <class Rebuilt>
 void describe_forces(State& s, Rebuilt&& rebuilt) {
@@ -173,8 +209,11 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
 template <class Stored, class Rebuilt>
 void describe_contacts(State& s, Stored&& stored, Rebuilt&& rebuilt) {
   describe_springs(s.springs, stored, rebuilt);
+  describe_history("spring", s.springs.history, stored);
   describe_edges(s.edges, stored);
+  describe_history("edge", s.edges.side_history, stored);
   describe_found_edges(s.edges, rebuilt);
+  describe_contact_history(s.edges.contact_history, rebuilt);
   describe_forces(s, rebuilt);
 }
 

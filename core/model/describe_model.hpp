@@ -1,6 +1,7 @@
 // describe_model.hpp - the arrays of the model, which Python hands over.
 #pragma once
 
+#include "core/materials/laws.hpp"
 #include "core/model/column_info.hpp"
 #include "core/model/describe_rows.hpp"
 #include "core/model/force_sets.hpp"
@@ -335,6 +336,14 @@ void describe_model(Model& m, State& s, Visit&& visit) {
         m.material_lambda);
   given({.name = "material.mu", .unit = "Pa", .meaning = "shear modulus", .rows = "materials"},
         m.material_mu);
+  given({.name = "material.law", .meaning = "number of the block law", .rows = "materials"},
+        m.material_law);
+  given({.name = "material.parameters",
+         .unit = "see the law",
+         .meaning = "parameters of the block law",
+         .rows = "materials",
+         .numbers = BlockLaws::most_parameters},
+        m.material_parameters);
   for_each_set(m, s,
                [&](const auto& kind, auto& set, auto&) { describe_set(kind.name, set, given); });
   describe_faces(m, given);

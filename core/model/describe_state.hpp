@@ -1,6 +1,8 @@
 // describe_state.hpp - the arrays of nodes, elements and bonded pairs.
 #pragma once
 
+#include "core/interfaces/laws.hpp"
+#include "core/materials/laws.hpp"
 #include "core/model/column_info.hpp"
 #include "core/model/describe_rows.hpp"
 #include "core/model/force_sets.hpp"
@@ -202,6 +204,21 @@ void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stor
           .rows = rows,
           .layout = Layout::columns},
          e.damping_work);
+  stored({.name = name + "history",
+          .unit = "1, and of the law",
+          .meaning = "inelastic strain and state of the law at the Gauss points",
+          .rows = rows,
+          .numbers = point_history * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.history);
+  stored({.name = name + "plastic_work",
+          .unit = "J",
+          .meaning = "work of inelastic strain",
+          .rows = rows,
+          .layout = Layout::columns,
+          .optional = true},
+         e.plastic_work);
   rebuilt("report_elements",
           {.name = name + "stress",
            .unit = "Pa",
@@ -246,6 +263,13 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_point("bond", "1", "1 while intact, 0 once broken", p.bond);
   of_point("slip1", "m", "plastic slip along the first axis of the pair", p.slip1);
   of_point("slip2", "m", "plastic slip along the second axis of the pair", p.slip2);
+  stored({.name = name + "history",
+          .unit = "of the law",
+          .meaning = "what the law remembers at the bond points",
+          .rows = conforms(set) ? rows : "overlap_points",
+          .numbers = InterfaceLaws::most_state * set.points,
+          .layout = Layout::columns},
+         p.history);
   of_pair("broken_tension", "1", "springs broken in tension", p.broken_tension);
   of_pair("broken_shear", "1", "springs broken in shear", p.broken_shear);
   of_pair("jump", "m", "change of a broken pair's largest jump since it broke", p.jump);

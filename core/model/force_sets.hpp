@@ -134,6 +134,7 @@ template <class Visit>
 void for_each_energy(const ElementState& s, Visit&& visit) {
   visit(energy_term("strain"), s.energy);
   visit(energy_term("damping"), s.damping_work);
+  visit(energy_term("plastic"), s.plastic_work);
 }
 template <class Visit>
 void for_each_energy(const PairState& s, Visit&& visit) {

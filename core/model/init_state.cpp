@@ -1,11 +1,22 @@
 // init_state.cpp - see init_state.hpp.
 #include "core/model/init_state.hpp"
 
+#include "core/interfaces/laws.hpp"
+#include "core/materials/laws.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
 
 namespace {
+
+bool has_flowing_element(const Model& m, const ElementSet& e) {
+  bool any = false;
+  BlockLaws::for_each([&]<template <class> class Law, Index number>() {
+    for (Index i = 0; i < e.count; ++i)
+      any = any || (Law<Real>::inelastic && m.material_law[e.material[i]] == number);
+  });
+  return any;
+}
 
 void size(const Model& m, const ElementSet& e, ElementState& es) {
   const std::size_t row = e.stride;
@@ -14,10 +25,32 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
   es.damping_work.resize(row);
   const bool keeps_stress =
       m.formulation == Formulation::incremental || m.formulation == Formulation::paper_incremental;
+  if (any_law_flows && has_flowing_element(m, e)) {
+    es.history.resize(std::size_t(point_history * e.points) * row);
+    es.plastic_work.resize(row);
+  }
   if (keeps_stress) es.point_stress.resize(6 * std::size_t(e.points) * row);
 }
 
-void size(const Model&, const PairSet& p, PairState& s) {
+/// History of the bond points as their laws say of an intact bond.
+void init_histories(const Model& m, const PairSet& p, PairState& s) {
+  const std::size_t points = std::size_t(p.points) * p.point_stride;
+  s.history.resize(InterfaceLaws::most_state * points);
+  InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+    const auto begin = [&](Index i, std::size_t point) {
+      if (m.interfaces[p.interface[i]].law != number) return;
+      for (std::size_t k = 0; k < Law<Real>::state.size(); ++k)
+        s.history[k * points + point] = Law<Real>::state[k].intact;
+    };
+    for (Index i = 0; i < p.count; ++i)
+      if (!conforms(p))
+        for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c) begin(i, c);
+      else
+        for (Index k = 0; k < p.points; ++k) begin(i, std::size_t(k) * p.point_stride + i);
+  });
+}
+
+void size(const Model& m, const PairSet& p, PairState& s) {
   const std::size_t row = p.stride, points = std::size_t(p.points) * p.point_stride;
   for (Column<Real>* column :
        {&s.broken_tension, &s.broken_shear, &s.jump, &s.stored, &s.fracture, &s.friction})
@@ -28,6 +61,7 @@ void size(const Model&, const PairSet& p, PairState& s) {
   s.bond.resize(points, 1.0);
   s.slip1.resize(points);
   s.slip2.resize(points);
+  init_histories(m, p, s);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "core/base/column.hpp"
 #include "core/base/math.hpp"
-#include "core/interfaces/brittle_coulomb.hpp"
+#include "core/records/interface.hpp"
 #include "core/records/rules.hpp"
 
 namespace cdem {
@@ -48,6 +48,8 @@ struct Model {
 
   ElementSet tet4, pyramid5, wedge6, hex8;
   Column<Real> material_lambda, material_mu;
+  Column<Index> material_law;        // number in BlockLaws
+  Column<Real> material_parameters;  // [material][BlockLaws::most_parameters]
 
   // exterior faces and edges
   Index face_count = 0, edge_count = 0;
@@ -61,7 +63,7 @@ struct Model {
   Index class_count = 0;
   Column<Index> interface_of;
   Column<Interface> interfaces;
-  Column<Real> cohesion, tensile_strength, tan_friction;
+  Column<Real> interface_parameters;  // [interface][InterfaceLaws::most_parameters]
 
   // corner rows of each node; ~row where it takes the opposite of what stands there
   Index corner_rows = 0;

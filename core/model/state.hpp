@@ -35,14 +35,23 @@ struct ElementState {
   Column<Real> stress;        // mean, for output: [6][element]
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
-  Column<Index> awake;  // blocks of elements, see rest.hpp
+  Column<Real> history;       // [point * point_history][element], see PointFlow
+  Column<Real> plastic_work;  // empty like history where no material of the set flows
+  Column<Index> awake;        // blocks of elements, see rest.hpp
   FusedBlocks fused;
+};
+
+/// What walls of contacts remember for the laws of their interfaces, see interfaces/history.hpp.
+struct HistoryColumns {
+  Column<Real> rows;
+  Column<Index> law;
 };
 
 struct PairState {
   Column<Real> live, bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> stored, fracture, friction;
-  Column<Index> awake;  // blocks of pairs, see rest.hpp
+  Column<Real> history;  // [variable * points + point][pair], of the pair's law
+  Column<Index> awake;   // blocks of pairs, see rest.hpp
 };
 
 struct SpringState {
@@ -50,6 +59,7 @@ struct SpringState {
   Column<Real> state, reaction;  // rows of 8
   Column<Real> friction, dashpot;
   Column<Flag> lost, unresolved;
+  HistoryColumns history;  // [slot]
 };
 
 /// Contacts of semi-edges, see EdgeColumns; a step makes the list anew from the one before.
@@ -58,6 +68,8 @@ struct EdgeState {
   Column<Real> state, reaction;    // rows of 8
   Column<Real> friction, dashpot;  // [exposed]
   Column<Flag> lost;               // [exposed]
+  HistoryColumns side_history;     // [4 * exposed face + side]
+  HistoryColumns contact_history;  // [contact], made anew in every step
   Column<Index> old_first, old_contact;
   Column<Real> old_state;
   Index slots = 8;  // of the search in a step: places a face, see FoundEdges

@@ -32,6 +32,7 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
       .damping_time = m.stiffness_damping * s.dt,
       .dt = s.dt,
       .damping_work = {es.damping_work.data(), e.stride},
+      .flow = point_flow<Shape>(s, e, es),
       .corner_force = {}};
   for_each_lane(q, e.count, awake(plan, fused.blocks),
                 AdvanceFused<Shape>{.element = element,

@@ -25,6 +25,12 @@ struct ContactState {
             .energy_n = r[5],
             .energy_s = r[6]};
   }
+  /// That of a contact that was none.
+  CDEM_HD static ContactState none() {
+    ContactState s{};
+    s.penetration = -1;
+    return s;
+  }
   CDEM_HD void store(Real* rows, std::size_t place) const {
     Real* r = rows + 8 * place;
     r[0] = force_n, r[1] = penetration, r[2] = shear1, r[3] = shear2;

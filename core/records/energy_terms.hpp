@@ -14,6 +14,7 @@ struct EnergyTerm {
   const char* name;
   EnergyKind kind;
   const char* meaning;
+  bool needs_flow = false;  // is zero where no block law flows
 };
 
 /// All terms  [J]. Ledger, checks and Python read this list.
@@ -27,6 +28,10 @@ inline constexpr EnergyTerm energy_terms[] = {
     {.name = "damping",
      .kind = EnergyKind::lost,
      .meaning = "damping of nodes, elements and contacts, and motion that was stopped"},
+    {.name = "plastic",
+     .kind = EnergyKind::lost,
+     .meaning = "inelastic strain of the elements",
+     .needs_flow = true},
     {.name = "fracture", .kind = EnergyKind::lost, .meaning = "breaking of bonds"},
     {.name = "external",
      .kind = EnergyKind::supplied,

@@ -5,8 +5,10 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from cdem._version import __version__
+
 if TYPE_CHECKING:
-    from cdem.case import Case
+    from cdem.case.case import Case
     from cdem.errors import (
         BackendError,
         CaseError,
@@ -15,15 +17,14 @@ if TYPE_CHECKING:
         ModelError,
         UnstableError,
     )
-    from cdem.simulation import Progress, Simulation
-
-__version__ = "0.1.0"
+    from cdem.run.progress import Progress
+    from cdem.run.simulation import Simulation
 
 # Public names and the module of each; imported at first use, so that `import cdem` takes no time.
 _HOMES = {
-    "Case": "cdem.case",
-    "Progress": "cdem.simulation",
-    "Simulation": "cdem.simulation",
+    "Case": "cdem.case.case",
+    "Progress": "cdem.run.progress",
+    "Simulation": "cdem.run.simulation",
     "BackendError": "cdem.errors",
     "CaseError": "cdem.errors",
     "CdemError": "cdem.errors",

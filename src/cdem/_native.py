@@ -5,14 +5,20 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import os
+from pathlib import Path
 from types import ModuleType
 
 from cdem._instruction_sets import NEEDS, cpu_flags
 from cdem.errors import BackendError
 
 
+def _is_built(isa: str) -> bool:
+    spec = importlib.util.find_spec(f"cdem._core_{isa}")
+    return spec is not None and spec.origin is not None and Path(spec.origin).exists()
+
+
 def _built() -> list[str]:
-    return [isa for isa in NEEDS if importlib.util.find_spec(f"cdem._core_{isa}")]
+    return [isa for isa in NEEDS if _is_built(isa)]
 
 
 # Threads that wait by spinning make a busy machine a hundred times slower; a short spin is enough.

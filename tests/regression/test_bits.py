@@ -1,4 +1,4 @@
-"""The same case gives the same bits: threads, instruction sets, splits into runs, restarts."""
+"""The same case gives the same bits: threads, instruction sets, split runs, restarts, sleeping."""
 
 import hashlib
 import os
@@ -46,7 +46,7 @@ def breaking_cube():
 
 
 def digest(sim):
-    """A hash of everything that a checkpoint keeps."""
+    """Hash of everything that a checkpoint keeps."""
     whole = hashlib.sha256()
     for name, values in sorted(sim.core.fields().items()):
         whole.update(name.encode())
@@ -61,7 +61,8 @@ def run_here(threads):
     return digest(sim)
 
 
-def test_threads():
+def test_threads_give_identical_results():
+    """Contributions are summed in an order that does not depend on the number of threads."""
     assert len({run_here(threads) for threads in (1, 2, 3, 7)}) == 1
 
 
@@ -74,7 +75,8 @@ print(run_here(2))
 """
 
 
-def test_instruction_sets():
+def test_instruction_sets_give_identical_results():
+    """Each instruction set that is built and that this machine has, in a process of its own."""
     here = os.path.dirname(__file__)
     code = CHILD.format(tests=os.path.dirname(here), here=here)
     flags = _native.cpu_flags()
@@ -93,12 +95,19 @@ def test_instruction_sets():
     assert len(found) == 1
 
 
-@pytest.mark.parametrize("stops", [[3], [2, 5]])
-def test_stop_and_resume(tmp_path, stops):
-    """Stopped and resumed, also twice over, the run ends with the same bits and the same files."""
-    whole = cdem.Simulation(breaking_cube(), threads=2, output=tmp_path / "whole")
-    whole.run()
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A run without a stop, and its histories. Tests must not change it."""
+    folder = tmp_path_factory.mktemp("run") / "whole"
+    sim = cdem.Simulation(breaking_cube(), threads=2, output=folder)
+    sim.run()
+    return sim, (folder / "histories.csv").read_text()
 
+
+@pytest.mark.parametrize("stops", [[3], [2, 5]])
+def test_resumed_run_gives_identical_results(tmp_path, whole, stops):
+    """Stopped and resumed, also twice, the run ends with the same bits and the same histories."""
+    expected, histories = whole
     asked = 0
 
     def should_stop():
@@ -112,12 +121,12 @@ def test_stop_and_resume(tmp_path, stops):
         sim = cdem.Simulation(breaking_cube(), threads=2, output=broken, resume=number > 0)
         status = sim.run(should_stop=should_stop if limit else None)
     assert status == "finished"
-    assert digest(sim) == digest(whole)
-    histories = [(tmp_path / f / "histories.csv").read_text() for f in ("whole", "broken")]
-    assert histories[0] == histories[1]
+    assert digest(sim) == digest(expected)
+    assert (broken / "histories.csv").read_text() == histories
 
 
-def test_split_into_runs():
+def test_split_runs_give_identical_results():
+    """300 steps in one call of the core and in five."""
     one, many = (cdem.Simulation(breaking_cube(), threads=2) for _ in range(2))
     one.step(300)
     for count in (1, 7, 92, 150, 50):
@@ -127,7 +136,7 @@ def test_split_into_runs():
 
 
 def sleeping_bed(held):
-    """A block slides over a meshed, bonded bed that is fixed for some time [s], then free."""
+    """A block slides over a meshed, bonded bed that is fixed for `held` seconds, then free."""
     return case(
         [
             {
@@ -154,10 +163,10 @@ def sleeping_bed(held):
     )  # fmt: skip
 
 
-def test_what_is_fixed_and_not_computed_is_as_if_it_were():
-    """Every call of the core computes everything once; in between what is fixed sleeps."""
+def test_sleeping_nodes_give_identical_results():
+    """The first step of every call of the core computes all nodes; in the others fixed nodes sleep."""
     at_once, stepwise = (cdem.Simulation(sleeping_bed(9.0), threads=1) for _ in range(2))
-    # after the first the body still slides; then it leaves the bed, and the bed's nodes the lists
+    # the body slides during the first steps; later it has left the bed, and pair lists are empty
     for steps, slides in ((150, True), (750, False)):
         at_once.step(steps)
         for _ in range(steps):
@@ -170,9 +179,12 @@ def test_what_is_fixed_and_not_computed_is_as_if_it_were():
             assert at_once.fields["reaction"][bed, 2].sum() > weight
 
 
-def test_nodes_that_share_a_mass_matrix_wake_together():
-    """A plate one element thick, held over three quarters of its length; a block falls on it there,
-    far from the plate's first nodes."""
+def test_nodes_with_a_common_mass_matrix_wake_together():
+    """A plate one element thick is fixed over three quarters of its length.
+
+    A block falls on that part, far from the plate's first nodes. The result has the same bits as
+    one in which all nodes are computed in every step.
+    """
     plate = case(
         [
             {"group": "plate", "box": {"size": [8, 1, 0.5], "divisions": [8, 1, 1]}},
@@ -193,7 +205,11 @@ def test_nodes_that_share_a_mass_matrix_wake_together():
     assert digest(at_once) == digest(stepwise)
 
 
-def test_what_slept_wakes_up_when_it_is_freed():
+def test_sleeping_nodes_wake_when_released():
+    """A bed that is fixed and then released falls freely for 0.02 s: v = g t.
+
+    Tolerance: the block that it carried pushes it, 3 %.
+    """
     sim = cdem.Simulation(sleeping_bed(0.01), threads=1)
     sim.run()
     bed = sim.build.nodes_of("bed")
@@ -203,9 +219,12 @@ def test_what_slept_wakes_up_when_it_is_freed():
 @pytest.mark.parametrize(
     ("shape", "hexahedra"), [("tet4", "full"), ("hex8", "full"), ("hex8", "one-point")]
 )
-def test_free_blocks_that_go_apart_move_as_with_all_others(shape, hexahedra):
-    """Bonded elements in the air, one of them shot at the others; every call of the core begins with a step in
-    which none goes apart."""
+def test_fused_blocks_give_identical_results(shape, hexahedra):
+    """Bonded elements fly, and a ball is shot at them.
+
+    Blocks of one element without contact have one kernel for force and motion, except in the first
+    step of every call of the core.
+    """
     scene = case(
         [
             {"group": "bar", "box": {"size": [4, 2, 2], "divisions": [4, 2, 2], "shape": shape}},
@@ -228,7 +247,8 @@ def test_free_blocks_that_go_apart_move_as_with_all_others(shape, hexahedra):
     assert sum(at_once.broken.values()) > 0
 
 
-def test_what_flew_freely_stops_in_the_step_in_which_it_is_held():
+def test_fixed_block_stops_in_the_same_step():
+    """A block flies for 30 steps; a stage that fixes it keeps all positions to the last bit."""
     step = 1e-5
     sim = cdem.Simulation(
         case(
@@ -248,14 +268,16 @@ def test_what_flew_freely_stops_in_the_step_in_which_it_is_held():
         threads=1,
     )  # fmt: skip
     sim.run_stage("fly")
-    assert sim.step_count == 30  # the next does not sum up energies: nodes advance in one pass
+    assert sim.step_count == 30  # the next step does not sum energies: the fused kernel may run
     before = sim.fields["position"].copy()
     sim.run()
     assert np.array_equal(sim.fields["position"], before)
 
 
 @pytest.mark.parametrize("way", ["local", "kinetic", "adaptive"])
-def test_stop_and_resume_on_the_way_to_rest(tmp_path, way):
+def test_resumed_relaxation_gives_identical_results(tmp_path, way):
+    """Relaxation by each method, stopped after its first report and resumed."""
+
     def settle(**more):
         return cdem.Simulation(
             case(
@@ -297,8 +319,8 @@ def test_stop_and_resume_on_the_way_to_rest(tmp_path, way):
     assert digest(resumed) == digest(whole)
 
 
-def test_a_state_restored_forgets_what_came_after():
-    """Back in the air after it has touched, a cube flies on as it did the first time."""
+def test_restored_state_repeats_the_motion():
+    """A cube that has touched the bed is restored to a state before: it flies on with the same bits."""
     sim = cdem.Simulation(
         case(
             [
@@ -326,8 +348,8 @@ def test_a_state_restored_forgets_what_came_after():
     assert fly() == first
 
 
-def test_restored_while_the_step_grows_it_grows_on():
-    """A cube leaves the bed that it has hit, and its step may be longer again, little by little."""
+def test_restored_state_continues_the_growth_of_the_time_step():
+    """A cube leaves the bed that it has hit, and its step grows by 1 % a step."""
 
     def cube():
         return cdem.Simulation(
@@ -351,7 +373,7 @@ def test_restored_while_the_step_grows_it_grows_on():
     scalars = sim.core.scalars()
     sim.step(20)
     again = cube()
-    again.step(int(np.argmin(steps)) + 1)  # where it may not grow
+    again.step(int(np.argmin(steps)) + 1)  # where the step may not grow
     again.core.restore(arrays, scalars)
     again.core.prepare()
     again.step(20)

@@ -1,4 +1,4 @@
-"""Rock in which every interface may break: elastic while intact, quiet at rest, a ledger that closes."""
+"""Rock of bonded elements: elastic while intact, at rest without load, an energy ledger that closes."""
 
 import numpy as np
 import pytest
@@ -12,8 +12,8 @@ def cube(divisions, side=1.0):
     return [{"group": "body", "box": box}]
 
 
-def test_intact_cube_has_the_stated_compliance():
-    """Unconfined compression: 1/E + what the interfaces add; `cdem check` states the latter."""
+def test_intact_bonded_cube_has_the_stated_compliance():
+    """Unconfined compression: compliance 1/E and that of the bonds, which `cdem check` states."""
     sim = simulate(
         cube(3),
         {"body": {}},
@@ -40,7 +40,8 @@ def test_intact_cube_has_the_stated_compliance():
     assert added == pytest.approx(stated, rel=0.2)
 
 
-def test_at_rest_it_stays_at_rest():
+def test_unloaded_bonded_cube_stays_at_rest():
+    """Nothing acts, and displacements are measured from the start: velocities are 0 exactly."""
     sim = simulate(
         cube(3),
         {"body": {}},
@@ -50,11 +51,12 @@ def test_at_rest_it_stays_at_rest():
         model={"split": {"body": "elements"}},
     )
     sim.step(500)
-    assert np.abs(sim.fields["velocity"]).max() < 1e-9
+    assert not sim.fields["velocity"].any()
     assert sum(sim.broken.values()) == 0
 
 
 def dropped(divisions, steps_safety, time, friction_angle=30):
+    """A cube of bonded tets after its fall on a bed at 4 m/s."""
     sim = cdem.Simulation(
         case(
             [
@@ -92,19 +94,23 @@ def dropped(divisions, steps_safety, time, friction_angle=30):
     return sim
 
 
-def test_dropped_it_breaks_and_the_ledger_closes():
-    """48 tets: all 216 bond points break, friction takes 60 % of the energy."""
+def test_energy_ledger_closes_for_a_cube_that_breaks():
+    """48 tets break at all 216 bond points; friction takes 60 % of the energy.
+
+    Tolerance: the closing error at 0.4 of the stable step.
+    """
     sim = dropped(2, 0.4, 0.05)
-    assert sum(sim.broken.values()) > 200
+    assert sum(sim.broken.values()) == 216
     assert np.isfinite(sim.fields["position"]).all()
     assert abs(sim.energies["error"]) < 5e-4
 
 
 @pytest.mark.parametrize("friction_angle", [0, 30])
-def test_the_ledger_of_broken_rock_converges_with_the_step(friction_angle):
-    """What released pairs and contacts that end under load or turn corners held is lost, and counted.
+def test_closing_error_of_breaking_rock_falls_with_the_time_step(friction_angle):
+    """The cube above at 0.1 of the stable step: the closing error falls from 1.4e-4 to 2e-5.
 
-    It was not, and 0.2 to 0.3 % were missing with any step.
+    The ledger counts the energy lost by released bonds and by contacts that end under load or
+    change targets. (Without it the ledger is open by 0.2 to 0.3 % at any step.)
     """
     sim = dropped(2, 0.1, 0.05, friction_angle)
     assert abs(sim.energies["error"]) < 3e-5
@@ -132,33 +138,37 @@ def beam_on_a_post(speed=3.0):
 
 
 @pytest.mark.parametrize("speed", [2, 3, 4, 5])
-def test_faces_that_come_near_and_part_make_no_energy(speed):
-    """Each time they do, the step falls to an 18th and may grow again. At once, with w dt = 1.6 for the
-    fastest mode, it made 2, 24, 15 and 2 % of the energy here.
+def test_repeated_contact_of_fragments_conserves_energy(speed):
+    """Each new contact cuts the step to an 18th, and then the step grows again by 1 % a step.
+
+    (Growth at once, with w dt = 1.6 for the fastest mode, made 2, 24, 15 and 2 % of the energy.)
+    Tolerance: the closing error at 0.8 of the stable step grows with the speed to 7e-4.
     """
     sim = beam_on_a_post(speed)
     sim.run_until(0.1)
     assert sum(sim.broken.values()) == 28  # all
-    assert abs(sim.energies["error"]) < 5e-3
+    assert abs(sim.energies["error"]) < 3e-3
 
 
-def test_the_step_shrinks_at_once_and_grows_slowly():
+def test_time_step_drops_at_once_and_grows_by_one_percent():
+    """A new contact drops the step to half at once; from step to step it grows by at most 1 %."""
     sim = beam_on_a_post()
     steps = []
     for _ in range(3000):
         sim.step()
         steps.append(sim.core.scalars()["dt_last"])
     change = np.divide(steps[1:], steps[:-1])
-    assert change.min() < 1.01**-60  # at once, by what takes more than 60 steps to come back
-    assert 1.01 - 1e-12 < change.max() < 1.01 + 1e-12
+    assert change.min() < 1.01**-60  # at once, and more than 60 steps to grow back
+    assert change.max() == pytest.approx(1.01, abs=5e-16)
 
 
 @pytest.mark.parametrize("seed", [1, 3])
-def test_contacts_crowded_on_a_node_do_not_break_the_step(seed):
-    """48 tets are thrown at a meshed bed at 0.8 of the stable step.
+def test_many_contacts_on_one_node_stay_stable(seed):
+    """48 tets are thrown at a meshed bed at 0.8 of the stable step, four throws a seed.
 
-    More contacts press on a node than two for each of its faces. The step saw that after up to 100
-    steps: it was unstable for some, and made 1.5 % of the energy in a throw of seed 1, 70 % of seed 3.
+    More contacts press on a node than two for each of its faces, so the stable step is found in
+    every step. (Found every 100 steps, it made 1.5 % of the energy with seed 1 and 70 % with
+    seed 3.) Tolerance: the closing error at this step is up to 1.4e-3.
     """
     rng = np.random.default_rng(seed)
     for throw in range(4):
@@ -200,17 +210,19 @@ def test_contacts_crowded_on_a_node_do_not_break_the_step(seed):
 
 
 @pytest.mark.slow
-def test_a_cube_of_2058_tets_breaks_tumbles_and_settles():
+def test_energy_ledger_closes_for_a_cube_of_2058_tets():
+    """A cube that falls at 4 m/s breaks, tumbles and comes to rest within 0.3 s."""
     sim = dropped(7, 0.4, 0.3)
     assert sum(sim.broken.values()) > 500
     assert np.isfinite(sim.fields["position"]).all()
     assert abs(sim.energies["error"]) < 0.001
 
 
-def test_a_hinge_that_breaks_hands_over_no_force():
-    """Vertices that hung far apart on a last bond point bring no force to what they lie on then.
+def test_open_bond_that_breaks_transfers_no_force():
+    """Vertices far apart from their bond partner carry no bond force to the face they lie on.
 
-    The second of two bonded cubes is turned by 90 degrees onto the top of the first, all points broken.
+    The second of two bonded cubes is rotated by 90 degrees onto the top of the first, and all bond
+    points are broken. The new contacts are free of stress: their friction force is 0.
     """
     sim = simulate(
         [
@@ -230,18 +242,20 @@ def test_a_hinge_that_breaks_hands_over_no_force():
     sim.step(5)
     state = sim.core.fields()
     assert state["quads.live"][0] == 0 and (state["spring.target"] >= 0).any()
-    assert np.abs(state["spring.friction"]).max() < 1  # found inside, so free of stress
+    assert not state["spring.friction"].any()
 
 
 OVER = {"a bed": ([3, 3, 1], [1, 1, 0.5]), "a rail": ([0.4, 3, 1], [1, 0.3, 0.5])}
 
 
-@pytest.mark.parametrize("over", OVER)
-def test_bonds_of_faces_that_do_not_conform_hand_over_their_force(over):
-    """A block that slides off its broken bonds stays pressed as it was, by vertices or by edges alone.
+@pytest.mark.parametrize("over, share, within", [("a bed", 0.5, 1e-3), ("a rail", 1, 0.2)])
+def test_bonds_of_nonconforming_faces_transfer_their_force_to_contacts(over, share, within):
+    """A block whose bonds break under it stays pressed on its bed, by vertices or by edges alone.
 
-    It was let go free of stress, and its bonds' energy was lost to no account (0.07 % and 0.7 %). The
-    vertices on a bed see half the stiffness of the bonds: the bed's semi-springs meet no vertex.
+    Edges carry the whole force of the bonds. On a bed, whose own semi-springs meet no vertex, the
+    contacts have half of the bonds' stiffness and carry half. (Contacts that begin free of stress
+    carry nothing, and 0.07 % and 0.7 % of the energy are missing.) Tolerances: the pressure on the
+    rail falls by 6 % in each of two steps; the closing error at a tenth of the stable step.
     """
     (length, width, height), size = OVER[over]
     sim = simulate(
@@ -259,6 +273,7 @@ def test_bonds_of_faces_that_do_not_conform_hand_over_their_force(over):
         },
         rock={"young_modulus": "0.1 GPa"},
         loads={"gravity": [0, 7, -7]},
+        time={"safety": 0.1},
         stages=[
             {"name": "hold", "mode": "static", "tolerance": 1e-6},
             {
@@ -280,15 +295,15 @@ def test_bonds_of_faces_that_do_not_conform_hand_over_their_force(over):
         before = pressure()
         sim.step()
     assert before > 0
-    assert pressure() > 0.4 * before
-    sim.step(500)
+    assert pressure() == pytest.approx(share * before, rel=within)
+    sim.step(4000)
     assert abs(sim.energies["error"]) < 2e-4
 
 
-def test_an_open_hinge_stops_what_falls_into_it():
-    """A lid that stands open by two of its bond points: a stone thrown in must meet both faces.
+def test_contact_search_finds_the_faces_of_an_open_hinge():
+    """A lid stands open on two of its four bond points: a stone thrown in hits both faces.
 
-    They belong to a pair that still holds, and were hidden from the search.
+    Tolerance: the stone penetrates base and lid by up to 9e-5 m in the impact.
     """
     sim = simulate(
         [
@@ -318,6 +333,6 @@ def test_an_open_hinge_stops_what_falls_into_it():
         sim.step(50)
         stone = sim.fields["position"][sim.build.nodes_of("stone")]
         least = np.minimum(least, stone.min(axis=0))
-    assert least[2] == pytest.approx(0, abs=2e-4)  # met the base
+    assert least[2] == pytest.approx(0, abs=2e-4)  # hit the base
     assert least[0] == pytest.approx(0, abs=2e-4)  # and the lid
     assert sim.core.fields()["quads.live"][0] == 2

@@ -1,4 +1,4 @@
-"""The six contact types at rest, collisions, and the search against an all-pairs search."""
+"""The six contact types at rest, collisions, and the contact search against an all-pairs search."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,9 @@ def test_contact_types_carry_the_weight(lower, upper, seed):
     """The upper body comes to rest on the lower one, in any orientation (it has no time to topple).
 
     Each semi-spring carries k_n A / (2 N) and each semi-edge k_n A / N times its penetration
-    (Eq. 3-5, half because both sides see a contact), and together they carry the weight.
+    (Eq. 3-5, half because both sides see a contact): equal to round-off. Together they carry the
+    weight. Tolerances: after 4,000 steps of local damping an oscillation of 3e-9 of the weight is
+    left along the normal. Across it contacts chatter, which is chaotic: 1e-7 to 3e-6, by round-off.
     """
     down = np.array([0, 0, -1.0])
     more = {}
@@ -77,19 +79,22 @@ def test_contact_types_carry_the_weight(lower, upper, seed):
     mothers = state["edge.contact"].reshape(-1, 4)[:, 0] // 4
     crossing = share[exposed[mothers]] * state["edge.state"].reshape(-1, 8)[:, 1]
     predicted = np.concatenate([forces, crossing])
-    np.testing.assert_allclose(sim.contacts["force_n"], predicted, rtol=1e-9)
+    np.testing.assert_allclose(sim.contacts["force_n"], predicted, rtol=2e-15)
     if "edge" not in (lower, upper):  # one normal for all: the weight itself
         weight = 9.81 * sim.fields["mass"][sim.build.nodes_of("upper")].sum()
-        np.testing.assert_allclose(predicted.sum(), weight, rtol=1e-3)
+        np.testing.assert_allclose(predicted.sum(), weight, rtol=2e-8)
     upper_group = sim.build.group_names.index("upper")
     own = t.face_group[sim.contacts["mother_face"]] == upper_group
     carried = (np.where(own, 1.0, -1.0)[:, None] * sim.contacts["force"]).sum(axis=0)
     mass = sim.fields["mass"][sim.build.nodes_of("upper")].sum()
-    np.testing.assert_allclose(carried, -9.81 * mass * down, atol=1e-3 * 9.81 * mass)
+    np.testing.assert_allclose(carried, -9.81 * mass * down, rtol=0, atol=1e-5 * 9.81 * mass)
 
 
-def test_vertex_on_vertex_is_caught():
-    """The sixth type: a vertex comes down a little beside another vertex, and is turned aside."""
+def test_vertex_on_vertex_deflects_a_falling_body():
+    """The sixth contact type: a vertex comes down 11 mm beside another vertex at 0.5 m/s.
+
+    The contact brakes the body and pushes it aside.
+    """
     blocks = pair("vertex", "vertex")
     blocks[1]["translate"] = [0.01, 0.004, 0.0]
     sim = simulate(
@@ -100,12 +105,16 @@ def test_vertex_on_vertex_is_caught():
     while sim.time < 0.05:
         sim.step(100)
     velocity = mean_velocity(sim, "upper")
-    assert velocity[2] > -0.45
-    assert np.linalg.norm(velocity[:2]) > 0.01
+    assert velocity[2] > -0.2
+    assert np.linalg.norm(velocity[:2]) > 0.1
 
 
-def test_penetration_is_what_k_n_predicts():
-    """Face on face: both sides' springs carry half each, so the weight sinks rho g h / k_n."""
+def test_penetration_is_weight_over_normal_stiffness():
+    """Face on face: only the block has semi-springs, with half of k_n: 2 rho g h / k_n.
+
+    (Its face lies inside the larger one, which has no vertex there.) Tolerance: the unbalance
+    ratio of 1e-7 at which the stage ends.
+    """
     k_n = 1e9
     sim = simulate(
         [
@@ -120,9 +129,8 @@ def test_penetration_is_what_k_n_predicts():
     assert sim.run() == "converged"
     nodes = sim.build.nodes_of("upper")[:]
     bottom = nodes[sim.build.start_position[nodes, 2] < 1e-9]
-    # the block alone has springs (its face lies inside the big one): half of k_n acts
     expected = -2500 * 9.81 / (k_n / 2)
-    np.testing.assert_allclose(sim.fields["displacement"][bottom, 2], expected, rtol=1e-3)
+    np.testing.assert_allclose(sim.fields["displacement"][bottom, 2], expected, rtol=2e-7)
 
 
 def collide(kind, speed=0.5, phi=0.0, safety=0.2, spin=(0, 0, 0)):
@@ -144,19 +152,23 @@ def collide(kind, speed=0.5, phi=0.0, safety=0.2, spin=(0, 0, 0)):
 
 
 @pytest.mark.parametrize("kind", ["face", "edge", "vertex"])
-def test_collisions_keep_momentum_and_energy(kind):
+def test_collisions_conserve_momentum_and_energy(kind):
+    """Momenta are conserved to round-off. Energy: see the next test; here a fifth of the stable step."""
     sim, linear, angular = collide(kind)
     now, turned = momentum(sim)
-    assert mean_velocity(sim, "upper")[2] > -0.5  # they did meet
-    np.testing.assert_allclose(now, linear, atol=1e-12 * np.abs(linear).max())
-    np.testing.assert_allclose(turned, angular, atol=1e-9 * np.abs(linear).max())
+    assert mean_velocity(sim, "upper")[2] > -0.1  # they did meet
+    scale = np.abs(linear).max()
+    np.testing.assert_allclose(now, linear, rtol=0, atol=5e-15 * scale)
+    np.testing.assert_allclose(turned, angular, rtol=0, atol=3e-15 * scale)
     assert abs(sim.energies["error"]) < 1e-3
 
 
 @pytest.mark.parametrize("kind", ["face", "edge", "vertex"])
-def test_energy_in_a_collision_converges_with_the_step(kind):
-    """At 0.8 of the stability limit a bounce is off by 0.8 % (root of the mean square over speeds: a
-    single one depends on where in a step it begins), at 0.1 by about 1e-4.
+def test_closing_error_of_a_collision_falls_with_the_time_step(kind):
+    """Energy after a bounce is off by at most 0.6 % at 0.8 of the stable step and 1.1e-4 at 0.1.
+
+    The first is the root of the mean square over speeds: the error of one bounce depends on where
+    in a step the contact begins.
     """
     errors = [
         collide(kind, speed, safety=0.8)[0].energies["error"]
@@ -167,26 +179,34 @@ def test_energy_in_a_collision_converges_with_the_step(kind):
 
 
 @pytest.mark.parametrize("phi", [0.0, 26.0])
-def test_the_ledger_closes_over_1e5_steps(phi):
-    """A collision of crossed edges, then free flight of both bodies, tumbling."""
+def test_momentum_and_energy_are_conserved_over_1e5_steps(phi):
+    """A collision of crossed edges, then free flight of both bodies, tumbling.
+
+    Momenta change by round-off that adds up over the steps, energy by the error of the collision.
+    """
     sim, linear, angular = collide("edge", phi=phi, spin=(0.5, 0.2, 1.0))
     sim.step(100_000 - sim.step_count)
     now, turned = momentum(sim)
-    np.testing.assert_allclose(now, linear, atol=1e-12 * np.abs(linear).max())
-    np.testing.assert_allclose(turned, angular, atol=1e-6 * np.abs(angular).max())
+    np.testing.assert_allclose(now, linear, rtol=0, atol=5e-14 * np.abs(linear).max())
+    np.testing.assert_allclose(turned, angular, rtol=0, atol=1e-12 * np.abs(angular).max())
     assert abs(sim.energies["error"]) < 1e-3
 
 
-def test_a_spinning_collision_with_friction():
+def test_spinning_collision_with_friction_conserves_momentum_and_energy():
+    """The collision of the test above by itself: momenta to round-off."""
     sim, linear, angular = collide("edge", phi=26.0, spin=(0.5, 0.2, 1.0))
     now, turned = momentum(sim)
-    np.testing.assert_allclose(now, linear, atol=1e-12 * np.abs(linear).max())
-    np.testing.assert_allclose(turned, angular, atol=1e-6 * np.abs(angular).max())
-    assert abs(sim.energies["error"]) < 1e-3
+    np.testing.assert_allclose(now, linear, rtol=0, atol=1e-14 * np.abs(linear).max())
+    np.testing.assert_allclose(turned, angular, rtol=0, atol=5e-14 * np.abs(angular).max())
+    assert abs(sim.energies["error"]) < 5e-4
 
 
 @pytest.mark.parametrize("speed", [1.0, 10.0, 50.0])
-def test_a_fast_drop_is_never_missed(speed):
+def test_fast_impact_is_detected(speed):
+    """A block that falls on a bed at up to 50 m/s bounces with 0.91 of its speed.
+
+    The rest of the speed is elastic vibration of the block.
+    """
     sim = simulate(
         [
             {"group": "bed", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},
@@ -196,12 +216,15 @@ def test_a_fast_drop_is_never_missed(speed):
     )
     while sim.time < 0.2 / speed + 0.01:
         sim.step(200)
-    assert mean_velocity(sim, "block")[2] > 0.5 * speed
+    assert mean_velocity(sim, "block")[2] > 0.9 * speed
 
 
 @pytest.mark.parametrize("depth", [1e-4, 0.01, 0.2])
 def test_overlapping_blocks_are_reported_and_free_of_stress(depth):
-    """Deep ones too: a compiler that got their limit wrong let the upper block fall through."""
+    """Nothing acts, so velocities are round-off: 3e-12 m/s after 200 steps.
+
+    (A compiler that got the depth limit wrong let deep blocks fall through.)
+    """
     sim = simulate(
         [
             {"group": "lower", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},
@@ -211,14 +234,16 @@ def test_overlapping_blocks_are_reported_and_free_of_stress(depth):
     )
     assert f"up to {depth:g} m" in sim.audit.warnings[0]
     sim.step(200)
-    assert np.abs(sim.fields["velocity"]).max() < 1e-9
+    assert np.abs(sim.fields["velocity"]).max() < 2e-11
 
 
 @pytest.mark.parametrize("axis", [[0, 0, 1], [1, 0, 0], [1, 2, 3]])
-def test_rigid_rotation_of_a_loaded_pair(axis):
-    """A pressed, sheared frictional pair is turned by 90 degrees: its forces turn with it.
+def test_contact_force_rotates_with_a_loaded_pair(axis):
+    """A pressed, sheared frictional pair is rotated by 90 degrees: its forces rotate with it.
 
-    The motion is imposed on all nodes; the contact force is what semi-springs report.
+    The motion is imposed on all nodes in 300 steps; the force is that of the semi-springs.
+    Tolerance: round-off of coordinates, 1e-16 m, against a shear displacement of 3e-6 m, in every
+    step.
     """
     sim = simulate(
         [
@@ -255,12 +280,12 @@ def test_rigid_rotation_of_a_loaded_pair(axis):
         impose(now, last)
         last = now
     np.testing.assert_allclose(
-        contact_force(), turn(axis, 90) @ before, atol=1e-9 * np.linalg.norm(before)
+        contact_force(), turn(axis, 90) @ before, rtol=0, atol=1e-9 * np.linalg.norm(before)
     )
 
 
-def test_a_face_that_crosses_too_many_edges_stops_the_run_with_a_reason(tmp_path):
-    """A blade comes down across 40 small blocks, 80 edges. The run ends; what it did so far is kept."""
+def test_too_many_edge_crossings_stop_the_run_with_a_reason(tmp_path):
+    """A blade comes down across 40 small blocks, 80 edges. The run stops and keeps its results."""
     blade = [[x, y, z + 0.002] for x in (0, 4.2) for y, z in ((0, 0), (-0.3, 0.5), (0.3, 0.5))]
     row = [
         {
@@ -280,14 +305,15 @@ def test_a_face_that_crosses_too_many_edges_stops_the_run_with_a_reason(tmp_path
     )
     with pytest.raises(cdem.UnstableError, match="more than 64 edges; mesh the larger block finer"):
         sim.run()
-    assert abs(sim.energies["error"]) < 1e-6
+    assert abs(sim.energies["error"]) < 2e-15  # round-off: the blade has only moved on
     assert np.isfinite(sim.fields["position"]).all() and len(sim.contacts["kind"]) == 0
 
 
 def tumble(steps, blocks_per_side, modulus="0.1 GPa", seed=7):
-    """Random convex blocks falling and tumbling in a box.
+    """Random convex blocks fall and tumble in a box.
 
-    Every step is compared with an all-pairs search; a missed contact stops the run.
+    Every step is compared with an all-pairs search; a missed contact stops the run. Gives the
+    largest number of contacts in a step, and the simulation.
     """
     rng = np.random.default_rng(seed)
     n = blocks_per_side
@@ -334,16 +360,19 @@ def tumble(steps, blocks_per_side, modulus="0.1 GPa", seed=7):
     ("modulus", "steps", "blocks_per_side", "seed"),
     [("0.1 GPa", 400, 2, 7), ("2 MPa", 300, 2, 7), ("3 MPa", 60, 3, 26)],
 )
-def test_no_contact_is_missed(modulus, steps, blocks_per_side, seed):
-    """Soft blocks sink deeper than contacts begin, and their edges turn to other faces there. The
-    blocks of the last case overlap: vertices begin inside a block, far from the element behind."""
+def test_contact_search_agrees_with_an_all_pairs_search(modulus, steps, blocks_per_side, seed):
+    """No contact is missed among stiff blocks, soft blocks and blocks that overlap at the start.
+
+    Soft blocks penetrate deeper than the entry depth, and their contacts change targets there. In
+    the last case vertices begin deep inside a block.
+    """
     touching, sim = tumble(steps, blocks_per_side, modulus, seed)
     assert sim.step_count == steps
     assert touching > 0
 
 
 @pytest.mark.slow
-def test_no_contact_is_missed_among_343_blocks():
+def test_contact_search_agrees_with_an_all_pairs_search_for_343_blocks():
     touching, sim = tumble(steps=2000, blocks_per_side=7)
     assert touching > 100
     assert np.isfinite(sim.fields["position"]).all()
@@ -351,10 +380,10 @@ def test_no_contact_is_missed_among_343_blocks():
 
 @pytest.mark.parametrize("velocity", [(0, 0, -0.5), (0, -0.5, -0.3)])
 @pytest.mark.parametrize("turns", [(4, 8, 2), (4, 1, 1), (30, 1, 1)])
-def test_edges_of_nearly_flush_faces_make_no_energy(turns, velocity):
-    """Two edges that cross at a few degrees, their faces tilted by a few: the ledger closes.
+def test_edge_contacts_of_nearly_parallel_faces_conserve_energy(turns, velocity):
+    """Two edges cross at a few degrees, their faces tilted by a few: the energy ledger closes.
 
-    With the normal of the faces instead of V_mm x V_tt the first gained 83 % of its energy.
+    (With the normal of a face instead of V_mm x V_tt the first case gained 83 % of its energy.)
     """
     yaw, pitch, roll = turns
     rotation = turn([0, 0, 1], yaw) @ turn([0, 1, 0], pitch) @ turn([1, 0, 0], roll)
@@ -380,10 +409,10 @@ def test_edges_of_nearly_flush_faces_make_no_energy(turns, velocity):
     assert abs(sim.energies["error"]) < 1e-3
 
 
-def test_the_ledger_closes_over_bounces_with_dashpots():
-    """A tet bounces without friction; a third of its energy goes into contact dashpots.
+def test_energy_ledger_closes_over_bounces_with_dashpots():
+    """A tet bounces without friction; half of its energy goes into contact dashpots.
 
-    The ledger's error falls with the square of the step: 0.14 % at a fifth of the stable step.
+    The closing error falls with the square of the step: 0.10 % at a fifth of the stable step.
     """
     sim = simulate(
         [
@@ -407,14 +436,14 @@ def test_the_ledger_closes_over_bounces_with_dashpots():
     )
     sim.run()
     e = sim.energies
-    assert e["damping"] > 0.25 * (e["start"] + e["external"])
+    assert e["damping"] > 0.4 * (e["start"] + e["external"])
     assert abs(e["error"]) < 2e-3
 
 
-def test_a_contact_that_changes_its_face_makes_no_energy():
-    """A block without friction slides over tiles of areas 5 : 1, which are as much stiffer or softer.
+def test_change_of_target_conserves_energy():
+    """A block without friction slides over tiles of areas 5 : 1, whose stiffnesses are in that ratio.
 
-    Contacts that began as deep as the ones they took over from made 2e-3 of its energy.
+    (With the penetration instead of the energy kept, changes of target made 2e-3 of its energy.)
     """
     bed, x = [], 0.0
     while x < 6:
@@ -436,11 +465,11 @@ def test_a_contact_that_changes_its_face_makes_no_energy():
 
 
 @pytest.mark.parametrize("phi", [0, 10])
-def test_what_a_contact_holds_that_ends_under_load_is_counted(phi):
-    """The vertices of a soft block slide over the rim of its bed, and leave the face while pressed.
+def test_energy_ledger_counts_contacts_that_end_under_load(phi):
+    """The vertices of a soft block slide over the rim of its bed and leave the face while pressed.
 
-    Their springs give nothing back: it goes to the dashpot. Counted as those of contacts that
-    open, the ledger missed 4.6e-4 and 8.4e-4 with any step.
+    The energy of their springs is counted as lost in the dashpot. (Without it the ledger is open by
+    4.6e-4 and 8.4e-4 at any step.)
     """
     sim = simulate(
         [
@@ -459,8 +488,8 @@ def test_what_a_contact_holds_that_ends_under_load_is_counted(phi):
     assert abs(sim.energies["error"]) < 2e-5
 
 
-def test_no_contact_of_freshly_broken_rock_is_missed():
-    """48 tets that all break at once and fly apart: neighbours share edges, vertices, and faces."""
+def test_contact_search_in_fragmenting_rock_agrees_with_an_all_pairs_search():
+    """48 tets break at once and fly apart: neighbours share edges, vertices, and faces."""
     sim = simulate(
         [
             {"group": "rock", "box": {"size": [2, 2, 2], "divisions": [2, 2, 2], "shape": "tet4"}},
@@ -481,4 +510,4 @@ def test_no_contact_of_freshly_broken_rock_is_missed():
     for _ in range(800):
         sim.step(1)  # stops if an all-pairs search finds anything else
         edges += int((sim.contacts["kind"] == 1).sum())
-    assert edges > 100
+    assert edges > 10_000

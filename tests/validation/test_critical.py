@@ -1,4 +1,4 @@
-"""`cdem critical`: the angle of friction and the factor of safety of a block on a slope."""
+"""`cdem critical`: the critical friction angle and the factor of safety of a block on a slope."""
 
 import json
 import math
@@ -9,15 +9,15 @@ from scenes import case
 from typer.testing import CliRunner
 
 from cdem.cli import app
-from cdem.criterion import Criterion
-from cdem.critical import find_critical, parameter, strength_reduction
 from cdem.errors import CaseError
+from cdem.study.criterion import Criterion
+from cdem.study.critical import find_critical, parameter, strength_reduction
 
 SLOPE = 30.0  # [deg]
 
 
 def block_on_a_slope(friction_angle=45, **more):
-    """The block comes to rest with strong friction first; then the last stage decides."""
+    """A block that comes to rest at a friction angle of 60 degrees, and then gets another."""
     t = np.radians(SLOPE)
     return case(
         [
@@ -39,31 +39,34 @@ def block_on_a_slope(friction_angle=45, **more):
     )
 
 
-def test_critical_angle_of_friction():
-    """It slides when tan(phi) < tan(slope)."""
-    told = []
+def test_critical_friction_angle_is_the_slope():
+    """The block slides when tan(phi) < tan(slope): the bracket of 0.01 degrees holds the slope."""
+    reported = []
     found = find_critical(
         block_on_a_slope(),
         parameter("interfaces.default.friction_angle"),
         (50, 10),
         tolerance=0.01,
         threads=1,
-        report=lambda trial, stable, failed: told.append((trial.value, stable, failed)),
+        report=lambda trial, stable, failed: reported.append((trial.value, stable, failed)),
     )
-    assert found.failed <= SLOPE + 0.002 and found.stable >= SLOPE - 0.002
+    assert found.failed <= SLOPE <= found.stable
     assert found.stable - found.failed <= 0.01
-    assert [t.value for t in found.trials] == [value for value, *_ in told]
+    assert [t.value for t in found.trials] == [value for value, *_ in reported]
 
 
-def test_factor_of_safety():
-    """F = tan(phi) / tan(slope) without cohesion; phi is that of the last stage, not 60 degrees."""
+def test_strength_reduction_gives_the_factor_of_safety():
+    """F = tan(phi) / tan(slope) without cohesion; phi is that of the last stage, not 60 degrees.
+
+    Tolerance: the width of the bracket.
+    """
     this = block_on_a_slope(friction_angle=45)
     found = find_critical(this, strength_reduction(), (1, 3), tolerance=0.002, threads=1)
-    assert found.value == pytest.approx(1 / math.tan(math.radians(SLOPE)), abs=0.003)
+    assert found.value == pytest.approx(1 / math.tan(math.radians(SLOPE)), abs=0.002)
 
 
-def test_a_search_is_deterministic():
-    """The same trials to the last step, on one thread and on two."""
+def test_search_is_deterministic_on_any_number_of_threads():
+    """Two searches on one thread and one on two make the same trials with the same steps."""
     searches = [
         find_critical(
             block_on_a_slope(), strength_reduction(), (1, 3), tolerance=0.1, threads=threads
@@ -73,8 +76,8 @@ def test_a_search_is_deterministic():
     assert searches[0] == searches[1] == searches[2]
 
 
-def test_a_parameter_that_makes_another_model():
-    """The steepest slope on which friction holds the block: each trial builds its own."""
+def test_search_over_a_parameter_that_changes_the_model():
+    """The steepest slope on which friction of 35 degrees holds the block: each trial builds a model."""
     model = {"rotate": {"axis": [0, 1, 0], "angle": 0}}
     this = block_on_a_slope(friction_angle=35, model=model)
     this.set("loads.gravity", [0, 0, -9.81])
@@ -82,8 +85,8 @@ def test_a_parameter_that_makes_another_model():
     assert (found.stable, found.failed) == (33, 35.5)
 
 
-def test_another_criterion_is_obeyed():
-    """Nothing slides far in 50 steps: there is no rest in so many."""
+def test_failure_criterion_can_be_set():
+    """With at most 50 steps a trial fails because it has not come to rest."""
     found = find_critical(
         block_on_a_slope(),
         parameter("interfaces.default.friction_angle"),
@@ -100,7 +103,8 @@ def test_another_criterion_is_obeyed():
         Criterion.read(["trvel=1"])
 
 
-def test_both_ends_rest():
+def test_bracket_without_failure_is_an_error():
+    """Friction of 40 and of 50 degrees holds a block on a slope of 30 degrees."""
     with pytest.raises(CaseError, match="both 40 and 50 come to rest"):
         find_critical(
             block_on_a_slope(),
@@ -111,7 +115,8 @@ def test_both_ends_rest():
         )
 
 
-def test_from_the_command_line(tmp_path):
+def test_command_line_prints_the_bracket(tmp_path):
+    """The bracket goes to stdout as JSON, the trials and the criterion to stderr."""
     file = tmp_path / "slope.yaml"
     file.write_text(block_on_a_slope().dump())
     words = ["critical", str(file), "--between", "41", "20", "--tolerance", "1", "--threads", "1"]

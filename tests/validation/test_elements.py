@@ -1,4 +1,4 @@
-"""Elements at rest: patch test, and the deflection of a cantilever (Timoshenko)."""
+"""Elements at rest: patch test, deflection of a cantilever (Timoshenko); hourglass control."""
 
 import meshio
 import numpy as np
@@ -6,13 +6,16 @@ import pytest
 from scenes import ROCK, simulate
 
 import cdem
-from cdem.mesh import box
+from cdem.mesh.primitives import box
 
 
 @pytest.mark.parametrize("hexahedra", ["full", "one-point"])
 @pytest.mark.parametrize("shape", ["hex8", "tet4"])
-def test_patch(tmp_path, shape, hexahedra):
-    """A distorted mesh under uniform traction has the same stress in every element."""
+def test_patch_test_gives_uniform_stress(tmp_path, shape, hexahedra):
+    """A distorted mesh under a traction of 0.1 MPa has that stress in every element.
+
+    Tolerance: the unbalance ratio of 1e-9 at which the stage ends, 1e-4 Pa.
+    """
     mesh = box("body", [1, 1, 1], [3, 3, 3], shape=shape)
     points = mesh.points.copy()
     inside = ((points > 1e-6) & (points < 1 - 1e-6)).all(axis=1)
@@ -51,12 +54,15 @@ def test_patch(tmp_path, shape, hexahedra):
     stress = sim.core.stress()[shape].reshape(6, -1)[:, :count]
     exact = np.zeros((6, count))
     exact[2] = 1e5
-    np.testing.assert_allclose(stress, exact, atol=10.0)  # strain squared times E
+    np.testing.assert_allclose(stress, exact, rtol=0, atol=2e-4)  # [Pa]
 
 
 @pytest.mark.parametrize("hexahedra, cells, within", [("full", 4, 0.011), ("one-point", 1, 0.004)])
-def test_cantilever(hexahedra, cells, within):
-    """P L^3 / 3 E I + P L / (5/6 G A); one element of one point in the height is enough."""
+def test_deflection_of_a_cantilever(hexahedra, cells, within):
+    """P L^3 / 3 E I + P L / (5/6 G A); one element of one point in the height is enough.
+
+    Tolerance: the error of the mesh, 1.0 % and 0.35 %.
+    """
     length, load, young = 10, 1e4, 10e9
     sim = simulate(
         [{"group": "beam", "box": {"size": [length, 1, 1], "divisions": [length * cells, cells, cells]}}],
@@ -77,8 +83,11 @@ def test_cantilever(hexahedra, cells, within):
     assert -sim.fields["displacement"][tip, 2].mean() == pytest.approx(exact, rel=within)
 
 
-def test_hourglass_modes_are_resisted_and_conserve_energy():
-    """A ringing, spinning hexahedron of one point: the ledger closes over 10 turns."""
+def test_hourglass_control_resists_and_conserves_energy():
+    """A hexahedron of one point vibrates and spins: the energy ledger closes over 10 revolutions.
+
+    Its edge keeps its length but for the vibration of 0.1 %.
+    """
     sim = simulate(
         [{"group": "block", "box": {"size": [1, 0.8, 0.6]}}],
         {"block": {"angular_velocity": [1, 20, 3]}},
@@ -91,6 +100,6 @@ def test_hourglass_modes_are_resisted_and_conserve_energy():
     turned = 2 * np.pi / np.linalg.norm([1, 20, 3])
     while sim.time < 10 * turned:
         sim.step(500)
-        assert abs(sim.energies["error"]) < 2e-3
+        assert abs(sim.energies["error"]) < 5e-4
     now = sim.fields["position"][1] - sim.fields["position"][0]
-    assert np.linalg.norm(now) == pytest.approx(np.linalg.norm(edges), rel=0.2)
+    assert np.linalg.norm(now) == pytest.approx(np.linalg.norm(edges), rel=3e-3)

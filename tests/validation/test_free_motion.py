@@ -21,7 +21,7 @@ def spinning(shape, spin, **more):
 
 
 def volume(sim):
-    from cdem.shapes import NODES, reference_gradients
+    from cdem.mesh.element_shapes import NODES, reference_gradients
 
     x, t = sim.fields["position"], sim.build.topology
     return sum(reference_gradients(s, x[t.element_nodes[s]])[1].sum() for s in NODES)
@@ -30,8 +30,8 @@ def volume(sim):
 def revolve(shape, revolutions, rate=20.0):
     """Drift of energy and volume: means over the last revolution less those over the first.
 
-    Within a revolution both swing with the elastic breathing; the largest swing of the energy is
-    the third number.
+    Within a revolution both vary as the element breathes elastically; the third number is the
+    range of the closing error within the first revolution.
     """
     sim = spinning(shape, rate * np.array([3, 5, 20]) / np.linalg.norm([3, 5, 20]))
     one_turn = int(2 * np.pi / rate / sim.core.scalars()["dt"])
@@ -51,19 +51,21 @@ def revolve(shape, revolutions, rate=20.0):
 
 
 @pytest.mark.parametrize("shape", [*SHAPES, "hex8 of one point"])
-def test_spin_keeps_energy_and_volume(shape):
+def test_spin_conserves_energy_and_volume(shape):
+    """Neither drifts over ten revolutions at 20 rad/s."""
     energy, drift, swing = revolve(shape, 10)
     assert abs(energy) < 1e-6
-    assert abs(drift) < 1e-5
+    assert abs(drift) < 2e-6
     assert swing < 1e-5
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_hundred_revolutions_keep_energy_and_volume(shape):
+def test_hundred_revolutions_conserve_energy_and_volume(shape):
+    """The test above for ten times as long, which averages the vibration of the start."""
     energy, drift, _ = revolve(shape, 100)
-    assert abs(energy) < 1e-6
-    assert abs(drift) < 1e-5
+    assert abs(energy) < 5e-8
+    assert abs(drift) < 5e-7
 
 
 def euler(inertia, spin, time, steps=4000):
@@ -98,13 +100,16 @@ def exact_inertia(sim):
 
 
 @pytest.mark.parametrize("shape", ["tet4", "hex8"])
-def test_one_element_tumbles_as_euler_says(shape):
-    """Lumped masses would make the inertia 5 (tet) or 3 times (hex) too large."""
+def test_tumbling_element_follows_eulers_equations(shape):
+    """Lumped masses would make the inertia 5 (tet) or 3 times (hex) too large.
+
+    Tolerance: the spin of 9 rad/s strains the element by rho w^2 L^2 / E, about 5e-6.
+    """
     spin = np.array([2.0, 9.0, 1.0])
     sim = spinning(shape, spin, rock={"young_modulus": "40 GPa"})
     inertia = exact_inertia(sim)
     _, angular = momentum(sim)
-    np.testing.assert_allclose(angular, inertia @ spin, rtol=1e-9)
+    np.testing.assert_allclose(angular, inertia @ spin, rtol=3e-15)
 
     time = 0.6
     steps = round(time / sim.core.scalars()["dt"])
@@ -115,51 +120,65 @@ def test_one_element_tumbles_as_euler_says(shape):
     expected = euler(inertia, spin, sim.time)
     _, angular = momentum(sim)
     measured = np.linalg.solve(inertia, rotation.T @ angular)
-    np.testing.assert_allclose(measured, expected, atol=2e-3 * np.linalg.norm(spin))
+    np.testing.assert_allclose(measured, expected, rtol=0, atol=2e-6 * np.linalg.norm(spin))
 
 
-@pytest.mark.parametrize("formulation, bound", [("incremental", 1e-5), ("paper-incremental", 0.2)])
-def test_other_formulations(formulation, bound):
-    """The paper's Eq. 2 drifts by about 2 pi times the rotation per step in each revolution."""
+@pytest.mark.parametrize(
+    "formulation, per_radian, within", [("incremental", 0, 3e-5), ("paper-incremental", -1, 5e-3)]
+)
+def test_volume_drift_of_incremental_formulations(formulation, per_radian, within):
+    """The volume drifts by `per_radian` times the rotation in a step, for each radian.
+
+    The paper's Eq. 2 loses volume so. That is its first order in the rotation in a step: 3 % of the
+    drift of 5 % are left. The incremental formulation does not drift: 7e-6 by elastic breathing.
+    """
     sim = spinning("hex8", [0, 0, 20], elements={"formulation": formulation})
     turns = 3
     steps = int(turns * 2 * np.pi / 20 / sim.core.scalars()["dt"])
     start = volume(sim)
     sim.step(steps)
     drift = volume(sim) / start - 1
-    assert abs(drift) < max(bound, 3e-4)  # 3e-4: the breathing of the spinning block
-    if formulation == "paper-incremental":
-        per_step = 20 * sim.core.scalars()["dt"]
-        assert drift == pytest.approx(-2 * np.pi * per_step * turns, rel=0.3)
+    per_step = 20 * sim.core.scalars()["dt"]
+    assert drift == pytest.approx(per_radian * 2 * np.pi * per_step * turns, abs=within)
 
 
-def test_the_small_strain_baseline_cannot_turn():
-    """[paper] Eq. 1: a rigid turn of 90 degrees is taken for a large strain."""
+def test_small_strain_formulation_expands_in_a_spin():
+    """The paper's Eq. 1 measures no strain in u = w t x X: nodes go straight on.
+
+    After a time t the volume is 1 + (w t)^2 times that at the start, to round-off. The strain is
+    round-off, of which the energy is the square.
+    """
     sim = spinning("hex8", [0, 0, 20], elements={"formulation": "paper-total"})
     sim.step(int(np.pi / 2 / 20 / sim.core.scalars()["dt"]))
-    assert sim.energies["strain"] > 10 * sim.energies["start"] or abs(volume(sim) / 0.91 - 1) > 1e-3
+    assert volume(sim) / 0.91 == pytest.approx(1 + (20 * sim.time) ** 2, abs=1e-13)
+    assert sim.energies["strain"] < 1e-22 * sim.energies["start"]
 
 
-def test_larger_blocks_have_exact_inertia_too():
+def test_moment_of_inertia_of_a_meshed_cube():
+    """m a^2 / 6 with exact masses, (1 + 2 / n^2) times as much with lumped ones, to round-off."""
     sim = simulate(
         [{"group": "block", "box": {"size": [1, 1, 1], "divisions": [3, 3, 3]}}],
         {"block": {"angular_velocity": [0, 0, 1]}},
     )
     _, angular = momentum(sim)
-    assert angular[2] == pytest.approx(ROCK["density"] / 6, rel=1e-9)
+    assert angular[2] == pytest.approx(ROCK["density"] / 6, rel=3e-15)
     lumped = simulate(
         [{"group": "block", "box": {"size": [1, 1, 1], "divisions": [3, 3, 3]}}],
         {"block": {"angular_velocity": [0, 0, 1]}},
         elements={"mass": "lumped"},
     )
     _, angular = momentum(lumped)
-    assert angular[2] == pytest.approx(ROCK["density"] / 6 * (1 + 2 / 3**2), rel=1e-9)
+    assert angular[2] == pytest.approx(ROCK["density"] / 6 * (1 + 2 / 3**2), rel=5e-15)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("motion", ["velocity", "angular_velocity"])
-def test_mass_damping_slows_flight_and_spin_alike(shape, motion):
-    """Damping C = alpha M: linear and angular momentum fall as exp(-alpha t)."""
+def test_mass_damping_reduces_linear_and_angular_momentum_alike(shape, motion):
+    """Damping C = alpha M: linear and angular momentum fall as exp(-alpha t).
+
+    Tolerance: damping with the velocity before the step is off by alpha^2 t dt / 2, up to 8e-5 of
+    the momentum.
+    """
     alpha, time = 2.0, 0.3
     sim = simulate(
         [{"group": "block", **SHAPES[shape]}],
@@ -170,17 +189,24 @@ def test_mass_damping_slows_flight_and_spin_alike(shape, motion):
     before = momentum(sim)[which]
     sim.run()
     expected = np.exp(-alpha * sim.time) * before
-    assert np.allclose(momentum(sim)[which], expected, atol=1e-3 * np.linalg.norm(before))
+    np.testing.assert_allclose(
+        momentum(sim)[which], expected, rtol=0, atol=2e-4 * np.linalg.norm(before)
+    )
 
 
 @pytest.mark.parametrize("divisions", [[1, 1, 1], [2, 2, 2], [4, 1, 1]])
 @pytest.mark.parametrize(
-    "which", [{"group": "block"}, {"surface": {"group": "block", "normal": [-1, 0, 0]}}]
+    "which, within",
+    [
+        ({"group": "block"}, 2e-15),
+        ({"surface": {"group": "block", "normal": [-1, 0, 0]}}, 0.02),
+    ],
 )
-def test_a_driven_block_takes_the_work_that_moves_it(divisions, which):
+def test_work_of_a_driven_block_is_its_kinetic_energy(divisions, which, within):
     """W = m v^2 / 2 of a block that is brought to v, by all its nodes or by a face, with exact masses.
 
-    Supports of one block feel each other's inertia through the full mass matrix.
+    Supports of one block feel each other's inertia through the full mass matrix. Tolerances:
+    round-off; a block that is driven by a face also vibrates, with 0.3 to 1.4 % of the energy.
     """
     drive = {"components": ["x"], "velocity": [0.1, 0, 0], "history": [[0, 0], [0.02, 1]]}
     sim = simulate(
@@ -190,12 +216,16 @@ def test_a_driven_block_takes_the_work_that_moves_it(divisions, which):
     )
     sim.run_until(0.03)
     energy = sim.energies
-    assert energy["external"] == pytest.approx(0.5 * ROCK["density"] * 0.1**2, rel=0.02)
-    assert abs(energy["error"]) < 1e-9
+    assert energy["external"] == pytest.approx(0.5 * ROCK["density"] * 0.1**2, rel=within)
+    assert abs(energy["error"]) < 1e-12
 
 
-def test_what_is_driven_everywhere_follows_its_history():
-    """Nothing limits the step, but the motion must still be that of the curve."""
+def test_block_driven_at_all_nodes_follows_its_history():
+    """A velocity rises to 0.1 m/s and falls to 0 within 0.03 s: displacement 0.1 * 0.03 / 2 m.
+
+    No stiffness limits the step. Tolerances: a stage ends up to a step late; the corners of the
+    history lie within steps.
+    """
     curve = [[0, 0], [0.02, 1], [0.03, 0]]
     sim = simulate(
         [{"group": "block", "box": {"size": [1, 1, 1]}}],
@@ -206,11 +236,12 @@ def test_what_is_driven_everywhere_follows_its_history():
         stages=[{"name": "push", "mode": "dynamic", "duration": 0.05}],
     )  # fmt: skip
     sim.run()
-    assert sim.time == pytest.approx(0.05, rel=0.01)
-    assert sim.fields["displacement"][:, 0] == pytest.approx(0.5 * 0.03 * 0.1, rel=1e-3)
+    assert 0.05 <= sim.time < 0.05 + sim.core.scalars()["dt_last"]
+    assert sim.fields["displacement"][:, 0] == pytest.approx(0.5 * 0.03 * 0.1, rel=1e-4)
 
 
-def test_looking_at_stress_leaves_the_ledger_alone():
+def test_reading_stress_does_not_change_the_energies():
+    """All energies are equal to the last bit before and after."""
     sim = simulate(
         [{"group": "block", "box": {"size": [1, 1, 1], "divisions": [2, 2, 2]}}],
         {"block": {"fix": ["x"]}},

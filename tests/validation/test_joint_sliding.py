@@ -1,6 +1,6 @@
-"""A body cut by joints slides as its joints say: along the dip direction, with the joint's friction.
+"""A body cut by a joint slides down the dip direction with the friction of the joint.
 
-Acceleration of what lies on a plane of dip t: g (sin t - cos t tan phi), down the dip direction.
+Acceleration on a plane of dip t: g (sin t - cos t tan phi).
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ G, DIP, FRICTION = 9.81, 35.0, 15.0
 
 
 def upper_part(**joint):
-    """A cube cut in two, its lower part held; the default interface would hold the upper one."""
+    """A cube cut in two, its lower part fixed; the default interface would hold the upper one."""
     return simulate(
         [{"group": "rock", "box": {"size": [2, 2, 2]}}],
         {"rock": {}},
@@ -46,7 +46,11 @@ def velocity(sim):
 
 
 @pytest.mark.parametrize("direction", [0.0, 90.0, 217.0])
-def test_slides_down_the_dip_direction_with_the_friction_of_the_joint(direction):
+def test_acceleration_on_a_joint_is_down_its_dip_direction(direction):
+    """g (sin t - cos t tan phi) along the dip direction, 0 across it.
+
+    Tolerance: the block of soft rock vibrates, which disturbs the fit by 9e-5.
+    """
     sim = upper_part(dip=DIP, dip_direction=direction)
     assert len(sim.build.topology.block_group) == 2
     t, azimuth = np.radians(DIP), np.radians(direction)
@@ -59,4 +63,4 @@ def test_slides_down_the_dip_direction_with_the_friction_of_the_joint(direction)
     late = np.array(times) > 0.05
     slope = np.polyfit(np.array(times)[late], np.array(speeds)[late], 1)[0]
     exact = G * (np.sin(t) - np.cos(t) * np.tan(np.radians(FRICTION)))
-    assert slope == pytest.approx(exact * down, abs=3e-3 * exact)
+    assert slope == pytest.approx(exact * down, abs=3e-4 * exact)

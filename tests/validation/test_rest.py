@@ -1,4 +1,4 @@
-"""Ways to rest: local damping, kinetic and adaptive relaxation end in the same state."""
+"""Relaxation: local damping, kinetic and adaptive relaxation end in the same equilibrium."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from scenes import case, irregular_tets, simulate
 
 import cdem
 from cdem.errors import UnstableError
-from cdem.series import SurfaceSeries
+from cdem.output.reader import SurfaceSeries
 
 BOND = {"friction_angle": 30, "cohesion": "1 GPa", "tensile_strength": "1 GPa"}
 SLOPE = [{"group": "slope", "box": {"size": [22, 15, 16], "divisions": [22, 15, 16]}}]
@@ -14,7 +14,7 @@ TETS = [{"group": "slope", "box": {"size": [3, 3, 3], "divisions": [3, 3, 3], "s
 
 
 def settle(way, blocks, split, tolerance=1e-5, group="slope", **model):
-    """Steps to rest under gravity on a fixed base, displacements, closing error."""
+    """Steps to rest under gravity on a fixed base, displacements [m], closing error."""
     base = {"min": [-99, -99, -1e-6], "max": [99, 99, 1e-6]}
     sim = simulate(
         blocks,
@@ -29,18 +29,23 @@ def settle(way, blocks, split, tolerance=1e-5, group="slope", **model):
 
 
 def test_adaptive_relaxation_of_5184_irregular_tets(tmp_path):
-    """A fifth of the steps of local damping 0.8 or fewer (here 481 to 2,901), the same answer."""
+    """At most a fifth of the steps of local damping 0.8 (481 against 2,941), the same displacements.
+
+    Tolerance of these: the unbalance ratio of 1e-5 at which both end.
+    """
     mesh = irregular_tets(tmp_path / "slope.vtk", [22, 15, 16], [12, 8, 9])
     local, expected, _ = settle("local", [], "one", group="default", **mesh)
     steps, found, error = settle("adaptive", [], "one", group="default", **mesh)
     assert steps <= local / 5
-    assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
     assert abs(error) < 1e-9
 
 
-def test_scaled_masses_end_with_their_stage(tmp_path):
-    """A column that hung in adaptive relaxation swings with its own masses when gravity ends: period
-    4 L / sqrt(E / rho)."""
+def test_column_vibrates_with_its_own_mass_after_relaxation(tmp_path):
+    """A column rests under gravity by relaxation with scaled masses, and vibrates when gravity ends.
+
+    Its period is 4 L / sqrt(E / rho). Tolerance: the mesh of 2 x 2 x 8 cells, 1.6 %.
+    """
     sim = simulate(
         [],
         {"default": {}},
@@ -70,24 +75,29 @@ def test_scaled_masses_end_with_their_stage(tmp_path):
 
 
 def test_adaptive_relaxation_of_5280_hexahedra():
-    """A third of the steps of local damping 0.8 or fewer (here 481 to 1,921), the same answer."""
+    """At most a third of the steps of local damping 0.8 (481 against 1,921), the same displacements."""
     local, expected, _ = settle("local", SLOPE, "one")
     steps, found, error = settle("adaptive", SLOPE, "one")
     assert steps <= local / 3
-    assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
-    assert abs(error) < 1e-6
+    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
+    assert abs(error) < 1e-9
 
 
-@pytest.mark.parametrize("way", ["kinetic", "adaptive"])
-def test_bonded_tets_come_to_the_same_rest(way):
+@pytest.mark.parametrize("way, closing", [("kinetic", 1e-4), ("adaptive", 1e-10)])
+def test_relaxation_methods_reach_the_same_equilibrium(way, closing):
+    """Bonded tets by each method and by local damping: the same displacements.
+
+    Tolerances: the unbalance ratio of 1e-6 at which all end; the motion between the stops of
+    kinetic relaxation is undamped, with a closing error of 3e-5.
+    """
     _, expected, _ = settle("local", TETS, "elements", 1e-6)
     _, found, error = settle(way, TETS, "elements", 1e-6)
-    assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
-    assert abs(error) < 1e-3
+    assert np.abs(found - expected).max() < 2e-5 * np.abs(expected).max()
+    assert abs(error) < closing
 
 
-def test_a_missed_contact_stops_a_checked_run():
-    """`contact.check` compares with an all-pairs search; lists renewed too seldom fail it."""
+def test_missed_contact_stops_a_checked_run():
+    """`contact.check` compares with an all-pairs search; pair lists rebuilt too seldom fail it."""
     blocks = [
         {"group": "bed", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]},
         {"group": "block", "box": {"size": [1, 1, 1]}, "translate": [0, 0, 0.05]},
@@ -100,8 +110,8 @@ def test_a_missed_contact_stops_a_checked_run():
         simulate(blocks, groups, stages=[stage], contact=seldom).run()
 
 
-def test_a_static_stage_ends_without_kinetic_energy_gained():
-    """From lumped to exact masses: the ledger stays closed over the change of stage."""
+def test_change_of_the_mass_matrix_between_stages_keeps_the_ledger_closed():
+    """Local damping takes lumped masses and the next stage exact ones: the kinetic energy changes."""
     sim = cdem.Simulation(
         cdem.Case.from_dict(
             {
@@ -120,12 +130,12 @@ def test_a_static_stage_ends_without_kinetic_energy_gained():
         )
     )  # fmt: skip
     sim.run()
-    assert abs(sim.energies["error"]) < 1e-3
+    assert abs(sim.energies["error"]) < 5e-5
 
 
 @pytest.mark.parametrize("gap", [0, 0.5])
-def test_what_cannot_rest_is_said(gap):
-    """Two blocks upon a bed come to rest; above it under upward gravity they never do."""
+def test_bodies_without_support_are_warned_of_and_do_not_converge(gap):
+    """Two blocks on a bed come to rest; above it under upward gravity they never do."""
     cube = {"size": [1, 1, 1]}
     sim = simulate(
         [
@@ -151,12 +161,15 @@ def test_what_cannot_rest_is_said(gap):
 
 
 @pytest.mark.parametrize(
-    ("damping", "divisions"), [({"local": 0.8}, [2, 2, 4]), ({"mass": 2e3}, [1, 1, 1])]
+    ("damping", "divisions", "within"),
+    [({"local": 0.8}, [2, 2, 4], 1e-3), ({"mass": 2e3}, [1, 1, 1], 2e-5)],
 )
-def test_damping_leaves_the_force_of_a_driven_end_alone(damping, divisions):
-    """A bar that is pressed by v t presses back with E A v t / l at both ends.
+def test_damping_does_not_change_the_reaction_of_a_driven_end(damping, divisions, within):
+    """A bar pressed at the speed v for a time t has reactions E A v t / l at both ends.
 
-    The bar of one element has no nodes that are free along it, which the mass damping would brake.
+    Reactions are those at the start of the last step. In the bar of one element mass damping brakes
+    no node, for none is free along it. Tolerances: stress waves of the start, which local damping
+    leaves at 3e-4; the rounded start of the ramp, which takes a part of a step.
     """
     end = {"group": "slope", "normal": [0, 0, 1]}
     sim = simulate(
@@ -174,13 +187,16 @@ def test_damping_leaves_the_force_of_a_driven_end_alone(damping, divisions):
     )  # fmt: skip
     sim.run()
     height, force = sim.build.start_position[:, 2], sim.fields["reaction"][:, 2]
-    pressed = 1e10 * 0.01 * 0.05 / 2
-    assert force[height < 0.01].sum() == pytest.approx(pressed, rel=0.01)
-    assert force[height > 1.99].sum() == pytest.approx(-pressed, rel=0.01)
+    time = sim.time - sim.core.scalars()["dt_last"]
+    pressed = 1e10 * 0.01 * (time - 0.01) / 2  # the ramp takes half of its 0.02 s
+    assert force[height < 0.01].sum() == pytest.approx(pressed, rel=within)
+    assert force[height > 1.99].sum() == pytest.approx(-pressed, rel=within)
 
 
-def test_the_wall_time_foreseen_leaves_out_held_rock():
-    def foreseen(**bed):
+def test_estimated_wall_time_leaves_out_fixed_rock():
+    """512 more elements at 2 million elements and steps in a second, to round-off."""
+
+    def estimate(**bed):
         return simulate(
             [
                 {"group": "bed", "box": {"size": [8, 8, 8], "divisions": [8, 8, 8]}},
@@ -191,12 +207,12 @@ def test_the_wall_time_foreseen_leaves_out_held_rock():
             time={"step": 1e-4},
         ).audit.wall_time()
 
-    held, moved = foreseen(fix=["x", "y", "z"]), foreseen(fix=["x", "y"])
-    assert moved - held == pytest.approx(1e4 * 512 / 2e6, rel=1e-6)
+    held, moved = estimate(fix=["x", "y", "z"]), estimate(fix=["x", "y"])
+    assert moved - held == pytest.approx(1e4 * 512 / 2e6, abs=5e-15)
 
 
-def test_where_nothing_acts_a_static_stage_ends_at_once():
-    """Round-off over round-off is no unbalance, and no energy error either."""
+def test_static_stage_without_load_converges_at_once():
+    """Forces and energies are round-off: neither the unbalance ratio nor the closing error is."""
     sim = simulate(
         [
             {"group": "bed", "box": {"size": [3, 3, 0.5], "divisions": [2, 2, 1]}, "translate": [0, 0, -0.5]},
@@ -206,13 +222,13 @@ def test_where_nothing_acts_a_static_stage_ends_at_once():
         stages=[{"name": "rest", "mode": "static", "max_steps": 5000}],
     )  # fmt: skip
     assert sim.run() == "converged"
-    assert sim.step_count < 100
+    assert sim.step_count == 1
     sim.step(100)
-    assert abs(sim.energies["error"]) < 1e-6
+    assert sim.energies["error"] == 0
 
 
-def test_frames_keep_their_times_when_rows_would_be_closer_than_steps(tmp_path):
-    """A tenth of output.every is shorter than a step: frames come by time all the same."""
+def test_frames_keep_their_times_when_histories_are_due_in_every_step(tmp_path):
+    """A tenth of output.every is shorter than a step: frames are at most a step late all the same."""
     sim = cdem.Simulation(
         case(
             [{"group": "block", "box": {"size": [1, 1, 1]}}],
@@ -242,15 +258,19 @@ def test_frames_keep_their_times_when_rows_would_be_closer_than_steps(tmp_path):
 
 
 @pytest.mark.parametrize("step, warned", [("auto", 0), ("1 us", 0), ("20 ms", 1)])
-def test_a_step_above_the_stable_one_is_warned_of(step, warned):
+def test_step_above_the_stable_step_gives_a_warning(step, warned):
+    """Neither the automatic step nor 1 us is; 20 ms is."""
     sim = simulate(
         [{"group": "block", "box": {"size": [1, 1, 1]}}], {"block": {}}, time={"step": step}
     )
     assert len([w for w in sim.audit.warnings if "above the stable" in w]) == warned
 
 
-def test_damping_that_ends_leaves_nothing_behind():
-    """A block falls, first with local damping, then without: the ledger stays closed."""
+def test_energy_ledger_stays_closed_when_damping_ends():
+    """A block falls, first with local damping, then without.
+
+    (The closing error is 5e-3 where the last damping force is counted in the second stage too.)
+    """
     sim = simulate(
         [{"group": "a", "box": {"size": [1, 1, 1]}}],
         {"a": {}},
@@ -262,4 +282,4 @@ def test_damping_that_ends_leaves_nothing_behind():
     )
     sim.run()
     assert sim.energies["damping"] > 0
-    assert abs(sim.energies["error"]) < 1e-4  # 5e-3 where the last damping force is still counted
+    assert abs(sim.energies["error"]) < 1e-4

@@ -9,7 +9,7 @@ GRAVITY = 9.81
 
 def slide(bed, slope, phi, *, size=(1, 1, 0.4), divisions=(1, 1, 1), start=(1.37, 1.503, 0), time=0.5,
           rotation=None, rock=None, law=None, after=0.1):  # fmt: skip
-    """Acceleration down the slope of a block, fitted from a time on, the theory's [m/s2], and the run."""
+    """Acceleration of a block down the slope, fitted after `after`, that of theory [m/s2], and the run."""
     angle = np.radians(slope)
     gravity = GRAVITY * np.array([np.sin(angle), 0, -np.cos(angle)])
     down = np.array([1.0, 0, 0])
@@ -65,21 +65,24 @@ FLUSH = [
 
 
 @pytest.mark.parametrize("bed", BEDS)
-def test_the_mesh_of_the_bed_does_not_matter(bed):
+def test_acceleration_does_not_depend_on_the_mesh_of_the_bed(bed):
+    """Tolerance: vibration that is left at the start of the fit, 1e-6."""
     measured, theory, _ = slide(BEDS[bed], 30, 10)
-    assert measured == pytest.approx(theory, rel=1e-3)
+    assert measured == pytest.approx(theory, rel=5e-6)
 
 
-def test_in_a_rotated_frame():
+def test_acceleration_does_not_depend_on_the_frame():
+    """The bed of 20 x 8 hexahedra rotated by 77 degrees; tolerance as above."""
     measured, theory, _ = slide(BEDS["20 x 8 hexahedra"], 30, 10, rotation=([1, 2, 3], 77.0))
-    assert measured == pytest.approx(theory, rel=1e-3)
+    assert measured == pytest.approx(theory, rel=5e-6)
 
 
 @pytest.mark.parametrize("bed", ["one face", "20 x 8 hexahedra"])
-def test_a_joint_that_dilates_lifts_and_keeps_the_ledger(bed):
-    """It rises by tan(psi) times the dilation slip, over any seams, and stays there.
+def test_dilating_joint_rises_by_tan_psi_times_slip(bed):
+    """The block rises by tan(psi) times the dilation slip, over any seams, and stays there.
 
-    (On a steep slope the block flies off its asperities and bounces.)
+    (On a steep slope the block flies off its asperities and bounces.) Tolerances: vibration after
+    the rise, 1.3e-5 of the acceleration; the penetration under the block's weight.
     """
     axis, degrees = [1, 2, 3], 77.0
     law = {
@@ -89,39 +92,42 @@ def test_a_joint_that_dilates_lifts_and_keeps_the_ledger(bed):
         "stiffness_s": "1 E/h",
     }
     measured, theory, sim = slide(BEDS[bed], 12, 10, rotation=(axis, degrees), law=law, after=0.3)
-    assert measured == pytest.approx(theory, rel=1e-3)
+    assert measured == pytest.approx(theory, rel=5e-5)
     block = sim.build.nodes_of("block")
     height = np.sort((sim.fields["position"] @ turn(axis, degrees))[block, 2])[:4]
-    settled = 1e-5  # under its weight
-    assert height == pytest.approx(0.01 * np.tan(np.radians(8)), abs=settled)
-    assert abs(sim.energies["error"]) < 1e-3
+    penetration = 1e-5
+    assert height == pytest.approx(0.01 * np.tan(np.radians(8)), abs=penetration)
+    assert abs(sim.energies["error"]) < 3e-6
 
 
-def test_over_separate_flush_blocks():
+def test_acceleration_over_separate_flush_blocks():
+    """Tolerance: the block's vertices cross seams, which leaves vibration of 2e-5."""
     measured, theory, _ = slide(FLUSH, 35, 20)
-    assert measured == pytest.approx(theory, rel=1e-3)
+    assert measured == pytest.approx(theory, rel=1e-4)
 
 
-def test_a_meshed_slider_over_flush_blocks():
+def test_acceleration_of_a_meshed_block_over_flush_blocks():
+    """Tolerance: as above; a block of 2 x 2 x 2 elements vibrates more, 7e-5."""
     measured, theory, _ = slide(FLUSH, 35, 20, divisions=(2, 2, 2))
-    assert measured == pytest.approx(theory, rel=1e-3)
+    assert measured == pytest.approx(theory, rel=3e-4)
 
 
-@pytest.mark.parametrize("down", [1e-6, 1e-5, 1e-4])
-def test_small_steps_down(down):
+@pytest.mark.parametrize("down, within", [(1e-6, 1e-4), (1e-5, 5e-4), (1e-4, 2e-3)])
+def test_acceleration_over_small_steps_down(down, within):
+    """A step down each metre. Tolerance: the vibration that a step causes grows with its height."""
     bed = [
         {"group": "bed", "box": {"size": [1, 4, 1]}, "translate": [i, 0, -1 - down * i]}
         for i in range(8)
     ]
     measured, theory, _ = slide(bed, 35, 20)
-    assert measured == pytest.approx(theory, rel=2e-3)
+    assert measured == pytest.approx(theory, rel=within)
 
 
 @pytest.mark.parametrize("kind", ["rail", "turned rail"])
-def test_crossed_contacts(kind):
-    """Fig. 18: a slider across a rail touches it by edges alone; theta 45, phi 30: 2.9315 m/s2.
+def test_acceleration_on_rails_touched_by_edges_alone(kind):
+    """Fig. 18: a slider lies across rails that run down the slope; theta 45, phi 30: 2.9315 m/s2.
 
-    (With the paper's g = 9.8 that is 2.928.) The slider lies across, the rails run down the slope.
+    (With the paper's g = 9.8 that is 2.928.) Tolerance: sliding edges chatter.
     """
     rail = {"size": [12, 0.3, 0.3]}
     if kind == "rail":
@@ -143,9 +149,12 @@ def test_crossed_contacts(kind):
     assert measured == pytest.approx(theory, rel=5e-4)
 
 
-def test_a_slightly_uneven_bed_does_not_trip_the_block(monkeypatch):
-    """Facets tilted by up to about 1 degree at random: the mean acceleration stays within 2 %."""
-    from cdem import build
+def test_acceleration_over_a_slightly_uneven_bed(monkeypatch):
+    """Facets tilted by up to about 1 degree at random: the block does not catch on their edges.
+
+    Tolerance: the mean slope under the block differs from that of the bed by some 0.1 degrees.
+    """
+    from cdem.model import build
 
     flat = build.read_model
 
@@ -162,12 +171,15 @@ def test_a_slightly_uneven_bed_does_not_trip_the_block(monkeypatch):
     assert measured == pytest.approx(theory, rel=0.02)
 
 
-@pytest.mark.parametrize("bed", ["20 x 8 hexahedra", "2,016 tets", "flush blocks"])
-def test_a_seam_is_not_felt(bed):
-    """A vertex that goes over to the next facet keeps its force within 1 %, shear force and all.
+@pytest.mark.parametrize(
+    "bed, within", [("20 x 8 hexahedra", 1e-4), ("2,016 tets", 0.01), ("flush blocks", 2e-5)]
+)
+def test_contact_force_is_continuous_at_seams(bed, within):
+    """A vertex that moves on to the next facet keeps its normal and shear force.
 
-    The sum over the block may still jump when a loaded vertex of the bed comes out from under it:
-    by its share of the weight, here up to 9 %.
+    Tolerance: what the force changes by in any step, most on tets, whose areas differ. The sum over
+    the block may still jump when a loaded vertex of the bed comes out from under it: by its share
+    of the weight, here up to 9 %.
     """
     slope = np.radians(30)
     gravity = GRAVITY * np.array([np.sin(slope), 0, -np.cos(slope)])
@@ -195,36 +207,37 @@ def test_a_seam_is_not_felt(bed):
     while sim.time < 0.1:
         sim.step(100)
     weight = 2500 * 0.4 * GRAVITY * np.cos(slope)
-    nodes, topology = sim.build.nodes_of("block"), sim.build.topology
-    seams = felt = largest = 0.0
+    nodes, face_nodes = sim.build.nodes_of("block"), sim.build.topology.face_nodes
+    seams = change_at_seam = change_of_sum = 0.0
     before = None
     while sim.time < 0.4:
         sim.step(1)
         state = sim.core.fields()
-        rows = state["spring.reaction"].reshape(-1, 8)[:, :3].copy()
-        now = state["spring.target"].copy(), rows, state["search.exposed_face"].copy()
-        total = -sim.core.fields()["node.reaction"].reshape(-1, 4)[:, 2].sum()
+        target = state["spring.target"].copy()
+        force = state["spring.reaction"].reshape(-1, 8)[:, :3].copy()
+        total = -state["node.reaction"].reshape(-1, 4)[:, 2].sum()
         if before is not None:
-            face = topology.face_nodes[now[2]].reshape(-1)
-            own = np.isin(face, nodes) & (now[0] >= 0) & (before[0] >= 0)
-            for slot in np.flatnonzero(own & (now[0] != before[0])):
-                seams += 1
-                change = np.linalg.norm(rows[slot] - before[1][slot])
-                felt = max(felt, change / np.linalg.norm(before[1][slot]))
-            largest = max(largest, abs(total - before[3]) / weight)
-        before = *now, total
+            last_target, last_force, last_total = before
+            moved_on = (target != last_target) & (target >= 0) & (last_target >= 0)
+            for slot in np.flatnonzero(moved_on):
+                if face_nodes[state["search.exposed_face"][slot // 4], slot % 4] in nodes:
+                    seams += 1
+                    change = np.linalg.norm(force[slot] - last_force[slot])
+                    change_at_seam = max(change_at_seam, change / np.linalg.norm(last_force[slot]))
+            change_of_sum = max(change_of_sum, abs(total - last_total) / weight)
+        before = target, force, total
     assert seams >= 3
-    assert felt < 0.01
-    assert largest < 0.09
+    assert change_at_seam < within
+    assert change_of_sum < 0.09
 
 
-def test_a_bar_rides_a_ridge_that_begins_flat(monkeypatch):
-    """A ridge too flat to be an edge lets a bar sink in; where it steepens it must hold the bar all the same.
+def test_ridge_that_steepens_holds_a_bar(monkeypatch):
+    """A bar slides along a ridge that is too flat for edge contacts and steepens.
 
-    The bar was then deeper than contacts might begin, and its ends, each below the plane of the other side,
-    touched nothing: it fell through the bed.
+    On the flat part the ridge enters the bar, deeper than the entry depth. Where it steepens edge
+    contacts must hold the bar, whose ends lie below the plane of the other side.
     """
-    from cdem import build
+    from cdem.model import build
 
     flat = build.read_model
 
@@ -267,10 +280,11 @@ def test_a_bar_rides_a_ridge_that_begins_flat(monkeypatch):
     assert 1.5 - 8 * np.tan(np.radians(1.28)) - 0.02 < centre[2] < 1.5
 
 
-def test_a_bonded_bed_is_one_surface():
+def test_bonded_bed_acts_as_one_surface():
     """A hull with a raised bow slides over separate bonded tets as over one block.
 
-    A corner of a tet by itself would stick into the bow: the block was thrown back.
+    The corners of single tets would stick into the bow and throw the block back. Tolerance:
+    vibration, as above.
     """
     slope, phi = np.radians(30), 10
     hull = [[x, y, z] for y in (0, 0.8) for x, z in ((0, 0.4), (0.3, 0), (0.9, 0), (1.3, 0.4))]
@@ -313,5 +327,5 @@ def test_a_bonded_bed_is_one_surface():
             times.append(sim.time)
             speeds.append(mean_velocity(sim, "block")[0])
     theory = GRAVITY * (np.sin(slope) - np.cos(slope) * np.tan(np.radians(phi)))
-    assert np.polyfit(times, speeds, 1)[0] == pytest.approx(theory, rel=1e-3)
+    assert np.polyfit(times, speeds, 1)[0] == pytest.approx(theory, rel=2e-6)
     assert len(sim.core.fields()["edge.contact"]) == 0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scenes import simulate
 
-from cdem.verify import problems
+from cdem.verification.runner import problems
 
 PROBLEM = problems(["swing"])[0].module  # pendulum, volume, and how the square is followed
 SIDE = PROBLEM.SIDE
@@ -12,7 +12,11 @@ SIDE = PROBLEM.SIDE
 
 @pytest.mark.parametrize("shape, divisions", [("hex8", 1), ("hex8", 4), ("wedge6", 2), ("pyramid5", 2), ("tet4", 2)])  # fmt: skip
 def test_a_square_swings_as_a_pendulum(shape, divisions):
-    """Angle within 0.1 % of the amplitude over three periods; volume and energy kept."""
+    """Angle within 0.1 % of the amplitude over three periods; volume and energy are conserved.
+
+    Angle: the elastic square bends. Volume: it breathes by about rho g a / E. Energy: the closing
+    error is 4e-8.
+    """
     box = {"size": [SIDE, 1, SIDE], "divisions": [divisions, 1, divisions], "shape": shape}
     sim = simulate(
         [{"group": "square", "box": box}],
@@ -28,5 +32,5 @@ def test_a_square_swings_as_a_pendulum(shape, divisions):
     (times, angles, volumes, errors), _ = PROBLEM.swing(sim, 3)
     exact = PROBLEM.theory(times)
     assert np.abs(angles - exact).max() < 1e-3 * PROBLEM.START
-    assert np.abs(volumes - 1).max() < 4e-5  # breathing, about rho g a / E
-    assert np.abs(errors).max() < 1e-6
+    assert np.abs(volumes - 1).max() < 4e-5
+    assert np.abs(errors).max() < 2e-7

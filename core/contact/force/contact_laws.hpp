@@ -1,15 +1,16 @@
 // contact_laws.hpp - interfaces of contacts by pair of face classes.
 #pragma once
 
+#include "core/contact/force/contact_spring.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
-#include "core/interfaces/brittle_coulomb.hpp"
+#include "core/interfaces/laws.hpp"
 
 namespace cdem {
 
-/// Interfaces by pair of groups, and the contact dashpot.
+/// Interfaces by pair of classes of faces, and the contact dashpot.
 struct ContactLaws {
-  const Index* interface_of;  // [group_m * class_count + group_t]
-  const Interface* interfaces;
+  const Index* interface_of;  // [class_m * class_count + class_t]
+  InterfaceTable interfaces;
   Index class_count;
   Real damping_ratio;     // of critical, on the effective mass of the two points
   const Real* node_mass;  // [kg]
@@ -24,24 +25,26 @@ struct ContactLaws {
         },
         m, t);
   }
-  template <class T>
-  struct Stiffness {
-    T n, s;  // [N/m]
-  };
-  /// Stiffness of a contact of theirs on its characteristic area.
+  /// Spring of a contact of theirs on its characteristic area.
   template <class Ids>
-  CDEM_HD auto stiffness(const FaceGeometry& geometry, const Ids& law, const Ids& m,
-                         const Ids& t) const {
-    const auto on_area = [&](auto per_area) {
-      return numbers_of(
-          [&](Index l, Index a, Index b) {
-            return geometry.contact_area(a, b) * per_area(interfaces[l], geometry.stiffer(a, b));
-          },
-          law, m, t);
+  CDEM_HD auto spring(const FaceGeometry& geometry, const Ids& interface, const Ids& m,
+                      const Ids& t) const {
+    const Interface* table = interfaces.interfaces;
+    const auto area = [&](Index a, Index b) { return geometry.contact_area(a, b); };
+    const auto normal = [&](Index l, Index a, Index b) {
+      return table[l].stiffness_n(geometry.stiffer(a, b));
     };
-    return Stiffness<Number<Ids>>{
-        on_area([](const Interface& l, Real stiffer) { return l.stiffness_n(stiffer); }),
-        on_area([](const Interface& l, Real stiffer) { return l.stiffness_s(stiffer); })};
+    const auto shear = [&](Index l, Index a, Index b) {
+      return table[l].stiffness_s(geometry.stiffer(a, b));
+    };
+    return ContactSpring<Number<Ids>>{.area = numbers_of(area, m, t),
+                                      .stiffness_n = numbers_of(normal, interface, m, t),
+                                      .stiffness_s = numbers_of(shear, interface, m, t)};
+  }
+  /// The contact dashpot of a spring between points of this effective mass  [N s/m].
+  template <class T>
+  CDEM_HD T dashpot(const ContactSpring<T>& spring, const T& inverse_mass) const {
+    return T(2.0 * damping_ratio) * sqrt_of(spring.n() / inverse_mass);
   }
 };
 

@@ -5,6 +5,7 @@
 #include "core/contact/force/contact_laws.hpp"
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
+#include "core/interfaces/history.hpp"
 
 namespace cdem {
 
@@ -16,96 +17,188 @@ struct UpdateEdgeForces {
   ContactLaws laws;
   const Real* state_before;  // rows of ContactState, one step ago
   EdgeColumns edges;
+  HistoryRows side_history;     // [4 * exposed face + side]
+  HistoryRows contact_history;  // [contact], see MergeSideHistories
 
   template <class I>
   CDEM_HD void operator()(I item) const {
     using T = Number<I>;
-    const auto kept = [&](auto of) {
-      return indices_of([&](Index p) { return of(EdgeContact::at(edges.contact, p)); }, item);
-    };
-    const auto mother = kept([](const EdgeContact& c) { return c.mother; });
-    const auto t = kept([](const EdgeContact& c) { return c.face; });
-    const auto edge = kept([](const EdgeContact& c) { return c.edge; });
-    const auto before = kept([](const EdgeContact& c) { return c.before; });
-    const auto m = indices_of([](Index side) { return side / 4; }, mother);
-    const auto m0 =
-        indices_of([&](Index s) { return geometry.table[s / 4].corner[s % 4]; }, mother);
-    const auto m1 = indices_of([&](Index s) { return geometry.table[s / 4].end(s % 4); }, mother);
-    // the frame belongs to the edge, whichever of its faces is the right one just now
-    const auto t0 = indices_of([&](Index e) { return faces.edge_nodes[2 * e]; }, edge);
-    const auto t1 = indices_of([&](Index e) { return faces.edge_nodes[2 * e + 1]; }, edge);
-    const Vec3<T> out = geometry.normal(t) - geometry.normal(m);
-    const auto was = [&](auto of) {  // one step ago
-      return numbers_of(
-          [&](Index b) {
-            return of(b >= 0 ? ContactState::at(state_before, b)
-                             : ContactState{0, -1, 0, 0, 0, 0, 0});
-          },
-          before);
-    };
-    const T penetration = was([](const ContactState& s) { return s.penetration; });
-    const T stress_free_gap = was([](const ContactState& s) { return s.stress_free_gap; });
-    const auto law = laws.between(geometry, m, t);
+    const T zero(0.0);
+    const auto contact = contact_of(item);
+    const auto interface = laws.between(geometry, contact.mother_face, contact.target_face);
     // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
-    const auto [kn, ks] = laws.stiffness(geometry, law, m, t);
-    const T tan_friction =
-        numbers_of([&](Index l) { return laws.interfaces[l].tan_friction; }, law);
-
-    const InMotion& nodes = faces.nodes;
-    const T dt(faces.dt), zero(0.0), one(1.0);
-    const Vec3<T> xm = nodes.position(m0), xt = nodes.position(t0);
-    const Vec3<T> xm1 = nodes.position(m1), xt1 = nodes.position(t1);
-    const Vec3<T> dm = xm1 - xm, along_t = xt1 - xt;
-    const Frame<T> frame = edge_frame(edge_normal(dm, along_t, out), along_t);
-    const Crossing<T> c = cross_edges(xm, dm, xt, along_t, frame.n);
-
-    const Vec3<T> vm = nodes.velocity(m0), vt = nodes.velocity(t0);
-    const Vec3<T> vm1 = nodes.velocity(m1), vt1 = nodes.velocity(t1);
-    const Vec3<T> om = xm - dt * vm, ot = xt - dt * vt;  // one step ago
-    const Vec3<T> old_dm = (xm1 - dt * vm1) - om, old_along = (xt1 - dt * vt1) - ot;
-    const Frame<T> old = edge_frame(edge_normal(old_dm, old_along, out), old_along);
-    const Vec3<T> apart = (om + c.s * old_dm) - (ot + c.t * old_along);
-    const Vec3<T> rate = (vm + c.s * (vm1 - vm)) - (vt + c.t * (vt1 - vt));
-    const T inverse_mass = inverse_mass_of(m0, m1, c.s) + inverse_mass_of(t0, t1, c.t);
-    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / inverse_mass);
-    const T gap_rate = dot(frame.n, rate);
+    const ContactSpring<T> spring =
+        laws.spring(geometry, interface, contact.mother_face, contact.target_face);
+    const auto pair = relative_motion(contact);
+    const Before<T> old = before(contact.before);
+    const T gap = pair.crossing.gap;
     const T free =
-        select(penetration < zero, starting_stress_free_gap(c.gap, gap_rate, dt, zero, zero),
-               lifted_stress_free_gap(stress_free_gap, c.gap));
-    const ContactBefore<T> old_force{was([](const ContactState& s) { return s.force_n; }),
-                                     max_of(penetration, zero),
-                                     was([](const ContactState& s) { return s.shear1; }),
-                                     was([](const ContactState& s) { return s.shear2; })};
-    const ContactForce<T> f =
-        contact_force(kn, ks, tan_friction, c.gap - free, gap_rate, dashpot, -dot(old.t1, apart),
-                      -dot(old.t2, apart), old_force, Dilation<T>{zero, zero}, dt);
-
-    const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
-    // both edges take the force on one line of action: no couple is left over
-    const Crossing<T> line = cross_edges(xm, dm, xt, along_t, force);
-    const auto pressed = f.force_n > zero;
-    const T on_m = select(pressed, line.s, c.s), on_t = select(pressed, line.t, c.t);
-    const T forward = numbers_of(  // does the target face's side go the way of the edge?
-        [&](Index x, Index e, Index start) {
-          const Index face = exposed_face[x];
-          return faces.vertex(face, faces.side_on(face, e)) == start;
-        },
-        t, edge, t0);
+        select(old.begins, starting_stress_free_gap(gap, pair.gap_rate, T(faces.dt), zero, zero),
+               lifted_stress_free_gap(old.stress_free_gap, gap));
+    const ContactMotion<T> motion{.gap = gap - free,
+                                  .stress_free_gap = free,
+                                  .gap_rate = pair.gap_rate,
+                                  .slip1 = pair.slip1,
+                                  .slip2 = pair.slip2,
+                                  .dashpot = laws.dashpot(spring, pair.inverse_mass),
+                                  .may_rise = zero,
+                                  .dt = faces.dt};
+    const auto place = indices_of([](Index c) { return c; }, item);
+    const JointAnswer<T> joint =
+        respond_with_history(laws.interfaces, interface, contact_input(spring, motion, old.force),
+                             side_history, contact.mother_side, contact_history, place);
+    const ContactForce<T> f = contact_force(spring, motion, old.force, joint);
     const T state[8] = {f.force_n, f.penetration, f.shear1,   f.shear2,
                         free,      f.energy_n,    f.energy_s, zero};
-    const T reaction[8] = {force.x,    force.y,
-                           force.z,    select(pressed, max_of(kn, ks), zero),
-                           on_m,       select(forward > zero, on_t, one - on_t),
-                           f.friction, f.dashpot};
     set_rows(edges.state, item, state);
-    set_rows(edges.reaction, item, reaction);
+    write_reaction(item, contact, pair, spring, f);
   }
 
  private:
+  /// What a contact is between.
+  template <class Ids>
+  struct Contact {
+    Ids mother_side;  // 4 * exposed face + side
+    Ids mother_face, target_face;
+    Ids target_edge;
+    Ids before;  // place one step ago, or -1
+    Ids m0, m1;  // ends of the mother side
+    Ids t0, t1;  // and of the target edge: the frame belongs to it, whichever of its faces is
+                 // the right one just now
+  };
+  template <class I>
+  CDEM_HD auto contact_of(const I& item) const {
+    using Ids = typename IndexOf<I>::type;
+    const auto kept = [&](auto of) {
+      return indices_of([&](Index p) { return of(EdgeContact::at(edges.contact, p)); }, item);
+    };
+    Contact<Ids> c;
+    c.mother_side = kept([](const EdgeContact& e) { return e.mother; });
+    c.target_face = kept([](const EdgeContact& e) { return e.face; });
+    c.target_edge = kept([](const EdgeContact& e) { return e.edge; });
+    c.before = kept([](const EdgeContact& e) { return e.before; });
+    c.mother_face = indices_of([](Index side) { return side / 4; }, c.mother_side);
+    c.m0 = indices_of([&](Index s) { return geometry.table[s / 4].corner[s % 4]; }, c.mother_side);
+    c.m1 = indices_of([&](Index s) { return geometry.table[s / 4].end(s % 4); }, c.mother_side);
+    c.t0 = indices_of([&](Index e) { return faces.edge_nodes[2 * e]; }, c.target_edge);
+    c.t1 = indices_of([&](Index e) { return faces.edge_nodes[2 * e + 1]; }, c.target_edge);
+    return c;
+  }
+
+  /// What it held one step ago; zero for a contact that begins.
+  template <class T>
+  struct Before {
+    ContactBefore<T> force;
+    T stress_free_gap;
+    Truth<T> begins;
+  };
+  template <class Ids, class T = Number<Ids>>
+  CDEM_HD Before<T> before(const Ids& place) const {
+    const auto was = [&](auto of) {
+      const auto one = [&](Index b) {
+        return of(b >= 0 ? ContactState::at(state_before, b) : ContactState::none());
+      };
+      return numbers_of(one, place);
+    };
+    const T zero(0.0), penetration = was([](const ContactState& s) { return s.penetration; });
+    return {.force = {.force_n = was([](const ContactState& s) { return s.force_n; }),
+                      .penetration = max_of(penetration, zero),
+                      .shear1 = was([](const ContactState& s) { return s.shear1; }),
+                      .shear2 = was([](const ContactState& s) { return s.shear2; })},
+            .stress_free_gap = was([](const ContactState& s) { return s.stress_free_gap; }),
+            .begins = penetration < zero};
+  }
+
+  /// How the two edges move against each other in the step.
+  template <class T>
+  struct RelativeMotion {
+    Vec3<T> mother, mother_along, target, target_along;
+    Frame<T> frame;
+    Crossing<T> crossing;
+    T gap_rate, slip1, slip2;
+    T inverse_mass;  // of both points: sum w^2 / m  [1/kg]
+  };
+  template <class Ids>
+  CDEM_HD RelativeMotion<Number<Ids>> relative_motion(const Contact<Ids>& contact) const {
+    using T = Number<Ids>;
+    const InMotion& nodes = faces.nodes;
+    const T dt(faces.dt);
+    const Vec3<T> out = geometry.normal(contact.target_face) - geometry.normal(contact.mother_face);
+    const Vec3<T> xm = nodes.position(contact.m0), xt = nodes.position(contact.t0);
+    const Vec3<T> xm1 = nodes.position(contact.m1), xt1 = nodes.position(contact.t1);
+    const Vec3<T> along_m = xm1 - xm, along_t = xt1 - xt;
+    const Frame<T> frame = edge_frame(edge_normal(along_m, along_t, out), along_t);
+    const Crossing<T> c = cross_edges(xm, along_m, xt, along_t, frame.n);
+    const Vec3<T> vm = nodes.velocity(contact.m0), vt = nodes.velocity(contact.t0);
+    const Vec3<T> vm1 = nodes.velocity(contact.m1), vt1 = nodes.velocity(contact.t1);
+    const Vec3<T> om = xm - dt * vm, ot = xt - dt * vt;  // one step ago
+    const Vec3<T> old_m = (xm1 - dt * vm1) - om, old_t = (xt1 - dt * vt1) - ot;
+    const Frame<T> old = edge_frame(edge_normal(old_m, old_t, out), old_t);
+    const Vec3<T> apart = (om + c.s * old_m) - (ot + c.t * old_t);
+    const Vec3<T> rate = (vm + c.s * (vm1 - vm)) - (vt + c.t * (vt1 - vt));
+    return {.mother = xm,
+            .mother_along = along_m,
+            .target = xt,
+            .target_along = along_t,
+            .frame = frame,
+            .crossing = c,
+            .gap_rate = dot(frame.n, rate),
+            .slip1 = -dot(old.t1, apart),
+            .slip2 = -dot(old.t2, apart),
+            .inverse_mass = inverse_mass_of(contact.m0, contact.m1, c.s) +
+                            inverse_mass_of(contact.t0, contact.t1, c.t)};
+  }
   template <class Ids, class T>
   CDEM_HD T inverse_mass_of(const Ids& a, const Ids& b, const T& s) const {
     const T rest = T(1.0) - s;
     return rest * rest / look_up(laws.node_mass, a) + s * s / look_up(laws.node_mass, b);
+  }
+
+  /// Both edges take the force on one line of action: no couple is left over.
+  template <class I, class Ids, class T>
+  CDEM_HD void write_reaction(const I& item, const Contact<Ids>& contact,
+                              const RelativeMotion<T>& pair, const ContactSpring<T>& spring,
+                              const ContactForce<T>& f) const {
+    const T zero(0.0), one(1.0);
+    const Frame<T>& frame = pair.frame;
+    const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
+    const Crossing<T> line =
+        cross_edges(pair.mother, pair.mother_along, pair.target, pair.target_along, force);
+    const auto pressed = f.force_n > zero;
+    const T on_m = select(pressed, line.s, pair.crossing.s);
+    const T on_t = select(pressed, line.t, pair.crossing.t);
+    // does the target face's side go the way of the edge?
+    const auto same_way = [&](Index x, Index e, Index start) {
+      const Index face = exposed_face[x];
+      return faces.vertex(face, faces.side_on(face, e)) == start;
+    };
+    const T forward = numbers_of(same_way, contact.target_face, contact.target_edge, contact.t0);
+    const T reaction[8] = {force.x,    force.y,
+                           force.z,    select(pressed, max_of(spring.n(), spring.s()), zero),
+                           on_m,       select(forward > zero, on_t, one - on_t),
+                           f.friction, f.dashpot};
+    set_rows(edges.reaction, item, reaction);
+  }
+};
+
+/// Give each side of an exposed face the history that its contacts wrote. Where one side crosses
+/// several edges, they share it: the largest number of each variable goes on.
+struct MergeSideHistories {
+  EdgeColumns edges;
+  HistoryRows side_history, contact_history;
+
+  CDEM_HD void operator()(One m) const {
+    constexpr Index width = HistoryRows::width;
+    for (Index c = edges.first[m.i]; c < edges.first[m.i + 1]; ++c) {
+      const Index side = EdgeContact::at(edges.contact, c).mother;
+      const bool shares = c > edges.first[m.i] &&
+                          EdgeContact::at(edges.contact, c - 1).mother == side &&
+                          contact_history.law[c - 1] == contact_history.law[c];
+      Real* to = side_history.rows + std::size_t(side) * width;
+      const Real* from = contact_history.rows + std::size_t(c) * width;
+      for (Index k = 0; k < width; ++k) to[k] = shares ? max_of(to[k], from[k]) : from[k];
+      side_history.law[side] = contact_history.law[c];
+    }
   }
 };
 

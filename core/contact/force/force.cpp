@@ -3,6 +3,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/contact/force/accumulate.hpp"
+#include "core/contact/force/change_of_target.hpp"
 #include "core/contact/force/edge_force.hpp"
 #include "core/contact/force/spring_force.hpp"
 #include "core/contact/force/views.hpp"
@@ -13,16 +14,40 @@ namespace cdem {
 
 namespace {
 
-void update_forces(const Model& m, State& s, Queue q) {
+void update_spring_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
-  const Index* exposed = s.search.exposed_face.data();
+  const FaceColumns faces = face_columns(m, s);
   const FaceGeometry geometry = face_geometry(s);
+  const ContactLaws laws = contact_laws(m, s);
+  const SpringColumns springs = spring_columns(s);
+  for_each_item(q, count, ChangeTargets{faces, geometry, m.rules, laws, springs});
   for_each_selected(q, count,
-                    UpdateSpringForces{face_columns(m, s), geometry, m.rules, contact_laws(m, s),
-                                       spring_columns(s)});
-  for_each_lane(q, Index(s.edges.contact.size() / 4),
-                UpdateEdgeForces{face_columns(m, s), geometry, exposed, contact_laws(m, s),
-                                 s.edges.old_state.data(), edge_columns(s)});
+                    UpdateSpringForces{.faces = faces,
+                                       .geometry = geometry,
+                                       .rules = m.rules,
+                                       .laws = laws,
+                                       .springs = springs,
+                                       .history = history_rows(s.springs.history)});
+}
+
+void update_edge_forces(const Model& m, State& s, Queue q) {
+  const Index contacts = Index(s.edges.contact.size() / 4);
+  s.edges.contact_history.rows.resize(HistoryRows::width * std::size_t(contacts));
+  s.edges.contact_history.law.resize(HistoryRows::width > 0 ? contacts : 0);
+  const HistoryRows sides = history_rows(s.edges.side_history),
+                    own = history_rows(s.edges.contact_history);
+  for_each_lane(q, contacts,
+                UpdateEdgeForces{.faces = face_columns(m, s),
+                                 .geometry = face_geometry(s),
+                                 .exposed_face = s.search.exposed_face.data(),
+                                 .laws = contact_laws(m, s),
+                                 .state_before = s.edges.old_state.data(),
+                                 .edges = edge_columns(s),
+                                 .side_history = sides,
+                                 .contact_history = own});
+  if (HistoryRows::width > 0)
+    for_each_item(q, Index(s.search.exposed_face.size()),
+                  MergeSideHistories{edge_columns(s), sides, own});
 }
 
 void make_rows(ContactsByTargetState& acting) {
@@ -57,7 +82,8 @@ void accumulate_forces(const Model& m, State& s, Queue q) {
 
 void update_contact_forces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::contact);
-  update_forces(m, s, q);
+  update_spring_forces(m, s, q);
+  update_edge_forces(m, s, q);
   accumulate_forces(m, s, q);
 }
 

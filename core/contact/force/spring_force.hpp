@@ -3,9 +3,9 @@
 
 #include "core/contact/force/contact_force.hpp"
 #include "core/contact/force/contact_laws.hpp"
-#include "core/contact/narrow_phase/closed_contact.hpp"
+#include "core/contact/force/mother_point.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
-#include "core/records/rules.hpp"
+#include "core/interfaces/history.hpp"
 
 namespace cdem {
 
@@ -16,42 +16,106 @@ struct UpdateSpringForces {
   SearchRules rules;
   ContactLaws laws;
   SpringColumns springs;
+  HistoryRows history;  // [slot]
 
   CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
-  /// Slots that are in contact; those that no longer are end here.
-  CDEM_HD bool selects(Index m, Index slot) const {
-    const Index t = springs.target[slot], before = springs.target_before[slot];
-    if (before >= 0 && t != before) {
-      if (t < 0)
-        end(m, slot, before);
-      else
-        turn(m, slot, before, t);
-    }
-    return t >= 0;
-  }
+  CDEM_HD bool selects(Index, Index slot) const { return springs.target[slot] >= 0; }
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
     using T = Number<I>;
-    const T dt(faces.dt), zero(0.0);
+    const T zero(0.0);
     const auto& slot = item.id;
-    const auto t = look_up(springs.target, slot), before = look_up(springs.target_before, slot);
-    const auto moves = differ(t, before);  // it begins, or changes its face
-    const auto begins = numbers_of([](Index b) { return b < 0; }, before) > zero;
+    const Target<I> target = target_of(item);
+    const auto pair = relative_motion(item, target);
+    const auto interface = laws.between(geometry, item.row, target.face);
+    ContactSpring<T> spring = laws.spring(geometry, interface, item.row, target.face);
+    spring.area = T(0.5) * spring.area;  // the other block's semi-springs see the contact too
+    const Before<T> old = before(slot, target.begins);
+    const T gap = pair.foot.gap;
+    const T free =
+        select(target.changes,
+               starting_stress_free_gap(gap, pair.gap_rate, T(faces.dt), old.force.penetration,
+                                        max_of(old.stress_free_gap, zero)),
+               lifted_stress_free_gap(old.stress_free_gap, gap));
+    const ContactMotion<T> motion{.gap = gap - free,
+                                  .stress_free_gap = free,
+                                  .gap_rate = pair.gap_rate,
+                                  .slip1 = pair.slip1,
+                                  .slip2 = pair.slip2,
+                                  .dashpot = laws.dashpot(spring, pair.inverse_mass),
+                                  .may_rise = T(1.0),
+                                  .dt = faces.dt};
+    const JointAnswer<T> joint =
+        respond_with_history(laws.interfaces, interface, contact_input(spring, motion, old.force),
+                             history, slot, history, slot);
+    const ContactForce<T> f = contact_force(spring, motion, old.force, joint);
+    const T state[8] = {f.force_n,     f.penetration, f.shear1,   f.shear2,
+                        free + f.rise, f.energy_n,    f.energy_s, zero};
+    set_rows(springs.state, slot, state);
+    count_losses(slot, target.changes & !target.begins, old, f, motion);
+    write_reaction(slot, pair, spring, f);
+  }
+
+ private:
+  /// The target of a semi-spring, and whether it is new.
+  template <class I>
+  struct Target {
+    typename IndexOf<I>::type face;
+    Truth<Number<I>> changes;  // the contact begins, or moved to this face
+    Truth<Number<I>> begins;
+  };
+  template <class I>
+  CDEM_HD Target<I> target_of(const I& item) const {
+    using T = Number<I>;
+    const auto face = look_up(springs.target, item.id);
+    const auto before = look_up(springs.target_before, item.id);
+    const auto begins = numbers_of([](Index b) { return b < 0; }, before) > T(0.0);
+    return {face, differ(face, before), begins};
+  }
+
+  /// What the slot held one step ago; zero for a contact that begins.
+  template <class T>
+  struct Before {
+    ContactBefore<T> force;
+    T stress_free_gap;
+    T undelivered_n, undelivered_s;  // of a contact that moved, see ChangeTargets  [J]
+  };
+  template <class Ids, class T = Number<Ids>>
+  CDEM_HD Before<T> before(const Ids& slot, const Truth<T>& begins) const {
+    const T zero(0.0);
     const Four<T> forces = InRows{springs.state}.at(slot, 0);
-    const ContactBefore<T> old{select(begins, zero, forces.x), select(begins, zero, forces.y),
-                               select(begins, zero, forces.z), select(begins, zero, forces.w)};
-    const Four<T> rest = InRows{springs.state}.at(slot, 4);  // see turn
-    const T free_before = select(begins, zero, rest.x);
+    const Four<T> rest = InRows{springs.state}.at(slot, 4);
+    return {.force = {.force_n = select(begins, zero, forces.x),
+                      .penetration = select(begins, zero, forces.y),
+                      .shear1 = select(begins, zero, forces.z),
+                      .shear2 = select(begins, zero, forces.w)},
+            .stress_free_gap = select(begins, zero, rest.x),
+            .undelivered_n = rest.y,
+            .undelivered_s = rest.z};
+  }
 
-    const auto corners = geometry.vertices(t);
+  /// How the acting point moves against the target in the step.
+  template <class T>
+  struct RelativeMotion {
+    FaceShape<T> shape;
+    Frame<T> frame;
+    Vec3<T> mother;  // acting point
+    Projection<T> foot;
+    T gap_rate, slip1, slip2;
+    T inverse_mass;  // of both points: sum w^2 / m  [1/kg]
+  };
+  template <class I>
+  CDEM_HD RelativeMotion<Number<I>> relative_motion(const I& item, const Target<I>& target) const {
+    using T = Number<I>;
+    const T dt(faces.dt);
+    const auto corners = geometry.vertices(target.face);
     const FaceShape<T> shape = faces.shape(corners);
-    const Frame<T> frame = shape.frame(geometry.normal(t));
-    const Point<T> mother = mother_point(item.row, slot);
+    const Frame<T> frame = shape.frame(geometry.normal(target.face));
+    const auto mother =
+        MotherPoint<T>::at(faces, geometry, rules, laws.node_mass, item.row, item.id);
     const Projection<T> foot = project(shape, mother.x, frame.n);
-
-    // where the target was one step ago
-    FaceShape<T> old_shape = shape;
+    FaceShape<T> old_shape = shape;  // one step ago
     Vec3<T> velocity[4];
     for (Index j = 0; j < 4; ++j) {
       velocity[j] = faces.nodes.velocity(corners.node[j]);
@@ -65,136 +129,47 @@ struct UpdateSpringForces {
       rate = rate - foot.weight[j] * velocity[j];
       inverse_mass += foot.weight[j] * foot.weight[j] / look_up(laws.node_mass, corners.node[j]);
     }
-    const auto law = laws.between(geometry, item.row, t);
-    const auto property = [&](auto of) {
-      return numbers_of([&](Index l) { return of(laws.interfaces[l]); }, law);
-    };
-    // half of it: the other block's semi-springs see the contact too
-    const auto stiffness = laws.stiffness(geometry, law, item.row, t);
-    const T kn = T(0.5) * stiffness.n, ks = T(0.5) * stiffness.s;
-    const T tan_friction = property([](const Interface& l) { return l.tan_friction; });
-    const T dashpot = T(2.0 * laws.damping_ratio) * sqrt_of(kn / inverse_mass);
-    const T gap_rate = dot(frame.n, rate);
-    const T free = select(moves,
-                          starting_stress_free_gap(foot.gap, gap_rate, dt, old.penetration,
-                                                   max_of(free_before, zero)),
-                          lifted_stress_free_gap(free_before, foot.gap));
-    const Dilation<T> dilation{
-        min_of(property([](const Interface& l) { return l.tan_dilation; }), tan_friction),
-        max_of(property([](const Interface& l) { return l.dilation_most; }) - free, zero)};
-    const T slip1 = -dot(old_frame.t1, apart), slip2 = -dot(old_frame.t2, apart);
-    const ContactForce<T> f = contact_force(kn, ks, tan_friction, foot.gap - free, gap_rate,
-                                            dashpot, slip1, slip2, old, dilation, dt);
-    const T state[8] = {f.force_n,     f.penetration, f.shear1,   f.shear2,
-                        free + f.lift, f.energy_n,    f.energy_s, zero};
-    set_rows(springs.state, slot, state);
-    // A turn loses what the springs held on the old face and neither gave back nor hold on the new
-    // one. If it should make energy, that is no loss: it is left to the closing error.
-    const auto turns = moves & !begins;
+    return {.shape = shape,
+            .frame = frame,
+            .mother = mother.x,
+            .foot = foot,
+            .gap_rate = dot(frame.n, rate),
+            .slip1 = -dot(old_frame.t1, apart),
+            .slip2 = -dot(old_frame.t2, apart),
+            .inverse_mass = inverse_mass};
+  }
+
+  /// A move loses what the springs held on the old face and neither gave back nor hold on the new
+  /// one. If it should make energy, that is no loss: it is left to the closing error.
+  template <class Ids, class T>
+  CDEM_HD void count_losses(const Ids& slot, const Truth<T>& moves, const Before<T>& old,
+                            const ContactForce<T>& f, const ContactMotion<T>& motion) const {
     const T half(0.5);
-    const T lost_s = rest.z - f.energy_s - half * (f.shear1 * slip1 + f.shear2 * slip2);
-    const T lost_n = rest.y - f.energy_n - half * f.force_n * gap_rate * dt;
-    add_to(springs.friction, slot, select(turns, lost_s, f.friction));
-    add_to(springs.dashpot, slot, select(turns, max_of(lost_n, -lost_s), f.dashpot));
+    const T lost_s =
+        old.undelivered_s - f.energy_s - half * (f.shear1 * motion.slip1 + f.shear2 * motion.slip2);
+    const T lost_n =
+        old.undelivered_n - f.energy_n - half * f.force_n * motion.gap_rate * T(motion.dt);
+    add_to(springs.friction, slot, select(moves, lost_s, f.friction));
+    add_to(springs.dashpot, slot, select(moves, max_of(lost_n, -lost_s), f.dashpot));
+  }
 
+  /// The target takes the force where its line of action meets the face: no couple is left over.
+  template <class Ids, class T>
+  CDEM_HD void write_reaction(const Ids& slot, const RelativeMotion<T>& pair,
+                              const ContactSpring<T>& spring, const ContactForce<T>& f) const {
+    const T zero(0.0);
+    const Frame<T>& frame = pair.frame;
     const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
-    // the target takes the force where its line of action meets the face: no couple is left over
     const auto pressed = f.force_n > zero;
-    const T lever = select(pressed, foot.gap / f.force_n, zero);
-    const Projection<T> meet = project(shape, mother.x - lever * force, frame.n);
-    const T reaction[8] = {force.x,
-                           force.y,
-                           force.z,
-                           select(pressed, max_of(kn, ks), zero),
-                           select(pressed, meet.weight[0], foot.weight[0]),
-                           select(pressed, meet.weight[1], foot.weight[1]),
-                           select(pressed, meet.weight[2], foot.weight[2]),
-                           select(pressed, meet.weight[3], foot.weight[3])};
-    set_rows(springs.reaction, slot, reaction);
-  }
-
- private:
-  template <class T>
-  struct Point {
-    Vec3<T> x, x_old, v;
-    T inverse_mass;  // under a force: sum w^2 / m  [1/kg]
-  };
-  /// The acting point: the vertex, moved towards the face's centre by the action coefficient.
-  template <class Ids>
-  CDEM_HD auto mother_point(const Ids& m, const Ids& slot) const {
-    using T = Number<Ids>;
-    const T dt(faces.dt), zero(0.0);
-    Point<T> p{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero};
-    const auto add = [&](const Ids& node, const T& w) {
-      const Vec3<T> x = faces.nodes.position(node), v = faces.nodes.velocity(node);
-      p.x = p.x + w * x;
-      p.x_old = p.x_old + w * (x - dt * v);
-      p.v = p.v + w * v;
-      p.inverse_mass += w * w / look_up(laws.node_mass, node);
+    const T lever = select(pressed, pair.foot.gap / f.force_n, zero);
+    const Projection<T> meet = project(pair.shape, pair.mother - lever * force, frame.n);
+    const auto weight = [&](Index j) {
+      return select(pressed, meet.weight[j], pair.foot.weight[j]);
     };
-    if (!(rules.action > 0)) {
-      const auto corner = [&](Index x, Index s) { return geometry.table[x].corner[s % 4]; };
-      add(indices_of(corner, m, slot), T(1.0));
-      return p;
-    }
-    const FaceVertices<Ids> corners = geometry.vertices(m);
-    for (Index j = 0; j < 4; ++j)
-      add(corners.node[j],
-          numbers_of([&](Index x, Index s) { return share(x, s % 4, j); }, m, slot));
-    return p;
-  }
-  /// What the acting point of vertex k takes of vertex j.
-  CDEM_HD Real share(Index m, Index k, Index j) const {
-    const Index count = geometry.table[m].count();
-    if (j >= count) return 0.0;
-    return rules.action / Real(count) + (j == k ? 1.0 - rules.action : 0.0);
-  }
-  /// A contact that changes its face keeps the shear force, turned into the new plane with its
-  /// length kept (hand-over), and sinks in as far as gives the normal spring there the energy it
-  /// had: as deep as before would make some where the new face is the stiffer one. Until it has its
-  /// new force, its energies are what its springs held on the old face and did not give back.
-  CDEM_HD void turn(Index m, Index slot, Index before, Index t) const {
-    ContactState s = ContactState::at(springs.state, slot);
-    const DissipatedAtEnd left = lost_on(m, slot, before);
-    const Frame<Real> from = faces.shape(geometry.vertices(before)).frame();
-    const Frame<Real> to = faces.shape(geometry.vertices(t)).frame();
-    const Real s1 = s.shear1, s2 = s.shear2;
-    const Vec3<Real> shear = s1 * from.t1 + s2 * from.t2;
-    const Real a = dot(shear, to.t1), b = dot(shear, to.t2);
-    const Real in_plane = sqrt_of(a * a + b * b);
-    const Real scale = in_plane > 0 ? sqrt_of(s1 * s1 + s2 * s2) / in_plane : 0.0;
-    s.shear1 = scale * a;
-    s.shear2 = scale * b;
-    const Real kn = 0.5 * laws.stiffness(geometry, laws.between(geometry, m, t), m, t).n;
-    s.penetration = sqrt_of(2 / kn * s.energy_n);
-    s.energy_n = left.dashpot;
-    s.energy_s = left.friction;
-    s.store(springs.state, slot);
-  }
-  /// A contact that ended forgets its forces.
-  CDEM_HD void end(Index m, Index slot, Index before) const {
-    const DissipatedAtEnd lost = lost_on(m, slot, before);
-    springs.friction[slot] += lost.friction;
-    springs.dashpot[slot] += lost.dashpot;
-    ContactState{}.store(springs.state, slot);
-    Real* row = springs.reaction + std::size_t(slot) * 8;
-    row[0] = row[1] = row[2] = row[3] = 0;
-  }
-  /// What the springs held on a face that they have left, and did not give back.
-  CDEM_HD DissipatedAtEnd lost_on(Index m, Index slot, Index before) const {
-    const FaceVertices<Index> corners = geometry.vertices(before);
-    FaceShape<Real> shape = faces.shape(corners);
-    Vec3<Real> moved[4];
-    for (Index j = 0; j < 4; ++j) {
-      moved[j] = faces.dt * faces.nodes.velocity(corners.node[j]);
-      shape.x[j] = shape.x[j] - moved[j];
-    }
-    const Frame<Real> frame = shape.frame();
-    const Point<Real> mother = mother_point(m, slot);
-    const Projection<Real> foot = project(shape, mother.x_old, frame.n);
-    Vec3<Real> way = mother.x - mother.x_old;
-    for (Index j = 0; j < 4; ++j) way = way - foot.weight[j] * moved[j];
-    return {ContactState::at(springs.state, slot), frame, way};
+    const T reaction[8] = {
+        force.x,   force.y,   force.z,   select(pressed, max_of(spring.n(), spring.s()), zero),
+        weight(0), weight(1), weight(2), weight(3)};
+    set_rows(springs.reaction, slot, reaction);
   }
 };
 

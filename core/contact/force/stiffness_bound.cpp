@@ -43,9 +43,8 @@ void sum_stiffness(const Model& m, State& s) {
   for (Index y = 0; y < exposed; ++y)
     for (Index c = s.search.outer.acting_first[y]; c < s.search.outer.acting_first[y + 1]; ++c) {
       const Index x = s.search.outer.faces_acting_on[c];
-      const auto stiffness = laws.stiffness(geometry, laws.between(geometry, x, y), x, y);
-      for (const Index face : {x, y})
-        raise_to(stiffest_of[face], std::max(stiffness.n, stiffness.s));
+      const auto spring = laws.spring(geometry, laws.between(geometry, x, y), x, y);
+      for (const Index face : {x, y}) raise_to(stiffest_of[face], std::max(spring.n(), spring.s()));
     }
   for (Index x = 0; x < exposed; ++x) {  // either side's semi-springs, as much again for semi-edges
     const Index face = s.search.exposed_face[x];

@@ -8,6 +8,7 @@
 #include "core/base/parallel.hpp"
 #include "core/contact/geometry/views.hpp"
 #include "core/contact/narrow_phase/edge_contacts.hpp"
+#include "core/interfaces/history.hpp"
 #include "core/model/phase_timer.hpp"
 
 namespace cdem {
@@ -27,6 +28,11 @@ void visit_faces(State& s, Visit&& visit) {
   visit(s.edges.friction, 1, Real(0));
   visit(s.edges.dashpot, 1, Real(0));
   visit(s.edges.lost, 1, Flag(0));
+  if constexpr (HistoryRows::width > 0)
+    for (HistoryColumns* history : {&c.history, &s.edges.side_history}) {
+      visit(history->rows, 4 * HistoryRows::width, Real(0));
+      visit(history->law, 4, Index(-1));
+    }
   visit(s.face_geometry, 8, Real(0));
   visit(s.contact_force, 4 * 4, Real(0));
 }

@@ -261,7 +261,7 @@ struct ResolveTargetEdges {
         pair.t, pair.sides);
     const auto first = numbers_of([](Index y, Index x) { return x <= y; }, other, pair.t);
     const T there = dot(nm, geometry.normal(other));
-    return (here < there) | ((!(here > there)) & (first > T(0.0)));
+    return (here < there) | ((first > T(0.0)) & !(here > there));
   }
 };
 

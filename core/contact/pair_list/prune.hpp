@@ -226,7 +226,7 @@ struct MarkNearEdges {
     const T inset = room.at(3, p) - shift * cot - off, beside = -shift / least - off;
     const auto crosses = (within(on_a, inset, long_a) & within(on_b, beside, long_b)) |
                          (within(on_b, inset, long_b) & within(on_a, beside, long_a));
-    set_flags(near, p, (!(far | parallel)) & (open | crosses));
+    set_flags(near, p, (open | crosses) & !(far | parallel));
   }
 
  private:

@@ -6,6 +6,8 @@ import csv
 import json
 import re
 from collections.abc import Iterator
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -163,40 +165,39 @@ def _csv_lines(path: Path, text: str, elevation: str | None) -> Iterator[Floats]
     if not rows:
         raise CaseError(f"{path}: is empty")
     head = [name.strip().lstrip("#").strip() for name in rows[0]]
-    found: dict[str, Any] = {}
-    for key, pattern in COLUMNS.items():
-        wanted = [
-            i
-            for i, n in enumerate(head)
-            if (n == elevation if key == "z" and elevation else pattern.match(n))
-        ]
-        found[key] = wanted[0] if wanted else None
-    if None in found.values():
-        raise CaseError(
-            f"{path}: the first line must name the columns x, y and z (or elevation), e.g. "
-            f"'line,x,y,z'; it says: {', '.join(head)}"
-        )
-    line_at = next(
-        (i for i, n in enumerate(head) if LINE.match(n) and i not in found.values()), None
-    )
-    points: list[list[float]] = []
-    current = None
+    at = _columns(path, head, elevation)
+    line_at = next((i for i, n in enumerate(head) if LINE.match(n) and i not in at.values()), None)
+    labelled = []
     for number, row in enumerate(rows[1:], start=2):
-        try:
-            point = [float(row[found[key]]) for key in "xyz"]
-        except (ValueError, IndexError):
-            raise CaseError(
-                f"{path}: row {number} has no numbers x, y, z: {','.join(row)}"
-            ) from None
+        point = _point(path, number, row, at)
         # without a column of lines each point stands for itself
-        label = row[line_at] if line_at is not None else number
-        if points and label != current:
-            yield np.array(points)
-            points = []
-        current = label
-        points.append(point)
-    if points:
-        yield np.array(points)
+        labelled.append((number if line_at is None else row[line_at], point))
+    for _, line in groupby(labelled, key=itemgetter(0)):
+        yield np.array([point for _, point in line])
+
+
+def _columns(path: Path, head: list[str], elevation: str | None) -> dict[str, int]:
+    """Where the columns x, y and z stand; z is that of the elevation, if one is named."""
+    found = {}
+    for key, pattern in COLUMNS.items():
+        named = key == "z" and elevation
+        for i, name in enumerate(head):
+            if name == elevation if named else pattern.match(name):
+                found[key] = i
+                break
+        else:
+            raise CaseError(
+                f"{path}: the first line must name the columns x, y and z (or elevation), e.g. "
+                f"'line,x,y,z'; it says: {', '.join(head)}"
+            )
+    return found
+
+
+def _point(path: Path, number: int, row: list[str], at: dict[str, int]) -> list[float]:
+    try:
+        return [float(row[at[key]]) for key in "xyz"]
+    except (ValueError, IndexError):
+        raise CaseError(f"{path}: row {number} has no numbers x, y, z: {','.join(row)}") from None
 
 
 # ------------------------------------------------------------------ grids

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from cdem.case.reader import Source, explain, load_case_data, plain
+from cdem.case.types import Angle, Length3, Listed, Name, Part, Quantity
 from cdem.errors import CaseError
-from cdem.fields import Angle, Length3, Listed, Name, Part, Quantity
-from cdem.read import Source, explain, load_case_data, plain
 from cdem.terrain import files
 from cdem.terrain.heights import Heights, Lines, Plane, Smooth
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.audit import SLIVER
 from cdem.errors import CaseError
+from cdem.mesh.element_shapes import SLIVER
 from cdem.terrain.solid import Solid, shape
 
 Floats = NDArray[np.float64]

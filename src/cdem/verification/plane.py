@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import meshio
 import numpy as np
+from numpy.typing import ArrayLike
+
+from cdem.run.simulation import Simulation
+from cdem.verification.runner import Study
 
 ROUNDS = 15
 """Of throwing points; the last hardly find room."""
@@ -85,7 +89,15 @@ def _squares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return ((a[:, None] - b) ** 2).sum(axis=2)
 
 
-def simulate(study, points, triangles, *settings: str, depth: float, groups=None, sides=None):
+def simulate(
+    study: Study,
+    points: np.ndarray,
+    triangles: np.ndarray,
+    *settings: str,
+    depth: float,
+    groups: Sequence[str] | None = None,
+    sides: Mapping[str, ArrayLike] | None = None,
+) -> Simulation:
     """A simulation of a plane mesh, extruded along y to wedges; the plane is that of x and z.
 
     Args:

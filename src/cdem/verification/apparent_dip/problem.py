@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical
+from cdem.output.render import snapshot
+from cdem.study.critical import find_critical
 
 GRAVITY = 9.81
 
@@ -81,7 +81,7 @@ def run(study):
         " interfaces.bed.friction_angle: 5, interfaces.wall.friction_angle: 2.5}}"
     )
     simulation.run_stage("load")
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     simulation.run()
     study.picture("The body with 5 degrees of friction, start and 2 s", *shown,
-                  view.snapshot(simulation))  # fmt: skip
+                  snapshot(simulation))  # fmt: skip

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import rests
+from cdem.output.render import snapshot
+from cdem.study.critical import rests
 
 RADIUS, DEPTH, VOUSSOIRS = 5.0, 1.0, 13
 
@@ -90,8 +90,8 @@ def run(study):
                 within=0.01)  # fmt: skip
     simulation = study.simulate(settings(fall * RADIUS), "stages.0={name: fall, mode: dynamic, "
                                 "duration: 3, damping: {contact: 0.2, stiffness: 0.2}}")  # fmt: skip
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     for time in (1.0, 1.5):
         simulation.run_until(time)
-        shown.append(view.snapshot(simulation))
+        shown.append(snapshot(simulation))
     study.picture(f"t / R = {fall:.4f}: start, 1.0 s, 1.5 s", *shown)

@@ -23,7 +23,8 @@ def speed(simulation, axis, periods):
     """
     x = simulation.build.start_position[:, 0]
     weight = simulation.fields["mass"] * np.sin(np.pi * x / (2 * LENGTH))
-    crossings, before = [], None
+    crossings: list[float] = []
+    before = None
     while len(crossings) < 2 * periods:
         simulation.step(4)
         now = simulation.time, weight @ simulation.fields["displacement"][:, axis]

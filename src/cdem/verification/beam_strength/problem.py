@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem.verify import break_factor
+from cdem.verification.runner import break_factor
 
 SIDE, COUPLE = 1.0, 1e4  # [m]; moment at the end of the history [N m]
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.results import stress_of
+from cdem.output.render import snapshot
+from cdem.run.fields import stress_of
 from cdem.verification import plane
 
 RADIUS, DEPTH, HALF = 0.5, 0.5, np.radians(7.5)  # [m]; half of the loaded arc [rad]
@@ -32,12 +32,12 @@ def under_jaws(x, force):
 
 def rings(count):
     """Concentric rings of 6, 12, 18 ... points; sides of triangles lie along the loaded diameter."""
-    points = [[0.0, 0.0]]
+    rows = [[0.0, 0.0]]
     for ring in range(1, count + 1):
         angle = np.pi / 2 + 2 * np.pi * np.arange(6 * ring) / (6 * ring)
         r = RADIUS * ring / count
-        points += list(r * np.column_stack([np.cos(angle), np.sin(angle)]))
-    points = np.array(points)
+        rows += list(r * np.column_stack([np.cos(angle), np.sin(angle)]))
+    points = np.array(rows)
     points[np.abs(points[:, 0]) < 1e-9, 0] = 0
     return points, plane.delaunay(points)
 
@@ -178,10 +178,10 @@ def run(study):
         name = f"irregular, {2 * count} elements across, seed {seed}"
         lines[name], strength = split(study, name, simulation, 0.2, even=False)
         found.append((2 * count, strength))
-        shown = [view.snapshot(simulation)]
+        shown = [snapshot(simulation)]
     study.curve("Load on irregular discs", "time [s]", "load [N]", lines)
     study.curve("Strength of irregular discs", "elements across [1]", "over that of a bond [1]",
                 {".cdem": tuple(np.transpose(found))})  # fmt: skip
     press(simulation, 0.3)
-    shown.append(view.snapshot(simulation))
+    shown.append(snapshot(simulation))
     study.picture("The last of them just after its peak, and later", *shown, field="damage")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 LENGTH, LOAD = 10.0, 1e4
 
@@ -50,7 +50,7 @@ def run(study):
             study.curve(f"Error of {kind} hexahedra", "element over height [1]", "error [1]",
                         {".cdem": (h, error), "second order": (h, error[-1] * (h / h[-1]) ** 2)},
                         log=True)  # fmt: skip
-    study.picture("Deflection", view.snapshot(simulation))
+    study.picture("Deflection", snapshot(simulation))
     bonded(study, young)
 
 

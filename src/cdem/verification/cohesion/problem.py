@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem.verify import break_factor
+from cdem.verification.runner import break_factor
 
 MESHES = {"1:1": (1, 1), "1:2": (1, 2), "2:3": (2, 3)}  # faces along each side, below and above
 

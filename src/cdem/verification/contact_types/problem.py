@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 LOWER = {  # the topmost face, edge (along y) or vertex at the origin
     "face": ["model.blocks.0.translate=[-0.5, -0.5, -1]"],
@@ -47,7 +47,7 @@ def run(study):
         carried = np.where(own, 1.0, -1.0) @ contacts["force"]
         study.check(f"{upper} on {lower}: carried over weight", theory=1.0, within=1e-3,
                     ours=carried[2] / weight)  # fmt: skip
-        study.picture(f"{upper} on {lower}", view.snapshot(simulation), field="group")
+        study.picture(f"{upper} on {lower}", snapshot(simulation), field="group")
         if upper == "vertex" and lower == "edge":
             continue  # which of the vertex's edges cross depends on how it leans
         springs, edges, depth = theory(lower, upper, weight, law.stiffness_n.value, 0.09)
@@ -77,4 +77,4 @@ def run(study):
     turned = np.hypot(away[0], away[1]) > 0.02  # m/s
     study.check("vertex on vertex: turned aside, energy after over before", theory=1.0,
                 ours=simulation.energies["kinetic"] / before if turned else 0.0, within=0.01)  # fmt: skip
-    study.picture("vertex on vertex", view.snapshot(simulation), field="group")
+    study.picture("vertex on vertex", snapshot(simulation), field="group")

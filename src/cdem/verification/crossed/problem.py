@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 
 def theory(gravity, friction_angle):
@@ -15,7 +15,7 @@ def run(study):
     simulation = study.simulate()
     nodes = simulation.build.nodes_of("beam")
     mass = simulation.fields["mass"][nodes]
-    shown, rows, springs = [view.snapshot(simulation)], [], 0
+    shown, rows, springs = [snapshot(simulation)], [], 0
     while simulation.time < 0.7:
         simulation.step(200)
         springs += int((simulation.contacts["kind"] == 0).sum())
@@ -30,4 +30,4 @@ def run(study):
     study.check("semi-springs that ever act", theory=0, ours=springs, within=0, absolute=True)
     study.curve("Speed of the beam", "time [s]", "speed [m/s]",
                 {"theory": (time, speed[0] + exact * (time - time[0])), ".cdem": (time, speed)})  # fmt: skip
-    study.picture("The beam across its rails, start and 0.7 s", *shown, view.snapshot(simulation))
+    study.picture("The beam across its rails, start and 0.7 s", *shown, snapshot(simulation))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 HEIGHT, THICKNESS, WIDTH = 0.05, 0.01, 0.025  # [m]
 COUNT, SETTLED = 18, 12  # dominoes, of which the wave is measured from the one on
@@ -78,7 +78,7 @@ def topple(study, spacing, modulus, *values, hinged=True):
         [np.flatnonzero(np.isclose(start[:, 0], x) & np.isclose(start[:, 2], z)) for x in edges]
         for z in (HEIGHT, 0)
     )
-    times, shown = np.full(COUNT, np.nan), [view.snapshot(simulation)]
+    times, shown = np.full(COUNT, np.nan), [snapshot(simulation)]
     gone, now = np.zeros(COUNT), 0.0
     while np.isnan(times[-1]) and simulation.run_until(now + 5e-4) == "running":
         before, then = gone, now
@@ -88,8 +88,8 @@ def topple(study, spacing, modulus, *values, hinged=True):
         part = (spacing / 2 - before[passed]) / (gone - before)[passed]
         times[passed] = then + part * (now - then)
         if len(shown) == 1 and not np.isnan(times[COUNT // 2]):
-            shown.append(view.snapshot(simulation))
-    return times, [*shown, view.snapshot(simulation)]
+            shown.append(snapshot(simulation))
+    return times, [*shown, snapshot(simulation)]
 
 
 def speed(times, spacing):

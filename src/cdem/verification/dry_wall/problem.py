@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical
-from cdem.simulation import Simulation
+from cdem.output.render import snapshot
+from cdem.run.simulation import Simulation
+from cdem.study.critical import find_critical
 from cdem.verification.masonry import block, course, tilt, tilt_limit, turning_limit
 
 DEPTH = 0.1  # [m]
@@ -48,10 +48,10 @@ def fall(study, angle, azimuth, *values):
                       " damping: {contact: 0.2, stiffness: 0.2}}]")  # fmt: skip
     tilt(case, angle, azimuth)
     simulation = Simulation(case, threads=study.threads)
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     for time in (0.4, 0.6):
         simulation.run_until(time)
-        shown.append(view.snapshot(simulation))
+        shown.append(snapshot(simulation))
     return shown
 
 

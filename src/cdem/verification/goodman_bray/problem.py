@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical, parameter
+from cdem.output.render import snapshot
+from cdem.study.critical import find_critical, parameter
 
 WIDTH, STEP, COUNT, CREST = 10.0, 1.0, 16, 10  # of a column, of the base [m]
 BELOW, ABOVE = 5.0, 5.2  # fall of the tops from column to column below and above the crest [m]
@@ -66,9 +66,9 @@ def run(study):
         " set: {interfaces.default.friction_angle: 33}}",
     )
     simulation.run_stage("load")
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     start = simulation.time
     for time in (1.5, 3):
         simulation.run_until(start + time)
-        shown.append(view.snapshot(simulation))
+        shown.append(snapshot(simulation))
     study.picture("With 33 degrees of friction: start, 1.5 s, 3 s", *shown)

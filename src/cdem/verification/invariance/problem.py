@@ -7,11 +7,11 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from cdem import view
-from cdem.build import read_model
 from cdem.errors import CaseError
-from cdem.simulation import Simulation
-from cdem.verify import problems
+from cdem.model.bodies import read_model
+from cdem.output.render import snapshot
+from cdem.run.simulation import Simulation
+from cdem.verification.runner import problems
 
 NOISE = 1e-12  # [m]
 CELL_NAMES = {"tet4": "tetra", "pyramid5": "pyramid", "wedge6": "wedge", "hex8": "hexahedron"}
@@ -228,7 +228,7 @@ def answer(study, scene, *, turn=None, noise=None, threads=1, settings=()):
         added = 0 if noise is None else noise.uniform(-NOISE, NOISE, (points, 3))
         move(case, turn, added, Path(folder) / "mesh.msh")
         simulation = Simulation(case, threads=threads)
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     last = case.stages[-1]
     if len(case.stages) > 1:
         simulation.run_stage(case.stages[-2].name)
@@ -237,7 +237,7 @@ def answer(study, scene, *, turn=None, noise=None, threads=1, settings=()):
     position = simulation.fields["position"].copy()
     if last.duration is not None:  # a run ends up to a step late
         position -= (simulation.time - start - last.duration) * simulation.fields["velocity"]
-    shown.append(view.snapshot(simulation))
+    shown.append(snapshot(simulation))
     way = (position - simulation.build.start_position) @ turn
     return Answer(way[in_order(simulation.build)], sum(simulation.broken.values()), shown)
 

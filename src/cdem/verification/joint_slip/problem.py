@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem.results import stress_of
+from cdem.run.fields import stress_of
 
 FREQUENCY, PERIODS, START = 20.0, 2, 0.01  # of the incident wave [Hz], [1], [s]
 STRENGTH = 1e4  # of the joint: normal stress times tan(45 deg) [Pa]

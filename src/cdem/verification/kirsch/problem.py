@@ -6,8 +6,8 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from cdem import view
-from cdem.results import stress_of, visible_faces
+from cdem.output.render import snapshot
+from cdem.run.fields import stress_of, visible_faces
 
 INNER, OUTER, STRESS = 1.0, 4.0, 1e5  # radii [m]; pressure in the hole, or tension far away [Pa]
 SHOWN = "von Mises stress [Pa]"
@@ -136,9 +136,9 @@ def compare(study, kind, cells, hexahedra):
     return abs(ours / radial - 1), error, simulation
 
 
-def snapshot(simulation):
+def with_stress(simulation):
     """The surface with von Mises' stress."""
-    surface = view.snapshot(simulation)
+    surface = snapshot(simulation)
     s = stress_of(simulation)
     normal, shear = s[:, :3], s[:, 3:]
     mises = ((normal - normal[:, [1, 2, 0]]) ** 2).sum(axis=1) / 2 + 3 * (shear**2).sum(axis=1)
@@ -170,4 +170,4 @@ def run(study):
         study.curve(f"Stress beside the y axis, {title}, 16 cells", "radius [m]", "stress over the load [1]", {
             "radial": (line, exact[0] / STRESS), ".radial, cdem": (r[top], stress[0, top] / STRESS),
             "hoop": (line, exact[1] / STRESS), ".hoop, cdem": (r[top], stress[1, top] / STRESS)})  # fmt: skip
-        study.picture(f"von Mises' stress, {title}", snapshot(simulation), field=SHOWN)
+        study.picture(f"von Mises' stress, {title}", with_stress(simulation), field=SHOWN)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 LENGTH, SIDE = 10.0, 1.0  # [m]
 SPEED = 1e-3  # of the greatest motion at the start [m/s]
@@ -72,7 +72,8 @@ def frequency(simulation, kind):
     weight = simulation.fields["mass"][:, None] * motion
     period = 1 / theory(kind, simulation.case.materials["rock"])
     steps = max(1, int(period / 64 / simulation.core.scalars()["dt"]))  # about 64 rows a period
-    crossings, before = [], None
+    crossings: list[float] = []
+    before = None
     while len(crossings) <= 2 * PERIODS:
         simulation.step(steps)
         now = simulation.time, (weight * simulation.fields["displacement"]).sum()
@@ -86,7 +87,7 @@ def frequency(simulation, kind):
 def mode(simulation, kind):
     """The surface when the motion is greatest, drawn as if it were 1 m at most."""
     simulation.run_until(simulation.time + 0.25 / theory(kind, simulation.case.materials["rock"]))
-    surface = view.snapshot(simulation)
+    surface = snapshot(simulation)
     drawn = surface.point_data["displacement"]
     drawn = drawn / np.linalg.norm(drawn, axis=1).max()
     surface.points, surface.point_data["displacement"] = surface.points + drawn, drawn
@@ -105,7 +106,7 @@ def run(study):
     cells = (2, 4, 8) if study.full else (2, 4)
     shown = []
     for kind in ("bending", "torsion", "longitudinal"):
-        meshes = {"full": cells, "one-point": cells}
+        meshes: dict[str, tuple[int, ...]] = {"full": cells, "one-point": cells}
         if study.full:
             meshes |= {"wedge6": (4,), "pyramid5": (4,), "tet4": (4,)}
             meshes |= {"lumped": cells} if kind == "longitudinal" else {}

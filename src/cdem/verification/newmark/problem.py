@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 
 def theory(gravity, friction_angle, history):
@@ -30,12 +30,12 @@ def shake(simulation):
     simulation.run_stage("rest")
     mass, start = simulation.fields["mass"], simulation.fields["position"].copy()
     groups = [simulation.build.nodes_of(name) for name in ("table", "block")]
-    shown, rows = [view.snapshot(simulation)], []
+    shown, rows = [snapshot(simulation)], []
     while simulation.run_until(simulation.time + 0.01) == "running":
         moved = simulation.fields["position"][:, 0] - start[:, 0]
         table, block = (mass[i] @ moved[i] / mass[i].sum() for i in groups)
         rows.append((simulation.time, table - block))
-    return *np.array(rows).T, [*shown, view.snapshot(simulation)]
+    return *np.array(rows).T, [*shown, snapshot(simulation)]
 
 
 def run(study):

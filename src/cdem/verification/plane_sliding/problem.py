@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical, parameter, strength_reduction
+from cdem.output.render import snapshot
+from cdem.study.critical import find_critical, parameter, strength_reduction
 
 LENGTH, WIDTH, HEIGHT = 8.0, 4.0, 5.0  # in plan, along the strike, vertical [m]
 DIP = 35.0  # of the plane [deg]
@@ -90,6 +90,6 @@ def run(study):
         " set: {interfaces.plane.cohesion: 15 kPa}}"
     )
     simulation.run_stage("load")
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     simulation.run()
-    study.picture("With 15 kPa of cohesion: start and 1 s", *shown, view.snapshot(simulation))
+    study.picture("With 15 kPa of cohesion: start and 1 s", *shown, snapshot(simulation))

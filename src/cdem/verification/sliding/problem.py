@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 BEDS = {
     "one face": ([1, 1, 1], "hex8"),
@@ -32,7 +32,7 @@ def slide(simulation, until, after=0.1, every=200):
 def run(study):
     """Three beds; sliders of one and of eight elements when full, and half the time step."""
     lines = {}
-    variants = {"": []}
+    variants: dict[str, list[str]] = {"": []}
     if study.full:
         variants |= {
             ", slider of 8 elements": ["model.blocks.1.box.divisions=[2, 2, 2]"],
@@ -42,11 +42,11 @@ def run(study):
         for variant, settings in variants.items():
             bed = [f"model.blocks.0.box.divisions={divisions}", f"model.blocks.0.box.shape={shape}"]
             simulation = study.simulate(*bed, *settings)
-            before = view.snapshot(simulation)
+            before = snapshot(simulation)
             time, speed = slide(simulation, 0.5)
             lines[name + variant] = time, speed
             study.check(f"acceleration on {name}{variant}", unit="m/s2", within=1e-4,
                         ours=np.polyfit(time, speed, 1)[0],
                         theory=theory(simulation.case.loads.gravity, 10))  # fmt: skip
     study.curve("Speed of the block", "time [s]", "speed [m/s]", lines)
-    study.picture("On the bed of tets: start and 0.5 s", before, view.snapshot(simulation))
+    study.picture("On the bed of tets: start and 0.5 s", before, snapshot(simulation))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem import view
+from cdem.output.render import snapshot
 
 GRAVITY, SIDE = 9.81, 10.0
 ARM = SIDE / np.sqrt(2)  # from the corner to the centre of mass [m]
@@ -51,7 +51,7 @@ def volume(simulation):
 def swing(simulation, periods):
     """Times, angles, volumes over the first, and energy errors, while the square swings."""
     mass = simulation.fields["mass"]
-    rows, shown = [], [view.snapshot(simulation)]
+    rows, shown = [], [snapshot(simulation)]
     while simulation.time < periods * period():
         simulation.step(100)
         center = mass @ simulation.fields["position"] / mass.sum()
@@ -60,7 +60,7 @@ def swing(simulation, periods):
             (simulation.time, angle, volume(simulation) / SIDE**2, simulation.energies["error"])
         )
         if len(shown) < 3 and simulation.time > 0.25 * len(shown) * period():
-            shown.append(view.snapshot(simulation))
+            shown.append(snapshot(simulation))
     return np.array(rows).T, shown
 
 

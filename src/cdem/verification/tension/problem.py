@@ -1,6 +1,6 @@
 """Tension failure of a bonded interface (Table 1)."""
 
-from cdem.verify import break_factor
+from cdem.verification.runner import break_factor
 
 MESHES = {"1:1": (1, 1), "1:2": (1, 2), "2:3": (2, 3)}  # faces along each side, below and above
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical
-from cdem.simulation import Simulation
+from cdem.output.render import snapshot
+from cdem.run.simulation import Simulation
+from cdem.study.critical import find_critical
 from cdem.verification.masonry import block, course, tilt, tilt_limit
 
 CELL, DEPTH = 0.1, 0.1  # height of a course, of which the stones are one or two long; depth [m]
@@ -91,10 +91,10 @@ def collapse(study, boxes, degrees, times):
                       " damping: {contact: 0.2, stiffness: 0.2}}]")  # fmt: skip
     tilt(case, degrees)
     simulation = Simulation(case, threads=study.threads)
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     for time in times:
         simulation.run_until(time)
-        shown.append(view.snapshot(simulation))
+        shown.append(snapshot(simulation))
     return shown
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical
-from cdem.simulation import Simulation
+from cdem.output.render import snapshot
+from cdem.run.simulation import Simulation
+from cdem.study.critical import find_critical
 
 GRAVITY = 9.81
 # cells along a side of the bed, of 3 m, and of the column, of 1 m
@@ -68,10 +68,10 @@ def run(study):
     case = study.case()
     simulation = Simulation(case, threads=study.threads)
     tilt(simulation.case, 16.0)
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     simulation.core.set_gravity(simulation.case.loads.gravity)
     for time in (1.2, 2.0):
         while simulation.time < time:
             simulation.step(100)
-        shown.append(view.snapshot(simulation))
+        shown.append(snapshot(simulation))
     study.picture("A tilt of 16 degrees", *shown)

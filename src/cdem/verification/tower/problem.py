@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical
-from cdem.simulation import Simulation
+from cdem.output.render import snapshot
+from cdem.run.simulation import Simulation
+from cdem.study.critical import find_critical
 from cdem.verification.masonry import tilt
 
 
@@ -32,8 +32,8 @@ def run(study):
                          "damping: {contact: 0.2, stiffness: 0.2}}]")  # fmt: skip
     tilt(falling, 14.0)
     simulation = Simulation(falling, threads=study.threads)
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     for time in (1.5, 2.2):
         simulation.run_until(time)
-        shown.append(view.snapshot(simulation))
+        shown.append(snapshot(simulation))
     study.picture("A tilt of 14 degrees: start, 1.5 s, 2.2 s", *shown)

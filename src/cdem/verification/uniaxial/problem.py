@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.results import stress_of
+from cdem.output.render import snapshot
+from cdem.run.fields import stress_of
 from cdem.verification import plane
 
 HEIGHT, WIDTH, DEPTH = 2.0, 1.0, 0.5  # [m]
@@ -167,21 +167,26 @@ def run(study):
         cases += [(0.25, 1, 40), (0.25, 2, 10), (0.125, 1, 10), (0.125, 2, 10), (0.125, 2, 40)]
     lines, found = {}, []
     for spacing, seed, stiffness in cases:
-        mesh = irregular(spacing, seed)
-        simulation = plane.simulate(study, *mesh, *settings(spacing, stiffness), depth=DEPTH)
+        points, triangles = irregular(spacing, seed)
+        simulation = plane.simulate(
+            study, points, triangles, *settings(spacing, stiffness), depth=DEPTH
+        )
         short, stress, _ = press(simulation)
         name = f"spacing {spacing} m, seed {seed}, k = {stiffness} E / spacing"
-        study.check(f"strength, {name}", unit="Pa", theory=weakest_bond(*mesh, law),
+        study.check(f"strength, {name}", unit="Pa", theory=weakest_bond(points, triangles, law),
                     ours=stress.max(), within=0.02 if stiffness == 10 else 0.01)  # fmt: skip
         lines[name] = short, stress
         found.append((spacing, stress.max() / theory(law)))
     study.curve("Irregular specimens", "shortening over height [1]", "mean stress [Pa]", lines)
-    spread = [(h, weakest_bond(*irregular(h, seed), law) / theory(law))
-              for h in (0.25, 0.125, 0.0625)[: 3 if study.full else 1] for seed in range(1, 9)]  # fmt: skip
+    spread = []
+    for h in (0.25, 0.125, 0.0625)[: 3 if study.full else 1]:
+        for seed in range(1, 9):
+            points, triangles = irregular(h, seed)
+            spread.append((h, weakest_bond(points, triangles, law) / theory(law)))
     study.curve("Strength of irregular specimens", "spacing [m]", "over Coulomb's [1]",
                 {".weakest bond, eight meshes": tuple(np.transpose(spread)),
                  ".cdem": tuple(np.transpose(found))})  # fmt: skip
-    shown = [view.snapshot(simulation)]
+    shown = [snapshot(simulation)]
     press(simulation, 0.3)
-    shown.append(view.snapshot(simulation))
+    shown.append(snapshot(simulation))
     study.picture("The last of them just after its peak, and broken", *shown, field="damage")

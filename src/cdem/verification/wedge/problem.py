@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem import view
-from cdem.critical import find_critical, strength_reduction
+from cdem.output.render import snapshot
+from cdem.study.critical import find_critical, strength_reduction
 
 
 def theory(vertices, friction_angles):
@@ -43,7 +43,7 @@ def run(study):
         f" set: {{interfaces.a.friction_angle: {less[0]}, interfaces.b.friction_angle: {less[1]}}}}}"
     )
     simulation.run_stage("load")
-    start, shown, rows = simulation.time, [view.snapshot(simulation)], []
+    start, shown, rows = simulation.time, [snapshot(simulation)], []
     line = (vertices[0] - vertices[3]) / np.linalg.norm(vertices[0] - vertices[3])
     nodes = simulation.build.nodes_of("wedge")
     mass = simulation.fields["mass"][nodes]
@@ -57,4 +57,4 @@ def run(study):
                 ours=np.polyfit(time, speed, 1)[0], within=2e-4)  # fmt: skip
     study.curve("Speed along the line of intersection", "time [s]", "speed [m/s]",
                 {"theory": (time, speed[0] + exact * (time - time[0])), ".cdem": (time, speed)})  # fmt: skip
-    study.picture("The wedge, and after 0.6 s", *shown, view.snapshot(simulation))
+    study.picture("The wedge, and after 0.6 s", *shown, snapshot(simulation))

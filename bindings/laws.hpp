@@ -1,0 +1,107 @@
+// laws.hpp - what the laws say of themselves, and the interfaces of a model, for Python.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "bindings/arrays.hpp"
+#include "core/interfaces/laws.hpp"
+#include "core/materials/laws.hpp"
+
+namespace cdem {
+
+/// Numbers of a law's parameters in the order of its declaration, from a dict by name.
+template <class Law>
+std::vector<Real> parameters_of(const nb::dict& values) {
+  std::vector<Real> row;
+  for (const Parameter& p : Law::parameters) row.push_back(nb::cast<Real>(values[p.name]));
+  return row;
+}
+
+/// Call act.template operator()<Law, number>() for the law of this name.
+template <class Laws, class Act>
+void with_law(const std::string& name, const Act& act) {
+  bool found = false;
+  Laws::for_each([&]<template <class> class Law, Index number>() {
+    if (name != Law<Real>::text.name) return;
+    found = true;
+    act.template operator()<Law, number>();
+  });
+  if (!found) throw nb::value_error("unknown law");
+}
+
+/// Why parameters of a law, as the core takes them, contradict each other, or an empty text.
+template <class Laws>
+std::string contradiction(const std::string& law, const nb::dict& values) {
+  std::string why;
+  with_law<Laws>(law, [&]<template <class> class Law, Index>() {
+    const char* text = Law<Real>::contradiction(parameters_of<Law<Real>>(values).data());
+    if (text) why = text;
+  });
+  return why;
+}
+
+/// What the laws of a list say of themselves.
+template <class Laws>
+nb::list declarations() {
+  nb::list laws;
+  Laws::for_each([&]<template <class> class Law, Index>() {
+    nb::dict law;
+    law["name"] = Law<Real>::text.name;
+    law["meaning"] = Law<Real>::text.meaning;
+    law["flows"] = false;
+    if constexpr (requires { Law<Real>::inelastic; }) law["flows"] = Law<Real>::inelastic;
+    nb::list parameters, state;
+    for (const Parameter& p : Law<Real>::parameters) {
+      nb::dict d;
+      d["name"] = p.name, d["symbol"] = p.symbol;
+      d["unit"] = p.unit, d["meaning"] = p.meaning;
+      d["at_least"] = p.at_least;
+      d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
+      d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
+      d["is_tangent"] = p.form == Form::tangent;
+      d["is_strength"] = p.is_strength;
+      d["bonds"] = p.bonds;
+      parameters.append(d);
+    }
+    for (const StateVariable& v : Law<Real>::state) {
+      nb::dict d;
+      d["name"] = v.name, d["unit"] = v.unit, d["meaning"] = v.meaning;
+      state.append(d);
+    }
+    law["parameters"] = parameters;
+    law["state"] = state;
+    laws.append(law);
+  });
+  return laws;
+}
+
+/// The interfaces of the model: law, stiffness_n and stiffness_s as (value, factor), parameters.
+inline void set_interfaces(Core& core, const nb::list& interfaces) {
+  Model& m = core.model;
+  constexpr std::size_t width = InterfaceLaws::most_parameters;
+  m.interfaces.resize(interfaces.size());
+  m.interface_parameters.resize(width * interfaces.size());
+  m.rules.lifted = 0;
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
+    const auto entry = nb::cast<nb::dict>(interfaces[i]);
+    const auto stiffness = [&](const char* name) {
+      return nb::cast<std::tuple<Real, Real>>(entry[name]);
+    };
+    Interface& interface = m.interfaces[i];
+    std::tie(interface.stiffness_n_value, interface.stiffness_n_factor) = stiffness("stiffness_n");
+    std::tie(interface.stiffness_s_value, interface.stiffness_s_factor) = stiffness("stiffness_s");
+    const auto name = nb::cast<std::string>(entry["law"]);
+    with_law<InterfaceLaws>(name, [&]<template <class> class Law, Index number>() {
+      interface.law = number;
+      const auto row = parameters_of<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
+      std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
+      m.rules.lifted = std::max(m.rules.lifted, 2 * Law<Real>::rise_most(row.data()));
+    });
+  }
+}
+
+}  // namespace cdem

@@ -1,0 +1,81 @@
+// change_of_target.hpp - semi-springs that move to another face, or whose contact ends.
+#pragma once
+
+#include "core/contact/force/contact_laws.hpp"
+#include "core/contact/force/mother_point.hpp"
+#include "core/contact/narrow_phase/closed_contact.hpp"
+#include "core/contact/narrow_phase/contact_columns.hpp"
+
+namespace cdem {
+
+/// Move or close the contacts of one exposed face that have no longer the target of one step ago.
+/// The histories of its vertices stay: they belong to the wall.
+struct ChangeTargets {
+  FaceColumns faces;
+  FaceGeometry geometry;
+  SearchRules rules;
+  ContactLaws laws;
+  SpringColumns springs;
+
+  CDEM_HD void operator()(One m) const {
+    for (Index slot = 4 * m.i; slot < 4 * m.i + 4; ++slot) {
+      const Index t = springs.target[slot], before = springs.target_before[slot];
+      if (before < 0 || t == before) continue;
+      if (t < 0)
+        close_contact(m.i, slot, before);
+      else
+        move_to_target(m.i, slot, before, t);
+    }
+  }
+
+ private:
+  /// A contact that changes its face keeps the shear force, turned into the new plane with its
+  /// length kept, and sinks in as far as gives the normal spring there the energy it had: as deep
+  /// as before would make some where the new face is the stiffer one. Until it has its new force,
+  /// its energies are what its springs held on the old face and did not give back.
+  CDEM_HD void move_to_target(Index m, Index slot, Index before, Index t) const {
+    ContactState s = ContactState::at(springs.state, slot);
+    const DissipatedAtEnd left = lost_on(m, slot, before);
+    const Frame<Real> from = faces.shape(geometry.vertices(before)).frame();
+    const Frame<Real> to = faces.shape(geometry.vertices(t)).frame();
+    const Real s1 = s.shear1, s2 = s.shear2;
+    const Vec3<Real> shear = s1 * from.t1 + s2 * from.t2;
+    const Real a = dot(shear, to.t1), b = dot(shear, to.t2);
+    const Real in_plane = sqrt_of(a * a + b * b);
+    const Real scale = in_plane > 0 ? sqrt_of(s1 * s1 + s2 * s2) / in_plane : 0.0;
+    s.shear1 = scale * a;
+    s.shear2 = scale * b;
+    const Real kn = 0.5 * laws.spring(geometry, laws.between(geometry, m, t), m, t).n();
+    s.penetration = sqrt_of(2 / kn * s.energy_n);
+    s.energy_n = left.dashpot;
+    s.energy_s = left.friction;
+    s.store(springs.state, slot);
+  }
+  /// A contact that ended forgets its forces.
+  CDEM_HD void close_contact(Index m, Index slot, Index before) const {
+    const DissipatedAtEnd lost = lost_on(m, slot, before);
+    springs.friction[slot] += lost.friction;
+    springs.dashpot[slot] += lost.dashpot;
+    ContactState{}.store(springs.state, slot);
+    Real* row = springs.reaction + std::size_t(slot) * 8;
+    row[0] = row[1] = row[2] = row[3] = 0;
+  }
+  /// What the springs held on a face that they have left, and did not give back.
+  CDEM_HD DissipatedAtEnd lost_on(Index m, Index slot, Index before) const {
+    const FaceVertices<Index> corners = geometry.vertices(before);
+    FaceShape<Real> shape = faces.shape(corners);
+    Vec3<Real> moved[4];
+    for (Index j = 0; j < 4; ++j) {
+      moved[j] = faces.dt * faces.nodes.velocity(corners.node[j]);
+      shape.x[j] = shape.x[j] - moved[j];
+    }
+    const Frame<Real> frame = shape.frame();
+    const auto mother = MotherPoint<Real>::at(faces, geometry, rules, laws.node_mass, m, slot);
+    const Projection<Real> foot = project(shape, mother.x_old, frame.n);
+    Vec3<Real> way = mother.x - mother.x_old;
+    for (Index j = 0; j < 4; ++j) way = way - foot.weight[j] * moved[j];
+    return {ContactState::at(springs.state, slot), frame, way};
+  }
+};
+
+}  // namespace cdem

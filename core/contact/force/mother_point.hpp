@@ -1,0 +1,52 @@
+// mother_point.hpp - the point of the mother face at which a semi-spring acts.
+#pragma once
+
+#include "core/contact/geometry/face_geometry.hpp"
+#include "core/records/rules.hpp"
+
+namespace cdem {
+
+/// The acting point: the vertex, moved towards the face's centre by the action coefficient.
+template <class T>
+struct MotherPoint {
+  Vec3<T> x, x_old, v;  // now, one step ago; velocity
+  T inverse_mass;       // under a force: sum w^2 / m  [1/kg]
+
+  /// That of a slot (4 * exposed face + vertex) of exposed face m.
+  template <class Ids>
+  CDEM_HD static MotherPoint at(const FaceColumns& faces, const FaceGeometry& geometry,
+                                const SearchRules& rules, const Real* node_mass, const Ids& m,
+                                const Ids& slot) {
+    const T dt(faces.dt), zero(0.0);
+    MotherPoint p{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero};
+    const auto add = [&](const Ids& node, const T& w) {
+      const Vec3<T> x = faces.nodes.position(node), v = faces.nodes.velocity(node);
+      p.x = p.x + w * x;
+      p.x_old = p.x_old + w * (x - dt * v);
+      p.v = p.v + w * v;
+      p.inverse_mass += w * w / look_up(node_mass, node);
+    };
+    if (!(rules.action > 0)) {
+      const auto corner = [&](Index x, Index s) { return geometry.table[x].corner[s % 4]; };
+      add(indices_of(corner, m, slot), T(1.0));
+      return p;
+    }
+    const FaceVertices<Ids> corners = geometry.vertices(m);
+    for (Index j = 0; j < 4; ++j) {
+      const auto share = [&](Index x, Index s) {
+        return share_of(rules.action, geometry.table[x].count(), s % 4, j);
+      };
+      add(corners.node[j], numbers_of(share, m, slot));
+    }
+    return p;
+  }
+
+ private:
+  /// What the acting point of vertex k takes of vertex j of so many.
+  CDEM_HD static Real share_of(Real action, Index count, Index k, Index j) {
+    if (j >= count) return 0.0;
+    return action / Real(count) + (j == k ? 1.0 - action : 0.0);
+  }
+};
+
+}  // namespace cdem

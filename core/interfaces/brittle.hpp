@@ -1,0 +1,148 @@
+// brittle.hpp - Coulomb friction with a bond that breaks in tension or shear. Feng et al. (2014),
+// Eq. 14.
+#pragma once
+
+#include <array>
+
+#include "core/interfaces/law.hpp"
+
+namespace cdem {
+
+/// The joint is elastic up to its limits, per area:
+///
+///   opens  when  -t_n > T                    then  t_n = t_s = 0
+///   slips  when  |t_s| > t_n tan(phi) + c    then  |t_s| = t_n tan(phi) + c
+///   and from the next step on  c = T = 0
+///
+/// t_n > 0 is compression. Departure from the paper: `>` for its `>=`, and a millionth of c added
+/// to T, so that an unloaded joint with T = 0 (or c = 0) keeps its other strength in spite of
+/// round-off.
+///
+/// A joint that slips by ds lifts by tan(psi) ds (dilation): its stress-free gap rises, which
+/// presses it harder and so raises the limit. Both are solved for at once.
+template <class T>
+struct Brittle {
+  static constexpr LawText text{
+      .name = "brittle",
+      .meaning =
+          "Coulomb friction with bonds that break in tension or shear: Feng et al. (2014), "
+          "Eq. 14"};
+  static constexpr std::array parameters{
+      Parameter{.name = "friction_angle",
+                .symbol = "phi",
+                .unit = "deg",
+                .meaning = "Friction angle",
+                .below = 90,
+                .form = Form::tangent,
+                .is_strength = true},
+      Parameter{.name = "cohesion",
+                .symbol = "c",
+                .unit = "Pa",
+                .meaning = "Cohesion of the intact bond",
+                .otherwise = 0,
+                .is_strength = true,
+                .bonds = true},
+      Parameter{.name = "tensile_strength",
+                .symbol = "T",
+                .unit = "Pa",
+                .meaning = "Tensile strength of the intact bond",
+                .otherwise = 0,
+                .is_strength = true,
+                .bonds = true},
+      Parameter{.name = "dilation_angle",
+                .symbol = "psi",
+                .unit = "deg",
+                .meaning = "Dilation angle: a sliding joint lifts by its tangent times the slip",
+                .below = 90,
+                .otherwise = 0,
+                .form = Form::tangent},
+      Parameter{.name = "dilation_slip",
+                .symbol = "",
+                .unit = "m",
+                .meaning = "Slip after which a joint dilates no more",
+                .otherwise = 0}};
+  static constexpr std::array<StateVariable, 0> state{};
+
+  T tan_friction, cohesion, tensile_strength, tan_dilation, dilation_slip;
+
+  template <class Number>
+  CDEM_HD static Brittle read(const Number& number) {
+    return {.tan_friction = number(0),
+            .cohesion = number(1),
+            .tensile_strength = number(2),
+            .tan_dilation = number(3),
+            .dilation_slip = number(4)};
+  }
+  static const char* contradiction(const Real* parameter) {
+    const auto p = Brittle<Real>::read([&](Index k) { return parameter[k]; });
+    // a joint that lifts more than it slips against friction would make energy
+    if (p.tan_dilation > p.tan_friction)
+      return "dilation_angle must not be larger than friction_angle, {friction_angle:g}";
+    if (p.tan_dilation > 0 && !(p.dilation_slip > 0))
+      return "dilation_angle needs dilation_slip, the slip after which it dilates no more";
+    return nullptr;
+  }
+  static Real rise_most(const Real* parameter) { return parameter[3] * parameter[4]; }
+
+  CDEM_HD Borne<T> bears(const JointInput<T>& in) const {
+    const T one(1.0), half(0.5);
+    const T normal = -in.stiffness_n * in.opening;
+    const T shear1 = -in.stiffness_s * in.shear1, shear2 = -in.stiffness_s * in.shear2;
+    const T squared = shear1 * shear1 + shear2 * shear2;
+    return {.normal = normal,
+            .shear1 = shear1,
+            .shear2 = shear2,
+            .stored = half / in.stiffness_n * normal * normal + half / in.stiffness_s * squared,
+            .holds = !(opens(normal, one) | slips(squared, shear_limit(normal, one)))};
+  }
+
+  CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T*) const {
+    const T none(0.0), half(0.5), all(1.0);
+    T elastic = -in.stiffness_n * in.opening;
+    const auto parts = opens(elastic, in.bond);
+    elastic = select(parts, none, elastic);
+    T normal = select(in.bond > half, elastic, max_of(elastic + in.damping, none));
+    normal = select(parts, none, normal);
+    const T try1 = -in.stiffness_s * in.shear1, try2 = -in.stiffness_s * in.shear2;
+    const T squared = try1 * try1 + try2 * try2;
+    T limit = shear_limit(normal, in.bond);
+    const T tangent = in.may_rise * min_of(tan_dilation, tan_friction);
+    const auto lifts = (tangent > none) & (normal > none) & slips(squared, limit);
+    T rise = none;
+    if (any_of(lifts)) {
+      const T stiffer = in.stiffness_s + in.stiffness_n * tangent * tan_friction;
+      const T room = max_of(tan_dilation * dilation_slip - in.risen, none);
+      rise = select(lifts, min_of(tangent * (sqrt_of(squared) - limit) / stiffer, room), none);
+      normal += in.stiffness_n * rise;
+      elastic += in.stiffness_n * rise;
+      limit = shear_limit(normal, in.bond);
+    }
+    const auto slides = slips(squared, limit);
+    const T keep = select(parts, none, select(slides, limit / sqrt_of(squared), all));
+    const T shear1 = keep * try1, shear2 = keep * try2;
+    return {.elastic = elastic,
+            .normal = normal,
+            .shear1 = shear1,
+            .shear2 = shear2,
+            .stored_n = half / in.stiffness_n * elastic * elastic,
+            .stored_s = half / in.stiffness_s * (shear1 * shear1 + shear2 * shear2),
+            .rise = rise,
+            .fracture = none,
+            .bond = select(parts | slides, none, in.bond),
+            .opens = parts};
+  }
+
+ private:
+  CDEM_HD Truth<T> opens(const T& elastic, const T& bond) const {
+    constexpr Real round_off = 1e-6;  // of the cohesion
+    return -elastic > bond * (tensile_strength + T(round_off) * cohesion);
+  }
+  CDEM_HD T shear_limit(const T& normal, const T& bond) const {
+    return max_of(normal * tan_friction + bond * cohesion, T(0.0));
+  }
+  CDEM_HD static Truth<T> slips(const T& squared, const T& limit) {
+    return squared > limit * limit;
+  }
+};
+
+}  // namespace cdem

@@ -1,0 +1,69 @@
+// history.hpp - what the walls of contacts remember for the laws of their interfaces.
+#pragma once
+
+#include "core/interfaces/laws.hpp"
+
+namespace cdem {
+
+/// Histories of vertices or sides of exposed faces, a row each: it belongs to the wall, so it stays
+/// when a contact ends or meets another face. Empty where no law has state.
+struct HistoryRows {
+  static constexpr Index width = InterfaceLaws::most_state;
+  Real* rows;  // [row][width]
+  Index* law;  // [row] number of the law whose history it is, or -1
+
+  /// The history of a row for a law: what it holds, or what the law says of loose faces where the
+  /// row has none of this law.
+  template <template <class> class Law, Index number, class Ids, class T>
+  CDEM_HD void load(const Ids& row, T* state) const {
+    load_from<Law, number, 0>(row, state);
+  }
+  template <class Ids, class T>
+  CDEM_HD void store(const Ids& row, const Ids& law_of_row, const T* state) const {
+    for (Index k = 0; k < width; ++k)
+      for_lanes(row, [&](Index lane, Index r) {
+        rows[std::size_t(r) * width + k] = of_lane(state[k], lane);
+      });
+    for_lanes(row, [&](Index lane, Index r) { law[r] = of_lane(law_of_row, lane); });
+  }
+
+ private:
+  template <template <class> class Law, Index number, Index k, class Ids, class T>
+  CDEM_HD void load_from(const Ids& row, T* state) const {
+    if constexpr (k < Index(Law<T>::state.size())) {
+      constexpr Real loose = Law<T>::state[k].loose;
+      const auto kept = [&](Index r) {
+        return law[r] == number ? rows[std::size_t(r) * width + k] : loose;
+      };
+      state[k] = numbers_of(kept, row);
+      load_from<Law, number, k + 1>(row, state);
+    }
+  }
+};
+
+/// The law of each lane's contact answers, with the history of row `from`; that of row `to` is
+/// written.
+template <class T, class Ids>
+CDEM_HD inline JointAnswer<T> respond_with_history(const InterfaceTable& table,
+                                                   const Ids& interface, const JointInput<T>& in,
+                                                   const HistoryRows& before, const Ids& from,
+                                                   const HistoryRows& after, const Ids& to) {
+  if constexpr (HistoryRows::width == 0) {
+    return respond(table, interface, in, static_cast<T*>(nullptr));
+  } else {
+    T state[HistoryRows::width];
+    for (T& number : state) number = T(0.0);
+    InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+      T own[HistoryRows::width];
+      before.load<Law, number>(from, own);
+      const auto mine = table.has_law<number>(interface);
+      for (Index k = 0; k < Index(Law<T>::state.size()); ++k)
+        state[k] = select(mine, own[k], state[k]);
+    });
+    const JointAnswer<T> answer = respond(table, interface, in, state);
+    after.store(to, table.law_of(interface), state);
+    return answer;
+  }
+}
+
+}  // namespace cdem

@@ -1,0 +1,73 @@
+// law.hpp - what an interface law is asked, and what it answers.
+//
+// A law is a template <class T> struct of its parameters, T a number or a pack, with
+//
+//   static constexpr LawText text;                     name in a case, meaning
+//   static constexpr std::array<Parameter, n> parameters;
+//   static constexpr std::array<StateVariable, n> state;
+//   static Law read(number);                           number(k) is parameter k
+//   JointAnswer<T> respond(const JointInput<T>&, T* state) const;
+//   Borne<T> bears(const JointInput<T>&) const;        quick answer for an intact joint; only of
+//                                                      laws without state
+//   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr;
+//                                                      {name} stands for a value of the case
+//   static Real rise_most(const Real*);                how far the stress-free gap may rise  [m]
+//
+// It speaks of tractions [Pa] and separations [m], never of forces and areas: bond points,
+// semi-springs and semi-edges call the same law and bring their areas.
+#pragma once
+
+#include "core/base/lanes.hpp"
+#include "core/records/law_declaration.hpp"
+
+namespace cdem {
+
+/// Where a joint is. With `bond` = 0 the faces only touch.
+template <class T>
+struct JointInput {
+  T opening;                   // past the stress-free gap; < 0 is pressed  [m]
+  T shear1, shear2;            // along the joint, less what has slipped  [m]
+  T stiffness_n, stiffness_s;  // [Pa/m]
+  T damping;                   // normal traction of the contact's dashpot, compression > 0  [Pa]
+  T bond;                      // 1 while bonded, then 0
+  T risen;                     // how far the stress-free gap lies above zero  [m]
+  T may_rise;                  // 1 where it can rise further: at semi-springs
+};
+
+/// Tractions on the mother, or on the second face of a bond, after the law.
+template <class T>
+struct JointAnswer {
+  T elastic;             // normal traction of the spring, compression > 0  [Pa]
+  T normal;              // the same with the dashpot  [Pa]
+  T shear1, shear2;      // [Pa]
+  T stored_n, stored_s;  // energy in the springs  [J/m2]
+  T rise;                // of the stress-free gap in this step  [m]
+  T fracture;            // energy that the law spends on fracture while the bond holds  [J/m2]
+  T bond;                // 1 while it still holds
+  Truth<T> opens;        // the normal traction reached its limit
+};
+
+/// The same of an intact joint that holds; nothing but the tractions counts where it does not.
+template <class T>
+struct Borne {
+  T normal, shear1, shear2;  // [Pa]
+  T stored;                  // [J/m2]
+  Truth<T> holds;
+};
+
+template <class M, class T>
+CDEM_HD inline JointAnswer<T> select(const M& mask, const JointAnswer<T>& yes,
+                                     const JointAnswer<T>& no) {
+  return {.elastic = select(mask, yes.elastic, no.elastic),
+          .normal = select(mask, yes.normal, no.normal),
+          .shear1 = select(mask, yes.shear1, no.shear1),
+          .shear2 = select(mask, yes.shear2, no.shear2),
+          .stored_n = select(mask, yes.stored_n, no.stored_n),
+          .stored_s = select(mask, yes.stored_s, no.stored_s),
+          .rise = select(mask, yes.rise, no.rise),
+          .fracture = select(mask, yes.fracture, no.fracture),
+          .bond = select(mask, yes.bond, no.bond),
+          .opens = (mask & yes.opens) | (!mask & no.opens)};
+}
+
+}  // namespace cdem

@@ -1,0 +1,13 @@
+// interface_table.hpp - the interfaces of a model, as kernels see them.
+#pragma once
+
+#include "core/interfaces/laws.hpp"
+#include "core/model/model.hpp"
+
+namespace cdem {
+
+inline InterfaceTable interface_table(const Model& m) {
+  return {.interfaces = m.interfaces.data(), .parameters = m.interface_parameters.data()};
+}
+
+}  // namespace cdem

@@ -1,0 +1,51 @@
+// law_declaration.hpp - what a law says of itself: its parameters and what it remembers.
+//
+// A law is one header, core/interfaces/<law>.hpp or core/materials/<law>.hpp, and one entry in the
+// laws.hpp beside it. Schema, checks, documentation, checkpoint, output fields and Python views are
+// made from the declaration alone, see docs/contributing/adding_a_law.md.
+#pragma once
+
+#include <limits>
+
+namespace cdem {
+
+/// Name of a law in a case, and what it is in one sentence.
+struct LawText {
+  const char* name;
+  const char* meaning;
+};
+
+/// How a kernel gets a parameter.
+enum class Form {
+  number,   // as the case says it, in SI units
+  tangent,  // an angle in a case [deg], its tangent in the kernel
+};
+
+/// The default of a parameter that a case must give.
+inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
+
+/// One parameter of a law.
+struct Parameter {
+  const char* name;
+  const char* symbol;
+  const char* unit;  // in a case
+  const char* meaning;
+  double at_least = 0;  // range in the unit of the case
+  double below = std::numeric_limits<double>::infinity();
+  double otherwise = required;  // where the case is silent
+  Form form = Form::number;
+  bool is_strength = false;  // divided by a factor of safety (of an angle, the tangent is)
+  bool bonds = false;        // above zero, it bonds faces that touch at the start
+};
+
+/// One number that a law remembers. It may only grow: where several contacts share a history, the
+/// largest of their numbers goes on.
+struct StateVariable {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  double intact = 0;  // of a bond at the start
+  double loose = 0;   // of a contact between faces that were never bonded
+};
+
+}  // namespace cdem

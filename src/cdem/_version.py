@@ -1,0 +1,3 @@
+"""The version of cdem, which results, checkpoints and sweeps keep."""
+
+__version__ = "0.1.0"

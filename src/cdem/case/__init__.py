@@ -1,0 +1,1 @@
+"""The case: what a user asks for, read from a file or built in Python, and checked."""

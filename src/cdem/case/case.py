@@ -1,0 +1,166 @@
+"""The case: what a user asks for, from a file or built in Python, checked before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+from pydantic import PrivateAttr, ValidationError
+
+from cdem.case import checks
+from cdem.case.reader import (
+    Source,
+    explain,
+    load_case_data,
+    plain,
+    problems_of,
+    replace_at,
+    resolve,
+)
+from cdem.case.schema import CaseParts
+from cdem.case.types import Part
+
+
+class Case(CaseParts):
+    """A whole case. Load one from a file, or build it here with the same names.
+
+    Raises:
+        CaseError: Every problem found, one line each: file:line:column: path: what.
+
+    Example:
+        >>> case = Case(
+        ...     model={"blocks": [{"group": "rock", "box": {"size": [1, 1, "10 cm"]}}]},
+        ...     materials={
+        ...         "granite": {"density": 2700, "young_modulus": "50 GPa", "poisson_ratio": 0.25}
+        ...     },
+        ...     groups={"rock": {"material": "granite"}},
+        ...     stages=[{"name": "fall", "mode": "dynamic", "duration": "10 ms"}],
+        ... )
+        >>> case.materials["granite"].young_modulus, case.stages[0].duration
+        (50000000000.0, 0.01)
+    """
+
+    _source: Source = PrivateAttr(default_factory=Source)
+
+    def __init__(self, _source: Source | None = None, **data: Any) -> None:
+        source, data = _source or Source(), plain(data, _source or Source())
+        problems: list[checks.Problem] = []
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            problems = problems_of(error, Case)
+            try:  # so that names are checked, too, if all the rest is sound
+                super().__init__(**checks.without(data, problems))
+            except ValidationError:
+                raise source.error(problems) from None
+        self._source = source
+        names = checks.contradictions(self, source.folder)
+        if not problems:  # else settings might fail for what was left out
+            trial = self.model_copy(deep=True)
+            trial._source = Source()  # so that errors name no line; the line is that of the setting
+            problems = checks.stage_settings(trial, trial.set, names)
+        problems += names
+        if problems:
+            raise source.error(problems)
+
+    @classmethod
+    def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Case:
+        """Read a case file.
+
+        Args:
+            path: A YAML file.
+            overrides: Texts ``"interfaces.default.cohesion=10 kPa"`` that replace values.
+
+        Returns:
+            The case, checked as far as that is possible without its mesh.
+
+        Raises:
+            CaseError: The file cannot be read or is wrong; one line for each problem.
+        """
+        data, source = load_case_data(Path(path), overrides)
+        return cls(_source=source, **data)
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Case:
+        """Build a case from nested dicts and lists with the names of a case file."""
+        return cls(**data)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        try:
+            super().__setattr__(name, value)
+        except ValidationError as error:
+            raise explain(error, self._source, Case) from None
+
+    def where(self, path: str) -> str:
+        """Return ``file:line:col`` of a value, e.g. of ``interfaces.pairs.0.cohesion``."""
+        return self._source.where(path)
+
+    def path_of(self, file: str | Path) -> Path:
+        """Return a path named in the case; a relative one starts at the case file's folder."""
+        return self._source.folder / file
+
+    def blame(self, path: str) -> AbstractContextManager[None]:
+        """Put ``file:line:col: path:`` before the message of a CdemError or ValueError inside."""
+        return self._source.blame(path)
+
+    def set(self, path: str, value: Any) -> None:
+        """Change one value, checked like one from a file.
+
+        Args:
+            path: e.g. ``"interfaces.pairs.0.cohesion"`` or ``"loads.gravity.2"``. An entry of a
+                list may be named by its ``name``, and a named pair directly:
+                ``"interfaces.bed.friction_angle"``.
+            value: The new value, in SI or with a unit.
+
+        Raises:
+            CaseError: The path leads nowhere, or the value is not allowed there.
+        """
+        keys = resolve(self, path)
+        # the deepest Part on the way, and the number of keys that lead to it
+        part: Part = self
+        keep, node = 0, part
+        for depth, key in enumerate(keys[:-1], start=1):
+            node = getattr(node, str(key)) if isinstance(node, Part) else node[key]
+            if isinstance(node, Part):
+                part, keep = node, depth
+        field, inner = str(keys[keep]), keys[keep + 1 :]
+        new = replace_at(getattr(part, field), inner, plain(value, self._source))
+        try:
+            setattr(part, field, new)
+        except ValidationError as error:
+            raise explain(error, self._source, Case, within=keys[:keep]) from None
+        self.interfaces.inherit()
+
+    def dump(self) -> str:
+        """Write the resolved case as YAML: defaults filled in, mesh path absolute."""
+        from io import StringIO
+
+        from ruamel.yaml import YAML
+
+        data = self.model_dump(mode="json", exclude_none=True)
+        if self.model.mesh is not None:
+            data["model"]["mesh"] = str(self.path_of(self.model.mesh).resolve())
+        for block, data_of_block in zip(self.model.blocks, data["model"]["blocks"], strict=True):
+            if block.file is not None:
+                data_of_block["file"] = str(self.path_of(block.file).resolve())
+        if self.interfaces.default is not None:
+            # A pair's inherited values follow the default when a stage sets it, so leave them out.
+            for pair, written in zip(
+                self.interfaces.pairs, data["interfaces"]["pairs"], strict=True
+            ):
+                for field in pair.inherited():
+                    written.pop(field, None)
+        yaml, text = YAML(typ="safe", pure=True), StringIO()
+        yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
+        yaml.default_flow_style = None  # short ones in one line
+        yaml.width = 100
+        yaml.dump(data, text)
+        return text.getvalue()
+
+    @classmethod
+    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
+        """Return the JSON schema of a case file, for editors."""
+        head = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+        return head | cls.model_json_schema() | {"title": "cdem case"}

@@ -1,0 +1,191 @@
+"""What a case must not contradict: checks between its parts that need no mesh."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+from cdem.case.laws import BLOCK_LAWS, block_contradiction
+from cdem.case.schema import CaseParts
+from cdem.errors import CaseError
+
+Problem = tuple[tuple[str | int, ...], str]  # path, what is wrong
+SETTABLE = ("interfaces.", "loads.", "groups.")  # another mesh or material is another model
+AT_START = ("material", "velocity", "angular_velocity")  # of a group
+
+
+def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
+    """Return every mismatch between names of the case, and the mesh file if it is not there.
+
+    Args:
+        case: The case.
+        folder: Folder that relative paths in it start at.
+    """
+    return [*_mesh_file(case, folder), *_names(case)]
+
+
+def _names(case: CaseParts) -> Iterator[Problem]:
+    yield from _materials(case)
+    yield from _groups(case)
+    yield from _joints(case)
+    yield from _unique_names(case)
+
+
+def _mesh_file(case: CaseParts, folder: Path) -> Iterator[Problem]:
+    if case.model.mesh is not None and not (folder / case.model.mesh).is_file():
+        path = folder / case.model.mesh
+        near = difflib.get_close_matches(
+            path.name, [p.name for p in path.parent.glob("*") if p.is_file()], n=1
+        )
+        hint = f"; did you mean {near[0]}?" if near else ""
+        yield (
+            ("model", "mesh"),
+            f"no file {path.resolve()} (a relative path starts at the case file's folder){hint}",
+        )
+
+
+def _materials(case: CaseParts) -> Iterator[Problem]:
+    for name, group in case.groups.items():
+        if group.material not in case.materials:
+            yield ("groups", name, "material"), _no("material", group.material, case.materials)
+
+    for name, material in case.materials.items():
+        if why := block_contradiction(material):
+            yield ("materials", name), why
+        rotates = case.elements.formulation == "corotational"
+        if BLOCK_LAWS[material.law].flows and not rotates:
+            yield (
+                ("elements", "formulation"),
+                f"must be corotational: material {name} has the law {material.law}, which flows",
+            )
+
+
+def _groups(case: CaseParts) -> Iterator[Problem]:
+    for keys, name in _group_names(case):
+        if name not in case.groups:
+            yield keys, _no("group", name, case.groups)
+
+
+def _joints(case: CaseParts) -> Iterator[Problem]:
+    names = [joint.name for joint in case.model.joints]
+    for i, pair in enumerate(case.interfaces.pairs):
+        if pair.joint is not None and pair.joint not in names:
+            yield ("interfaces", "pairs", i, "joint"), _no("joint set", pair.joint, names)
+    everywhere = any(joint.group is None for joint in case.model.joints)
+    cut = {joint.group for joint in case.model.joints}
+    for name, kind in case.model.split.items():
+        if kind == "one" and names and (everywhere or name in cut):
+            yield ("model", "split", name), "joints cut this group, so it cannot be one block"
+
+
+def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Every place of a case that names a group."""
+    for i, block in enumerate(case.model.blocks):
+        yield ("model", "blocks", i, "group"), block.group
+    for name in case.model.split:
+        yield ("model", "split", name), name
+    for i, joint in enumerate(case.model.joints):
+        if joint.group is not None:
+            yield ("model", "joints", i, "group"), joint.group
+    for i, pair in enumerate(case.interfaces.pairs):
+        for k, name in enumerate(pair.between or []):
+            yield ("interfaces", "pairs", i, "between", k), name
+    for kind in ("tractions", "velocities", "supports"):
+        for i, load in enumerate(getattr(case.loads, kind)):
+            if getattr(load, "group", None) is not None:
+                yield ("loads", kind, i, "group"), load.group
+            surface = getattr(load, "surface", None)
+            if surface is not None and not isinstance(surface, str):
+                yield ("loads", kind, i, "surface", "group"), surface.group
+    for i, history in enumerate(case.histories):
+        if history.group is not None:
+            yield ("histories", i, "group"), history.group
+
+
+def _unique_names(case: CaseParts) -> Iterator[Problem]:
+    named: dict[tuple[str, ...], Sequence[Any]] = {
+        ("stages",): case.stages,
+        ("histories",): case.histories,
+        ("interfaces", "pairs"): case.interfaces.pairs,
+        ("model", "joints"): case.model.joints,
+    }
+    for keys, entries in named.items():
+        seen: set[str] = set()
+        for i, entry in enumerate(entries):
+            if entry.name in seen:
+                yield (*keys, i, "name"), f"'{entry.name}' is the name of two entries"
+            if entry.name is not None:
+                seen.add(entry.name)
+
+
+def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]:
+    """Leave out the values that are wrong, so that the rest of a case can be looked at.
+
+    Groups, materials and entries of lists stay: without them the rest would look wrong.
+    """
+    rest = deepcopy(data)
+    for keys, _ in problems:
+        node: Any = rest
+        for key in keys[:-1]:
+            inside = node.get(key) if isinstance(node, dict) else None
+            if isinstance(node, list) and isinstance(key, int) and key < len(node):
+                inside = node[key]
+            node = inside
+        if isinstance(node, dict) and keys[:-1] not in (("groups",), ("materials",)):
+            node.pop(keys[-1], None)
+    return rest
+
+
+def _fixed_at_the_start(path: str, value: Any) -> str:
+    """Which entry of a group or interface a setting would change that only the start of a run knows, or ""."""
+    keys = path.split(".")
+    if keys[0] == "interfaces":
+        return "'law' of an interface" if keys[-1] == "law" else ""
+    if keys[0] != "groups":
+        return ""
+    inside = value if len(keys) == 2 and isinstance(value, dict) else {}
+    found = next((key for key in AT_START if key in keys[2:3] or key in inside), "")
+    return f"'{found}' of a group" if found else ""
+
+
+def stage_settings(
+    trial: CaseParts, put: Callable[[str, Any], None], known: Sequence[Problem]
+) -> list[Problem]:
+    """Try the ``set`` of all stages, one after the other; return what does not work.
+
+    Args:
+        trial: A copy of the case; is changed.
+        put: Sets the value at a path of the copy.
+        known: What is wrong with it already, which is not repeated.
+    """
+    problems: list[Problem] = []
+    for i, stage in enumerate(trial.stages):
+        for path, value in stage.set.items():
+            keys = ("stages", i, "set", path)
+            if not path.startswith(SETTABLE):
+                allowed = ", ".join(f"{start}*" for start in SETTABLE)
+                problems.append((keys, f"a stage can change {allowed} only"))
+                continue
+            if fixed := _fixed_at_the_start(path, value):
+                problems.append((keys, f"{fixed} holds from the start and cannot change"))
+                continue
+            try:
+                put(path, value)
+            except CaseError as error:
+                what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
+                problems.append((keys, what.partition(": ")[2]))
+        problems += [
+            (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
+            for keys, what in _names(trial)
+            if (keys, what) not in known
+        ]
+    return problems
+
+
+def _no(kind: str, name: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean {close[0]}?" if close else f"the case has: {', '.join(known) or 'none'}"
+    return f"no {kind} '{name}'; {hint}"

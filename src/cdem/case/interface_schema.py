@@ -1,0 +1,111 @@
+"""Interfaces of a case: law and stiffness, by pair of groups or set of joints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field, model_validator
+
+from cdem.case.bodies_schema import exactly_one
+from cdem.case.laws import INTERFACE_LAWS, choice, interface_contradiction, models
+from cdem.case.types import AUTO_STIFFNESS, Name, Part, Stiffness
+
+
+class Interface(Part):
+    """What every interface has; the parameters of its law come with the model of the law."""
+
+    if TYPE_CHECKING:
+        law: str
+    stiffness_n: Stiffness = Field(
+        AUTO_STIFFNESS, description="Normal stiffness: auto (10 E/h), a number [Pa/m], or '5 E/h'"
+    )
+    stiffness_s: Stiffness = Field(
+        AUTO_STIFFNESS, description="Shear stiffness: auto (10 E/h), a number [Pa/m], or '5 E/h'"
+    )
+
+
+class InterfacePair(Interface):
+    """The interface between two groups, or in a set of joints; the rest is as in the default."""
+
+    name: Name | None = Field(None, description="A name for use in paths, e.g. interfaces.bed")
+    between: list[Name] | None = Field(
+        None, min_length=2, max_length=2, description="Two groups, or one group twice"
+    )
+    joint: Name | None = Field(
+        None, description="Set of joints instead of groups: where two of its faces touch"
+    )
+
+    @model_validator(mode="after")
+    def _one_place(self) -> InterfacePair:
+        exactly_one(self, ("between", "joint"))
+        return self
+
+    def inherited(self) -> set[str]:
+        """Fields that are as in the default: those of any interface that the case left out."""
+        own = {p.name for p in INTERFACE_LAWS[self.law].parameters} | Interface.model_fields.keys()
+        return own - self.model_fields_set
+
+
+if TYPE_CHECKING:
+    AnyInterface = Interface
+    AnyPair = InterfacePair
+else:
+    AnyInterface = choice(models(Interface, INTERFACE_LAWS), INTERFACE_LAWS)
+    AnyPair = choice(models(InterfacePair, INTERFACE_LAWS, required=False), INTERFACE_LAWS)
+
+
+class Interfaces(Part):
+    """Interfaces by pair of groups, or by set of joints."""
+
+    default: AnyInterface | None = Field(
+        None, description="For pairs of groups not listed in pairs"
+    )
+    pairs: list[AnyPair] = Field([], description="For the pairs of groups named")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _pairs_have_the_law_of_the_default(cls, data: Any) -> Any:
+        default = data.get("default") if isinstance(data, dict) else None
+        law = default.get("law") if isinstance(default, dict) else getattr(default, "law", None)
+        pairs = data.get("pairs") if law is not None else None
+        if not isinstance(pairs, list):
+            return data
+        same = [{"law": law} | p if isinstance(p, dict) else p for p in pairs]
+        return data | {"pairs": same}
+
+    @model_validator(mode="after")
+    def _complete_and_single(self) -> Interfaces:
+        seen = set()
+        for number, pair in enumerate(self.pairs):
+            key = frozenset(pair.between) if pair.between else pair.joint
+            if key in seen:
+                what = f"{' and '.join(pair.between)} are" if pair.between else f"{pair.joint} is"
+                raise ValueError(f"pairs.{number}: {what} listed twice")
+            seen.add(key)
+        self.inherit()
+        for number, pair in enumerate(self.pairs):
+            for parameter in INTERFACE_LAWS[pair.law].parameters:
+                if getattr(pair, parameter.name) is None:
+                    raise ValueError(
+                        f"pairs.{number}: {parameter.name} is missing, and so is interfaces.default"
+                    )
+        named = {} if self.default is None else {"default": self.default}
+        for place, law in (named | {f"pairs.{i}": p for i, p in enumerate(self.pairs)}).items():
+            if why := interface_contradiction(law):
+                raise ValueError(f"{place}: {why}")
+        return self
+
+    def inherit(self) -> None:
+        """Give each pair the default's value for every field that the case left out."""
+        for pair in self.pairs if self.default else []:
+            for field in pair.inherited():
+                if hasattr(self.default, field):  # another law may have no such parameter
+                    # Not by assignment: the field must keep counting as left out.
+                    pair.__dict__[field] = getattr(self.default, field)
+
+    def between(self, group_a: str, group_b: str) -> Interface | None:
+        """Return the interface of two groups, or None when the case says nothing about them."""
+        for pair in self.pairs:
+            if pair.between and set(pair.between) == {group_a, group_b}:
+                return pair
+        return self.default

@@ -1,0 +1,181 @@
+"""Laws as the compiled core declares them: their part of a case, their checks, their numbers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, Union
+
+from pydantic import Discriminator, Field, Tag, create_model
+
+from cdem._native import core as native
+from cdem.case.types import Part, Quantity
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a law.
+
+    Attributes:
+        name: Its key in a case.
+        symbol: In formulas.
+        unit: Unit in a case.
+        meaning: What it is.
+        at_least: Lowest value allowed [unit].
+        below: Limit that it must stay below [unit], or None.
+        default: Value where the case is silent, or None if it must be given.
+        is_tangent: Whether it is an angle whose tangent the core takes.
+        is_strength: Whether a factor of safety divides it (of an angle, the tangent).
+        bonds: Whether a value above zero bonds faces that touch at the start.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str
+    at_least: float
+    below: float | None
+    default: float | None
+    is_tangent: bool
+    is_strength: bool
+    bonds: bool
+
+    @property
+    def annotation(self) -> Any:
+        """Its type in a case."""
+        return Annotated[float, Quantity(self.unit, at_least=self.at_least, below=self.below)]
+
+    def field(self, required: bool) -> tuple[Any, Any]:
+        """Type and field of a pydantic model; not required: it may be left out and is then None."""
+        text = f"{self.meaning} [{self.unit}]"
+        if self.default is not None:
+            return self.annotation, Field(self.default, description=text)
+        if required:
+            return self.annotation, Field(description=text)
+        return self.annotation, Field(None, validate_default=False, description=text)
+
+
+@dataclass(frozen=True)
+class StateVariable:
+    """A number that a law remembers, which is an output field of the same name."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Law:
+    """What a law says of itself.
+
+    Attributes:
+        name: Its value of the key `law` in a case.
+        meaning: One sentence.
+        flows: Of a block law: whether it ever gives inelastic strain.
+        parameters: In the order of the core.
+        state: In the order of the core.
+    """
+
+    name: str
+    meaning: str
+    flows: bool
+    parameters: tuple[Parameter, ...]
+    state: tuple[StateVariable, ...]
+
+    def numbers(self, part: Part) -> dict[str, float]:
+        """Parameters of a part of a case as the core takes them: SI, of angles the tangent."""
+        values = {p.name: float(getattr(part, p.name)) for p in self.parameters}
+        for p in self.parameters:
+            if p.is_tangent:
+                values[p.name] = math.tan(math.radians(values[p.name]))
+        return values
+
+    def bonds(self, part: Part) -> bool:
+        """Whether faces with this interface are bonded at the start."""
+        return any(p.bonds and getattr(part, p.name) > 0 for p in self.parameters)
+
+    def reduced(self, part: Part, factor: float) -> dict[str, float]:
+        """Strengths of a part of a case, divided by a factor of safety."""
+        reduced = {}
+        for p in self.parameters:
+            if not p.is_strength:
+                continue
+            value = float(getattr(part, p.name))
+            if p.is_tangent:
+                reduced[p.name] = math.degrees(math.atan(math.tan(math.radians(value)) / factor))
+            else:
+                reduced[p.name] = value / factor
+        return reduced
+
+    def summary(self, part: Part) -> str:
+        """The strengths of an interface in a line of text."""
+        strengths = [p for p in self.parameters if p.is_strength]
+        text = ", ".join(f"{getattr(part, p.name):g} {p.unit}" for p in strengths if not p.bonds)
+        if self.bonds(part):
+            bonds = [p for p in strengths if p.bonds]
+            values = " ".join(f"{p.symbol} {getattr(part, p.name):.3g}" for p in bonds)
+            text += f", bonded {values} {bonds[0].unit}"
+        return text
+
+
+def _declared(laws: list[dict[str, Any]]) -> dict[str, Law]:
+    return {
+        law["name"]: Law(
+            law["name"],
+            law["meaning"],
+            law["flows"],
+            tuple(Parameter(**p) for p in law["parameters"]),
+            tuple(StateVariable(**v) for v in law["state"]),
+        )
+        for law in laws
+    }
+
+
+INTERFACE_LAWS = _declared(native.interface_laws())
+BLOCK_LAWS = _declared(native.block_laws())
+
+
+def interface_contradiction(part: Part) -> str:
+    """Why the parameters of an interface do not fit each other, or nothing."""
+    law = INTERFACE_LAWS[part.__dict__["law"]]
+    why = native.interface_contradiction(law.name, law.numbers(part))
+    return why.format(**part.__dict__)
+
+
+def block_contradiction(part: Part) -> str:
+    """Why the parameters of a material do not fit each other, or nothing."""
+    law = BLOCK_LAWS[part.__dict__["law"]]
+    why = native.block_contradiction(law.name, law.numbers(part))
+    return why.format(**part.__dict__)
+
+
+def models(base: type[Part], laws: dict[str, Law], required: bool = True) -> list[type[Part]]:
+    """A model for every law: the fields of the base, the key `law`, the parameters of the law.
+
+    Args:
+        base: Fields that all have.
+        laws: The laws.
+        required: False where parameters without a default may be left out.
+    """
+    names = Literal[tuple(laws)]  # type: ignore[valid-type]
+    made = []
+    for law in laws.values():
+        fields: dict[str, Any] = {p.name: p.field(required) for p in law.parameters}
+        fields["law"] = (names, Field(law.name, description=f"Law: {law.meaning}"))
+        name = base.__name__ + law.name.title().replace("-", "") if len(laws) > 1 else base.__name__
+        made.append(create_model(name, __base__=base, __doc__=law.meaning, **fields))
+    return made
+
+
+def choice(made: list[type[Part]], laws: dict[str, Law]) -> Any:
+    """The type of a field that takes any of the models; the key `law` says which."""
+    if len(made) == 1:
+        return made[0]
+    first = next(iter(laws))
+
+    def law_of(value: Any) -> str:
+        name = value.get("law", first) if isinstance(value, dict) else getattr(value, "law", first)
+        return name if name in laws else first
+
+    tagged = tuple(Annotated[model, Tag(name)] for model, name in zip(made, laws, strict=True))
+    return Annotated[Union[tagged], Discriminator(law_of)]  # noqa: UP007

@@ -1,0 +1,124 @@
+"""What acts on the bodies of a case from outside: gravity, tractions, driven and held nodes."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from cdem.case.bodies_schema import exactly_one
+from cdem.case.types import (
+    Acceleration3,
+    Direction3,
+    Length3,
+    Name,
+    Part,
+    Quantity,
+    Stress3,
+    Velocity3,
+)
+
+Axis = Literal["x", "y", "z"]
+Axes = list[Axis]
+History = list[tuple[Annotated[float, Quantity("s")], Annotated[float, Quantity("1")]]]
+
+
+class FacesOfGroup(Part):
+    """The outer faces of a group that look in one direction."""
+
+    group: Name = Field(description="Group")
+    normal: Direction3 = Field(description="Outward normal of the faces [1]")
+
+    @model_validator(mode="after")
+    def _normal_has_a_direction(self) -> FacesOfGroup:
+        if not any(self.normal):
+            raise ValueError("normal must not be [0, 0, 0]")
+        return self
+
+
+def _surface_kind(value: object) -> str:
+    return "faces" if isinstance(value, dict | FacesOfGroup) else "name"
+
+
+Surface = Annotated[
+    Annotated[Name, Tag("name")] | Annotated[FacesOfGroup, Tag("faces")],
+    Discriminator(_surface_kind),
+]
+
+
+class Region(Part):
+    """All nodes inside a box along the axes."""
+
+    min: Length3 = Field(description="Lowest corner [m]")
+    max: Length3 = Field(description="Highest corner [m]")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Region:
+        if any(low > high for low, high in zip(self.min, self.max, strict=True)):
+            raise ValueError("min must not be above max")
+        return self
+
+
+class _Timed(Part):
+    history: History | None = Field(
+        None,
+        min_length=1,
+        description="Factor over time, linear between: [[time [s], factor [1]], ...]",
+    )
+
+    @model_validator(mode="after")
+    def _times_increase(self) -> _Timed:
+        times = [time for time, _ in self.history or []]
+        if any(later <= earlier for earlier, later in pairwise(times)):
+            raise ValueError("history: times must increase")
+        return self
+
+
+class Traction(_Timed):
+    """A stress on faces, per area of the undeformed face."""
+
+    surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
+    traction: Stress3 = Field(description="Force per area [Pa]")
+
+
+class PrescribedVelocity(_Timed):
+    """Nodes that are driven."""
+
+    group: Name | None = Field(None, description="All nodes of this group")
+    surface: Surface | None = Field(None, description="Surface of the mesh, or {group, normal}")
+    point: Length3 | None = Field(None, description="The node nearest to this point [m]")
+    box: Region | None = Field(None, description="All nodes in this box")
+    components: Axes = Field(["x", "y", "z"], description="Directions that are driven")
+    velocity: Velocity3 = Field(description="Velocity [m/s]")
+
+    @model_validator(mode="after")
+    def _one_selection(self) -> PrescribedVelocity:
+        exactly_one(self, ("group", "surface", "point", "box"))
+        return self
+
+
+class Support(Part):
+    """Nodes that are held."""
+
+    surface: Surface | None = Field(None, description="Surface of the mesh, or {group, normal}")
+    point: Length3 | None = Field(None, description="The node nearest to this point [m]")
+    box: Region | None = Field(None, description="All nodes in this box")
+    group: Name | None = Field(None, description="With point or box: only nodes of this group")
+    fix: Axes = Field(min_length=1, description="Directions in which the nodes never move")
+
+    @model_validator(mode="after")
+    def _one_selection(self) -> Support:
+        exactly_one(self, ("surface", "point", "box"))
+        if self.group is not None and self.surface is not None:
+            raise ValueError("group goes with point or box; write surface: {group, normal}")
+        return self
+
+
+class Loads(Part):
+    """What acts on the bodies from outside."""
+
+    gravity: Acceleration3 = Field([0.0, 0.0, 0.0], description="Acceleration of gravity [m/s2]")
+    tractions: list[Traction] = Field([], description="Stresses on faces")
+    velocities: list[PrescribedVelocity] = Field([], description="Driven nodes")
+    supports: list[Support] = Field([], description="Held nodes")

@@ -1,0 +1,235 @@
+"""The parts of a case: every field with its type, unit, range, default and meaning."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from cdem.case.bodies_schema import Model, exactly_one
+from cdem.case.interface_schema import Interfaces
+from cdem.case.laws import BLOCK_LAWS, choice, models
+from cdem.case.loads_schema import Axes, Loads
+from cdem.case.output_fields import CHOICE
+from cdem.case.types import (
+    Length3,
+    Name,
+    Part,
+    Quantity,
+    Spin3,
+    Velocity3,
+)
+
+
+class Material(Part):
+    """What the elements are made of."""
+
+    density: Annotated[float, Quantity("kg/m3", above=0)] = Field(description="Density [kg/m3]")
+    young_modulus: Annotated[float, Quantity("Pa", above=0)] = Field(
+        description="Young's modulus [Pa]"
+    )
+    poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(
+        description="Poisson's ratio [1]"
+    )
+    if TYPE_CHECKING:
+        law: str
+
+
+if TYPE_CHECKING:
+    AnyMaterial = Material
+else:
+    AnyMaterial = choice(models(Material, BLOCK_LAWS), BLOCK_LAWS)
+
+
+class Group(Part):
+    """What holds for every element of a group."""
+
+    material: Name = Field(description="A name under materials")
+    fix: Axes = Field([], description="Directions in which the nodes never move")
+    velocity: Velocity3 = Field([0.0, 0.0, 0.0], description="Initial velocity [m/s]")
+    angular_velocity: Spin3 = Field(
+        [0.0, 0.0, 0.0], description="Initial spin about the group's centroid [rad/s]"
+    )
+    gravity: bool = Field(True, description="Whether gravity acts on the group")
+
+
+class Damping(Part):
+    """What takes energy out; all are zero unless given, but local in a static stage."""
+
+    local: Annotated[float, Quantity("1", at_least=0, below=1)] | None = Field(
+        None,
+        description="Share of each node's unbalanced force that opposes its motion [1]; "
+        "default 0.8 in a static stage with relax: local, else 0",
+    )
+    mass: Annotated[float, Quantity("1/s", at_least=0)] = Field(
+        0.0, description="Rayleigh factor of the mass [1/s]; it also brakes a free fall"
+    )
+    stiffness: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
+        0.0,
+        description="Stiffness-proportional (Rayleigh), as a fraction of critical at the highest "
+        "frequency that the time step resolves [1]",
+    )
+    contact: Annotated[float, Quantity("1", at_least=0)] = Field(
+        0.0, description="Dashpot at each contact, as a fraction of critical [1]"
+    )
+
+
+class Stage(Part):
+    """A part of the run with its own rules."""
+
+    name: Name = Field(description="Name, unique in the case")
+    mode: Literal["static", "dynamic"] = Field(description="To rest, or over time")
+    tolerance: Annotated[float, Quantity("1", above=0, below=1)] | None = Field(
+        None, description="Static only: unbalance ratio that counts as rest [1]; default 1e-5"
+    )
+    duration: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None, description="Dynamic only: time to compute [s]"
+    )
+    max_steps: int | None = Field(None, ge=1, description="Stop the stage after so many steps")
+    reset_displacement: bool = Field(
+        False, description="Zero the displacements when the stage begins"
+    )
+    damping: Damping = Field(Damping(), description="Damping")
+    relax: Literal["local", "kinetic", "adaptive"] | None = Field(
+        None,
+        description="Static only: the way to rest: local damping (default), kinetic (stop at peaks of "
+        "the kinetic energy), or adaptive (critical damping and scaled masses: the fewest steps)",
+    )
+    set: dict[str, Any] = Field(
+        {}, description="Values that change when the stage begins: {path in the case: value}"
+    )
+
+    @model_validator(mode="after")
+    def _fits_its_mode(self) -> Stage:
+        wrong = {"static": ("duration",), "dynamic": ("tolerance", "relax")}[self.mode]
+        for field in wrong:
+            if getattr(self, field) is not None:
+                raise ValueError(f"{field} has no meaning in a {self.mode} stage; remove it")
+        if self.mode == "dynamic" and self.duration is None:
+            raise ValueError("a dynamic stage needs a duration, e.g. duration: 2.0")
+        # Not by assignment: that would start this check again.
+        if self.mode == "static":
+            self.__dict__["tolerance"] = self.tolerance or 1e-5
+            self.__dict__["relax"] = self.relax or "local"
+        if self.damping.local is None:
+            self.damping.__dict__["local"] = 0.8 if self.relax == "local" else 0.0
+        return self
+
+
+class Contact(Part):
+    """How contacts are found and where they act: Feng et al. (2014), Sections 3 and 4."""
+
+    indentation: Annotated[float, Quantity("1", above=0, below=0.5)] = Field(
+        0.01, description="Shift of a semi-spring from its vertex to the face's centre [1], Eq. 3"
+    )
+    tolerance: Annotated[float | Literal["auto"], Quantity("1", above=0, auto=True)] = Field(
+        "auto",
+        description="In-plane tolerance over the face's size [1]; auto: a tenth of the "
+        "indentation, below which it must stay",
+    )
+    refresh: Annotated[
+        Annotated[Literal["displacement"], Tag("word")]
+        | Annotated[Annotated[int, Field(ge=1)], Tag("steps")],
+        Discriminator(lambda value: "word" if isinstance(value, str) else "steps"),
+    ] = Field("displacement", description="Renew the search by displacement, or every N steps")
+    action: Literal["vertex", "indented"] = Field(
+        "vertex", description="Where the force of a contact acts: the vertex, or as the paper does"
+    )
+    edges: bool = Field(True, description="Whether edges touch edges")
+    bond_points: Literal["vertex", "quadrature"] = Field(
+        "vertex", description="Where the bonds of a conforming interface sit"
+    )
+    check: bool = Field(False, description="Compare every search with an all-pairs search (slow)")
+
+
+class Elements(Part):
+    """How elements give forces and carry mass."""
+
+    formulation: Literal["corotational", "incremental", "paper-incremental", "paper-total"] = Field(
+        "corotational", description="How the forces of an element follow from its motion"
+    )
+    mass: Literal["exact", "lumped"] = Field(
+        "exact", description="Exact inertia of blocks of one element, or lumped mass everywhere"
+    )
+    hexahedra: Literal["full", "one-point"] = Field(
+        "full",
+        description="Integration of hexahedra: 2 x 2 x 2 points, or one and hourglass springs",
+    )
+
+
+class MassScaling(Part):
+    """Mass added to the elements that would force a smaller step."""
+
+    step: Annotated[float, Quantity("s", above=0)] = Field(description="Step to reach [s]")
+
+
+class Time(Part):
+    """The time step."""
+
+    step: Annotated[float | Literal["auto"], Quantity("s", above=0, auto=True)] = Field(
+        "auto", description="Time step [s]; auto: safety times the stability limit"
+    )
+    safety: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
+        0.8, description="Share of the stability limit that an automatic step uses [1]"
+    )
+    mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst elements")
+
+
+if TYPE_CHECKING:
+    FieldName = str
+else:
+    FieldName = Literal[tuple(CHOICE)]
+
+
+class Output(Part):
+    """What is written while the case runs."""
+
+    every: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None, description="Time between frames [s]; by default a fiftieth of each dynamic stage"
+    )
+    fields: list[FieldName] = Field(CHOICE, description="Fields of a frame")
+    checkpoint_every: Annotated[float, Quantity("s", above=0)] = Field(
+        300.0, description="Wall time between checkpoints [s]"
+    )
+    frames: bool = Field(True, description="Whether frames are written at all")
+
+
+class HistoryPoint(Part):
+    """Quantities followed over time, for a group or at a node."""
+
+    name: Name = Field(description="Name, unique in the case; begins the columns")
+    group: Name | None = Field(None, description="Follow this group")
+    point: Length3 | None = Field(None, description="Follow the node nearest to this point [m]")
+    quantities: list[Literal["centroid", "displacement", "velocity", "energy", "force"]] = Field(
+        min_length=1, description="What to follow"
+    )
+
+    @model_validator(mode="after")
+    def _one_place(self) -> HistoryPoint:
+        exactly_one(self, ("group", "point"))
+        for quantity in ("centroid", "energy"):
+            if self.point is not None and quantity in self.quantities:
+                raise ValueError(f"{quantity} needs a group, not a point")
+        for quantity in self.quantities:
+            if self.quantities.count(quantity) > 1:
+                raise ValueError(f"{quantity} is listed twice")
+        return self
+
+
+class CaseParts(Part):
+    """All parts of a case."""
+
+    cdem: Literal[1] = Field(1, description="Version of the case format")
+    title: str = Field("", description="One line for reports")
+    units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
+    model: Model = Field(description="The bodies")
+    materials: dict[str, AnyMaterial] = Field(description="Materials by name")
+    groups: dict[str, Group] = Field(description="Groups by name; every body is in one")
+    interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
+    loads: Loads = Field(Loads(), description="What acts from outside")
+    stages: list[Stage] = Field(min_length=1, description="Parts of the run, in order")
+    contact: Contact = Field(Contact(), description="How contacts are found")
+    elements: Elements = Field(Elements(), description="Element formulation")
+    time: Time = Field(Time(), description="The time step")
+    output: Output = Field(Output(), description="What is written")
+    histories: list[HistoryPoint] = Field([], description="Quantities followed over time")

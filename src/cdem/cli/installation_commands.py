@@ -1,0 +1,124 @@
+"""Verbs that look at this installation: verify, benchmark, doctor."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cdem.cli.options import Threads
+
+if TYPE_CHECKING:
+    from cdem.verification.runner import Outcome, Problem
+
+
+def verify(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[NAME]...", help="Problems, or folders of your own; default quick."
+        ),
+    ] = None,
+    full: Annotated[
+        bool, typer.Option("--full", help="All problems, in all variants; takes hours.")
+    ] = False,
+    report: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the manual: .html, or .md (table).")
+    ] = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
+    listing: Annotated[bool, typer.Option("--list", help="Only list the problems.")] = False,
+) -> None:
+    """Compute problems whose answer is known and compare; exit status 3 if one is missed."""
+    from cdem.verification import runner as verification
+
+    chosen = verification.problems(names or [])
+    if listing:
+        _print_list(chosen)
+        return
+    manual = None
+    if report:
+        from cdem.verification.manual import Manual
+
+        manual = Manual(report)
+    if not names and not full:
+        chosen = [problem for problem in chosen if problem.quick]
+    outcomes = []
+    for problem in chosen:
+        outcomes.append(_compute(problem, full=full, threads=threads, silent=as_json))
+        if manual:  # after each, so that nothing is lost if the next one is stopped
+            manual.add(outcomes[-1])
+    passed = sum(outcome.passed for outcome in outcomes)
+    if as_json:
+        print(json.dumps([outcome.as_dict() for outcome in outcomes], indent=2))
+    else:
+        print(f"{passed} of {len(outcomes)} problems pass" + (f"; see {report}" if report else ""))
+    if passed < len(outcomes):
+        raise typer.Exit(3)
+
+
+def _print_list(chosen: list[Problem]) -> None:
+    for problem in chosen:
+        print(f"{problem.name:<20}{'' if problem.quick else '(full) '}{problem.title}")
+
+
+def _compute(problem: Problem, *, full: bool, threads: int | None, silent: bool) -> Outcome:
+    """Run a problem and say how it went."""
+    if silent:
+        return problem.run(full=full, threads=threads)
+    print(f"{problem.name}: {problem.title}", flush=True)
+    outcome = problem.run(full=full, threads=threads)
+    _print_outcome(outcome)
+    return outcome
+
+
+def _print_outcome(outcome: Outcome) -> None:
+    from cdem.verification.runner import HEADINGS
+
+    rows = [HEADINGS, *(check.texts() for check in outcome.checks)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
+    for row in rows if outcome.checks else []:
+        print("  " + "  ".join(f"{t:<{w}}" for t, w in zip(row, widths, strict=True)).rstrip())
+    if outcome.failure:
+        print(f"  FAILED: {outcome.failure}")
+    print(f"  {outcome.wall_time:.1f} s", flush=True)
+
+
+def benchmark(
+    full: Annotated[
+        bool, typer.Option("--full", help="Also a million tets; needs 8 GB and half an hour.")
+    ] = False,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
+) -> None:
+    """Measure the speed of the kernels against the machine's own limits."""
+    from cdem.tools import benchmark as bench
+
+    threads = threads or os.cpu_count() or 1
+    limits = bench.machine(threads)
+    if not as_json:
+        for key, value in limits.items():
+            print(
+                f"{key}: {value / 1e9:.1f} G/s" if isinstance(value, float) else f"{key}: {value}"
+            )
+        print(f"{'what':<34}{'size':>10}{'thr':>4}{'median':>10} (least .. most)")
+    rows = []
+    for row in bench.run(list(bench.SIZES)[: 3 if full else 2], threads):
+        rows.append(row)
+        if not as_json:
+            print(row.text(), flush=True)
+    if as_json:
+        print(json.dumps({"machine": limits, "rows": [vars(row) for row in rows]}, indent=2))
+
+
+def doctor() -> None:
+    """Say what works on this machine, and how to mend what does not."""
+    from cdem.tools.doctor import report
+
+    text, healthy = report()
+    print(text)
+    if not healthy:
+        raise typer.Exit(1)

@@ -1,0 +1,50 @@
+"""What several verbs share: arguments, options, signals, and how paths are printed."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Annotated
+
+import typer
+
+STOPPED = 4  # exit status of a run that was stopped by a signal and can be resumed
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE.yaml", help="Case file.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the case; repeatable."),
+]
+Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all cores.")]
+
+
+def print_paths(paths: Path | Iterable[Path]) -> None:
+    """Print one path a line."""
+    for path in [paths] if isinstance(paths, Path) else paths:
+        print(path)
+
+
+@contextmanager
+def stop_on_signal(kept: str = "stopping with a checkpoint") -> Iterator[list[str]]:
+    """Collect SIGINT and SIGTERM instead of dying; a second one interrupts at once."""
+    received: list[str] = []
+
+    def receive(number: int, frame: FrameType | None) -> None:
+        if received:
+            raise KeyboardInterrupt
+        received.append(signal.Signals(number).name)
+        print(f"\n{received[0]}: {kept}; again: at once", file=sys.stderr)
+
+    before = {number: signal.signal(number, receive) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield received
+    except KeyboardInterrupt:
+        print("stopped at once; the last checkpoint, if any, is kept", file=sys.stderr)
+        raise typer.Exit(STOPPED) from None
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

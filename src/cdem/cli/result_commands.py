@@ -1,0 +1,110 @@
+"""Verbs of the command line that look at results: info, plot, render, runout, export."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from cdem.cli.options import print_paths
+from cdem.errors import CaseError, CdemError
+
+ResultFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Result folder of a run.")]
+
+
+def info(folder: ResultFolder) -> None:
+    """Say what a run did."""
+    from cdem.output import report
+
+    print(report.info(_results(folder)).rstrip())
+
+
+def plot(folder: ResultFolder) -> None:
+    """Draw histories and energies as PNG."""
+    from cdem.output import figures
+
+    print_paths(figures.plot(_results(folder)))
+
+
+def render(
+    folder: ResultFolder,
+    field: Annotated[str, typer.Option(help="Field that colours the picture.")] = "displacement",
+    movie: Annotated[bool, typer.Option("--movie", help="Make an animation.")] = False,
+) -> None:
+    """Draw the model as pictures or an animation."""
+    from cdem.output import render as drawing
+
+    print_paths(drawing.render(_results(folder), field=field, movie=movie))
+
+
+def runout(
+    folder: ResultFolder,
+    groups: Annotated[
+        str | None, typer.Option(metavar="A,B", help="Moving groups; default those that moved.")
+    ] = None,
+    direction: Annotated[
+        str, typer.Option(metavar="AZIMUTH", help="Degrees clockwise from y, or auto.")
+    ] = "auto",
+    cell: Annotated[
+        float | None, typer.Option(help="Cell of the map [m]; default about an element's size.")
+    ] = None,
+    sections: Annotated[
+        list[str] | None,
+        typer.Option("--section", metavar="X0,Y0,X1,Y1", help="Line to look through; repeatable."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print runout.json instead.")] = False,
+) -> None:
+    """Measure front, reach, H/L, deposit, sections and pieces; write maps and tables."""
+    from cdem.output import runout as measuring
+
+    found = measuring.measure(
+        _results(folder),
+        groups=None if groups is None else [name.strip() for name in groups.split(",")],
+        direction=None if direction == "auto" else _numbers(direction, "--direction", 1)[0],
+        cell=cell,
+        sections=[_numbers(line, "--section", 4) for line in sections or []],
+    )
+    paths = found.write(folder)
+    try:
+        paths.append(found.draw(folder))
+    except CdemError as error:  # without the extra that draws, the numbers are whole
+        print(f"no deposit.png: {error}", file=sys.stderr)
+    if as_json:
+        print((folder / "runout.json").read_text().rstrip())
+        return
+    print(found.text())
+    print_paths(paths)
+
+
+def _numbers(text: str, option: str, count: int) -> list[float]:
+    """Numbers between commas; wrong usage if they are not numbers, or not so many."""
+    try:
+        numbers = [float(word) for word in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count:
+        what = "a number" if count == 1 else f"{count} numbers with commas between"
+        raise typer.BadParameter(f"{option} needs {what}, got {text!r}")
+    return numbers
+
+
+def export(
+    folder: ResultFolder,
+    to: Annotated[Literal["vtu"], typer.Option("--to", help="File format.")] = "vtu",
+) -> None:
+    """Write the frames as files for ParaView and the like."""
+    from cdem.output import reader
+
+    print_paths(reader.export(_results(folder), to=to))
+
+
+def _results(folder: Path) -> Path:
+    if not folder.is_dir():
+        raise CaseError(f"{folder}: no such folder; name the result folder of a run")
+    from cdem.run.result_folder import RESULT_FILES
+
+    if not {path.name for path in folder.iterdir()} & RESULT_FILES:
+        raise CaseError(f"{folder}: is not a result folder; 'cdem run CASE.yaml' makes one")
+    return folder

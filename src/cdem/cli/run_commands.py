@@ -1,0 +1,121 @@
+"""The verb that runs a case: run."""
+
+from __future__ import annotations
+
+import difflib
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from cdem.cli.options import STOPPED, CaseFile, Settings, Threads, stop_on_signal
+from cdem.errors import CdemError
+
+if TYPE_CHECKING:
+    from cdem.run.simulation import Simulation
+
+
+def run(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Result folder; default CASE.results, here."),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    device: Annotated[Literal["cpu", "cuda"], typer.Option(help="Where to compute.")] = "cpu",
+    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace what the result folder holds.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print summary.json at the end.")] = False,
+) -> None:
+    """Run all stages of a case. Ctrl-C stops it cleanly, to be resumed."""
+    if resume and overwrite:
+        raise typer.BadParameter("--resume and --overwrite exclude one another")
+    if quiet and as_json:
+        raise typer.BadParameter("--quiet and --json exclude one another")
+    folder = output or Path(f"{case_file.stem}.results")
+    with stop_on_signal() as stop:
+        from cdem.case.case import Case
+
+        case = Case.load(case_file, settings or [])
+        from cdem.run.simulation import Simulation
+
+        if resume:
+            _compare_cases(case, folder)
+
+        simulation = Simulation(
+            case,
+            threads=threads,
+            output=folder,
+            overwrite=overwrite,
+            resume=resume,
+            device=device,
+        )
+        status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)
+    summary = folder / "summary.json"
+    if as_json:
+        print(summary.read_text().rstrip())
+    elif not quiet:
+        print(f"{status}; results are in {folder}")
+    if status == "stopped":
+        again = _resume_command(case_file, folder, settings or [], threads)
+        print(f"stopped with a checkpoint; go on with: {again}", file=sys.stderr)
+        raise typer.Exit(STOPPED)
+
+
+def _run(
+    simulation: Simulation, folder: Path, stop: list[str], *, quiet: bool, as_json: bool
+) -> str:
+    from cdem.run.progress import watch
+
+    tty = sys.stderr.isatty()
+    silent = quiet or (as_json and not tty)
+    if not silent:
+        for warning in simulation.audit.warnings:
+            print(f"warning: {warning}", file=sys.stderr)
+    with watch(silent=silent, tty=tty) as progress:
+        status = simulation.run(progress, lambda: bool(stop))
+    if status != "stopped":
+        write_report(folder, silent=silent)
+    return status
+
+
+def write_report(folder: Path, *, silent: bool) -> None:
+    """Write report.html; the results are whole without it, so a missing extra is only said."""
+    from cdem.output import report
+
+    try:
+        report.report(folder)
+    except (CdemError, ImportError) as error:
+        if not silent:
+            print(f"no report.html: {error}", file=sys.stderr)
+
+
+def _compare_cases(case: Any, folder: Path) -> None:
+    """Say so if a run is resumed with another case than it was begun with."""
+    path = folder / "case.yaml"
+    if not path.is_file():
+        return
+    changes = [
+        line
+        for line in difflib.ndiff(path.read_text().splitlines(), case.dump().splitlines())
+        if line[0] in "+-"
+    ]
+    if changes:
+        print(
+            f"warning: this is not the case that {folder} was begun with: "
+            + "; ".join(" ".join(line.split()) for line in changes[:4]),
+            file=sys.stderr,
+        )
+
+
+def _resume_command(case: Path, folder: Path, settings: list[str], threads: int | None) -> str:
+    words = ["cdem", "run", str(case), "-o", str(folder), "--resume"]
+    for setting in settings:
+        words += ["--set", setting]
+    return shlex.join(words + ([] if threads is None else ["--threads", str(threads)]))

@@ -1,0 +1,158 @@
+"""Verbs that run a case many times: critical, sweep."""
+
+from __future__ import annotations
+
+import json
+import sys
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cdem.cli.options import STOPPED, CaseFile, Settings, Threads, print_paths, stop_on_signal
+from cdem.errors import CaseError, CdemError
+
+if TYPE_CHECKING:
+    from cdem.study.critical import Trial
+    from cdem.study.results_table import Table
+
+
+def critical(
+    case_file: CaseFile,
+    between: Annotated[
+        tuple[float, float], typer.Option(help="A value that rests, one that fails.")
+    ],
+    parameter: Annotated[
+        str | None, typer.Option(metavar="PATH", help="Value of the case to vary.")
+    ] = None,
+    factor: Annotated[
+        bool, typer.Option("--factor", help="Vary the factor of safety on all strengths instead.")
+    ] = False,
+    tolerance: Annotated[float, typer.Option(help="Width of the bracket to reach.")] = 0.01,
+    limits: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--criterion",
+            metavar="NAME=VALUE",
+            help="Another limit of failure: travel, far, stall_steps or most_steps; repeatable.",
+        ),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON at the end.")] = False,
+) -> None:
+    """Find the value at which a case fails, by bisection of its last, static stage.
+
+    A trial is stable when it comes to rest. It has failed when a node has moved 2 % (travel) of the
+    mean face size while the kinetic energy grew, or the whole of it (far), or goes on moving at no
+    lower rate while the unbalance ratio stalls, or found no rest in a million steps. Trials start
+    from the last stable state, unless the parameter makes another model (model.*, materials.*).
+    """
+    if (parameter is None) == (not factor):
+        raise typer.BadParameter("give either --parameter PATH or --factor")
+    from cdem.case.case import Case
+    from cdem.study import critical as search
+    from cdem.study.criterion import Criterion
+
+    case = Case.load(case_file, settings or [])
+    vary = search.parameter(parameter) if parameter else search.strength_reduction()
+    name = parameter or "factor"
+    criterion = Criterion.read(limits or [])
+    print(f"a trial {criterion.text()}", file=sys.stderr)
+
+    found = search.find_critical(
+        case,
+        vary,
+        between,
+        tolerance=tolerance,
+        criterion=criterion,
+        threads=threads,
+        report=partial(_print_trial, name),
+    )
+    if as_json:
+        print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
+    else:
+        print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+
+
+def _print_trial(name: str, trial: Trial, stable: float, failed: float) -> None:
+    verdict = "stable" if trial.stable else "fails"
+    print(
+        f"{name} = {trial.value:.6g}: {verdict} ({trial.steps:,} steps, {trial.why}); "
+        f"between {min(stable, failed):.6g} and {max(stable, failed):.6g}",
+        file=sys.stderr,
+        flush=True,
+    )
+
+
+def sweep(
+    study_file: Annotated[Path, typer.Argument(metavar="STUDY.yaml", help="Study file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for all results; default STUDY.sweep, here."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Local processes, of one thread; default all cores.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Use this Dask scheduler instead.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
+) -> None:
+    """Run a study: many variants of a case. What is finished is never repeated.
+
+    Ctrl-C ends it; the same command goes on. Exit status 3 says that runs have failed.
+    """
+    if quiet and as_json:
+        raise typer.BadParameter("--quiet and --json exclude one another")
+    if workers and scheduler:
+        raise typer.BadParameter("--workers and --scheduler exclude one another")
+    from cdem.run.progress import line
+    from cdem.study.study import Study
+    from cdem.study.sweep import describe, run_study
+
+    folder = output or Path(f"{study_file.stem}.sweep")
+    tty = sys.stderr.isatty()
+    with (
+        stop_on_signal("stopping, finished runs are kept") as stop,
+        line(silent=quiet or (as_json and not tty), tty=tty) as show,
+    ):
+        table = run_study(
+            Study.load(study_file),
+            folder,
+            workers=workers,
+            scheduler=scheduler,
+            progress=None
+            if show is None
+            else lambda p: show(str(p.finished == p.total), *describe(p)),
+            should_stop=lambda: bool(stop),
+        )
+    paths = table.write(folder)
+    if not quiet:
+        paths += _draw_plots(table, folder)
+    if as_json:
+        print(json.dumps(table.as_dict(), indent=2))
+    elif not quiet:
+        print_paths(paths)
+    for run in table.failed:
+        print(f"failed: {run.text()}", file=sys.stderr)
+    if table.waiting:
+        print(f"stopped; {table.waiting} runs are left: the same command goes on", file=sys.stderr)
+        raise typer.Exit(STOPPED)
+    if table.failed:
+        raise typer.Exit(3)
+
+
+def _draw_plots(table: Table, folder: Path) -> list[Path]:
+    """Draw a study's plots; the table is whole without them, so a missing extra is only said."""
+    from cdem.study.plots import draw_all
+
+    try:
+        return draw_all(table, folder / "plots")
+    except CdemError as error:
+        if isinstance(error, CaseError) and not table.failed:
+            raise
+        print(f"no plots: {error}", file=sys.stderr)
+        return []

@@ -1,0 +1,1 @@
+"""Bodies cut into blocks by sets of joints."""

@@ -1,0 +1,1 @@
+"""Meshes and their topology: elements, blocks, faces, edges and what touches what."""

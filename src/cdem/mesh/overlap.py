@@ -1,0 +1,170 @@
+"""Touching faces that do not conform: clip one against the other, share the overlap's area.
+
+The points of contact of two overlapping faces (vertices of either inside the other, and crossings of
+their edges) are exactly the vertices of the overlap polygon. Bond points there, with areas
+
+    w_i = (A_{i-1} + A_i) / 3 + A / (3 N),
+
+A_i the triangles between the vertices and their mean, carry the polygon's exact area and centroid, so
+neither strength nor stiffness depends on which side is meshed finer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh.topology import Floats, Topology
+
+COPLANAR = 1e-6
+"""Faces touch if their planes are closer than this times their size, and as parallel (a sine)."""
+LEAST_AREA = 1e-9
+"""Overlaps smaller than this part of the smaller face are sides that merely touch."""
+AT_ONCE = 1_000_000
+"""Pairs of boxes that are compared at once."""
+
+
+@dataclass
+class Overlaps:
+    """Bonded overlaps; see `Topology` for the meaning and shapes of the arrays."""
+
+    faces: NDArray[np.int32]
+    first: NDArray[np.int32]
+    weights_a: Floats
+    weights_b: Floats
+    area: Floats
+
+
+def find_overlaps(t: Topology, bonded: NDArray[np.bool_]) -> Overlaps:
+    """Find all touching, coplanar, opposing, non-conforming faces of kinds that are bonded."""
+    faces, first, weights_a, weights_b, areas = [], [0], [], [], []
+    for a, b in _candidates(t, bonded):
+        polygon = clip(_corners(t, a), _corners(t, b))
+        if polygon is None:
+            continue
+        area = point_areas(polygon)
+        faces.append((a, b))
+        first.append(first[-1] + len(area))
+        weights_a.append(_weights(_corners(t, a), polygon))
+        weights_b.append(_weights(_corners(t, b), polygon))
+        areas.append(area)
+    return Overlaps(
+        np.array(faces, np.int32).reshape(-1, 2),
+        np.array(first, np.int32),
+        np.concatenate([np.zeros((0, 4)), *weights_a]),
+        np.concatenate([np.zeros((0, 4)), *weights_b]),
+        np.concatenate([np.zeros(0), *areas]),
+    )
+
+
+def _corners(t: Topology, face: int) -> Floats:
+    nodes = t.face_nodes[face]
+    return t.node_position[nodes[nodes >= 0]]
+
+
+def _candidates(t: Topology, bonded: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Pairs of free faces of different blocks whose boxes meet and whose planes agree, (pairs, 2)."""
+    free = np.ones(len(t.face_nodes), bool)
+    free[t.pair_faces.ravel()] = False
+    free &= np.asarray(bonded.any(axis=1))[t.face_kind]
+    ids = np.flatnonzero(free)
+    if len(ids) < 2:
+        return np.zeros((0, 2), np.int64)
+    nodes = t.face_nodes[ids]
+    x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    low, high = x.min(axis=1), x.max(axis=1)
+    size = np.linalg.norm(high - low, axis=1)
+    low, high = low - COPLANAR * size[:, None], high + COPLANAR * size[:, None]
+
+    # sweep along the longest axis: open boxes are those that began within the largest extent
+    axis = int(np.argmax(np.ptp(x.reshape(-1, 3), axis=0)))
+    order = np.argsort(low[:, axis], kind="stable")
+    low, high, normal = low[order], high[order], normal[order]
+    x, size, ids = x[order], size[order], ids[order]
+    end = np.searchsorted(low[:, axis], high[:, axis], side="right")
+    count = end - np.arange(len(ids)) - 1
+    middle = x.mean(axis=1)
+    found = [np.zeros((0, 2), np.int64)]
+    for some in np.array_split(np.arange(len(ids)), 1 + int(count.sum()) // AT_ONCE):
+        i = np.repeat(some, count[some])
+        j = i + 1 + np.arange(len(i)) - np.repeat(np.cumsum(count[some]) - count[some], count[some])
+        for axis in range(3):
+            meet = (low[j, axis] <= high[i, axis]) & (high[j, axis] >= low[i, axis])
+            i, j = i[meet], j[meet]
+        facing = np.einsum("px,px->p", normal[i], normal[j]) < -1 + COPLANAR
+        i, j = i[facing], j[facing]
+        gap = np.abs(np.einsum("px,px->p", middle[j] - middle[i], normal[i]))
+        a, b = ids[i], ids[j]
+        touch = gap < COPLANAR * np.minimum(size[i], size[j])
+        touch &= t.face_block[a] != t.face_block[b]
+        touch &= bonded[t.face_kind[a], t.face_kind[b]]
+        found.append(np.sort(np.stack([a, b], axis=1)[touch], axis=1))
+    pairs = np.concatenate(found)
+    return pairs[np.lexsort(pairs.T[::-1])]
+
+
+def clip(a: Floats, b: Floats) -> Floats | None:
+    """The overlap of two coplanar convex polygons that face each other, or None.
+
+    Args:
+        a: Vertices, counter-clockwise seen from outside its block, shape (n, 3) [m].
+        b: Vertices of the other, counter-clockwise seen from outside its own block.
+    """
+    normal = np.cross(a[2] - a[0], a[-1] - a[1])
+    least = 0.5 * LEAST_AREA * np.linalg.norm(normal)
+    normal = normal / np.linalg.norm(normal)
+    polygon = b[::-1] - np.outer((b[::-1] - a[0]) @ normal, normal)
+    for start, end in zip(a, np.roll(a, -1, axis=0), strict=True):
+        inward = np.cross(normal, end - start)
+        distance = (polygon - start) @ inward
+        kept = []
+        for k in range(len(polygon)):
+            p, q = distance[k - 1], distance[k]
+            if (p < 0) != (q < 0):
+                kept.append(polygon[k - 1] + p / (p - q) * (polygon[k] - polygon[k - 1]))
+            if q >= 0:
+                kept.append(polygon[k])
+        if len(kept) < 3:
+            return None
+        polygon = np.array(kept)
+    near = 1e-9 * np.linalg.norm(a[2] - a[0])
+    polygon = polygon[np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1) > near]
+    if len(polygon) < 3 or point_areas(polygon).sum() < least:
+        return None
+    return polygon
+
+
+def point_areas(polygon: Floats) -> Floats:
+    """Share of each vertex of a plane convex polygon in its area [m2]: exact area and centroid."""
+    arm = polygon - polygon.mean(axis=0)
+    triangle = 0.5 * np.linalg.norm(np.cross(arm, np.roll(arm, -1, axis=0)), axis=1)
+    return (np.roll(triangle, 1) + triangle) / 3 + triangle.sum() / (3 * len(polygon))
+
+
+def _weights(face: Floats, points: Floats) -> Floats:
+    """Barycentric or inverse bilinear weights of points on a face, shape (points, 4)."""
+    normal = np.cross(face[2] - face[0], face[-1] - face[1])
+    normal = normal / np.linalg.norm(normal)
+    out = np.zeros((len(points), 4))
+    if len(face) == 3:
+        system = np.column_stack([face[1] - face[0], face[2] - face[0], normal])
+        u, v, _ = np.linalg.solve(system, (points - face[0]).T)
+        out[:, :3] = np.column_stack([1 - u - v, u, v])
+        return out
+    for row, point in zip(out, points, strict=True):
+        u = v = 0.5
+        for _ in range(20):
+            low = face[0] + u * (face[1] - face[0])
+            high = face[3] + u * (face[2] - face[3])
+            miss = point - (low + v * (high - low))
+            along = (1 - v) * (face[1] - face[0]) + v * (face[2] - face[3])
+            du, dv, _ = np.linalg.solve(np.column_stack([along, high - low, normal]), miss)
+            u, v = u + du, v + dv
+            if abs(du) + abs(dv) < 1e-15:
+                break
+        row[:] = (1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v
+    return out

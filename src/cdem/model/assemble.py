@@ -1,0 +1,243 @@
+"""From topology and properties to the flat arrays of the compiled core."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh import element_shapes
+from cdem.mesh.arrays import in_pieces, lengths
+from cdem.mesh.topology import Topology
+from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
+from cdem.model.masses import node_masses
+
+Stride = Callable[[int], int]
+"""The core's function from item count to table stride."""
+DEFORMED = 1.5
+"""How much larger than in the stress-free mesh a face may become."""
+
+
+def assemble(topology: Topology, properties: Properties, padded_stride: Stride) -> Assembly:
+    """Build every array that the core's `take_model` wants.
+
+    Args:
+        topology: Blocks, elements, faces and pairs.
+        properties: What the case says about them.
+        padded_stride: The core's function from item count to table stride.
+    """
+    out = Assembly()
+    out.counts = {
+        "nodes": len(topology.node_position),
+        "faces": len(topology.face_nodes),
+        "edges": len(topology.edge_nodes),
+        "interface_classes": len(properties.interface_of),
+    }
+    out.arrays["material.lambda"] = properties.lame
+    out.arrays["material.mu"] = properties.shear
+    out.arrays["material.law"] = properties.law
+    out.arrays["material.parameters"] = properties.law_parameters.ravel()
+    _elements(topology, properties, padded_stride, out)
+    _faces(topology, properties, out)
+    _pairs(topology, properties, padded_stride, out)
+    _corners(topology, out)
+    return out
+
+
+def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
+    row = 0
+    mass: dict[str, Floats] = {}
+    gravity_mass = np.zeros(len(t.node_position))
+    geometry = {}
+    for shape, nodes in element_shapes.NODES.items():
+        connectivity = t.element_nodes[shape]
+        count = len(connectivity)
+        stride = padded_stride(count)
+        corners = t.node_position[connectivity]
+        group = t.element_group[shape]
+        gradient, volume = element_shapes.reference_gradients(shape, corners)
+        matrices = element_shapes.mass_matrices(shape, corners, p.density[group])
+        hourglass = np.zeros((count, 0))
+        if shape == "hex8" and p.one_point:
+            gradient, volume, hourglass = element_shapes.one_point(
+                corners, gradient, volume, p.young_modulus[group]
+            )
+        geometry[shape] = (gradient, volume, hourglass)
+        mass[shape] = matrices
+        np.add.at(gravity_mass, connectivity, matrices.sum(axis=2))
+        points = volume.shape[1]
+        flat = gradient[:, :, 1:].reshape(count, points * (nodes - 1) * 3)
+        out.arrays[f"{shape}.nodes"] = table(connectivity.T.astype(np.int32), stride)
+        out.arrays[f"{shape}.material"] = table(group[None].astype(np.int32), stride)
+        out.arrays[f"{shape}.gradient"] = table(flat.T, stride)
+        out.arrays[f"{shape}.volume"] = table(volume.T, stride)
+        out.arrays[f"{shape}.hourglass"] = table(hourglass.T, stride)
+        out.counts[f"{shape}.count"] = count
+        out.counts[f"{shape}.corner_first"] = row
+        row += count * nodes
+        out.element_volume[shape] = volume.sum(axis=1)
+        out.element_mass[shape] = matrices.sum(axis=(1, 2))
+    out.counts["corner_rows"] = row
+    out.arrays["node.gravity_mass"] = gravity_mass
+    out.arrays["node.block"] = t.node_block
+    out.arrays["node.place"] = t.node_place
+    node_masses(t, p, mass, geometry, out)
+
+
+def face_heights(t: Topology, volumes: dict[str, Floats], area: Floats) -> Floats:
+    """Height of the element behind each face above it [m]: the h of k_n = factor E / h."""
+    # volume = area * height / divisor, for a prism 1 and for a pyramid 3; the sides of a wedge stand
+    # across from an edge (2), those of a pyramid between the two cases
+    by_sides = {
+        "tet4": (3.0, 3.0),
+        "pyramid5": (3.0, 3.0),
+        "wedge6": (1.0, 2.0),
+        "hex8": (1.0, 1.0),
+    }
+    triangle, quad = (
+        np.concatenate([by_sides[s][k] * volumes[s] for s in element_shapes.NODES]) for k in (0, 1)
+    )
+    return np.where(t.face_nodes[:, 3] < 0, triangle[t.face_element], quad[t.face_element]) / area
+
+
+def face_areas(position: Floats, face_nodes: NDArray) -> Floats:
+    """Area of triangles and (mean-plane) quadrilaterals [m2], shape (faces,)."""
+    x = position[np.where(face_nodes < 0, face_nodes[:, 2:3], face_nodes)]
+    return 0.5 * lengths(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]))
+
+
+def _faces(t: Topology, p: Properties, out: Assembly) -> None:
+    def geometry(nodes: NDArray) -> Floats:
+        """Area, mean and largest distance of the vertices from their middle."""
+        x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+        inside = (nodes >= 0).astype(float)
+        corners = inside.sum(axis=1)
+        center = np.einsum("fkx,fk->fx", x, inside) / corners[:, None]
+        distance = lengths(x - center[:, None]) * inside
+        area = face_areas(t.node_position, nodes)
+        return np.stack([area, distance.sum(axis=1) / corners, distance.max(axis=1)], axis=1)
+
+    area, length, reach = in_pieces(geometry, t.face_nodes).T.copy()
+    young = p.young_modulus[t.face_group]
+    height = face_heights(t, out.element_volume, area)
+    out.arrays |= {
+        "face.nodes": t.face_nodes.ravel(),
+        "face.edges": t.face_edges.ravel(),
+        "face.interface_class": t.face_kind,
+        "face.block": t.face_block,
+        "face.element": t.face_element,
+        "face.length": length,
+        "face.reach": DEFORMED * reach,
+        "face.area": area,
+        "face.height": height,
+        "face.stiffness": young / height,
+        "face.movable": _movable(t, p),
+        "edge.nodes": t.edge_nodes.ravel(),
+        "edge.faces": t.edge_faces.ravel(),
+        "edge_star.first": t.node_ring_first,
+        "edge_star.node": t.node_ring,
+        "interface.of": p.interface_of.astype(np.int32).ravel(),
+    }
+
+
+def _movable(t: Topology, p: Properties) -> NDArray[np.int8]:
+    """Whether a face's block can move at all; two that cannot need not be searched for contact."""
+    free = np.zeros(len(t.block_group), np.int8)
+    free[t.node_block[~p.supported.all(axis=1)]] = 1
+    return free[t.face_block]
+
+
+def _pairs(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
+    a, b = t.pair_faces.T
+    bonded = p.bonded[t.face_kind[a], t.face_kind[b]] if len(a) else np.zeros(0, bool)
+    corners = (t.face_nodes >= 0).sum(axis=1)
+    exposed = np.ones(len(corners), np.int8)
+    exposed[t.pair_faces[bonded].ravel()] = 0
+    out.arrays["face.initially_exposed"] = exposed
+    empty_real, empty_int = np.zeros(0), np.zeros(0, np.int32)
+    for kind, n in (("triangles", 3), ("quads", 4)):
+        some = bonded & (corners[a] == n) if len(a) else bonded
+        faces, shift = t.pair_faces[some], t.pair_shift[some]
+        k = np.arange(n)
+        node_a = t.face_nodes[faces[:, 0]][:, :n]
+        node_b = np.take_along_axis(t.face_nodes[faces[:, 1]], (shift[:, None] - k) % n, axis=1)
+        count, stride = len(faces), padded_stride(len(faces))
+        _pair_set(kind, faces, out.arrays["face.area"][faces[:, 0]], t, p, stride, out)
+        nodes = np.concatenate([node_a, node_b], axis=1).astype(np.int32)
+        out.arrays[f"{kind}.nodes"] = table(nodes.T, stride)
+        out.arrays[f"{kind}.point_first"] = empty_int
+        for name in ("weights_a", "weights_b", "point_area"):
+            out.arrays[f"{kind}.{name}"] = empty_real
+        out.counts[f"{kind}.count"] = count
+        out.counts[f"{kind}.corner_first"] = out.counts["corner_rows"]
+        out.counts["corner_rows"] += count * n
+
+    faces = t.overlap_faces
+    count, stride = len(faces), padded_stride(len(faces))
+    area = np.add.reduceat(t.overlap_area, t.overlap_first[:-1]) if count else np.zeros(0)
+    _pair_set("overlaps", faces, area, t, p, stride, out)
+    out.arrays |= {
+        "overlaps.nodes": empty_int,
+        "overlaps.point_first": t.overlap_first.astype(np.int32),
+        "overlaps.weights_a": t.overlap_weights_a.ravel(),
+        "overlaps.weights_b": t.overlap_weights_b.ravel(),
+        "overlaps.point_area": t.overlap_area,
+    }
+    out.counts |= {
+        "overlaps.count": count,
+        "overlaps.points": len(t.overlap_area),
+        "overlaps.corner_first": out.counts["corner_rows"],
+    }
+    out.counts["corner_rows"] += count * 8
+
+
+def _pair_set(
+    kind: str,
+    faces: Ints,
+    area: Floats,
+    t: Topology,
+    p: Properties,
+    stride: int,
+    out: Assembly,
+) -> None:
+    sides = t.face_kind[faces].reshape(-1, 2)
+    interface = p.interface_of[sides[:, 0], sides[:, 1]].astype(np.int32)
+    out.pair_faces[kind] = faces
+    out.arrays[f"{kind}.faces"] = faces.astype(np.int32).ravel()
+    out.arrays[f"{kind}.interface"] = table(interface[None], stride)
+    out.arrays[f"{kind}.area"] = table(area[None], stride)
+    out.arrays[f"{kind}.stiffness"] = pair_stiffness(out, kind, p.stiffness, interface, stride)
+
+
+def pair_stiffness(out: Assembly, kind: str, laws: Floats, interface: Ints, stride: int) -> Floats:
+    """k_n and k_s of each pair [Pa/m] from its interface and the stiffer of its two sides."""
+    faces = out.pair_faces[kind]
+    stiffer = out.arrays["face.stiffness"][faces].reshape(-1, 2).max(axis=1, initial=0.0)
+    law = laws[interface]
+    rows = [np.where(law[:, i] > 0, law[:, i], law[:, i + 1] * stiffer) for i in (0, 2)]
+    return table(np.array(rows), stride)
+
+
+def _corners(t: Topology, out: Assembly) -> None:
+    owner, row = [], []
+    for shape in element_shapes.NODES:
+        nodes = t.element_nodes[shape].ravel()
+        owner.append(nodes)
+        row.append(out.counts[f"{shape}.corner_first"] + np.arange(len(nodes)))
+    for kind, n in (("triangles", 3), ("quads", 4)):
+        count = out.counts[f"{kind}.count"]
+        nodes = out.arrays[f"{kind}.nodes"].reshape(2, n, -1)[..., :count]
+        rows = out.counts[f"{kind}.corner_first"] + np.arange(count * n).reshape(count, n).T
+        owner.append(nodes.transpose(2, 0, 1).ravel())
+        row.append(np.stack([~rows, rows]).transpose(2, 0, 1).ravel())  # force and reaction
+    nodes = t.face_nodes[t.overlap_faces].reshape(-1)
+    used = nodes >= 0
+    owner.append(nodes[used])
+    row.append(out.counts["overlaps.corner_first"] + np.flatnonzero(used))
+    first, listed = ragged(
+        np.concatenate(owner).astype(np.int64), np.concatenate(row).astype(np.int32),
+        len(t.node_position),
+    )  # fmt: skip
+    out.arrays["corner.first"] = first
+    out.arrays["corner.row"] = listed

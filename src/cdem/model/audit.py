@@ -1,0 +1,319 @@
+"""What a model is, before the first step: counts, groups, interfaces, step, memory, warnings."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh.arrays import in_pieces, lengths
+from cdem.mesh.element_shapes import NODES, SLIVER
+from cdem.model.build import Build
+
+SOFT = 20.0
+"""Compliance of the interfaces above which the audit warns [%]."""
+
+
+class Audit:
+    """Report on a model that is ready to run.
+
+    Args:
+        build: The model, prepared.
+        overlap: Of the blocks at the start: depth [m], number of vertices, a face.
+        threads: Threads that are going to compute.
+
+    Attributes:
+        counts: Nodes, elements, blocks, faces, semi-springs, semi-edges, bonded pairs.
+        warnings: What a user should look at.
+    """
+
+    def __init__(self, build: Build, overlap: tuple[float, int, int], threads: int) -> None:
+        self._build = build
+        self._overlap = overlap
+        self._threads = threads
+        t = build.topology
+        corners = (t.face_nodes >= 0).sum(axis=1)
+        counts = build.assembly.counts
+        self.counts = {
+            "nodes": len(t.node_position),
+            "elements": sum(len(e) for e in t.element_nodes.values()),
+            "blocks": len(t.block_group),
+            "faces": len(t.face_nodes),
+            "semi_springs": int(corners.sum()),
+            "semi_edges": int(corners.sum()),
+            "bonded_pairs": sum(counts[f"{k}.count"] for k in ("triangles", "quads", "overlaps")),
+        }
+        self.groups = self._groups()
+        self.interfaces = self._interfaces()
+        self.step = self._step()
+        self.warnings = self._warnings()
+
+    # ------------------------------------------------------------------ parts
+
+    def _groups(self) -> dict[str, dict[str, Any]]:
+        b = self._build
+        t = b.topology
+        out = {}
+        for index, name in enumerate(b.group_names):
+            nodes = b.nodes_of(name)
+            volume = mass = elements = 0.0
+            for shape in NODES:
+                some = t.element_group[shape] == index
+                volume += b.assembly.element_volume[shape][some].sum()
+                mass += b.assembly.element_mass[shape][some].sum()
+                elements += int(some.sum())
+            out[name] = {
+                "blocks": int((t.block_group == index).sum()),
+                "elements": int(elements),
+                "volume": float(volume),
+                "mass": float(mass),
+                "low": b.start_position[nodes].min(axis=0).tolist(),
+                "high": b.start_position[nodes].max(axis=0).tolist(),
+            }
+        return out
+
+    def _interfaces(self) -> list[dict[str, Any]]:
+        """One row per bonded pair of groups or set of joints: pairs, area, stiffness, compliance."""
+        b = self._build
+        t, a = b.topology, b.assembly
+        case = self._build.case
+        sim_young = np.array(
+            [case.materials[case.groups[n].material].young_modulus for n in b.group_names]
+        )
+        volume = np.concatenate(list(a.element_volume.values()))
+        sets = [None, *(joint.name for joint in case.model.joints)]
+        rows: dict[tuple[str, str, str | None], dict[str, Any]] = {}
+        for kind in ("triangles", "quads", "overlaps"):
+            count = a.counts[f"{kind}.count"]
+            if count == 0:
+                continue
+            faces = a.pair_faces[kind]
+            stride = len(b.arrays[f"{kind}.interface"])
+            normal, shear = b.arrays[f"{kind}.stiffness"].reshape(2, stride)[:, :count]
+            area = b.arrays[f"{kind}.area"][:count]
+            # strain per stress that the interfaces add, averaged over directions: a joint of normal
+            # n adds A (n_z^4 / k_n + n_z^2 (1 - n_z^2) / k_s); the means are 1/5 and 2/15
+            young = sim_young[t.face_group[faces]].mean(axis=1)
+            soft = area * young * (1 / (5 * normal) + 2 / (15 * shear))
+            group = np.sort(t.face_group[faces], axis=1)
+            joint = (t.face_kind // len(b.group_names))[faces]
+            joint = np.where(joint[:, 0] == joint[:, 1], joint[:, 0], 0)
+            groups = len(b.group_names)
+            where = (joint.astype(np.int64) * groups + group[:, 0]) * groups + group[:, 1]
+            for number in np.unique(where):
+                some = where == number
+                k, i, j = number // groups**2, number // groups % groups, number % groups
+                key = (b.group_names[i], b.group_names[j], sets[k])
+                row = rows.setdefault(key, {"pairs": 0, "area": 0.0, "soft": 0.0, "k": [], "e": []})
+                row["pairs"] += int(some.sum())
+                row["area"] += float(area[some].sum())
+                row["soft"] += float(soft[some].sum())
+                row["k"] += [float(normal[some].min()), float(normal[some].max())]
+                row["e"].append(t.face_element[faces[some]].ravel())
+        return [
+            {
+                "between": list(key[:2]),
+                "joint": key[2],
+                "bonded_pairs": row["pairs"],
+                "area": row["area"],
+                "stiffness_n": [min(row["k"]), max(row["k"])],
+                "compliance_percent": float(
+                    100 * row["soft"] / volume[np.unique(np.concatenate(row["e"]))].sum()
+                ),
+            }
+            for key, row in rows.items()
+        ]
+
+    def _step(self) -> dict[str, Any]:
+        b = self._build
+        limit, node, element2, contact2 = b.core.step_limit()
+        t = b.topology
+        group = b.group_names[t.block_group[t.node_block[node]]]
+        return {
+            "dt": float(b.core.scalars()["dt"]),
+            "limit": limit,
+            "node": int(node),
+            "group": group,
+            "rules": "element" if element2 > contact2 else "interface or contact stiffness",
+            "added_mass": b.assembly.added_mass,
+        }
+
+    def _slivers(self) -> int:
+        t = self._build.topology
+
+        def thin(nodes: NDArray, volume: NDArray) -> NDArray[np.bool_]:
+            tets = t.node_position[nodes]
+            sides = tets[:, [1, 2, 3, 2, 3, 3]] - tets[:, [0, 0, 0, 1, 1, 2]]
+            longest = lengths(sides).max(axis=1)
+            # two sides of each face, from the corner that it does not share with the first
+            area = lengths(np.cross(sides[:, [0, 0, 1, 3]], sides[:, [1, 2, 2, 4]])).max(axis=1)
+            return 6 * volume / area < SLIVER * longest
+
+        volume = self._build.assembly.element_volume["tet4"]
+        return int(in_pieces(thin, t.element_nodes["tet4"], volume).sum())
+
+    def _unheld_blocks(self) -> dict[str, int]:
+        """Blocks of each group that neither supports nor bonds nor contacts hold at the start."""
+        b = self._build
+        t, a = b.topology, b.assembly
+        core = self._build.core.fields()
+        exposed = core["search.exposed_face"]
+        sources = core["outer.acting_first"]
+        pairs = [
+            np.empty((0, 2), int),
+            *a.pair_faces.values(),
+            exposed[_pairs_of(sources, core["outer.faces_acting_on"])],
+        ]
+        joined = t.face_block[np.concatenate(pairs)]
+        held = np.zeros(len(t.block_group), bool)
+        held[t.node_block[b.arrays["support.row"][: len(t.node_block)] >= 0]] = True
+        while True:  # as many rounds as blocks lie one behind another
+            reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
+            if not reached.any():
+                break
+            held[joined[reached]] = True
+        names = [self._build.group_names[g] for g in t.block_group[~held]]
+        return {name: names.count(name) for name in dict.fromkeys(names)}
+
+    def _warnings(self) -> list[str]:
+        b = self._build
+        out = list(b.mesh.notes)
+        if any(s.mode == "static" for s in b.case.stages):
+            for name, count in self._unheld_blocks().items():
+                blocks = "1 block has" if count == 1 else f"{count:,} blocks have"
+                out.append(
+                    f"group {name}: {blocks} no support, direct or through others, at the start; in "
+                    "a static stage they move until something stops them"
+                )
+        depth, count, face = self._overlap
+        if count:
+            block = int(b.topology.face_block[face])
+            group = b.group_names[b.topology.block_group[block]]
+            out.append(
+                f"blocks overlap at the start: {count} vertices, up to {depth:.3g} m (block {block} "
+                f"of group {group}); the overlap counts as free of stress. Mend the mesh if it "
+                "should not be there"
+            )
+        if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
+            out.append(
+                f"time.step {self.step['dt']:.4g} s is above the stable {self.step['limit']:.4g} s; "
+                "the run will blow up: give a smaller one, or auto"
+            )
+        slivers = self._slivers()
+        if slivers:
+            out.append(
+                f"{slivers} sliver elements (height below {SLIVER:.0%} of the longest edge) shorten "
+                "the time step; remesh, or use time.mass_scaling"
+            )
+        soft = [i for i in self.interfaces if i["compliance_percent"] > SOFT]
+        for row in soft:
+            out.append(
+                f"the interface {_place(row)} adds "
+                f"{row['compliance_percent']:.0f} % compliance; raise its stiffness_n"
+            )
+        if b.assembly.lumped_blocks:
+            out.append(
+                f"{b.assembly.lumped_blocks} large blocks one element thick keep lumped masses: "
+                "their rotational inertia is too large"
+            )
+        if b.assembly.added_mass:
+            total = sum(m.sum() for m in b.assembly.element_mass.values())
+            out.append(
+                f"mass scaling adds {b.assembly.added_mass:.3g} kg "
+                f"({100 * b.assembly.added_mass / total:.2g} % of the mass)"
+            )
+        return out
+
+    # ------------------------------------------------------------------ output
+
+    @property
+    def memory(self) -> int:
+        """Bytes that the arrays of model and state take in the core; without what a step writes for
+        itself, and what Python knows of the mesh."""
+        arrays = [*self._build.core.fields().values(), *self._build.arrays.values()]
+        return sum(a.nbytes for a in arrays)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The whole report, ready for JSON."""
+        return {
+            "counts": self.counts,
+            "groups": self.groups,
+            "interfaces": self.interfaces,
+            "time_step": self.step,
+            "memory_bytes": self.memory,
+            "wall_time_estimate": self.wall_time(),
+            "warnings": self.warnings,
+        }
+
+    def wall_time(self) -> float | None:
+        """Rough wall time of the dynamic stages [s]; None when there are none."""
+        duration = sum(s.duration or 0.0 for s in self._build.case.stages)
+        if duration == 0:
+            return None
+        exposed = len(self._build.core.fields()["search.exposed_face"])
+        # measured on one Zen 5 core: about two million elements and a million exposed faces per second
+        work = self._moving_elements() / 2e6 + exposed / 1e6
+        return duration / self.step["dt"] * work / max(1.0, 0.9 * self._threads)
+
+    def _moving_elements(self) -> int:
+        """Elements that are not held still: what is held is not computed."""
+        t, a = self._build.topology, self._build.arrays
+        row = a["support.row"][: len(t.node_block)]
+        still = a["support.component"].reshape(-1, 3).astype(bool) & (
+            a["support.velocity"].reshape(-1, 3) == 0
+        )
+        moves = row < 0
+        moves[row >= 0] = ~still.all(axis=1)[row[row >= 0]]
+        return sum(int(moves[nodes].any(axis=1).sum()) for nodes in t.element_nodes.values())
+
+    def text(self) -> str:
+        """The report as a page of text."""
+        lines = [self._build.case.title or "untitled case", ""]
+        lines += [
+            f"  {key.replace('_', ' '):<14}{value:>12,}" for key, value in self.counts.items()
+        ]
+        lines += [
+            "",
+            f"  {'group':<18}{'blocks':>9}{'elements':>10}{'volume [m3]':>14}{'mass [kg]':>14}",
+        ]
+        for name, g in self.groups.items():
+            lines.append(
+                f"  {name:<18}{g['blocks']:>9,}{g['elements']:>10,}{g['volume']:>14.6g}"
+                f"{g['mass']:>14.6g}"
+            )
+        low = np.min([g["low"] for g in self.groups.values()], axis=0)
+        high = np.max([g["high"] for g in self.groups.values()], axis=0)
+        spans = ", ".join(f"{a:.6g} .. {b:.6g}" for a, b in zip(low, high, strict=True))
+        lines += ["", f"  extent x, y, z [m]: {spans}"]
+        if self.interfaces:
+            lines += ["", "  bonded interfaces"]
+        for row in self.interfaces:
+            lines.append(
+                f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
+                f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
+                f"{row['stiffness_n'][1]:.3g} Pa/m, adds {row['compliance_percent']:.3g} % compliance"
+            )
+        s = self.step
+        lines += [
+            "",
+            f"  time step {s['dt']:.4g} s ({s['rules']} of group {s['group']} decides; stable below "
+            f"{s['limit']:.4g} s)",
+            f"  memory {self.memory / 1e6:,.0f} MB",
+        ]
+        wall = self.wall_time()
+        if wall is not None:
+            lines.append(f"  dynamic stages: about {wall:,.0f} s of wall time while little moves")
+        lines += [""] + [f"  warning: {w}" for w in self.warnings]
+        return "\n".join(lines).rstrip() + "\n"
+
+
+def _place(row: dict[str, Any]) -> str:
+    """Groups, and set of joints if any, of a row of interfaces."""
+    joint = f", joint {row['joint']}" if row["joint"] else ""
+    return " - ".join(row["between"]) + joint
+
+
+def _pairs_of(first: NDArray, other: NDArray) -> NDArray:
+    """Row and entry of every entry of ragged rows, shape (entries, 2)."""
+    return np.column_stack([np.repeat(np.arange(len(first) - 1), np.diff(first)), other])

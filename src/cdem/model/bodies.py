@@ -1,0 +1,74 @@
+"""The bodies of a case in one mesh: its mesh file, the blocks made here, and the joints that cut them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cdem.case.bodies_schema import Block
+from cdem.case.case import Case
+from cdem.errors import CaseError
+from cdem.joints.joints import cut_model
+from cdem.mesh.mesh import Mesh, merge, place
+from cdem.mesh.mesh_files import read_mesh
+from cdem.mesh.primitives import box, outward_faces, polyhedron
+from cdem.model.body_files import read_bodies
+
+
+def read_model(case: Case) -> Mesh:
+    """Read and place the mesh file and the blocks of a case, all in one mesh."""
+    pieces = []
+    model = case.model
+    if model.mesh is not None:
+        with case.blame("model.mesh"):
+            pieces.append(read_mesh(case.path_of(model.mesh)))
+    for index, block in enumerate(model.blocks):
+        with case.blame(f"model.blocks.{index}"):
+            pieces.append(_block(case, block))
+    if not model.joints:
+        return place(merge(pieces), model.rotate, model.translate)
+    pieces = [place(piece, model.rotate, model.translate) for piece in pieces]
+    hulls: list[list[list[int]] | None] = [None] * (model.mesh is not None)
+    for block in model.blocks:
+        body = block.polyhedron
+        hulls.append(None if body is None else outward_faces(np.array(body.vertices), body.faces))
+    with case.blame("model.joints"):
+        return cut_model(list(zip(pieces, hulls, strict=True)), model)
+
+
+def _block(case: Case, block: Block) -> Mesh:
+    if block.file is not None:
+        piece = read_bodies(case.path_of(block.file), block.group)
+    elif block.box is not None:
+        piece = box(block.group, block.box.size, block.box.divisions, shape=block.box.shape)
+    else:
+        assert block.polyhedron is not None
+        piece = polyhedron(block.group, block.polyhedron.vertices, block.polyhedron.faces)
+    return place(piece, block.rotate, block.translate)
+
+
+def check_groups(case: Case, names: list[str]) -> None:
+    """Refuse a case whose groups are not those of the model.
+
+    Args:
+        case: The case.
+        names: Groups of the model.
+    """
+    listed = ", ".join(names)
+    for name in names:
+        if name not in case.groups:
+            raise CaseError(
+                f"{case.where('groups')}: groups: group {name!r} of the model is missing; "
+                f"give it a material (the model has: {listed})"
+            )
+    for name in case.groups:
+        if name not in names:
+            raise CaseError(
+                f"{case.where(f'groups.{name}')}: groups.{name}: no such group in the model; "
+                f"it has: {listed}"
+            )
+    for name in case.model.split:
+        if name not in names:
+            raise CaseError(
+                f"{case.where(f'model.split.{name}')}: model.split.{name}: no such group in the "
+                f"model; it has: {listed}"
+            )

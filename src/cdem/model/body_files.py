@@ -1,0 +1,155 @@
+"""Convex bodies from files: closed surfaces (OBJ, STL) and polyhedral cells (VTK)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.errors import BodyError, MeshError
+from cdem.joints.cell_mesh import to_mesh
+from cdem.joints.convex_cells import from_polyhedron, join
+from cdem.mesh.arrays import components
+from cdem.mesh.mesh import Mesh
+from cdem.mesh.mesh_files import read_raw
+from cdem.mesh.primitives import outward_faces
+
+Floats = NDArray[np.float64]
+Loops = list[list[int]]
+Body = tuple[str, Floats, Loops]  # what to call it, its corners, its faces
+
+SHOWN = 4
+"""So many open edges are named."""
+ROUNDED = 1e-6
+"""Coordinates in files are rounded to about this part of the largest: STL keeps seven digits."""
+
+
+def read_bodies(path: Path, group: str) -> Mesh:
+    """Read convex bodies; each becomes a block of tets around its centre.
+
+    Args:
+        path: ``.obj`` or ``.stl``: every connected closed surface is a body; ``.vtu`` or ``.vtk``: every
+            volume cell is, polyhedra too (needs the extra ``viz``).
+        group: Group of the bodies.
+
+    Raises:
+        MeshError: The file cannot be read.
+        BodyError: A body is open or not convex; says where.
+    """
+    if not path.is_file():
+        raise MeshError(f"{path}: no such file; give a path relative to the case file")
+    kind = path.suffix.lower()
+    readers = {".obj": _obj, ".stl": _stl, ".vtu": _vtk, ".vtk": _vtk}
+    if kind not in readers:
+        raise MeshError(f"{path}: bodies are read from {', '.join(readers)} files")
+    parts = []
+    for name, points, faces in readers[kind](path):
+        try:
+            _refuse_open(points, faces)
+            near = ROUNDED * float(np.abs(points).max())
+            parts.append(from_polyhedron(points, outward_faces(points, faces, near), 0))
+        except MeshError as error:
+            error.args = (f"{path}: {name}: {error}",)
+            raise
+    if not parts:
+        raise MeshError(f"{path}: holds no bodies")
+    # meshed like what joints cut: bodies that share a face divide it alike
+    return to_mesh(join(parts), [group], [], [])
+
+
+def _refuse_open(points: Floats, faces: Loops) -> None:
+    """Stop at edges that are not those of exactly two faces."""
+    count: dict[tuple[int, int], int] = {}
+    for loop in faces:
+        for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
+            edge = (min(a, b), max(a, b))
+            count[edge] = count.get(edge, 0) + 1
+    wrong = [edge for edge, faces_there in count.items() if faces_there != 2]
+    if not wrong:
+        return
+    named = []
+    for edge in wrong[:SHOWN]:
+        ends = (", ".join(f"{x:.6g}" for x in points[v]) for v in edge)
+        named.append(" - ".join(f"({end})" for end in ends) + f" has {count[edge]}")
+    more = f" and {len(wrong) - SHOWN} more" if len(wrong) > SHOWN else ""
+    raise BodyError(
+        f"the surface is not closed: every edge needs two faces, but {'; '.join(named)}{more}",
+        points,
+        faces,
+        wrong,
+    )
+
+
+def _surfaces(points: Floats, loops: Loops) -> Iterator[Body]:
+    """Bodies of a surface: its parts that hang together at points of the same place."""
+    points, same = np.unique(points, axis=0, return_inverse=True)
+    same = same.reshape(-1)
+    loops = [[int(same[v]) for v in loop] for loop in loops]
+    first = np.concatenate([np.full(len(loop), loop[0]) for loop in loops])
+    label = components(len(points), first, np.concatenate(loops))
+    of_loop = label[[loop[0] for loop in loops]]
+    order = np.argsort(of_loop, kind="stable")
+    starts = np.flatnonzero(np.r_[True, np.diff(of_loop[order]) != 0])
+    for number, some in enumerate(np.split(order, starts[1:])):
+        yield _own(f"body {number}", points, [loops[i] for i in some])
+
+
+def _own(name: str, points: Floats, loops: Loops) -> Body:
+    """A body with corners of its own, numbered from 0."""
+    used = np.unique(np.concatenate(loops))
+    faces = [np.searchsorted(used, loop).tolist() for loop in loops]
+    return name, points[used], faces
+
+
+def _obj(path: Path) -> Iterator[Body]:
+    points, loops = [], []
+    for number, line in enumerate(path.read_text(errors="replace").splitlines(), start=1):
+        words = line.split()
+        try:
+            if words[:1] == ["v"]:
+                points.append([float(x) for x in words[1:4]])
+            elif words[:1] == ["f"]:
+                corners = [int(word.split("/")[0]) for word in words[1:]]
+                loops.append([c - 1 if c > 0 else len(points) + c for c in corners])
+        except ValueError:
+            raise MeshError(f"{path}:{number}: cannot be read: {line.strip()}") from None
+        if words[:1] == ["f"] and (len(loops[-1]) < 3 or not _within(loops[-1], len(points))):
+            raise MeshError(f"{path}:{number}: a face needs three or more vertices from above it")
+    if not loops:
+        raise MeshError(f"{path}: holds no faces")
+    array = np.array(points)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise MeshError(f"{path}: vertices need three coordinates")
+    yield from _surfaces(array, loops)
+
+
+def _within(loop: list[int], count: int) -> bool:
+    return min(loop) >= 0 and max(loop) < count
+
+
+def _stl(path: Path) -> Iterator[Body]:
+    raw = read_raw(path)
+    triangles = [block.data for block in raw.cells if block.type == "triangle"]
+    if not triangles or not sum(map(len, triangles)):
+        raise MeshError(f"{path}: holds no triangles")
+    yield from _surfaces(np.asarray(raw.points, float), np.concatenate(triangles).tolist())
+
+
+def _vtk(path: Path) -> Iterator[Body]:
+    try:
+        import pyvista
+    except ImportError:
+        raise MeshError(f"{path}: reading this needs pyvista; pip install 'cdem[viz]'") from None
+    try:
+        grid = pyvista.read(path)
+    except Exception as error:
+        raise MeshError(f"{path}: cannot be read ({error})") from None
+    if not isinstance(grid, pyvista.UnstructuredGrid):
+        raise MeshError(f"{path}: holds no volume cells, but {type(grid).__name__}")
+    points = np.asarray(grid.points, float)
+    for number in range(grid.n_cells):
+        cell = grid.get_cell(number)
+        if cell.dimension == 3:
+            yield _own(f"cell {number}", points, [list(f.point_ids) for f in cell.faces])

@@ -1,0 +1,192 @@
+"""From a case to a model that the core can run: meshes, blocks, interfaces, loads, supports."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem._native import core as native
+from cdem.case.case import Case
+from cdem.case.interface_schema import Interface
+from cdem.case.laws import BLOCK_LAWS
+from cdem.case.schema import Material
+from cdem.mesh.blocks import build_topology, snap_mates
+from cdem.mesh.mesh import Mesh
+from cdem.mesh.topology import Topology
+from cdem.model.assemble import assemble
+from cdem.model.bodies import check_groups, read_model
+from cdem.model.curves import Curves, constant
+from cdem.model.flat_arrays import Assembly, Properties
+from cdem.model.interfaces import (
+    bonded_pairs,
+    check_interfaces,
+    interface_entry,
+    interfaces_of,
+    stiffness_row,
+)
+from cdem.model.loads import drop_gravity, set_velocities, tractions_of
+from cdem.model.options import options_of
+from cdem.model.supports import supports_of
+
+Floats = NDArray[np.float64]
+
+
+SHARED = {
+    "node_block": "node.block", "node_place": "node.place", "face_nodes": "face.nodes",
+    "face_edges": "face.edges", "face_kind": "face.interface_class", "face_block": "face.block",
+    "face_element": "face.element", "edge_nodes": "edge.nodes", "edge_faces": "edge.faces",
+    "node_ring_first": "edge_star.first", "node_ring": "edge_star.node",
+}  # fmt: skip
+"""Arrays of the topology that the core has too, under its name."""
+
+
+@dataclass
+class Build:
+    """A model ready to run.
+
+    Attributes:
+        case: The case it was made from.
+        mesh: The mesh, all pieces merged.
+        topology: Blocks, faces and pairs.
+        assembly: Counts and sums of what the core was given, which holds the arrays now.
+        core: The compiled core, holding model and state.
+        curves: Times and factors of load and velocity histories; the first is constant.
+        start_position: Positions at the start [m], shape (nodes, 3).
+        bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
+            at the start, shape (kinds, kinds).
+    """
+
+    case: Case
+    mesh: Mesh
+    topology: Topology
+    assembly: Assembly
+    core: Any  # Core of the module for this machine's instruction set
+    curves: Curves
+    start_position: Floats
+    bonded: NDArray[np.bool_]
+
+    @property
+    def arrays(self) -> dict[str, NDArray]:
+        """Flat arrays of the model by name: views of the core's, until a stage changes them."""
+        return self.core.model()
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """The same for models with the same nodes, elements and groups, in the same order."""
+        digest = hashlib.sha256(self.start_position.tobytes())
+        for shape, cells in sorted(self.mesh.cells.items()):
+            digest.update(shape.encode() + cells.tobytes() + self.mesh.cell_group[shape].tobytes())
+        return digest.hexdigest()
+
+    @property
+    def group_names(self) -> list[str]:
+        """Names of the groups, by index."""
+        return self.mesh.group_names
+
+    def node_groups(self) -> NDArray[np.int32]:
+        """Group of each node's block, shape (nodes,)."""
+        return self.topology.block_group[self.topology.node_block]
+
+    def nodes_of(self, group: str) -> NDArray[np.intp]:
+        """Nodes of a group, ascending."""
+        return np.flatnonzero(self.node_groups() == self.group_names.index(group))
+
+
+def build(case: Case) -> Build:
+    """Build the model of a case.
+
+    Raises:
+        CaseError: Something in the case file does not fit the model.
+        MeshError: A mesh cannot be used.
+    """
+    merged = read_model(case)
+    names = merged.group_names
+    check_groups(case, names)
+    laws, interface_of = interfaces_of(case, names)
+    bonds = bonded_pairs(laws, interface_of)
+    sets = [joint.name for joint in case.model.joints]
+    with case.blame("model"):
+        topology = build_topology(merged, case.model.split, sets, bonds)
+    check_interfaces(case, topology, names, interface_of)
+    snap_mates(topology)
+
+    core, curves = native.Core(), constant()
+    parts = _assemble(case, topology, names, laws, interface_of, bonds, curves)
+    core.take_counts(parts.counts)
+    core.take_model(parts.arrays)
+    parts.arrays.clear()  # the core has its own
+    _share(topology, core.model())
+    core.set_curves([c[0] for c in curves], [c[1] for c in curves])
+    core.set_interfaces([interface_entry(law) for law in laws])
+    core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
+    core.start(topology.node_position)
+    built = Build(case, merged, topology, parts, core, curves, topology.node_position, bonds)
+    motion = core.fields()["node.motion"].reshape(-1, 8)
+    set_velocities(case, topology, names, built.arrays["node.mass"], motion)
+    return built
+
+
+def _share(topology: Topology, arrays: dict[str, NDArray]) -> None:
+    """Let the topology see the core's arrays where it has the same, so that they are kept once."""
+    for name, column in SHARED.items():
+        own = getattr(topology, name)
+        setattr(topology, name, arrays[column][: own.size].reshape(own.shape))
+
+
+def _assemble(
+    case: Case,
+    topology: Topology,
+    names: list[str],
+    laws: list[Interface],
+    interface_of: NDArray[np.int32],
+    bonds: NDArray[np.bool_],
+    curves: Curves,
+) -> Assembly:
+    """Arrays of the core, with supports and loads as the case has them now."""
+    materials = [case.materials[case.groups[name].material] for name in names]
+    scaling = case.time.mass_scaling
+    supports = supports_of(case, topology, names, curves)
+    held = supports["component"][np.maximum(supports["row"], 0)].astype(bool)
+    properties = Properties(
+        density=np.array([m.density for m in materials]),
+        young_modulus=np.array([m.young_modulus for m in materials]),
+        poisson_ratio=np.array([m.poisson_ratio for m in materials]),
+        law=np.array([list(BLOCK_LAWS).index(m.law) for m in materials], np.int32),
+        law_parameters=np.array([_law_row(m) for m in materials]),
+        interface_of=np.maximum(interface_of, 0),
+        bonded=bonds,
+        stiffness=np.array([stiffness_row(law) for law in laws]).reshape(-1, 4),
+        exact_mass=case.elements.mass == "exact",
+        supported=held & (supports["row"] >= 0)[:, None],
+        target_step=0.0 if scaling is None else scaling.step,
+        one_point=case.elements.hexahedra == "one-point",
+    )
+    parts = assemble(topology, properties, native.padded_stride)
+    parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
+    drop_gravity(case, topology, names, parts)
+    parts.arrays |= tractions_of(case, topology, names, curves)
+    return parts
+
+
+def _law_row(material: Material) -> list[float]:
+    """Parameters of a material's law, filled up to the most that any law has."""
+    numbers = list(BLOCK_LAWS[material.law].numbers(material).values())
+    return numbers + [0.0] * (native.block_law_parameters - len(numbers))
+
+
+def change(built: Build) -> dict[str, NDArray]:
+    """Arrays of the core that follow from the parts of a case that a stage may change.
+
+    Supports change the inverse mass matrices of small blocks, so those are made anew too.
+    """
+    case, names = built.case, built.group_names
+    laws, interface_of = interfaces_of(case, names)
+    del built.curves[1:]
+    parts = _assemble(case, built.topology, names, laws, interface_of, built.bonded, built.curves)
+    kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s")
+    return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}

@@ -1,0 +1,89 @@
+"""The flat arrays of the core: what they are made from, what they are, and how they lie in memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh.arrays import first_of_each
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+@dataclass
+class Properties:
+    """What the case says, by group.
+
+    Attributes:
+        density: [kg/m3], shape (groups,).
+        young_modulus: [Pa], shape (groups,).
+        poisson_ratio: shape (groups,).
+        law: Number of the block law in the core, shape (groups,).
+        law_parameters: Its parameters, shape (groups, most parameters of a law).
+        interface_of: Index of the interface between two kinds of faces (see
+            `Topology.face_kind`), shape (kinds, kinds).
+        bonded: Whether that interface starts bonded (has cohesion or tension), the same shape.
+        stiffness: (value, factor) of k_n and k_s by interface, shape (interfaces, 4).
+        exact_mass: Exact inertia (default) or lumped masses as they come.
+        supported: Components of nodes that are held or moved, shape (nodes, 3).
+        target_step: Time step for which elements are made heavier where needed, or 0 [s].
+        one_point: Whether hexahedra have one Gauss point and hourglass springs.
+    """
+
+    density: Floats
+    young_modulus: Floats
+    poisson_ratio: Floats
+    law: Ints
+    law_parameters: Floats
+    interface_of: Ints
+    bonded: NDArray[np.bool_]
+    stiffness: Floats
+    exact_mass: bool
+    supported: NDArray[np.bool_]
+    target_step: float = 0.0
+    one_point: bool = False
+
+    @property
+    def lame(self) -> Floats:
+        """First Lame constant by group [Pa]."""
+        e, nu = self.young_modulus, self.poisson_ratio
+        return e * nu / ((1 + nu) * (1 - 2 * nu))
+
+    @property
+    def shear(self) -> Floats:
+        """Shear modulus by group [Pa]."""
+        return self.young_modulus / (2 * (1 + self.poisson_ratio))
+
+
+@dataclass
+class Assembly:
+    """Flat arrays of the model by name, counts, and what the audit wants to know."""
+
+    arrays: dict[str, NDArray] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+    element_mass: dict[str, Floats] = field(default_factory=dict)
+    element_volume: dict[str, Floats] = field(default_factory=dict)
+    element_frequency: dict[str, Floats] = field(default_factory=dict)
+    added_mass: float = 0.0
+    lumped_blocks: int = 0
+    pair_faces: dict[str, Ints] = field(default_factory=dict)
+
+
+def table(rows: NDArray, stride: int) -> NDArray:
+    """Rows of numbers per item, shape (rows, items), padded to the core's stride and flattened.
+
+    The padding repeats the last item, so that a lane that reads past the end meets sane numbers.
+    """
+    count = rows.shape[1]
+    if count == 0:
+        return np.zeros(rows.shape[0] * stride, rows.dtype)
+    return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, stride - count)), "edge")).ravel()
+
+
+def ragged(owner: NDArray, value: NDArray, count: int) -> tuple[Ints, NDArray]:
+    """Values listed by owner in the given order: starts (count + 1,) and values."""
+    order = np.argsort(owner, kind="stable")
+    return first_of_each(owner, count), np.ascontiguousarray(value[order])

@@ -1,0 +1,92 @@
+"""Which interface holds between two kinds of faces, and its numbers for the core."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.case import Case
+from cdem.case.interface_schema import Interface
+from cdem.case.laws import INTERFACE_LAWS
+from cdem.errors import CaseError
+from cdem.mesh.topology import Topology, group_touching
+
+
+def interfaces_of(case: Case, names: list[str]) -> tuple[list[Interface], NDArray[np.int32]]:
+    """Interface laws in use, and the index for each pair of kinds of faces (-1: none was given).
+
+    Kinds of faces are those of `Topology.face_kind`. What touches a face made by a set of joints has
+    the law of that set, if there is one and the toucher (first index) is of the same set or group:
+    a corner that rests on a joint may touch it as a corner of any face of its block. All else has the
+    law of its groups.
+    """
+    laws: list[Interface] = list(case.interfaces.pairs)
+    table = np.full((len(names), len(names)), -1, np.int32)
+    if case.interfaces.default is not None:
+        laws.append(case.interfaces.default)
+        table[:] = len(laws) - 1
+    for index, pair in enumerate(case.interfaces.pairs):
+        for name in pair.between or []:
+            if name not in names:
+                raise CaseError(
+                    f"{case.where(f'interfaces.pairs.{index}.between')}: interfaces.pairs.{index}."
+                    f"between: no group {name!r} in the model; it has: {', '.join(names)}"
+                )
+        if pair.between is not None:
+            a, b = (names.index(name) for name in pair.between)
+            table[a, b] = table[b, a] = index
+    sets = [joint.name for joint in case.model.joints]
+    table = np.tile(table, (1 + len(sets), 1 + len(sets)))
+    for index, pair in enumerate(case.interfaces.pairs):
+        if pair.joint is not None:
+            start = len(names) * (1 + sets.index(pair.joint))
+            table[start : start + len(names), start : start + len(names)] = index
+            for group in range(len(names)):
+                table[group :: len(names), start + group] = index
+    return laws, table
+
+
+def check_interfaces(
+    case: Case, topology: Topology, names: list[str], table: NDArray[np.int32]
+) -> None:
+    """Refuse a model of which two groups touch, or may come to touch, without an interface."""
+    for a, b in sorted(group_touching(topology)):
+        if table[names.index(a), names.index(b)] < 0:
+            raise CaseError(
+                f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} touch but have no "
+                f"interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
+            )
+    missing = table[: len(names), : len(names)] < 0
+    for index in range(len(names)):  # a block does not touch itself
+        if (topology.block_group == index).sum() < 2:
+            missing[index, index] = False
+    if missing.any():
+        first = np.argwhere(missing)[0]
+        a, b = names[first[0]], names[first[1]]
+        raise CaseError(
+            f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} may come to touch but "
+            f"have no interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
+        )
+
+
+def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Which pairs of groups have strength, shape (groups, groups); those without a law have none."""
+    strong = [INTERFACE_LAWS[law.law].bonds(law) for law in laws]
+    return np.array([*strong, False])[table]
+
+
+def interface_entry(law: Interface) -> dict[str, Any]:
+    """An interface as the core takes it."""
+    return {
+        "law": law.law,
+        "stiffness_n": law.stiffness_n.as_pair(),
+        "stiffness_s": law.stiffness_s.as_pair(),
+        "parameters": INTERFACE_LAWS[law.law].numbers(law),
+    }
+
+
+def stiffness_row(law: Interface) -> list[float]:
+    """Value and factor of k_n, then of k_s; a value of 0 means factor times E / h."""
+    return [*law.stiffness_n.as_pair(), *law.stiffness_s.as_pair()]

@@ -1,0 +1,71 @@
+"""Tractions, gravity and initial velocities."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.case import Case
+from cdem.mesh.topology import Topology
+from cdem.model.assemble import face_areas
+from cdem.model.curves import Curves, add_curve
+from cdem.model.flat_arrays import Assembly, Floats, ragged
+from cdem.model.selection import select_faces
+
+
+def drop_gravity(case: Case, topology: Topology, names: list[str], parts: Assembly) -> None:
+    """Take the weight off groups on which gravity does not act."""
+    groups = topology.block_group[topology.node_block]
+    for name, group in case.groups.items():
+        if not group.gravity:
+            parts.arrays["node.gravity_mass"][groups == names.index(name)] = 0
+
+
+def tractions_of(
+    case: Case, topology: Topology, names: list[str], curves: Curves
+) -> dict[str, NDArray]:
+    """Nodal forces of tractions: the area of each vertex of the loaded faces times the traction."""
+    nodes, forces, of_curve = [], [], []
+    for index, item in enumerate(case.loads.tractions):
+        faces = select_faces(case, topology, names, item.surface, f"loads.tractions.{index}")
+        vertex = topology.face_nodes[faces]
+        used = vertex >= 0
+        area = face_areas(topology.node_position, vertex)
+        share = np.broadcast_to((area / used.sum(axis=1))[:, None], vertex.shape)[used]
+        nodes.append(vertex[used])
+        forces.append(share[:, None] * np.asarray(item.traction, float))
+        of_curve.append(np.full(used.sum(), add_curve(item.history, curves), np.int32))
+    count = len(topology.node_position)
+    if not nodes:
+        return {
+            "load.first": np.zeros(count + 1, np.int32),
+            "load.curve": np.zeros(0, np.int32),
+            "load.force": np.zeros(0),
+        }
+    owner, force = np.concatenate(nodes), np.concatenate(forces)
+    first, curve = ragged(owner, np.concatenate(of_curve), count)
+    _, force = ragged(owner, force, count)
+    rows = np.zeros((len(force), 4))
+    rows[:, :3] = force
+    return {"load.first": first, "load.curve": curve, "load.force": rows.ravel()}
+
+
+def set_velocities(
+    case: Case, topology: Topology, names: list[str], mass: Floats, motion: Floats
+) -> None:
+    """Write the initial velocities of the groups into the core's rows of motion.
+
+    Args:
+        case: The case.
+        topology: The model, at its start.
+        names: Names of the groups, by index.
+        mass: Of each node [kg].
+        motion: Rows of the core: position, then velocity from the fifth number on; is changed.
+    """
+    groups = topology.block_group[topology.node_block]
+    for name, group in case.groups.items():
+        nodes = np.flatnonzero(groups == names.index(name))
+        x = topology.node_position[nodes]
+        center = (mass[nodes, None] * x).sum(axis=0) / mass[nodes].sum()
+        spin = np.cross(np.asarray(group.angular_velocity, float), x - center)
+        motion[nodes, 4:7] = np.asarray(group.velocity, float) + spin

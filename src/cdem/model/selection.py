@@ -1,0 +1,79 @@
+"""Nodes and faces that an entry of loads means: by group, surface, point or box."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.case import Case
+from cdem.errors import CaseError
+from cdem.mesh.topology import Topology
+
+LOOKS_ALONG = 1e-3
+"""Faces whose normal is within about 2.5 degrees of a wanted direction look along it."""
+
+
+def select_nodes(
+    case: Case, topology: Topology, names: list[str], item: Any, path: str
+) -> NDArray[np.intp]:
+    """Nodes that an entry of loads means: by group, surface, point or box."""
+    position = topology.node_position
+    groups = topology.block_group[topology.node_block]
+    among = np.ones(len(position), bool)
+    if getattr(item, "group", None) is not None:
+        if item.group not in names:
+            raise CaseError(
+                f"{case.where(path + '.group')}: {path}.group: no group {item.group!r} in the "
+                f"model; it has: {', '.join(names)}"
+            )
+        among = groups == names.index(item.group)
+    if getattr(item, "surface", None) is not None:
+        faces = select_faces(case, topology, names, item.surface, path)
+        inside = np.zeros(len(position), bool)
+        nodes = topology.face_nodes[faces].ravel()
+        inside[nodes[nodes >= 0]] = True
+        among &= inside
+    if getattr(item, "box", None) is not None:
+        among &= ((position >= item.box.min) & (position <= item.box.max)).all(axis=1)
+    if getattr(item, "point", None) is not None:
+        candidates = np.flatnonzero(among)
+        distance = np.linalg.norm(position[candidates] - item.point, axis=1)
+        # every node at that point: blocks that touch there have one each
+        among = np.zeros(len(position), bool)
+        among[candidates[distance <= distance.min() * (1 + 1e-9) + 1e-12]] = True
+    if not among.any():
+        raise CaseError(f"{case.where(path)}: {path}: selects no nodes; check where it points")
+    return np.flatnonzero(among)
+
+
+def select_faces(
+    case: Case, topology: Topology, names: list[str], surface: Any, path: str
+) -> NDArray[np.intp]:
+    """Exterior faces of a surface by name, or those of a group that look along a normal."""
+    path += ".surface"
+    if isinstance(surface, str):
+        if surface not in topology.surfaces:
+            known = ", ".join(sorted(topology.surfaces)) or "none"
+            raise CaseError(
+                f"{case.where(path)}: {path}: no surface {surface!r} in the model; it has: {known}"
+            )
+        return topology.surfaces[surface]
+    if surface.group not in names:
+        raise CaseError(
+            f"{case.where(path)}: {path}.group: no group {surface.group!r} in the model; it has: "
+            f"{', '.join(names)}"
+        )
+    free = topology.face_group == names.index(surface.group)
+    free[topology.pair_faces.ravel()] = False  # what touches another block is inside the rock
+    faces = np.flatnonzero(free)
+    nodes = topology.face_nodes[faces]
+    x = topology.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    wanted = np.asarray(surface.normal, float)
+    faces = faces[normal @ (wanted / np.linalg.norm(wanted)) > 1 - LOOKS_ALONG]
+    if len(faces) == 0:
+        raise CaseError(f"{case.where(path)}: {path}: no free face of the group looks that way")
+    return faces

@@ -1,0 +1,52 @@
+"""Supported and driven nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.case import Case
+from cdem.mesh.topology import Topology
+from cdem.model.curves import Curves, add_curve
+from cdem.model.selection import select_nodes
+
+
+def supports_of(
+    case: Case, topology: Topology, names: list[str], curves: Curves
+) -> dict[str, NDArray]:
+    """Rows of supported nodes: which components, at which velocity, on which curve."""
+    count = len(topology.node_position)
+    component = np.zeros((count, 3), np.int8)
+    velocity = np.zeros((count, 3))
+    curve = np.zeros((count, 3), np.int32)
+
+    def hold(nodes: NDArray, axes: list[int], speeds: list[float], index: int) -> None:
+        for axis, speed in zip(axes, speeds, strict=True):
+            component[nodes, axis] = 1
+            velocity[nodes, axis] = speed
+            curve[nodes, axis] = index
+
+    groups = topology.block_group[topology.node_block]
+    for name, group in case.groups.items():
+        axes = ["xyz".index(c) for c in group.fix]
+        hold(groups == names.index(name), axes, [0.0] * len(axes), 0)
+    for index, item in enumerate(case.loads.supports):
+        nodes = select_nodes(case, topology, names, item, f"loads.supports.{index}")
+        axes = ["xyz".index(c) for c in item.fix]
+        hold(nodes, axes, [0.0] * len(axes), 0)
+    for index, driven in enumerate(case.loads.velocities):
+        nodes = select_nodes(case, topology, names, driven, f"loads.velocities.{index}")
+        axes = ["xyz".index(c) for c in driven.components]
+        hold(nodes, axes, [driven.velocity[a] for a in axes], add_curve(driven.history, curves))
+
+    held = np.asarray(component.any(axis=1))
+    row = np.full(count, -1, np.int32)
+    row[held] = np.arange(held.sum())
+    if not held.any():  # the core looks rows up; an empty table still needs one
+        held[:1] = True
+    return {
+        "row": row,
+        "component": component[held],
+        "velocity": velocity[held],
+        "curve": curve[held],
+    }

@@ -1,0 +1,1 @@
+"""Looking at results: text, plots, pictures, run-out, files for other programs."""

@@ -1,0 +1,204 @@
+"""The moving elements of a run, frame by frame: their pieces, and what passes through sections."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.case import Case
+from cdem.errors import CdemError
+from cdem.output.element_volumes import Solids
+from cdem.output.reader import FrameSeries
+
+Floats = NDArray[np.float64]
+
+STILL = 1e-6
+"""Rock that moved less than this part of its size has not moved."""
+MOVING = 0.1
+"""Groups that moved at least this part of what the farthest group moved are the moving ones."""
+SECTION = {"time": "s", "area": "m2", "velocity": "m/s", "discharge": "m3/s", "passed": "m3"}
+FRAGMENT = {
+    "piece": "1", "elements": "1", "volume": "m3", "mass": "kg", "diameter": "m", "x": "m",
+    "y": "m", "z": "m", "attached": "1", "share_of_smaller": "1",
+}  # fmt: skip
+
+
+class Body:
+    """The moving elements of a run, frame by frame.
+
+    Attributes:
+        frames: From the start, where displacements were last reset, to the end.
+        start: The elements at the start.
+        mass: Of each element [kg].
+    """
+
+    def __init__(self, folder: Path, groups: Sequence[str] | None) -> None:
+        self.series = FrameSeries(folder)
+        self.frames = range(self._first(), len(self.series))
+        if len(self.frames) < 2:
+            raise CdemError(
+                f"{self.series.path}: holds no frame after the start at "
+                f"{self.series.times[self.frames[0]]:.6g} s; run-out needs a later one"
+            )
+        names = self.series.group_names
+        self.group = self.series.field("CellData", "group", 0)
+        self.groups = self._moving(names) if groups is None else list(dict.fromkeys(groups))
+        for name in self.groups:
+            if name not in names:
+                raise CdemError(f"{folder}: no group {name!r}; it has: {', '.join(names)}")
+        self.chosen = np.isin(self.group, [names.index(name) for name in self.groups])
+        first = 0
+        self.cells: dict[str, NDArray[np.int64]] = {}
+        for shape, nodes in self.series.cells.items():
+            some = nodes[self.chosen[first : first + len(nodes)]]
+            first += len(nodes)
+            if len(some):
+                self.cells[shape] = some
+        self.nodes = np.unique(np.concatenate([c.ravel() for c in self.cells.values()]))
+        case = Case.load(folder / "case.yaml")
+        densities = [case.materials[case.groups[name].material].density for name in names]
+        self.density = np.array(densities)[self.group[self.chosen]]
+        self.start = self.solids(self.frames[0])
+        self.mass = self.density * self.solids(0).volumes()  # the mesh is free of stress
+
+    def _first(self) -> int:
+        """Last frame without displacements: settling that a stage has reset is no run-out."""
+        if "displacement" in self.series.names["PointData"]:
+            for frame in reversed(range(len(self.series))):
+                if not self.series.field("PointData", "displacement", frame).any():
+                    return frame
+        return 0
+
+    def _moving(self, names: list[str]) -> list[str]:
+        """Groups that moved, on average, a tenth of what the farthest one moved, or more."""
+        start = self.series.points(self.frames[0])
+        moved = self.series.points(self.frames[-1]) - start
+        elements = np.concatenate(
+            [moved[nodes].mean(axis=1) for nodes in self.series.cells.values()]
+        )
+        count = np.bincount(self.group, minlength=len(names))
+        way = [np.bincount(self.group, e, len(names)) / np.maximum(count, 1) for e in elements.T]
+        distance = np.linalg.norm(way, axis=0)
+        if distance.max() <= STILL * np.ptp(start, axis=0).max():
+            raise CdemError(f"{self.series.path}: nothing has moved; name the groups to look at")
+        return [n for n, d in zip(names, distance, strict=True) if d >= MOVING * distance.max()]
+
+    def solids(self, frame: int) -> Solids:
+        return Solids.of(self.series.points(frame), self.cells)
+
+    def velocities(self, frame: int) -> Floats:
+        """Mean velocity of each element's nodes [m/s]; not a number if it was not recorded."""
+        if "velocity" not in self.series.names["PointData"]:
+            return np.full((len(self.mass), 3), np.nan)
+        nodal = self.series.field("PointData", "velocity", frame)
+        return np.concatenate([nodal[nodes].mean(axis=1) for nodes in self.cells.values()])
+
+    def pieces(self, frame: int, volume: Floats) -> Pieces | None:
+        """Connected pieces of the moving elements, or None if they were not recorded."""
+        if "piece" not in self.series.names["CellData"]:
+            return None
+        piece = self.series.field("CellData", "piece", frame)
+        others = np.unique(piece[~self.chosen])
+        ids, member = np.unique(piece[self.chosen], return_inverse=True)
+        return Pieces(ids, member, np.bincount(member, volume).astype(float), np.isin(ids, others))
+
+
+@dataclass
+class Pieces:
+    """Connected pieces: number, member of each element, volume [m3], whether others hang on."""
+
+    ids: NDArray[np.int32]
+    member: NDArray[np.intp]
+    volume: Floats
+    attached: NDArray[np.bool_]
+
+    def row(self) -> tuple[float, float, float]:
+        """Number of pieces, and the parts of the volume in the largest and in attached ones."""
+        whole = self.volume.sum()
+        return (
+            float(len(self.ids)),
+            float(self.volume.max() / whole),
+            float(self.volume[self.attached].sum() / whole),
+        )
+
+    def table(self, mass: Floats, centroid: Floats) -> dict[str, NDArray]:
+        """Columns `FRAGMENT`, largest first."""
+        count = len(self.ids)
+        heavy = np.bincount(self.member, mass, count)
+        places = [np.bincount(self.member, mass * c, count) / heavy for c in centroid.T]
+        order = np.argsort(-self.volume, kind="stable")
+        volume = self.volume[order]
+        below = np.cumsum(volume[::-1])[::-1] - volume
+        columns: dict[str, NDArray] = {
+            "piece": self.ids, "elements": np.bincount(self.member, minlength=count),
+            "volume": self.volume, "mass": heavy, "diameter": np.cbrt(6 * self.volume / np.pi),
+            **dict(zip("xyz", places, strict=True)), "attached": self.attached.astype(int),
+        }  # fmt: skip
+        return {n: v[order] for n, v in columns.items()} | {
+            "share_of_smaller": below / volume.sum()
+        }
+
+
+@dataclass
+class Section:
+    """Rock through an upright section over a line in plan; what moves forward counts as positive.
+
+    Attributes:
+        line: x and y of its ends [m].
+        history: Columns `SECTION`, one value for each frame.
+    """
+
+    line: tuple[float, ...]
+    history: dict[str, Floats]
+
+
+class Line:
+    """Follows the rock through one section.
+
+    Args:
+        line: x0, y0, x1, y1 [m].
+        forward: Direction of motion in plan, shape (2,).
+        start: The elements at the start; their volumes are those that pass.
+    """
+
+    def __init__(self, line: Sequence[float], forward: Floats, start: Solids) -> None:
+        self.line = tuple(float(v) for v in line)
+        if len(self.line) != 4 or not np.isfinite(self.line).all():
+            raise CdemError(f"a section needs x0, y0, x1, y1, got {list(line)}")
+        self.begin, end = np.reshape(self.line, (2, 2))
+        self.length = float(np.linalg.norm(end - self.begin))
+        if self.length == 0:
+            raise CdemError(f"a section needs two different ends, got {list(line)}")
+        self.along = (end - self.begin) / self.length
+        normal = np.array([self.along[1], -self.along[0]])
+        self.normal = normal if normal @ forward >= 0 else -normal
+        self.volume = start.volumes()
+        self.share = start.shares_ahead(self.begin, self.normal)
+        self.passed = 0.0
+        self.rows: list[list[float]] = []
+
+    def follow(
+        self, time: float, solids: Solids, velocity: Floats, before: Floats, now: Floats
+    ) -> None:
+        """Add a frame: its time [s], elements, their velocities, and centroids before and now."""
+        area = solids.cut_areas(self.begin, self.along, self.length)
+        discharge = float(area @ (velocity[:, :2] @ self.normal))
+        share = solids.shares_ahead(self.begin, self.normal)
+        last, here = ((c[:, :2] - self.begin) @ self.normal for c in (before, now))
+        # where the straight way of the centroid since the last frame comes nearest to the line
+        t = np.clip(last / np.where(last == here, 1.0, last - here), 0.0, 1.0)[:, None]
+        r = ((before + t * (now - before))[:, :2] - self.begin) @ self.along
+        within = (r >= 0) & (r <= self.length)
+        self.passed += float((self.volume * (share - self.share))[within].sum())
+        self.share = share
+        whole = float(area.sum())
+        speed = discharge / whole if whole > 0 else np.nan
+        self.rows.append([time, whole, speed, discharge, self.passed])
+
+    def section(self) -> Section:
+        """The histories so far."""
+        return Section(self.line, dict(zip(SECTION, np.array(self.rows).T, strict=True)))

@@ -1,0 +1,1 @@
+"""A run: stages, progress, the result folder and its files."""

@@ -1,0 +1,156 @@
+"""Fields of a run as it is now: damage, pieces, stress, and the surface that carries them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
+from cdem.mesh.arrays import components
+from cdem.model.interfaces import bonded_pairs, interfaces_of
+from cdem.run.state import RunState
+
+Values = Callable[[RunState], NDArray]
+_VALUES: dict[str, Values] = {}
+
+
+def output_field(name: str) -> Callable[[Values], Values]:
+    """The function below gives the values of this field on nodes or elements."""
+
+    def keep(function: Values) -> Values:
+        _VALUES[name] = function
+        return function
+
+    return keep
+
+
+def values_of(sim: RunState, fields: Iterable[OutputField]) -> dict[str, NDArray]:
+    """Values of fields by name; those of elements have the shapes one after the other."""
+    return {field.name: _VALUES[field.name](sim) for field in fields}
+
+
+def surface_of(
+    sim: RunState, values: Mapping[str, NDArray]
+) -> tuple[NDArray, NDArray, dict[str, NDArray], dict[str, NDArray]]:
+    """Outer and broken faces now: positions, vertices of the faces (-1 after a triangle's), fields.
+
+    Args:
+        sim: The simulation.
+        values: Fields on its nodes and elements, to be carried over to points and faces.
+    """
+    t = sim.build.topology
+    faces, broken = visible_faces(sim)
+    nodes = t.face_nodes[faces]
+    used = np.unique(nodes[nodes >= 0])
+    number = np.full(len(t.node_position) + 1, -1, np.int32)
+    number[used] = np.arange(len(used))
+    on_nodes = {field.name for field in OUTPUT_FIELDS if field.on == "nodes"}
+    element = t.face_element[faces]
+    return (
+        sim.motion[used, :3],
+        number[nodes],
+        {name: of[used] for name, of in values.items() if name in on_nodes},
+        {name: of[element] for name, of in values.items() if name not in on_nodes}
+        | {
+            "broken": broken.astype(np.int8),
+            "joint": (t.face_kind // len(t.group_names))[faces],
+        },
+    )
+
+
+@output_field("displacement")
+def displacement_of(sim: RunState) -> NDArray[np.float64]:
+    """Displacement of each node since the last reset [m], shape (nodes, 3)."""
+    return sim.motion[:, :3] - sim.reference
+
+
+@output_field("velocity")
+def velocity_of(sim: RunState) -> NDArray[np.float64]:
+    """Velocity of each node [m/s], shape (nodes, 3)."""
+    return sim.motion[:, 4:7]
+
+
+@output_field("group")
+def group_of(sim: RunState) -> NDArray[np.int32]:
+    """Group of each element."""
+    return np.concatenate(list(sim.build.topology.element_group.values()))
+
+
+@output_field("block")
+def block_of(sim: RunState) -> NDArray[np.int32]:
+    """Block of each element."""
+    return np.concatenate(list(sim.build.topology.element_block.values()))
+
+
+def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Bonded pairs of faces, shape (pairs, 2), and the part of each one's bond points that holds."""
+    b = sim.build
+    state = sim.core.fields()
+    faces, intact = [], []
+    for kind, points in (("triangles", 3), ("quads", 4)):
+        pairs = b.assembly.counts[f"{kind}.count"]
+        faces.append(b.assembly.pair_faces[kind])
+        intact.append(state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].mean(axis=0))
+    if b.assembly.counts["overlaps.count"]:
+        first = b.topology.overlap_first
+        faces.append(b.topology.overlap_faces)
+        intact.append(np.add.reduceat(state["overlaps.bond"], first[:-1]) / np.diff(first))
+    return np.concatenate(faces), np.concatenate(intact)
+
+
+@output_field("damage")
+def damage_of(sim: RunState) -> NDArray[np.float64]:
+    """Broken part of the bonded faces of each element, 0 to 1, shapes one after the other."""
+    t = sim.build.topology
+    count = sum(len(e) for e in t.element_nodes.values())
+    broken, total = np.zeros(count), np.zeros(count)
+    faces, intact = bonds_of(sim)
+    for side in range(2):
+        element = t.face_element[faces[:, side]]
+        np.add.at(broken, element, 1 - intact)
+        np.add.at(total, element, 1.0)
+    return broken / np.maximum(total, 1)
+
+
+@output_field("piece")
+def pieces_of(sim: RunState) -> NDArray[np.int32]:
+    """Piece of each element, shapes one after the other: the least block that it hangs together with.
+
+    Blocks hang together through every pair of faces of which a bond point still holds, and whose
+    interface has a strength: one whose cohesion and tension a stage has set to zero joins nothing.
+    """
+    t = sim.build.topology
+    laws, interface = interfaces_of(sim.case, sim.build.group_names)
+    faces, intact = bonds_of(sim)
+    kinds = t.face_kind[faces]
+    holds = (intact > 0) & bonded_pairs(laws, interface)[kinds[:, 0], kinds[:, 1]]
+    a, b = t.face_block[faces[holds]].T
+    piece = components(len(t.block_group), a, b)
+    return piece[np.concatenate(list(t.element_block.values()))].astype(np.int32)
+
+
+@output_field("stress")
+def stress_of(sim: RunState) -> NDArray[np.float64]:
+    """Mean stress of each element [Pa], xx yy zz xy yz zx, shapes one after the other."""
+    tables = sim.core.stress()
+    counts = sim.build.assembly.counts
+    rows = [tables[shape].reshape(6, -1)[:, : counts[f"{shape}.count"]].T for shape in tables]
+    return np.concatenate(rows)
+
+
+def visible_faces(sim: RunState) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Outer faces and those whose bonds are all broken; the second says which are the latter."""
+    b = sim.build
+    state = sim.core.fields()
+    glued = np.zeros(len(b.topology.face_nodes), bool)
+    bonded = glued.copy()
+    for kind, points in (("triangles", 3), ("quads", 4)):
+        pairs = b.assembly.counts[f"{kind}.count"]
+        faces = b.assembly.pair_faces[kind]
+        intact = state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].any(axis=0)
+        glued[faces[intact].ravel()] = True
+        bonded[faces.ravel()] = True
+    shown = np.flatnonzero(~glued)
+    return shown, bonded[shown]

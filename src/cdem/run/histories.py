@@ -1,0 +1,46 @@
+"""What the histories of a case follow: column names and values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.run.state import RunState
+
+
+def tracks(sim: RunState) -> list[tuple[str, Any]]:
+    """Column name and value of everything that the case's histories follow."""
+    units = {"centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N"}
+    out: list[tuple[str, Any]] = []
+    position = sim.build.start_position
+    for entry in sim.case.histories:
+        if entry.group is not None:
+            nodes = sim.build.nodes_of(entry.group)
+        else:
+            place = np.asarray(entry.point, float)
+            nodes = np.array([np.linalg.norm(position - place, axis=1).argmin()])
+        for quantity in entry.quantities:
+            if quantity == "energy":
+                name = f"{entry.name}.kinetic_energy [J]"
+                out.append((name, lambda n=nodes: _kinetic(sim, n)))
+                continue
+            for axis in range(3):
+                name = f"{entry.name}.{quantity}_{'xyz'[axis]} [{units[quantity]}]"
+                out.append((name, lambda q=quantity, n=nodes, a=axis: _value(sim, q, n)[a]))
+    return out
+
+
+def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:
+    fields = sim.fields
+    if quantity == "force":  # of supports, which is what a user measures at a loading plate
+        return fields["reaction"][nodes].sum(axis=0)
+    name = "position" if quantity == "centroid" else quantity
+    mass = fields["mass"][nodes]
+    return mass @ fields[name][nodes] / mass.sum()
+
+
+def _kinetic(sim: RunState, nodes: NDArray[np.intp]) -> float:
+    fields = sim.fields
+    return float(0.5 * (fields["mass"][nodes, None] * fields["velocity"][nodes] ** 2).sum())

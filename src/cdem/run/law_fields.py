@@ -1,0 +1,97 @@
+"""Fields of what the laws remember: the state variables that they declare, by element."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem._native import core as native
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law, StateVariable
+from cdem.model.interfaces import interfaces_of
+from cdem.run.state import RunState
+
+
+def declared_states() -> dict[str, StateVariable]:
+    """State variables of all laws, by name."""
+    laws = (*BLOCK_LAWS.values(), *INTERFACE_LAWS.values())
+    return {variable.name: variable for law in laws for variable in law.state}
+
+
+def state_of(sim: RunState, name: str) -> NDArray[np.float64]:
+    """The largest value of a state variable in each element, shapes one after the other.
+
+    Of a block law it is that of its Gauss points; of an interface law that of the bond points,
+    vertices and sides of its faces. Elements without the law have 0.
+    """
+    return np.maximum(_of_block_laws(sim, name), _of_interface_laws(sim, name))
+
+
+def _places(laws: dict[str, Law], name: str) -> dict[int, int]:
+    """Number of a law in the core, and place of the variable in its state."""
+    return {
+        number: [v.name for v in law.state].index(name)
+        for number, law in enumerate(laws.values())
+        if name in [v.name for v in law.state]
+    }
+
+
+def _of_block_laws(sim: RunState, name: str) -> NDArray[np.float64]:
+    t, case = sim.build.topology, sim.case
+    fields = sim.core.fields()
+    laws = [case.materials[case.groups[group].material].law for group in sim.build.group_names]
+    law_of_group = np.array([list(BLOCK_LAWS).index(law) for law in laws])
+    parts = []
+    for shape, elements in t.element_nodes.items():
+        value = np.zeros(len(elements))
+        history = fields[f"{shape}.history"]
+        for law, place in _places(BLOCK_LAWS, name).items():
+            if not history.size:
+                continue
+            table = history.reshape(-1, native.point_history, native.padded_stride(len(elements)))
+            own = law_of_group[t.element_group[shape]] == law
+            value[own] = table[:, 6 + place, : len(elements)].max(axis=0)[own]
+        parts.append(value)
+    return np.concatenate(parts)
+
+
+def _of_interface_laws(sim: RunState, name: str) -> NDArray[np.float64]:
+    t = sim.build.topology
+    value = np.zeros(sum(len(e) for e in t.element_nodes.values()))
+    for law, place in _places(INTERFACE_LAWS, name).items():
+        for faces, numbers in (*_bonds(sim, law, place), *_walls(sim, law, place)):
+            np.maximum.at(value, t.face_element[faces], numbers)
+    return value
+
+
+def _bonds(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]:
+    """Faces of bonded pairs that have the law, and the largest value at their points."""
+    b, fields, width = sim.build, sim.core.fields(), native.interface_law_state
+    used, _ = interfaces_of(sim.case, b.group_names)
+    numbers = np.array([list(INTERFACE_LAWS).index(one.law) for one in used])
+    found = []
+    for kind in ("triangles", "quads", "overlaps"):
+        pairs = b.assembly.counts[f"{kind}.count"]
+        if not pairs:
+            continue
+        history = fields[f"{kind}.history"].reshape(width, -1)[place]
+        if kind == "overlaps":
+            first = b.topology.overlap_first
+            most = np.maximum.reduceat(history[: first[-1]], first[:-1])
+        else:
+            points = {"triangles": 3, "quads": 4}[kind]
+            most = history.reshape(points, -1)[:, :pairs].max(axis=0)
+        faces = b.arrays[f"{kind}.faces"].reshape(-1, 2)[:pairs]
+        own = numbers[b.arrays[f"{kind}.interface"][:pairs]] == law
+        found += [(faces[own, side], most[own]) for side in (0, 1)]
+    return found
+
+
+def _walls(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]:
+    """Exposed faces with vertices or sides that remember the law, and their values."""
+    fields, width = sim.core.fields(), native.interface_law_state
+    found = []
+    for kind in ("spring", "edge"):
+        own = np.flatnonzero(fields[f"{kind}.history_law"] == law)
+        values = fields[f"{kind}.history"].reshape(-1, width)[own, place]
+        found.append((fields["search.exposed_face"][own // 4], values))
+    return found

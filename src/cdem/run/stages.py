@@ -1,0 +1,147 @@
+"""Stages of a run: what each sets, when it records, when it ends."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cdem.case.schema import Stage
+from cdem.errors import CaseError
+from cdem.model.build import change
+from cdem.model.interfaces import bonded_pairs, interface_entry, interfaces_of
+from cdem.run.state import RunState, StageState
+
+STATIC_RECORD_STEPS = 200
+"""Steps between history rows of a static stage, which has no meaningful time."""
+ROWS_PER_FRAME = 10
+"""History rows per recorded frame of a dynamic stage."""
+FRAMES = 50
+"""Frames of a dynamic stage when output.every is not given."""
+
+
+def _local(stage: Stage) -> float:
+    """Local damping of a stage, which the case has filled in where it was left out."""
+    assert stage.damping.local is not None
+    return stage.damping.local
+
+
+def damping_of(stage: Stage) -> tuple[float, float, float, float]:
+    """Local, mass, stiffness and contact damping of a stage."""
+    d = stage.damping
+    return (_local(stage), d.mass, d.stiffness, d.contact)
+
+
+def is_lumped(stage: Stage) -> bool:
+    """Whether a stage moves lumped masses.
+
+    A static stage only looks for rest, which does not depend on inertia, and lumped masses allow a
+    longer step (2.2 times for a tet); local damping scales forces node by node, which is stable for
+    lumped masses alone.
+    """
+    return stage.mode == "static" or _local(stage) > 0
+
+
+def apply_settings(sim: RunState, index: int) -> None:
+    """Apply damping and `set` of a stage to the core (not to motion or displacement)."""
+    stage = sim.case.stages[index]
+    for path, value in stage.set.items():
+        sim.case.set(path, value)
+    if stage.set:
+        update_core(sim, index)
+    sim.core.set_damping(*damping_of(stage))
+    sim.core.set_lumped(is_lumped(stage))
+
+
+def update_core(sim: RunState, index: int) -> None:
+    """Hand the values that the case has now to the core."""
+    b = sim.build
+    names = b.group_names
+    laws, table = interfaces_of(sim.case, names)
+    was = b.bonded
+    now = bonded_pairs(laws, table)
+    if (now & ~was).any():
+        i, j = np.argwhere(now & ~was)[0] % len(names)
+        raise CaseError(
+            f"{sim.case.where(f'stages.{index}.set')}: stages.{index}.set: the interface of "
+            f"{names[i]!r} and {names[j]!r} was not bonded at the start (cohesion and "
+            "tensile_strength 0), so it cannot be given strength now; start with a strength"
+        )
+    sim.core.set_interfaces([interface_entry(law) for law in laws])
+    sim.core.update_model(change(b))
+    sim.core.set_curves([c[0] for c in b.curves], [c[1] for c in b.curves])
+    sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])
+
+
+def begin(sim: RunState) -> StageState:
+    """Start the next stage of a simulation."""
+    index = sim.stage_index
+    stage = sim.case.stages[index]
+    sim.core.change_mass(is_lumped(stage))
+    apply_settings(sim, index)
+    if sim.step_count:
+        sim.core.renew_step()
+    if stage.reset_displacement:
+        sim.reference = sim.fields["position"].copy()
+    end = None if stage.duration is None else sim.time + stage.duration
+    every = sim.case.output.every or (stage.duration or 1.0) / FRAMES
+    return StageState(
+        name=stage.name,
+        mode=stage.mode,
+        start_time=sim.time,
+        start_step=sim.step_count,
+        end_time=end,
+        row_every=every / ROWS_PER_FRAME,
+    )
+
+
+def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple[str, int, float]:
+    """Run towards the stage's next event or a time, at most `steps` steps; the core's report."""
+    rules = sim.case.stages[sim.stage_index]
+    done = sim.step_count - stage.start_step
+    if rules.max_steps is not None:
+        steps = min(steps, rules.max_steps - done)
+    if stage.mode == "static":
+        steps = min(steps, STATIC_RECORD_STEPS - done % STATIC_RECORD_STEPS)
+        return sim.core.run(
+            steps,
+            end_time=until,
+            unbalance_limit=rules.tolerance,
+            relaxation="none" if rules.relax == "local" else rules.relax,
+        )
+    assert stage.end_time is not None
+    return sim.core.run(steps, end_time=min(stage.next_row, stage.end_time, until))
+
+
+def record_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
+    """Whether a history row belongs to this moment; counts it."""
+    if stage.mode == "static":
+        due = (sim.step_count - stage.start_step) % STATIC_RECORD_STEPS == 0
+        due = due or status(sim, stage, outcome) is not None
+    else:
+        assert stage.end_time is not None
+        due = sim.time >= min(stage.next_row, stage.end_time)
+    if due:
+        before, stage.rows = stage.rows, stage.rows + 1
+        if stage.mode == "dynamic":  # a step may be longer than the time between rows
+            passed = int((sim.time - stage.start_time) / stage.row_every)
+            stage.rows = max(stage.rows, passed)
+        stage.frame_due = stage.rows // ROWS_PER_FRAME > before // ROWS_PER_FRAME
+    return due
+
+
+def frame_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
+    """Whether the history row just counted comes with a frame of the fields."""
+    if status(sim, stage, outcome) is not None:
+        return True
+    return stage.mode == "dynamic" and stage.frame_due
+
+
+def status(sim: RunState, stage: StageState, outcome: str) -> str | None:
+    """How the stage ended, or None while it goes on."""
+    rules = sim.case.stages[sim.stage_index]
+    if outcome == "converged":
+        return "converged"
+    if stage.end_time is not None and sim.time >= stage.end_time:
+        return "finished"
+    if rules.max_steps is not None and sim.step_count - stage.start_step >= rules.max_steps:
+        return "max_steps"
+    return None

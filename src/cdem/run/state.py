@@ -1,0 +1,236 @@
+"""What a run is at a moment: the model, its motion, the running stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem._native import name as native_name
+from cdem._version import __version__
+from cdem.case.case import Case
+from cdem.model.audit import Audit
+from cdem.model.build import Build, build
+
+STALL_STEPS = 10_000
+"""A static stage that comes no nearer to rest in as many steps is said to stall."""
+
+
+@dataclass
+class StageState:
+    """The running stage.
+
+    Attributes:
+        name: Its name.
+        mode: "static" or "dynamic".
+        start_time: [s].
+        start_step: Steps done before it.
+        end_time: [s], or None for a static stage.
+        row_every: Time between history rows [s].
+        rows: Times of history rows that have passed after the first.
+        frame_due: Whether a time of a frame passed with the last of them.
+        wall_time: Wall time spent in it [s].
+        least_unbalance: Smallest unbalance ratio of a static stage so far, or None.
+        least_step: Step at which it was reached.
+    """
+
+    name: str
+    mode: str
+    start_time: float
+    start_step: int
+    end_time: float | None
+    row_every: float
+    rows: int = 0
+    frame_due: bool = False
+    wall_time: float = 0.0
+    least_unbalance: float | None = None
+    least_step: int = 0
+
+    def note(self, step: int, unbalance: float) -> str:
+        """What a user should know about a static stage that does not come to rest, or nothing."""
+        if self.mode != "static":
+            return ""
+        if self.least_unbalance is None or unbalance < 0.95 * self.least_unbalance:
+            self.least_unbalance, self.least_step = unbalance, step
+        waited = step - self.least_step
+        if waited < STALL_STEPS:
+            return ""
+        return (
+            f"no nearer to rest for {waited:,} steps (does a block move freely? "
+            "else try a larger tolerance or another relax)"
+        )
+
+    @property
+    def next_row(self) -> float:
+        """Time of the next history row [s]."""
+        return self.start_time + (self.rows + 1) * self.row_every
+
+
+class RunState:
+    """A model and how far its run has come; looked at, and recorded, from here.
+
+    Attributes:
+        case: The case, with what its stages have set so far.
+        threads: Threads of the core.
+        build: The model.
+        core: The compiled core, holding model and state.
+        audit: The report on the model.
+        overlap: Of the blocks at the start: depth [m], number of vertices, a face.
+        stage_index: The running stage or the next one.
+        stage: The running stage, or None between stages.
+        finished_stages: A row of the summary for each stage that has ended.
+        reference: Positions from which displacements count [m], shape (nodes, 3).
+        wall_time: Wall time spent in stages [s].
+    """
+
+    audit: Audit
+
+    def __init__(self, case: Case, threads: int) -> None:
+        self.case = case
+        self.threads = threads
+        self.build: Build = build(case)
+        self.core = self.build.core
+        self.overlap = (0.0, 0, -1)
+        self.stage_index = 0
+        self.stage: StageState | None = None
+        self.finished_stages: list[dict[str, Any]] = []
+        self.reference = self.build.start_position
+        self.wall_time = 0.0
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return float(self.core.scalars()["time"])
+
+    @property
+    def step_count(self) -> int:
+        """Steps done."""
+        return int(self.core.scalars()["step"])
+
+    @property
+    def motion(self) -> NDArray[np.float64]:
+        """The core's rows of position and velocity, each and a pad; a view of shape (nodes, 8)."""
+        return self.core.fields()["node.motion"].reshape(-1, 8)
+
+    @property
+    def fields(self) -> dict[str, NDArray[np.float64]]:
+        """Fields on nodes: views or fresh arrays.
+
+        "position", "velocity" [m, m/s] are views, shape (nodes, 3); "displacement" [m] is counted
+        from the last reset; "force" [N] is the last unbalanced force, "reaction" [N] that of
+        supports; "mass" [kg].
+        """
+        state, motion = self.core.fields(), self.motion
+        return {
+            "position": motion[:, :3],
+            "velocity": motion[:, 4:7],
+            "displacement": motion[:, :3] - self.reference,
+            "force": self.core.node_force().reshape(-1, 4)[:, :3],
+            "reaction": state["node.reaction"].reshape(-1, 4)[:, :3],
+            "mass": self.build.arrays["node.mass"],
+        }
+
+    @property
+    def contacts(self) -> dict[str, NDArray]:
+        """Contacts that act now, one row each.
+
+        Semi-springs, then semi-edges: "kind" (0 spring, 1 edge), "mother_face", "target_face" (face
+        ids), "force_n" [N, compression positive], "force" [N, on the mother, shape (contacts, 3)].
+        """
+        s = self.core.fields()
+        exposed = s["search.exposed_face"]
+        target = s["spring.target"]
+        slots = np.flatnonzero(target >= 0)
+        edges = s["edge.contact"].reshape(-1, 4)
+        return {
+            "kind": np.repeat([0, 1], [len(slots), len(edges)]),
+            "mother_face": exposed[np.concatenate([slots, edges[:, 0]]) // 4],
+            "target_face": exposed[np.concatenate([target[slots], edges[:, 1]])],
+            "force_n": np.concatenate(
+                [
+                    s["spring.state"].reshape(-1, 8)[slots, 0],
+                    s["edge.state"].reshape(-1, 8)[:, 0],
+                ]
+            ),
+            "force": np.concatenate(
+                [
+                    s["spring.reaction"].reshape(-1, 8)[slots, :3],
+                    s["edge.reaction"].reshape(-1, 8)[:, :3],
+                ]
+            ),
+        }
+
+    @property
+    def energies(self) -> dict[str, float]:
+        """Energy ledger at the last sampled step [J], and its closing "error" (a fraction)."""
+        return self.core.energies()
+
+    @property
+    def broken(self) -> dict[str, int]:
+        """Bond points broken so far, by cause: "tension" and "shear"."""
+        s = self.core.fields()
+        sums = {}
+        for cause in ("tension", "shear"):
+            total = 0.0
+            for kind in ("triangles", "quads", "overlaps"):
+                count = self.build.assembly.counts[f"{kind}.count"]
+                total += float(s[f"{kind}.broken_{cause}"][:count].sum())
+            sums[cause] = int(total)
+        return sums
+
+    # ------------------------------------------------------------------ keeping
+
+    def attributes(self) -> dict[str, Any]:
+        """What a checkpoint keeps besides arrays."""
+        return {
+            "version": __version__,
+            "nodes": self.build.fingerprint,
+            "core": self.core.scalars(),
+            "overlap": list(self.overlap),
+            "stage_index": self.stage_index,
+            "stage": None if self.stage is None else vars(self.stage),
+            "finished_stages": self.finished_stages,
+            "wall_time": self.wall_time,
+        }
+
+    def summary(self, status: str) -> dict[str, Any]:
+        """What summary.json says."""
+        fields = self.fields
+        counts = self.audit.counts
+        energies = dict(self.energies) if self.step_count else {}
+        groups = {}
+        for name in self.build.group_names:
+            nodes = self.build.nodes_of(name)
+            mass = fields["mass"][nodes]
+            mean = {
+                key: (mass @ fields[key][nodes] / mass.sum()).tolist()
+                for key in ("position", "displacement", "velocity")
+            }
+            distance = np.linalg.norm(fields["displacement"][nodes], axis=1)
+            groups[name] = {
+                "mass": float(mass.sum()),
+                "centroid": mean["position"],
+                "displacement": mean["displacement"],
+                "velocity": mean["velocity"],
+                "max_displacement": float(distance.max()),
+            }
+        return {
+            "status": status,
+            "title": self.case.title,
+            "version": __version__,
+            "device": f"cpu ({native_name})",
+            "threads": self.threads,
+            "counts": counts,
+            "steps": self.step_count,
+            "time": self.time,
+            "wall_time": self.wall_time,
+            "time_step": float(self.core.scalars()["dt"]),
+            "unbalance_ratio": self.core.unbalance_ratio() if self.step_count else None,
+            "refreshes": int(self.core.scalars()["rebuilds"]),
+            "energies": energies,
+            "broken": self.broken,
+            "stages": self.finished_stages,
+            "groups": groups,
+        }

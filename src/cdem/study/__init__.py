@@ -1,0 +1,1 @@
+"""Studies: many variants of a case, and the value at which a case fails."""

@@ -1,0 +1,63 @@
+"""When a trial of `cdem critical` counts as failed: by displacement, its rate, and kinetic energy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Annotated
+
+from pydantic import Field, ValidationError
+
+from cdem.case.reader import Source, explain
+from cdem.case.types import Part, Quantity
+from cdem.errors import CaseError
+
+
+class Criterion(Part):
+    """Limits beyond which a case that has not come to rest counts as failed."""
+
+    travel: Annotated[float, Quantity("1", above=0)] = Field(
+        0.02,
+        description="A node has moved this part of the mean face size, and the kinetic energy is "
+        "higher than when it had moved half of that",
+    )
+    far: Annotated[float, Quantity("1", above=0)] = Field(
+        1.0, description="A node has moved this part of the mean face size, however slowly"
+    )
+    stall_steps: int = Field(
+        10_000,
+        ge=1,
+        description="The unbalance ratio came no lower in so many steps, while the farthest node "
+        "moved on as far as in all steps before: the rate of displacement does not fall",
+    )
+    most_steps: int = Field(
+        1_000_000, ge=1, description="There was no rest in so many steps (or the stage's max_steps)"
+    )
+
+    @classmethod
+    def read(cls, texts: Iterable[str]) -> Criterion:
+        """Read ``"travel=0.05"`` and the like; what is not said keeps its default.
+
+        Raises:
+            CaseError: An unknown limit, or a value that is not allowed.
+        """
+        values: dict[str, str] = {}
+        source = Source()
+        for text in texts:
+            name, equals, value = text.partition("=")
+            if not equals:
+                raise CaseError(f"--criterion {text}: write NAME=VALUE, e.g. travel=0.02")
+            values[name.strip()] = value.strip()
+            source.overrides[(name.strip(),)] = f"--criterion {text}"
+        try:
+            return cls(**values)  # type: ignore[arg-type]
+        except ValidationError as error:
+            raise explain(error, source, cls) from None
+
+    def text(self) -> str:
+        """The whole rule in one line."""
+        return (
+            f"fails when a node has moved {100 * self.travel:g} % of the mean face size with growing "
+            f"kinetic energy, or {100 * self.far:g} % in any way, or moves on at no lower rate while "
+            f"the unbalance ratio stalls for {self.stall_steps:,} steps, or finds no rest in "
+            f"{self.most_steps:,} steps"
+        )

@@ -1,0 +1,312 @@
+"""The value of a parameter at which a case fails, by bisection; also the factor of safety."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cdem.case.case import Case
+from cdem.case.checks import SETTABLE
+from cdem.case.interface_schema import Interface
+from cdem.case.laws import INTERFACE_LAWS
+from cdem.errors import CaseError, UnstableError
+from cdem.run import stages
+from cdem.run.simulation import CHECK_INTERVAL, Simulation
+from cdem.study.criterion import Criterion
+
+Apply = Callable[[Case, float], None]
+
+
+@dataclass
+class Trial:
+    """One value tried.
+
+    Attributes:
+        value: Of the parameter.
+        stable: Whether the case came to rest.
+        why: The verdict in words.
+        steps: Steps that it took.
+    """
+
+    value: float
+    stable: bool
+    why: str
+    steps: int
+
+
+@dataclass
+class Critical:
+    """What a search found.
+
+    Attributes:
+        stable: The last value at which the case rests.
+        failed: The nearest value at which it fails.
+        criterion: What counted as failed.
+        trials: All values tried, in order.
+    """
+
+    stable: float
+    failed: float
+    criterion: Criterion
+    trials: list[Trial] = field(default_factory=list)
+
+    @property
+    def value(self) -> float:
+        """The middle of the bracket."""
+        return 0.5 * (self.stable + self.failed)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything, ready for JSON."""
+        return {
+            "value": self.value,
+            "stable": self.stable,
+            "failed": self.failed,
+            "criterion": self.criterion.model_dump(),
+            "trials": [vars(t) for t in self.trials],
+        }
+
+
+Report = Callable[[Trial, float, float], None]
+"""Takes a trial and the bracket (stable, failed) so far."""
+
+
+@dataclass(frozen=True)
+class _OneValue:
+    """Put one value into a case."""
+
+    path: str
+
+    @property
+    def makes_a_model(self) -> bool:
+        """Whether another value makes another model, which no state of an earlier trial fits."""
+        return not self.path.startswith(SETTABLE)
+
+    def __call__(self, case: Case, value: float) -> None:
+        case.set(self.path, value)
+
+
+def parameter(path: str) -> Apply:
+    """Vary one value of the case, e.g. ``interfaces.bed.friction_angle`` (plain units)."""
+    return _OneValue(path)
+
+
+def strength_reduction() -> Apply:
+    """Divide the strengths of all interfaces by the varied factor; of an angle, the tangent.
+
+    Which parameters are strengths says the law. They are those that hold in the last stage, its own
+    settings included.
+    """
+    whole: dict[str, Interface] = {}
+
+    def apply(case: Case, factor: float) -> None:
+        if factor <= 0:
+            raise CaseError(
+                f"a factor that strengths are divided by must be above 0, got {factor:g}"
+            )
+        if not whole:  # the first trial: nothing is reduced yet
+            laws = {"default": case.interfaces.default} | {
+                f"pairs.{i}": law for i, law in enumerate(case.interfaces.pairs)
+            }
+            whole.update(
+                (f"interfaces.{place}", law.model_copy())
+                for place, law in laws.items()
+                if law is not None
+            )
+        for path, law in whole.items():
+            for name, strength in INTERFACE_LAWS[law.law].reduced(law, factor).items():
+                case.set(f"{path}.{name}", strength)
+
+    return apply
+
+
+def check_last_stage(case: Case) -> None:
+    """Refuse a case whose last stage is not static: it decides what comes to rest."""
+    if case.stages[-1].mode != "static":
+        where = case.where(f"stages.{len(case.stages) - 1}.mode")
+        raise CaseError(f"{where}: the last stage must be static: it decides what comes to rest")
+
+
+def find_critical(
+    case: Case,
+    apply: Apply,
+    between: tuple[float, float],
+    *,
+    tolerance: float,
+    criterion: Criterion | None = None,
+    threads: int | None = None,
+    report: Report | None = None,
+) -> Critical:
+    """Bisect between a value at which a case rests and one at which it fails.
+
+    All stages but the last prepare the case with its own values. Each trial sets the value and runs
+    the last stage, which must be static, from the state of the last stable trial. It is stable when
+    the unbalance ratio falls below the stage's tolerance, and failed by the `criterion`.
+
+    Where every value of a `parameter` makes another model (its geometry, its rock), each trial builds
+    it and runs all stages; then every static stage has to come to rest.
+
+    Args:
+        case: Is changed: it ends with the last value tried.
+        apply: Puts a value into the case; see `parameter` and `strength_reduction`.
+        between: Two values, one stable and one not, in either order.
+        tolerance: Width of the bracket at which the search ends.
+        criterion: What counts as failed; by default that of `Criterion`.
+        threads: Threads of the core; None for all.
+        report: Called after every trial with the trial and the bracket (stable, failed) so far.
+
+    Raises:
+        CaseError: The last stage is not static, or both ends rest or fail.
+    """
+    check_last_stage(case)
+    if not tolerance > 0:
+        raise CaseError(f"tolerance {tolerance}: must be above zero")
+    criterion = criterion or Criterion()
+    cold = isinstance(apply, _OneValue) and apply.makes_a_model
+    search = (_Cold if cold else _Warm)(case, apply, criterion, threads)
+    found = Critical(between[0], between[1], criterion)
+    _try_ends(search, found, report)
+    search.begin_bisection()
+    while abs(found.stable - found.failed) > tolerance:
+        trial = search.attempt(found.value)
+        found.trials.append(trial)
+        if trial.stable:
+            found.stable = trial.value
+        else:
+            found.failed = trial.value
+        if report:
+            report(trial, found.stable, found.failed)
+    return found
+
+
+def _try_ends(search: _Warm | _Cold, found: Critical, report: Report | None) -> None:
+    """Try both ends of the bracket, and put the one that rests first."""
+    between = found.stable, found.failed
+    for value in between:
+        found.trials.append(search.attempt(float(value)))
+        if report:
+            report(found.trials[-1], *between)
+    first, last = found.trials
+    if first.stable == last.stable:
+        what = "come to rest" if first.stable else "fail"
+        raise CaseError(
+            f"both {between[0]:g} and {between[1]:g} {what} ({last.why}); give a wider range"
+        )
+    ends = (first, last) if first.stable else (last, first)
+    found.stable, found.failed = (end.value for end in ends)
+
+
+class _Warm:
+    """Trials of one model, each from the state of the last stable one."""
+
+    def __init__(self, case: Case, apply: Apply, criterion: Criterion, threads: int | None) -> None:
+        self.apply, self.criterion = apply, criterion
+        self.sim = Simulation(case, threads=threads)
+        while self.sim.stage_index < len(case.stages) - 1:
+            self.sim.run_stage(case.stages[self.sim.stage_index].name)
+        self.start = self.at_rest = _keep(self.sim)
+        self.bisecting = False
+
+    def begin_bisection(self) -> None:
+        """From now on trials start from rest, not from the state that the case was prepared in."""
+        self.bisecting = True
+
+    def attempt(self, value: float) -> Trial:
+        sim = self.sim
+        _bring_back(sim, self.at_rest if self.bisecting else self.start)
+        before = sim.step_count
+        stable, why = rests(sim, lambda: self.apply(sim.case, value), self.criterion)
+        if stable:
+            self.at_rest = _keep(sim)
+        return Trial(value, stable, why, sim.step_count - before)
+
+
+class _Cold:
+    """Trials that each build their own model."""
+
+    def __init__(self, case: Case, apply: Apply, criterion: Criterion, threads: int | None) -> None:
+        self.case, self.apply, self.criterion, self.threads = case, apply, criterion, threads
+
+    def begin_bisection(self) -> None:
+        """Nothing to do: no state is carried over."""
+
+    def attempt(self, value: float) -> Trial:
+        case = self.case.model_copy(deep=True)
+        self.apply(case, value)
+        sim = Simulation(case, threads=self.threads)
+        stable, why = True, ""
+        for index, stage in enumerate(case.stages):
+            if stage.mode == "static":
+                stable, why = rests(sim, None, self.criterion, index)
+                sim.stage_index, sim.stage = index + 1, None
+            else:
+                sim.run_stage(stage.name)
+            if not stable:
+                why = why if index == len(case.stages) - 1 else f"stage {stage.name}: {why}"
+                break
+        return Trial(value, stable, why, sim.step_count)
+
+
+def rests(
+    sim: Simulation,
+    prepare: Callable[[], None] | None = None,
+    criterion: Criterion | None = None,
+    index: int = -1,
+) -> tuple[bool, str]:
+    """Run a static stage, by default the last; return whether it comes to rest, and why or why not.
+
+    `prepare` may change the case as the stage begins.
+    """
+    c = criterion or Criterion()
+    sim.stage_index = range(len(sim.case.stages))[index]
+    stage = stages.begin(sim)
+    if prepare:
+        prepare()
+        stages.update_core(sim, sim.stage_index)
+        sim.core.renew_step()
+    size = float(sim.build.arrays["face.length"][: sim.audit.counts["faces"]].mean())
+    start = sim.fields["position"].copy()
+    most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
+    half_way = 0.0  # kinetic energy when half of the travel was reached
+    least, least_step, least_moved = np.inf, 0, 0.0  # unbalance ratio
+    done = 0
+    while True:
+        try:
+            outcome = sim.advance(stage, min(10 * CHECK_INTERVAL, most - done))
+        except UnstableError as error:
+            return False, str(error)
+        done, unbalance = sim.step_count - stage.start_step, sim.core.unbalance_ratio()
+        if outcome == "converged":
+            return True, f"rests, unbalance ratio {unbalance:.2g}"
+        moved = float(np.linalg.norm(sim.fields["position"] - start, axis=1).max()) / size
+        kinetic = float(sim.energies["kinetic"])
+        if moved < 0.5 * c.travel:
+            half_way = kinetic
+        elif moved > c.far or (moved > c.travel and kinetic > half_way):
+            speed = np.linalg.norm(sim.fields["velocity"], axis=1).max()
+            return False, (
+                f"has moved {moved * size:.3g} m, {speed:.2g} m/s, kinetic energy {kinetic:.3g} J"
+            )
+        if unbalance < 0.95 * least:
+            least, least_step, least_moved = unbalance, done, moved
+        elif done - least_step >= c.stall_steps and moved > 2 * least_moved:
+            return False, f"goes on moving, {moved * size:.3g} m, ratio stays at {unbalance:.2g}"
+        if done >= most:
+            return False, f"no rest in {done:,} steps, ratio {unbalance:.2g}"
+
+
+@dataclass
+class _State:
+    arrays: dict[str, np.ndarray]
+    scalars: dict[str, Any]
+
+
+def _keep(sim: Simulation) -> _State:
+    return _State({k: v.copy() for k, v in sim.core.fields().items()}, sim.core.scalars())
+
+
+def _bring_back(sim: Simulation, state: _State) -> None:
+    sim.core.restore(state.arrays, state.scalars)
+    sim.core.prepare()

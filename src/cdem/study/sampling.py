@@ -1,0 +1,99 @@
+"""The runs of a study: lists and grids combined, and values drawn from distributions."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from itertools import product
+from statistics import NormalDist
+from typing import Any
+
+import numpy as np
+
+from cdem.study.schema import Parameter, Sampling
+from cdem.study.study import Study
+
+Row = dict[str, Any]
+
+
+def rows(study: Study) -> list[Row]:
+    """Value of each parameter for every run, in the parameters' order; the same for the same file.
+
+    Lists and grids are combined first; each combination then meets all draws.
+    """
+    lists = {n: _listed(p) for n, p in study.parameters.items() if not p.is_drawn}
+    drawn = {n: p for n, p in study.parameters.items() if p.is_drawn}
+    combined = _combine(lists, study.combine)
+    draws = draw(drawn, study.sampling) if study.sampling else [{}]
+    whole = [a | b for a in combined for b in draws]
+    return [{name: row[name] for name in study.parameters} for row in whole]
+
+
+def _listed(parameter: Parameter) -> list[Any]:
+    if parameter.values is not None:
+        return parameter.values
+    grid = parameter.grid
+    assert grid is not None
+    # 12 digits: 0.3 rather than 0.30000000000000004 in the table
+    return [float(f"{v:.12g}") for v in np.linspace(grid.first, grid.last, grid.count)]
+
+
+def _combine(lists: dict[str, list[Any]], how: str) -> list[Row]:
+    if not lists:
+        return [{}]
+    if how == "product":
+        return [dict(zip(lists, values, strict=True)) for values in product(*lists.values())]
+    if how == "together":
+        return [
+            dict(zip(lists, values, strict=True)) for values in zip(*lists.values(), strict=True)
+        ]
+    base = {name: values[0] for name, values in lists.items()}
+    return [base, *(base | {n: value} for n, values in lists.items() for value in values[1:])]
+
+
+def draw(parameters: dict[str, Parameter], sampling: Sampling) -> list[Row]:
+    """Draw values, the same for the same seed, count and name of a parameter.
+
+    Latin hypercube: of `count` equally likely parts of each distribution every one gets one value,
+    and the parts of different parameters meet in random order (McKay, Beckman & Conover 1979).
+    """
+    columns = {}
+    for name, parameter in parameters.items():
+        random = np.random.default_rng([sampling.seed, zlib.crc32(name.encode())])
+        u = random.random(sampling.count)
+        if sampling.method == "latin-hypercube":
+            u = (random.permutation(sampling.count) + u) / sampling.count
+        columns[name] = [quantile(parameter, float(x)) for x in u]
+    return [{n: column[i] for n, column in columns.items()} for i in range(sampling.count)]
+
+
+def quantile(parameter: Parameter, u: float) -> float:
+    """The value below which a part `u` of a distribution lies, 0 <= u < 1."""
+    if parameter.uniform:
+        low, high = parameter.uniform.low, parameter.uniform.high
+        return low + u * (high - low)
+    if parameter.triangular:
+        t = parameter.triangular
+        rise, fall, width = t.mode - t.low, t.high - t.mode, t.high - t.low
+        if u * width < rise:
+            return t.low + math.sqrt(u * width * rise)
+        return t.high - math.sqrt((1 - u) * width * fall)
+    if parameter.normal:
+        n = parameter.normal
+        return _cut(NormalDist(n.mean, n.deviation), u, n.low, n.high)
+    g = parameter.lognormal
+    assert g is not None
+    spread = math.sqrt(math.log1p((g.deviation / g.mean) ** 2))
+    of_log = NormalDist(math.log(g.mean) - 0.5 * spread**2, spread)
+    lowest = math.log(g.low) if g.low is not None and g.low > 0 else None
+    highest = math.log(g.high) if g.high is not None else None
+    return math.exp(_cut(of_log, u, lowest, highest))
+
+
+def _cut(whole: NormalDist, u: float, low: float | None, high: float | None) -> float:
+    """Quantile of a normal distribution between two limits."""
+    least = 0.0 if low is None else whole.cdf(low)
+    most = 1.0 if high is None else whole.cdf(high)
+    tiny = 1e-16  # the ends themselves may be infinite
+    value = whole.inv_cdf(min(max(least + u * (most - least), tiny), 1 - tiny))
+    return min(max(value, -math.inf if low is None else low), math.inf if high is None else high)

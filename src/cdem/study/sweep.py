@@ -1,0 +1,257 @@
+"""Parameter studies: many runs of a case on dask.distributed, each of which is done only once."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cdem.errors import BackendError, CdemError
+from cdem.run.checkpoint import write_json_atomic
+from cdem.run.progress import clock
+from cdem.study.plan import plan
+from cdem.study.results_table import Table, check_results
+from cdem.study.run import Run
+from cdem.study.study import Study
+from cdem.study.worker import execute, finished
+
+POLL_SECONDS, LOOK_SECONDS = 0.05, 0.5
+"""Wall time between looks at what is finished, and at the workers and the progress [s]."""
+DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What local workers begin with: a Ctrl-C is for the sweep, which ends them."""
+
+
+@dataclass
+class SweepProgress:
+    """Where a sweep is.
+
+    Attributes:
+        total: Runs of the study.
+        finished: Runs that have a result, those of earlier sweeps included.
+        failed: Runs that failed.
+        time_left: Estimate of the remaining wall time [s], or None.
+        dashboard: Address of Dask's dashboard, or nothing.
+    """
+
+    total: int
+    finished: int
+    failed: int
+    time_left: float | None
+    dashboard: str
+
+
+def describe(p: SweepProgress) -> tuple[str, float]:
+    """One line on where a sweep is, and the part that is done."""
+    failed = f", {p.failed} failed" if p.failed else ""
+    left = "" if p.time_left is None else f", {clock(p.time_left)} left"
+    dashboard = f", dashboard {p.dashboard}" if p.dashboard else ""
+    return f"{p.finished} of {p.total} runs{failed}{left}{dashboard}", p.finished / p.total
+
+
+def run_study(
+    study: Study | str | Path,
+    folder: str | Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Callable[[SweepProgress], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> Table:
+    """Execute the runs of a study that have no result yet, and collect all results.
+
+    A script that calls this with local workers needs ``if __name__ == "__main__":`` around the call,
+    because every worker imports the script.
+
+    Args:
+        study: A `Study`, or the path of a study file.
+        folder: Where results go; what an earlier sweep finished there is used.
+        workers: Local processes, each of one thread; None for one per core.
+        scheduler: Address of a Dask scheduler, instead of local processes. Its workers must see the
+            mesh and `folder` under the same paths.
+        progress: Called a few times per second.
+        should_stop: Asked as often; True ends the sweep with the results so far.
+
+    Raises:
+        CaseError: The study or its case is wrong, or a name under ``results`` is.
+        BackendError: Dask is missing, or its scheduler cannot be reached any more.
+    """
+    study = study if isinstance(study, Study) else Study.load(study)
+    folder = Path(folder)
+    runs = plan(study, folder)
+    _open(folder, study)
+    table = Table(study, runs)
+    for run in runs:
+        run.result = finished(run.task)
+        check_results(study, run)
+    waiting: dict[str, list[Run]] = {}  # runs of the same case are executed once
+    for run in runs:
+        if run.status == "waiting":
+            waiting.setdefault(run.identity, []).append(run)
+    if waiting:
+        with _cluster(workers, scheduler) as client:
+            _execute_all(study, runs, waiting, client, progress, should_stop)
+    return table
+
+
+def _open(folder: Path, study: Study) -> None:
+    """Make the folder of the sweep, unless it holds other things."""
+    if folder.exists() and not folder.is_dir():
+        raise CdemError(f"{folder}: is a file; name another folder with -o")
+    if folder.exists() and any(folder.iterdir()) and not (folder / "study.json").is_file():
+        raise CdemError(f"{folder}: holds other things than a sweep; name another folder with -o")
+    folder.mkdir(parents=True, exist_ok=True)
+    write_json_atomic(folder / "study.json", study.model_dump(mode="json", exclude_unset=True))
+
+
+@contextmanager
+def _cluster(workers: int | None, scheduler: str | None) -> Iterator[Any]:
+    """A client of a local cluster, or of one that is there already."""
+    try:
+        import dask
+        from distributed import Client, LocalCluster
+    except ImportError as error:
+        raise BackendError(
+            f"a sweep needs dask.distributed; pip install 'cdem[sweep]' ({error})"
+        ) from None
+    if scheduler is not None:
+        try:
+            client = Client(scheduler, timeout=10)
+        except (OSError, ValueError) as error:
+            raise BackendError(f"no Dask scheduler answers at {scheduler}: {error}") from None
+        with client:
+            yield client
+        return
+    # Building a large model may keep a worker from answering for long, and is no fault.
+    with (
+        dask.config.set({"distributed.scheduler.worker-ttl": None}),
+        LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            memory_limit=None,
+            dashboard_address="127.0.0.1:0",
+            env={"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"},
+            preload=[DEAF],
+            silence_logs=50,  # critical only: what matters is said in our own words
+        ) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+class _Execution:
+    """Runs on a cluster, as many at a time as it has threads.
+
+    Args:
+        study: The study.
+        waiting: Runs to execute; those of the same case, by its identity, are executed once.
+        client: Of the cluster.
+    """
+
+    def __init__(self, study: Study, waiting: dict[str, list[Run]], client: Any) -> None:
+        self._study, self._client = study, client
+        self._left, self._count = list(waiting.values()), len(waiting)
+        self._under_way: dict[Any, list[Run]] = {}
+        self._began = time.perf_counter()
+
+    @property
+    def going(self) -> bool:
+        """Whether there is anything left to do."""
+        return bool(self._left or self._under_way)
+
+    def submit(self, threads: int) -> None:
+        """Keep so many threads busy, and no more: a worker that dies takes only its own run along."""
+        while self._left and len(self._under_way) < threads:
+            same = self._left.pop(0)
+            self._under_way[self._client.submit(execute, same[0].task, pure=False)] = same
+
+    def collect(self) -> None:
+        """Take over what is finished.
+
+        Raises:
+            CaseError: A result shows that the study asks for what is not there.
+        """
+        for future in [f for f in self._under_way if f.status != "pending"]:
+            for run in (same := self._under_way.pop(future)):
+                _settle(run, future)
+            check_results(self._study, same[0])
+
+    def cancel(self) -> None:
+        """Give up what is under way."""
+        self._client.cancel(list(self._under_way))
+
+    def time_left(self) -> float | None:
+        """Estimate of the remaining wall time [s], or None before anything is finished."""
+        done = self._count - len(self._left) - len(self._under_way)
+        if not done:
+            return None
+        return (time.perf_counter() - self._began) / done * (self._count - done)
+
+
+def _execute_all(
+    study: Study,
+    runs: list[Run],
+    waiting: dict[str, list[Run]],
+    client: Any,
+    progress: Callable[[SweepProgress], None] | None,
+    should_stop: Callable[[], bool] | None,
+) -> None:
+    """Keep every thread of the cluster busy until all runs are done or the user wants to stop."""
+    execution = _Execution(study, waiting, client)
+    looked, threads = time.perf_counter(), _threads(client)
+    while execution.going:
+        execution.submit(threads)
+        execution.collect()
+        if should_stop and should_stop():
+            execution.cancel()
+            return
+        if time.perf_counter() > looked + LOOK_SECONDS or not execution.going:
+            looked, threads = time.perf_counter(), _threads(client)
+            if progress:
+                progress(_progress(runs, client, execution.time_left()))
+        time.sleep(POLL_SECONDS)
+
+
+def _threads(client: Any) -> int:
+    """Threads of all workers now; at least one, so that something waits for the first worker.
+
+    Raises:
+        BackendError: The scheduler does not answer any more.
+    """
+    try:
+        if client.status == "running":
+            return max(sum(client.nthreads().values()), 1)
+    except (OSError, TimeoutError):
+        pass
+    raise BackendError(
+        "the Dask scheduler is gone; finished runs are kept: the same command goes on"
+    )
+
+
+def _progress(runs: list[Run], client: Any, time_left: float | None) -> SweepProgress:
+    return SweepProgress(
+        total=len(runs),
+        finished=sum(run.status != "waiting" for run in runs),
+        failed=sum(run.status == "failed" for run in runs),
+        time_left=time_left,
+        dashboard=client.dashboard_link or "",
+    )
+
+
+def _settle(run: Run, future: Any) -> None:
+    """Take over what became of a run."""
+    from distributed.scheduler import KilledWorker
+
+    if future.status == "finished":
+        run.result = future.result()
+    elif future.status == "error":
+        error = future.exception()
+        if isinstance(error, KilledWorker):
+            run.error = "its worker died again and again (out of memory?); tried anew next time"
+        else:
+            said = (
+                str(error) if isinstance(error, CdemError) else f"{type(error).__name__}: {error}"
+            )
+            run.error = f"{said} (tried anew next time)"

@@ -1,0 +1,102 @@
+"""What a worker does with one run: execute it once, and keep its result."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from cdem._version import __version__
+from cdem.case.case import Case
+from cdem.errors import BackendError, CdemError
+from cdem.run.checkpoint import write_json_atomic
+from cdem.study.criterion import Criterion
+from cdem.study.plan import files_of
+
+RESULT_FILE, RESULT_FOLDER = "result.json", "results"
+
+
+def finished(task: dict[str, Any]) -> dict[str, Any] | None:
+    """The result of a task that an earlier sweep or worker finished, or None."""
+    if not task:
+        return None
+    folder = Path(task["folder"]) / "runs" / task["name"]
+    try:
+        result = json.loads((folder / RESULT_FILE).read_text())
+    except (OSError, ValueError):
+        return None
+    if result.get("identity") != task["identity"]:
+        return None
+    kept = (folder / RESULT_FOLDER / "summary.json").is_file()
+    return None if task["keep"] and not task["critical"] and not kept else result
+
+
+def execute(task: dict[str, Any]) -> dict[str, Any]:
+    """Execute one run on a worker, and write its result in one go.
+
+    What the case itself makes fail is a result, too: it would fail again. A full disk or a wrong
+    worker is not.
+
+    Raises:
+        CdemError: The machine failed, not the case.
+    """
+    if known := finished(task):
+        return known
+    if task["version"] != __version__:
+        raise BackendError(f"a worker has cdem {__version__}, the sweep {task['version']}")
+    for holder, key in files_of(task["case"]):
+        if not Path(holder[key]).is_file():
+            raise BackendError(f"a worker does not see {holder[key]}; it must have the same files")
+    folder = Path(task["folder"]) / "runs" / task["name"]
+    folder.mkdir(parents=True, exist_ok=True)
+    began = time.perf_counter()
+    result = {key: task[key] for key in ("name", "identity", "version", "parameters")}
+    try:
+        case = Case.from_dict(task["case"])
+        search = task["critical"]
+        result |= _search(case, search) if search else _run(case, task, folder / RESULT_FOLDER)
+    except BackendError:
+        raise
+    except CdemError as error:
+        if type(error) is CdemError:
+            raise
+        result |= {"status": "failed", "error": str(error)}
+    result["wall_time"] = time.perf_counter() - began
+    write_json_atomic(folder / RESULT_FILE, result)
+    return json.loads((folder / RESULT_FILE).read_text())
+
+
+def _run(case: Case, task: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Run the case as `cdem run` does, from its last checkpoint if it was broken off."""
+    from cdem.run.histories import tracks
+    from cdem.run.simulation import Simulation
+
+    if task["keep"]:
+        resume = (folder / "checkpoint.h5").is_file()
+        simulation = Simulation(case, threads=1, output=folder, resume=resume, overwrite=not resume)
+    else:
+        simulation = Simulation(case, threads=1)
+    status = simulation.run()
+    return {
+        "status": status,
+        "summary": simulation.summary(status),
+        "histories": {name: value() for name, value in tracks(simulation)},
+    }
+
+
+def _search(case: Case, search: dict[str, Any]) -> dict[str, Any]:
+    """Find the critical value as `cdem critical` does."""
+    from cdem.study.critical import find_critical, parameter, strength_reduction
+
+    vary = strength_reduction() if search["factor"] else parameter(search["parameter"])
+    low, high = search["between"]
+    found = find_critical(
+        case,
+        vary,
+        (low, high),
+        tolerance=search["tolerance"],
+        criterion=Criterion(**search["criterion"]),
+        threads=1,
+    )
+    return {"status": "found", "critical": found.as_dict()}

@@ -1,0 +1,1 @@
+"""What an installation can do: its speed, and what works on this machine."""

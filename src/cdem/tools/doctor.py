@@ -1,0 +1,113 @@
+"""``cdem doctor``: what works on this machine, and how to mend what does not."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.metadata
+import importlib.util
+import os
+import platform
+import re
+import subprocess
+import sys
+
+from cdem._version import __version__
+
+DEVELOPER_EXTRAS = {"dev", "test", "docs"}
+RENDER_TIMEOUT = 60.0  # a broken driver can hang [s]
+RENDER = """
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64))
+plotter.add_mesh(pyvista.Cube())
+assert plotter.screenshot(return_img=True).std() > 0
+"""
+OPENGL_HINT = "apt install libosmesa6, or libegl1 libgl1-mesa-dri libopengl0"
+
+
+def report() -> tuple[str, bool]:
+    """Look at the machine.
+
+    Returns:
+        The report, and whether cases can be run.
+    """
+    core, healthy = _core()
+    rows = [
+        ("cdem", __version__),
+        ("python", f"{platform.python_version()} ({sys.executable})"),
+        ("machine", f"{platform.system()} {platform.machine()}"),
+        ("core", core),
+        ("threads", str(len(os.sched_getaffinity(0)))),
+        ("memory", _memory()),
+        ("CUDA", _cuda()),
+        ("OpenGL", _opengl()),
+        *_extras(),
+    ]
+    return "\n".join(f"{name:<10}{text}" for name, text in rows), healthy
+
+
+def _core() -> tuple[str, bool]:
+    try:
+        from cdem._native import available, name
+    except Exception as error:  # an extension module can fail to load in many ways
+        return f"not usable: {error}", False
+    return f"{name} is used; built for {', '.join(available)}", True
+
+
+def _memory() -> str:
+    pages, size = os.sysconf("SC_PHYS_PAGES"), os.sysconf("SC_PAGE_SIZE")
+    free = os.sysconf("SC_AVPHYS_PAGES")
+    return f"{pages * size / 2**30:.1f} GiB, {free * size / 2**30:.1f} GiB free"
+
+
+def _cuda() -> str:
+    module = importlib.util.find_spec("cdem._cuda")
+    try:
+        driver = ctypes.CDLL("libcuda.so.1")
+    except OSError:
+        devices = "no NVIDIA driver"
+    else:
+        count = ctypes.c_int(0)
+        works = driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0
+        devices = f"{count.value} device(s)" if works else "the NVIDIA driver does not work"
+        if module is not None and works and count.value > 0:
+            return f"usable: {devices}"
+    return f"module {'absent' if module is None else 'present'}; {devices}"
+
+
+def _opengl() -> str:
+    if importlib.util.find_spec("pyvista") is None:
+        return "not tried: pyvista is missing"
+    try:  # in a process of its own, because a bad driver ends it
+        done = subprocess.run(
+            [sys.executable, "-c", RENDER], capture_output=True, timeout=RENDER_TIMEOUT, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return f"does not answer; {OPENGL_HINT}"
+    return "off-screen rendering works" if done.returncode == 0 else f"not usable; {OPENGL_HINT}"
+
+
+def _extras() -> list[tuple[str, str]]:
+    """What the package calls optional, from its own metadata."""
+    try:
+        requirements = importlib.metadata.requires("cdem") or []
+    except importlib.metadata.PackageNotFoundError:
+        return [("extras", "unknown: cdem is not installed, only found on the path")]
+    wanted: dict[str, list[str]] = {}
+    for line in requirements:
+        found = re.match(r"([\w.-]+).*extra\s*==\s*['\"]([^'\"]+)", line)
+        if found and found[2] not in DEVELOPER_EXTRAS:
+            wanted.setdefault(found[2], []).append(found[1])
+    rows = []
+    for extra, packages in sorted(wanted.items()):
+        missing = [name for name in packages if not _installed(name)]
+        mend = f"missing {', '.join(missing)}: pip install 'cdem[{extra}]'"
+        rows.append((extra, mend if missing else f"present ({', '.join(packages)})"))
+    return rows
+
+
+def _installed(package: str) -> bool:
+    try:
+        importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return False
+    return True

@@ -1,0 +1,30 @@
+// Memory of the CPU.
+#include <omp.h>
+
+#include <string>
+
+#include "core/base/device.hpp"
+#include "tests/core/support.hpp"
+
+namespace cdem::test {
+
+TEST_CASE("memory begins as zeros at a cache line") {
+  for (const std::size_t bytes : {std::size_t(1), std::size_t(63), std::size_t(1000)}) {
+    auto* memory = static_cast<unsigned char*>(allocate(bytes));
+    CHECK(reinterpret_cast<std::uintptr_t>(memory) % 64 == 0);
+    CHECK(std::all_of(memory, memory + bytes, [](unsigned char c) { return c == 0; }));
+    release(memory);
+  }
+}
+
+TEST_CASE("the CPU is the device, alone if it has one thread") {
+  CHECK(std::string(device_name()) == "cpu");
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  CHECK(runs_alone());
+  omp_set_num_threads(2);
+  CHECK(!runs_alone());
+  omp_set_num_threads(threads);
+}
+
+}  // namespace cdem::test

@@ -1,0 +1,35 @@
+// Counts and flags that several threads raise.
+#include <omp.h>
+
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "tests/core/support.hpp"
+
+namespace cdem::test {
+
+TEST_CASE("raise hands out every number once, on one thread and on several") {
+  constexpr Index count = 4000;
+  const int threads = omp_get_max_threads();
+  for (const bool alone : {true, false}) {
+    omp_set_num_threads(alone ? 1 : 3);
+    Index next = 0;
+    std::vector<Index> taken(count);
+#pragma omp parallel for schedule(static)
+    for (Index i = 0; i < count; ++i) taken[i] = raise(next, alone);
+    CHECK(next == count);
+    std::sort(taken.begin(), taken.end());
+    for (Index i = 0; i < count; ++i) CHECK(taken[i] == i);
+  }
+  omp_set_num_threads(threads);
+}
+
+TEST_CASE("set sets a flag") {
+  Flag flag = 0;
+  set(flag);
+  CHECK(flag == 1);
+  set(flag, Flag(0));
+  CHECK(flag == 0);
+}
+
+}  // namespace cdem::test

@@ -1,0 +1,60 @@
+// Pairs of sides: codes, and which ways are open.
+#include "core/contact/narrow_phase/edge_pair.hpp"
+#include "tests/core/support.hpp"
+
+namespace cdem::test {
+
+TEST_CASE("a pair of sides is read back from its code") {
+  for (Index k = 0; k < 4; ++k)
+    for (Index j = 0; j < 4; ++j)
+      for (Index shared = 0; shared < 16; ++shared) {
+        const SidePair back = SidePair::of(SidePair{k, j, shared}.code());
+        CHECK(back.k == k);
+        CHECK(back.j == j);
+        CHECK(back.shared == shared);
+      }
+}
+
+TEST_CASE("shared ends follow when a side is run through backwards, or both change places") {
+  const auto bit = [](Index a, Index b) { return 1 << (2 * a + b); };
+  for (Index a = 0; a < 2; ++a)
+    for (Index b = 0; b < 2; ++b) {
+      CHECK(SidePair::turned(bit(a, b), false, false) == bit(a, b));
+      CHECK(SidePair::turned(bit(a, b), true, false) == bit(1 - a, b));
+      CHECK(SidePair::turned(bit(a, b), false, true) == bit(a, 1 - b));
+      CHECK(SidePair::turned(bit(a, b), true, true) == bit(1 - a, 1 - b));
+      CHECK(SidePair::swapped(bit(a, b)) == bit(b, a));
+    }
+}
+
+TEST_CASE("the code of a pair of edges holds ways, shared ends and directions apart") {
+  for (Index turned = 0; turned < 4; ++turned) {
+    const Index code = EdgeWays::code_of(0xa5, 0x9, 0x6, turned);
+    CHECK((code & 0xff) == 0xa5);
+    CHECK((code >> EdgeWays::count & 15) == 0x9);
+    CHECK((code >> (EdgeWays::count + 4) & 15) == 0x6);
+    CHECK(EdgeWays::is_turned(code, 0) == (turned & 1));
+    CHECK(EdgeWays::is_turned(code, 1) == (turned >> 1 & 1));
+  }
+  CHECK(EdgeWays::is_reverse(EdgeWays::way(true, 0, 1)));
+  CHECK(!EdgeWays::is_reverse(EdgeWays::way(false, 1, 1)));
+}
+
+TEST_CASE("sides cross beyond their ends where the crossing is outside of 0 to 1") {
+  const SearchRules rules;
+  const auto beyond = [&](Real s, Real t, Real slack) {
+    // along x and along y, crossing at s and t; the indented side is as long as 1 - alpha
+    const Vec dm{1, 0, 0}, dt{0, 1, 0}, c = cross(dm, dt);
+    return crosses_beyond(Vec{-s, 0, 0}, dm, Vec{0, -t, 0}, dt, c, dot(c, c), rules, slack);
+  };
+  CHECK(!beyond(0.5, 0.5, 0.0));
+  CHECK(!beyond(0.0, 0.0, 0.0));
+  CHECK(!beyond(1 - rules.indentation, 1.0, 0.0));
+  CHECK(beyond(-0.01, 0.5, 0.0));
+  CHECK(beyond(1 - rules.indentation + 0.001, 0.5, 0.0));
+  CHECK(beyond(0.5, -0.01, 0.0));
+  CHECK(beyond(0.5, 1.01, 0.0));
+  CHECK(!beyond(-0.01, 1.01, 0.02));
+}
+
+}  // namespace cdem::test

@@ -1,0 +1,83 @@
+// The inner pair list holds a part of the outer one, and every contact until it is made again.
+#include <set>
+
+#include "core/contact/pair_list/inner_list.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// A tet that falls with a spin onto a fixed box.
+struct Landing : Scene {
+  Landing() {
+    Random random(3);
+    add_box({-1, -1, -1}, {2, 2, 1}, true);
+    const Index tet = add_tet(random, {0, 0, 0.8}, 1);
+    build();
+    set_interface({{"friction_angle", 0.4}});
+    set_motion(tet, {0.2, 0.1, -1}, {1, 2, 0});
+    model.gravity = {0, 0, -9.81};
+    start();
+  }
+  std::set<std::pair<Index, Index>> inner() const { return pairs(list().first, list().candidate); }
+  std::set<std::pair<Index, Index>> outer() const {
+    return pairs(state.search.outer.slot_first, state.search.outer.slot_faces);
+  }
+  const InnerList& list() const { return state.search.inner; }
+
+ private:
+  static std::set<std::pair<Index, Index>> pairs(const Column<Index>& first,
+                                                 const Column<Index>& other) {
+    std::set<std::pair<Index, Index>> all;
+    for (std::size_t slot = 0; slot + 1 < first.size(); ++slot)
+      for (Index c = first[slot]; c < first[slot + 1]; ++c) all.insert({Index(slot), other[c]});
+    return all;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the inner list is part of the outer one, and smaller") {
+  Landing landing;
+  std::size_t inner = 0, outer = 0;
+  for (int n = 0; n < 100; ++n) {
+    landing.step(5);
+    const auto all = landing.outer(), near = landing.inner();
+    CHECK(std::includes(all.begin(), all.end(), near.begin(), near.end()));
+    inner += near.size();
+    outer += all.size();
+  }
+  CHECK(inner > 0);
+  CHECK(2 * inner < outer);
+}
+
+TEST_CASE("contacts are on the inner list when they begin, and as long as they last") {
+  Landing landing;
+  Index held = 0;
+  for (int n = 0; n < 500; ++n) {
+    landing.step(1);
+    const auto near = landing.inner();
+    for (std::size_t slot = 0; slot < landing.state.springs.target.size(); ++slot) {
+      const Index target = landing.state.springs.target[slot];
+      if (target < 0) continue;
+      ++held;
+      CHECK(near.count({Index(slot), target}) == 1);
+    }
+  }
+  CHECK(held > 50);
+}
+
+TEST_CASE("the inner list is made again when a node has left its inner skin") {
+  Landing landing;
+  landing.step(20);
+  const Real made = landing.list().built_time;
+  prune_pair_list_if_due(landing.model, landing.state, {});
+  CHECK(landing.list().built_time == made);
+  const Index node = landing.state.search.outer.predicted_nodes[8];
+  landing.motion(node)[2] += 2 * landing.list().skin[node];
+  prune_pair_list_if_due(landing.model, landing.state, {});
+  CHECK(landing.list().built_time == landing.state.time);
+}
+
+}  // namespace cdem::test

@@ -1,0 +1,64 @@
+// What stops a run that went wrong.
+#include <limits>
+
+#include "core/diagnostics/health.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+struct Box : Scene {
+  Box() {
+    add_box({0, 0, 0}, {1, 1, 1});
+    build();
+    start();
+  }
+  Report health() const { return check_health(model, state); }
+};
+
+}  // namespace
+
+TEST_CASE("a healthy state goes on") {
+  const Box box;
+  CHECK(box.health().outcome == Outcome::steps_done);
+  CHECK(box.health().culprit == -1);
+}
+
+TEST_CASE("a node whose place or velocity is no number is named") {
+  for (const Index component : {0, 2, 4, 6})
+    for (const Real bad :
+         {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity()}) {
+      Box box;
+      box.motion(5)[component] = bad;
+      CHECK(box.health().outcome == Outcome::not_finite);
+      CHECK(box.health().culprit == 5);
+    }
+}
+
+TEST_CASE("the fastest node is named when it is too fast") {
+  Box box;
+  box.motion(3)[5] = -9;
+  box.motion(6)[4] = 11;
+  CHECK(box.health().outcome == Outcome::steps_done);
+  box.model.speed_limit = 12;
+  CHECK(box.health().outcome == Outcome::steps_done);
+  box.model.speed_limit = 10;
+  const Report report = box.health();
+  CHECK(report.outcome == Outcome::too_fast);
+  CHECK(report.culprit == 6);
+  CHECK(report.value == 11);
+}
+
+TEST_CASE("a contact that sank too deep is named by its face") {
+  Box box;
+  box.state.springs.lost[4 * 2 + 3] = 1;
+  CHECK(box.health().outcome == Outcome::lost_contact);
+  CHECK(box.health().culprit == 2);
+  Box other;
+  other.state.edges.lost[4] = 1;
+  CHECK(other.health().outcome == Outcome::lost_contact);
+  CHECK(other.health().culprit == 4);
+}
+
+}  // namespace cdem::test

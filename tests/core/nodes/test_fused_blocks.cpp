@@ -1,0 +1,54 @@
+// Which blocks take the fused kernel.
+#include "core/nodes/fused_blocks.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// Sixteen tets far apart.
+struct Tets : Scene {
+  Tets() {
+    Random random(1);
+    for (Index b = 0; b < 2 * block_size; ++b) add_tet(random, {5.0 * b, 0, 0}, 1);
+    build();
+    start();
+    step(1);
+  }
+  std::vector<Index> fused() {
+    find_fused_blocks(model, state);
+    const Column<Index>& list = state.tet4.fused.blocks;
+    return {list.data(), list.data() + list.size()};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("free blocks are fused, those with a load or a support are not") {
+  Tets tets;
+  CHECK(tets.fused() == std::vector<Index>{0, 1});
+  const Index second = 4 * block_size;  // first node of the second block of elements
+  tets.model.support[second + 2] = 0;
+  CHECK(tets.fused() == std::vector<Index>{0});
+  CHECK(tets.state.nodes.fused[0] == 1);
+  CHECK(tets.state.nodes.fused[second] == 0);
+  CHECK(tets.state.nodes.general.size() == 4);  // 32 nodes of the other
+  tets.model.support[second + 2] = -1;
+  for (Index i = 2; i <= tets.model.node_count; ++i) tets.model.load_first[i] = 1;
+  CHECK(tets.fused() == std::vector<Index>{1});
+}
+
+TEST_CASE("blocks with contacts, lumped masses or another formulation are not fused") {
+  Tets tets;
+  for (Index i = 1; i <= tets.model.node_count; ++i) tets.state.search.contact_first[i] = 1;
+  CHECK(tets.fused() == std::vector<Index>{1});
+  tets.model.lumped = true;
+  tets.fused();
+  CHECK(tets.state.nodes.fused.size() == 0);
+  tets.model.lumped = false;
+  tets.model.formulation = Formulation::incremental;
+  tets.fused();
+  CHECK(tets.state.nodes.fused.size() == 0);
+}
+
+}  // namespace cdem::test

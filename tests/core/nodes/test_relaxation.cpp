@@ -1,0 +1,58 @@
+// The way to rest of a static stage: kinetic or adaptive.
+#include "core/diagnostics/unbalance.hpp"
+#include "core/nodes/relaxation.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// A box with two fixed boxes bonded below and above: it sags under its weight.
+struct Hanging : Scene {
+  Hanging() {
+    bonded = true;
+    add_box({0, 0, 0}, {1, 1, 1}, true);
+    add_box({0, 0, 1}, {1, 1, 1});
+    add_box({0, 0, 2}, {1, 1, 1});
+    build();
+    set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}, {"friction_angle", 0.5}});
+    model.gravity = {0, 0, -10};
+    model.lumped = true;
+    start();
+  }
+  /// Stress of the lowest bond against the weight above it.
+  Real carried() {
+    Real sum = 0;
+    for (Index i = 0; i < 8; ++i) sum += state.nodes.reaction[4 * i + 2];
+    return sum;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("kinetic relaxation stops all motion when the kinetic energy has passed a peak") {
+  State s;
+  Model m;
+  m.node_count = 1;
+  s.nodes.sample.resize(4);
+  const Real kinetic[] = {1, 3, 2, 1, 2};
+  const bool due[] = {false, false, true, false, false};
+  for (int k = 0; k < 5; ++k) {
+    s.nodes.sample[0] = kinetic[k];
+    relax_kinetically(m, s);
+    CHECK(s.stop_due == due[k]);
+  }
+  CHECK(s.kinetic_peak == 2);
+}
+
+TEST_CASE("either relaxation comes to rest, with the weight on the support") {
+  for (const Relaxation relaxation : {Relaxation::kinetic, Relaxation::adaptive}) {
+    Hanging hanging;
+    const Report report = run(hanging.model, hanging.state,
+                              {.steps = 20000, .unbalance_limit = 1e-7, .relaxation = relaxation});
+    CHECK(report.outcome == Outcome::converged);
+    CHECK(relative_error(hanging.carried(), 3 * 2500 * 10.0) < 2e-7);
+  }
+}
+
+}  // namespace cdem::test

@@ -1,0 +1,117 @@
+// The stable time step, its growth, and masses scaled for it.
+#include "core/nodes/masses.hpp"
+#include "core/nodes/time_step.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// A box that floats, with the highest frequency that a node is given; no contacts.
+struct Floating : Scene {
+  explicit Floating(bool fixed = false) {
+    add_box({0, 0, 0}, {1, 1, 1}, fixed);
+    build();
+    start();
+  }
+  void set_frequency(Index node, Real frequency) {
+    model.frequency_squared[node] = frequency * frequency;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the stable step is two over the highest frequency of a node that can move") {
+  Floating floating;
+  floating.set_frequency(3, 1e5);
+  const StepLimit limit = step_limit(floating.model, floating.state);
+  CHECK(limit.node == 3);
+  CHECK(relative_error(limit.dt, 2 / 1e5) < 1e-15);
+  CHECK(limit.contact_frequency_squared == 0);
+}
+
+TEST_CASE("what is held counts only where nothing else is") {
+  Floating held(true);
+  held.set_frequency(2, 1e6);
+  CHECK(step_limit(held.model, held.state).node == 2);
+  Scene both;
+  both.add_box({0, 0, 0}, {1, 1, 1}, true);
+  both.add_box({5, 0, 0}, {1, 1, 1});
+  both.build();
+  both.start();
+  both.model.frequency_squared[2] = 1e12;
+  CHECK(step_limit(both.model, both.state).node >= 8);
+}
+
+TEST_CASE("springs add twice their stiffness over the mass, Gershgorin") {
+  Floating floating;
+  floating.state.node_bonds[5] = 1e9;
+  floating.state.node_potential[5] = 3e8;
+  floating.state.nodes.force[4 * 5 + 3] = 5e8;  // more than was expected
+  const StepLimit limit = step_limit(floating.model, floating.state);
+  CHECK(limit.node == 5);
+  CHECK(relative_error(limit.contact_frequency_squared, 2 * 1.5e9 / floating.model.mass[5]) <
+        1e-15);
+}
+
+TEST_CASE("damping shortens the step") {
+  Floating floating;
+  const Real free = step_limit(floating.model, floating.state).dt;
+  floating.model.stiffness_damping = 0.2;
+  const Real damped = step_limit(floating.model, floating.state).dt;
+  CHECK(relative_error(damped, free * (std::sqrt(1.04) - 0.2)) < 1e-14);
+  floating.model.damping.local = 0.8;
+  CHECK(relative_error(step_limit(floating.model, floating.state).dt, damped / std::sqrt(1.8)) <
+        1e-14);
+}
+
+TEST_CASE("the coming step shrinks at once and grows by one per cent") {
+  Floating floating;
+  State& s = floating.state;
+  const Real before = s.dt;
+  CHECK(relative_error(before, 0.8 * step_limit(floating.model, s).dt) < 1e-15);
+  s.node_bonds[0] = 1e10;
+  renew_step(floating.model, s);
+  const Real short_step = s.dt;
+  CHECK(short_step < 0.5 * before);
+  s.node_bonds[0] = 0;
+  renew_step(floating.model, s);
+  CHECK(s.dt == short_step);
+  CHECK(relative_error(s.dt_stable, before) < 1e-15);
+  advance_clock(floating.model, s);
+  CHECK(s.dt_last == short_step);
+  CHECK(s.time == short_step);
+  CHECK(relative_error(s.dt, step_growth * short_step) < 1e-15);
+  for (int n = 0; n < 500; ++n) advance_clock(floating.model, s);
+  CHECK(s.dt == s.dt_stable);
+}
+
+TEST_CASE("a given step is taken as it is") {
+  Floating floating;
+  floating.model.step_given = 1e-7;
+  renew_step(floating.model, floating.state);
+  CHECK(floating.state.dt == 1e-7);
+  floating.model.step_given = 1e-3;
+  renew_step(floating.model, floating.state);
+  CHECK(floating.state.dt == 1e-3);
+}
+
+TEST_CASE("scaled masses make the present step stable, and their motion is booked") {
+  Floating floating;
+  Model& m = floating.model;
+  State& s = floating.state;
+  m.lumped = true;
+  floating.set_motion(0, {1, 2, 3});
+  const Real before = energy_of_motion(m, s);
+  s.dt *= 10;
+  scale_masses(m, s);
+  const Real booked = s.stopped_energy;
+  CHECK(relative_error(before - energy_of_motion(m, s), booked) < 1e-14);
+  for (Index i = 0; i < m.node_count; ++i) {
+    const Real frequency =
+        std::sqrt(m.mass[i] * m.lumped_frequency_squared[i] / s.nodes.relax_mass[i]);
+    CHECK(relative_error(frequency * s.dt, 2 * relax_safety) < 5e-16);
+  }
+}
+
+}  // namespace cdem::test

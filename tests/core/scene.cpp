@@ -1,0 +1,368 @@
+// scene.cpp - see scene.hpp.
+#include "tests/core/scene.hpp"
+
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "core/interfaces/laws.hpp"
+#include "core/materials/laws.hpp"
+#include "core/model/init_state.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// Faces of a shape, outward, counter-clockwise seen from outside; -1 after a triangle. And volume
+/// over area and height of its triangles and quadrilaterals.
+template <class Shape>
+struct FacesOf;
+template <>
+struct FacesOf<Tet4> {
+  static constexpr Real triangle = 3, quad = 0;
+  static std::vector<std::array<Index, 4>> all() {
+    return {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}};
+  }
+};
+template <>
+struct FacesOf<Pyramid5> {
+  static constexpr Real triangle = 3, quad = 3;
+  static std::vector<std::array<Index, 4>> all() {
+    return {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}};
+  }
+};
+template <>
+struct FacesOf<Wedge6> {
+  static constexpr Real triangle = 1, quad = 2;
+  static std::vector<std::array<Index, 4>> all() {
+    return {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+  }
+};
+template <>
+struct FacesOf<Hex8> {
+  static constexpr Real triangle = 0, quad = 1;
+  static std::vector<std::array<Index, 4>> all() {
+    return {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  }
+};
+
+}  // namespace
+
+template <class Shape>
+Index Scene::add(const std::array<Vec, Shape::nodes>& corners, bool fixed) {
+  Block block{Index(position_.size()), Shape::nodes, fixed, {}, {}, {}, 0, 0, 0, 0, 0};
+  const ElementGeometry<Shape> g(corners.data(), rock.young_modulus());
+  Real squares = 0;
+  for (Index q = 0; q < Shape::points; ++q) {
+    block.volume.push_back(g.volume[q]);
+    for (Index k = 0; k < Shape::nodes; ++k) {
+      squares += g.volume[q] * dot(g.gradient[q][k], g.gradient[q][k]);
+      if (k == 0) continue;
+      block.gradient.push_back(g.gradient[q][k].x);
+      block.gradient.push_back(g.gradient[q][k].y);
+      block.gradient.push_back(g.gradient[q][k].z);
+    }
+  }
+  block.whole = g.whole();
+  REQUIRE(block.whole > 0);
+  block.mass = density * block.whole / Shape::nodes;
+  block.frequency_squared = (rock.lambda + 4 * rock.mu) * squares / block.mass;
+  block.triangle = FacesOf<Shape>::triangle;
+  block.quad = FacesOf<Shape>::quad;
+  block.faces = FacesOf<Shape>::all();
+  position_.insert(position_.end(), corners.begin(), corners.end());
+  blocks_.push_back(block);
+  return Index(blocks_.size()) - 1;
+}
+template Index Scene::add<Tet4>(const std::array<Vec, 4>&, bool);
+template Index Scene::add<Pyramid5>(const std::array<Vec, 5>&, bool);
+template Index Scene::add<Wedge6>(const std::array<Vec, 6>&, bool);
+template Index Scene::add<Hex8>(const std::array<Vec, 8>&, bool);
+
+Index Scene::add_box(const Vec& low, const Vec& size, bool fixed) {
+  std::array<Vec, 8> x = Reference<Hex8>::corners();
+  for (Vec& c : x)
+    c = low + Real(0.5) * Vec{size.x * (1 + c.x), size.y * (1 + c.y), size.z * (1 + c.z)};
+  return add<Hex8>(x, fixed);
+}
+
+Index Scene::add_tet(Random& random, const Vec& center, Real size, bool fixed) {
+  const Mat turn = random.rotation();
+  const std::array<Vec, 4> regular = {{{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}}};
+  std::array<Vec, 4> x;
+  for (Index k = 0; k < 4; ++k)
+    x[k] = center + Real(0.5 * size) * (turn * (regular[k] + random.vector(0.3)));
+  if (dot(cross(x[1] - x[0], x[2] - x[0]), x[3] - x[0]) < 0) std::swap(x[2], x[3]);
+  return add<Tet4>(x, fixed);
+}
+
+void Scene::set_motion(Index block, const Vec& velocity, const Vec& spin) {
+  const Block& b = blocks_[block];
+  Vec center{0, 0, 0};
+  for (Index i = b.first; i < b.first + b.nodes; ++i)
+    center = center + Real(1.0 / b.nodes) * position(i);
+  for (Index i = b.first; i < b.first + b.nodes; ++i)
+    put(motion(i) + 4, velocity + cross(spin, position(i) - center));
+}
+
+void Scene::build() {
+  build_nodes();
+  build_elements();
+  build_faces();
+  build_edges();
+  build_pairs();
+  build_corners();
+  build_loads();
+  std::vector<Real> positions;
+  for (const Vec& x : position_)
+    for (const Real component : {x.x, x.y, x.z}) positions.push_back(component);
+  init_state(model, state, positions.data());
+}
+
+/// Tets have the exact mass matrix, which all share; other shapes have lumped masses.
+void Scene::build_nodes() {
+  Model& m = model;
+  m.node_count = Index(position_.size());
+  for (Index j = 0; j < 4; ++j)
+    for (Index k = 0; k < 4; ++k) {
+      m.mass_inverse.push(j == k ? 4 : -1);
+      m.mass_matrix.push(j == k ? 0.4 : 0.2);
+    }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Block& block = blocks_[b];
+    const bool exact = block.nodes == 4 && !block.fixed;
+    for (Index k = 0; k < block.nodes; ++k) {
+      const Vec& x = position_[block.first + k];
+      Index place = 0;
+      while (distance(position_[place], x) > 0) ++place;
+      m.node_block.push(Index(b));
+      m.node_place.push(place);
+      m.mass.push(block.mass);
+      m.gravity_mass.push(block.mass);
+      m.mass_row_first.push(exact ? 4 * k : -1);
+      m.mass_axis_stride.push(0);
+      m.block_first.push(block.first);
+      m.block_count.push(block.nodes);
+      m.inverse_mass_bound.push((exact ? 5 : 1) / block.mass);
+      m.frequency_squared.push((exact ? 5 : 1) * block.frequency_squared);
+      m.lumped_frequency_squared.push(block.frequency_squared);
+    }
+  }
+}
+
+void Scene::build_elements() {
+  build_shape(model.tet4, 4, 1);
+  build_shape(model.pyramid5, 5, 5);
+  build_shape(model.wedge6, 6, 6);
+  build_shape(model.hex8, 8, 8);
+  model.material_lambda.push(rock.lambda);
+  model.material_mu.push(rock.mu);
+  model.material_law.push(0);
+  model.material_parameters.resize(BlockLaws::most_parameters);
+}
+
+void Scene::build_shape(ElementSet& e, Index nodes, Index points) {
+  std::vector<const Block*> some;
+  for (const Block& b : blocks_)
+    if (b.nodes == nodes) some.push_back(&b);
+  e.corners = nodes;
+  e.points = points;
+  e.count = Index(some.size());
+  e.stride = padded_stride(e.count);
+  e.corner_first = model.corner_rows;
+  model.corner_rows += nodes * e.count;
+  e.nodes.resize(std::size_t(nodes) * e.stride);
+  e.material.resize(e.stride);
+  e.gradient.resize(std::size_t(points) * (nodes - 1) * 3 * e.stride);
+  e.volume.resize(std::size_t(points) * e.stride);
+  for (Index i = 0; i < e.stride && e.count > 0; ++i) {
+    const Block& b = *some[std::min(i, e.count - 1)];
+    for (Index k = 0; k < nodes; ++k) e.nodes[k * e.stride + i] = b.first + k;
+    for (std::size_t r = 0; r < b.gradient.size(); ++r)
+      e.gradient[r * e.stride + i] = b.gradient[r];
+    for (std::size_t r = 0; r < b.volume.size(); ++r) e.volume[r * e.stride + i] = b.volume[r];
+  }
+}
+
+/// Number of a block's element among all, shape by shape.
+Index Scene::element_of(std::size_t block) const {
+  Index number = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    number += blocks_[b].nodes < blocks_[block].nodes ||
+              (blocks_[b].nodes == blocks_[block].nodes && b < block);
+  return number;
+}
+
+void Scene::build_faces() {
+  Model& m = model;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (const auto& corners : blocks_[b].faces) {
+      const Index count = corners[3] < 0 ? 3 : 4;
+      Vec x[4], center{0, 0, 0};
+      for (Index k = 0; k < count; ++k) {
+        m.face_nodes.push(blocks_[b].first + corners[k]);
+        x[k] = position_[blocks_[b].first + corners[k]];
+        center = center + Real(1.0 / count) * x[k];
+      }
+      if (count == 3) m.face_nodes.push(-1), x[3] = x[2];
+      Real sum = 0, farthest = 0;
+      for (Index k = 0; k < count; ++k) {
+        sum += distance(x[k], center);
+        farthest = std::max(farthest, distance(x[k], center));
+      }
+      const Real area = 0.5 * norm(cross(x[2] - x[0], x[3] - x[1]));
+      const Real height =
+          (count == 3 ? blocks_[b].triangle : blocks_[b].quad) * blocks_[b].whole / area;
+      m.face_interface_class.push(0);
+      m.face_block.push(Index(b));
+      m.face_element.push(element_of(b));
+      m.face_length.push(sum / count);
+      m.face_reach.push(1.5 * farthest);
+      m.face_area.push(area);
+      m.face_height.push(height);
+      m.face_stiffness.push(rock.young_modulus() / height);
+      m.face_initially_exposed.push(1);
+      m.face_movable.push(!blocks_[b].fixed);
+      ++m.face_count;
+    }
+}
+
+void Scene::build_edges() {
+  Model& m = model;
+  std::map<std::pair<Index, Index>, Index> edges;
+  m.face_edges.resize(4 * std::size_t(m.face_count), -1);
+  for (Index f = 0; f < m.face_count; ++f) {
+    const Index* nodes = m.face_nodes.data() + 4 * f;
+    const Index count = nodes[3] < 0 ? 3 : 4;
+    for (Index k = 0; k < count; ++k) {
+      const auto ends = std::minmax(nodes[k], nodes[(k + 1) % count]);
+      const auto [place, is_new] = edges.insert({ends, m.edge_count});
+      if (is_new) {
+        m.edge_nodes.push(ends.first), m.edge_nodes.push(ends.second);
+        m.edge_faces.push(f), m.edge_faces.push(-1);
+        ++m.edge_count;
+      } else {
+        m.edge_faces[2 * place->second + 1] = f;
+      }
+      m.face_edges[4 * f + k] = place->second;
+    }
+  }
+  for (Index i = 0; i < m.node_count; ++i) {
+    m.edge_star_first.push(Index(m.edge_star.size()));
+    for (Index e = 0; e < m.edge_count; ++e)
+      for (const Index end : {0, 1})
+        if (m.edge_nodes[2 * e + end] == i) m.edge_star.push(m.edge_nodes[2 * e + 1 - end]);
+  }
+  m.edge_star_first.push(Index(m.edge_star.size()));
+}
+
+/// Conforming pairs, where the faces of two blocks have their corners at the same places.
+void Scene::build_pairs() {
+  Model& m = model;
+  std::vector<std::array<Index, 2>> found[2];
+  const auto places = [&](Index f) {
+    std::array<Index, 4> at;
+    for (Index k = 0; k < 4; ++k) {
+      const Index node = m.face_nodes[4 * f + k];
+      at[k] = node < 0 ? -1 : m.node_place[node];
+    }
+    std::sort(at.begin(), at.end());
+    return at;
+  };
+  for (Index a = 0; a < m.face_count && bonded; ++a)
+    for (Index b = a + 1; b < m.face_count; ++b)
+      if (m.face_block[a] != m.face_block[b] && places(a) == places(b)) {
+        found[m.face_nodes[4 * a + 3] < 0 ? 0 : 1].push_back({a, b});
+        m.face_initially_exposed[a] = m.face_initially_exposed[b] = 0;
+      }
+  build_pair_set(m.triangles, 3, found[0]);
+  build_pair_set(m.quads, 4, found[1]);
+  build_pair_set(m.overlaps, 1, {});
+  m.overlaps.corners = 8;
+  m.overlaps.point_first.push(0);
+}
+
+void Scene::build_pair_set(PairSet& p, Index points,
+                           const std::vector<std::array<Index, 2>>& faces) {
+  Model& m = model;
+  p.count = Index(faces.size());
+  p.stride = p.point_stride = padded_stride(p.count);
+  p.points = p.corners = points;
+  p.corner_first = m.corner_rows;
+  m.corner_rows += points * p.count;
+  p.nodes.resize(2 * std::size_t(points) * p.stride);
+  p.interface.resize(p.stride);
+  p.area.resize(p.stride, 1.0);
+  p.stiffness.resize(2 * std::size_t(p.stride), 1.0);
+  for (Index i = 0; i < p.count; ++i) {
+    const auto [a, b] = faces[i];
+    p.faces.push(a), p.faces.push(b);
+    p.area[i] = m.face_area[a];
+    p.stiffness[i] = p.stiffness[p.stride + i] = std::max(m.face_stiffness[a], m.face_stiffness[b]);
+    for (Index k = 0; k < points; ++k) {
+      const Index node = m.face_nodes[4 * a + k];
+      p.nodes[k * p.stride + i] = node;
+      for (Index j = 0; j < points; ++j)
+        if (m.node_place[m.face_nodes[4 * b + j]] == m.node_place[node])
+          p.nodes[(points + k) * p.stride + i] = m.face_nodes[4 * b + j];
+    }
+  }
+}
+
+void Scene::build_corners() {
+  Model& m = model;
+  std::vector<std::vector<Index>> rows(m.node_count);
+  for (const ElementSet* e : {&m.tet4, &m.pyramid5, &m.wedge6, &m.hex8})
+    for (Index i = 0; i < e->count; ++i)
+      for (Index k = 0; k < e->corners; ++k)
+        rows[e->nodes[k * e->stride + i]].push_back(e->corner_first + i * e->corners + k);
+  for (const PairSet* p : {&m.triangles, &m.quads})
+    for (Index i = 0; i < p->count; ++i)
+      for (Index k = 0; k < p->points; ++k) {
+        const Index row = p->corner_first + i * p->points + k;
+        rows[p->nodes[k * p->stride + i]].push_back(~row);
+        rows[p->nodes[(p->points + k) * p->stride + i]].push_back(row);
+      }
+  for (const auto& of_node : rows) {
+    m.corner_first.push(Index(m.corner.size()));
+    for (const Index row : of_node) m.corner.push(row);
+  }
+  m.corner_first.push(Index(m.corner.size()));
+}
+
+/// Fixed blocks are held in all directions; curve 0 is constant.
+void Scene::build_loads() {
+  Model& m = model;
+  m.load_first.resize(m.node_count + 1);
+  for (const Block& b : blocks_)
+    for (Index k = 0; k < b.nodes; ++k) m.support.push(b.fixed ? 0 : -1);
+  m.support_component.resize(3, 1);
+  m.support_curve.resize(3);
+  m.support_velocity.resize(3);
+  m.curve_time = {{0}};
+  m.curve_factor = {{1}};
+  m.class_count = 1;
+  m.interface_of.push(0);
+  set_interface({});
+}
+
+void Scene::set_interface(std::initializer_list<std::pair<const char*, Real>> parameters) {
+  using Law = Brittle<Real>;
+  Model& m = model;
+  m.interfaces.resize(1);
+  m.interfaces[0] = {.law = 0,
+                     .stiffness_n_value = 0,
+                     .stiffness_n_factor = 1,
+                     .stiffness_s_value = 0,
+                     .stiffness_s_factor = 1};
+  m.interface_parameters.resize(InterfaceLaws::most_parameters);
+  m.interface_parameters.fill(0);
+  for (const auto& [name, value] : parameters) {
+    std::size_t k = 0;
+    while (k < Law::parameters.size() && std::string_view(Law::parameters[k].name) != name) ++k;
+    REQUIRE(k < Law::parameters.size());
+    m.interface_parameters[k] = value;
+  }
+}
+
+}  // namespace cdem::test

@@ -1,0 +1,61 @@
+"""Interfaces: what a pair takes from the default, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+from shared.cases import INCLINE
+from shared.joints import SETS, jointed_case
+
+import cdem
+from cdem import Case, CaseError
+from cdem.case.types import Stiffness
+
+
+def test_a_pair_takes_what_it_does_not_say_from_the_default(write):
+    case = Case.load(write(INCLINE))
+    pair = case.interfaces.pairs[0]
+    assert (pair.friction_angle, pair.cohesion) == (26, 10e3)
+    assert pair.stiffness_n == Stiffness(2e9, relative=False)
+    assert pair.stiffness_s == Stiffness(5, relative=True)
+    assert case.interfaces.default.stiffness_n.as_pair() == (0, 10)
+    case.set("interfaces.default.friction_angle", 20)
+    case.set("interfaces.default.cohesion", 5)
+    assert (pair.friction_angle, pair.cohesion) == (20, 10e3)
+
+
+def test_a_pair_without_default_needs_a_friction_angle(write):
+    text = INCLINE.replace('  default: {friction_angle: "26 deg", ', "  # {")
+    with pytest.raises(CaseError, match=r"friction_angle is missing, and so is interfaces.default"):
+        Case.load(write(text))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "stiffness_n: auto,",
+            'stiffness_n: auto, dilation_angle: "30 deg",',
+            "default: dilation_angle must not be larger than friction_angle, 26",
+        ),
+        (
+            'name: base, cohesion: "10 kPa",',
+            "name: base, dilation_angle: 5,",
+            "pairs.0: dilation_angle needs dilation_slip",
+        ),
+    ],
+)
+def test_mistakes_are_answered(complaint, old, new, message):
+    assert message in complaint(old, new)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"interfaces.pairs": [{"cohesion": 1}]}, "give exactly one of between, joint"),
+        ({"model.joints": SETS, "interfaces.pairs": [{"joint": "a"}] * 2}, "a is listed twice"),
+    ],
+)
+def test_mistakes_about_joints_are_named(changes, message):
+    with pytest.raises(cdem.CaseError) as error:
+        jointed_case(changes)
+    assert message in str(error.value)

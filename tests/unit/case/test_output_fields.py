@@ -1,0 +1,30 @@
+"""Output fields: the case, the documents and the pictures follow from one list."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+from cdem import Case
+from cdem.case.output_fields import CHOICE, OUTPUT_FIELDS
+from cdem.output.render import DRAWN
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_the_case_offers_the_fields_of_frames():
+    output = Case.schema()["$defs"]["Output"]["properties"]["fields"]
+    assert output["items"]["enum"] == output["default"] == CHOICE
+    assert CHOICE == ["displacement", "velocity", "stress", "damage", "piece"]
+
+
+def test_pictures_show_what_the_surface_holds():
+    assert {name for name, field in DRAWN.items() if field.surface == "never"} == set()
+    assert list(DRAWN) == [
+        "displacement", "velocity", "damage", "group", "block", "piece", "joint"
+    ]  # fmt: skip
+
+
+def test_names_are_unique_and_the_table_of_the_documents_is_up_to_date():
+    assert len({field.name for field in OUTPUT_FIELDS}) == len(OUTPUT_FIELDS)
+    tool = [sys.executable, str(ROOT / "tools" / "field_table.py"), "--check"]
+    assert subprocess.run(tool, check=False).returncode == 0

@@ -1,0 +1,51 @@
+"""Verbs that make and look at models."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from cdem import Case
+
+pytestmark = pytest.mark.usefixtures("cube_folder")
+
+
+def test_check_reports_and_changes_nothing(run_cli, cube_folder):
+    status, out, _ = run_cli("check", "cube.yaml")
+    assert status == 0
+    assert "A cube falls" in out
+    assert json.loads(run_cli("check", "cube.yaml", "--json")[1])["counts"]["nodes"] == 8
+    assert [path.name for path in cube_folder.iterdir()] == ["cube.yaml"]
+
+
+def test_new_lists_and_writes_templates(run_cli, cube_folder):
+    status, out, _ = run_cli("new")
+    assert status == 0
+    names = [line.split()[0] for line in out.splitlines()]
+    assert names == ["incline", "landslide", "safety", "slope", "wall"]
+    for name in names:
+        assert run_cli("new", name, "cases")[0] == 0
+        case = Case.load(cube_folder / "cases" / f"{name}.yaml")
+        assert case.title
+    assert (cube_folder / "cases/slope.msh").exists()
+    status, _, err = run_cli("new", "incline", "cases")
+    assert status == 1
+    assert "cases/incline.yaml: exists already; use --force" in err
+    assert run_cli("new", "incline", "cases", "--force")[0] == 0
+    assert "did you mean incline?" in run_cli("new", "inclin")[2]
+
+
+@pytest.mark.parametrize("name", ["incline", "wall", "slope", "safety", "landslide"])
+def test_templates_check(run_cli, name):
+    run_cli("new", name)
+    status, out, err = run_cli("check", f"{name}.yaml")
+    assert (status, err) == (0, "")
+    assert "warning" not in out
+
+
+def test_schema_is_json(run_cli):
+    status, out, _ = run_cli("schema")
+    assert status == 0
+    assert "materials" in json.loads(out)["properties"]
+    assert "parameters" in json.loads(run_cli("schema", "study")[1])["properties"]

@@ -1,0 +1,46 @@
+"""The verb that runs a case."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from cdem import Case
+
+pytestmark = pytest.mark.usefixtures("cube_folder")
+
+
+def test_run_writes_its_folder_and_guards_it(run_cli, cube_folder):
+    status, out, err = run_cli("run", "cube.yaml", "--threads", "1")
+    assert (status, out) == (0, "finished; results are in cube.results\n")
+    assert err.startswith("fall: t ")
+    summary = json.loads((cube_folder / "cube.results/summary.json").read_text())
+    assert summary["status"] == "finished"
+    assert Case.load(cube_folder / "cube.results/case.yaml").stages[0].duration == 0.005
+
+    status, out, err = run_cli("run", "cube.yaml")
+    assert status == 1
+    assert "exists already; use --overwrite to replace it, --resume to go on" in err
+    assert run_cli("run", "cube.yaml", "--overwrite", "--quiet") == (0, "", "")
+
+
+def test_json_is_all_that_is_on_stdout(run_cli):
+    status, out, err = run_cli("run", "cube.yaml", "--json", "-o", "a")
+    assert (status, err) == (0, "")
+    assert json.loads(out)["groups"]["cube"]["mass"] == pytest.approx(2700)
+
+
+def test_resuming_with_another_case_is_said(run_cli):
+    assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
+    status, _, err = run_cli("run", "cube.yaml", "--resume", "--set", "title=Other")
+    assert status == 0
+    assert "warning: this is not the case that cube.results was begun with: - title: A cube" in err
+
+
+def test_a_failed_run_is_status_3(run_cli, cube_folder):
+    # An initial speed above that of a P wave is taken for a runaway.
+    status, out, err = run_cli("run", "cube.yaml", "--set", "groups.cube.velocity=[1e6, 0, 0]")
+    assert (status, out) == (3, "")
+    assert "Traceback" not in err
+    assert json.loads((cube_folder / "cube.results/summary.json").read_text())["status"] == "failed"

@@ -1,0 +1,70 @@
+"""Blocks of meshes: their faces, edges and pairs."""
+
+import numpy as np
+import pytest
+
+from cdem.errors import MeshError
+from cdem.mesh import mesh, primitives
+from cdem.mesh.blocks import build_topology
+
+SPRINGS = {"hex8": 24, "wedge6": 18, "pyramid5": 16, "tet4": 12}
+
+
+def one_element(shape):
+    box = primitives.box("a", (1, 1, 1), shape=shape)
+    cell = box.cells[shape][:1]
+    used, numbers = np.unique(cell, return_inverse=True)
+    return mesh.Mesh(
+        box.points[used], {shape: numbers.reshape(cell.shape)}, {shape: np.zeros(1, int)}, ["a"]
+    )
+
+
+@pytest.mark.parametrize("shape", SPRINGS)
+def test_semi_springs_of_one_element(shape):
+    t = build_topology(one_element(shape), {})
+    assert (t.face_nodes >= 0).sum() == SPRINGS[shape]
+    assert (t.edge_faces >= 0).all()
+    faces, edges, nodes = len(t.face_nodes), len(t.edge_nodes), len(t.node_position)
+    assert nodes - edges + faces == 2  # Euler
+
+
+def test_a_fully_split_box_pairs_every_inner_face_once():
+    t = build_topology(primitives.box("a", (1, 1, 1), (3, 3, 3), shape="tet4"), {"a": "elements"})
+    assert len(t.block_group) == 162
+    assert 2 * len(t.pair_faces) + 2 * 6 * 9 == len(t.face_nodes)
+    assert len(np.unique(t.pair_faces)) == t.pair_faces.size
+    for (a, b), shift in zip(t.pair_faces, t.pair_shift, strict=True):
+        for k in range(3):
+            xa = t.node_position[t.face_nodes[a, k]]
+            xb = t.node_position[t.face_nodes[b, (shift - k) % 3]]
+            assert (xa == xb).all()
+
+
+def test_boxes_side_by_side_are_mated_by_place():
+    left, right = primitives.box("a", (1, 1, 1)), primitives.box("b", (1, 1, 1))
+    right.points = right.points + [1 + 1e-12, 0, 0]
+    t = build_topology(mesh.merge([left, right]), {})
+    assert len(t.pair_faces) == 1
+
+
+def test_inverted_element_is_an_error():
+    bad = one_element("tet4")
+    bad.cells["tet4"] = bad.cells["tet4"][:, [1, 0, 2, 3]]
+    with pytest.raises(MeshError, match=r"tet4 element 0 of group 'a'.*is inverted"):
+        build_topology(bad, {})
+
+
+def test_nodes_of_a_large_block_lie_as_its_elements_come_to_them(monkeypatch):
+    box = primitives.box("a", (2, 1, 1), (4, 3, 3), shape="tet4")
+    small = build_topology(box, {})
+    monkeypatch.setattr("cdem.mesh.blocks.LARGE_BLOCK", 10)
+    large = build_topology(box, {})
+    seen = large.element_nodes["tet4"].ravel()
+    _, first = np.unique(seen, return_index=True)
+    assert (np.diff(first) > 0).all()
+    assert (np.diff(small.node_point) > 0).all()
+    for t in (small, large):
+        assert np.array_equal(
+            t.node_position[t.element_nodes["tet4"]],
+            box.points[box.cells["tet4"][t.element_cell["tet4"]]],
+        )

@@ -1,0 +1,31 @@
+"""Overlaps of faces that do not conform."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cdem.mesh.overlap import clip, point_areas
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.floats(-0.9, 0.9), st.floats(-0.9, 0.9), st.floats(0, 2 * np.pi), st.floats(0.3, 2.0)
+)  # fmt: skip
+def test_overlap_shares_area_and_centroid_exactly(dx, dy, angle, size):
+    """A square moved and turned over another one: the points carry the polygon's area and centre."""
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) - 0.5
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    lower = np.column_stack([square, np.zeros(4)])
+    upper = np.column_stack([size * square @ turn.T + [dx, dy], np.zeros(4)])[::-1]
+    polygon = clip(lower, upper)
+    if polygon is None:
+        return
+    weights = point_areas(polygon)
+    x, y = polygon[:, 0], polygon[:, 1]
+    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    cross = x * y1 - x1 * y
+    area = abs(cross.sum()) / 2
+    center = np.array([((x + x1) * cross).sum(), ((y + y1) * cross).sum()]) / (3 * cross.sum())
+    assert weights.sum() == pytest.approx(area, rel=1e-9)
+    np.testing.assert_allclose(weights @ polygon[:, :2] / area, center, atol=1e-9)

@@ -1,0 +1,31 @@
+"""Boxes and polyhedra: their volumes and outward faces."""
+
+import numpy as np
+import pytest
+
+from cdem.errors import MeshError
+from cdem.mesh import primitives
+from cdem.mesh.blocks import build_topology
+from cdem.mesh.element_shapes import NODES, reference_gradients
+
+
+@pytest.mark.parametrize("shape", NODES)
+def test_boxes_fill_their_volume(shape):
+    t = build_topology(primitives.box("a", (1, 2, 3), (2, 2, 2), shape=shape), {})
+    volume = sum(
+        reference_gradients(s, t.node_position[t.element_nodes[s]])[1].sum() for s in NODES
+    )
+    assert volume == pytest.approx(6, rel=1e-12)
+    x = t.node_position[np.where(t.face_nodes < 0, t.face_nodes[:, 2:3], t.face_nodes)]
+    outward = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    assert (np.einsum("ij,ij->i", outward, x.mean(axis=1) - [0.5, 1, 1.5]) > 0).all()
+
+
+def test_polyhedra():
+    corners = np.array(np.meshgrid([0, 1], [0, 2], [0, 3])).reshape(3, -1).T
+    block = primitives.polyhedron("a", corners)
+    volume = reference_gradients("tet4", block.points[block.cells["tet4"]])[1].sum()
+    assert volume == pytest.approx(6, rel=1e-12)
+    np.testing.assert_allclose(block.points[-1], [0.5, 1, 1.5])
+    with pytest.raises(MeshError, match="not convex"):
+        primitives.polyhedron("a", [*corners, [0.5, 1, 1.4]])

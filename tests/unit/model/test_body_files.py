@@ -1,0 +1,133 @@
+"""Convex bodies from files, and refusals of those that cannot be used."""
+
+import numpy as np
+import pytest
+
+import cdem
+from cdem.joints import convex_cells, cutting
+from cdem.mesh import primitives
+from cdem.mesh.blocks import block_labels, build_topology
+from cdem.model.body_files import read_bodies
+
+CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def cubes(count=1, at=0.0):
+    """Corners and faces of unit cubes in a row, each with corners of its own."""
+    corner = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    points = np.concatenate([corner + [at + k, 0, 0] for k in range(count)])
+    return points, [[8 * k + v for v in face] for k in range(count) for face in CUBE]
+
+
+def write_obj(path, points, faces):
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in points]
+    lines += ["f " + " ".join(f"{v + 1}//1" for v in face) for face in faces]
+    path.write_text("# blocks\n" + "\n".join(lines) + "\n")
+
+
+def triangles(faces):
+    return [(f[0], f[m], f[m + 1]) for f in faces for m in range(1, len(f) - 1)]
+
+
+def volume(made):
+    x = made.points[made.cells["tet4"]]
+    return np.linalg.det(x[:, 1:] - x[:, :1]).sum() / 6
+
+
+def test_obj(tmp_path):
+    points, faces = cubes(3, at=0.25)
+    faces[0] = faces[0][::-1]  # the turn of a face does not matter
+    points[8:16] += [10, 0, 0]  # the middle one stands apart
+    write_obj(tmp_path / "a.obj", points, faces)
+    made = read_bodies(tmp_path / "a.obj", "rock")
+    t = build_topology(made, {})
+    assert len(t.block_group) == 3 and volume(made) == pytest.approx(3, rel=1e-12)
+    assert len(t.pair_faces) == 0
+
+
+def test_surfaces_that_share_corners_are_one_body(tmp_path):
+    # two cubes side by side share a wall: its edges have four faces, and that is said
+    write_obj(tmp_path / "a.obj", *cubes(2))
+    with pytest.raises(cdem.MeshError, match=r"body 0: the surface is not closed.* has 4;"):
+        read_bodies(tmp_path / "a.obj", "rock")
+
+
+@pytest.mark.parametrize("far", [0.0, 5000.0])
+def test_stl(tmp_path, far):
+    import meshio
+
+    points, faces = cubes(1)
+    points = points @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0] + far
+    meshio.Mesh(points, [("triangle", np.array(triangles(faces)))]).write(tmp_path / "a.stl")
+    assert volume(read_bodies(tmp_path / "a.stl", "rock")) == pytest.approx(
+        1, rel=1e-6 + far * 1e-6
+    )
+
+
+def test_vtk_polyhedra(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    piece = primitives.box("rock", (2, 2, 2))
+    c = convex_cells.from_mesh(piece, ["rock"], block_labels(piece, {}))
+    for number, normal in enumerate(([1, 1, 1], [1, -0.5, 0.3])):
+        n = np.array(normal) / np.linalg.norm(normal)
+        c, _ = cutting.cut(c, n, n @ [1, 1.1, 0.9], number, among=np.array([True]))
+    rows = []
+    for k in range(len(c.block)):
+        loops = [
+            c.corner[c.first[f] : c.first[f + 1]].tolist() for f in np.flatnonzero(c.cell == k)
+        ]
+        row = [len(loops), *(v for loop in loops for v in (len(loop), *loop))]
+        rows += [len(row), *row]
+    kinds = np.full(len(c.block), pyvista.CellType.POLYHEDRON)
+    pyvista.UnstructuredGrid(rows, kinds, c.points).save(tmp_path / "a.vtu")
+    made = read_bodies(tmp_path / "a.vtu", "rock")
+    t = build_topology(made, {})
+    assert len(t.block_group) == 4 and volume(made) == pytest.approx(8, rel=1e-12)
+    x = t.node_position[t.face_nodes[:, :3]]
+    outer = (np.isclose(x, 0).all(axis=1) | np.isclose(x, 2).all(axis=1)).any(axis=1)
+    assert t.pair_faces.size == (~outer).sum() > 8  # both sides of a cut are divided alike
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (lambda p, f: f.pop(), r"not closed: .*\(0, 0, 1\) - \(0, 1, 1\) has 1"),
+        (lambda p, f: p.__setitem__(7, [0.4, 0.4, 0.4]), "not convex: vertex"),
+        (lambda p, f: p.__setitem__((slice(None), 2), 0), "has no area|not closed|no volume"),
+        (lambda p, f: f.append([0, 1, 99]), r"a.obj:\d+: a face needs three or more vertices"),
+    ],
+)
+def test_refusals_say_where(tmp_path, change, message):
+    points, faces = cubes()
+    if "convex" in message:
+        faces = [list(t) for t in triangles(faces)]
+    change(points, faces)
+    write_obj(tmp_path / "a.obj", points, faces)
+    with pytest.raises(cdem.MeshError, match=message):
+        read_bodies(tmp_path / "a.obj", "rock")
+
+
+@pytest.mark.parametrize("name, text, message", [
+    ("a.txt", "", "bodies are read from .obj, .stl, .vtu, .vtk files"),
+    ("a.obj", "v 1 2\nv x 0 0\n", "a.obj:2: cannot be read"),
+    ("a.obj", "", "holds no faces"),
+    ("a.stl", "not one", "not a mesh that can be read"),
+])  # fmt: skip
+def test_files_that_are_no_bodies(tmp_path, name, text, message):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(cdem.MeshError, match=message):
+        read_bodies(tmp_path / name, "rock")
+
+
+def test_a_case_with_bodies_from_a_file(run_cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_obj(tmp_path / "cube.obj", *cubes())
+    (tmp_path / "case.yaml").write_text(
+        "model: {blocks: [{group: a, file: cube.obj, translate: [0, 0, 1]}]}\n"
+        "materials: {m: {density: 2500, young_modulus: 1e9, poisson_ratio: 0.2}}\n"
+        "groups: {a: {material: m}}\n"
+        "stages: [{name: fall, mode: dynamic, duration: 1}]\n"
+    )
+    assert run_cli("check", "case.yaml")[0] == 0
+    status, _, err = run_cli("check", "case.yaml", "--set", "model.blocks.0.file=cub.obj")
+    assert status == 1 and "model.blocks.0: " in err and "no such file" in err

@@ -1,0 +1,58 @@
+"""Fields of a run: pieces, and the surface with its sets of joints."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scenes import simulate
+from shared.joints import SETS, jointed_case
+
+import cdem
+from cdem.case.output_fields import OUTPUT_FIELDS
+from cdem.joints import joints
+from cdem.output.render import snapshot
+from cdem.run.fields import pieces_of, surface_of, values_of, visible_faces
+
+
+@pytest.mark.parametrize(("kind", "divisions"), [("quads", [1, 1, 1]), ("overlaps", [2, 1, 1])])
+def test_blocks_hang_together_by_one_point(kind, divisions):
+    upper = {"size": [2, 1, 1], "divisions": divisions}
+    blocks = [
+        {"group": "a", "box": {"size": [2, 1, 1]}},
+        {"group": "b", "box": upper, "translate": [0, 0, 1]},
+    ]
+    bond = {"friction_angle": 0, "cohesion": "1 MPa", "tensile_strength": "1 MPa"}
+    sim = simulate(blocks, {"a": {}, "b": {}}, interfaces={"default": bond})
+    bonds = sim.core.fields()[f"{kind}.bond"]
+    first = bonds[:1].copy()
+    bonds[:] = 0
+    assert len(set(pieces_of(sim))) == 2
+    bonds[:1] = first
+    assert len(set(pieces_of(sim))) == 1
+
+
+def test_surfaces_that_are_drawn_know_the_set():
+    sim = cdem.Simulation(jointed_case({"model.joints": SETS}), threads=1)
+    surface = snapshot(sim)
+    faces = surface.faces.reshape(-1, 4)[:, 1:]
+    for number, joint in enumerate(SETS, start=1):
+        x = surface.points[faces[surface.cell_data["joint"] == number]]
+        normal = joint.get("normal") or joints.pole(joint["dip"], joint["dip_direction"])
+        along = (x - joint["origin"]) @ normal / np.linalg.norm(normal) / joint["spacing"]
+        assert len(x) > 10 and np.abs(along - np.round(along)).max() < 1e-9
+    assert set(surface.cell_data["joint"]) == {0, 1, 2, 3}
+
+
+def test_every_field_of_nodes_and_elements_has_a_row_for_each():
+    sim = cdem.Simulation(jointed_case({"model.joints": SETS}), threads=1)
+    t = sim.build.topology
+    rows = {"nodes": len(t.node_position), "elements": sum(map(len, t.element_nodes.values()))}
+    known = [field for field in OUTPUT_FIELDS if field.on != "faces"]
+    values = values_of(sim, known)
+    assert {field.name: len(values[field.name]) for field in known} == {
+        field.name: rows[field.on] for field in known
+    }
+    _, faces, points, cells = surface_of(sim, values)
+    assert set(points) | set(cells) == {field.name for field in OUTPUT_FIELDS}
+    element = t.face_element[visible_faces(sim)[0]]
+    assert (cells["block"] == values["block"][element]).all() and len(faces) == len(element)

@@ -1,0 +1,78 @@
+"""Landslides that make no sense are answered with what is wrong."""
+
+from pathlib import Path
+
+import pytest
+from shared.slopes import SQUARE, slope
+
+from cdem.errors import CaseError
+from cdem.terrain import Landslide, make_mesh
+
+pytest.importorskip("scipy", reason="needs the extra 'terrain'")
+pytest.importorskip("netgen", reason="needs the extra 'terrain'")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            {"bodies": [{"group": "slab", "outline": [[30, 30], [70, 70], [70, 30], [30, 70]]}]},
+            r"bodies\.0\.outline: crosses itself: Self-intersection\[50 50\]",
+        ),
+        (
+            {"bodies": [{"group": "slab", "outline": [[30, 30], [170, 30], [70, 70]]}]},
+            r"bodies\.0\.outline: leaves the extent: it spans \(30, 30\) to \(170, 70\)",
+        ),
+        (
+            {"surface": {"plane": {"dip": 30, "dip_direction": 90, "through": [0, 0, 110]}}},
+            r"bodies\.0\.outline: holds no rock: the sliding surface lies above the ground",
+        ),
+        (
+            {"surface": {"plane": {"dip": 345, "dip_direction": 21, "through": [0, 0, 90]}}},
+            r"surface\.plane\.dip: must lie in \[0, 90\) \[deg\], got 345",
+        ),
+        (
+            {"surface": {"plane": {"dip": "30 m", "dip_direction": 9, "through": [0, 0, 0]}}},
+            r"surface\.plane\.dip: '30 m' has the wrong dimension",
+        ),
+        (
+            {"extent": {"x": [0, 100], "y": [0, 100], "base": 45}},
+            r"extent\.base: must lie an element below the ground",
+        ),
+        ({"extent": {"x": [100, 0], "y": [0, 100], "base": 0}}, r"extent: x must rise"),
+        ({"sizes": {"body": 10, "far": 300}}, r"sizes\.far: is larger than the extent"),
+        ({"sizes": {"body": 10, "far": 3}}, r"sizes: far must be at least body"),
+        (
+            {"surface": {"lines": [[[20, 20, 50], [80, 20, 50]], [[20, 60, 50], [80, 60, 51]]]}},
+            r"surface: has no data at \(.*\); it reaches from \(20, 20\) to \(80, 60\)",
+        ),
+        (
+            {"surface": {"lines": [[[20, 20, 50], [80, 20, 50]]]}},
+            r"surface\.lines: the points lie on one straight line",
+        ),
+        ({"surface": {}}, r"surface: needs exactly one of contours, grid, lines, plane; got none"),
+        (
+            {"bodies": [{"group": "bedrock", "outline": SQUARE}]},
+            r"bodies\.0\.group: the name 'bedrock' is taken",
+        ),
+        ({"body": []}, r"body: unknown key; did you mean bodies"),
+    ],
+)
+def test_mistakes_are_answered(changes, message):
+    with pytest.raises(CaseError, match=message):
+        make_mesh(Landslide(**slope(**changes)))
+
+
+def test_mistakes_in_a_file_say_where(tmp_path: Path):
+    file = tmp_path / "slope.yaml"
+    file.write_text(
+        "terrain: {contours: none.geojson}\n"
+        "extent: {x: [0, 100], y: [0, 100], base: 0}\n"
+        "surface: {plane: {dip: 30, dip_direction: 90, through: [0, 0, 90]}}\n"
+        "bodies: [{group: slab, outline: [[3, 3], [7, 3], [7, 7]]}]\n"
+        "sizes: {body: 10, far: 30}\n"
+    )
+    with pytest.raises(
+        CaseError, match=r"slope\.yaml:1:11: terrain\.contours: .*none\.geojson: cannot"
+    ):
+        make_mesh(Landslide.load(file))

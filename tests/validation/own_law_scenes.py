@@ -1,0 +1,261 @@
+"""Scenes with laws that only the tests have; runs in a process that loads their core.
+
+`python own_law_scenes.py NAME` runs one scene and fails where it is not as theory says.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parents[2]
+GRAVITY = {"gravity": [0, 0, -10.0]}
+PEAK, RESIDUAL, SLIP = 40.0, 20.0, 0.05
+WEAK = {
+    "law": "weakening",
+    "friction_angle": PEAK,
+    "residual_angle": RESIDUAL,
+    "weakening_slip": SLIP,
+}
+
+
+def load_core() -> None:
+    """Let cdem use the core of build/ that has the laws of tests/core/own_laws."""
+    from cdem import _instruction_sets
+
+    (path,) = (ROOT / "build" / "core").glob("_core_own_laws.*.so")
+    spec = importlib.util.spec_from_file_location("cdem._core_own_laws", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    for isa in _instruction_sets.NEEDS:
+        sys.modules[f"cdem._core_{isa}"] = module
+
+
+def tangent(slip):
+    """tan(phi) of WEAK after so much slip."""
+    peak, residual = np.tan(np.radians([PEAK, RESIDUAL]))
+    return residual + (peak - residual) * np.maximum(1 - np.asarray(slip) / SLIP, 0)
+
+
+def slider(**interface):
+    """A block that slides on a bed: 1 m/s at the start, slow enough in z to feel its weight."""
+    from scenes import simulate
+
+    return simulate(
+        [
+            {"group": "block", "box": {"size": [1, 1, 0.4]}, "translate": [-2, -0.5, 0]},
+            {"group": "bed", "box": {"size": [5, 2, 0.5]}, "translate": [-3, -1, -0.5]},
+        ],
+        {"block": {"velocity": [1, 0, 0]}, "bed": {"fix": ["x", "y", "z"]}},
+        interfaces={"default": WEAK | interface},
+        rock={"young_modulus": "1 GPa"},
+        loads=GRAVITY,
+        stages=[
+            {
+                "name": "slide",
+                "mode": "dynamic",
+                "duration": 1.0,
+                "damping": {"contact": 0.3, "stiffness": 0.3},
+            }
+        ],
+    )
+
+
+def travel_to_rest(speed):
+    """Theory: 1/2 v^2 = g integral of tan(phi(s)) ds."""
+    peak, residual = tangent([0, 1])
+    return SLIP + (speed**2 / 20 - 0.5 * (peak + residual) * SLIP) / residual
+
+
+def springs():
+    """Semi-springs: the block comes to rest where its weakened friction has spent its energy."""
+    sim = slider()
+    start = sim.fields["position"][:, 0].copy()
+    sim.run()
+    nodes = sim.build.nodes_of("block")
+    moved = (sim.fields["position"][:, 0] - start)[nodes].mean()
+    assert abs(moved / travel_to_rest(1.0) - 1) < 0.02, (moved, travel_to_rest(1.0))
+    state = sim.core.fields()
+    slip = state["spring.history"][state["spring.history_law"] == 1]
+    assert len(slip) >= 4 and abs(slip.max() / moved - 1) < 0.02, (slip, moved)
+    assert abs(sim.energies["error"]) < 0.01, sim.energies
+
+
+def edges():
+    """Semi-edges: the force of every crossing obeys the friction that its side remembers."""
+    from scenes import simulate
+
+    along = {"rotate": {"axis": [1, 0, 0], "angle": "45 deg"}, "translate": [-2, 0, 0]}
+    across = {"rotate": {"axis": [0, 1, 0], "angle": "45 deg"}, "translate": [-0.4, -2, 1.0605]}
+    sim = simulate(
+        [
+            {"group": "low", "box": {"size": [4, 0.5, 0.5], "divisions": [4, 1, 1]}} | along,
+            {"group": "high", "box": {"size": [0.5, 4, 0.5], "divisions": [1, 4, 1]}} | across,
+        ],
+        {"low": {"fix": ["x", "y", "z"]}, "high": {"velocity": [0.5, 0.1, -0.2]}},
+        interfaces={"default": WEAK},
+        rock={"young_modulus": "0.1 GPa"},
+        loads=GRAVITY,
+    )
+    seen = []
+    for _ in range(200):
+        sim.step(1)
+        state = sim.core.fields()
+        rows = state["edge.state"].reshape(-1, 8)
+        side = state["edge.contact"].reshape(-1, 4)[:, 0]
+        for (normal, _, s1, s2, *_), history in zip(rows, state["edge.history"][side], strict=True):
+            if normal > 0 and history > 0:
+                seen.append((np.hypot(s1, s2) / normal, history))
+    ratio, history = np.array(seen).T
+    assert history.max() > 2e-3 and np.ptp(ratio) > 0.01, (history.max(), ratio)
+    # the limit of a step is that of the slip before it
+    assert (ratio < tangent(history) + 0.01).all() and (ratio > tangent(history) - 0.01).any()
+
+
+def bonds():
+    """Bond points: a bond that breaks slides on, and its slip goes to the contacts at release."""
+    sim = slider(cohesion="20 kPa")
+    broken_at = released_at = None
+    for _ in range(4000):
+        sim.step(5)
+        state = sim.core.fields()
+        points = state["overlaps.history"]
+        if broken_at is None and sum(sim.broken.values()) == len(sim.build.topology.overlap_first):
+            pass
+        if points.max() > 0 and broken_at is None:
+            broken_at = points.max()
+        if (state["overlaps.live"][:1] == 0).all():
+            released_at = points.max()
+            break
+    assert broken_at is not None and released_at is not None
+    assert sum(sim.broken.values()) > 0
+    walls = state["spring.history"][state["spring.history_law"] == 1]
+    assert len(walls) >= 8 and walls.max() >= 0.9 * released_at > 0, (walls, released_at)
+    assert abs(sim.energies["error"]) < 0.01, sim.energies
+
+
+def two_laws():
+    """Brittle contacts give the same bits whether or not another law acts in the model."""
+    from scenes import simulate
+
+    def scene(far):
+        pairs = [{"between": ["far", "bed"], **far}]
+        sim = simulate(
+            [
+                {"group": "near", "box": {"size": [1, 1, 0.4]}, "translate": [-2, -0.5, 0]},
+                {"group": "far", "box": {"size": [1, 1, 0.4]}, "translate": [2, -0.5, 0]},
+                {"group": "bed", "box": {"size": [8, 2, 0.5]}, "translate": [-4, -1, -0.5]},
+            ],
+            {
+                "near": {"velocity": [1, 0, 0]},
+                "far": {"velocity": [0.1, 0, 0]},
+                "bed": {"fix": ["x", "y", "z"]},
+            },
+            interfaces={"default": {"friction_angle": 30}, "pairs": pairs},
+            rock={"young_modulus": "0.1 GPa"},
+            loads=GRAVITY,
+            time={"step": "0.1 ms"},
+        )
+        sim.step(300)
+        return sim.fields["position"][sim.build.nodes_of("near")].tobytes()
+
+    assert scene(WEAK) == scene({"friction_angle": 40})
+
+
+def plasticity():
+    """A bar that is pulled yields: axial stress, plastic strain and work as theory says."""
+    from scenes import simulate
+
+    young, yield_stress, speed, steps = 1e9, 1e6, 0.05, 3000
+    for shape in ("hex8", "tet4", "wedge6", "pyramid5"):
+        sim = simulate(
+            [{"group": "bar", "box": {"size": [1, 1, 1], "divisions": [1, 1, 2], "shape": shape}}],
+            {"bar": {}},
+            rock={
+                "law": "perfectly-plastic",
+                "yield_stress": yield_stress,
+                "young_modulus": young,
+                "density": 2500,
+            },
+            loads={
+                "supports": [
+                    {"surface": {"group": "bar", "normal": [-1, 0, 0]}, "fix": ["x"]},
+                    {"surface": {"group": "bar", "normal": [0, -1, 0]}, "fix": ["y"]},
+                    {"surface": {"group": "bar", "normal": [0, 0, -1]}, "fix": ["z"]},
+                ],
+                "velocities": [
+                    {
+                        "surface": {"group": "bar", "normal": [0, 0, 1]},
+                        "velocity": [0, 0, speed],
+                        "components": ["z"],
+                        "history": [[0, 0], [0.02, 1]],
+                    }
+                ],
+            },
+            stages=[
+                {
+                    "name": "pull",
+                    "mode": "dynamic",
+                    "duration": 1.0,
+                    "damping": {"stiffness": 0.5},
+                }
+            ],
+            time={"step": "20 us"},
+        )
+        sim.step(steps)
+        strain = speed * (sim.time - 0.01)
+        stress = sim.core.stress()[shape].reshape(6, -1)[2]
+        count = sim.build.assembly.counts[f"{shape}.count"]
+        energies = sim.energies
+        assert np.allclose(stress[:count], yield_stress, rtol=0.01), (shape, stress[:count])
+        work = yield_stress * (strain - yield_stress / young)
+        assert abs(energies["plastic"] / work - 1) < 0.01, (shape, energies, work)
+        assert abs(energies["error"]) < 1e-3, (shape, energies)
+
+
+def results():
+    """States are output fields, survive a restart, and are in the schema; mistakes are told."""
+    import cdem
+    from cdem.errors import CaseError
+
+    schema = str(cdem.Case.schema())
+    assert "residual_angle" in schema and "yield_stress" in schema
+    for wrong, told in (
+        ({"residual_angle": 50}, "residual_angle must not be larger than friction_angle, 40"),
+        ({"weakening_slip": -1}, "weakening_slip"),
+        ({"law": "weakning"}, "law"),
+        ({"dilation_angle": 3}, "dilation_angle"),
+    ):
+        try:
+            slider(**wrong)
+        except CaseError as error:
+            assert told in str(error), str(error)
+        else:
+            raise AssertionError(f"{wrong} was accepted")
+    with tempfile.TemporaryDirectory() as folder:
+        from cdem.output.reader import VolumeSeries
+
+        case = slider().case
+        case.stages[0].duration = 0.1
+        case.set("output.fields", ["displacement", "joint_slip"])
+        whole = cdem.Simulation(case, output=f"{folder}/a", threads=1)
+        whole.run()
+        half = cdem.Simulation(case, output=f"{folder}/b", threads=1)
+        half.run_until(0.05)
+        half.write_checkpoint()
+        rest = cdem.Simulation(case, output=f"{folder}/b", threads=1, resume=True)
+        rest.run()
+        own, other = whole.core.fields(), rest.core.fields()
+        assert all(np.array_equal(own[name], other[name]) for name in own)
+        slip = VolumeSeries(Path(folder) / "a")[-1].cells["joint_slip"]
+        assert 0.05 < slip.max() < 0.11, slip
+
+
+if __name__ == "__main__":
+    sys.path[:0] = [str(ROOT / "tests")]
+    load_core()
+    globals()[sys.argv[1]]()

@@ -1,0 +1,90 @@
+"""Check the imports of src/cdem: folders in one order, and no module that imports itself by others.
+
+Every import counts: at the top, inside functions, and for type checkers only.
+"""
+
+import ast
+import sys
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent / "src"
+
+# Folders, lowest first: a module imports from its own folder and those before it. The modules of
+# the package itself stand where they belong.
+FOLDERS = [
+    "_version errors units _instruction_sets _native",
+    "case",
+    "mesh",
+    "joints",
+    "terrain",
+    "model",
+    "run",
+    "output",
+    "study",
+    "verification",
+    "tools",
+    "cli",
+    "__init__ __main__",
+]
+
+
+def name_of(path: Path) -> str:
+    """Dotted name of a module below src; a package's own module ends in __init__."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+def height(module: str) -> int:
+    """Place in FOLDERS of a module."""
+    part = module.split(".")[1]
+    for number, folders in enumerate(FOLDERS):
+        if part in folders.split():
+            return number
+    sys.exit(f"{module}: give {part} a place in FOLDERS of {Path(__file__).name}")
+
+
+def imports(module: str, path: Path, modules: dict[str, Path]) -> Iterator[str]:
+    """Modules of cdem that a module imports."""
+    for node in ast.walk(ast.parse(path.read_text(), str(path))):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            sys.exit(f"{path}:{node.lineno}: write the import in full, from cdem")
+        if isinstance(node, ast.ImportFrom):
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        else:
+            continue
+        for name in names:
+            if name.split(".")[0] == "cdem":
+                yield resolve(name, modules)
+
+
+def resolve(name: str, modules: dict[str, Path]) -> str:
+    """The module that a dotted name is, or lies in."""
+    while name not in modules:
+        if f"{name}.__init__" in modules:
+            return f"{name}.__init__"
+        name = name.rpartition(".")[0]
+    return name
+
+
+def main() -> None:
+    """Print what is wrong and fail, or say nothing."""
+    modules = {name_of(path): path for path in sorted((ROOT / "cdem").rglob("*.py"))}
+    graph = {module: set(imports(module, path, modules)) for module, path in modules.items()}
+    problems = [
+        f"{module} may not import {other}, which lies above it"
+        for module, others in graph.items()
+        for other in sorted(others)
+        if height(other) > height(module)
+    ]
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as cycle:
+        problems.append("modules import each other: " + " -> ".join(cycle.args[1]))
+    sys.exit("\n".join(problems) or 0)
+
+
+if __name__ == "__main__":
+    main()
