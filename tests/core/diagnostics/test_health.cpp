@@ -50,7 +50,7 @@ TEST_CASE("the fastest node is named when it is too fast") {
   CHECK(report.value == 11);
 }
 
-TEST_CASE("a contact that sank too deep is named by its face") {
+TEST_CASE("a contact that penetrated too deep is named by its face") {
   Box box;
   box.state.springs.lost[4 * 2 + 3] = 1;
   CHECK(box.health().outcome == Outcome::lost_contact);
