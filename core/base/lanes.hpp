@@ -127,7 +127,7 @@ struct IndexPack {
   Index id[CDEM_LANES];
 };
 
-/// As many picked items as there are lanes, whatever rows they are of.
+/// As many selected items as there are lanes, whatever rows they are of.
 struct SelectedLane {
   IndexPack row, id;
 };
@@ -185,7 +185,7 @@ CDEM_HD inline Real of_lane(Real number, Index) { return number; }
 /// The index of a lane.
 CDEM_HD inline Index& of_lane(Index& index, Index) { return index; }
 CDEM_HD inline Index of_lane(const Index& index, Index) { return index; }
-/// Do something for every lane of a picked item, with the number of the lane, row and item.
+/// Do something for every lane of a selected item, with the number of the lane, row and item.
 template <class Do>
 CDEM_HD inline void for_lanes(const Selected& item, const Do& act) {
   act(0, item.row, item.id);

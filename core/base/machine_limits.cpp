@@ -1,4 +1,4 @@
-// measure.cpp - memory bandwidth and peak arithmetic of the machine.
+// machine_limits.cpp - see machine_limits.hpp.
 #include "core/base/machine_limits.hpp"
 
 #include <omp.h>

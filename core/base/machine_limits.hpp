@@ -1,4 +1,4 @@
-// measure.hpp - what the machine can do: the limits that a benchmark is compared with.
+// machine_limits.hpp - measures bandwidth and peak arithmetic of the machine, for benchmarks.
 #pragma once
 
 #include <cstddef>

@@ -20,8 +20,8 @@ struct Blocks {
 };
 
 /// Raise a count that several threads may raise at once, and return what it was. Which of them
-/// comes first is left to chance: what is found with it must be sorted. Taking turns costs time,
-/// which one thread `alone` need not spend.
+/// comes first is left to chance: what is found with it must be sorted. An atomic costs time, which
+/// one thread `alone` need not spend.
 CDEM_HD inline Index raise(Index& count, bool alone) {
   if (alone) return count++;
 #if defined(__CUDA_ARCH__)

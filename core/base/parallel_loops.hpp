@@ -28,7 +28,7 @@ void for_each_item(Queue queue, Index count, const Kernel& kernel) {
 }
 
 template <class Kernel>
-__global__ void run_picked_on_gpu(Index count, Kernel kernel) {
+__global__ void run_selected_on_gpu(Index count, Kernel kernel) {
   const Index row = blockIdx.x * blockDim.x + threadIdx.x;
   if (row >= count) return;
   const Range all = kernel.items(row);
@@ -37,7 +37,7 @@ __global__ void run_picked_on_gpu(Index count, Kernel kernel) {
 }
 template <class Kernel>
 void for_each_selected(Queue queue, Index count, const Kernel& kernel) {
-  if (count > 0) run_picked_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
+  if (count > 0) run_selected_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
 }
 
 template <class Kernel>
@@ -71,7 +71,7 @@ void for_each_lane(Queue, Index count, const Kernel& kernel) {
 }
 
 /// Run a kernel whose items take different paths (searches, ragged sums): one number at a time,
-/// dealt out in small parts, for the faces that are in contact lie together.
+/// in small parts for each thread, as the faces that are in contact lie together.
 template <class Kernel>
 void for_each_item(Queue, Index count, const Kernel& kernel) {
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
@@ -79,8 +79,8 @@ void for_each_item(Queue, Index count, const Kernel& kernel) {
 }
 
 /// Run a kernel for what it selects of each of `count` rows: whole lanes, whatever rows their items
-/// are of, then each thread's remainder one by one. Picking takes no branch, for none could be
-/// foreseen.
+/// are of, then each thread's remainder one by one. Selection takes no branch, for the processor
+/// could not predict it.
 template <class Kernel>
 void for_each_selected(Queue, Index count, const Kernel& kernel) {
 #pragma omp parallel if (count >= worth_threads)

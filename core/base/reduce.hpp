@@ -8,7 +8,7 @@
 
 namespace cdem {
 
-/// Sum in a fixed order whatever the number of threads: fixed chunks, then the chunks in turn.
+/// Sum in a fixed order whatever the number of threads: fixed chunks, then the chunks in order.
 template <class Term>
 Real ordered_sum(Index count, Term&& term) {
   constexpr Index chunk = 1024;

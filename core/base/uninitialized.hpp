@@ -6,8 +6,8 @@
 
 namespace cdem {
 
-/// A vector for loops to fill: its items begin as the memory is, for to fill them twice, at first
-/// on one thread, costs as much as what the loops do.
+/// A vector for loops to fill: its items begin uninitialised. To fill them twice, the first time on
+/// one thread, would cost as much as the loops do.
 template <class T>
 struct LeaveUnset : std::allocator<T> {
   template <class U>

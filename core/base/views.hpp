@@ -99,8 +99,8 @@ struct Four {
 };
 
 #if !defined(__CUDACC__)
-// What lies in memory as rows of numbers is turned into packs, and back, in registers by shuffles:
-// a pack that is put together in memory, number by number, stalls the core when it is read.
+// Shuffles in registers turn rows of numbers into packs, and back: a pack that is put together in
+// memory, number by number, stalls the processor when it is read.
 
 /// The numbers at these places of two packs, one after the other.
 template <int... places>
@@ -315,8 +315,8 @@ struct OutForces {
 struct InForces {
   const Real* rows;
   CDEM_HD Row at(std::size_t row) const { return Row::at(rows + row * 4); }
-  /// What is meant by a row, or by ~row: the opposite of what stands there. No branch: which of
-  /// them comes next cannot be foreseen.
+  /// Row `row`, or for ~row the opposite of what stands there. No branch: the processor could not
+  /// predict it.
   CDEM_HD Row signed_row(Index row) const { return Real(2 * (row >> 31) + 1) * at(plain(row)); }
   CDEM_HD Vec3<Real> signed_at(Index row) const { return signed_row(row).vector(); }
 #if !defined(__CUDACC__)

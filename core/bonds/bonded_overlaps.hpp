@@ -10,7 +10,7 @@
 
 namespace cdem {
 
-/// What live bonds of overlaps look after, as sorted keys.
+/// Faces and vertices that live bonds of overlaps hold, as sorted keys.
 struct Bonded {
   using Pairs = std::vector<std::pair<Index, Index>>;
   Pairs faces;     // exposed face and the one it is bonded to

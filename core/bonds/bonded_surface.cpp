@@ -1,4 +1,4 @@
-// surface.cpp - bonded_node labels, rings around points, neighbours of faces across edges.
+// bonded_surface.cpp - see bonded_surface.hpp.
 #include "core/bonds/bonded_surface.hpp"
 
 #include <algorithm>
@@ -40,8 +40,8 @@ void join_nodes(const Model& m, State& s) {
   for (Index i = 0; i < m.node_count; ++i) label[i] = root(i);
 }
 
-/// Rings of the points that vertices of exposed faces belong to: other ends of all edges that leave
-/// any node of the point, once each, and by a node whose motion the lists watch if there is one.
+/// Edge stars of the points that vertices of exposed faces belong to: other ends of all edges that
+/// leave any node of the point, once each, and by a node of an exposed face if there is one.
 void merge_edge_stars(const Model& m, State& s) {
   const Index* bonded_node = s.nodes.bonded_node.data();
   std::vector<Flag> exposed(m.node_count);
@@ -62,7 +62,7 @@ void merge_edge_stars(const Model& m, State& s) {
 
   s.search.edge_star_first.resize(m.node_count + 1);
   s.search.edge_star.resize(0);
-  std::vector<std::tuple<Index, bool, Index>> ends;  // label, not watched, node
+  std::vector<std::tuple<Index, bool, Index>> ends;  // label, not exposed, node
   for (Index label = 0; label < m.node_count; ++label) {
     s.search.edge_star_first[label] = Index(s.search.edge_star.size());
     if (!wanted[label]) continue;

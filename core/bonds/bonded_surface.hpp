@@ -1,4 +1,4 @@
-// surface.hpp - what intact bonds join is one body: its points, and the surface around them.
+// bonded_surface.hpp - bodies that intact bonds join: their points, and the surface around them.
 #pragma once
 
 #include "core/model/model.hpp"

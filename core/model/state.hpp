@@ -17,16 +17,16 @@ struct NodeState {
   Column<Real> unbalance;
   Column<Real> relax;       // adaptive relaxation only, rows of 8: force, velocity of the last step
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
-  Column<Index> bonded_node, awake;  // awake: blocks of nodes, see rest.hpp
-  Column<Flag> sleeps, listed;       // see rest.hpp
-  Column<Flag> fused;     // 1: of a free block, see nodes/free_block.hpp; empty: there is none
-  Column<Index> general;  // awake blocks of nodes, less those of which all are free
+  Column<Index> bonded_node, awake;  // awake: blocks of nodes, see nodes/sleep.hpp
+  Column<Flag> sleeps, listed;       // see nodes/sleep.hpp
+  Column<Flag> fused;     // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
+  Column<Index> general;  // awake blocks of nodes but those of which all are fused
   bool damped = false;    // in the last step, else damping_force does not count
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };
 
-/// Blocks of elements of which all are free, see nodes/free_block.hpp; the other ones that are
-/// awake.
+/// Blocks of elements of which all are fused, see nodes/fused_block.hpp, and the other blocks that
+/// are awake.
 struct FusedBlocks {
   Column<Index> blocks, general;
   Column<Index> row_first, row;  // see FusedRows
@@ -38,7 +38,7 @@ struct ElementState {
   Column<Real> energy, damping_work;
   Column<Real> history;       // [point * point_history][element], see PointFlow
   Column<Real> plastic_work;  // empty like history where no material of the set flows
-  Column<Index> awake;        // blocks of elements, see rest.hpp
+  Column<Index> awake;        // blocks of elements, see nodes/sleep.hpp
   FusedBlocks fused;
 };
 
@@ -53,7 +53,7 @@ struct PairState {
   Column<Real> bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> stored, fracture, friction;
   Column<Real> history;  // [variable * points + point][pair], of the pair's law
-  Column<Index> awake;   // blocks of pairs, see rest.hpp
+  Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp
 };
 
 struct SpringState {
@@ -64,21 +64,22 @@ struct SpringState {
   HistoryColumns history;  // [slot]
 };
 
-/// Contacts of semi-edges, see EdgeColumns; a step makes the list anew from the one before.
+/// Contacts of semi-edges, see EdgeColumns; every step makes the list from the one before.
 struct EdgeState {
   Column<Index> first, contact;    // [exposed + 1], rows of 4
   Column<Real> state, reaction;    // rows of 8
   Column<Real> friction, dashpot;  // [exposed]
   Column<Flag> lost;               // [exposed]
   HistoryColumns side_history;     // [4 * exposed face + side]
-  HistoryColumns contact_history;  // [contact], made anew in every step
+  HistoryColumns contact_history;  // [contact], made in every step
   Column<Index> old_first, old_contact;
   Column<Real> old_state;
   Index slots = 8;  // of the search in a step: places a face, see FoundEdges
   Column<Index> found_count, found;
 };
 
-/// Which contacts act on the exposed faces, see contact/gather.hpp; made anew in every step.
+/// Contacts by the exposed face that they act on, see contact/force/accumulate.hpp; made in every
+/// step.
 struct ContactsByTargetState {
   Column<Index> count, first;    // by target
   Column<Index> place, contact;  // by contact; the list
@@ -108,7 +109,7 @@ struct OuterList {
 /// Inner pair list: pairs of the outer list that can come into contact within the next few steps,
 /// see contact/pair_list/inner_list.hpp. It follows from the outer list, whenever it is made.
 struct InnerList {
-  bool known = false;  // has it been made since the outer list was?
+  bool known = false;  // made since the outer list was
   Real built_time = 0;
   Column<Real> predicted, skin;  // rows of 8, see PredictedNode; [node]  [m]
   Column<Real> motion;           // [outer pair] see MarkNearFaces

@@ -8,7 +8,7 @@
 
 namespace cdem {
 
-/// Rows of bonds that the nodes of free blocks sum, for each block of `block_size` elements: first
+/// Rows of bonds that the nodes of fused blocks sum, for each block of `block_size` elements: first
 /// those of the first corners, the first row of each element, then the second, and so on; as many
 /// for all corners of all its elements, filled up with the row that adds nothing.
 struct FusedRows {
@@ -29,8 +29,8 @@ struct FusedRows {
 template <class Shape>
 inline constexpr bool has_fused_kernel = Shape::nodes % 4 == 0;
 
-/// Force and motion of blocks of one element that no load, support, contact or damping knows of: no
-/// other block reads or writes their nodes in this pass, so nothing is stored in between. The
+/// Force and motion of single-element blocks without load, support, contact or damping: no other
+/// block reads or writes their nodes in this pass, so nothing is stored in between. The
 /// arithmetic is that of SumNodeForces and MoveNodes.
 template <class Shape>
 struct AdvanceFused {

@@ -1,4 +1,4 @@
-// free_blocks.cpp - finds the blocks of one element of which only their bonds know.
+// fused_blocks.cpp - see fused_blocks.hpp.
 #include "core/nodes/fused_blocks.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ struct Elements {
     }
     return true;
   }
-  /// Are all elements of a block free?
+  /// Are all elements of a block fused?
   bool are_fused(Index block) const {
     const Index begin = block * block_size, end = std::min(begin + block_size, e.count);
     for (Index i = begin; i < end; ++i)
@@ -62,7 +62,7 @@ struct Elements {
   bool is_of_element(Index row) const { return row >= 0 && row < rows_of_elements; }
 };
 
-/// List what the nodes of free blocks sum, see FusedRows.
+/// List the rows that the nodes of fused blocks sum, see FusedRows.
 void list_rows(const Elements& of, FusedBlocks& fused) {
   const State& s = of.s;
   Column<Index>&first = fused.row_first, &rows = fused.row;

@@ -1,4 +1,4 @@
-// free_blocks.hpp - finds the blocks of one element of which only their bonds know. Host code.
+// fused_blocks.hpp - finds the blocks that the fused kernel moves. Host code.
 #pragma once
 
 #include "core/model/model.hpp"
@@ -6,9 +6,9 @@
 
 namespace cdem {
 
-/// Find, among what is awake, blocks of one tet or hexahedron on which nothing but their own
-/// forces, bonds and weight acts, and list what their nodes sum. They may go apart from the other
-/// blocks, see AdvanceFused. Only with the default formulation and full mass matrices.
+/// Find the awake blocks of one tet or hexahedron on which only their own forces, bonds and weight
+/// act, and list the rows that their nodes sum. The fused kernel moves them, see AdvanceFused. Only
+/// with the default formulation and full mass matrices.
 void find_fused_blocks(const Model& model, State& state);
 
 }  // namespace cdem

@@ -12,7 +12,7 @@ namespace cdem {
 struct MassColumns {
   bool lumped;                    // only the numbers count, whatever the matrices
   const Real* mass;               // [node] row sum of the mass matrix  [kg]
-  const Index* mass_row_first;    // [node]: start of the node's row in `dense`, or -1 when lumped
+  const Index* mass_row_first;    // [node]: start of the node's row in `inverse`, or -1 when lumped
   const Index* mass_axis_stride;  // [node]: from one axis to the next (0 when all three share)
   const Index* block_first;       // [node]: first node of the block
   const Index* block_count;       // [node]: nodes of the block

@@ -1,4 +1,4 @@
-// sleep.hpp - what is fixed and stays as it is needs no computing. Host code.
+// sleep.hpp - fixed parts on which nothing acts are not computed. Host code.
 #pragma once
 
 #include "core/model/model.hpp"
@@ -8,13 +8,14 @@ namespace cdem {
 
 /// List the blocks of elements, bonded pairs and nodes that are awake. Asleep are elements and
 /// pairs of which all nodes are fixed, and fixed nodes at which nothing awake pulls and that no
-/// list of contacts has: what the last step computed for them holds until the model changes.
-/// Computing them again would give the same bits. (Faces that a broken bond exposes are no reason
-/// to wake: bonds with a free side never sleep.)
+/// pair list has: the results of the last step hold for them until the model changes. Computing
+/// them again would give the same bits. (Faces that a broken bond exposes are no reason to wake:
+/// bonds with a free side never sleep.)
 void find_awake(const Model& model, State& state);
 
-/// List the awake nodes anew after the lists of contacts: those that were on the last ones stay
-/// awake until the next, for they have yet to forget their contacts. Finds the free blocks, too.
+/// List the awake nodes after a rebuild of the pair list: nodes that were on the last one stay
+/// awake until the next rebuild, for they have yet to forget their contacts. Finds the fused
+/// blocks, too.
 void list_awake_nodes(const Model& model, State& state);
 
 }  // namespace cdem

@@ -16,7 +16,7 @@ struct StepLimit {
   Real contact_frequency_squared = 0;  // and of its bonds and contacts  [1/s2]
 };
 
-/// The stable step is found anew every so many steps, after every rebuild of the search, and after
+/// The stable step is renewed every so many steps, after every rebuild of the pair list, and after
 /// every step with contacts.
 inline constexpr std::int64_t step_check_interval = 100;
 

@@ -22,7 +22,7 @@ void prepare(const Model& m, State& s) {
     s.dt_last = s.dt;
     return;
   }
-  // restored: what is not kept because it follows from the rest
+  // restored: rebuild the arrays that follow from the stored ones
   const std::size_t exposed = s.search.exposed_face.size();
   s.face_geometry.resize(8 * exposed);
   s.contact_force.resize(16 * exposed);
@@ -47,7 +47,7 @@ Place place_of(const State& s, const Goal& goal, std::int64_t number) {
           .scheduled = s.step % goal.check_interval == 0};
 }
 
-/// What a step samples changes no motion: where nothing asks for it, it need not be the same.
+/// Sampling changes no motion: where nothing asks for a sample, it need not be taken.
 StepPlan plan_step(const Model& m, const State& s, const Goal& goal, const Place& place) {
   const bool sample = place.last || !s.ledger_started || goal.relaxation == Relaxation::kinetic ||
                       (place.scheduled && goal.unbalance_limit > 0);

@@ -19,7 +19,7 @@ struct Goal {
   Relaxation relaxation = Relaxation::none;
 };
 
-/// Ready a new or a restored state for the loop: lists and stable step.
+/// Prepare a new or a restored state for the loop: lists and stable step.
 void prepare(const Model& model, State& state);
 
 Report run(const Model& model, State& state, const Goal& goal);

@@ -51,7 +51,7 @@ struct MovingEdge {
   Vec3<Real> path_at(Real at) const { return path[0] + at / length * (path[1] - path[0]); }
 };
 
-/// Those of a patch, each worked out once when it is asked for first.
+/// Those of a patch, each worked out once, when it is first asked for.
 class MovingEdges {
   const PairContext& f;
   const Patch& patch;
@@ -69,13 +69,13 @@ class MovingEdges {
 /// `shared` for end a of the one and end b of the other.
 struct SharedEnds {
   Index shared = 0;
-  bool glued = false;   // intact bonds hold ends together
+  bool bonded = false;  // intact bonds hold ends together
   Real parted = 1e300;  // how far the closest of the shared ends may part before the next rebuild
 
   SharedEnds(const MovingEdge& p, const MovingEdge& q) {
     for (Index i = 0; i < 4; ++i) {
       const Index a = i >> 1, b = i & 1;
-      glued = glued || p.bonded_node[a] == q.bonded_node[b];
+      bonded = bonded || p.bonded_node[a] == q.bonded_node[b];
       if (p.place[a] != q.place[b]) continue;
       shared |= 1 << i;
       parted = std::min(
@@ -100,8 +100,9 @@ Real distance2(const MovingEdge& p, const MovingEdge& q) {
 struct TwoLines {
   const MovingEdge &p, &q;
   Vec3<Real> n;
-  Real gap;              // from the line of q to that of p along n  [m]
-  Real rotations, sine;  // what both may rotation  [rad]; of the angle between them then, at least
+  Real gap;  // from the line of q to that of p along n  [m]
+  Real rotations,
+      sine;  // by which both may rotate  [rad]; of the angle between them then, at least
 
   /// `cross` is that of the directions, of length `size`.
   TwoLines(const MovingEdge& one, const MovingEdge& other, const Vec3<Real>& cross, Real size)
@@ -119,7 +120,7 @@ struct TwoLines {
   /// In contact the gap between the points that cross then is not positive along the normal n' of
   /// that time. They lie on n', so the gap of the same points along n was not positive either, but
   /// for how they move along n. (What little beyond its ends an edge may be crossed, see pass_by,
-  /// rotations with it.)
+  /// rotates with it.)
   int sides(const SearchRules& rules) const {
     const ExposedFace &x = *p.face, &y = *q.face;
     const ExposedSide &on_p = *p.side, &on_q = *q.side;
@@ -148,7 +149,7 @@ struct TwoLines {
   /// The line of an edge d (of unit length) crosses the other one between its ends x0 and x1 if
   /// these lie on different sides of it: (y - x) . (d x n) is the distance of an end from the line
   /// through y. It changes by no more than the end moves as seen from its foot on the line, and by
-  /// its distance from the foot times what d and n rotation.
+  /// its distance from the foot times the rotation of d and n.
   bool pass_by() const {
     const Indented edges = p.indented.and_of(q.indented);
     const Real cosine = std::min(1.0, std::abs(dot(p.along, q.along)) + rotations);
@@ -193,8 +194,8 @@ struct TwoLines {
   };
 };
 
-/// How far the predicted ways of two points of the one and of the other part as long as the close
-/// lists hold  [m].
+/// How far the predicted paths of two points of the one and of the other part while an inner list
+/// holds  [m].
 Real ways_part_soon(const MovingEdge& p, const MovingEdge& q) {
   Real most = 0;
   for (Index i = 0; i < 4; ++i) most = std::max(most, norm(p.path[i >> 1] - q.path[i & 1]));
@@ -313,7 +314,7 @@ void list_edges(const PairContext& f, const Patch& a, const Patch& b, const Face
       const MovingEdge& q = of_b[g];
       if (!q.side->sharp || lines_are_far(p, q, room)) continue;
       const SharedEnds ends(p, q);
-      if (ends.glued || stay_together(f.m.rules, p, q, ends)) continue;
+      if (ends.bonded || stay_together(f.m.rules, p, q, ends)) continue;
       const int sides = touching_sides(f, a, a.edge[e], p, b, b.edge[g], q, room);
       if (!sides) continue;
       const Index ways = ways_to_touch(f, a, a.edge[e], b, b.edge[g], pairs, ends, listed);

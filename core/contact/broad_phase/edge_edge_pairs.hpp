@@ -1,4 +1,4 @@
-// edge_edge_pairs.hpp - which edges of two patches may touch before the lists are renewed.
+// edge_edge_pairs.hpp - which edges of two patches may touch before the next rebuild.
 #pragma once
 
 #include "core/contact/broad_phase/separating_planes.hpp"

@@ -65,7 +65,7 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   e.warpage = count == 3 ? 0.0 : e.warpage + 2 * e.deviation;
   e.deepest = deepest_gap(s, place);
   e.box.inflate(skin + e.deepest + m.rules.lifted);
-  // the plane rotations by what two vertices may move apart over the smallest height
+  // the plane rotates by the relative motion of two vertices over the smallest height
   const Real height = (count == 3 ? 2 : 1) * m.face_area[e.face] / longest;
   e.rotation = 2 * e.deviation / height;
   e.rotation_soon = 2 * e.deviation_soon / height;
@@ -73,7 +73,7 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
   return e;
 }
 
-/// What the indentation of a face does at one of its sides.
+/// Effect of the indentation of a face at one of its sides.
 Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
   const Real part = m.rules.indentation;
   const Vec3<Real>& start = face.shape.x[side];
@@ -185,11 +185,11 @@ void list_exposed_sides(const State& s, const Unset<ExposedFace>& exposed,
       const Index across = s.search.across[4 * x + k];
       side.across = across < 0 ? -1 : s.search.face_exposed[across];
       side.sharp = true;
-      if (side.across < 0) continue;  // none, or one whose motion nothing watches
+      if (side.across < 0) continue;  // none, or one that is not exposed
       const ExposedFace& beyond = exposed[side.across];
       side.rotation_across = beyond.rotation;
       side.fall_across = unit(cross(beyond.normal, -side.along));
-      // the angle between the faces may change by what both may rotation
+      // the angle between the faces may change by the rotation of both
       const Real angle = std::acos(std::min(1.0, dot(e.normal, beyond.normal)));
       side.sharp = angle + e.rotation + beyond.rotation > std::acos(coplanar_faces);
       const Vec3<Real> arm = beyond.center - side.start;

@@ -11,14 +11,14 @@
 
 namespace cdem {
 
-/// An exposed face as the lists see it: where it is, and how it may move before they are old.
+/// An exposed face as the lists see it: where it is, and how it may move before the next rebuild.
 struct ExposedFace {
   FaceShape<Real> shape;
   Vec3<Real> center, normal;
   Vec3<Real> displacement;             // of all its vertices alike  [m]
   Real deviation;                      // of a vertex beyond the displacement  [m]
   Real rotation;                       // of the normal and of the sides  [rad]
-  Real deviation_soon, rotation_soon;  // as long as the close lists hold
+  Real deviation_soon, rotation_soon;  // while an inner list holds
   Real slender;                        // longest side over smallest height
   Real deepest;                        // contact  [m]
   Real warpage;                        // of a vertex out of the mean plane  [m]
@@ -30,8 +30,8 @@ struct ExposedFace {
 
 void list_exposed_faces(const Model& model, const State& state, Unset<ExposedFace>& exposed);
 
-/// What the indentation of the faces at an edge takes from the ends of the edge, at least, and how
-/// far it moves it aside, at most, with room for what faces are strained; least L  [m].
+/// How much the indentation of the faces at an edge takes from the ends of the edge, at least, and
+/// how far it moves it aside, at most, with room for strain of the faces; least L  [m].
 struct Indented {
   Real inset = 1e300, shift = 0, length = 1e300;
 

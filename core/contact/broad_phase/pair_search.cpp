@@ -43,7 +43,7 @@ bool apart(const Model& m, const State& s, const Unset<ExposedFace>& exposed, co
   return false;
 }
 
-/// The sides at the edges of all patches, see EdgePairs; patches learn their places.
+/// List the sides at the edges of all patches, see EdgePairs; patches get their places.
 void list_edge_sides(Unset<Patch>& patches, Unset<Index>& sides) {
   Index count = 0;
   for (Patch& patch : patches) {
@@ -94,7 +94,7 @@ void search_pairs(const Model& m, const State& s, PairSearch& search) {
 #pragma omp for schedule(dynamic, 32)
     for (Index p = 0; p < count; ++p) {
       const Patch& a = patches[p];
-      if (!a.movable) continue;  // those that are near it find it
+      if (!a.movable) continue;  // movable patches find it
       others.clear();
       tree.query(boxes[p], [&](Index q) {
         if ((q > p || !patches[q].movable) && a.block != patches[q].block &&

@@ -1,9 +1,8 @@
-// pair_search.hpp - driver of the broad phase: what may touch before the lists are renewed.
+// pair_search.hpp - driver of the broad phase: pairs that may touch before the next rebuild.
 //
-// The lists assume that every vertex goes straight on at its present velocity for a while, and
-// they are good until one has left that path by its skin. So rock that moves as a whole needs
-// no new lists. Every test leaves room for that motion: what it rejects cannot come into contact
-// before.
+// The lists assume that every vertex moves on along its predicted path for a while, and they hold
+// until one has left that path by its skin. So rock that moves as a whole needs no new list. Every
+// test leaves room for that motion: a pair that it rejects cannot come into contact before.
 #pragma once
 
 #include "core/contact/broad_phase/element_patch.hpp"
@@ -13,8 +12,8 @@
 
 namespace cdem {
 
-/// What a search works with and what it finds. It is kept from rebuild to rebuild for its memory
-/// only, which the system would have to hand out anew.
+/// Work arrays of a search and the pairs that it finds. They are kept from rebuild to rebuild for
+/// their memory only.
 struct PairSearch {
   Unset<ExposedFace> exposed;
   Unset<ExposedSide> sides;

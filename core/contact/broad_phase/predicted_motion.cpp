@@ -12,10 +12,10 @@ namespace cdem {
 
 namespace {
 
-/// Mean velocity of the elements at every watched node, as rigid bodies.
+/// Mean velocity of the elements at every predicted node, as rigid bodies.
 struct RigidMotion {
   const State& s;
-  std::vector<Vec3<Real>> sum;  // [watched]
+  std::vector<Vec3<Real>> sum;  // [predicted]
   std::vector<Real> weight;
 
   RigidMotion(const Model& m, const State& state)
@@ -32,14 +32,14 @@ struct RigidMotion {
     const InMotion nodes{s.nodes.motion.data()};
     for (Index i = 0; i < e.count; ++i) {
       Index id[8], place[8];
-      bool watched = false;
+      bool is_predicted = false;
       for (Index k = 0; k < corners; ++k) {
         id[k] = e.nodes[std::size_t(k) * e.stride + i];
         place[k] = s.search.outer.node_predicted[id[k]];
-        watched = watched || place[k] >= 0;
+        is_predicted = is_predicted || place[k] >= 0;
         if (place[k] >= 0) weight[place[k]] += 1;
       }
-      if (!watched) continue;
+      if (!is_predicted) continue;
       Vec3<Real> center{0, 0, 0}, velocity{0, 0, 0}, spin{0, 0, 0};
       bool moves = false;
       for (Index k = 0; k < corners; ++k) {
@@ -112,8 +112,8 @@ void predict_motion(const Model& m, State& s) {
   constexpr Index fewest = 20, steps = 200;
   constexpr Real most = 0.1;   // skin in parts of the smallest L of the node's faces
   constexpr Real period = 10;  // of vibrations, in steps
-  // rubble that collides strays long before a far lookahead_time, and would list ever more for
-  // nothing
+  // nodes of rubble that collides leave their skins long before a far lookahead time, which would
+  // make long lists for nothing
   const std::int64_t lasted = s.built_step < 0 ? steps : s.step - s.built_step;
   const Real least = s.search.outer.least_skin = least_skin(s, lasted);
   const Index ahead = std::clamp<std::int64_t>(2 * lasted, fewest, steps);

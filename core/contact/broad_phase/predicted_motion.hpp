@@ -1,5 +1,4 @@
-// predicted_motion.hpp - where the nodes of exposed faces go until the lists are renewed:
-// prediction and skin.
+// predicted_motion.hpp - prediction and skin of the nodes of exposed faces until the next rebuild.
 #pragma once
 
 #include "core/base/math.hpp"
@@ -8,8 +7,8 @@
 
 namespace cdem {
 
-/// A node of exposed faces as the lists see it: they are old once it is farther than its skin from
-/// where it went straight on.
+/// A node of exposed faces as the lists see it: they are too old once it is farther than its skin
+/// from its predicted path.
 struct PredictedNode {
   Vec3<Real> position;  // when the lists were made  [m]
   Vec3<Real> velocity;  // predicted  [m/s]
@@ -26,21 +25,21 @@ struct PredictedNode {
   }
 };
 
-/// The lists of what is close look ahead for such a part of the lookahead_time, and give every
-/// vertex such a part of its skin at most, see close_lists.hpp.
+/// The inner list looks ahead for this part of the lookahead time, and gives every vertex this part
+/// of its skin at most, see pair_list/inner_list.hpp.
 inline constexpr Real inner_horizon = 0.06, inner_skin = 0.5;
 
-/// Foresee where the nodes of exposed faces go, straight on with the rigid motion of their elements
-/// (which leaves the elements' vibrations out), and how far they may deviation from there: as far
-/// as they would with the change of velocity that they had since the last rebuild.
+/// Predict the paths of the nodes of exposed faces, straight on with the rigid motion of their
+/// elements (which leaves the elements' vibrations out), and their skins: the deviation that the
+/// change of velocity since the last rebuild would make once more.
 void predict_motion(const Model& model, State& state);
 
-/// Let nodes know their places among those that are watched.
+/// Give nodes their places among the predicted ones.
 void place_predicted_nodes(const Model& model, State& state);
 
-/// Has any watched node left the way that was predicted for it at a time [s] by more than its skin?
-/// SeparatedParts the lookahead_time [s] the lists take every vertex to stand still: what sleeps
-/// needs no new ones.
+/// Has any node left the path that was predicted for it at time `from` [s] by more than its skin?
+/// Beyond the lookahead time [s] the lists take every vertex to stand still: sleeping parts need no
+/// rebuild.
 bool any_exceeds_skin(const State& state, const Column<Real>& predicted, Real from,
                       Real lookahead_time);
 

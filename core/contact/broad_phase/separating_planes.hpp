@@ -1,5 +1,5 @@
-// separating_planes.hpp - two patches: how they may move, and what of either is in reach of the
-// other.
+// separating_planes.hpp - two patches: how they may move, and which parts of either are in reach of
+// the other.
 #pragma once
 
 #include <algorithm>
@@ -29,13 +29,13 @@ inline Real motion_between(const ExposedFace& x, const ExposedFace& y) {
   return norm(x.displacement - y.displacement) + x.deviation + y.deviation;
 }
 
-/// How far two watched nodes may move apart until the next rebuild  [m].
+/// How far two predicted nodes may move apart until the next rebuild  [m].
 inline Real may_part(const State& s, Index a, Index b) {
   const PredictedNode x = PredictedNode::of(s, a), y = PredictedNode::of(s, b);
   return s.search.outer.lookahead_time * norm(x.velocity - y.velocity) + x.skin + y.skin;
 }
 
-/// How far their predicted ways part as long as the close lists hold  [m].
+/// How far their predicted paths part while an inner list holds  [m].
 inline Real ways_part_soon(const State& s, Index a, Index b) {
   return inner_horizon * s.search.outer.lookahead_time *
          norm(PredictedNode::of(s, a).velocity - PredictedNode::of(s, b).velocity);
@@ -53,8 +53,8 @@ struct GapChange {
   }
 };
 
-/// Farthest that an edge of one patch may be from the other when lists are made, if it may be in
-/// contact before they are renewed  [m]; but for the drifts, which have a direction. It holds for
+/// Farthest that an edge of one patch may be from the other at a rebuild, if it may be in contact
+/// before the next one  [m]; without the displacements, which have a direction. It holds for
 /// vertices as well that are not inside a block.
 inline Real farthest_crossing(const SearchRules& rules, const Patch& a, const Patch& b) {
   return last_step * (a.deviation + b.deviation) + a.deepest + b.deepest + rules.lifted +
@@ -70,16 +70,16 @@ inline Real farthest_contact(const SearchRules& rules, const Patch& a, const Pat
          (a.whole && b.whole ? 0.0 : rules.depth * std::min(a.length, b.length));
 }
 
-/// What of two patches stays beyond the reach of the other until the next rebuild, seen along the
-/// normals of their faces: no edge of it can touch, and no vertex that is outside the block. (What
-/// a plane holds apart as a whole is no pair at all.)
+/// Vertices and edges of two patches that a plane along a face keeps out of the reach of the other
+/// until the next rebuild: no such edge can touch, and no such vertex that is outside the block.
+/// (Patches that a plane separates as a whole are no pair at all.)
 ///
 /// A vertex that is inside a block may begin deeper than that, at the nearest face (see
-/// ResolveTargets). It is not beyond the reach of a patch that is a block by itself; what lies
-/// beyond one that goes on behind may be inside of what it goes on as.
+/// ResolveTargets). It is in reach of a patch that is a block by itself. Beyond a patch whose block
+/// goes on behind it, a vertex may be inside another element of that block.
 struct SeparatedParts {
   // Which vertices lie on the far side of the other patch: two bits for each normal, one for either
-  // end of it. What has its vertices on the same far side lies there as a whole.
+  // end of it. A face or edge lies there as a whole if all its vertices lie on the same far side.
   unsigned vertex[2][8] = {}, edge[2][12] = {};
   bool nothing_on[2][6];  // face: none of its vertices, nor of its edges
   bool no_vertex_on[2][6];

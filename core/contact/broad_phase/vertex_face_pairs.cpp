@@ -27,10 +27,10 @@ bool may_go_behind(const PairContext& f, const Vec3<Real>& v, const ExposedFace&
   return side.rises && GapRange(x, f.exposed[side.across], v).least <= 0;
 }
 
-/// May a vertex sink past the depth at which contacts with exposed face y begin, and be held there
-/// (see ResolveTargets::encloses)? `entry` is that depth, `length` L.
-bool may_sink(const PairContext& f, const Vec3<Real>& v, const ExposedFace& x, const ExposedFace& y,
-              Index place_y, Real entry, Real length) {
+/// May a vertex penetrate deeper than contacts with exposed face y begin, and be held there (see
+/// ResolveTargets::encloses)? `entry` is that depth, `length` L.
+bool may_penetrate(const PairContext& f, const Vec3<Real>& v, const ExposedFace& x,
+                   const ExposedFace& y, Index place_y, Real entry, Real length) {
   const GapRange gap(x, y, v);
   const Real deepest = std::min(f.m.rules.depth * length, 0.5 * f.m.face_height[y.face]);
   if (gap.least > -entry || gap.most < -deepest) return false;
@@ -82,7 +82,8 @@ bool may_touch(const PairContext& f, Index node, const ExposedFace& x, Real leng
   for (Index j = 0; j < y.shape.count(); ++j)
     if (f.faces.bonded_node[f.faces.vertex(y.face, j)] == f.faces.bonded_node[node]) return false;
   if (Bonded::among(f.bonded.vertices, node, place_y)) return false;
-  if (may_sink(f, v, x, y, place_y, rules.entry * std::min(least, y.length), length)) return true;
+  if (may_penetrate(f, v, x, y, place_y, rules.entry * std::min(least, y.length), length))
+    return true;
   const Index point = f.faces.bonded_node[node];  // never the deepest vertex?
   for (Index r = f.faces.edge_star_first[point]; r < f.faces.edge_star_first[point + 1]; ++r) {
     const Index other = f.faces.edge_star[r];
@@ -95,9 +96,9 @@ bool may_touch(const PairContext& f, Index node, const ExposedFace& x, Real leng
   return true;
 }
 
-/// Room of a vertex and a face that may touch; `length` and `least` as above,
-/// `indented` is how far its indented points are from the vertex, at most, and `deviation` how far
-/// its faces are strained and turned as long as the close lists hold.
+/// Room of a vertex and a face that may touch; `length` and `least` as above, `indented` is how far
+/// its indented points are from the vertex, at most, and `deviation` how far its faces are strained
+/// and rotated while an inner list holds.
 ///
 /// In contact the vertex is at a point of the face but for the depth and for `off` beside it, more
 /// behind a corner (or from the centre of a warped face), of which the rotation of the face changes

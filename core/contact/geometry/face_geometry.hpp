@@ -69,7 +69,7 @@ struct FaceColumns {
 };
 
 /// Centre, sharp sides, normal and size of exposed faces, one 64-byte row each: centre, sharp,
-/// normal, L (negative for quadrilaterals); and the rows of what does not move.
+/// normal, L (negative for quadrilaterals); and the rows of ExposedRow.
 struct FaceGeometry {
   const Real* rows;
   const ExposedRow* table;

@@ -1,4 +1,4 @@
-// closed_contact.hpp - what a contact that ended did not give back.
+// closed_contact.hpp - energy that a contact that ended did not give back.
 #pragma once
 
 #include "core/contact/geometry/face.hpp"
@@ -6,11 +6,11 @@
 
 namespace cdem {
 
-/// What the springs of a contact that ended did not give back  [J]. Its two points moved by `way`
-/// relative to each other in the step that ended it, seen in the frame of one step ago; half the
-/// last force did the work. The normal spring gives back until it is free of stress: what a contact
-/// that opened held is lost only in so far as its dashpot kept it, but all of it is lost where a
-/// vertex slid off a face still under load.
+/// Energy that the springs of a contact that ended did not give back  [J]. Its two points moved by
+/// `way` relative to each other in the step that ended it, seen in the frame of one step ago; half
+/// the last force did the work. The normal spring gives back until it is free of stress: what a
+/// contact that opened held is lost only in so far as its dashpot kept it, but all of it is lost
+/// where a vertex slid off a face still under load.
 struct DissipatedAtEnd {
   Real friction, dashpot;
 

@@ -1,4 +1,4 @@
-// edge_list.cpp - see edge_list.hpp.
+// edge_contacts.cpp - see edge_contacts.hpp.
 #include "core/contact/narrow_phase/edge_contacts.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ bool make_room_for_edges(State& s) {
     e.first[x + 1] = e.first[x] + e.found_count[x];
   }
   if (most > ResolveTargetEdges::most_slots) {
-    swap_with_old(e);  // what is reported of the run is that of the step before
+    swap_with_old(e);  // the run reports the contacts of the step before
     throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
   }
   if (most > e.slots) {

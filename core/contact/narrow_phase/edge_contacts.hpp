@@ -1,4 +1,4 @@
-// edge_list.hpp - the list of the contacts of semi-edges, which every step makes anew. Host code.
+// edge_contacts.hpp - the list of the contacts of semi-edges, made in every step. Host code.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace cdem {
 void begin_edges(State& state);
 
 /// After it: give every face its part of the new list. False where the search found more contacts
-/// on a face than it had places for: there are more now, search again.
+/// on a face than it had places for: there are more places now, search again.
 bool make_room_for_edges(State& state);
 
 /// Bring the list into a new order of the exposed faces: place x was from[x], y becomes to[y].

@@ -1,4 +1,4 @@
-// edge_pair.hpp - pairs of edges that may touch: in which ways they may in a step.
+// edge_pair.hpp - pairs of edges of the inner list, and in which ways they may touch in a step.
 #pragma once
 
 #include "core/contact/geometry/face_geometry.hpp"
@@ -40,7 +40,7 @@ struct EdgeWays {
   CDEM_HD static bool is_turned(Index code, Index edge) { return code >> (count + 8 + edge) & 1; }
 };
 
-/// Pairs of edges that may touch soon, see close.hpp.
+/// Pairs of edges of the inner list, see pair_list/prune.hpp.
 struct EdgePairs {
   InIndices ends;   // [4][pair]: of one edge, and of the other; if any of them began at the same
                     // place in the mesh, then the first of both
@@ -82,10 +82,10 @@ CDEM_HD inline Truth<T> crosses_beyond(const Vec3<T>& p0, const Vec3<T>& dm, con
   return (s < -room) | (s > T(1.0 - rules.indentation) * c2 + room) | (t < -room) | (t > c2 + room);
 }
 
-/// Sift the ways in which edges that are close to each other may touch: most do not cross where the
-/// mother's is indented, or are on the wrong side of each other. It is seen for all ways at once,
-/// from the common perpendicular, without a root or a division. Those that may are left to
-/// ResolveTargetEdges; that its tests are the same but for some room, nothing found depends on it.
+/// Filter the ways in which near edges may touch: most do not cross where the mother's is indented,
+/// or are on the wrong side of each other. The common perpendicular tells it for all ways at once,
+/// without a root or a division. The others are left to ResolveTargetEdges. Its tests are the same
+/// without the room that these have, so no contact depends on the filter.
 struct FilterEdgePairs {
   InMotion nodes;
   FaceGeometry geometry;
@@ -100,7 +100,7 @@ struct FilterEdgePairs {
     const Vec3<T> x[2] = {end(0), end(2)}, d[2] = {end(1) - x[0], end(3) - x[1]};
     const Vec3<T> c = cross(d[0], d[1]);
     const T c2 = dot(c, c), apart = dot(x[1] - x[0], c);
-    // of a gap, times |c| twice: which side it is on is left to ResolveTargetEdges then
+    // of a gap, times |c| twice: below it ResolveTargetEdges decides on which side it is
     const T round_off = T(1e-12) * c2 * (abs_of(d[0].x) + abs_of(d[0].y) + abs_of(d[0].z));
     const T slack(1.000001 * crossing_slack(rules.indentation)), none(0.0);
     Vec3<T> normal[2][2];

@@ -26,8 +26,8 @@ struct BeginTargets {
   }
 };
 
-/// Keep the target of a semi-spring that is in contact, as most go on: see ResolveTargets. What
-/// takes a closer look is left to it.
+/// Keep the target of a semi-spring in contact where its tests hold, as most do: see
+/// ResolveTargets, which decides the others.
 struct UpdateHeldTargets : FaceSearch {
   CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
   CDEM_HD bool selects(Index, Index slot) const { return springs.target_before[slot] >= 0; }
@@ -58,9 +58,9 @@ struct UpdateHeldTargets : FaceSearch {
   }
 };
 
-/// Sift the faces that semi-springs without contact may touch: many cannot, for reasons that are
-/// seen in SIMD lanes. Those that may are left to ResolveTargets; that their tests are the same
-/// but for some room in the depth, nothing found depends on it.
+/// Filter, in SIMD lanes, the faces that semi-springs without contact may touch: most cannot. The
+/// others are left to ResolveTargets. Its tests are the same without the room in the depth that
+/// these have, so no contact depends on the filter.
 struct FilterNewTargets : FaceSearch {
   /// Nothing where all vertices are in contact, as at rest.
   CDEM_HD Range items(Index m) const {
@@ -105,7 +105,7 @@ struct FilterNewTargets : FaceSearch {
         begins = begins & !(gap < -entry - T(1.000001) * approach(c, node, corners));
     }
     if (!any_of(deep)) return mark(item, begins);
-    // what lies deeper than a contact may begin must be inside the block
+    // a vertex deeper than a contact may begin must be inside the block
     mark(item, begins | (deep & !escapes(c, t, plane)));
   }
 
@@ -157,10 +157,10 @@ struct FilterNewTargets : FaceSearch {
 /// whatever its edges do. A contact that has dilated acts above the plane, and is kept to twice the
 /// height to which it has risen.
 ///
-/// Some vertices sink past the limit for new contacts all the same: while another target keeps
-/// their spring, or beside a rim where an edge that leaves them reaches deeper, in free air. One
-/// that is truly inside a block may begin as deep as a contact is kept, at the nearest face and
-/// whatever its edges do; like all that begins inside it is free of stress there.
+/// Some vertices penetrate deeper than a contact may begin all the same: while another target keeps
+/// their spring, or beside a rim where an edge that leaves them reaches deeper, in free air. A
+/// vertex that is truly inside a block may begin as deep as a contact is kept, at the nearest face
+/// and whatever its edges do; like every contact that begins inside, it is free of stress there.
 struct ResolveTargets : FaceSearch {
   CDEM_HD void operator()(One slot) const {
     if (!springs.unresolved[slot.i]) return;
@@ -170,13 +170,13 @@ struct ResolveTargets : FaceSearch {
     springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, listed, springs.lost + slot.i);
   }
 
-  /// The faces close to the vertex of a slot.
+  /// The faces of the inner list at the vertex of a slot.
   CDEM_HD FaceList listed_for(Index slot) const {
     const Index first = candidates.first[slot];
     return {candidates.other + first, nullptr, candidates.first[slot + 1] - first};
   }
   /// Target of vertex k of exposed face m among others, or none; `lost` is set where a loaded
-  /// contact sank too deep.
+  /// contact penetrated too deep.
   CDEM_HD Index choose(Index m, Index k, const FaceList& others, Flag* lost) const {
     Seeker s = start(m, k, lost);
     for (Index c = 0; c < others.count && !s.kept; ++c) {
@@ -187,7 +187,7 @@ struct ResolveTargets : FaceSearch {
       const Real plane = plane_gap(s.v, t);
       if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
       if (!beside(s.p, t, rules.tolerance * length)) continue;
-      // what lies flatter may begin whatever the approach
+      // shallower contacts may begin whatever the approach
       const bool flat = geometry.is_triangle(t) && plane > -0.9 * rules.entry * length;
       const Real entry = rules.entry * length + (flat ? 0.0 : approach(s.node, t)) + s.turn_depth;
       const bool penetration = s.free && plane < -entry && encloses(t, s.v, plane);
@@ -214,7 +214,7 @@ struct ResolveTargets : FaceSearch {
     bool free;    // there was none
   };
 
-  /// What is asked of a contact.
+  /// Conditions of a contact.
   struct Terms {
     Real lifted, limit;  // highest gap, and lowest below zero  [m]
     bool inside;  // it is inside the block: need not be the deepest point, and may lie behind
@@ -248,7 +248,7 @@ struct ResolveTargets : FaceSearch {
     const Real old_gap = plane_gap(s.v, current);
     // a loaded spring may enter its next face as deep as it leaves the last
     if (loaded && old_gap < 0) s.turn_depth = -1.5 * old_gap;
-    if (loaded && sank_below(s.p, current, old_gap, depth)) *lost = 1;
+    if (loaded && is_below(s.p, current, old_gap, depth)) *lost = 1;
     return s;
   }
   CDEM_HD bool opposes(Index m, Index t) const {
@@ -260,7 +260,7 @@ struct ResolveTargets : FaceSearch {
   CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
     return dot(geometry.normal(t), v - geometry.center(t));
   }
-  /// Down to here what is behind a face is not yet beyond the other side of its block.
+  /// Down to this depth a point behind a face is not yet beyond the other side of its block.
   CDEM_HD Real deepest_inside(Index t, Real length) const {
     return min_of(rules.depth * length, 0.5 * faces.face_height[exposed_face[t]]);
   }
@@ -298,7 +298,7 @@ struct ResolveTargets : FaceSearch {
     const Real up = dot(n, arm), reach = geometry.table[t].reach + tolerance;
     return dot(arm, arm) - up * up < reach * reach;
   }
-  CDEM_HD bool sank_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
+  CDEM_HD bool is_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
     return gap < -depth && faces.shape(exposed_face[t]).inside(p, geometry.normal(t), 0.0);
   }
   /// Is a point that is not beside face t behind it all the same, between the normals of t and of

@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// Faces that a vertex of an exposed face may touch soon, see close.hpp: ragged rows.
+/// Faces of the inner list that a vertex of an exposed face may touch: ragged rows.
 struct Candidates {
   const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
   const Index* other;  // exposed face, ascending in a row

@@ -19,9 +19,9 @@ bool inner_list_is_due(const State& s) {
                                           inner_horizon * s.search.outer.lookahead_time);
 }
 
-/// From here on the nodes are watched. They may deviation as far as they would with the velocity
-/// that they have now, beyond the predicted one, and a little more; what is hit strays farther and
-/// calls for new lists.
+/// Predict the motion of the nodes from here on. Their skins allow the deviation that the present
+/// velocity makes beyond the predicted one, and a little more; a node that is hit leaves its skin
+/// and calls for a new list.
 void predict_inner_motion(const Model& m, State& s) {
   constexpr Real more = 1.5, least = 0.05;
   InnerList& inner = s.search.inner;
@@ -89,8 +89,8 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                                .other = inner.candidate.data()});
 }
 
-/// Where faces of two elements meet at an edge, the pair that finds it may be another one than that
-/// of which it was near: all pairs of the same two edges go together.
+/// Where faces of two elements meet at an edge, a contact may be found through another pair than
+/// the one that was near: all pairs of the same two edges are listed together.
 void join_pairs_of_edges(const Model& m, SearchState& search) {
   InnerList& inner = search.inner;
   const Index pairs = Index(search.outer.ee_codes.size()), stride = padded_stride(pairs);

@@ -8,10 +8,10 @@
 
 namespace cdem {
 
-/// Take the inner list from the outer one if it is too old.
+/// Prune the outer list to the inner one where the inner one is too old.
 void prune_pair_list_if_due(const Model& model, State& state, Queue queue);
 
-/// Make them, with room for the motion to come (see inner_horizon).
+/// Prune it, with room for the motion to come (see inner_horizon).
 void prune_pair_list(const Model& model, State& state, Queue queue);
 
 }  // namespace cdem

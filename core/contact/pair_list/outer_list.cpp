@@ -40,7 +40,7 @@ void add_up(Counts& counts, std::size_t rows) {
   for (std::size_t i = 0; i < rows; ++i) counts[i + 1] += counts[i];
 }
 
-/// Deal out what was found to the mother faces; rows are sorted by `key`.
+/// Sort the items found by mother face; within a face by `key`.
 template <class T, class Key>
 Rows<T> by_mother(const PairBuffers& found, std::vector<T> PairBuffer::* list, Index count,
                   const Key& key) {
@@ -77,8 +77,8 @@ std::vector<Index> places(const PairBuffers& found, Range Share::* share) {
   return first;
 }
 
-/// List the pairs that have been found, patch after patch, with what they are of and room; `also`
-/// gets every pair and its place.
+/// List the pairs found, patch after patch, with their members and room; `also` gets every pair and
+/// its place.
 template <class Pair, class Also>
 void list_pairs(const PairBuffers& found, std::vector<Pair> PairBuffer::* pairs,
                 Range Share::* share, const std::vector<Index>& first, Column<Index>& of,
@@ -104,7 +104,7 @@ void list_pairs(const PairBuffers& found, std::vector<Pair> PairBuffer::* pairs,
   }
 }
 
-/// The pairs of vertex and face; candidates learn the places of those that they are of.
+/// List the pairs of vertex and face; candidates get the places of their pairs.
 void list_face_pairs(PairBuffers& found, SearchState& search) {
   const std::vector<Index> first = places(found, &Share::vertex_faces);
   list_pairs(found, &PairBuffer::vertex_faces, &Share::vertex_faces, first, search.outer.vf_pairs,
@@ -119,7 +119,7 @@ void list_face_pairs(PairBuffers& found, SearchState& search) {
   }
 }
 
-/// The pairs of edges.
+/// List the pairs of edges.
 void list_edge_pairs(const PairBuffers& found, SearchState& search) {
   const std::vector<Index> first = places(found, &Share::edges);
   search.outer.ee_sides.assign(found.edge_sides.data(), found.edge_sides.size());

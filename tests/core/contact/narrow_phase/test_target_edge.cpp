@@ -105,7 +105,7 @@ TEST_CASE("sides are tested in lanes as one by one") {
     for (Index j = 0; j < lanes; ++j) {
       const auto alone = search.test(all[from + j]);
       CHECK(holds(in_lanes.touches, j) == alone.touches);
-      CHECK(holds(in_lanes.sank, j) == alone.sank);
+      CHECK(holds(in_lanes.too_deep, j) == alone.too_deep);
       touching += alone.touches;
     }
   }

@@ -145,8 +145,10 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
       first[slot + 1] = Index(other.size());
     }
     std::vector<Flag> may_begin(other.size());
+    tip.state.springs.unresolved.resize(4 * exposed);
     FaceSearch search = face_search(tip.model, tip.state);
     search.candidates = {first.data(), other.data(), may_begin.data()};
+    for_each_item({}, 4 * exposed, BeginTargets{search.springs});
     for_each_selected({}, exposed, UpdateHeldTargets{search});
     for_each_selected({}, exposed, FilterNewTargets{search});
     for_each_item({}, 4 * exposed, ResolveTargets{search});
