@@ -43,7 +43,7 @@ TEST_CASE("ridges that cross are pressed apart along their common perpendicular"
     CHECK(relative_error(s.energy_n, 0.5 * s.force_n * s.penetration) < 1e-12);
     const Real* force = ridges.reaction(c);
     CHECK(relative_error(std::abs(force[2]), s.force_n) < 1e-12);
-    CHECK(std::hypot(force[0], force[1]) < 1e-9 * s.force_n);
+    CHECK(std::hypot(force[0], force[1]) < 1e-12 * s.force_n);
     const bool upper =
         ridges.model.face_block[EdgeContact::at(ridges.state.edges.contact.data(), c).mother / 4] ==
         1;
@@ -87,8 +87,8 @@ TEST_CASE("forces of crossing edges sum to no force and no moment") {
         moment = moment + cross(ridges.position(node) - s.dt_last * ridges.velocity(node), f);
         size += norm(f);
       }
-    CHECK(norm(force) < 1e-14 * (1 + size));
-    CHECK(norm(moment) < 1e-13 * (1 + size));
+    CHECK(norm(force) < 5e-16 * (1 + size));
+    CHECK(norm(moment) < 1e-15 * (1 + size));
   }
 }
 

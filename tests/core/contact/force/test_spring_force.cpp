@@ -80,7 +80,7 @@ TEST_CASE("a pair that turns as a whole keeps its force: slip is objective") {
   REQUIRE(after.size() == before.size());
   for (std::size_t k = 0; k < after.size(); ++k) {
     CHECK(relative_error(after[k].force_n, before[k].force_n) < 2e-15);
-    CHECK(std::hypot(after[k].shear1, after[k].shear2) < 1e-9 * before[k].force_n);
+    CHECK(std::hypot(after[k].shear1, after[k].shear2) < 1e-15 * before[k].force_n);
   }
 }
 
@@ -101,8 +101,8 @@ TEST_CASE("contact forces of a body on another sum to no force and no moment") {
         if (landing.model.face_block[face] == landing.box) on_box = on_box + f;
       }
     }
-    CHECK(norm(force) < 1e-14 * (1 + norm(on_box)));
-    CHECK(norm(moment) < 1e-14 * (1 + norm(on_box)));
+    CHECK(norm(force) < 1e-15 * (1 + norm(on_box)));
+    CHECK(norm(moment) < 1e-15 * (1 + norm(on_box)));
   }
 }
 
