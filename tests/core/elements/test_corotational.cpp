@@ -201,6 +201,29 @@ TEST_CASE_TEMPLATE("the dashpot does not brake a rigid motion", Shape, ALL_SHAPE
   CHECK(worst < 6e-15 * stiff);
 }
 
+TEST_CASE_TEMPLATE("the dashpot feels the spin of a strained body by strain squared", Shape,
+                   ALL_SHAPES) {
+  Random random(10);
+  constexpr Real strain = 1e-3, spin_size = 1;
+  Loaded<Shape> elements(lanes, random);
+  for (Index e = 0; e < elements.count; ++e) {
+    const Mat turn = random.rotation() * random.stretch(strain);
+    const Vec spin = spin_size * random.direction();
+    for (Index k = 0; k < Shape::nodes; ++k) {
+      elements.place(e, k, turn * elements.rest(e, k));
+      elements.move(e, k, cross(spin, elements.position(e, k)));
+    }
+  }
+  elements.update();
+  const auto elastic = elements.corner_force;
+  elements.damping_time = 1;
+  elements.update();
+  Real worst = 0;
+  for (std::size_t k = 0; k < elastic.size(); ++k)
+    worst = std::max(worst, std::abs(elements.corner_force[k] - elastic[k]));
+  CHECK(worst < 5 * strain * strain * spin_size * stiff);
+}
+
 TEST_CASE("bending of a hexahedron of eight points does not lock in incompressible rock") {
   // the volumetric strain of bending, curvature * z, is zero in the mean
   const auto energy = [](Real lambda) {

@@ -1,0 +1,82 @@
+// What a released pair carried goes to the contacts that follow it.
+#include "core/bonds/transfer_to_contact.hpp"
+#include "core/contact/narrow_phase/exposed_faces.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// Two boxes whose bond is broken, the upper pressed into the lower and slid along it.
+struct Slid : Scene {
+  Vec jump;
+
+  explicit Slid(const Vec& by) : jump(by) {
+    bonded = true;
+    add_box({0, 0, 0}, {1, 1, 1});
+    add_box({0, 0, 1}, {1, 1, 1});
+    build();
+    start();
+    expose(state, model.quads.faces[0]);
+    expose(state, model.quads.faces[1]);
+    for (Index i = 8; i < 16; ++i) put(motion(i), position(i) + jump);
+  }
+  Real transfer() { return transfer_to_contact(model, state, model.quads, state.quads, 0); }
+  Index held() const {
+    Index count = 0;
+    for (std::size_t k = 0; k < state.springs.target.size(); ++k)
+      count += state.springs.target[k] >= 0;
+    return count;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("both sides take half of the force of a pressed pair, and all of its energy") {
+  Slid slid({1e-4, 2e-4, -3e-4});
+  const Real energy = slid.transfer();
+  const PairSet& p = slid.model.quads;
+  const Real k = p.stiffness[0] * p.area[0];
+  CHECK(relative_error(energy, 0.5 * k * dot(slid.jump, slid.jump)) < 1e-12);
+  CHECK(slid.held() == 8);
+  Real normal = 0;
+  for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
+    if (slid.state.springs.target[slot] < 0) continue;
+    const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
+    CHECK(relative_error(s.force_n, k / 8 * 3e-4) < 5e-13);
+    CHECK(relative_error(std::hypot(s.shear1, s.shear2), k / 8 * std::hypot(1e-4, 2e-4)) < 5e-13);
+    CHECK(slid.state.springs.target_before[slot] == slid.state.springs.target[slot]);
+    normal += s.force_n;
+  }
+  CHECK(relative_error(normal, k * 3e-4) < 5e-13);
+}
+
+TEST_CASE("what has slipped already carries no shear") {
+  Slid slid({1e-4, 0, -3e-4});
+  const PairSet& p = slid.model.quads;
+  PairState& bonds = slid.state.quads;
+  // along the frame of the first face, whichever way its first side runs
+  const Index* n = slid.model.face_nodes.data() + 4 * p.faces[0];
+  const Vec t1 = unit(slid.position(n[1]) - slid.position(n[0])), t2 = cross(Vec{0, 0, 1}, t1);
+  for (Index k = 0; k < 4; ++k) {
+    bonds.slip1[k * p.point_stride] = dot(t1, slid.jump);
+    bonds.slip2[k * p.point_stride] = dot(t2, slid.jump);
+  }
+  const Real k = p.stiffness[0] * p.area[0];
+  CHECK(relative_error(slid.transfer(), 0.5 * k * 9e-8) < 1e-12);
+}
+
+TEST_CASE("an open pair hands nothing over, nor one whose vertices have parted") {
+  CHECK(Slid({0, 0, 1e-4}).transfer() == 0);
+  Slid parted({0.5, 0, -1e-4});
+  CHECK(parted.transfer() == 0);
+  CHECK(parted.held() == 0);
+}
+
+TEST_CASE("the length of a pair is the smaller of its faces'") {
+  const Slid slid({0, 0, 0});
+  CHECK(pair_length(slid.model, slid.model.quads, 0) ==
+        slid.model.face_length[slid.model.quads.faces[0]]);
+}
+
+}  // namespace cdem::test

@@ -1,0 +1,73 @@
+// Interfaces of contacts by pair of face classes.
+#include "core/contact/force/contact_laws.hpp"
+#include "core/contact/force/views.hpp"
+#include "core/contact/geometry/views.hpp"
+#include "tests/core/scene.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// Two boxes whose faces are of two classes.
+struct TwoClasses : Scene {
+  TwoClasses() {
+    add_box({0, 0, 0}, {1, 1, 1});
+    add_box({0, 0, 2}, {2, 2, 2});
+    build();
+    model.class_count = 2;
+    const Index of[] = {0, 1, 1, 2};
+    model.interface_of.assign(of, 4);
+    const Interface rows[] = {{0, 5e9, 0, 0, 3}, {0, 0, 2, 7e8, 0}, {0, 0, 1, 0, 1}};
+    model.interfaces.assign(rows, 3);
+    for (Index f = 6; f < 12; ++f) model.face_interface_class[f] = 1;
+    start();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the classes of two faces choose the interface, for one pair and for a lane") {
+  const TwoClasses blocks;
+  const ContactLaws laws = contact_laws(blocks.model, blocks.state);
+  const FaceGeometry geometry = face_geometry(blocks.state);
+  CHECK(laws.between(geometry, 0, 3) == 0);
+  CHECK(laws.between(geometry, 0, 8) == 1);
+  CHECK(laws.between(geometry, 8, 0) == 1);
+  CHECK(laws.between(geometry, 7, 8) == 2);
+  IndexPack m, t;
+  for (Index j = 0; j < lanes; ++j) m.id[j] = j % 12, t.id[j] = (5 * j + 3) % 12;
+  const IndexPack interface = laws.between(geometry, m, t);
+  const ContactSpring<Pack> springs = laws.spring(geometry, interface, m, t);
+  for (Index j = 0; j < lanes; ++j) {
+    CHECK(interface.id[j] == laws.between(geometry, m.id[j], t.id[j]));
+    const auto spring = laws.spring(geometry, interface.id[j], m.id[j], t.id[j]);
+    CHECK(springs.area.n[j] == spring.area);
+    CHECK(springs.stiffness_n.n[j] == spring.stiffness_n);
+    CHECK(springs.stiffness_s.n[j] == spring.stiffness_s);
+  }
+}
+
+TEST_CASE("a stiffness is the given value, or a factor times the stiffer side") {
+  const TwoClasses blocks;
+  const ContactLaws laws = contact_laws(blocks.model, blocks.state);
+  const FaceGeometry geometry = face_geometry(blocks.state);
+  const Real young = blocks.rock.young_modulus();
+  const auto same = laws.spring(geometry, Index(0), Index(0), Index(1));
+  CHECK(same.stiffness_n == 5e9);
+  CHECK(relative_error(same.stiffness_s, 3 * young) < 1e-15);
+  const auto both = laws.spring(geometry, Index(1), Index(0), Index(8));
+  CHECK(relative_error(both.stiffness_n, 2 * young) < 1e-15);  // the box of 1 m is stiffer
+  CHECK(both.stiffness_s == 7e8);
+  CHECK(both.area == 0.25);  // a vertex's share of the smaller face
+  CHECK(relative_error(both.n(), 0.25 * 2 * young) < 1e-15);
+}
+
+TEST_CASE("the dashpot is a part of the critical one of its spring and masses") {
+  TwoClasses blocks;
+  blocks.model.contact_damping = 0.1;
+  const ContactLaws laws = contact_laws(blocks.model, blocks.state);
+  const ContactSpring<Real> spring{.area = 0.5, .stiffness_n = 8, .stiffness_s = 1};
+  CHECK(relative_error(laws.dashpot(spring, 0.25), 2 * 0.1 * std::sqrt(4 * 4.0)) < 1e-15);
+}
+
+}  // namespace cdem::test

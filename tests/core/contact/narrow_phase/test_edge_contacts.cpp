@@ -1,0 +1,61 @@
+// The list of semi-edge contacts, which every step makes anew.
+#include <stdexcept>
+
+#include "core/contact/narrow_phase/edge_contacts.hpp"
+#include "core/contact/narrow_phase/target_edge.hpp"
+#include "tests/core/support.hpp"
+
+namespace cdem::test {
+
+namespace {
+
+/// Three exposed faces; two contacts of the second.
+void fill(State& s) {
+  s.search.exposed_face.resize(3);
+  const Index first[] = {0, 0, 2, 2};
+  s.edges.first.assign(first, 4);
+  s.edges.contact.resize(8);
+  s.edges.state.resize(16);
+  EdgeContact{5, 0, 7, -1}.store(s.edges.contact.data(), 1);
+}
+
+}  // namespace
+
+TEST_CASE("the list of a step begins empty; the last one is kept for its history") {
+  State s;
+  fill(s);
+  begin_edges(s);
+  CHECK(s.edges.old_first[2] == 2);
+  CHECK(EdgeContact::at(s.edges.old_contact.data(), 1).edge == 7);
+  CHECK(s.edges.old_state.size() == 16);
+  for (Index x = 0; x < 3; ++x) CHECK(s.edges.found_count[x] == 0);
+}
+
+TEST_CASE("faces get their part of the list by how many contacts they have") {
+  State s;
+  fill(s);
+  begin_edges(s);
+  const Index counts[] = {2, 0, 3};
+  s.edges.found_count.assign(counts, 3);
+  CHECK(make_room_for_edges(s));
+  const Index first[] = {0, 2, 2, 5};
+  for (Index x = 0; x < 4; ++x) CHECK(s.edges.first[x] == first[x]);
+  CHECK(s.edges.contact.size() == 4 * 5);
+  CHECK(s.edges.state.size() == 8 * 5);
+}
+
+TEST_CASE("more contacts on a face than places call for another search, too many for an end") {
+  State s;
+  fill(s);
+  begin_edges(s);
+  s.edges.found_count[1] = s.edges.slots + 1;
+  CHECK(!make_room_for_edges(s));
+  CHECK(s.edges.slots == 9);
+  CHECK(s.edges.found.size() == 3 * 9 * 3);
+  CHECK(s.edges.found_count[1] == 0);
+  s.edges.found_count[1] = ResolveTargetEdges::most_slots + 1;
+  CHECK_THROWS_AS(make_room_for_edges(s), std::runtime_error);
+  CHECK(EdgeContact::at(s.edges.contact.data(), 1).edge == 7);  // as the step before left it
+}
+
+}  // namespace cdem::test
