@@ -11,8 +11,8 @@
 
 namespace cdem {
 
-/// What the search finds in a step, by mother face and in any order: `slots` places a face. A face
-/// may cross more edges than that; its count says so, and the caller makes room.
+/// Contacts that the search finds in a step, by mother face and in any order: `slots` places a
+/// face. A face may cross more edges than that; its count says so, and the caller makes room.
 struct FoundEdges {
   Index slots;
   Index* count;  // [exposed]
@@ -60,7 +60,7 @@ struct ResolveTargetEdges {
   EdgePairs pairs;
   SearchRules rules;
   EdgesBefore held;
-  Flag* lost;  // [exposed] 1: a loaded contact was lost because it sank too deep
+  Flag* lost;  // [exposed] 1: a loaded contact was lost because it penetrated too deep
   FoundEdges found;
 
   /// More contacts than this on one face stop the run.
@@ -87,10 +87,10 @@ struct ResolveTargetEdges {
       of_lane(sides.before, lane) = held_place(of.mother, of.target);
     });
     const auto touch = test(sides);
-    if (!any_of(touch.touches | touch.sank)) return;
+    if (!any_of(touch.touches | touch.too_deep)) return;
     for_lanes(item, [&](Index lane, Index, Index) {
       const Index m = of_lane(sides.m, lane);
-      if (holds(touch.sank, lane)) set(lost[m]);
+      if (holds(touch.too_deep, lane)) set(lost[m]);
       if (!holds(touch.touches, lane)) return;
       const SidePair pair = SidePair::of(of_lane(sides.sides, lane));
       const FoundEdge contact{4 * m + pair.k, 4 * of_lane(sides.t, lane) + pair.j,
@@ -119,7 +119,7 @@ struct ResolveTargetEdges {
 
   template <class M>
   struct Touch {
-    M touches, sank;  // or else: they did, under load, and went too deep
+    M touches, too_deep;  // too deep: they did touch, under load, and penetrate too deep now
   };
   /// Do two sides touch?
   template <class Ids>
@@ -209,9 +209,9 @@ struct ResolveTargetEdges {
     }
     return found;
   }
-  /// Most pairs are parallel, pass each other far off or have not met yet: see it from the common
-  /// perpendicular, without a root or a division, before all else. `p0` is where the indented side
-  /// starts, `out` leads from the mother face to the target's.
+  /// Most pairs are parallel, pass each other at a distance or have not met yet: the common
+  /// perpendicular tells it without a root or a division, before all else. `p0` is where the
+  /// indented side starts, `out` leads from the mother face to the target's.
   template <class T>
   CDEM_HD Truth<T> far_apart(const Vec3<T>& xm, const Vec3<T>& dm, const Vec3<T>& p0,
                              const Vec3<T>& xt, const Vec3<T>& dt, const Vec3<T>& out,
@@ -261,12 +261,12 @@ struct ResolveTargetEdges {
         pair.t, pair.sides);
     const auto first = numbers_of([](Index y, Index x) { return x <= y; }, other, pair.t);
     const T there = dot(nm, geometry.normal(other));
-    return (here < there) | ((!(here > there)) & (first > T(0.0)));
+    return (here < there) | ((first > T(0.0)) & !(here > there));
   }
 };
 
-/// List what was found for one exposed face, in order: its contacts go on or begin, and what the
-/// springs of those that ended did not give back is lost to friction and dashpot.
+/// List the contacts found for one exposed face, in order: they go on or begin. Energy that the
+/// springs of ended contacts did not give back is lost to friction and dashpot.
 struct ListEdgeContacts {
   ResolveTargetEdges touch;
   const Index* first;  // [exposed + 1] of the list

@@ -1,8 +1,7 @@
 // prune.hpp - kernels that take the inner pair list from the outer one.
 //
-// The tests of the narrow phase, made now and then and with room for how far everything may move
-// before they are made again. What they leave out cannot touch before, so that what is found in
-// contact does not depend on them.
+// The tests of the narrow phase with room for all motion until the next pruning. Pairs that they
+// leave out cannot touch before, so that the contacts found do not depend on them.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -13,7 +12,7 @@
 namespace cdem {
 
 /// Mark the pairs of vertex and face that may soon be in contact. One test stands for the
-/// semi-springs in all faces at the vertex, and has room for what distinguishes them.
+/// semi-springs in all faces at the vertex, and has room for the differences between them.
 struct MarkNearFaces {
   InMotion nodes;
   FaceGeometry geometry;
@@ -22,7 +21,7 @@ struct MarkNearFaces {
                   // side; depth from which it may lie outside, and distance from the centre of
                   // three corners that it has then at most; how far the vertex may soon move
                   // as seen from the face, which all have room for: without skins  [m]
-  const Real* rotation;  // [exposed] how much its normal may soon rotation  [rad]
+  const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
   const Real* skin;      // [node]  [m]
   Flag* near;
   Real* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
@@ -44,7 +43,7 @@ struct MarkNearFaces {
                     max_of(max_of(skin_at(0), skin_at(1)), max_of(skin_at(2), skin_at(3)));
     store(motion, p, room.at(5, p) + skins);
     const T most = select(below, room.at(1, p), room.at(0, p)) + skins;
-    // how much what is above the face moves along it as the face rotations
+    // how far a point above the face moves along it as the face rotates
     const T along = T(2.0) * look_up(rotation, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
     const T reach = room.at(4, p) + skins + along, aside = room.at(2, p) + skins + along;
     const T penetration = max_of(room.at(3, p) - skins, T(0.0));
@@ -74,11 +73,11 @@ struct ListedFaces {
   const Index* pair;     // pair of vertex and face
   const Flag* near;      // [pair] see MarkNearFaces
   const Real* motion;    // [pair] the same
-  const Real* rotation;  // [exposed] how much its normal may soon rotation  [rad]
+  const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
 };
 
 /// Of the faces that are near a vertex, mark those on which a semi-spring may soon go on or begin:
-/// what ResolveTargets asks of its indented point and of the two faces, with room.
+/// the tests of ResolveTargets on its indented point and the two faces, with room.
 struct MarkInnerFaces {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -108,7 +107,7 @@ struct MarkInnerFaces {
                !(plane < T(-rules.depth) * c.length - above);
     if (any_of(may)) {
       const auto inside = faces.shape(geometry.vertices(t)).inside(c.p, c.normal, room);
-      // what lies deeper than a contact may begin may be behind a corner
+      // a vertex deeper than a contact may begin may be behind a corner
       may = may & (inside | (plane < motion - T(rules.entry) * c.length));
     }
     for_lanes(item, [&](Index lane, Index, Index id) { close[id] = holds(may, lane); });
@@ -164,13 +163,13 @@ struct ListedEdges {
 };
 
 /// Mark the pairs of edges that may soon begin to touch. One test stands for the sides of all faces
-/// at both edges, in either direction, and has room for what distinguishes them: their indentation
-/// and the rate of approach.
+/// at both edges, in either direction, and has room for the differences between them: indentation
+/// and rate of approach.
 ///
 /// Where two edges touch, points of theirs lie on the contact normal, no deeper than a contact may
 /// begin. No two points of the edges move relative to each other by more than `motion` until then,
 /// so that now they are on the right side of each other but for that, and in the plane across the
-/// common perpendicular, which rotations by `swing`, as far apart as that and `swing` times the
+/// common perpendicular, which rotates by `swing`, as far apart as that and `swing` times the
 /// depth.
 struct MarkNearEdges {
   InMotion nodes;
@@ -214,7 +213,7 @@ struct MarkNearEdges {
     const T sine = T(1.0) / (per_c * long_a * long_b);
     const T rotations = T(2.0) * motion * (T(1.0) / long_a + T(1.0) / long_b);
     const auto parallel = sine + rotations < T(parallel_edges);
-    const auto open = !(sine > T(2.0) * rotations);  // may rotation into anything
+    const auto open = !(sine > T(2.0) * rotations);  // may rotate into anything
     // where the lines cross, from the starts of the edges [m]. An indented edge lies beside the
     // true one by `shift` at most, so that the crossing with the target moves by shift / sin of the
     // angle between the two on the target, and by shift * cot on the edge itself.
@@ -226,7 +225,7 @@ struct MarkNearEdges {
     const T inset = room.at(3, p) - shift * cot - off, beside = -shift / least - off;
     const auto crosses = (within(on_a, inset, long_a) & within(on_b, beside, long_b)) |
                          (within(on_b, inset, long_b) & within(on_a, beside, long_a));
-    set_flags(near, p, (!(far | parallel)) & (open | crosses));
+    set_flags(near, p, (open | crosses) & !(far | parallel));
   }
 
  private:

@@ -62,7 +62,7 @@ TEST_CASE("items name their nodes, and what a pair stiffens them by") {
 
 TEST_CASE("a released pair is not active") {
   Mixed mixed;
-  mixed.state.quads.live[0] = 0;
+  mixed.state.quads.status[0] = 0;
   CHECK(!is_active(mixed.state.quads, 0));
   CHECK(is_active(mixed.state.triangles, 0));
 }
