@@ -36,6 +36,7 @@ RIDDLE = re.compile(
 )
 """A sentence whose subject is a clause: name the thing."""
 
+
 def files(places: tuple[str, ...], *suffixes: str) -> list[Path]:
     """Files below some places with one of these endings, in order."""
     found: set[Path] = set()

@@ -16,7 +16,7 @@ TEST_CASE("a live bond puts its share on its nodes, a released one nothing") {
   const Real share = quads.stiffness[0] * quads.area[0] / 4;
   for (Index i = 0; i < 16; ++i)
     CHECK(scene.state.node_bonds[i] == (scene.position(i).z == 1 ? share : 0));
-  scene.state.quads.live[0] = 0;
+  scene.state.quads.status[0] = 0;
   sum_stiffness(scene.model, scene.state);
   for (Index i = 0; i < 16; ++i) CHECK(scene.state.node_bonds[i] == 0);
 }
