@@ -54,7 +54,7 @@ lint: setup
 	$(BIN)/clang-format --dry-run -Werror $(CPP)
 	$(BIN)/python tools/layers.py
 	$(BIN)/python tools/package_layers.py
-	$(BIN)/python tools/words.py
+	$(BIN)/python tools/words.py --all
 	$(BIN)/mypy src/cdem
 	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools
 	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md core bindings src tests docs tools

@@ -30,7 +30,7 @@ struct ChangeTargets {
 
  private:
   /// A contact that changes its face keeps the shear force, turned into the new plane with its
-  /// length kept, and sinks in as far as gives the normal spring there the energy it had: as deep
+  /// length kept, and penetrates as far as gives the normal spring there the energy it had: as deep
   /// as before would make some where the new face is the stiffer one. Until it has its new force,
   /// its energies are what its springs held on the old face and did not give back.
   CDEM_HD void move_to_target(Index m, Index slot, Index before, Index t) const {

@@ -90,7 +90,7 @@ class RunState:
     def __init__(self, case: Case, threads: int) -> None:
         self.case = case.model_copy(deep=True)  # stages change it; the caller's stays
         self.threads = threads
-        self.build: Build = build(case)
+        self.build: Build = build(self.case)
         self.core = self.build.core
         self.overlap = (0.0, 0, -1)
         self.stage_index = 0

@@ -1,4 +1,4 @@
-"""Simulations that are resumed."""
+"""Simulations: what they keep, and those that are resumed."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import json
 
 import h5py
 import pytest
+
+import cdem
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
@@ -21,3 +23,24 @@ def test_a_checkpoint_of_another_version_is_refused_in_one_line(run_cli, cube_fo
     assert "written by another version of cdem" in err
     assert "dt_stable" in err and "spring.state" in err
     assert "Traceback" not in err
+
+
+def test_a_run_leaves_the_case_of_its_caller_alone():
+    case = cdem.Case(
+        model={"blocks": [{"group": "rock", "box": {"size": [1, 1, 1]}}]},
+        materials={"m": {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.25}},
+        groups={"rock": {"material": "m"}},
+        interfaces={"default": {"friction_angle": 30}},
+        stages=[
+            {
+                "name": "fall",
+                "mode": "dynamic",
+                "duration": 1e-3,
+                "set": {"interfaces.default.friction_angle": 10},
+            }
+        ],
+    )
+    sim = cdem.Simulation(case, threads=1)
+    sim.run()
+    assert sim.case.interfaces.default.friction_angle == 10
+    assert case.interfaces.default.friction_angle == 30

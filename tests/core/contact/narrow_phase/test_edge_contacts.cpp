@@ -1,4 +1,4 @@
-// The list of semi-edge contacts, which every step makes anew.
+// The list of semi-edge contacts, which every step makes again.
 #include <stdexcept>
 
 #include "core/contact/narrow_phase/edge_contacts.hpp"
