@@ -29,7 +29,7 @@ check: setup
 test: setup
 	$(BIN)/python tools/build.py --own-laws $(if $(T),,--tests)
 	$(if $(T),,build/core/core_tests)
-	$(BIN)/python -m pytest $(T)
+	$(BIN)/python -m pytest $(if $(T),$(T),-n auto --dist loadfile)
 
 validate: build
 	$(BIN)/python -m pytest -m slow
