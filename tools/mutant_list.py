@@ -65,7 +65,7 @@ PYTHON = [
         "src/cdem/model/supports.py",
         "component[nodes, axis] = 1",
         "component[nodes] = 1",
-        "tests/validation/test_elements.py::test_patch_test_gives_uniform_stress",
+        "tests/unit/model/test_supports.py",
     ),
     Mutant(
         "traction",
@@ -73,7 +73,7 @@ PYTHON = [
         "src/cdem/model/loads.py",
         "(area / used.sum(axis=1))[:, None]",
         "(area / 4)[:, None]",
-        "tests/validation/test_elements.py::test_patch_test_gives_uniform_stress",
+        "tests/unit/model/test_loads.py",
     ),
     Mutant(
         "spin",
@@ -81,7 +81,7 @@ PYTHON = [
         "src/cdem/model/loads.py",
         "np.cross(np.asarray(group.angular_velocity, float), x - center)",
         "np.cross(x - center, np.asarray(group.angular_velocity, float))",
-        "tests/validation/test_free_motion.py",
+        "tests/unit/model/test_loads.py",
     ),
     Mutant(
         "columns",
@@ -89,7 +89,7 @@ PYTHON = [
         "src/cdem/run/histories.py",
         "{'xyz'[axis]}",
         "{'zyx'[axis]}",
-        "tests/unit/study",
+        "tests/unit/run/test_histories.py",
     ),
     Mutant(
         "resume",
@@ -116,7 +116,7 @@ PYTHON = [
         "tests/unit/joints/test_joints.py",
     ),
     Mutant(
-        "persistence",
+        "seed",
         "random part of a joint set without its seed",
         "src/cdem/joints/joints.py",
         "[joint.seed, zlib.crc32",
@@ -137,7 +137,7 @@ PYTHON = [
         "src/cdem/mesh/mesh.py",
         "return numbers[piece.cell_group[shape]]",
         "return piece.cell_group[shape]",
-        "tests/unit/mesh tests/unit/model",
+        "tests/unit/mesh/test_mesh.py",
     ),
     Mutant(
         "mesh_file",
@@ -145,7 +145,7 @@ PYTHON = [
         "src/cdem/mesh/mesh_files.py",
         "if not path.is_file():",
         "if path.is_dir():",
-        "tests/unit/mesh tests/unit/case",
+        "tests/unit/mesh/test_mesh_files.py",
     ),
     Mutant(
         "runout",
