@@ -134,9 +134,12 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
   for (int round = 0; round < 50; ++round) {
     tip.put_tip({random.between(-2.2, 2.2), random.between(-2.2, 2.2), random.between(-0.03, 0.01)},
                 random.vector(3));
+    const Index exposed = Index(tip.state.search.exposed_face.size());
+    tip.state.springs.unresolved.resize(4 * exposed);
+    FaceSearch search = face_search(tip.model, tip.state);
+    for_each_item({}, 4 * exposed, BeginTargets{search.springs});
     const std::vector<Index> expected = tip.targets();
     // the whole stage, all faces of the box being candidates of every slot of the tet
-    const Index exposed = Index(tip.state.search.exposed_face.size());
     std::vector<Index> first(4 * exposed + 1), other;
     for (Index slot = 0; slot < 4 * exposed; ++slot) {
       const bool of_tip = slot % 4 < 3 && slot >= 24 &&
@@ -145,7 +148,6 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
       first[slot + 1] = Index(other.size());
     }
     std::vector<Flag> may_begin(other.size());
-    FaceSearch search = face_search(tip.model, tip.state);
     search.candidates = {first.data(), other.data(), may_begin.data()};
     for_each_selected({}, exposed, UpdateHeldTargets{search});
     for_each_selected({}, exposed, FilterNewTargets{search});
