@@ -221,7 +221,7 @@ CORE = [
         "core/diagnostics/energy.cpp",
         "sum += edge.energy_n + edge.energy_s;",
         "sum += edge.energy_n;",
-        "tests/core/run/test_run.cpp",
+        "tests/core/contact/force/test_accumulate.cpp",
     ),
     Mutant(
         "ordered_sum",
@@ -318,7 +318,7 @@ CORE = [
         "core/contact/force/accumulate.hpp",
         "edge_friction[m] += row[6];",
         "",
-        "tests/core/run/test_run.cpp",
+        "tests/core/contact/force/test_accumulate.cpp",
     ),
     Mutant(
         "edge_node",
@@ -326,7 +326,7 @@ CORE = [
         "core/contact/force/accumulate.hpp",
         "add(sum[k + 1 == count ? 0 : k + 1], -row[5], row);",
         "add(sum[k == 0 ? count - 1 : k - 1], -row[5], row);",
-        "tests/core/run/test_run.cpp",
+        "tests/core/contact/force/test_accumulate.cpp",
     ),
     Mutant(
         "change_of_face",
