@@ -29,7 +29,17 @@ PYTHON = str(TREE / ".venv" / "bin" / "python")
 NINJA = ("ninja", "-C", "build/core")
 MODULE = (PYTHON, "tools/build.py", "--native")
 CORE_TESTS = ("build/core/core_tests", "--abort-after=1")
-PYTEST = (PYTHON, "-m", "pytest", "-x", "-rfE", "--no-header", "-p", "no:cacheprovider")
+PYTEST = (
+    PYTHON,
+    "-m",
+    "pytest",
+    "-x",
+    "-rfE",
+    "--no-header",
+    "-p",
+    "no:cacheprovider",
+    "--hypothesis-seed=1",
+)
 SUITE = ("tests/unit", "tests/integration", "tests/validation", "tests/regression")
 PYTEST_FAILURE = r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$"
 CORE_FAILURE = r"^\S*?(tests/core/\S+):\d+:\nTEST CASE: *(.+)$"
@@ -70,6 +80,7 @@ def run(command: Sequence[str], limit: float = LIMIT_SUITE) -> subprocess.Comple
 
 def copy_tree() -> None:
     """Make the copy what the checkout is; files that are equal keep their time."""
+    shutil.rmtree(TREE / ".hypothesis", ignore_errors=True)  # draws that failed under a fault
     tracked = set(git("ls-files", "-z").split("\0")) - {""}
     for name in tracked:
         new, old = ROOT / name, TREE / name
