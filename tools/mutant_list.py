@@ -245,7 +245,7 @@ CORE = [
         "core/contact/pair_list/prune.hpp",
         "select(below, room.at(1, p), room.at(0, p)) + skins",
         "select(below, room.at(1, p), room.at(0, p)) - skins",
-        "tests/core/contact/pair_list/test_inner_list.cpp",
+        CONTACTS + "test_contact_search_agrees_with_an_all_pairs_search",
     ),
     Mutant(
         "transfer",
@@ -281,11 +281,11 @@ CORE = [
         "tests/core/bonds/test_bond_point.cpp",
     ),
     Mutant(
-        "overlap_node",
-        "force of an overlap's bond on the wrong vertices",
+        "overlap_area",
+        "area of an overlap's bond points doubled",
         "core/bonds/bonded_pairs.hpp",
-        "force[4 + k] + weights_b[4 * c + k] * f.on_b",
-        "force[4 + k] + weights_b[4 * c + 3 - k] * f.on_b",
+        "pairs.spring(p, point_area[c])",
+        "pairs.spring(p, 2 * point_area[c])",
         FAILURE + "test_nonconforming_interface_opens_uniformly",
     ),
     Mutant(

@@ -44,7 +44,7 @@ SUITE = ("tests/unit", "tests/integration", "tests/validation", "tests/regressio
 PYTEST_FAILURE = r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$"
 CORE_FAILURE = r"^\S*?(tests/core/\S+):\d+:\nTEST CASE: *(.+)$"
 OWN_LAWS = "tests/validation/test_own_laws.py"  # skipped in the suite: another core, built last
-LIMIT = 1200  # of one test, and LIMIT_SUITE of all  [s]
+LIMIT = 400  # of one test, and LIMIT_SUITE of all  [s]
 LIMIT_SUITE = 7200
 
 
