@@ -334,7 +334,7 @@ CORE = [
         "core/contact/force/change_of_target.hpp",
         "s.shear1 = scale * a;",
         "s.shear1 = 0;",
-        "tests/validation/test_sliding.py::test_contact_force_is_continuous_at_seams",
+        "tests/core/contact/force/test_change_of_target.cpp",
     ),
     Mutant(
         "mass_row",
