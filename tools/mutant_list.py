@@ -24,7 +24,6 @@ class Mutant(NamedTuple):
 
 
 FAILURE = "tests/validation/test_failure.py::"
-CONTACTS = "tests/validation/test_contacts.py::"
 
 PYTHON = [
     Mutant(
@@ -245,7 +244,7 @@ CORE = [
         "core/contact/pair_list/prune.hpp",
         "select(below, room.at(1, p), room.at(0, p)) + skins",
         "select(below, room.at(1, p), room.at(0, p)) - skins",
-        CONTACTS + "test_contact_search_agrees_with_an_all_pairs_search",
+        "tests/core/contact/pair_list/test_inner_list.cpp",
     ),
     Mutant(
         "transfer",
