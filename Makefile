@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage nightly verify lint format demo cuda clean
+.PHONY: setup build dev check test validate coverage mutants nightly verify lint format demo cuda clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -43,7 +43,11 @@ coverage: setup
 	$(BIN)/python -m coverage report --sort=cover
 	$(BIN)/python -m gcovr --delete --filter core/ --sort uncovered-percent build/coverage
 
-nightly: test validate coverage
+# Faults planted one by one must each fail a test; with T=name some of them.
+mutants: setup
+	$(BIN)/python tools/mutants.py $(T)
+
+nightly: test validate coverage mutants
 
 verify: build
 	$(BIN)/cdem verify

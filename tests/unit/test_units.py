@@ -43,6 +43,22 @@ def test_a_unit_keeps_its_own_numbers_exactly(unit):
     assert to_number(f"0.1 {unit}", unit) == 0.1
 
 
+SI = ("1", "m", "kg", "s", "Hz", "rad", "N", "Pa", "J")
+PREFIXES = {"u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+OTHERS = {
+    "%": 0.01, "ft": 0.3048, "in": 0.0254, "g": 1e-3, "t": 1e3, "min": 60, "h": 3600, "d": 86400,
+    "deg": math.pi / 180, "°": math.pi / 180, "bar": 1e5, "psi": 0.45359237 * 9.80665 / 0.0254**2,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_unit_is_a_prefix_and_an_si_unit_or_one_of_the_others(unit):
+    """A pound is 0.45359237 kg, of weight 9.80665 N/kg."""
+    named = dict.fromkeys(SI, 1.0) | OTHERS
+    factor = named[unit] if unit in named else PREFIXES[unit[0]] * named[unit[1:]]
+    assert UNITS[unit][0] == pytest.approx(factor, rel=1e-15)
+
+
 @pytest.mark.parametrize("dimension", DIMENSIONS)
 def test_every_dimension_has_its_si_unit(dimension):
     assert 1.0 in DIMENSIONS[dimension][1].values()

@@ -248,14 +248,17 @@ def test_open_bond_that_breaks_transfers_no_force():
 OVER = {"a bed": ([3, 3, 1], [1, 1, 0.5]), "a rail": ([0.4, 3, 1], [1, 0.3, 0.5])}
 
 
-@pytest.mark.parametrize("over, share, within", [("a bed", 0.5, 1e-3), ("a rail", 1, 0.2)])
+@pytest.mark.parametrize(
+    "over, share, within", [("a bed", 0.5, (1e-3, 1e-2)), ("a rail", 1, (0.2, 0.2))]
+)
 def test_bonds_of_nonconforming_faces_transfer_their_force_to_contacts(over, share, within):
     """A block whose bonds break under it stays pressed on its bed, by vertices or by edges alone.
 
     Edges carry the whole force of the bonds. On a bed, whose own semi-springs meet no vertex, the
     contacts have half of the bonds' stiffness and carry half. (Contacts that begin free of stress
     carry nothing, and 0.07 % and 0.7 % of the energy are missing.) Tolerances: the pressure on the
-    rail falls by 6 % in each of two steps; the closing error at a tenth of the stable step.
+    rail falls by 6 % in each of two steps; on the bed the drag is 0.6 % below friction when the
+    last bond breaks; the closing error at a tenth of the stable step.
     """
     (length, width, height), size = OVER[over]
     sim = simulate(
@@ -286,16 +289,19 @@ def test_bonds_of_nonconforming_faces_transfer_their_force_to_contacts(over, sha
     )
     assert sim.run_stage("hold") == "converged"
 
-    def pressure():
-        return sim.fields["reaction"][:, 2].sum() - 7 * 2500 * length * width * height
+    def pressure_and_drag():
+        weight = 7 * 2500 * length * width * height
+        reaction = sim.fields["reaction"].sum(axis=0)
+        return reaction[2] - weight, -reaction[1] - weight
 
     sim.run_until(sim.time + 1e-9)
     bonds = sim.core.fields()["overlaps.status"]
     while bonds[0] > 0:
-        before = pressure()
+        before = np.array(pressure_and_drag())
         sim.step()
-    assert before > 0
-    assert pressure() == pytest.approx(share * before, rel=within)
+    assert (before > 0).all()
+    for after, carried, part in zip(pressure_and_drag(), before, within, strict=True):
+        assert after == pytest.approx(share * carried, rel=part)
     sim.step(4000)
     assert abs(sim.energies["error"]) < 2e-4
 

@@ -85,4 +85,86 @@ TEST_CASE(
   CHECK(corner.state.springs.friction[corner.slot] == 0);
 }
 
+namespace {
+
+/// A box that stands still, with a loaded spring in a face of a tet.
+struct Loaded : Scene {
+  static constexpr Index slot = 1;            // of the first face of the box
+  static constexpr Index before = 7, to = 9;  // faces of the tet
+  ContactState old{.force_n = 30,
+                   .penetration = 1e-3,
+                   .shear1 = 4,
+                   .shear2 = -7,
+                   .stress_free_gap = -1e-4,
+                   .energy_n = 0.02,
+                   .energy_s = 0.005};
+
+  Loaded() {
+    Random random(2);
+    add_box({0, 0, 0}, {1, 1, 1});
+    add_tet(random, {0.5, 0.5, 1.5}, 1);
+    build();
+    start();
+    step(1);
+    state.springs.target_before[slot] = before;
+    old.store(state.springs.state.data(), slot);
+    for (Index k = 0; k < 8; ++k) state.springs.reaction[8 * slot + k] = 1;
+  }
+  ContactState change(Index target) {
+    state.springs.target[slot] = target;
+    for_each_item({}, Index(state.search.exposed_face.size()), kernel());
+    return ContactState::at(state.springs.state.data(), slot);
+  }
+  ChangeTargets kernel() {
+    return {face_columns(model, state), face_geometry(state), model.rules,
+            contact_laws(model, state), spring_columns(state)};
+  }
+  Frame<Real> frame(Index x) {
+    return face_columns(model, state).shape(state.search.exposed_face[x]).frame();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a contact that moves keeps its shear, turned into the new plane, and its energy") {
+  Loaded box;
+  const Frame<Real> from = box.frame(box.before), to = box.frame(box.to);
+  const ContactState moved = box.change(box.to);
+  const Vec held = box.old.shear1 * from.t1 + box.old.shear2 * from.t2;
+  const Vec along = held - dot(held, to.n) * to.n;
+  const Vec now = moved.shear1 * to.t1 + moved.shear2 * to.t2;
+  CHECK(norm(along) < 0.99 * norm(held));
+  CHECK(distance(now, (norm(held) / norm(along)) * along) < 1e-14 * norm(held));
+  const ChangeTargets kernel = box.kernel();
+  const Real kn =
+      kernel.laws
+          .spring(kernel.geometry, kernel.laws.between(kernel.geometry, 0, box.to), 0, box.to)
+          .n();
+  // semi-springs of both blocks share the area
+  CHECK(relative_error(0.5 * 0.5 * kn * moved.penetration * moved.penetration, box.old.energy_n) <
+        1e-14);
+}
+
+TEST_CASE("a contact that ends forgets its forces, and what it held is lost") {
+  Loaded box;
+  const ContactState ended = box.change(-1);
+  CHECK(ended.force_n == 0);
+  CHECK(ended.shear1 == 0);
+  CHECK(ended.shear2 == 0);
+  CHECK(ended.energy_n == 0);
+  CHECK(ended.energy_s == 0);
+  for (Index k = 0; k < 4; ++k) CHECK(box.state.springs.reaction[8 * box.slot + k] == 0);
+  // nothing moves but by round-off
+  CHECK(relative_error(box.state.springs.friction[box.slot], box.old.energy_s) < 1e-10);
+  CHECK(relative_error(box.state.springs.dashpot[box.slot], box.old.energy_n) < 1e-10);
+}
+
+TEST_CASE("a contact that stays on its face is left alone") {
+  Loaded box;
+  const ContactState kept = box.change(box.before);
+  CHECK(kept.force_n == box.old.force_n);
+  CHECK(kept.shear2 == box.old.shear2);
+  CHECK(box.state.springs.friction[box.slot] == 0);
+}
+
 }  // namespace cdem::test

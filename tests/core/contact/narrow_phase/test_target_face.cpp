@@ -12,10 +12,9 @@ namespace {
 struct Tip : Scene {
   Index tip = 8;  // node, the first of the tet
 
-  explicit Tip(const std::array<Vec, 4>& corners = {
-                   {{0, 0, 0}, {0.5, 0, 1}, {-0.3, 0.4, 1}, {-0.3, -0.4, 1}}}) {
+  Tip() {
     add_box({-2, -2, -2}, {4, 4, 2});
-    add<Tet4>(corners);
+    add<Tet4>({{{0, 0, 0}, {0.5, 0, 1}, {-0.3, 0.4, 1}, {-0.3, -0.4, 1}}});
     build();
     start();
   }
@@ -80,16 +79,15 @@ TEST_CASE("a vertex outside the face does not touch it, whatever its depth") {
   CHECK(tip.targets() == none);
 }
 
-TEST_CASE("a vertex that an edge of its own goes below does not begin a contact") {
-  const auto with_corner_at = [](Real height) {
-    Tip tip({{{0, 0, 0}, {0.5, 0, height}, {0, 0.5, 0.1}, {0.1, 0.1, 1}}});
-    tip.put_tip({0, 0, -0.001});
-    std::vector<Index> targets = tip.targets();
-    return std::count(targets.begin(), targets.end(), top) > 0;
-  };
-  CHECK(with_corner_at(0.1));
-  CHECK(with_corner_at(-0.02));  // within the slack of the cone, 5 % of the edge
-  CHECK(!with_corner_at(-0.03));
+TEST_CASE("a vertex that an edge of its own goes below is not in contact") {
+  Tip tip;
+  // turned over: the other corners are below the tip
+  for (Index i = tip.tip; i < tip.tip + 4; ++i) {
+    const Vec x = tip.position(i);
+    put(tip.motion(i), Vec{x.x, -x.y, -x.z});
+  }
+  tip.put_tip({0, 0, -0.001});
+  CHECK(tip.targets() == none);
 }
 
 TEST_CASE("a face that does not oppose the mother face is no target") {
@@ -136,9 +134,12 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
   for (int round = 0; round < 50; ++round) {
     tip.put_tip({random.between(-2.2, 2.2), random.between(-2.2, 2.2), random.between(-0.03, 0.01)},
                 random.vector(3));
+    const Index exposed = Index(tip.state.search.exposed_face.size());
+    tip.state.springs.unresolved.resize(4 * exposed);
+    FaceSearch search = face_search(tip.model, tip.state);
+    for_each_item({}, 4 * exposed, BeginTargets{search.springs});
     const std::vector<Index> expected = tip.targets();
     // the whole stage, all faces of the box being candidates of every slot of the tet
-    const Index exposed = Index(tip.state.search.exposed_face.size());
     std::vector<Index> first(4 * exposed + 1), other;
     for (Index slot = 0; slot < 4 * exposed; ++slot) {
       const bool of_tip = slot % 4 < 3 && slot >= 24 &&
@@ -147,10 +148,7 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
       first[slot + 1] = Index(other.size());
     }
     std::vector<Flag> may_begin(other.size());
-    tip.state.springs.unresolved.resize(4 * exposed);
-    FaceSearch search = face_search(tip.model, tip.state);
     search.candidates = {first.data(), other.data(), may_begin.data()};
-    for_each_item({}, 4 * exposed, BeginTargets{search.springs});
     for_each_selected({}, exposed, UpdateHeldTargets{search});
     for_each_selected({}, exposed, FilterNewTargets{search});
     for_each_item({}, 4 * exposed, ResolveTargets{search});

@@ -1,6 +1,7 @@
 // The inner pair list holds a part of the outer one, and every contact until it is made again.
 #include <set>
 
+#include "core/contact/geometry/views.hpp"
 #include "core/contact/pair_list/inner_list.hpp"
 #include "tests/core/scene.hpp"
 
@@ -8,11 +9,14 @@ namespace cdem::test {
 
 namespace {
 
-/// A tet that falls with a spin onto a fixed box.
+/// A tet that falls with a spin onto a fixed box, or onto a triangle.
 struct Landing : Scene {
-  Landing() {
+  explicit Landing(bool on_triangle = false) {
     Random random(3);
-    add_box({-1, -1, -1}, {2, 2, 1}, true);
+    if (on_triangle)
+      add<Tet4>({{{0, 0, -2}, {-2, -2, 0}, {2, -2, 0}, {0, 3, 0}}}, true);
+    else
+      add_box({-1, -1, -1}, {2, 2, 1}, true);
     const Index tet = add_tet(random, {0, 0, 0.8}, 1);
     build();
     set_interface({{"friction_angle", 0.4}});
@@ -66,6 +70,38 @@ TEST_CASE("contacts are on the inner list when they begin, and as long as they l
     }
   }
   CHECK(held > 50);
+}
+
+TEST_CASE("what a vertex may reach within the skins is on the inner list") {
+  Landing landing(true);
+  const Model& m = landing.model;
+  State& s = landing.state;
+  Index close = 0;
+  for (int n = 0; n < 400; ++n) {
+    landing.step(1);
+    prune_pair_list(m, s, {});
+    const auto near = landing.inner();
+    const FaceColumns faces = face_columns(m, s);
+    for (const auto& [slot, t] : landing.outer()) {
+      const FaceShape<Real> mother = faces.shape(s.search.exposed_face[slot / 4]),
+                            target = faces.shape(s.search.exposed_face[t]);
+      const Vec v = mother.x[slot % 4], n_t = target.normal();
+      const Vec p = v + m.rules.indentation * (mother.center() - v);
+      const bool opposes = dot(mother.normal(), n_t) < -m.rules.opposing;
+      const Real gap = project(target, v, n_t).gap;
+      if (!opposes || !target.inside(p, n_t, 0.0) || gap < 0) continue;
+      const auto skin_of = [&](Index x, Index k) {
+        return landing.list().skin[m.face_nodes[4 * s.search.exposed_face[x] + k]];
+      };
+      Real skins = 0;
+      for (Index k = 0; k < target.count(); ++k) skins = std::max(skins, skin_of(t, k));
+      skins += skin_of(slot / 4, slot % 4);
+      if (gap > skins) continue;
+      ++close;
+      CHECK(near.count({slot, t}) == 1);
+    }
+  }
+  CHECK(close > 5);
 }
 
 TEST_CASE("the inner list is made again when a node has left its inner skin") {
