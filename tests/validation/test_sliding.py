@@ -101,13 +101,13 @@ def test_dilating_joint_rises_by_tan_psi_times_slip(bed):
 
 
 def test_acceleration_over_separate_flush_blocks():
-    """Tolerance: the block's vertices cross seams, which leaves vibration of 2e-5."""
+    """Tolerance: the block chatters as it crosses seams; by round-off the fit is off by 4e-6 to 7e-5."""
     measured, theory, _ = slide(FLUSH, 35, 20)
-    assert measured == pytest.approx(theory, rel=1e-4)
+    assert measured == pytest.approx(theory, rel=3e-4)
 
 
 def test_acceleration_of_a_meshed_block_over_flush_blocks():
-    """Tolerance: as above; a block of 2 x 2 x 2 elements vibrates more, 7e-5."""
+    """A block of 2 x 2 x 2 elements; tolerance as above."""
     measured, theory, _ = slide(FLUSH, 35, 20, divisions=(2, 2, 2))
     assert measured == pytest.approx(theory, rel=3e-4)
 
@@ -127,7 +127,8 @@ def test_acceleration_over_small_steps_down(down, within):
 def test_acceleration_on_rails_touched_by_edges_alone(kind):
     """Fig. 18: a slider lies across rails that run down the slope; theta 45, phi 30: 2.9315 m/s2.
 
-    (With the paper's g = 9.8 that is 2.928.) Tolerance: sliding edges chatter.
+    (With the paper's g = 9.8 that is 2.928.) Tolerance: sliding edges chatter, which is chaotic; by
+    round-off a fit over 0.7 s is off by 2e-5 to 8e-5.
     """
     rail = {"size": [12, 0.3, 0.3]}
     if kind == "rail":
@@ -143,10 +144,8 @@ def test_acceleration_on_rails_touched_by_edges_alone(kind):
             }
             for y in (0.5, 3.5)
         ]
-    measured, theory, _ = slide(
-        beds, 45, 30, size=(1, 5, 0.4), start=(0.3, -0.4, 0), rock={"young_modulus": "10 GPa"}
-    )
-    assert measured == pytest.approx(theory, rel=5e-4)
+    measured, theory, _ = slide(beds, 45, 30, size=(1, 5, 0.4), start=(0.3, -0.4, 0), time=0.8)
+    assert measured == pytest.approx(theory, rel=3e-4)
 
 
 def test_acceleration_over_a_slightly_uneven_bed(monkeypatch):

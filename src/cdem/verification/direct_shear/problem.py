@@ -41,14 +41,14 @@ def run(study):
     rest = height[time < 0.051][-1]
     theirs = theory(slip[forth], load, law)
     study.check("constant load: shear stress while it slides", theory=theirs[0][-1],
-                ours=stress[forth][-1], within=1e-5, unit="Pa")  # fmt: skip
+                ours=stress[forth][-1], within=1e-12, unit="Pa")  # fmt: skip
     study.check("constant load: opening at half of the dilation slip", theory=theirs[2][10],
                 ours=(height[forth] - rest)[10], within=0.0034, unit="m")  # fmt: skip
     study.check("constant load: opening in the end", theory=theirs[2][-1],
-                ours=height[forth][-1] - rest, within=1e-4, unit="m")  # fmt: skip
+                ours=height[forth][-1] - rest, within=1e-13, unit="m")  # fmt: skip
     study.check("constant load: opening stays when it slides back", theory=height[forth][-1] - rest,
-                ours=height[-1] - rest, within=1e-4, unit="m")  # fmt: skip
-    study.check("constant load: error of the energy ledger", theory=0, ours=error, within=1e-3,
+                ours=height[-1] - rest, within=1e-13, unit="m")  # fmt: skip
+    study.check("constant load: error of the energy ledger", theory=0, ours=error, within=5e-10,
                 absolute=True)  # fmt: skip
     study.curve("Opening of the joint", "slip [m]", "opening [m]", {
         "theory": (slip[forth], theirs[2]),
@@ -60,12 +60,15 @@ def run(study):
     (time, slip, stress, pressure, _), error = shear(simulation, 0.4)
     forth = time > 0.051
     theirs = theory(slip[forth], load, law, stiffness)
-    for name, place in (("at half of the dilation slip", 10), ("in the end", -1)):
-        study.check(f"fixed lid: pressure {name}", theory=theirs[1][place], within=0.001,
+    for name, place, within in (
+        ("at half of the dilation slip", 10, 5e-4),
+        ("in the end", -1, 5e-9),
+    ):
+        study.check(f"fixed lid: pressure {name}", theory=theirs[1][place], within=within,
                     ours=pressure[forth][place], unit="Pa")  # fmt: skip
-        study.check(f"fixed lid: shear stress {name}", theory=theirs[0][place], within=0.001,
+        study.check(f"fixed lid: shear stress {name}", theory=theirs[0][place], within=within,
                     ours=stress[forth][place], unit="Pa")  # fmt: skip
-    study.check("fixed lid: error of the energy ledger", theory=0, ours=error, within=1e-3,
+    study.check("fixed lid: error of the energy ledger", theory=0, ours=error, within=1e-9,
                 absolute=True)  # fmt: skip
     study.curve("Pressure and shear stress under a fixed lid", "slip [m]", "stress [Pa]", {
         "pressure, theory": (slip[forth], theirs[1]), ".pressure": (slip[forth], pressure[forth]),

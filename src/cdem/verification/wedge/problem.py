@@ -54,7 +54,7 @@ def run(study):
     time, speed = np.array(rows).T
     exact = -9.81 * line[2] * (1 - theory(vertices, less))
     study.check("acceleration, a quarter of the friction angles", unit="m/s2", theory=exact,
-                ours=np.polyfit(time, speed, 1)[0], within=2e-4)  # fmt: skip
+                ours=np.polyfit(time, speed, 1)[0], within=5e-5)  # fmt: skip
     study.curve("Speed along the line of intersection", "time [s]", "speed [m/s]",
                 {"theory": (time, speed[0] + exact * (time - time[0])), ".cdem": (time, speed)})  # fmt: skip
     study.picture("The wedge, and after 0.6 s", *shown, snapshot(simulation))
