@@ -396,8 +396,9 @@ CORE = [
         "lame",
         "Lame constants swapped",
         "core/elements/views.hpp",
-        ".materials = {.lambda = m.material_lambda.data(),",
-        ".materials = {.lambda = m.material_mu.data() + 0 * m.material_lambda.size(),",
+        ".materials = {.lambda = m.material_lambda.data(),\n"
+        "                        .mu = m.material_mu.data(),",
+        ".materials = {.lambda = m.material_mu.data(), .mu = m.material_lambda.data(),",
         "tests/validation/test_elements.py::test_patch_test_gives_uniform_stress",
     ),
     Mutant(

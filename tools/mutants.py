@@ -208,7 +208,8 @@ def check_sound(mutants: Iterable[Mutant]) -> None:
 def short(test: str) -> str:
     """A test without its folder and its parameters."""
     file, _, name = test.partition("::")
-    return f"{Path(file).name}::{name.partition('[')[0]}"
+    plain = re.split(r"[\[<]", name)[0]
+    return f"{Path(file).name}::{plain}"
 
 
 def table(outcomes: Sequence[Outcome], commit: str) -> str:

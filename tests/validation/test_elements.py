@@ -14,8 +14,10 @@ from cdem.mesh.primitives import box
 def test_patch_test_gives_uniform_stress(tmp_path, shape, hexahedra):
     """A distorted mesh under a traction of 0.1 MPa has that stress in every element.
 
-    Tolerance: the unbalance ratio of 1e-9 at which the stage ends, 1e-4 Pa.
+    It is strained by sigma / E along it and -nu sigma / E across. Tolerances: the unbalance ratio of
+    1e-9 at which the stage ends, 1e-4 Pa; the square of the strain of 1e-5.
     """
+    young, poisson = 10e9, 0.3
     mesh = box("body", [1, 1, 1], [3, 3, 3], shape=shape)
     points = mesh.points.copy()
     inside = ((points > 1e-6) & (points < 1 - 1e-6)).all(axis=1)
@@ -35,7 +37,9 @@ def test_patch_test_gives_uniform_stress(tmp_path, shape, hexahedra):
     case = cdem.Case.from_dict(
         {
             "model": {"mesh": str(tmp_path / "body.msh")},
-            "materials": {"rock": ROCK},
+            "materials": {
+                "rock": ROCK | {"young_modulus": young, "poisson_ratio": poisson},
+            },
             "groups": {"body": {"material": "rock"}},
             "interfaces": {"default": {"friction_angle": 0}},
             "elements": {"hexahedra": hexahedra},
@@ -55,6 +59,9 @@ def test_patch_test_gives_uniform_stress(tmp_path, shape, hexahedra):
     exact = np.zeros((6, count))
     exact[2] = 1e5
     np.testing.assert_allclose(stress, exact, rtol=0, atol=2e-4)  # [Pa]
+    strain = 1e5 / young * np.array([-poisson, -poisson, 1])
+    moved = sim.fields["displacement"]
+    np.testing.assert_allclose(moved, strain * sim.build.start_position, rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize("hexahedra, cells, within", [("full", 4, 0.011), ("one-point", 1, 0.004)])
