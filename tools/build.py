@@ -59,7 +59,9 @@ def place(folder: Path, module: str) -> None:
     for name, new in built.items():
         old = PLACE / name
         if not old.exists() or old.stat().st_mtime != new.stat().st_mtime:
-            shutil.copy2(new, old)
+            fresh = old.with_suffix(".new")  # a process may have the old one loaded
+            shutil.copy2(new, fresh)
+            fresh.replace(old)
 
 
 def main() -> None:
