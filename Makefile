@@ -57,6 +57,7 @@ lint: setup
 	$(BIN)/ruff format --check src tests tools
 	$(BIN)/clang-format --dry-run -Werror $(CPP)
 	$(BIN)/python tools/layers.py
+	$(BIN)/python tools/members.py
 	$(BIN)/python tools/package_layers.py
 	$(BIN)/python tools/words.py --all
 	$(BIN)/mypy src/cdem

@@ -156,7 +156,12 @@ struct ConformingBonds {
     const auto open = pairs.are_hinges(p);
     Vec3<T> rate[count];
     gather_rates(p, rate);
-    BondForce<T> total{{zero, zero, zero}, zero, zero, zero, zero, zero};
+    BondForce<T> total{.on_b = {zero, zero, zero},
+                       .stored = zero,
+                       .fracture = zero,
+                       .friction = zero,
+                       .tension = zero,
+                       .shear = zero};
     T widest(0.0), intact(0.0);
     for (Index k = 0; k < count; ++k) {
       const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};

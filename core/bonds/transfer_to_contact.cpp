@@ -141,8 +141,13 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
     const Index slot = 4 * x + k;
     if (s.springs.target[slot] != y || s.springs.target_before[slot] >= 0) continue;
     const Vec3<Real> acting = mother.x[k] + m.rules.action * (mother.center() - mother.x[k]);
-    add({slot, false, on_b, frame, -project(target, acting, frame.n).gap, 0.5 * spring.n(),
-         0.5 * spring.s()});
+    add({.place = slot,
+         .is_edge = false,
+         .on_b = on_b,
+         .frame = frame,
+         .depth = -project(target, acting, frame.n).gap,
+         .kn = 0.5 * spring.n(),
+         .ks = 0.5 * spring.s()});
   }
   for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
     const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
@@ -154,8 +159,13 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
         faces.position_before(faces.edge_nodes[2 * contact.edge + 1]) - start;
     const Frame<Real> at =
         edge_frame(edge_normal(along_m, along_t, frame.n - mother.normal()), along_t);
-    add({c, true, on_b, at, -cross_edges(mother.x[k], along_m, start, along_t, at.n).gap,
-         spring.n(), spring.s()});
+    add({.place = c,
+         .is_edge = true,
+         .on_b = on_b,
+         .frame = at,
+         .depth = -cross_edges(mother.x[k], along_m, start, along_t, at.n).gap,
+         .kn = spring.n(),
+         .ks = spring.s()});
   }
 }
 

@@ -96,7 +96,7 @@ struct PointFlow {
  private:
   template <class I, class Rotation, class T>
   CDEM_HD void flow_points(const ElementColumns<Shape>& c, I e,
-                           const PointStrains<Shape, Rotation, T>& p,
+                           const PointStrains<Shape, Rotation, T>&,
                            ElasticStrains<Shape, T>& strains) const {
     const auto material = c.element_material.at(0, e);
     const ElasticConstants<T> elastic = c.materials.elastic(material);

@@ -24,21 +24,35 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const Real damping_time = m.stiffness_damping * s.dt;
   switch (m.formulation) {
     case Formulation::corotational:
-      return for_each_lane(
-          q, e.count, some,
-          CorotationalForce<Shape, FollowRotation>{columns, damping_time, s.dt, work, flow, out});
+      return for_each_lane(q, e.count, some,
+                           CorotationalForce<Shape, FollowRotation>{.columns = columns,
+                                                                    .damping_time = damping_time,
+                                                                    .dt = s.dt,
+                                                                    .damping_work = work,
+                                                                    .flow = flow,
+                                                                    .corner_force = out});
     case Formulation::paper_total:
-      return for_each_lane(
-          q, e.count, some,
-          CorotationalForce<Shape, IgnoreRotation>{columns, damping_time, s.dt, work, flow, out});
+      return for_each_lane(q, e.count, some,
+                           CorotationalForce<Shape, IgnoreRotation>{.columns = columns,
+                                                                    .damping_time = damping_time,
+                                                                    .dt = s.dt,
+                                                                    .damping_work = work,
+                                                                    .flow = flow,
+                                                                    .corner_force = out});
     case Formulation::incremental:
-      return for_each_lane(
-          q, e.count, some,
-          IncrementalForce<Shape, TurnByHalves>{columns, s.dt_last, stress, energy, out});
+      return for_each_lane(q, e.count, some,
+                           IncrementalForce<Shape, TurnByHalves>{.columns = columns,
+                                                                 .dt = s.dt_last,
+                                                                 .stress = stress,
+                                                                 .energy = energy,
+                                                                 .corner_force = out});
     case Formulation::paper_incremental:
-      return for_each_lane(
-          q, e.count, some,
-          IncrementalForce<Shape, NeverTurn>{columns, s.dt_last, stress, energy, out});
+      return for_each_lane(q, e.count, some,
+                           IncrementalForce<Shape, NeverTurn>{.columns = columns,
+                                                              .dt = s.dt_last,
+                                                              .stress = stress,
+                                                              .energy = energy,
+                                                              .corner_force = out});
   }
 }
 

@@ -86,7 +86,8 @@ CDEM_HD inline Borne<T> bears(const InterfaceTable& table, const Ids& interface,
     return table.law<InterfaceLaws::Only>(interface).bears(in);
   } else {
     const T zero(0.0);
-    Borne<T> answer{zero, zero, zero, zero, zero > zero};
+    Borne<T> answer{
+        .normal = zero, .shear1 = zero, .shear2 = zero, .stored = zero, .holds = zero > zero};
     InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
       if constexpr (Law<T>::state.size() == 0) {
         const auto mine = table.has_law<number>(interface);

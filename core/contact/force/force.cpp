@@ -20,7 +20,12 @@ void update_spring_forces(const Model& m, State& s, Queue q) {
   const FaceGeometry geometry = face_geometry(s);
   const ContactLaws laws = contact_laws(m, s);
   const SpringColumns springs = spring_columns(s);
-  for_each_item(q, count, ChangeTargets{faces, geometry, m.rules, laws, springs});
+  for_each_item(q, count,
+                ChangeTargets{.faces = faces,
+                              .geometry = geometry,
+                              .rules = m.rules,
+                              .laws = laws,
+                              .springs = springs});
   for_each_selected(q, count,
                     UpdateSpringForces{.faces = faces,
                                        .geometry = geometry,

@@ -18,7 +18,8 @@ struct MotherPoint {
                                 const SearchRules& rules, const Real* node_mass, const Ids& m,
                                 const Ids& slot) {
     const T dt(faces.dt), zero(0.0);
-    MotherPoint p{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero};
+    const Vec3<T> none{zero, zero, zero};
+    MotherPoint p{.x = none, .x_old = none, .v = none, .inverse_mass = zero};
     const auto add = [&](const Ids& node, const T& w) {
       const Vec3<T> x = faces.nodes.position(node), v = faces.nodes.velocity(node);
       p.x = p.x + w * x;
