@@ -250,8 +250,8 @@ CORE = [
         "transfer",
         "the force of a released bond is not transferred to its contacts",
         "core/bonds/release.cpp",
-        "if (ps.live[i] == 1) ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);",
-        "",
+        "ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);",
+        "ps.stored[i] -= 0;",
         "tests/core/bonds/test_release.cpp",
     ),
     Mutant(
