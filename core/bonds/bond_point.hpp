@@ -47,17 +47,25 @@ struct BondForce {
   T tension, shear;      // 1 when the bond broke in this step, by that cause
 };
 
-/// Does an intact bond point bear this jump? Then `on_b` and `stored` are what bond_force gives,
+/// Does an intact bond point bear this jump? Then `on_b` is the force that bond_force gives,
 /// without the history that an intact point does not have.
 template <class T, class Ids>
 CDEM_HD inline auto bears(const InterfaceTable& table, const Ids& interface,
                           const BondSpring<T>& spring, const Frame<T>& frame, const Vec3<T>& jump,
-                          Vec3<T>& on_b, T& stored) {
+                          Vec3<T>& on_b) {
   const T zero(0.0), one(1.0);
   const Borne<T> joint = bears(table, interface, spring.input(frame, jump, one, zero, zero));
   on_b = spring.area * (joint.normal * frame.n + joint.shear1 * frame.t1 + joint.shear2 * frame.t2);
-  stored = spring.area * joint.stored;
   return joint.holds;
+}
+
+/// Elastic energy of a bond point that bears this jump  [J].
+template <class T, class Ids>
+CDEM_HD inline T intact_energy(const InterfaceTable& table, const Ids& interface,
+                               const BondSpring<T>& spring, const Frame<T>& frame,
+                               const Vec3<T>& jump) {
+  const T zero(0.0), one(1.0);
+  return spring.area * bears(table, interface, spring.input(frame, jump, one, zero, zero)).stored;
 }
 
 /// Tractions of one step ago, without asking for limits again, which a stage may have changed: a

@@ -100,10 +100,14 @@ struct ConformingBonds {
     Vec3<T> mean[count], jump[count], force[count];
     gather_jumps(p, mean, jump);
     const Frame<T> frame = pair_frame<count>(mean);
-    T stored(0.0);
-    if (any_of(live & !all_bear(p, frame, jump, force, stored))) {
+    if (any_of(live & !all_bear(p, frame, jump, force))) {
       update_history(p, live, frame, jump, force);
     } else if (sampled) {
+      const auto interface = pairs.interface.at(0, p);
+      const BondSpring<T> own = spring(p);
+      T stored(0.0);
+      for (Index k = 0; k < count; ++k)
+        stored += intact_energy(pairs.interfaces, interface, own, frame, jump[k]);
       pairs.stored.set(0, p, select(live, stored, T(0.0)));
     }
     write_forces(p, live, force);
@@ -134,17 +138,13 @@ struct ConformingBonds {
  private:
   /// The common case: all points of the pair were intact and stay so.
   template <class I, class T>
-  CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, Vec3<T>* force,
-                        T& stored) const {
+  CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, Vec3<T>* force) const {
     const auto interface = pairs.interface.at(0, p);
     const BondSpring<T> own = spring(p);
     auto all = pairs.bond.at(0, p) > T(0.5);
     for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
-    for (Index k = 0; k < count; ++k) {
-      T energy;
-      all = all & bears(pairs.interfaces, interface, own, frame, jump[k], force[k], energy);
-      stored += energy;
-    }
+    for (Index k = 0; k < count; ++k)
+      all = all & bears(pairs.interfaces, interface, own, frame, jump[k], force[k]);
     return all;
   }
   template <class I, class M, class T>

@@ -67,7 +67,7 @@ CDEM_HD inline JointAnswer<T> select(const M& mask, const JointAnswer<T>& yes,
           .rise = select(mask, yes.rise, no.rise),
           .fracture = select(mask, yes.fracture, no.fracture),
           .bond = select(mask, yes.bond, no.bond),
-          .opens = (mask & yes.opens) | (!mask & no.opens)};
+          .opens = Truth<T>((mask & yes.opens) | ((!mask) & no.opens))};
 }
 
 }  // namespace cdem

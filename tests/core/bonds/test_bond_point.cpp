@@ -155,8 +155,8 @@ TEST_CASE("bears gives the bits of bond_force for what is intact and stays so") 
     point.frame = {r.r0, r.r1, r.r2};
     const Vec jump = random.vector(2e-4);
     Vec on_b;
-    Real stored;
-    const bool holds = bears(rock.table(), Index(0), spring, point.frame, jump, on_b, stored);
+    const bool holds = bears(rock.table(), Index(0), spring, point.frame, jump, on_b);
+    const Real stored = intact_energy(rock.table(), Index(0), spring, point.frame, jump);
     point.lead_to(jump);
     CHECK(holds == (point.history.bond == 1));
     if (!holds) continue;
