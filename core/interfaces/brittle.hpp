@@ -16,7 +16,8 @@ namespace cdem {
 ///
 /// t_n > 0 is compression. Departure from the paper: `>` for its `>=`, and a millionth of c added
 /// to T, so that an unloaded joint with T = 0 (or c = 0) keeps its other strength in spite of
-/// round-off.
+/// round-off. And a bond that slips while it is pulled lets go at once: one step later, without
+/// strength, it would drop its traction with nothing to show for its energy.
 ///
 /// A joint that slips by ds lifts by tan(psi) ds (dilation): its stress-free gap rises, which
 /// presses it harder and so raises the limit. Both are solved for at once.
@@ -118,7 +119,11 @@ struct Brittle {
       limit = shear_limit(normal, in.bond);
     }
     const auto slides = slips(squared, limit);
-    const T keep = select(parts, none, select(slides, limit / sqrt_of(squared), all));
+    const auto lets_go = slides & (normal < none);
+    elastic = select(lets_go, none, elastic);
+    normal = select(lets_go, none, normal);
+    const T kept = select(slides, limit / sqrt_of(squared), all);
+    const T keep = select(parts | lets_go, none, kept);
     const T shear1 = keep * try1, shear2 = keep * try2;
     return {.elastic = elastic,
             .normal = normal,

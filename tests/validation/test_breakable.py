@@ -107,13 +107,17 @@ def test_energy_ledger_closes_for_a_cube_that_breaks():
 
 @pytest.mark.parametrize("friction_angle", [0, 30])
 def test_closing_error_of_breaking_rock_falls_with_the_time_step(friction_angle):
-    """The cube above at 0.1 of the stable step: the closing error falls from 1.4e-4 to 2e-5.
+    """The cube above: the closing error falls from 1.4e-4 at 0.4 of the stable step to 2e-5.
 
-    The ledger counts the energy lost by released bonds and by contacts that end under load or
-    change targets. (Without it the ledger is open by 0.2 to 0.3 % at any step.)
+    How the cube breaks is chaotic: at small steps the error of one run lies between 5e-7 and 4e-5,
+    so the mean of three steps counts. The ledger has the energy of released bonds and of contacts
+    that end under load or change targets. (Without it it is open by 0.2 to 0.3 % at any step.)
     """
-    sim = dropped(2, 0.1, 0.05, friction_angle)
-    assert abs(sim.energies["error"]) < 3e-5
+    errors = [
+        abs(dropped(2, safety, 0.05, friction_angle).energies["error"])
+        for safety in (0.13, 0.1, 0.07)
+    ]
+    assert np.mean(errors) < 3e-5, errors
 
 
 def beam_on_a_post(speed=3.0):

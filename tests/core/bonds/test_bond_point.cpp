@@ -133,6 +133,17 @@ TEST_CASE("what a point loses that is pulled apart is the work done on it") {
   }
 }
 
+TEST_CASE("a point that shears off while it is pulled lets go, and all it held is lost") {
+  Point point;
+  const Real pull = 0.5 * tension;
+  point.walk_to({0, 0, pull / kn});
+  point.walk_to({1.5 * cohesion / ks, 0, pull / kn});
+  CHECK(point.broken == 1);
+  CHECK(point.history.bond == 0);
+  CHECK(norm(point.last.on_b) == 0);
+  CHECK(relative_error(point.fracture + point.friction, point.work) < 5e-15);
+}
+
 TEST_CASE("a broken point in an open hinge carries nothing, an intact one goes on") {
   for (const bool searched : {false, true}) {
     Point point;

@@ -53,6 +53,22 @@ TEST_CASE("a box that slides to rest turns its energy into friction") {
   CHECK(std::abs(e.error) < 2e-4);
 }
 
+TEST_CASE("energies close where bonds shear off while they are pulled") {
+  Scene scene;
+  scene.bonded = true;
+  scene.add_box({0, 0, 0}, {1, 1, 1}, true);
+  const Index box = scene.add_box({0, 0, 1}, {1, 1, 1});
+  scene.build();
+  scene.set_interface({{"cohesion", 3e5}, {"tensile_strength", 1e7}, {"friction_angle", 0.5}});
+  scene.set_motion(box, {1.5, 0, 1});
+  scene.start();
+  scene.step(60);
+  const Energies e = energies(scene.model, scene.state);
+  CHECK(scene.state.quads.broken_shear[0] == 4);
+  CHECK(e.terms[energy_term("fracture")] > 0);
+  CHECK(std::abs(e.error) < 1e-3);
+}
+
 TEST_CASE("the error is measured against the largest term so far") {
   Scene scene;
   scene.add_box({0, 0, 0}, {1, 1, 1});

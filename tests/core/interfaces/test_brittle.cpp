@@ -56,7 +56,7 @@ TEST_CASE("it opens in tension at T, and carries nothing then") {
 }
 
 TEST_CASE("it slips in shear at c and the friction of its compression, and breaks with that") {
-  for (const Real normal : {0.0, 2e5, -0.9e5}) {
+  for (const Real normal : {0.0, 2e5}) {
     const Real limit = normal * tan_phi + cohesion;
     CHECK(respond(at(normal, 0.999999 * limit)).bond == 1);
     const JointAnswer<Real> a = respond(at(normal, 1.2 * limit));
@@ -66,6 +66,16 @@ TEST_CASE("it slips in shear at c and the friction of its compression, and break
     CHECK(relative_error(a.stored_s, 0.5 * limit * limit / ks) < 1e-14);
     CHECK(std::abs(a.normal - normal) < 1e-10);
   }
+}
+
+TEST_CASE("it slips sooner where it is pulled, and lets go at once") {
+  const Real normal = -0.9e5, limit = normal * tan_phi + cohesion;
+  CHECK(respond(at(normal, 0.999999 * limit)).bond == 1);
+  const JointAnswer<Real> a = respond(at(normal, 1.000001 * limit));
+  CHECK(a.bond == 0);
+  CHECK(!a.opens);
+  for (const Real nothing : {a.normal, a.elastic, a.shear1, a.stored_n, a.stored_s})
+    CHECK(nothing == 0);
 }
 
 TEST_CASE("from the next step on it has friction only") {

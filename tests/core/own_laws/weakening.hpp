@@ -71,9 +71,11 @@ struct Weakening {
     const T try1 = -in.stiffness_s * in.shear1, try2 = -in.stiffness_s * in.shear2;
     const T size = sqrt_of(try1 * try1 + try2 * try2);
     const T limit = max_of(normal * tangent + in.bond * cohesion, none);
-    const auto slides = size > limit;
-    const T keep = select(opens, none, select(slides, limit / size, one));
-    state[0] += select(slides & !opens, (size - limit) / in.stiffness_s, none);
+    const auto slides = size > limit, lets_go = slides & (normal < none);
+    elastic = select(lets_go, none, elastic);
+    normal = select(lets_go, none, normal);
+    const T keep = select(opens | lets_go, none, select(slides, limit / size, one));
+    state[0] += select(slides & !(opens | lets_go), (size - limit) / in.stiffness_s, none);
     const T shear1 = keep * try1, shear2 = keep * try2;
     return {.elastic = elastic,
             .normal = normal,
