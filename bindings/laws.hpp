@@ -82,7 +82,7 @@ nb::list declarations() {
 /// The interfaces of the model: law, stiffness_n and stiffness_s as (value, factor), parameters.
 inline void set_interfaces(Core& core, const nb::list& interfaces) {
   Model& m = core.model;
-  constexpr std::size_t width = InterfaceLaws::most_parameters;
+  constexpr std::size_t width = InterfaceTable::row;
   m.interfaces.resize(interfaces.size());
   m.interface_parameters.resize(width * interfaces.size());
   m.rules.lifted = 0;

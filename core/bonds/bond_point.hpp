@@ -11,8 +11,8 @@ namespace cdem {
 /// on which side is meshed finer, and the interface's stiffness.
 template <class T>
 struct BondSpring {
-  T area;                      // [m2]
-  T stiffness_n, stiffness_s;  // [Pa/m]
+  T area;  // [m2]
+  JointStiffness<T> stiffness;
 
   /// What the law is asked for a jump of displacement x_b - x_a.
   CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump, const T& bond,
@@ -21,8 +21,7 @@ struct BondSpring {
     return {.opening = dot(frame.n, jump),
             .shear1 = dot(frame.t1, jump) - slip1,
             .shear2 = dot(frame.t2, jump) - slip2,
-            .stiffness_n = stiffness_n,
-            .stiffness_s = stiffness_s,
+            .stiffness = stiffness,
             .damping = zero,
             .bond = bond,
             .risen = zero,
@@ -74,18 +73,19 @@ CDEM_HD inline T intact_energy(const InterfaceTable& table, const Ids& interface
 template <class T, class Ids>
 CDEM_HD inline JointAnswer<T> before_step(const InterfaceTable& table, const Ids& interface,
                                           const JointInput<T>& in, T* state) {
-  const T zero(0.0), half(0.5), kn = in.stiffness_n, ks = in.stiffness_s;
+  const T zero(0.0), half(0.5);
+  const JointStiffness<T>& k = in.stiffness;
   JointAnswer<T> was{};
-  was.normal = -kn * in.opening;
-  was.shear1 = -ks * in.shear1;
-  was.shear2 = -ks * in.shear2;
+  was.normal = -k.n * in.opening;
+  was.shear1 = -k.s * in.shear1;
+  was.shear2 = -k.s * in.shear2;
   const auto broken = in.bond < half;
   was.normal = select(broken, max_of(was.normal, zero), was.normal);
   const auto open = broken & !(was.normal > zero);
   was.shear1 = select(open, zero, was.shear1);
   was.shear2 = select(open, zero, was.shear2);
-  was.stored_n = half / kn * was.normal * was.normal;
-  was.stored_s = half / ks * (was.shear1 * was.shear1 + was.shear2 * was.shear2);
+  was.stored_n = half * k.compliance_n * was.normal * was.normal;
+  was.stored_s = half * k.compliance_s * (was.shear1 * was.shear1 + was.shear2 * was.shear2);
   if constexpr (InterfaceLaws::most_state > 0)
     was = select(remembers(table, interface) & !broken, respond(table, interface, in, state), was);
   return was;
@@ -141,8 +141,8 @@ CDEM_HD inline BondForce<T> bond_force(const InterfaceTable& table, const Ids& i
   }
   // the slip that makes the elastic law give the limited force
   const T along1 = dot(frame.t1, jump), along2 = dot(frame.t2, jump);
-  h.slip1 = select(intact, h.slip1, along1 + shear1 / spring.stiffness_s);
-  h.slip2 = select(intact, h.slip2, along2 + shear2 / spring.stiffness_s);
+  h.slip1 = select(intact, h.slip1, along1 + shear1 * spring.stiffness.compliance_s);
+  h.slip2 = select(intact, h.slip2, along2 + shear2 * spring.stiffness.compliance_s);
   h.bond = now.bond;
   out.on_b = spring.area * (normal * frame.n + shear1 * frame.t1 + shear2 * frame.t2);
   return out;

@@ -63,8 +63,8 @@ struct PairColumns {
   /// Spring of a point with this area  [m2].
   template <class I>
   CDEM_HD BondSpring<Number<I>> spring(I p, const Number<I>& point_area) const {
-    return {
-        .area = point_area, .stiffness_n = stiffness.at(0, p), .stiffness_s = stiffness.at(1, p)};
+    return {.area = point_area,
+            .stiffness = JointStiffness<Number<I>>::of(stiffness.at(0, p), stiffness.at(1, p))};
   }
 
   /// A pair that opened as a hinge has a wide jump when its last point breaks: what counts for its

@@ -87,35 +87,37 @@ struct Brittle {
 
   CDEM_HD Borne<T> bears(const JointInput<T>& in) const {
     const T one(1.0), half(0.5);
-    const T normal = -in.stiffness_n * in.opening;
-    const T shear1 = -in.stiffness_s * in.shear1, shear2 = -in.stiffness_s * in.shear2;
+    const JointStiffness<T>& k = in.stiffness;
+    const T normal = -k.n * in.opening;
+    const T shear1 = -k.s * in.shear1, shear2 = -k.s * in.shear2;
     const T squared = shear1 * shear1 + shear2 * shear2;
     return {.normal = normal,
             .shear1 = shear1,
             .shear2 = shear2,
-            .stored = half / in.stiffness_n * normal * normal + half / in.stiffness_s * squared,
+            .stored = half * (k.compliance_n * normal * normal + k.compliance_s * squared),
             .holds = !(opens(normal, one) | slips(squared, shear_limit(normal, one)))};
   }
 
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T*) const {
     const T none(0.0), half(0.5), all(1.0);
-    T elastic = -in.stiffness_n * in.opening;
+    const JointStiffness<T>& k = in.stiffness;
+    T elastic = -k.n * in.opening;
     const auto parts = opens(elastic, in.bond);
     elastic = select(parts, none, elastic);
     T normal = select(in.bond > half, elastic, max_of(elastic + in.damping, none));
     normal = select(parts, none, normal);
-    const T try1 = -in.stiffness_s * in.shear1, try2 = -in.stiffness_s * in.shear2;
+    const T try1 = -k.s * in.shear1, try2 = -k.s * in.shear2;
     const T squared = try1 * try1 + try2 * try2;
     T limit = shear_limit(normal, in.bond);
     const T tangent = in.may_rise * min_of(tan_dilation, tan_friction);
     const auto lifts = (tangent > none) & (normal > none) & slips(squared, limit);
     T rise = none;
     if (any_of(lifts)) {
-      const T stiffer = in.stiffness_s + in.stiffness_n * tangent * tan_friction;
+      const T stiffer = k.s + k.n * tangent * tan_friction;
       const T room = max_of(tan_dilation * dilation_slip - in.risen, none);
       rise = select(lifts, min_of(tangent * (sqrt_of(squared) - limit) / stiffer, room), none);
-      normal += in.stiffness_n * rise;
-      elastic += in.stiffness_n * rise;
+      normal += k.n * rise;
+      elastic += k.n * rise;
       limit = shear_limit(normal, in.bond);
     }
     const auto slides = slips(squared, limit);
@@ -129,8 +131,8 @@ struct Brittle {
             .normal = normal,
             .shear1 = shear1,
             .shear2 = shear2,
-            .stored_n = half / in.stiffness_n * elastic * elastic,
-            .stored_s = half / in.stiffness_s * (shear1 * shear1 + shear2 * shear2),
+            .stored_n = half * k.compliance_n * elastic * elastic,
+            .stored_s = half * k.compliance_s * (shear1 * shear1 + shear2 * shear2),
             .rise = rise,
             .fracture = none,
             .bond = select(parts | slides, none, in.bond),

@@ -22,16 +22,28 @@
 
 namespace cdem {
 
+/// Stiffness of a joint, and its inverse: much is divided by it.
+template <class T>
+struct JointStiffness {
+  T n, s;                        // [Pa/m]
+  T compliance_n, compliance_s;  // [m/Pa]
+
+  CDEM_HD static JointStiffness of(const T& n, const T& s) {
+    const T one(1.0);
+    return {.n = n, .s = s, .compliance_n = one / n, .compliance_s = one / s};
+  }
+};
+
 /// Where a joint is. With `bond` = 0 the faces only touch.
 template <class T>
 struct JointInput {
-  T opening;                   // past the stress-free gap; < 0 is pressed  [m]
-  T shear1, shear2;            // along the joint, less what has slipped  [m]
-  T stiffness_n, stiffness_s;  // [Pa/m]
-  T damping;                   // normal traction of the contact's dashpot, compression > 0  [Pa]
-  T bond;                      // 1 while bonded, then 0
-  T risen;                     // how far the stress-free gap lies above zero  [m]
-  T may_rise;                  // 1 where it can rise further: at semi-springs
+  T opening;         // past the stress-free gap; < 0 is pressed  [m]
+  T shear1, shear2;  // along the joint, less what has slipped  [m]
+  JointStiffness<T> stiffness;
+  T damping;   // normal traction of the contact's dashpot, compression > 0  [Pa]
+  T bond;      // 1 while bonded, then 0
+  T risen;     // how far the stress-free gap lies above zero  [m]
+  T may_rise;  // 1 where it can rise further: at semi-springs
 };
 
 /// Tractions on the mother, or on the second face of a bond, after the law.

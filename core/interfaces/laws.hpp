@@ -20,8 +20,10 @@ using InterfaceLaws = LawList<Brittle>;
 
 /// The interfaces of a model and the parameters of their laws.
 struct InterfaceTable {
+  /// Numbers in a row of parameters: whole fours, as lanes load them.
+  static constexpr Index row = (InterfaceLaws::most_parameters + 3) / 4 * 4;
   const Interface* interfaces;
-  const Real* parameters;  // [interface][InterfaceLaws::most_parameters]
+  const Real* parameters;  // [interface][row]
 
   /// Number of the law of an interface, or of one a lane.
   template <class Ids>
@@ -37,12 +39,14 @@ struct InterfaceTable {
   /// The law of an interface with its parameters.
   template <template <class> class Law, class Ids>
   CDEM_HD auto law(const Ids& interface) const {
-    return Law<Number<Ids>>::read([&](Index k) {
-      const auto number = [&](Index i) {
-        return parameters[std::size_t(i) * InterfaceLaws::most_parameters + k];
-      };
-      return numbers_of(number, interface);
-    });
+    using T = Number<Ids>;
+    const auto place = indices_of([](Index i) { return i * row; }, interface);
+    T number[row];
+    for (Index k = 0; k < row; k += 4) {
+      const Four<T> four = fours_at(parameters + k, place);
+      number[k] = four.x, number[k + 1] = four.y, number[k + 2] = four.z, number[k + 3] = four.w;
+    }
+    return Law<T>::read([&](Index k) { return number[k]; });
   }
 };
 
@@ -97,7 +101,7 @@ CDEM_HD inline Borne<T> bears(const InterfaceTable& table, const Ids& interface,
                   .shear1 = select(mine, own.shear1, answer.shear1),
                   .shear2 = select(mine, own.shear2, answer.shear2),
                   .stored = select(mine, own.stored, answer.stored),
-                  .holds = (mine & own.holds) | answer.holds};
+                  .holds = Truth<T>((mine & own.holds) | answer.holds)};
       }
     });
     return answer;

@@ -63,7 +63,7 @@ struct Model {
   Index class_count = 0;
   Column<Index> interface_of;
   Column<Interface> interfaces;
-  Column<Real> interface_parameters;  // [interface][InterfaceLaws::most_parameters]
+  Column<Real> interface_parameters;  // [interface][InterfaceTable::row]
 
   // corner rows of each node; ~row where it takes the opposite of what stands there
   Index corner_rows = 0;

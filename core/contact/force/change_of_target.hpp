@@ -18,6 +18,10 @@ struct ChangeTargets {
   SpringColumns springs;
 
   CDEM_HD void operator()(One m) const {
+    bool changes = false;
+    for (Index k = 0; k < 4; ++k)
+      changes |= springs.target[4 * m.i + k] != springs.target_before[4 * m.i + k];
+    if (!changes) return;
     for (Index slot = 4 * m.i; slot < 4 * m.i + 4; ++slot) {
       const Index t = springs.target[slot], before = springs.target_before[slot];
       if (before < 0 || t == before) continue;

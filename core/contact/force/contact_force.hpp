@@ -73,17 +73,16 @@ template <class T>
 CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
                                            const ContactMotion<T>& motion,
                                            const ContactBefore<T>& before) {
-  const T zero(0.0), ks = spring.s();
-  return {
-      .opening = motion.gap,
-      .shear1 = motion.slip1 - before.shear1 / ks,
-      .shear2 = motion.slip2 - before.shear2 / ks,
-      .stiffness_n = spring.stiffness_n,
-      .stiffness_s = spring.stiffness_s,
-      .damping = select(motion.gap < zero, -motion.dashpot * motion.gap_rate / spring.area, zero),
-      .bond = zero,
-      .risen = motion.stress_free_gap,
-      .may_rise = motion.may_rise};
+  const T zero(0.0), compliance_s = spring.compliance_s();
+  const T damping = -motion.dashpot * motion.gap_rate * spring.per_area();
+  return {.opening = motion.gap,
+          .shear1 = motion.slip1 - compliance_s * before.shear1,
+          .shear2 = motion.slip2 - compliance_s * before.shear2,
+          .stiffness = spring.stiffness,
+          .damping = select(motion.gap < zero, damping, zero),
+          .bond = zero,
+          .risen = motion.stress_free_gap,
+          .may_rise = motion.may_rise};
 }
 
 /// Force of a contact from the answer of its law, Eq. 13-14.
@@ -106,7 +105,7 @@ CDEM_HD inline ContactForce<T> contact_force(const ContactSpring<T>& spring,
   f.energy_n = area * joint.stored_n;
   f.energy_s = area * joint.stored_s;
   f.rise = joint.rise;
-  f.friction = half / spring.s() * (old1 * old1 + old2 * old2) - f.energy_s -
+  f.friction = half * spring.compliance_s() * (old1 * old1 + old2 * old2) - f.energy_s -
                half * ((old1 + f.shear1) * motion.slip1 + (old2 + f.shear2) * motion.slip2) -
                half * (kn * before.penetration + elastic) * joint.rise;
   const T braked = before.force_n - kn * before.penetration + f.force_n - elastic;

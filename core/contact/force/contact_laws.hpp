@@ -37,9 +37,10 @@ struct ContactLaws {
     const auto shear = [&](Index l, Index a, Index b) {
       return table[l].stiffness_s(geometry.stiffer(a, b));
     };
-    return ContactSpring<Number<Ids>>{.area = numbers_of(area, m, t),
-                                      .stiffness_n = numbers_of(normal, interface, m, t),
-                                      .stiffness_s = numbers_of(shear, interface, m, t)};
+    using T = Number<Ids>;
+    return ContactSpring<T>{.area = numbers_of(area, m, t),
+                            .stiffness = JointStiffness<T>::of(numbers_of(normal, interface, m, t),
+                                                               numbers_of(shear, interface, m, t))};
   }
   /// The contact dashpot of a spring between points of this effective mass  [N s/m].
   template <class T>

@@ -1,18 +1,20 @@
 // contact_spring.hpp - stiffness of one contact.
 #pragma once
 
-#include "core/base/lanes.hpp"
+#include "core/interfaces/law.hpp"
 
 namespace cdem {
 
 /// Spring of one contact.
 template <class T>
 struct ContactSpring {
-  T area;                      // characteristic area, Eq. 4-5  [m2]
-  T stiffness_n, stiffness_s;  // [Pa/m]
+  T area;  // characteristic area, Eq. 4-5  [m2]
+  JointStiffness<T> stiffness;
 
-  CDEM_HD T n() const { return area * stiffness_n; }  // K_n  [N/m]
-  CDEM_HD T s() const { return area * stiffness_s; }  // K_s  [N/m]
+  CDEM_HD T n() const { return area * stiffness.n; }  // K_n  [N/m]
+  CDEM_HD T s() const { return area * stiffness.s; }  // K_s  [N/m]
+  CDEM_HD T per_area() const { return T(1.0) / area; }
+  CDEM_HD T compliance_s() const { return per_area() * stiffness.compliance_s; }  // 1 / K_s  [m/N]
 };
 
 }  // namespace cdem

@@ -13,10 +13,10 @@ void find_target_faces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
   s.springs.unresolved.resize(s.springs.target.size());
   const FaceSearch search = face_search(m, s);
-  for_each_item(q, 4 * count, BeginTargets{search.springs});
+  for_each_item(q, count, BeginTargets{search.springs});
   for_each_selected(q, count, UpdateHeldTargets{search});
   for_each_selected(q, count, FilterNewTargets{search});
-  for_each_item(q, 4 * count, ResolveTargets{search});
+  for_each_item(q, count, ResolveTargets{search});
 }
 
 void find_target_edges(const Model& m, State& s, Queue q) {

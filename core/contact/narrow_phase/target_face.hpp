@@ -20,9 +20,11 @@ struct FaceSearch {
 struct BeginTargets {
   SpringColumns springs;
 
-  CDEM_HD void operator()(One slot) const {
-    springs.target_before[slot.i] = springs.target[slot.i];
-    springs.unresolved[slot.i] = 0;
+  CDEM_HD void operator()(One m) const {
+    Index target[4];
+    for (Index k = 0; k < 4; ++k) target[k] = springs.target[4 * m.i + k];
+    for (Index k = 0; k < 4; ++k) springs.target_before[4 * m.i + k] = target[k];
+    for (Index k = 0; k < 4; ++k) springs.unresolved[4 * m.i + k] = 0;
   }
 };
 
@@ -148,7 +150,7 @@ struct FilterNewTargets : FaceSearch {
   }
 };
 
-/// Choose the target face of one semi-spring.
+/// Choose the target faces of the semi-springs of one exposed face.
 ///
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
 /// gives gap, weights and force. A target qualifies when it opposes the mother face, P projects
@@ -162,12 +164,18 @@ struct FilterNewTargets : FaceSearch {
 /// vertex that is truly inside a block may begin as deep as a contact is kept, at the nearest face
 /// and whatever its edges do; like every contact that begins inside, it is free of stress there.
 struct ResolveTargets : FaceSearch {
-  CDEM_HD void operator()(One slot) const {
-    if (!springs.unresolved[slot.i]) return;
-    FaceList listed = listed_for(slot.i);
-    if (springs.target_before[slot.i] < 0)
-      listed.may_begin = candidates.may_begin + candidates.first[slot.i];
-    springs.target[slot.i] = choose(slot.i / 4, slot.i % 4, listed, springs.lost + slot.i);
+  CDEM_HD void operator()(One m) const {
+    const Flag* unresolved = springs.unresolved + 4 * m.i;
+    if (!(unresolved[0] | unresolved[1] | unresolved[2] | unresolved[3])) return;
+    for (Index k = 0; k < 4; ++k)
+      if (unresolved[k]) resolve(m.i, k);
+  }
+  CDEM_HD void resolve(Index m, Index k) const {
+    const Index slot = 4 * m + k;
+    FaceList listed = listed_for(slot);
+    if (springs.target_before[slot] < 0)
+      listed.may_begin = candidates.may_begin + candidates.first[slot];
+    springs.target[slot] = choose(m, k, listed, springs.lost + slot);
   }
 
   /// The faces of the inner list at the vertex of a slot.

@@ -10,7 +10,7 @@ constexpr Real area = 0.25, kn = 2e9, ks = 1e9;
 constexpr Real cohesion = 3e5, tension = 1e5, tan_phi = 0.5;
 const Joints rock{
     {{"cohesion", cohesion}, {"tensile_strength", tension}, {"friction_angle", tan_phi}}};
-const BondSpring<Real> spring{.area = area, .stiffness_n = kn, .stiffness_s = ks};
+const BondSpring<Real> spring{.area = area, .stiffness = JointStiffness<Real>::of(kn, ks)};
 
 /// A bond point that is led along a path of jumps, and its ledger.
 struct Point {
@@ -185,7 +185,7 @@ TEST_CASE("points of a lane are those of its numbers") {
   check_lanes<19, 12>(
       [&](const auto* in, auto* out) {
         using T = std::remove_cvref_t<decltype(*in)>;
-        const BondSpring<T> own{T(area), T(kn), T(ks)};
+        const BondSpring<T> own{.area = T(area), .stiffness = JointStiffness<T>::of(T(kn), T(ks))};
         const Frame<T> frame{vector_at(in), vector_at(in + 3), vector_at(in + 6)};
         BondHistory<T> h{in[15], in[16], in[17]};
         T state[InterfaceLaws::most_state + 1];

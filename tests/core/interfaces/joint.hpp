@@ -18,7 +18,7 @@ using Named = std::initializer_list<std::pair<const char*, Real>>;
 /// tangent.
 inline std::vector<Real> brittle_parameters(const Named& named) {
   constexpr auto& all = Brittle<Real>::parameters;
-  std::vector<Real> numbers(InterfaceLaws::most_parameters);
+  std::vector<Real> numbers(InterfaceTable::row);
   for (const auto& [name, value] : named) {
     std::size_t k = 0;
     while (k < all.size() && std::string_view(all[k].name) != name) ++k;

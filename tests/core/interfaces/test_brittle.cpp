@@ -19,8 +19,7 @@ JointInput<Real> at(Real normal, Real shear1, Real shear2 = 0, Real bond = 1) {
   return {.opening = -normal / kn,  // the tractions that an elastic joint would bear
           .shear1 = -shear1 / ks,
           .shear2 = -shear2 / ks,
-          .stiffness_n = kn,
-          .stiffness_s = ks,
+          .stiffness = JointStiffness<Real>::of(kn, ks),
           .damping = 0,
           .bond = bond,
           .risen = 0,
@@ -183,7 +182,14 @@ TEST_CASE("the law answers for a lane what it answers for each joint") {
       [](const auto* in, auto* out) {
         using T = std::remove_cvref_t<decltype(*in)>;
         const auto law = Brittle<T>::read([&](Index k) { return in[9 + k]; });
-        const JointInput<T> joint{in[0], in[1], in[2], in[3], in[4], in[5], in[6], in[7], in[8]};
+        const JointInput<T> joint{.opening = in[0],
+                                  .shear1 = in[1],
+                                  .shear2 = in[2],
+                                  .stiffness = JointStiffness<T>::of(in[3], in[4]),
+                                  .damping = in[5],
+                                  .bond = in[6],
+                                  .risen = in[7],
+                                  .may_rise = in[8]};
         const JointAnswer<T> a = law.respond(joint, nullptr);
         const Borne<T> b = law.bears(joint);
         out[0] = a.elastic, out[1] = a.normal, out[2] = a.shear1, out[3] = a.shear2;

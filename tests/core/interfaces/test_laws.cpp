@@ -13,8 +13,7 @@ JointInput<Real> any_joint(Random& random) {
   return {.opening = random.between(-2e-4, 2e-4),
           .shear1 = random.between(-2e-4, 2e-4),
           .shear2 = random.between(-2e-4, 2e-4),
-          .stiffness_n = 2e9,
-          .stiffness_s = 1e9,
+          .stiffness = JointStiffness<Real>::of(2e9, 1e9),
           .damping = random.between(-1e5, 1e5),
           .bond = Real(random.below(2)),
           .risen = 0,
@@ -53,13 +52,18 @@ TEST_CASE("lanes of different interfaces are answered like each of them") {
       interface.id[j] = random.below(3);
       one[j] = any_joint(random);
     }
-    const auto pack = [&](Real JointInput<Real>::* number) {
+    const auto pack = [&](Real JointInput<Real>::*number) {
       return pack_of([&](Index j) { return one[j].*number; });
     };
     using In = JointInput<Real>;
-    const JointInput<Pack> in{pack(&In::opening),     pack(&In::shear1),      pack(&In::shear2),
-                              pack(&In::stiffness_n), pack(&In::stiffness_s), pack(&In::damping),
-                              pack(&In::bond),        pack(&In::risen),       pack(&In::may_rise)};
+    const JointInput<Pack> in{.opening = pack(&In::opening),
+                              .shear1 = pack(&In::shear1),
+                              .shear2 = pack(&In::shear2),
+                              .stiffness = JointStiffness<Pack>::of(2e9, 1e9),
+                              .damping = pack(&In::damping),
+                              .bond = pack(&In::bond),
+                              .risen = pack(&In::risen),
+                              .may_rise = pack(&In::may_rise)};
     const JointAnswer<Pack> a = respond(table, interface, in, static_cast<Pack*>(nullptr));
     const Borne<Pack> b = bears(table, interface, in);
     for (Index j = 0; j < lanes; ++j) {

@@ -61,28 +61,29 @@ struct Weakening {
 
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T* state) const {
     const T none(0.0), half(0.5), one(1.0);
-    T elastic = -in.stiffness_n * in.opening;
+    const JointStiffness<T>& k = in.stiffness;
+    T elastic = -k.n * in.opening;
     const auto opens = -elastic > in.bond * cohesion;
     elastic = select(opens, none, elastic);
     T normal = select(in.bond > half, elastic, max_of(elastic + in.damping, none));
     normal = select(opens, none, normal);
     const T left = max_of(one - state[0] / distance, none);
     const T tangent = tan_residual + (tan_peak - tan_residual) * left;
-    const T try1 = -in.stiffness_s * in.shear1, try2 = -in.stiffness_s * in.shear2;
+    const T try1 = -k.s * in.shear1, try2 = -k.s * in.shear2;
     const T size = sqrt_of(try1 * try1 + try2 * try2);
     const T limit = max_of(normal * tangent + in.bond * cohesion, none);
     const auto slides = size > limit, lets_go = slides & (normal < none);
     elastic = select(lets_go, none, elastic);
     normal = select(lets_go, none, normal);
     const T keep = select(opens | lets_go, none, select(slides, limit / size, one));
-    state[0] += select(slides & !(opens | lets_go), (size - limit) / in.stiffness_s, none);
+    state[0] += select(slides & !(opens | lets_go), k.compliance_s * (size - limit), none);
     const T shear1 = keep * try1, shear2 = keep * try2;
     return {.elastic = elastic,
             .normal = normal,
             .shear1 = shear1,
             .shear2 = shear2,
-            .stored_n = half / in.stiffness_n * elastic * elastic,
-            .stored_s = half / in.stiffness_s * (shear1 * shear1 + shear2 * shear2),
+            .stored_n = half * k.compliance_n * elastic * elastic,
+            .stored_s = half * k.compliance_s * (shear1 * shear1 + shear2 * shear2),
             .rise = none,
             .fracture = none,
             .bond = select(opens | slides, none, in.bond),

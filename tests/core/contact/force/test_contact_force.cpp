@@ -7,7 +7,7 @@ namespace cdem::test {
 namespace {
 
 constexpr Real area = 0.25, kn = 2e9, ks = 1e9, dt = 1e-4;
-const ContactSpring<Real> spring{.area = area, .stiffness_n = kn, .stiffness_s = ks};
+const ContactSpring<Real> spring{.area = area, .stiffness = JointStiffness<Real>::of(kn, ks)};
 
 /// A contact that is led along a path, with its law, and its ledger.
 struct Contact {
@@ -146,7 +146,7 @@ TEST_CASE("contacts of a lane are those of their numbers") {
   check_lanes<14, 9>(
       [](const auto* in, auto* out) {
         using T = std::remove_cvref_t<decltype(*in)>;
-        const ContactSpring<T> own{in[0], in[1], in[2]};
+        const ContactSpring<T> own{.area = in[0], .stiffness = JointStiffness<T>::of(in[1], in[2])};
         const ContactMotion<T> motion{in[3], in[4], in[5], in[6], in[7], in[8], in[9], dt};
         const ContactBefore<T> before{in[10], in[11], in[12], in[13]};
         const Brittle<T> law{.tan_friction = T(0.5),

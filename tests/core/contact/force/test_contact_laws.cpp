@@ -42,8 +42,8 @@ TEST_CASE("the classes of two faces choose the interface, for one pair and for a
     CHECK(interface.id[j] == laws.between(geometry, m.id[j], t.id[j]));
     const auto spring = laws.spring(geometry, interface.id[j], m.id[j], t.id[j]);
     CHECK(springs.area.n[j] == spring.area);
-    CHECK(springs.stiffness_n.n[j] == spring.stiffness_n);
-    CHECK(springs.stiffness_s.n[j] == spring.stiffness_s);
+    CHECK(springs.stiffness.n.n[j] == spring.stiffness.n);
+    CHECK(springs.stiffness.s.n[j] == spring.stiffness.s);
   }
 }
 
@@ -53,11 +53,11 @@ TEST_CASE("a stiffness is the given value, or a factor times the stiffer side") 
   const FaceGeometry geometry = face_geometry(blocks.state);
   const Real young = blocks.rock.young_modulus();
   const auto same = laws.spring(geometry, Index(0), Index(0), Index(1));
-  CHECK(same.stiffness_n == 5e9);
-  CHECK(relative_error(same.stiffness_s, 3 * young) < 1e-15);
+  CHECK(same.stiffness.n == 5e9);
+  CHECK(relative_error(same.stiffness.s, 3 * young) < 1e-15);
   const auto both = laws.spring(geometry, Index(1), Index(0), Index(8));
-  CHECK(relative_error(both.stiffness_n, 2 * young) < 1e-15);  // the box of 1 m is stiffer
-  CHECK(both.stiffness_s == 7e8);
+  CHECK(relative_error(both.stiffness.n, 2 * young) < 1e-15);  // the box of 1 m is stiffer
+  CHECK(both.stiffness.s == 7e8);
   CHECK(both.area == 0.25);  // a vertex's share of the smaller face
   CHECK(relative_error(both.n(), 0.25 * 2 * young) < 1e-15);
 }
@@ -66,7 +66,7 @@ TEST_CASE("the dashpot is a part of the critical one of its spring and masses") 
   TwoClasses blocks;
   blocks.model.contact_damping = 0.1;
   const ContactLaws laws = contact_laws(blocks.model, blocks.state);
-  const ContactSpring<Real> spring{.area = 0.5, .stiffness_n = 8, .stiffness_s = 1};
+  const ContactSpring<Real> spring{.area = 0.5, .stiffness = JointStiffness<Real>::of(8, 1)};
   CHECK(relative_error(laws.dashpot(spring, 0.25), 2 * 0.1 * std::sqrt(4 * 4.0)) < 1e-15);
 }
 

@@ -137,7 +137,7 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
     const Index exposed = Index(tip.state.search.exposed_face.size());
     tip.state.springs.unresolved.resize(4 * exposed);
     FaceSearch search = face_search(tip.model, tip.state);
-    for_each_item({}, 4 * exposed, BeginTargets{search.springs});
+    for_each_item({}, exposed, BeginTargets{search.springs});
     const std::vector<Index> expected = tip.targets();
     // the whole stage, all faces of the box being candidates of every slot of the tet
     std::vector<Index> first(4 * exposed + 1), other;
@@ -151,7 +151,7 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
     search.candidates = {first.data(), other.data(), may_begin.data()};
     for_each_selected({}, exposed, UpdateHeldTargets{search});
     for_each_selected({}, exposed, FilterNewTargets{search});
-    for_each_item({}, 4 * exposed, ResolveTargets{search});
+    for_each_item({}, exposed, ResolveTargets{search});
     std::vector<Index> found;
     for (Index slot = 24; slot < 4 * exposed; ++slot)
       if (first[slot + 1] > first[slot]) found.push_back(tip.state.springs.target[slot]);
