@@ -48,6 +48,7 @@ mutants: setup
 	$(BIN)/python tools/mutants.py $(T)
 
 nightly: test validate coverage mutants
+	$(BIN)/cdem verify --full
 
 verify: build
 	$(BIN)/cdem verify

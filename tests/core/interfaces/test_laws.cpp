@@ -52,7 +52,7 @@ TEST_CASE("lanes of different interfaces are answered like each of them") {
       interface.id[j] = random.below(3);
       one[j] = any_joint(random);
     }
-    const auto pack = [&](Real JointInput<Real>::*number) {
+    const auto pack = [&](Real JointInput<Real>::* number) {
       return pack_of([&](Index j) { return one[j].*number; });
     };
     using In = JointInput<Real>;

@@ -5,6 +5,7 @@ import numpy as np
 from cdem.output.render import snapshot
 from cdem.study.critical import find_critical, parameter
 
+QUICK = False  # about a minute
 WIDTH, STEP, COUNT, CREST = 10.0, 1.0, 16, 10  # of a column, of the base [m]
 BELOW, ABOVE = 5.0, 5.2  # fall of the tops from column to column below and above the crest [m]
 DIP = np.radians(30)  # of the base; the columns dip 60 degrees the other way

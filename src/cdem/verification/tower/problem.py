@@ -7,6 +7,8 @@ from cdem.run.simulation import Simulation
 from cdem.study.critical import find_critical
 from cdem.verification.masonry import tilt
 
+QUICK = False  # a quarter of a minute
+
 
 def theory(count, width=1.0):
     """Tilt [deg] at which the weight leaves the base: atan(width / height).
