@@ -38,4 +38,4 @@ fi
 [ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
 .venv/bin/python -m pip install -q --upgrade pip
 .venv/bin/python -m pip install -q "scikit-build-core>=0.10" "nanobind>=2.4" "cmake>=3.27" ninja
-PATH="$PWD/.venv/bin:$PATH" .venv/bin/python -m pip install -q --no-build-isolation -e '.[dev]'
+PATH="$PWD/.venv/bin:$PATH" .venv/bin/python -m pip install -q --no-compile --no-build-isolation -e '.[dev]'

@@ -17,6 +17,13 @@ inline constexpr Index block_size = 8;
 struct Blocks {
   const Index* id = nullptr;
   Index count = 0;
+
+  /// How many blocks of `items` items are run.
+  CDEM_HD Index of(Index items) const {
+    return id ? count : items / block_size + (items % block_size > 0);
+  }
+  /// First item of the b-th of them.
+  CDEM_HD Index first(Index b) const { return (id ? id[b] : b) * block_size; }
 };
 
 /// Raise a count that several threads may raise at once, and return what it was. Which of them

@@ -43,14 +43,13 @@ void for_each_selected(Queue queue, Index count, const Kernel& kernel) {
 template <class Kernel>
 __global__ void run_blocks_on_gpu(Index count, Blocks blocks, Kernel kernel) {
   const Index place = blockIdx.x * blockDim.x + threadIdx.x;
-  if (place >= blocks.count * block_size) return;
-  const Index i = blocks.id[place / block_size] * block_size + place % block_size;
+  if (place >= blocks.of(count) * block_size) return;
+  const Index i = blocks.first(place / block_size) + place % block_size;
   if (i < count) kernel(One{i});
 }
 template <class Kernel>
 void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
-  if (!blocks.id) return for_each_lane(queue, count, kernel);
-  const Index threads = blocks.count * block_size;
+  const Index threads = blocks.of(count) * block_size;
   if (threads > 0)
     run_blocks_on_gpu<<<(threads + 127) / 128, 128, 0, queue.stream>>>(count, blocks, kernel);
 }
@@ -112,21 +111,20 @@ template <class Kernel>
 CDEM_HD inline void fetch_ahead(const Kernel& kernel, Blocks blocks, Index b) {
   if constexpr (requires { kernel.fetch(One{0}); }) {
     constexpr Fetching how = Kernel::fetching;
-    if (blocks.count < how.worth || b + how.ahead >= blocks.count) return;
-    const Index first = blocks.id[b + how.ahead] * block_size;
+    if (!blocks.id || blocks.count < how.worth || b + how.ahead >= blocks.count) return;
+    const Index first = blocks.first(b + how.ahead);
     for (Index i = first; i < first + block_size; ++i) kernel.fetch(One{i});
   }
 }
 
 /// The same for some blocks of items.
 template <class Kernel>
-void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+void for_each_lane(Queue, Index count, Blocks blocks, const Kernel& kernel) {
   static_assert(block_size % lanes == 0);
-  if (!blocks.id) return for_each_lane(queue, count, kernel);
-  const Index whole = count - count % lanes;
-#pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
-  for (Index b = 0; b < blocks.count; ++b) {
-    const Index first = blocks.id[b] * block_size;
+  const Index whole = count - count % lanes, number = blocks.of(count);
+#pragma omp parallel for schedule(static) if (number * block_size >= worth_threads)
+  for (Index b = 0; b < number; ++b) {
+    const Index first = blocks.first(b);
     const Index last = first + block_size < count ? first + block_size : count;
     fetch_ahead(kernel, blocks, b);
     Index i = first;
@@ -135,11 +133,11 @@ void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel
   }
 }
 template <class Kernel>
-void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
-  if (!blocks.id) return for_each_item(queue, count, kernel);
-#pragma omp parallel for schedule(static) if (blocks.count * block_size >= worth_threads)
-  for (Index b = 0; b < blocks.count; ++b) {
-    const Index first = blocks.id[b] * block_size;
+void for_each_item(Queue, Index count, Blocks blocks, const Kernel& kernel) {
+  const Index number = blocks.of(count);
+#pragma omp parallel for schedule(static) if (number * block_size >= worth_threads)
+  for (Index b = 0; b < number; ++b) {
+    const Index first = blocks.first(b);
     for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
   }
 }

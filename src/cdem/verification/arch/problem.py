@@ -5,6 +5,7 @@ import numpy as np
 from cdem.output.render import snapshot
 from cdem.study.critical import rests
 
+QUICK = False  # half a minute
 RADIUS, DEPTH, VOUSSOIRS = 5.0, 1.0, 13
 
 
