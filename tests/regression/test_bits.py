@@ -75,6 +75,7 @@ print(run_here(2))
 """
 
 
+@pytest.mark.slow  # quick: test_golden.py
 def test_instruction_sets_give_identical_results():
     """Each instruction set that is built and that this machine has, in a process of its own."""
     here = os.path.dirname(__file__)

@@ -106,13 +106,14 @@ def test_acceleration_over_separate_flush_blocks():
     assert measured == pytest.approx(theory, rel=3e-4)
 
 
+@pytest.mark.slow
 def test_acceleration_of_a_meshed_block_over_flush_blocks():
     """A block of 2 x 2 x 2 elements; tolerance as above."""
     measured, theory, _ = slide(FLUSH, 35, 20, divisions=(2, 2, 2))
     assert measured == pytest.approx(theory, rel=3e-4)
 
 
-@pytest.mark.parametrize("down, within", [(1e-6, 1e-4), (1e-5, 5e-4), (1e-4, 2e-3)])
+@pytest.mark.parametrize("down, within", [(1e-6, 1e-4), pytest.param(1e-5, 5e-4, marks=pytest.mark.slow), (1e-4, 2e-3)])  # fmt: skip
 def test_acceleration_over_small_steps_down(down, within):
     """A step down each metre. Tolerance: the vibration that a step causes grows with its height."""
     bed = [
@@ -171,7 +172,12 @@ def test_acceleration_over_a_slightly_uneven_bed(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "bed, within", [("20 x 8 hexahedra", 1e-4), ("2,016 tets", 0.01), ("flush blocks", 2e-5)]
+    "bed, within",
+    [
+        ("20 x 8 hexahedra", 1e-4),
+        ("2,016 tets", 0.01),
+        pytest.param("flush blocks", 2e-5, marks=pytest.mark.slow),
+    ],
 )
 def test_contact_force_is_continuous_at_seams(bed, within):
     """A vertex that moves on to the next facet keeps its normal and shear force.

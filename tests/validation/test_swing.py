@@ -10,7 +10,16 @@ PROBLEM = problems(["swing"])[0].module  # pendulum, volume, and how the square 
 SIDE = PROBLEM.SIDE
 
 
-@pytest.mark.parametrize("shape, divisions", [("hex8", 1), ("hex8", 4), ("wedge6", 2), ("pyramid5", 2), ("tet4", 2)])  # fmt: skip
+@pytest.mark.parametrize(
+    "shape, divisions",
+    [
+        ("hex8", 1),
+        ("tet4", 2),
+        pytest.param("hex8", 4, marks=pytest.mark.slow),
+        pytest.param("wedge6", 2, marks=pytest.mark.slow),
+        pytest.param("pyramid5", 2, marks=pytest.mark.slow),
+    ],
+)
 def test_a_square_swings_as_a_pendulum(shape, divisions):
     """Angle within 0.1 % of the amplitude over three periods; volume and energy are conserved.
 

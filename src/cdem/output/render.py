@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -65,8 +66,11 @@ def legend(entries: Sequence[tuple[str, str]], rows: int, width: int) -> NDArray
     return np.asarray(image)
 
 
+@cache
 def can_draw() -> bool:
     """Whether off-screen drawing works; tried in another process, because a failure aborts it."""
+    if not os.environ.get("DISPLAY"):  # without a screen VTK would try, and complain about, X first
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
     code = (
         "import pyvista as p; q = p.Plotter(off_screen=True, window_size=(16, 16));"
         "q.add_mesh(p.Sphere()); q.screenshot(return_img=True)"
@@ -85,8 +89,6 @@ def load_pyvista() -> Any:
         import pyvista
     except ImportError:
         raise CdemError("pictures need pyvista; pip install 'cdem[viz]'") from None
-    if not os.environ.get("DISPLAY"):  # without a screen VTK would try, and complain about, X first
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
     if not can_draw():
         raise CdemError(OPENGL_HINT)
     return pyvista
