@@ -275,7 +275,7 @@ CORE = [
         "bond_slip",
         "a broken bond point forgets its slip",
         "core/bonds/bond_point.hpp",
-        "h.slip1 = select(intact, h.slip1, along1 + shear1 / spring.stiffness_s);",
+        "h.slip1 = select(intact, h.slip1, along1 + shear1 * spring.stiffness.compliance_s);",
         "h.slip1 = select(intact, h.slip1, zero * along1);",
         "tests/core/bonds/test_bond_point.cpp",
     ),

@@ -5,7 +5,8 @@ builds what changed and runs the quickest test that should fail; a fault that pa
 whole quick suite, pinned results last. Ends with status 1 if a fault survives, no longer fits the
 code or runs into the time limit.
 
-`python tools/mutants.py name...` plants only those; `--write` puts the table in docs/mutants.md.
+`python tools/mutants.py name...` plants only those; `--write` puts the table in docs/mutants.md;
+`--check`, which is part of `make lint`, only looks whether all still fit the code.
 """
 
 import argparse
@@ -155,12 +156,17 @@ def fails_suite(mutant: Mutant) -> str:
     return test
 
 
+def fits(mutant: Mutant) -> bool:
+    """Is the text that a fault replaces in its file, and once?"""
+    return (ROOT / mutant.file).read_text().count(mutant.old) == 1
+
+
 def try_mutant(mutant: Mutant) -> str:
     """Plant one fault, build, test; returns the test that fails."""
     path = TREE / mutant.file
     text = path.read_text()
-    if text.count(mutant.old) != 1:
-        raise Stale(f"its old text occurs {text.count(mutant.old)} times in {mutant.file}")
+    if not fits(mutant):
+        raise Stale(f"its old text is not once in {mutant.file}")
     path.write_text(text.replace(mutant.old, mutant.new))
     try:
         if is_core_test(mutant.test):
@@ -238,7 +244,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help="only these faults")
     parser.add_argument("--write", action="store_true", help="put the table in docs/mutants.md")
+    parser.add_argument("--check", action="store_true", help="only look whether they fit the code")
     wants = parser.parse_args()
+    if wants.check:
+        sys.exit("".join(f"{m.name}: not once in {m.file}\n" for m in MUTANTS if not fits(m)) or 0)
     unknown = set(wants.names) - {mutant.name for mutant in MUTANTS}
     if unknown:
         sys.exit(f"no such faults: {', '.join(sorted(unknown))}")
