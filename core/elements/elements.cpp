@@ -22,37 +22,32 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const InOutTable stress{es.point_stress.data(), e.stride};
   const PointFlow<Shape> flow = point_flow<Shape>(s, e, es);
   const Real damping_time = m.stiffness_damping * s.dt;
+  const auto total = [&]<class Rotation>() {
+    for_each_lane(q, e.count, some,
+                  CorotationalForce<Shape, Rotation>{.columns = columns,
+                                                     .damping_time = damping_time,
+                                                     .dt = s.dt,
+                                                     .damping_work = work,
+                                                     .flow = flow,
+                                                     .corner_force = out});
+  };
+  const auto incremental = [&]<class Turning>() {
+    for_each_lane(q, e.count, some,
+                  IncrementalForce<Shape, Turning>{.columns = columns,
+                                                   .dt = s.dt_last,
+                                                   .stress = stress,
+                                                   .energy = energy,
+                                                   .corner_force = out});
+  };
   switch (m.formulation) {
     case Formulation::corotational:
-      return for_each_lane(q, e.count, some,
-                           CorotationalForce<Shape, FollowRotation>{.columns = columns,
-                                                                    .damping_time = damping_time,
-                                                                    .dt = s.dt,
-                                                                    .damping_work = work,
-                                                                    .flow = flow,
-                                                                    .corner_force = out});
+      return total.template operator()<FollowRotation>();
     case Formulation::paper_total:
-      return for_each_lane(q, e.count, some,
-                           CorotationalForce<Shape, IgnoreRotation>{.columns = columns,
-                                                                    .damping_time = damping_time,
-                                                                    .dt = s.dt,
-                                                                    .damping_work = work,
-                                                                    .flow = flow,
-                                                                    .corner_force = out});
+      return total.template operator()<IgnoreRotation>();
     case Formulation::incremental:
-      return for_each_lane(q, e.count, some,
-                           IncrementalForce<Shape, TurnByHalves>{.columns = columns,
-                                                                 .dt = s.dt_last,
-                                                                 .stress = stress,
-                                                                 .energy = energy,
-                                                                 .corner_force = out});
+      return incremental.template operator()<TurnByHalves>();
     case Formulation::paper_incremental:
-      return for_each_lane(q, e.count, some,
-                           IncrementalForce<Shape, NeverTurn>{.columns = columns,
-                                                              .dt = s.dt_last,
-                                                              .stress = stress,
-                                                              .energy = energy,
-                                                              .corner_force = out});
+      return incremental.template operator()<NeverTurn>();
   }
 }
 
