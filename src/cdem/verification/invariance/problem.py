@@ -84,7 +84,7 @@ def scenes():
         "beam that cracks": Scene("beam.yaml", step=2e-3, bonds=True),
         "swinging square": Scene("../swing/case.yaml", ["stages.0.duration=1"], step=2e-4),
         "slide over 160 hexahedra": Scene("../sliding/case.yaml", slope, step=2e-4, quick=False),
-        "slide on edges": Scene("../crossed/case.yaml", only(0.005), frame=2e-8, noise=2e-6),
+        "slide on edges": Scene("../crossed/case.yaml", only(0.005), frame=1.2e-7, noise=4e-6),
         "wedge that slides": Scene("../wedge/case.yaml", [*less, *only(0.1)], step=1e-3),
         "block on a slope": Scene("../friction/case.yaml", stiff, frame=2e-8),
         "column that topples": Scene(
@@ -104,7 +104,8 @@ def scenes():
         "slide along an apparent dip": Scene("../apparent_dip/case.yaml", [
             "loads.gravity=[0, 0, -9.81]", "interfaces.bed.friction_angle=10",
             "interfaces.wall.friction_angle=5", *only(0.05)]),
-        "row of dominoes": Scene("../dominoes/case.yaml", [*row, *only(0.08, 2)], quick=False),
+        "row of dominoes": Scene("../dominoes/case.yaml", [*row, *only(0.08, 2)], noise=1.3e-7,
+                                 quick=False),
         "face on face": resting("face", "face"),
         "edge on face": resting("face", "edge"),
         "vertex on face": resting("face", "vertex"),
