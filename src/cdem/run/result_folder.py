@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 from pathlib import Path
 from typing import Any
@@ -18,12 +17,13 @@ from cdem.run.fields import surface_of, values_of
 from cdem.run.histories import tracks
 from cdem.run.state import RunState
 from cdem.run.writers import FrameWriter, HistoryWriter, SurfaceWriter
+from cdem.run.written_files import check_replaceable, mark, remove_written
 
 RESULT_FILES = {"case.yaml", "run.log", "summary.json", "checkpoint.h5"}
 """A folder that holds one of these is a result folder."""
 
 
-def _guard(folder: Path, *, overwrite: bool, resume: bool) -> None:
+def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) -> None:
     """Stop before anything is computed if the folder must not be written to."""
     if folder.exists() and not folder.is_dir():
         raise CdemError(f"{folder}: is a file; name another folder with -o")
@@ -36,8 +36,8 @@ def _guard(folder: Path, *, overwrite: bool, resume: bool) -> None:
             f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or -o "
             "for another folder"
         )
-    elif inside and not inside & RESULT_FILES:
-        raise CdemError(f"{folder}: is not a result folder, so it is not overwritten")
+    elif inside:
+        check_replaceable(folder, case_folder)
 
 
 class Results:
@@ -45,7 +45,8 @@ class Results:
 
     Args:
         folder: The result folder.
-        overwrite: Empty an existing folder.
+        case_folder: Where the case lies: never overwritten.
+        overwrite: Replace the results in an existing folder.
         resume: Go on in an existing one.
 
     Raises:
@@ -53,9 +54,9 @@ class Results:
             there is nothing to resume.
     """
 
-    def __init__(self, folder: Path, *, overwrite: bool, resume: bool) -> None:
+    def __init__(self, folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) -> None:
         self.folder = folder
-        _guard(folder, overwrite=overwrite, resume=resume)
+        _guard(folder, case_folder, overwrite=overwrite, resume=resume)
         self.overwrite = overwrite
         self.rows = 0
         self.frames = 0
@@ -68,9 +69,10 @@ class Results:
 
     def open(self, sim: RunState) -> None:
         """Create the folder; nothing is written before the model has been built."""
-        if self.overwrite and self.folder.exists():
-            shutil.rmtree(self.folder)
         self.folder.mkdir(parents=True, exist_ok=True)
+        if self.overwrite:
+            remove_written(self.folder)
+        mark(self.folder)
         (self.folder / "case.yaml").write_text(sim.case.dump())
         (self.folder / "run.log").write_text("")
         self.log(sim.audit.text())

@@ -75,7 +75,9 @@ class Simulation(RunState):
         native.set_threads(threads)
         self.results: Results | None = None
         if output is not None:
-            self.results = Results(Path(output), overwrite=overwrite, resume=resume)
+            self.results = Results(
+                Path(output), case.path_of("."), overwrite=overwrite, resume=resume
+            )
         super().__init__(case, threads)
         if self.case.stages:  # so that it can be stepped before any stage begins
             self.core.set_damping(*stages.damping_of(self.case.stages[0]))

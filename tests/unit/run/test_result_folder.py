@@ -14,7 +14,7 @@ def test_a_folder_of_other_things_is_never_overwritten(run_cli, cube_folder):
     (cube_folder / "mine/thesis.tex").touch()
     status, _, err = run_cli("run", "cube.yaml", "-o", "mine", "--overwrite")
     assert status == 1
-    assert "is not a result folder, so it is not overwritten" in err
+    assert "is not a result folder (.cdem-results is not there), so it is not overwritten" in err
     assert (cube_folder / "mine/thesis.tex").exists()
 
 

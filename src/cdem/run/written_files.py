@@ -1,0 +1,85 @@
+"""Which files of a result folder cdem wrote: only those does `--overwrite` ever remove."""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from cdem.case.output_fields import OUTPUT_FIELDS
+from cdem.errors import CdemError
+
+MARKER = ".cdem-results"
+"""The file that says that `cdem run` made the folder."""
+EXPORTED = "vtu"
+"""The folder of what `cdem export` writes, and the pattern of its files."""
+EXPORTED_FILES = "frame-*.vtu"
+WRITTEN = {
+    # cdem run
+    "case.yaml", "run.log", "summary.json", "checkpoint.h5", "histories.csv", "frames.vtkhdf",
+    "surface.vtkhdf", "report.html",
+    # cdem plot, render, export
+    "energies.png", "unbalance.png", "history-*.png", "frames.pvd",
+    *(f"{field.name}-{part}.png" for field in OUTPUT_FIELDS for part in ("[0-9]" * 4, "overview")),
+    *(f"{field.name}.gif" for field in OUTPUT_FIELDS),
+    # cdem runout
+    "runout.json", "runout.csv", "fragments.csv", "sections.csv", "deposit.asc", "deposit.tif",
+    "deposit.png",
+}  # fmt: skip
+"""Patterns of the names of all files that commands write into a result folder."""
+
+
+def mark(folder: Path) -> None:
+    """Say that cdem made a folder."""
+    (folder / MARKER).write_text(
+        "cdem run made this folder. With --overwrite it replaces the files that it writes here,\n"
+        "and does so only if there are no others.\n"
+    )
+
+
+def _is_written(path: Path) -> bool:
+    """Has a path the name and kind of what cdem writes, or of what a kill left of it?"""
+    if path.is_dir() and not path.is_symlink():
+        return path.name == EXPORTED and all(
+            fnmatchcase(inside.name, EXPORTED_FILES) and not inside.is_dir()
+            for inside in path.iterdir()
+        )
+    name = path.name.removesuffix(".tmp")
+    return name == MARKER or any(fnmatchcase(name, pattern) for pattern in WRITTEN)
+
+
+def check_replaceable(folder: Path, case_folder: Path) -> None:
+    """Make sure that a folder holds results and nothing else.
+
+    Args:
+        folder: It exists and is not empty.
+        case_folder: Where the case that is run lies.
+
+    Raises:
+        CdemError: It is not a result folder, holds the case, or something that cdem did not write.
+    """
+    advice = "so it is not overwritten; name another folder with -o"
+    if folder.resolve() == case_folder.resolve():
+        raise CdemError(f"{folder}: is the folder of the case, {advice}")
+    if not (folder / MARKER).is_file():
+        raise CdemError(
+            f"{folder}: is not a result folder ({MARKER} is not there), {advice}, or remove it yourself"
+        )
+    other = sorted(path.name for path in folder.iterdir() if not _is_written(path))
+    if other:
+        more = f" and {len(other) - 1} more" if len(other) > 1 else ""
+        raise CdemError(
+            f"{folder}: holds {other[0]}{more}, which cdem did not write, {advice}, or move it away"
+        )
+
+
+def remove_written(folder: Path) -> None:
+    """Remove from a folder what cdem wrote; its mark stays."""
+    for path in folder.iterdir():
+        if path.name == MARKER or not _is_written(path):
+            continue
+        if path.is_dir() and not path.is_symlink():
+            for inside in path.iterdir():
+                inside.unlink()
+            path.rmdir()
+        else:
+            path.unlink()
