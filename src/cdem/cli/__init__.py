@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from typing import Annotated
 
@@ -9,6 +10,7 @@ import typer
 
 from cdem._version import __version__
 from cdem.cli.installation_commands import benchmark, doctor, verify
+from cdem.cli.messages import Messages
 from cdem.cli.model_commands import check, mesh, new, schema
 from cdem.cli.result_commands import export, info, plot, render, runout
 from cdem.cli.run_commands import run
@@ -29,6 +31,11 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the program; a user's mistake is one message on stderr, never a traceback."""
+    with contextlib.redirect_stderr(Messages(sys.stderr)):
+        _main()
+
+
+def _main() -> None:
     try:
         app()
     except CdemError as error:
