@@ -20,7 +20,7 @@ from cdem.run.writers import FrameWriter, HistoryWriter, SurfaceWriter
 from cdem.run.written_files import check_replaceable, mark, remove_written
 
 RESULT_FILES = {"case.yaml", "run.log", "summary.json", "checkpoint.h5"}
-"""A folder that holds one of these is a result folder."""
+"""A folder that holds one of these is read as a result folder; `--overwrite` asks for more."""
 
 
 def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) -> None:
