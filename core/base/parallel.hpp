@@ -19,7 +19,7 @@ struct Blocks {
   Index count = 0;
 
   /// How many blocks of `items` items are run.
-  CDEM_HD Index of(Index items) const {
+  CDEM_HD Index count_in(Index items) const {
     return id ? count : items / block_size + (items % block_size > 0);
   }
   /// First item of the b-th of them.

@@ -43,13 +43,13 @@ void for_each_selected(Queue queue, Index count, const Kernel& kernel) {
 template <class Kernel>
 __global__ void run_blocks_on_gpu(Index count, Blocks blocks, Kernel kernel) {
   const Index place = blockIdx.x * blockDim.x + threadIdx.x;
-  if (place >= blocks.of(count) * block_size) return;
+  if (place >= blocks.count_in(count) * block_size) return;
   const Index i = blocks.first(place / block_size) + place % block_size;
   if (i < count) kernel(One{i});
 }
 template <class Kernel>
 void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
-  const Index threads = blocks.of(count) * block_size;
+  const Index threads = blocks.count_in(count) * block_size;
   if (threads > 0)
     run_blocks_on_gpu<<<(threads + 127) / 128, 128, 0, queue.stream>>>(count, blocks, kernel);
 }
@@ -121,7 +121,7 @@ CDEM_HD inline void fetch_ahead(const Kernel& kernel, Blocks blocks, Index b) {
 template <class Kernel>
 void for_each_lane(Queue, Index count, Blocks blocks, const Kernel& kernel) {
   static_assert(block_size % lanes == 0);
-  const Index whole = count - count % lanes, number = blocks.of(count);
+  const Index whole = count - count % lanes, number = blocks.count_in(count);
 #pragma omp parallel for schedule(static) if (number * block_size >= worth_threads)
   for (Index b = 0; b < number; ++b) {
     const Index first = blocks.first(b);
@@ -134,7 +134,7 @@ void for_each_lane(Queue, Index count, Blocks blocks, const Kernel& kernel) {
 }
 template <class Kernel>
 void for_each_item(Queue, Index count, Blocks blocks, const Kernel& kernel) {
-  const Index number = blocks.of(count);
+  const Index number = blocks.count_in(count);
 #pragma omp parallel for schedule(static) if (number * block_size >= worth_threads)
   for (Index b = 0; b < number; ++b) {
     const Index first = blocks.first(b);
