@@ -34,6 +34,17 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes",
           .numbers = 4},
          n.reaction);
+  stored({.name = "node.sample",
+          .unit = "J",
+          .meaning = "kinetic energy; external and damping work of the half step to come; pad",
+          .rows = "nodes",
+          .numbers = 4},
+         n.sample);
+  stored({.name = "node.unbalance",
+          .unit = "N",
+          .meaning = "|x| + |y| + |z| of the unbalanced force on free components",
+          .rows = "nodes"},
+         n.unbalance);
   stored({.name = "node.relax",
           .unit = "N, m/s",
           .meaning = "force and velocity of the last step, of adaptive relaxation",
@@ -72,19 +83,6 @@ void describe_node_forces(NodeState& n, Rebuilt&& rebuilt) {
            .numbers = 4,
            .optional = true},
           n.damping_force);
-  rebuilt("advance_nodes",
-          {.name = "node.sample",
-           .unit = "J",
-           .meaning = "kinetic energy; external and damping work of the half step to come; pad",
-           .rows = "nodes",
-           .numbers = 4},
-          n.sample);
-  rebuilt("advance_nodes",
-          {.name = "node.unbalance",
-           .unit = "N",
-           .meaning = "|x| + |y| + |z| of the unbalanced force on free components",
-           .rows = "nodes"},
-          n.unbalance);
 }
 
 /// Lists of nodes: part of `describe_state`.

@@ -49,3 +49,7 @@ class UnstableError(CdemError):
 
 class BackendError(CdemError):
     """The machine cannot do what was asked: no compiled core, no such device, no such extra."""
+
+
+class DiskError(BackendError):
+    """A file cannot be written: the disk is full, or the like."""

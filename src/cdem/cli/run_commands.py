@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 import shlex
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -27,6 +26,9 @@ def run(
     threads: Threads = None,
     device: Annotated[Literal["cpu", "cuda"], typer.Option(help="Where to compute.")] = "cpu",
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="With --resume: go on though the case has changed.")
+    ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace the results in the result folder.")
     ] = False,
@@ -45,15 +47,13 @@ def run(
         case = Case.load(case_file, settings or [])
         from cdem.run.simulation import Simulation
 
-        if resume:
-            _compare_cases(case, folder)
-
         simulation = Simulation(
             case,
             threads=threads,
             output=folder,
             overwrite=overwrite,
             resume=resume,
+            force=force,
             device=device,
         )
         status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)
@@ -76,13 +76,22 @@ def _run(
     tty = sys.stderr.isatty()
     silent = quiet or (as_json and not tty)
     if not silent:
-        for warning in simulation.audit.warnings:
+        assert simulation.results is not None
+        for warning in simulation.audit.warnings + simulation.results.notes:
             print(f"warning: {warning}", file=sys.stderr)
     with watch(silent=silent, tty=tty) as progress:
         status = simulation.run(progress, lambda: bool(stop))
-    if status != "stopped":
+    if status != "stopped" and not _is_reported(folder):
         write_report(folder, silent=silent)
     return status
+
+
+def _is_reported(folder: Path) -> bool:
+    """Whether the report is of the summary that is there."""
+    page = folder / "report.html"
+    return (
+        page.is_file() and page.stat().st_mtime_ns >= (folder / "summary.json").stat().st_mtime_ns
+    )
 
 
 def write_report(folder: Path, *, silent: bool) -> None:
@@ -94,24 +103,6 @@ def write_report(folder: Path, *, silent: bool) -> None:
     except (CdemError, ImportError) as error:
         if not silent:
             print(f"no report.html: {error}", file=sys.stderr)
-
-
-def _compare_cases(case: Any, folder: Path) -> None:
-    """Say so if a run is resumed with another case than it was begun with."""
-    path = folder / "case.yaml"
-    if not path.is_file():
-        return
-    changes = [
-        line
-        for line in difflib.ndiff(path.read_text().splitlines(), case.dump().splitlines())
-        if line[0] in "+-"
-    ]
-    if changes:
-        print(
-            f"warning: this is not the case that {folder} was begun with: "
-            + "; ".join(" ".join(line.split()) for line in changes[:4]),
-            file=sys.stderr,
-        )
 
 
 def _resume_command(case: Path, folder: Path, settings: list[str], threads: int | None) -> str:

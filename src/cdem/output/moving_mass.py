@@ -41,7 +41,7 @@ class Body:
         self.frames = range(self._first(), len(self.series))
         if len(self.frames) < 2:
             raise CdemError(
-                f"{self.series.path}: holds no frame after the start at "
+                f"{self.series.folder}: holds no frame after the start at "
                 f"{self.series.times[self.frames[0]]:.6g} s; run-out needs a later one"
             )
         names = self.series.group_names
@@ -84,7 +84,7 @@ class Body:
         way = [np.bincount(self.group, e, len(names)) / np.maximum(count, 1) for e in elements.T]
         distance = np.linalg.norm(way, axis=0)
         if distance.max() <= STILL * np.ptp(start, axis=0).max():
-            raise CdemError(f"{self.series.path}: nothing has moved; name the groups to look at")
+            raise CdemError(f"{self.series.folder}: nothing has moved; name the groups to look at")
         return [n for n, d in zip(names, distance, strict=True) if d >= MOVING * distance.max()]
 
     def solids(self, frame: int) -> Solids:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,8 @@ from numpy.typing import NDArray
 
 from cdem.errors import CdemError
 from cdem.mesh.element_shapes import NODES
-from cdem.run.writers import VTK_TYPES
+from cdem.run.checkpoint import has_checkpoint
+from cdem.run.frame_files import KINDS, VTK_TYPES, frame_numbers, frame_path
 
 MESHIO_NAMES = {"tet4": "tetra", "pyramid5": "pyramid", "wedge6": "wedge", "hex8": "hexahedron"}
 
@@ -28,7 +31,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
     try:
         return json.loads(path.read_text())
     except FileNotFoundError:
-        if (Path(folder) / "checkpoint.h5").is_file():
+        if has_checkpoint(Path(folder)):
             raise CdemError(
                 f"{folder}: the run has not come to an end: it is still going, or was killed (then "
                 "go on with cdem run --resume); its log is run.log, its last state checkpoint.h5"
@@ -54,7 +57,7 @@ def read_histories(folder: Path) -> dict[str, NDArray[np.float64]]:
 
 @dataclass
 class Surface:
-    """One frame of surface.vtkhdf.
+    """One frame of the surface.
 
     Attributes:
         time: [s].
@@ -73,115 +76,104 @@ class Surface:
     group_names: list[str]
 
 
-def _open(path: Path) -> tuple[Any, NDArray[np.float64]]:
-    """Root of a VTKHDF series and the times of its whole frames [s]."""
-    import h5py
+class _Frames:
+    """Frames of a series by place: the files of its folder, opened one at a time.
 
-    if not path.is_file():
-        raise CdemError(
-            f"{path.parent}: no {path.name}, which holds the frames; was output.frames switched off?"
-        )
-    try:
-        root = h5py.File(path, "r", locking=False)["VTKHDF"]
-    except (OSError, KeyError) as error:
-        raise CdemError(f"{path}: not readable ({error})") from None
-    frames = int(root["Steps"].attrs["NSteps"])
-    if frames == 0:
-        raise CdemError(f"{path}: holds no frames yet")
-    return root, root["Steps/Values"][:frames]
-
-
-def _group_names(root: Any) -> list[str]:
-    return [str(name) for name in root["CellData/group"].attrs.get("names", [])]
-
-
-class SurfaceSeries:
-    """Frames of surface.vtkhdf, read one at a time; those below 0 count from the end."""
+    Attributes:
+        times: [s].
+    """
 
     def __init__(self, folder: Path) -> None:
-        self._root, self.times = _open(Path(folder) / "surface.vtkhdf")
+        self.folder = folder
+        self._paths = [frame_path(folder, number) for number in frame_numbers(folder)]
+        if not self._paths:
+            raise CdemError(
+                f"{folder}: holds no frames; was output.frames switched off, or has the run only begun?"
+            )
+        self.times = np.array(
+            [self._read(k, ["FieldData/TimeValue"])[0][0] for k in range(len(self))]
+        )
 
     def __len__(self) -> int:
-        return len(self.times)
+        return len(self._paths)
+
+    def _read(self, frame: int, names: Sequence[str]) -> list[NDArray]:
+        """Datasets of a frame."""
+        with self._root(frame) as root:
+            return [root[name][()] for name in names]
+
+    @contextmanager
+    def _root(self, frame: int) -> Iterator[Any]:
+        """The group VTKHDF of a frame.
+
+        Raises:
+            CdemError: The file is damaged.
+        """
+        import h5py
+
+        path = self._paths[frame]
+        try:
+            with h5py.File(path, "r", locking=False) as hdf5:
+                yield hdf5["VTKHDF"]
+        except (OSError, KeyError, RuntimeError) as error:
+            raise CdemError(
+                f"{path}: is damaged ({error}); move it away to look at the other frames"
+            ) from None
+
+
+class SurfaceSeries(_Frames):
+    """Frames of the surface, read one at a time; those below 0 count from the end."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(Path(folder) / "surface")
 
     def __getitem__(self, frame: int) -> Surface:
-        root, steps = self._root, self._root["Steps"]
         frame = range(len(self))[frame]
-        points, cells, ids = (
-            int(root[n][frame])
-            for n in ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
-        )
-        first_point = int(steps["PointOffsets"][frame])
-        first_cell = int(steps["CellOffsets"][frame, 0])
-        first_id = int(steps["ConnectivityIdOffsets"][frame, 0])
-        offsets = root["Offsets"][first_cell + frame : first_cell + frame + cells + 1]
-        connectivity = root["Connectivity"][first_id : first_id + ids]
-        faces = np.insert(connectivity, offsets[:-1], np.diff(offsets))
-
-        def fields(kind: str, count: int) -> dict[str, NDArray]:
-            out = {}
-            for name, data in root[kind].items():
-                start = int(steps[f"{kind}Offsets/{name}"][frame])
-                out[name] = data[start : start + count]
-            return out
-
-        return Surface(
-            float(self.times[frame]),
-            root["Points"][first_point : first_point + points],
-            faces,
-            fields("PointData", points),
-            fields("CellData", cells),
-            _group_names(root),
-        )
+        with self._root(frame) as root:
+            offsets, connectivity = root["Offsets"][()], root["Connectivity"][()]
+            return Surface(
+                float(self.times[frame]),
+                root["Points"][()],
+                np.insert(connectivity, offsets[:-1], np.diff(offsets)),
+                {name: data[()] for name, data in root["PointData"].items()},
+                {name: data[()] for name, data in root["CellData"].items()},
+                _group_names(root),
+            )
 
 
-class FrameSeries:
-    """Frames of frames.vtkhdf: the whole volume, whose elements stay the same.
+class FrameSeries(_Frames):
+    """Frames of the whole volume, whose elements stay the same.
 
     Attributes:
         times: [s].
         cells: By shape, node ids (elements, nodes of the shape); fields list the shapes in this order.
         names: Fields that every frame has, by kind: "PointData", "CellData".
+        group_names: By the numbers of the field "group".
     """
 
     def __init__(self, folder: Path) -> None:
-        self.path = Path(folder) / "frames.vtkhdf"
-        self._root, self.times = _open(self.path)
-        self._rows = {
-            "PointData": int(self._root["NumberOfPoints"][0]),
-            "CellData": len(self._root["Types"]),
-        }
-        self.names = {kind: list(self._root[kind]) for kind in self._rows}
-        types, ids = self._root["Types"][:], self._root["Connectivity"][:]
-        starts = self._root["Offsets"][:]
+        super().__init__(Path(folder) / "frames")
+        with self._root(0) as root:
+            self.names = {kind: list(root[kind]) for kind in KINDS}
+            self.group_names = _group_names(root)
+            types, ids, starts = (root[name][()] for name in ("Types", "Connectivity", "Offsets"))
         self.cells: dict[str, NDArray[np.int64]] = {}
         for shape, nodes in NODES.items():
             some = np.flatnonzero(types == VTK_TYPES[shape])
             if len(some):
                 self.cells[shape] = ids[starts[some][:, None] + np.arange(nodes)]
 
-    def __len__(self) -> int:
-        return len(self.times)
-
-    @property
-    def group_names(self) -> list[str]:
-        """Names of the groups, by the numbers of the field "group"."""
-        names = _group_names(self._root)
-        if not names:
-            raise CdemError(f"{self.path}: does not name its groups; run the case again")
-        return names
-
     def points(self, frame: int) -> NDArray[np.float64]:
         """Positions of the nodes [m], shape (nodes, 3)."""
-        return self._read("Points", int(self._root["Steps/PointOffsets"][frame]), "PointData")
+        return self._read(frame, ["Points"])[0]
 
     def field(self, kind: str, name: str, frame: int) -> NDArray:
         """A field on the nodes ("PointData") or elements ("CellData") of a frame."""
-        start = int(self._root[f"Steps/{kind}Offsets/{name}"][frame])
-        return self._read(f"{kind}/{name}", start, kind)
+        return self._read(frame, [f"{kind}/{name}"])[0]
 
-    def _read(self, name: str, start: int, kind: str) -> NDArray:
-        return self._root[name][start : start + self._rows[kind]]
+
+def _group_names(root: Any) -> list[str]:
+    return [str(name) for name in root["CellData/group"].attrs.get("names", [])]
 
 
 def export(folder: Path, *, to: str = "vtu") -> list[Path]:

@@ -13,6 +13,7 @@ from cdem.output.figures import plot
 from cdem.output.reader import read_summary
 from cdem.output.render import render
 from cdem.run.energy_terms import ENERGY_TERMS
+from cdem.whole_files import write_text
 
 
 def info(folder: Path) -> str:
@@ -83,5 +84,5 @@ pre{{background:#f4f4f4;padding:1em;overflow:auto}}</style>
 checkpoint.h5, run.log.</p></html>
 """
     path = folder / "report.html"
-    path.write_text(page)
+    write_text(path, page)
     return path

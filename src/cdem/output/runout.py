@@ -20,7 +20,7 @@ from cdem.output.deposit import Deposit
 from cdem.output.element_volumes import Solids
 from cdem.output.moving_mass import FRAGMENT, SECTION, STILL, Body, Line, Section
 from cdem.output.reader import read_histories
-from cdem.run.checkpoint import write_json_atomic
+from cdem.whole_files import write_json
 
 Floats = NDArray[np.float64]
 
@@ -167,7 +167,7 @@ class RunOut:
         """Write runout.json, runout.csv, fragments.csv, sections.csv, deposit.asc and deposit.tif."""
         folder = Path(folder)
         names = ["runout.json", "deposit.asc", "deposit.tif", "runout.csv"]
-        write_json_atomic(folder / "runout.json", self.as_dict())
+        write_json(folder / "runout.json", self.as_dict())
         self.deposit.write_asc(folder / "deposit.asc")
         self.deposit.write_tiff(folder / "deposit.tif")
         _write_csv(folder / "runout.csv", HISTORY, self.history)

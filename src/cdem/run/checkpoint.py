@@ -1,55 +1,62 @@
-"""Files that are replaced as a whole, so that at any moment the old or the new one is there."""
+"""Checkpoints: all that a run needs to go on to the bit, with a checksum, in two generations."""
 
 from __future__ import annotations
 
+import hashlib
 import json
-import math
-import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
+from cdem.whole_files import plain, replaced
 
+CHECKPOINT = "checkpoint.h5"
+CHECKPOINT_BEFORE = "checkpoint-before.h5"
+"""The one before, which is read if the last one is damaged."""
 ATTRIBUTES = "attributes"
+HEAD_BYTES = 512
+"""Size of what stands before the HDF5 part: a user block, which HDF5 passes over."""
+PIECE_BYTES = 1 << 20
 
 
-def replace_file(temporary: Path, path: Path) -> None:
-    """Put a file that was written aside into its place, in one go that survives a power cut."""
-    os.replace(temporary, path)
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+class DamagedError(CdemError):
+    """A checkpoint is not what was written, or not there."""
 
 
-def write_checkpoint(path: Path, arrays: Mapping[str, NDArray], attributes: dict[str, Any]) -> None:
-    """Write a checkpoint so that either the old or the new one is there, whole, at any moment."""
-    temporary = path.with_name(path.name + ".tmp")
-    try:
-        with h5py.File(temporary, "w", locking=False) as file:
+def has_checkpoint(folder: Path) -> bool:
+    """Whether a result folder holds something to resume from."""
+    return any((folder / name).is_file() for name in (CHECKPOINT, CHECKPOINT_BEFORE))
+
+
+def write_checkpoint(
+    folder: Path, arrays: Mapping[str, NDArray], attributes: dict[str, Any]
+) -> None:
+    """Write a checkpoint into a result folder; the one before is kept.
+
+    Raises:
+        DiskError: It cannot be written.
+    """
+    with replaced(folder / CHECKPOINT, keep=folder / CHECKPOINT_BEFORE) as file:
+        with h5py.File(file, "w", userblock_size=HEAD_BYTES) as hdf5:
             for name, values in arrays.items():
-                file.create_dataset(name.replace(".", "/"), data=values)
+                hdf5.create_dataset(name.replace(".", "/"), data=values)
             # as a dataset, because an HDF5 attribute may not exceed 64 kB
-            file[ATTRIBUTES] = json.dumps(attributes, default=_plain)
-        with temporary.open("rb") as raw:
-            os.fsync(raw.fileno())
-    except OSError as error:  # a full disk, most often; the checkpoint before this one is kept
-        temporary.unlink(missing_ok=True)
-        raise CdemError(f"{path}: cannot write the checkpoint ({error})") from error
-    replace_file(temporary, path)
+            hdf5[ATTRIBUTES] = json.dumps(attributes, default=plain)
+        head = _head(file)
+        file.seek(0)
+        file.write(head)
 
 
 def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], dict[str, Any]]:
     """Read what `write_checkpoint` wrote, to the bit.
 
     Raises:
-        CdemError: The file is not a checkpoint.
+        DamagedError: The file is not what was written.
     """
     arrays: dict[str, NDArray] = {}
 
@@ -58,35 +65,26 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], dict[str, Any]]:
             arrays[name.replace("/", ".")] = np.asarray(item[()])
 
     try:
-        with h5py.File(path, "r", locking=False) as file:
-            file.visititems(keep)
-            attributes = json.loads(file[ATTRIBUTES][()])
-    except (OSError, KeyError, ValueError) as error:
-        raise CdemError(f"{path}: not a checkpoint that can be read ({error})") from error
+        with path.open("rb") as file:
+            if file.read(HEAD_BYTES) != _head(file):
+                raise DamagedError(f"{path}: is damaged (its checksum is another)")
+            file.seek(0)
+            with h5py.File(file, "r") as hdf5:
+                hdf5.visititems(keep)
+                attributes = json.loads(hdf5[ATTRIBUTES][()])
+    except FileNotFoundError:
+        raise DamagedError(f"{path}: is not there") from None
+    except DamagedError:
+        raise
+    except Exception as error:  # a right checksum, but not of a checkpoint; h5py raises many kinds
+        raise DamagedError(f"{path}: not a checkpoint that can be read ({error})") from error
     return arrays, attributes
 
 
-def write_json_atomic(path: Path, content: dict[str, Any]) -> None:
-    """Write JSON so that a reader never sees half a file; a number that is not finite is null."""
-    temporary = path.with_name(path.name + ".tmp")
-    with temporary.open("w") as file:
-        file.write(json.dumps(_finite(content), indent=2, default=_plain, allow_nan=False) + "\n")
-        file.flush()
-        os.fsync(file.fileno())
-    replace_file(temporary, path)
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple | np.ndarray):
-        return [_finite(item) for item in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    return value
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"cannot write {type(value).__name__} as JSON")
+def _head(file: BinaryIO) -> bytes:
+    """What stands at the start of a file: the checksum of all that comes after it."""
+    checksum = hashlib.sha256()
+    file.seek(HEAD_BYTES)
+    while piece := file.read(PIECE_BYTES):
+        checksum.update(piece)
+    return f"cdem checkpoint, sha256 {checksum.hexdigest()}\n".encode().ljust(HEAD_BYTES, b"\0")

@@ -2,24 +2,36 @@
 
 from __future__ import annotations
 
+import json
+import os
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
 
-from cdem._version import __version__
 from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS
 from cdem.errors import CdemError
-from cdem.run.checkpoint import read_checkpoint, write_checkpoint, write_json_atomic
+from cdem.run.checkpoint import (
+    CHECKPOINT,
+    CHECKPOINT_BEFORE,
+    DamagedError,
+    has_checkpoint,
+    read_checkpoint,
+    write_checkpoint,
+)
 from cdem.run.energy_terms import ENERGY_TERMS
 from cdem.run.fields import surface_of, values_of
+from cdem.run.folder_lock import FolderLock
+from cdem.run.frame_files import FrameFiles, SurfaceFiles
 from cdem.run.histories import tracks
+from cdem.run.history_file import HistoryFile
 from cdem.run.state import RunState
-from cdem.run.writers import FrameWriter, HistoryWriter, SurfaceWriter
-from cdem.run.written_files import check_replaceable, mark, remove_written
+from cdem.run.written_files import LOCK, MARKER, check_replaceable, remove_written
+from cdem.whole_files import disk_error, write_json, write_text
 
-RESULT_FILES = {"case.yaml", "run.log", "summary.json", "checkpoint.h5"}
+RESULT_FILES = {"case.yaml", "run.log", "summary.json", CHECKPOINT, CHECKPOINT_BEFORE}
 """A folder that holds one of these is read as a result folder; `--overwrite` asks for more."""
 
 
@@ -29,15 +41,19 @@ def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) ->
         raise CdemError(f"{folder}: is a file; name another folder with -o")
     inside = {path.name for path in folder.iterdir()} if folder.exists() else set()
     if resume:
-        if "checkpoint.h5" not in inside:
+        if not has_checkpoint(folder):
             raise CdemError(f"{folder}: no checkpoint to resume from; run without --resume")
     elif inside and not overwrite:
-        raise CdemError(
-            f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or -o "
-            "for another folder"
-        )
+        raise _exists(folder)
     elif inside:
         check_replaceable(folder, case_folder)
+
+
+def _exists(folder: Path) -> CdemError:
+    return CdemError(
+        f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or -o "
+        "for another folder"
+    )
 
 
 class Results:
@@ -49,43 +65,69 @@ class Results:
         overwrite: Replace the results in an existing folder.
         resume: Go on in an existing one.
 
+    Attributes:
+        notes: What a user should know of an interrupted run that goes on.
+
     Raises:
-        CdemError: The folder exists and neither was asked for, it holds other things than results, or
-            there is nothing to resume.
+        CdemError: The folder exists and neither was asked for, it holds other things than results,
+            another run writes into it, or there is nothing to resume.
     """
 
     def __init__(self, folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) -> None:
         self.folder = folder
         _guard(folder, case_folder, overwrite=overwrite, resume=resume)
-        self.overwrite = overwrite
-        self.rows = 0
+        self._lock = FolderLock(folder)
+        if folder.exists():
+            self._lock.take()
+        self._new = not (overwrite or resume)
         self.frames = 0
+        self.notes: list[str] = []
         self.tracks: list[tuple[str, Any]] = []
-        self._history: HistoryWriter
-        self._volume: FrameWriter | None = None
-        self._surface: SurfaceWriter | None = None
+        self._history: HistoryFile
+        self._volume: FrameFiles | None = None
+        self._surface: SurfaceFiles | None = None
+        self._checkpoint: os.stat_result | None = None
 
     # ------------------------------------------------------------------ opening
 
     def open(self, sim: RunState) -> None:
         """Create the folder; nothing is written before the model has been built."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        if self.overwrite:
+        self._lock.take()
+        if not self._new:
             remove_written(self.folder)
-        mark(self.folder)
-        (self.folder / "case.yaml").write_text(sim.case.dump())
-        (self.folder / "run.log").write_text("")
+        elif {path.name for path in self.folder.iterdir()} - {MARKER, LOCK}:
+            raise _exists(self.folder)  # made by another run while this one built its model
+        write_text(self.folder / "case.yaml", sim.given_case.dump())
         self.log(sim.audit.text())
         self._open_series(sim, None, None)
 
     def reopen(self, sim: RunState, attributes: dict[str, Any]) -> None:
         """Go on with the files of an interrupted run, cut back to its checkpoint."""
-        self.rows, self.frames = int(attributes["rows"]), int(attributes["frames"])
-        self._open_series(sim, self.frames, self.rows)
+        self.frames = int(attributes["frames"])
+        self._open_series(sim, self.frames, int(attributes["rows"]))
+        write_text(self.folder / "case.yaml", sim.given_case.dump())
+        for note in self.notes:
+            self.log(f"warning: {note}")
         self.log(f"resumed at step {sim.step_count}, t = {sim.time:.6g} s")
 
+    def hold(self) -> None:
+        """Take the lock of the folder again after `release`, if no other run has written there.
+
+        Raises:
+            CdemError: Another run writes, or has written.
+        """
+        self._lock.take()
+        if self._checkpoint is not None and _identity(self._stat()) != _identity(self._checkpoint):
+            raise CdemError(
+                f"{self.folder}: another run has written here meanwhile; open it again with resume"
+            )
+
+    def release(self) -> None:
+        """Let another run write into the folder."""
+        self._lock.release()
+
     def _open_series(self, sim: RunState, frames: int | None, rows: int | None) -> None:
-        t = sim.build.topology
         self.tracks = tracks(sim)
         columns = [
             "time [s]", "step",
@@ -93,22 +135,31 @@ class Results:
             "energy error", "unbalance ratio", "broken tension", "broken shear",
         ]  # fmt: skip
         columns += [name for name, _ in self.tracks]
-        self._history = HistoryWriter(self.folder / "histories.csv", columns, keep_rows=rows)
+        self._history = HistoryFile(self.folder / "histories.csv", columns, rows)
+        if self._history.lost:
+            self.notes.append(f"histories.csv: {self._history.lost} rows are lost (damaged)")
         if not sim.case.output.frames:
             return
         static = values_of(sim, (f for f in OUTPUT_FIELDS if f.frames == "always"))
-        self._volume = FrameWriter(
-            self.folder / "frames.vtkhdf", t.element_nodes, static, resume_steps=frames
-        )
-        self._volume.name_groups(sim.build.group_names)
-        self._surface = SurfaceWriter(self.folder / "surface.vtkhdf", resume_steps=frames)
+        cells, names = sim.build.topology.element_nodes, sim.build.group_names
+        self._volume = FrameFiles(self.folder / "frames.vtkhdf", cells, static, names, frames)
+        self._surface = SurfaceFiles(self.folder / "surface.vtkhdf", names, frames)
+        for series in (self._volume, self._surface):
+            if series.lost:
+                self.notes.append(
+                    f"{series.path.name}: frames {_ranges(series.lost)} are lost (damaged or missing)"
+                )
 
     # ------------------------------------------------------------------ writing
 
     def log(self, text: str) -> None:
         """Add a line to run.log."""
-        with (self.folder / "run.log").open("a") as file:
-            file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} {text}\n")
+        path = self.folder / "run.log"
+        try:
+            with path.open("a") as file:
+                file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} {text}\n")
+        except OSError as error:
+            raise disk_error(path, error) from error
 
     def record(self, sim: RunState, frame: bool) -> None:
         """Write a history row, and a frame of the fields with it if asked."""
@@ -119,11 +170,10 @@ class Results:
         row += [e["error"], sim.core.unbalance_ratio(), broken["tension"], broken["shear"]]
         row += [value() for _, value in self.tracks]
         self._history.append(row)
-        self.rows += 1
         if frame and self._volume is not None and self._surface is not None:
             self._record_frame(sim, self._volume, self._surface)
 
-    def _record_frame(self, sim: RunState, volume: FrameWriter, surface: SurfaceWriter) -> None:
+    def _record_frame(self, sim: RunState, volume: FrameFiles, surface: SurfaceFiles) -> None:
         wanted = sim.case.output.fields
         kept = [f for f in OUTPUT_FIELDS if f.frames == "chosen" and f.name in wanted]
         shown = [f for f in CARRIED if f.surface == "always" or f.name in wanted]
@@ -131,43 +181,77 @@ class Results:
         nodes, elements = (
             {f.name: values[f.name] for f in kept if f.on == on} for on in ("nodes", "elements")
         )
-        volume.append(sim.time, sim.motion[:, :3], nodes, elements)
-        surface.append(sim.time, *surface_of(sim, {f.name: values[f.name] for f in shown}))
-        if surface.frames == 1:
-            surface.name_groups(sim.build.group_names)
+        volume.append(self.frames, sim.time, sim.motion[:, :3], nodes, elements)
+        polygons = surface_of(sim, {f.name: values[f.name] for f in shown})
+        surface.append(self.frames, sim.time, *polygons)
         self.frames += 1
 
     def checkpoint(self, sim: RunState) -> None:
-        """Write the checkpoint."""
+        """Write the checkpoint, once all that it counts on is on the disk."""
+        self._history.sync()
+        for series in (self._volume, self._surface):
+            if series is not None:
+                series.sync()
         arrays = dict(sim.core.fields())
         arrays["simulation.reference"] = sim.reference
-        attributes = sim.attributes() | {"rows": self.rows, "frames": self.frames}
-        write_checkpoint(self.folder / "checkpoint.h5", arrays, attributes)
+        attributes = sim.attributes() | {"rows": self._history.rows, "frames": self.frames}
+        write_checkpoint(self.folder, arrays, attributes)
+        self._checkpoint = self._stat()
 
-    def read_checkpoint(self, sim: RunState) -> tuple[dict[str, NDArray], dict[str, Any]]:
-        """Read the checkpoint and make sure that it belongs to the same model."""
-        arrays, attributes = read_checkpoint(self.folder / "checkpoint.h5")
-        nodes = len(sim.build.topology.node_position)
-        if arrays["simulation.reference"].shape != (nodes, 3):
-            raise CdemError(
-                f"{self.folder / 'checkpoint.h5'}: belongs to another model "
-                f"({len(arrays['simulation.reference'])} nodes, this one has {nodes}); "
-                "resume with the case that was run"
-            )
-        if attributes.get("nodes") != sim.build.fingerprint:
-            raise CdemError(
-                f"{self.folder / 'checkpoint.h5'}: belongs to another model, with other elements or "
-                "groups, or whose nodes begin at other places or are numbered otherwise; resume with "
-                f"the case, the mesh and the cdem that were run ({attributes['version']}; this is {__version__})"
-            )
-        return arrays, attributes
+    def read_checkpoint(self) -> tuple[Path, dict[str, NDArray], dict[str, Any]]:
+        """Read the last checkpoint that is whole: its path, arrays and attributes.
+
+        Raises:
+            CdemError: There is none.
+        """
+        said = []
+        for name in (CHECKPOINT, CHECKPOINT_BEFORE):
+            path = self.folder / name
+            try:
+                arrays, attributes = read_checkpoint(path)
+            except DamagedError as error:
+                said.append(str(error))
+                continue
+            self.notes += [f"{why}; going on from the one before, {path}" for why in said]
+            self._checkpoint = self._stat()
+            return path, arrays, attributes
+        raise CdemError(f"{'; '.join(said)}; run the case again with --overwrite")
+
+    def _stat(self) -> os.stat_result | None:
+        path = self.folder / CHECKPOINT
+        return path.stat() if path.is_file() else None
+
+    def ended(self, sim: RunState) -> str | None:
+        """The status in a summary of just this state, if the run has come to its end and said so."""
+        try:
+            summary = json.loads((self.folder / "summary.json").read_text())
+        except (OSError, ValueError):
+            return None
+        same = summary.get("steps") == sim.step_count
+        status = summary.get("status")
+        return status if same and status not in ("stopped", "failed") else None
 
     def finish(self, sim: RunState, status: str) -> None:
         """Write the summary; the report is made from the folder alone."""
-        write_json_atomic(self.folder / "summary.json", sim.summary(status))
+        write_json(self.folder / "summary.json", sim.summary(status))
         self.log(f"{status} at step {sim.step_count}, t = {sim.time:.6g} s")
 
     def fail(self, sim: RunState) -> None:
         """Record where a run failed."""
-        write_json_atomic(self.folder / "summary.json", sim.summary("failed"))
+        write_json(self.folder / "summary.json", sim.summary("failed"))
         self.log(f"failed at step {sim.step_count}, t = {sim.time:.6g} s")
+
+
+def _identity(stat: os.stat_result | None) -> tuple[int, ...]:
+    return (0, 0) if stat is None else (stat.st_ino, stat.st_mtime_ns)
+
+
+def _ranges(numbers: Sequence[int]) -> str:
+    """Numbers in order, those that follow one another as a range."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and number == parts[-1][1] + 1:
+            parts[-1][1] = number
+        else:
+            parts.append([number, number])
+    return ", ".join(str(a) if a == b else f"{a} to {b}" for a, b in parts)

@@ -7,15 +7,19 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cdem._native import core as native
 from cdem._version import __version__
 from cdem.case.case import Case
-from cdem.errors import CdemError, UnstableError
+from cdem.errors import CdemError, DiskError, UnstableError
 from cdem.model.audit import Audit
-from cdem.run import stages
+from cdem.run import restored, stages
+from cdem.run.changes import compare
+from cdem.run.checkpoint import has_checkpoint
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
 from cdem.run.state import RunState, StageState
@@ -35,10 +39,12 @@ class Simulation(RunState):
         output: Result folder, or None to record nothing.
         overwrite: Replace what an existing result folder holds.
         resume: Go on from the checkpoint in the result folder.
+        force: Go on though the case has changed in a way that a run cannot change.
         device: "cpu".
 
     Raises:
-        CaseError: The case or its files are wrong.
+        CaseError: The case or its files are wrong, or not those of the run that is resumed.
+        CdemError: The result folder is in use, or cannot be used.
 
     Example:
         >>> import cdem
@@ -66,6 +72,7 @@ class Simulation(RunState):
         output: str | Path | None = None,
         overwrite: bool = False,
         resume: bool = False,
+        force: bool = False,
         device: str = "cpu",
     ) -> None:
         if device != "cpu":
@@ -78,12 +85,21 @@ class Simulation(RunState):
             self.results = Results(
                 Path(output), case.path_of("."), overwrite=overwrite, resume=resume
             )
-        super().__init__(case, threads)
+        try:
+            super().__init__(case, threads)
+            self._begin(resume=resume, force=force)
+        except BaseException:
+            if self.results:
+                self.results.release()
+            raise
+
+    def _begin(self, *, resume: bool, force: bool) -> None:
+        """Bring the core to the state from which the run goes on."""
         if self.case.stages:  # so that it can be stepped before any stage begins
             self.core.set_damping(*stages.damping_of(self.case.stages[0]))
             self.core.set_lumped(stages.is_lumped(self.case.stages[0]))
         if resume:
-            self._restore()
+            self._restore(force=force)
         else:
             self.core.prepare()
             self.overlap = self.core.adopt_overlaps()
@@ -111,14 +127,43 @@ class Simulation(RunState):
         Raises:
             UnstableError: The computation failed; the last checkpoint is kept.
         """
-        status = "finished"
-        while self.stage_index < len(self.case.stages):
+        if self.results:
+            self.results.hold()
+        try:
+            return self._run(progress, should_stop)
+        except DiskError as error:
+            raise self._with_advice(error) from error
+        finally:
+            if self.results:
+                self.results.release()
+
+    def _run(
+        self,
+        progress: Callable[[Progress], None] | None,
+        should_stop: Callable[[], bool] | None,
+    ) -> str:
+        status = self.finished_stages[-1]["status"] if self.finished_stages else "finished"
+        if self.is_over and self.results and (said := self.results.ended(self)):
+            return said  # a resumed run that had come to its end
+        while not self.is_over:
             status = self._run_stage(progress, should_stop)
             if status == "stopped":
                 break
         if self.results:
             self.results.finish(self, status)
         return status
+
+    @property
+    def is_over(self) -> bool:
+        """Whether all stages have ended."""
+        return self.stage_index >= len(self.case.stages)
+
+    def _with_advice(self, error: DiskError) -> DiskError:
+        """Say in the error of a full disk what is safe, and how to go on."""
+        kept = "run the case again"
+        if self.results and has_checkpoint(self.results.folder):
+            kept = "the last checkpoint is whole: go on from it with --resume"
+        return DiskError(f"{error}. Mend this, e.g. by making room on the disk; {kept}")
 
     def run_stage(self, name: str) -> str:
         """Run up to the end of the named stage; returns its status."""
@@ -156,7 +201,7 @@ class Simulation(RunState):
         until: float = np.inf,
     ) -> str:
         if self.stage is None:
-            self.stage = stages.begin(self)
+            self.stage, self.ended_stage = stages.begin(self), None
             self._record()
         stage = self.stage
         speed, began, note = 0.0, time.perf_counter(), ""
@@ -204,7 +249,7 @@ class Simulation(RunState):
             }
         )
         self.stage_index += 1
-        self.stage = None
+        self.stage, self.ended_stage = None, stage
         self.checkpoint()
 
     def _record(self, frame: bool = True) -> None:
@@ -289,26 +334,64 @@ class Simulation(RunState):
         if self.results:
             self.results.checkpoint(self)
 
-    def _restore(self) -> None:
+    def _restore(self, *, force: bool) -> None:
         assert self.results is not None
-        arrays, attributes = self.results.read_checkpoint(self)
-        self.reference = arrays.pop("simulation.reference")
-        kept = set(arrays) | set(attributes["core"])
-        if other := sorted(kept ^ (set(self.core.fields()) | set(self.core.scalars()))):
-            raise CdemError(
-                f"{self.results.folder}: its checkpoint was written by another version of cdem "
-                f"({attributes['version']}; this is {__version__}) and holds other fields "
-                f"({', '.join(other[:3])}, ...). Go on with the cdem that wrote it, or run the case "
-                f"again in another folder (-o)"
+        path, arrays, attributes = self.results.read_checkpoint()
+        try:
+            self._check_model(path, arrays, attributes, force=force)
+            self._restore_core(path, arrays, attributes)
+            self.overlap = tuple(attributes["overlap"])
+            self.stage_index = int(attributes["stage_index"])
+            self.finished_stages = list(attributes["finished_stages"])
+            self.wall_time = float(attributes["wall_time"])
+            self.stage, self.ended_stage = (
+                StageState(**attributes[name]) if attributes[name] is not None else None
+                for name in ("stage", "ended_stage")
             )
-        self.core.restore(arrays, attributes["core"])
-        self.overlap = tuple(attributes["overlap"])
-        self.stage_index = int(attributes["stage_index"])
-        self.finished_stages = list(attributes["finished_stages"])
-        self.wall_time = float(attributes["wall_time"])
-        for done in range(self.stage_index + (attributes["stage"] is not None)):
+            begun = self.stage_index + (self.stage is not None)
+            changes = compare(attributes["case"], self.given_case.model_dump(mode="json"), begun)
+        except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+            raise CdemError(f"{path}: is damaged ({type(error).__name__}: {error})") from error
+        self.results.notes += changes.check(self.case, force=force)
+        stages.change_end(self, longer=changes.longer)
+        for done in range(self.stage_index + (self.stage is not None)):
             stages.apply_settings(self, done)
-        if attributes["stage"] is not None:
-            self.stage = StageState(**attributes["stage"])
         self.core.prepare()
-        self.results.reopen(self, attributes)
+        if not self.is_over or self.results.ended(self) is None:
+            self.results.reopen(self, attributes)
+
+    def _check_model(
+        self, path: Path, arrays: dict[str, NDArray], attributes: dict[str, Any], *, force: bool
+    ) -> None:
+        """Make sure that a checkpoint is of this model and this program."""
+        if attributes["nodes"] != self.build.fingerprint:
+            raise CdemError(
+                f"{path}: belongs to another model, with other elements or groups, or whose nodes "
+                "begin at other places or are numbered otherwise; resume with the case and the mesh "
+                "that were run"
+            )
+        other = set(arrays) - {"simulation.reference"} | set(attributes["core"])
+        other ^= set(self.core.fields()) | set(self.core.scalars())
+        if other or (attributes["version"] != __version__ and not force):
+            fields = (
+                f" and holds other fields ({', '.join(sorted(other)[:3])}, ...)" if other else ""
+            )
+            raise CdemError(
+                f"{path}: was written by another version of cdem ({attributes['version']}; this is "
+                f"{__version__}){fields}. Go on with the cdem that wrote it"
+                f"{'' if other else ', with --force'}, or run the case again in another folder (-o)"
+            )
+
+    def _restore_core(
+        self, path: Path, arrays: dict[str, NDArray], attributes: dict[str, Any]
+    ) -> None:
+        """Hand the arrays of a checkpoint to the core, if it can work with them."""
+        self.reference = arrays.pop("simulation.reference")
+        fault = restored.wrong_type(self.core, arrays)
+        if self.reference.shape != self.build.start_position.shape:
+            fault = "simulation.reference has another shape"
+        if not fault:
+            self.core.restore(arrays, attributes["core"])
+            fault = restored.wrong_array(self.core)
+        if fault:
+            raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")

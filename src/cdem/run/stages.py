@@ -93,6 +93,22 @@ def begin(sim: RunState) -> StageState:
     )
 
 
+def change_end(sim: RunState, *, longer: bool) -> None:
+    """Let the stage of a resumed run end as the case has it now.
+
+    Args:
+        sim: The simulation, restored.
+        longer: Whether the last stage that has begun is to go on, if it has ended already.
+    """
+    if longer and sim.stage is None and sim.ended_stage is not None:
+        sim.stage, sim.ended_stage = sim.ended_stage, None
+        sim.stage_index -= 1
+        del sim.finished_stages[-1]
+    if sim.stage is not None:
+        duration = sim.case.stages[sim.stage_index].duration
+        sim.stage.end_time = None if duration is None else sim.stage.start_time + duration
+
+
 def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple[str, int, float]:
     """Run towards the stage's next event or a time, at most `steps` steps; the core's report."""
     rules = sim.case.stages[sim.stage_index]

@@ -73,6 +73,7 @@ class RunState:
 
     Attributes:
         case: The case, with what its stages have set so far.
+        given_case: The case as it was given.
         threads: Threads of the core.
         build: The model.
         core: The compiled core, holding model and state.
@@ -80,6 +81,7 @@ class RunState:
         overlap: Of the blocks at the start: depth [m], number of vertices, a face.
         stage_index: The running stage or the next one.
         stage: The running stage, or None between stages.
+        ended_stage: The stage that ended last, as long as no other has begun.
         finished_stages: A row of the summary for each stage that has ended.
         reference: Positions from which displacements count [m], shape (nodes, 3).
         wall_time: Wall time spent in stages [s].
@@ -89,12 +91,14 @@ class RunState:
 
     def __init__(self, case: Case, threads: int) -> None:
         self.case = case.model_copy(deep=True)  # stages change it; the caller's stays
+        self.given_case = case.model_copy(deep=True)
         self.threads = threads
         self.build: Build = build(self.case)
         self.core = self.build.core
         self.overlap = (0.0, 0, -1)
         self.stage_index = 0
         self.stage: StageState | None = None
+        self.ended_stage: StageState | None = None
         self.finished_stages: list[dict[str, Any]] = []
         self.reference = self.build.start_position
         self.wall_time = 0.0
@@ -186,11 +190,13 @@ class RunState:
         """What a checkpoint keeps besides arrays."""
         return {
             "version": __version__,
+            "case": self.given_case.model_dump(mode="json"),
             "nodes": self.build.fingerprint,
             "core": self.core.scalars(),
             "overlap": list(self.overlap),
             "stage_index": self.stage_index,
             "stage": None if self.stage is None else vars(self.stage),
+            "ended_stage": None if self.ended_stage is None else vars(self.ended_stage),
             "finished_stages": self.finished_stages,
             "wall_time": self.wall_time,
         }

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fnmatch import fnmatchcase
 from pathlib import Path
 
 from cdem.case.output_fields import OUTPUT_FIELDS
 from cdem.errors import CdemError
+from cdem.whole_files import ASIDE, write_text
 
 MARKER = ".cdem-results"
 """The file that says that `cdem run` made the folder."""
-EXPORTED = "vtu"
-"""The folder of what `cdem export` writes, and the pattern of its files."""
-EXPORTED_FILES = "frame-*.vtu"
+LOCK = ".cdem-lock"
+"""The file that a run holds while it writes."""
+FOLDERS = {
+    "vtu": ["frame-*.vtu"],  # cdem export
+    "frames": ["frame-*.vtkhdf", "elements.h5"],
+    "surface": ["frame-*.vtkhdf"],
+}
+"""Folders inside a result folder, and patterns of the names of their files."""
 WRITTEN = {
     # cdem run
-    "case.yaml", "run.log", "summary.json", "checkpoint.h5", "histories.csv", "frames.vtkhdf",
-    "surface.vtkhdf", "report.html",
+    MARKER, LOCK, "case.yaml", "run.log", "summary.json", "checkpoint.h5", "checkpoint-before.h5",
+    "histories.csv", "frames.vtkhdf", "surface.vtkhdf", "report.html",
     # cdem plot, render, export
     "energies.png", "unbalance.png", "history-*.png", "frames.pvd",
     *(f"{field.name}-{part}.png" for field in OUTPUT_FIELDS for part in ("[0-9]" * 4, "overview")),
@@ -28,23 +35,27 @@ WRITTEN = {
 """Patterns of the names of all files that commands write into a result folder."""
 
 
-def mark(folder: Path) -> None:
-    """Say that cdem made a folder."""
-    (folder / MARKER).write_text(
+def mark(folder: Path, run: str) -> None:
+    """Say that cdem made a folder, and which run writes into it."""
+    write_text(
+        folder / MARKER,
         "cdem run made this folder. With --overwrite it replaces the files that it writes here,\n"
-        "and does so only if there are no others.\n"
+        f"and does so only if there are no others.\nLast run: {run}\n",
     )
 
 
 def _is_written(path: Path) -> bool:
     """Has a path the name and kind of what cdem writes, or of what a kill left of it?"""
     if path.is_dir() and not path.is_symlink():
-        return path.name == EXPORTED and all(
-            fnmatchcase(inside.name, EXPORTED_FILES) and not inside.is_dir()
-            for inside in path.iterdir()
+        patterns = FOLDERS.get(path.name, [])
+        return bool(patterns) and all(
+            not inside.is_dir() and _matches(inside.name, patterns) for inside in path.iterdir()
         )
-    name = path.name.removesuffix(".tmp")
-    return name == MARKER or any(fnmatchcase(name, pattern) for pattern in WRITTEN)
+    return _matches(path.name, WRITTEN)
+
+
+def _matches(name: str, patterns: Iterable[str]) -> bool:
+    return any(fnmatchcase(name.removesuffix(ASIDE), pattern) for pattern in patterns)
 
 
 def check_replaceable(folder: Path, case_folder: Path) -> None:
@@ -73,9 +84,9 @@ def check_replaceable(folder: Path, case_folder: Path) -> None:
 
 
 def remove_written(folder: Path) -> None:
-    """Remove from a folder what cdem wrote; its mark stays."""
+    """Remove from a folder what cdem wrote; its mark and lock stay."""
     for path in folder.iterdir():
-        if path.name == MARKER or not _is_written(path):
+        if path.name in (MARKER, LOCK) or not _is_written(path):
             continue
         if path.is_dir() and not path.is_symlink():
             for inside in path.iterdir():

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.run.checkpoint import replace_file
 from cdem.study.formula import Formula, is_formula, unknown
 from cdem.study.run import Run
 from cdem.study.study import Study
+from cdem.whole_files import replaced, write_text
 
 OF_THE_MACHINE = {"title", "version", "device", "threads", "wall_time", "counts", "stages"}
 """Parts of a summary that are not in the table unless the study names them."""
@@ -79,14 +79,11 @@ class Table:
         rows = self.rows
         heads = [f"{n} [{units[n]}]" if n in units else n for n in rows[0]]
         paths = [folder / "table.csv"]
-        temporary = folder / "table.csv.tmp"
-        with temporary.open("w", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(heads)
-            writer.writerows([_cell(value) for value in row.values()] for row in rows)
-            file.flush()
-            os.fsync(file.fileno())
-        replace_file(temporary, paths[0])
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(heads)
+        writer.writerows([_cell(value) for value in row.values()] for row in rows)
+        write_text(paths[0], text.getvalue())
         columns = dict(zip(heads, zip(*(row.values() for row in rows), strict=True), strict=True))
         return paths + _write_parquet(folder / "table.parquet", columns)
 
@@ -181,7 +178,6 @@ def _write_parquet(path: Path, columns: dict[str, tuple[Any, ...]]) -> list[Path
             if numbers
             else pyarrow.array(["" if v is None else str(_cell(v)) for v in values])
         )
-    temporary = path.with_name(path.name + ".tmp")
-    parquet.write_table(pyarrow.table(arrays), temporary)
-    replace_file(temporary, path)
+    with replaced(path) as file:
+        parquet.write_table(pyarrow.table(arrays), file)
     return [path]

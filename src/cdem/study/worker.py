@@ -10,9 +10,9 @@ from typing import Any
 from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.errors import BackendError, CdemError
-from cdem.run.checkpoint import write_json_atomic
 from cdem.study.criterion import Criterion
 from cdem.study.plan import files_of
+from cdem.whole_files import write_json
 
 RESULT_FILE, RESULT_FOLDER = "result.json", "results"
 
@@ -63,17 +63,18 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
             raise
         result |= {"status": "failed", "error": str(error)}
     result["wall_time"] = time.perf_counter() - began
-    write_json_atomic(folder / RESULT_FILE, result)
+    write_json(folder / RESULT_FILE, result)
     return json.loads((folder / RESULT_FILE).read_text())
 
 
 def _run(case: Case, task: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Run the case as `cdem run` does, from its last checkpoint if it was broken off."""
+    from cdem.run.checkpoint import has_checkpoint
     from cdem.run.histories import tracks
     from cdem.run.simulation import Simulation
 
     if task["keep"]:
-        resume = (folder / "checkpoint.h5").is_file()
+        resume = has_checkpoint(folder)
         simulation = Simulation(case, threads=1, output=folder, resume=resume, overwrite=not resume)
     else:
         simulation = Simulation(case, threads=1)

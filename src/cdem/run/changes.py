@@ -1,0 +1,92 @@
+"""What differs between the case of a run and the one that it is resumed with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from typing import Any
+
+from cdem.case.case import Case
+from cdem.errors import CaseError
+
+FILES = ("model.mesh", "model.blocks.*.file")
+"""Values that may differ because the files themselves are compared."""
+FREE = ("title", "output.every", "output.checkpoint_every")
+"""Values that a resumed run may change."""
+ENDS = ("duration", "tolerance", "max_steps")
+"""Values of the last stage that has begun which a resumed run may change."""
+
+Difference = tuple[str, Any, Any]  # path, value then, value now; None where there is none
+
+
+@dataclass
+class Changes:
+    """Differences between two cases, by whether a resumed run may have them.
+
+    Attributes:
+        allowed: Those that take effect.
+        refused: Those that would make another run of it.
+        longer: Whether the last stage that has begun is to go on for longer.
+    """
+
+    allowed: list[Difference] = field(default_factory=list)
+    refused: list[Difference] = field(default_factory=list)
+    longer: bool = False
+
+    def check(self, case: Case, *, force: bool) -> list[str]:
+        """Say what has changed; one line for each value.
+
+        Raises:
+            CaseError: Something has that may not, and it is not forced.
+        """
+        if self.refused and not force:
+            raise CaseError(
+                "\n".join(
+                    f"{case.where(path)}: {path}: is {now}, but the run was begun with {then}"
+                    for path, then, now in self.refused
+                )
+                + "\nA resumed run may change durations, tolerances, stages that have not begun, and "
+                "output.every. Set the others back, go on as it is with --force, or run the case "
+                "again in another folder (-o)"
+            )
+        lines = [f"{path} changes from {then} to {now}" for path, then, now in self.allowed]
+        return lines + [
+            f"{path} changes from {then} to {now} in the middle of the run (--force)"
+            for path, then, now in self.refused
+        ]
+
+
+def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
+    """Compare two cases by meaning: after units, defaults and inheritance.
+
+    Args:
+        then: The case that the run was begun with, as `Case.model_dump` gives it.
+        now: The case that it is resumed with.
+        begun: Stages that have begun.
+    """
+    found = Changes()
+    last = f"stages.{begun - 1}."
+    for path, a, b in _differences("", then, now):
+        later = path.startswith("stages.") and int(path.split(".")[1]) >= begun
+        end = path.removeprefix(last) if path.startswith(last) else ""
+        if any(fnmatchcase(path, pattern) for pattern in FILES):
+            continue
+        if end in ENDS:
+            found.longer |= b is None or (
+                a is not None and (a > b if end == "tolerance" else b > a)
+            )
+        allowed = later or path in FREE or end in ENDS
+        (found.allowed if allowed else found.refused).append((path, a, b))
+    return found
+
+
+def _differences(path: str, then: Any, now: Any) -> Iterator[Difference]:
+    if isinstance(then, list) and isinstance(now, list):
+        then, now = dict(enumerate(then)), dict(enumerate(now))
+    if isinstance(then, dict) and isinstance(now, dict):
+        for key in [*then, *(key for key in now if key not in then)]:
+            inside = f"{path}.{key}" if path else str(key)
+            yield from _differences(inside, then.get(key), now.get(key))
+    elif then != now:
+        yield path, then, now

@@ -1,0 +1,354 @@
+"""Frames of a run: one VTKHDF file each, and one that lists them for ParaView and pyvista.
+
+`frames.vtkhdf` holds no fields itself: virtual datasets of HDF5 point into the files of the folder
+`frames`, one for each frame, as VTK writes time steps into files of their own. Every file is
+replaced as a whole, so that a kill at any moment leaves a series that can be read.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh.element_shapes import NODES
+from cdem.whole_files import ASIDE, replaced
+
+VTK_TYPES = {"tet4": 10, "pyramid5": 14, "wedge6": 13, "hex8": 12}
+VTK_TRIANGLE, VTK_QUAD = 5, 9
+COUNTS = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
+KINDS = ("PointData", "CellData")
+ELEMENTS = "elements.h5"
+"""The file of what all frames of the volume share."""
+CHUNK_BYTES = 1 << 20
+UNCHECKED_BYTES = 1 << 14
+"""Smaller datasets have no checksum, whose list of chunks would be larger than they are."""
+LISTED_AT_ONCE = 50
+"""So many frames are listed one by one; later the list is written when it has grown by a 50th."""
+
+
+def frame_path(folder: Path, number: int) -> Path:
+    """The file of a frame."""
+    return folder / f"frame-{number:04d}.vtkhdf"
+
+
+def frame_numbers(folder: Path) -> list[int]:
+    """Numbers of the frames in the folder of a series, in order."""
+    names = [path.name[len("frame-") : -len(".vtkhdf")] for path in folder.glob("frame-*.vtkhdf")]
+    return sorted(int(name) for name in names if name.isdigit())
+
+
+@dataclass
+class _Frame:
+    """What the list needs to know of a frame.
+
+    Attributes:
+        number: Its number, from 0.
+        time: [s].
+        counts: Points, cells and connectivity ids.
+        datasets: Shape and type of each dataset that is its own.
+    """
+
+    number: int
+    time: float
+    counts: tuple[int, ...]
+    datasets: dict[str, tuple[tuple[int, ...], np.dtype]] = field(default_factory=dict)
+
+
+class _Series:
+    """Frames in a folder, and the file that lists them.
+
+    Args:
+        path: The list, a .vtkhdf file; the folder has its name.
+        group_names: By the numbers of the field "group".
+        keep: Frames to keep of an existing series; None for a new one.
+
+    Attributes:
+        lost: Numbers of the frames that were to be kept and are damaged or not there.
+    """
+
+    shared: Sequence[str] = ()  # datasets of ELEMENTS
+    moves_cells = True  # whether every frame has cells of its own
+
+    def __init__(self, path: Path, group_names: Sequence[str], keep: int | None) -> None:
+        self.path, self.folder = path, path.with_suffix("")
+        self.group_names = list(group_names)
+        self.lost: list[int] = []
+        self._frames: list[_Frame] = []
+        self._listed = 0
+        self.folder.mkdir(exist_ok=True)
+        if keep is not None:
+            self._keep(keep)
+
+    def sync(self) -> None:
+        """Bring the list up to date; frames are on the disk once they are written."""
+        if self._listed != len(self._frames):
+            self._write_list()
+
+    def _add(self, number: int, time: float, counts: tuple[int, ...], own: dict[str, Any]) -> None:
+        """Write a frame and, if it is due, the list."""
+        frame = _Frame(number, time, counts)
+        with _replaced_hdf5(frame_path(self.folder, number)) as hdf5:
+            root = self._root(hdf5)
+            for name, count in zip(COUNTS, counts, strict=True):
+                root[name] = [count]
+            for name in self.shared:
+                root[name] = h5py.ExternalLink(ELEMENTS, name)
+            for name, values in sorted(own.items()):
+                _put(root, name, np.asarray(values))
+                frame.datasets[name] = (np.shape(values), np.asarray(values).dtype)
+            root["FieldData/TimeValue"] = [time]
+            self._name_groups(root)
+        self._frames.append(frame)
+        if len(self._frames) - self._listed >= len(self._frames) / LISTED_AT_ONCE:
+            self._write_list()
+
+    @staticmethod
+    def _root(hdf5: h5py.File) -> h5py.Group:
+        root = hdf5.create_group("VTKHDF")
+        root.attrs["Version"] = (2, 1)
+        root.attrs.create("Type", b"UnstructuredGrid", dtype="S16")
+        for kind in KINDS:
+            root.create_group(kind)
+        return root
+
+    def _name_groups(self, root: h5py.Group) -> None:
+        """Say what the numbers of the field "group" stand for."""
+        if "CellData/group" not in self.shared and "CellData/group" in root:
+            root["CellData/group"].attrs["names"] = self.group_names
+
+    # ------------------------------------------------------------------ the list
+
+    def _write_list(self) -> None:
+        """Write the file that holds the datasets of all frames one after the other."""
+        frames = self._frames
+        with _replaced_hdf5(self.path) as hdf5:
+            root = self._root(hdf5)
+            for k, name in enumerate(COUNTS):
+                root[name] = [f.counts[k] for f in (frames if self.moves_cells else frames[:1])]
+            for name in self.shared:
+                root[name] = h5py.ExternalLink(f"{self.folder.name}/{ELEMENTS}", name)
+            names = sorted(set.intersection(*(set(f.datasets) for f in frames))) if frames else []
+            for name in names:
+                _put_virtual(root, name, self.folder.name, frames)
+            self._name_groups(root)
+            self._put_steps(root, names)
+        self._listed = len(frames)
+
+    def _put_steps(self, root: h5py.Group, names: Sequence[str]) -> None:
+        """Write times, and where the rows of each frame begin."""
+        frames, count = self._frames, len(self._frames)
+        none = np.zeros(count, int)
+        points, cells, ids = (_starts([f.counts[k] for f in frames]) for k in range(3))
+        moves = self.moves_cells
+        steps = root.create_group("Steps")
+        steps.attrs["NSteps"] = count
+        steps["Values"] = np.array([frame.time for frame in frames], float)
+        steps["NumberOfParts"] = np.ones(count, int)
+        steps["PartOffsets"] = np.arange(count) if moves else none
+        steps["PointOffsets"] = points
+        steps["CellOffsets"] = (cells if moves else none).reshape(-1, 1)
+        steps["ConnectivityIdOffsets"] = (ids if moves else none).reshape(-1, 1)
+        for name in names:
+            kind, _, field_name = name.partition("/")
+            if field_name:
+                rows = [frame.datasets[name][0][0] for frame in frames]
+                steps[f"{kind}Offsets/{field_name}"] = _starts(rows)
+        for name in self.shared:
+            kind, _, field_name = name.partition("/")
+            if field_name:
+                steps[f"{kind}Offsets/{field_name}"] = none
+
+    # ------------------------------------------------------------------ resuming
+
+    def _keep(self, count: int) -> None:
+        """Keep the first frames only, and nothing of one that was being written."""
+        for number in range(count):
+            try:
+                self._frames.append(self._look(number))
+            except Exception:  # h5py raises many kinds for a damaged file
+                self.lost.append(number)
+        self._write_list()  # before what it does not list any more goes
+        for number in frame_numbers(self.folder):
+            if number >= count:
+                frame_path(self.folder, number).unlink()
+        for path in self.folder.glob(f"*{ASIDE}"):
+            path.unlink()
+
+    def _look(self, number: int) -> _Frame:
+        with h5py.File(frame_path(self.folder, number), "r", locking=False) as hdf5:
+            root = hdf5["VTKHDF"]
+            frame = _Frame(
+                number,
+                float(root["FieldData/TimeValue"][0]),
+                tuple(int(root[name][0]) for name in COUNTS),
+            )
+            cells = () if not self.moves_cells else ("Points", "Types", "Connectivity", "Offsets")
+            fields = (f"{kind}/{name}" for kind in KINDS for name in root[kind])
+            for name in [*(cells or ("Points",)), *fields]:
+                if name not in self.shared:
+                    frame.datasets[name] = (root[name].shape, root[name].dtype)
+        return frame
+
+
+class FrameFiles(_Series):
+    """The volume over time; the cells stay the same.
+
+    Args:
+        path: The .vtkhdf file.
+        cells: By shape, node ids (cells, nodes).
+        cell_data: Fields that do not change, one value per cell.
+        group_names: By the numbers of the field "group".
+        keep: Frames to keep of an existing series; None for a new one.
+
+    Raises:
+        DiskError: They cannot be written.
+    """
+
+    moves_cells = False
+
+    def __init__(
+        self,
+        path: Path,
+        cells: Mapping[str, NDArray],
+        cell_data: Mapping[str, NDArray],
+        group_names: Sequence[str],
+        keep: int | None = None,
+    ) -> None:
+        some = {shape: count for shape, count in NODES.items() if shape in cells}
+        sizes = np.concatenate([np.full(len(cells[s]), n) for s, n in some.items()])
+        connectivity = np.concatenate([cells[s].ravel() for s in some])
+        types = [np.full(len(cells[s]), VTK_TYPES[s], np.uint8) for s in some]
+        content = {
+            "Connectivity": connectivity.astype(np.int64),
+            "Offsets": np.concatenate([[0], np.cumsum(sizes)]),
+            "Types": np.concatenate(types),
+        } | {f"CellData/{name}": values for name, values in cell_data.items()}
+        self.shared = list(content)
+        self._cells, self._ids = len(sizes), len(connectivity)
+        path.with_suffix("").mkdir(exist_ok=True)
+        with _replaced_hdf5(path.with_suffix("") / ELEMENTS) as hdf5:
+            for name, values in content.items():
+                _put(hdf5, name, np.asarray(values))
+            if "CellData/group" in content:
+                hdf5["CellData/group"].attrs["names"] = list(group_names)
+        super().__init__(path, group_names, keep)
+
+    def append(
+        self,
+        number: int,
+        time: float,
+        points: NDArray,
+        point_data: Mapping[str, NDArray],
+        cell_data: Mapping[str, NDArray],
+    ) -> None:
+        """Add a frame: its number, time [s], node positions [m] (nodes, 3) and fields."""
+        own = {"Points": points} | _fields(point_data, cell_data)
+        self._add(number, time, (len(points), self._cells, self._ids), own)
+
+
+class SurfaceFiles(_Series):
+    """The outer and broken faces over time: triangles and quadrilaterals that come and go.
+
+    Args:
+        path: The .vtkhdf file.
+        group_names: By the numbers of the field "group".
+        keep: Frames to keep of an existing series; None for a new one.
+
+    Raises:
+        DiskError: They cannot be written.
+    """
+
+    def append(
+        self,
+        number: int,
+        time: float,
+        points: NDArray,
+        polygons: NDArray,
+        point_data: Mapping[str, NDArray],
+        cell_data: Mapping[str, NDArray],
+    ) -> None:
+        """Add a frame.
+
+        Args:
+            number: From 0.
+            time: [s].
+            points: [m], shape (points, 3).
+            polygons: Point ids, shape (faces, 3) or (faces, 4) with -1 last in a triangle.
+            point_data: Fields on points.
+            cell_data: Fields on faces.
+        """
+        corners = (polygons >= 0).sum(axis=1)
+        connectivity = polygons[polygons >= 0].astype(np.int64)
+        own = {
+            "Points": points,
+            "Types": np.where(corners == 3, VTK_TRIANGLE, VTK_QUAD).astype(np.uint8),
+            "Connectivity": connectivity,
+            "Offsets": np.concatenate([[0], np.cumsum(corners)]),
+        } | _fields(point_data, cell_data)
+        self._add(number, time, (len(points), len(polygons), len(connectivity)), own)
+
+
+@contextmanager
+def _replaced_hdf5(path: Path) -> Iterator[h5py.File]:
+    """Make an HDF5 file in memory, and replace the one on the disk by it in one write."""
+    content = io.BytesIO()
+    with h5py.File(content, "w") as hdf5:
+        yield hdf5
+    with replaced(path) as file:
+        file.write(content.getbuffer())
+
+
+def _fields(
+    point_data: Mapping[str, NDArray], cell_data: Mapping[str, NDArray]
+) -> dict[str, NDArray]:
+    """Fields under their names in a VTKHDF file."""
+    return {
+        f"{kind}/{name}": values
+        for kind, data in zip(KINDS, (point_data, cell_data), strict=True)
+        for name, values in data.items()
+    }
+
+
+def _starts(counts: Sequence[int]) -> NDArray[np.int64]:
+    """Where each of several ranges of rows begins."""
+    return np.cumsum([0, *counts])[:-1].astype(np.int64)
+
+
+def _put(root: h5py.Group, name: str, values: NDArray) -> None:
+    """Write a dataset with checksums, which HDF5 keeps for chunks only."""
+    if values.nbytes < UNCHECKED_BYTES:
+        root.create_dataset(name, data=values)
+        return
+    rows = max(1, CHUNK_BYTES // max(values[0].nbytes, 1))
+    chunks = (min(rows, len(values)), *values.shape[1:])
+    root.create_dataset(name, data=values, chunks=chunks, fletcher32=True)
+
+
+def _put_virtual(root: h5py.Group, name: str, folder: str, frames: Sequence[_Frame]) -> None:
+    """Make a dataset of those of all frames; where a file is missing, numbers are NaN."""
+    shapes = [frame.datasets[name][0] for frame in frames]
+    rows = [shape[0] for shape in shapes]
+    dtype = frames[0].datasets[name][1]
+    space = h5py.h5s.create_simple((sum(rows), *shapes[0][1:]))
+    properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    properties.set_obj_track_times(False)  # so that the same frames give the same bytes
+    if dtype.kind == "f":
+        properties.set_fill_value(np.array(np.nan, dtype))
+    for frame, start, shape in zip(frames, _starts(rows), shapes, strict=True):
+        if shape[0]:
+            part = space.copy()
+            part.select_hyperslab((int(start), *(0 for _ in shape[1:])), shape)
+            path = frame_path(Path(folder), frame.number).as_posix()
+            source = h5py.h5s.create_simple(shape)
+            properties.set_virtual(part, path.encode(), f"VTKHDF/{name}".encode(), source)
+    kind, _, last = name.rpartition("/")
+    parent = root[kind] if kind else root
+    h5py.h5d.create(parent.id, last.encode(), h5py.h5t.py_create(dtype), space, properties)

@@ -1,0 +1,83 @@
+"""Whether arrays from a checkpoint fit the model, checked before the core works with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem._native import core as native
+
+
+def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:
+    """Name and fault of an array whose kind of numbers is not that of the core's, or ""."""
+    for name, own in core.fields().items():
+        if arrays[name].dtype != own.dtype or arrays[name].ndim != 1:
+            return f"{name} holds {arrays[name].dtype}, not a row of {own.dtype}"
+    return ""
+
+
+def wrong_array(core: Any) -> str:
+    """Name and fault of a stored array with a wrong length or an index out of range, or ""."""
+    counts = {kind["name"]: kind["count"] for kind in core.describe_rows()}
+    arrays = core.fields()
+    for info in core.describe():
+        if info["origin"] == "stored" and (fault := fault_of(info, arrays[info["name"]], counts)):
+            return f"{info['name']} {fault}"
+    return ""
+
+
+def fault_of(info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int]) -> str:
+    """What is wrong with an array as its description has it, or "".
+
+    Args:
+        info: Its description, of `Core.describe`.
+        array: Its numbers.
+        counts: How many rows there are of each kind.
+    """
+    may_be_empty = info["optional"] or info["origin"] == "rebuilt"
+    if len(array) == 0 and may_be_empty:
+        return ""
+    if info["rows"] and len(array) != (length := length_of(info, counts)):
+        return f"holds {len(array)} numbers, not {length}"
+    for kind, index in references(info, array, counts):
+        if info["layout"] == "starts":
+            if index[0] != 0 or (np.diff(index) < 0).any() or index[-1] != counts[kind]:
+                return f"does not divide {counts[kind]} {kind} into lists"
+            continue
+        if info["opposite"]:
+            index = np.where(index < 0, ~index, index)
+        least = 0 if info["opposite"] else -1
+        if len(index) and (index.min() < least or index.max() >= counts[kind]):
+            return f"refers to {kind} that are not there"
+    return ""
+
+
+def length_of(info: Mapping[str, Any], counts: Mapping[str, int]) -> int:
+    """Numbers that an array holds as its description has it."""
+    count = counts[info["rows"]]
+    if info["layout"] == "starts":
+        return count + 1
+    if info["layout"] == "columns":
+        count = native.padded_stride(count)
+    return count * info["numbers"]
+
+
+def references(
+    info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int]
+) -> Iterator[tuple[str, NDArray]]:
+    """Kind of rows that each column of an array refers to, and its indices."""
+    kinds = info["refers_to"]
+    if not any(kinds):
+        return
+    numbers = info["numbers"] if info["rows"] else 1
+    if info["layout"] == "columns":
+        table = array.reshape(numbers, -1)[:, : counts[info["rows"]]].T
+    else:
+        table = array.reshape(-1, numbers)
+    one_for_all = not any(kinds[1:])
+    for column in range(numbers):
+        if kind := kinds[0] if one_for_all else kinds[column]:
+            yield kind, table[:, column]
