@@ -76,11 +76,10 @@ def write_text(path: Path, text: str) -> None:
 
 def write_json(path: Path, content: dict[str, Any]) -> None:
     """Write JSON as a whole; a number that is not finite is null."""
-    write_text(path, json.dumps(_finite(content), indent=2, default=plain, allow_nan=False) + "\n")
+    write_text(path, json.dumps(_finite(content), indent=2, default=_plain, allow_nan=False) + "\n")
 
 
-def plain(value: Any) -> Any:
-    """A number of numpy as one of Python, for json."""
+def _plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         return value.item()
     raise TypeError(f"cannot write {type(value).__name__} as JSON")

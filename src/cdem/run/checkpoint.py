@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
-from cdem.whole_files import plain, replaced
+from cdem.whole_files import replaced
 
 CHECKPOINT = "checkpoint.h5"
 CHECKPOINT_BEFORE = "checkpoint-before.h5"
@@ -33,10 +32,13 @@ def has_checkpoint(folder: Path) -> bool:
     return any((folder / name).is_file() for name in (CHECKPOINT, CHECKPOINT_BEFORE))
 
 
-def write_checkpoint(
-    folder: Path, arrays: Mapping[str, NDArray], attributes: dict[str, Any]
-) -> None:
+def write_checkpoint(folder: Path, arrays: Mapping[str, NDArray], attributes: str) -> None:
     """Write a checkpoint into a result folder; the one before is kept.
+
+    Args:
+        folder: The result folder.
+        arrays: By name, with dots.
+        attributes: Everything else, as JSON.
 
     Raises:
         DiskError: It cannot be written.
@@ -46,14 +48,14 @@ def write_checkpoint(
             for name, values in arrays.items():
                 hdf5.create_dataset(name.replace(".", "/"), data=values)
             # as a dataset, because an HDF5 attribute may not exceed 64 kB
-            hdf5[ATTRIBUTES] = json.dumps(attributes, default=plain)
+            hdf5[ATTRIBUTES] = attributes
         head = _head(file)
         file.seek(0)
         file.write(head)
 
 
-def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], dict[str, Any]]:
-    """Read what `write_checkpoint` wrote, to the bit.
+def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
+    """Read the arrays and attributes that `write_checkpoint` wrote, to the bit.
 
     Raises:
         DamagedError: The file is not what was written.
@@ -71,7 +73,7 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], dict[str, Any]]:
             file.seek(0)
             with h5py.File(file, "r") as hdf5:
                 hdf5.visititems(keep)
-                attributes = json.loads(hdf5[ATTRIBUTES][()])
+                attributes = bytes(hdf5[ATTRIBUTES][()])
     except FileNotFoundError:
         raise DamagedError(f"{path}: is not there") from None
     except DamagedError:

@@ -77,7 +77,7 @@ class _Series:
     shared: Sequence[str] = ()  # datasets of ELEMENTS
     moves_cells = True  # whether every frame has cells of its own
 
-    def __init__(self, path: Path, group_names: Sequence[str], keep: int | None) -> None:
+    def __init__(self, path: Path, group_names: Sequence[str], keep: int | None = None) -> None:
         self.path, self.folder = path, path.with_suffix("")
         self.group_names = list(group_names)
         self.lost: list[int] = []

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS
 from cdem.errors import CdemError
@@ -27,7 +28,7 @@ from cdem.run.folder_lock import FolderLock
 from cdem.run.frame_files import FrameFiles, SurfaceFiles
 from cdem.run.histories import tracks
 from cdem.run.history_file import HistoryFile
-from cdem.run.state import RunState
+from cdem.run.state import Attributes, RunState
 from cdem.run.written_files import LOCK, MARKER, check_replaceable, remove_written
 from cdem.whole_files import disk_error, write_json, write_text
 
@@ -102,10 +103,10 @@ class Results:
         self.log(sim.audit.text())
         self._open_series(sim, None, None)
 
-    def reopen(self, sim: RunState, attributes: dict[str, Any]) -> None:
+    def reopen(self, sim: RunState, attributes: Attributes) -> None:
         """Go on with the files of an interrupted run, cut back to its checkpoint."""
-        self.frames = int(attributes["frames"])
-        self._open_series(sim, self.frames, int(attributes["rows"]))
+        self.frames = attributes.frames
+        self._open_series(sim, self.frames, attributes.rows)
         write_text(self.folder / "case.yaml", sim.given_case.dump())
         for note in self.notes:
             self.log(f"warning: {note}")
@@ -194,11 +195,11 @@ class Results:
                 series.sync()
         arrays = dict(sim.core.fields())
         arrays["simulation.reference"] = sim.reference
-        attributes = sim.attributes() | {"rows": self._history.rows, "frames": self.frames}
-        write_checkpoint(self.folder, arrays, attributes)
+        attributes = sim.attributes(self._history.rows, self.frames)
+        write_checkpoint(self.folder, arrays, attributes.model_dump_json())
         self._checkpoint = self._stat()
 
-    def read_checkpoint(self) -> tuple[Path, dict[str, NDArray], dict[str, Any]]:
+    def read_checkpoint(self) -> tuple[Path, dict[str, NDArray], Attributes]:
         """Read the last checkpoint that is whole: its path, arrays and attributes.
 
         Raises:
@@ -208,9 +209,17 @@ class Results:
         for name in (CHECKPOINT, CHECKPOINT_BEFORE):
             path = self.folder / name
             try:
-                arrays, attributes = read_checkpoint(path)
+                arrays, text = read_checkpoint(path)
+                attributes = Attributes.model_validate_json(text)
             except DamagedError as error:
                 said.append(str(error))
+                continue
+            except ValidationError as error:
+                first = error.errors()[0]
+                place = ".".join(map(str, first["loc"]))
+                said.append(
+                    f"{path}: is damaged, or of another version of cdem ({place}: {first['msg']})"
+                )
                 continue
             self.notes += [f"{why}; going on from the one before, {path}" for why in said]
             self._checkpoint = self._stat()

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,7 @@ from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
-from cdem.run.state import RunState, StageState
+from cdem.run.state import Attributes, RunState, StageState
 
 CHUNK_SECONDS = 0.25
 """The loop comes back about this often to look for signals and report progress [s of wall time]."""
@@ -329,6 +328,11 @@ class Simulation(RunState):
 
     # ------------------------------------------------------------------ keeping
 
+    def close(self) -> None:
+        """Let another run write into the result folder; `run` does so by itself when it ends."""
+        if self.results:
+            self.results.release()
+
     def checkpoint(self) -> None:
         """Write everything that is needed to go on bit for bit, if there is a result folder."""
         if self.results:
@@ -337,21 +341,14 @@ class Simulation(RunState):
     def _restore(self, *, force: bool) -> None:
         assert self.results is not None
         path, arrays, attributes = self.results.read_checkpoint()
-        try:
-            self._check_model(path, arrays, attributes, force=force)
-            self._restore_core(path, arrays, attributes)
-            self.overlap = tuple(attributes["overlap"])
-            self.stage_index = int(attributes["stage_index"])
-            self.finished_stages = list(attributes["finished_stages"])
-            self.wall_time = float(attributes["wall_time"])
-            self.stage, self.ended_stage = (
-                StageState(**attributes[name]) if attributes[name] is not None else None
-                for name in ("stage", "ended_stage")
-            )
-            begun = self.stage_index + (self.stage is not None)
-            changes = compare(attributes["case"], self.given_case.model_dump(mode="json"), begun)
-        except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-            raise CdemError(f"{path}: is damaged ({type(error).__name__}: {error})") from error
+        self._check_model(path, arrays, attributes, force=force)
+        self._restore_core(path, arrays, attributes)
+        self.overlap = attributes.overlap
+        self.stage_index, self.stage = attributes.stage_index, attributes.stage
+        self.ended_stage, self.finished_stages = attributes.ended_stage, attributes.finished_stages
+        self.wall_time = attributes.wall_time
+        begun = self.stage_index + (self.stage is not None)
+        changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
         self.results.notes += changes.check(self.case, force=force)
         stages.change_end(self, longer=changes.longer)
         for done in range(self.stage_index + (self.stage is not None)):
@@ -361,37 +358,39 @@ class Simulation(RunState):
             self.results.reopen(self, attributes)
 
     def _check_model(
-        self, path: Path, arrays: dict[str, NDArray], attributes: dict[str, Any], *, force: bool
+        self, path: Path, arrays: dict[str, NDArray], attributes: Attributes, *, force: bool
     ) -> None:
         """Make sure that a checkpoint is of this model and this program."""
-        if attributes["nodes"] != self.build.fingerprint:
+        if attributes.nodes != self.build.fingerprint:
             raise CdemError(
                 f"{path}: belongs to another model, with other elements or groups, or whose nodes "
                 "begin at other places or are numbered otherwise; resume with the case and the mesh "
                 "that were run"
             )
-        other = set(arrays) - {"simulation.reference"} | set(attributes["core"])
+        other = set(arrays) - {"simulation.reference"} | set(attributes.core)
         other ^= set(self.core.fields()) | set(self.core.scalars())
-        if other or (attributes["version"] != __version__ and not force):
+        if other or (attributes.version != __version__ and not force):
             fields = (
                 f" and holds other fields ({', '.join(sorted(other)[:3])}, ...)" if other else ""
             )
             raise CdemError(
-                f"{path}: was written by another version of cdem ({attributes['version']}; this is "
+                f"{path}: was written by another version of cdem ({attributes.version}; this is "
                 f"{__version__}){fields}. Go on with the cdem that wrote it"
                 f"{'' if other else ', with --force'}, or run the case again in another folder (-o)"
             )
 
-    def _restore_core(
-        self, path: Path, arrays: dict[str, NDArray], attributes: dict[str, Any]
-    ) -> None:
+    def _restore_core(self, path: Path, arrays: dict[str, NDArray], attributes: Attributes) -> None:
         """Hand the arrays of a checkpoint to the core, if it can work with them."""
         self.reference = arrays.pop("simulation.reference")
         fault = restored.wrong_type(self.core, arrays)
         if self.reference.shape != self.build.start_position.shape:
             fault = "simulation.reference has another shape"
+        if attributes.stage_index + (attributes.stage is not None) > len(
+            attributes.case.get("stages", [])
+        ):
+            fault = "it is in a stage that the case does not have"
         if not fault:
-            self.core.restore(arrays, attributes["core"])
+            self.core.restore(arrays, attributes.core)
             fault = restored.wrong_array(self.core)
         if fault:
             raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")

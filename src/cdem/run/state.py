@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, NonNegativeInt
 
 from cdem._native import name as native_name
 from cdem._version import __version__
@@ -66,6 +67,35 @@ class StageState:
     def next_row(self) -> float:
         """Time of the next history row [s]."""
         return self.start_time + (self.rows + 1) * self.row_every
+
+
+class Attributes(BaseModel):
+    """What a checkpoint keeps besides arrays.
+
+    Attributes:
+        version: Of cdem.
+        case: The case as it was given.
+        nodes: Fingerprint of the model.
+        core: Scalars of the core.
+        overlap, stage_index, stage, ended_stage, finished_stages, wall_time: As in `RunState`.
+        rows: Rows of the histories.
+        frames: Frames recorded.
+    """
+
+    model_config = ConfigDict(strict=True, ser_json_inf_nan="constants")
+
+    version: str
+    case: dict[str, Any]
+    nodes: str
+    core: dict[str, bool | int | float]
+    overlap: tuple[float, int, int]
+    stage_index: NonNegativeInt
+    stage: StageState | None
+    ended_stage: StageState | None
+    finished_stages: list[dict[str, Any]]
+    wall_time: float
+    rows: NonNegativeInt
+    frames: NonNegativeInt
 
 
 class RunState:
@@ -186,20 +216,22 @@ class RunState:
 
     # ------------------------------------------------------------------ keeping
 
-    def attributes(self) -> dict[str, Any]:
-        """What a checkpoint keeps besides arrays."""
-        return {
-            "version": __version__,
-            "case": self.given_case.model_dump(mode="json"),
-            "nodes": self.build.fingerprint,
-            "core": self.core.scalars(),
-            "overlap": list(self.overlap),
-            "stage_index": self.stage_index,
-            "stage": None if self.stage is None else vars(self.stage),
-            "ended_stage": None if self.ended_stage is None else vars(self.ended_stage),
-            "finished_stages": self.finished_stages,
-            "wall_time": self.wall_time,
-        }
+    def attributes(self, rows: int, frames: int) -> Attributes:
+        """What a checkpoint keeps besides arrays, after so many rows of histories and frames."""
+        return Attributes(
+            version=__version__,
+            case=self.given_case.model_dump(mode="json"),
+            nodes=self.build.fingerprint,
+            core=self.core.scalars(),
+            overlap=self.overlap,
+            stage_index=self.stage_index,
+            stage=self.stage,
+            ended_stage=self.ended_stage,
+            finished_stages=self.finished_stages,
+            wall_time=self.wall_time,
+            rows=rows,
+            frames=frames,
+        )
 
     def summary(self, status: str) -> dict[str, Any]:
         """What summary.json says."""

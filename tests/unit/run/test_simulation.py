@@ -4,25 +4,36 @@ from __future__ import annotations
 
 import json
 
-import h5py
 import pytest
 
 import cdem
+from cdem.run.checkpoint import read_checkpoint, write_checkpoint
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
 
 def test_a_checkpoint_of_another_version_is_refused_in_one_line(run_cli, cube_folder):
     assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
-    with h5py.File(cube_folder / "cube.results/checkpoint.h5", "r+") as file:
-        kept = json.loads(file["attributes"][()])
-        del kept["core"]["dt_stable"], file["attributes"], file["spring/state"]
-        file["attributes"] = json.dumps(kept)
-    status, out, err = run_cli("run", "cube.yaml", "--resume")
+    arrays, text = read_checkpoint(cube_folder / "cube.results/checkpoint.h5")
+    kept = json.loads(text)
+    del kept["core"]["dt_stable"], arrays["spring.state"]
+    write_checkpoint(cube_folder / "cube.results", arrays, json.dumps(kept))
+    status, out, err = run_cli("run", "cube.yaml", "--resume", "--force")
     assert (status, out) == (1, "")
     assert "written by another version of cdem" in err
     assert "dt_stable" in err and "spring.state" in err
     assert "Traceback" not in err
+
+
+def test_a_checkpoint_of_another_version_with_the_same_fields_can_be_forced(run_cli, cube_folder):
+    assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
+    arrays, text = read_checkpoint(cube_folder / "cube.results/checkpoint.h5")
+    write_checkpoint(
+        cube_folder / "cube.results", arrays, json.dumps(json.loads(text) | {"version": "0.0.1"})
+    )
+    status, _, err = run_cli("run", "cube.yaml", "--resume")
+    assert status == 1 and "another version of cdem (0.0.1; this is" in err and "--force" in err
+    assert run_cli("run", "cube.yaml", "--resume", "--force", "--quiet")[0] == 0
 
 
 def test_a_run_leaves_the_case_of_its_caller_alone():
