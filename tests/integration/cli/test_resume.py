@@ -17,7 +17,7 @@ import cdem
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools/torture"))
 from runs import CASE, differences, run_words
 
-TOOLS = Path(sys.path[0])
+TOOLS = Path(__file__).parents[3] / "tools/torture"
 pytestmark = pytest.mark.usefixtures("no_report")
 WORDS = run_words(Path("case.yaml"), Path("out"))
 PROGRAM = [sys.executable, "-c", "from cdem.cli import main; main()"]
