@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import codecs
 import ctypes
+import glob
+import sys
 import threading
 import warnings
 from collections.abc import Iterator
@@ -16,8 +18,17 @@ LEAST_SECONDS = 4.0
 """So long the reading of any file may take [s]."""
 BYTES_PER_SECOND = 100_000
 """A file so large may take a second more; the slowest reader is ten times as fast [1/s]."""
+LEAST_MEMORY = 600_000_000
+"""So much memory the reading of any file may take [bytes]."""
+MEMORY_PER_BYTE = 100
+"""A file may take so many times its size more; the most wasteful reader takes a tenth [1]."""
+XML = (".vtu", ".xdmf", ".xmf", ".xml")
+"""Endings of the formats that are XML."""
 WORDS = 200
 """Characters of a library's message that are passed on."""
+
+
+_ONE_READER = threading.RLock()  # limits are those of the whole process
 
 
 class _TooLong(BaseException):
@@ -34,12 +45,18 @@ def reading(path: Path, kind: type[CdemError], mend: str) -> Iterator[None]:
         mend: What the file should be, or how to mend it.
 
     Raises:
-        CdemError: Of the class ``kind``: a library raised, left the program, or did not end in a
-            time that grows with the size of the file. Errors of cdem pass.
+        CdemError: Of the class ``kind``: a library raised, left the program, or took more time or
+            memory than a file of that size needs. Errors of cdem pass.
     """
     try:
-        seconds = LEAST_SECONDS + path.stat().st_size / BYTES_PER_SECOND
-        with _limited(seconds), warnings.catch_warnings():
+        parts = path.parent.glob(glob.escape(path.stem) + ".*")  # some formats have several files
+        size = sum(part.stat().st_size for part in parts if part.is_file())
+        with (
+            _ONE_READER,
+            _memory_limited(LEAST_MEMORY + MEMORY_PER_BYTE * size),
+            warnings.catch_warnings(),
+            _time_limited(LEAST_SECONDS + size / BYTES_PER_SECOND),
+        ):
             warnings.simplefilter("ignore")
             yield
     except CdemError:
@@ -59,13 +76,15 @@ def _words(error: BaseException) -> str:
     """A library's own words, in one short line."""
     said = " ".join(str(error).split())
     name = type(error).__name__
-    if not said or isinstance(error, KeyError | SystemExit):
+    if isinstance(error, KeyError):
+        said = f"{' '.join(map(str, error.args))} is named, but not there"
+    elif not said or isinstance(error, SystemExit):
         said = f"{name} {said}".strip()
     return said if len(said) <= WORDS else said[:WORDS] + " ..."
 
 
 @contextmanager
-def _limited(seconds: float) -> Iterator[None]:
+def _time_limited(seconds: float) -> Iterator[None]:
     """Raise `_TooLong` inside when it takes longer: readers of meshio loop for ever at an early end.
 
     Python code is interrupted, in any thread; one long call of compiled code ends first.
@@ -88,6 +107,26 @@ def _limited(seconds: float) -> Iterator[None]:
             over = True
         timer.cancel()
         raise_in(thread, None)  # one that came too late
+
+
+@contextmanager
+def _memory_limited(allowed: int) -> Iterator[None]:
+    """Let allocations fail that would take more memory [bytes] than allowed; on Linux."""
+    if sys.platform != "linux":
+        yield
+        return
+    import resource
+
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    limit = pages * resource.getpagesize() + allowed
+    if before[0] != resource.RLIM_INFINITY:
+        limit = min(limit, before[0])
+    resource.setrlimit(resource.RLIMIT_AS, (limit, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def read_text(path: Path, what: str, kind: type[CdemError] = CaseError) -> str:
@@ -118,3 +157,17 @@ def read_text(path: Path, what: str, kind: type[CdemError] = CaseError) -> str:
         raise kind(
             f"{path}:{line}: not in UTF-8 at '{word}'; is it in Latin-1? Save the {what} as UTF-8"
         ) from None
+
+
+def refuse_entities(path: Path) -> None:
+    """Stop at an XML file that declares entities, which may grow without bound or name other files.
+
+    Raises:
+        defusedxml.DefusedXmlException: It does. Call it inside of `reading`.
+    """
+    if path.suffix.lower() not in XML:
+        return
+    from defusedxml.ElementTree import iterparse
+
+    with path.open("rb") as file:
+        next(iterparse(file, events=("start",), forbid_dtd=True), None)
