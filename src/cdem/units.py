@@ -34,6 +34,8 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     for name, factor in factors.items()
 }
 
+MOST_POWER_DIGITS = 2  # of a power with its sign
+SHOWN = 60  # characters of a value that messages repeat
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 _FACTOR = re.compile(r"([*/·.]?)\s*(1|[^\W\d]+|[%°])(?:\^?([-+]?\d+))?\s*")
 
@@ -57,7 +59,7 @@ def parse_unit(text: str) -> tuple[float, Dimension]:
     scale, powers, position = 1.0, [0, 0, 0, 0], 0
     while position < len(text):
         match = _FACTOR.match(text, position)
-        if match is None or match[2] not in UNITS:
+        if match is None or match[2] not in UNITS or len(match[3] or "") > MOST_POWER_DIGITS:
             raise ValueError(f"unknown unit '{text}'{_did_you_mean(text)}")
         factor, dimension = UNITS[match[2]]
         exponent = int(match[3] or 1) * (-1 if match[1] == "/" else 1)
@@ -85,19 +87,27 @@ def to_number(value: object, unit: str) -> float:
         (30000000000.0, 21.0)
     """
     if isinstance(value, str):
+        if re.match(r"\s*[-+]?\d+,\d", value):
+            raise ValueError(
+                f"must be a number without a comma, got {describe(value)}; write 2700 for 2,700 "
+                "and 2.7 for 2,7"
+            )
         match = _NUMBER.fullmatch(value)
         if match is None:
             unit_too = "" if unit == "1" else f" or a text such as '3 {unit}'"
-            raise ValueError(f"must be a number{unit_too}, got '{value}'")
+            raise ValueError(f"must be a number{unit_too}, got {describe(value)}")
         number = float(match[1])
         if match[2]:
             number *= _ratio(match[2], unit, value)
     elif isinstance(value, bool) or not hasattr(value, "__float__"):
         raise ValueError(f"must be a number [{unit}], got {describe(value)}")
     else:
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:  # a whole number of hundreds of digits
+            number = math.inf
     if not math.isfinite(number):
-        raise ValueError(f"must be a finite number, got {value}")
+        raise ValueError(f"must be a finite number, got {describe(value)}")
     return number
 
 
@@ -111,7 +121,9 @@ def describe(value: object) -> str:
         return "a mapping (key: value)"
     if isinstance(value, list | tuple):
         return f"a list of {len(value)}"
-    return f"'{value}'" if isinstance(value, str) else str(value)
+    text = str(value)
+    text = text if len(text) <= SHOWN else text[:SHOWN] + "..."
+    return f"'{text}'" if isinstance(value, str) else text
 
 
 def _ratio(text: str, unit: str, whole: str) -> float:

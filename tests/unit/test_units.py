@@ -81,6 +81,10 @@ def test_every_dimension_has_its_si_unit(dimension):
         ({}, "m", "got a mapping"),
         (math.nan, "m", "finite"),
         ("1e999 m", "m", "finite"),
+        (10**400, "m", "finite"),
+        ("1 km999", "m", "unknown unit"),
+        ("1 km" + "9" * 5000, "m", "unknown unit"),
+        ("2,700", "kg/m3", "without a comma, got '2,700'; write 2700"),
     ],
 )
 def test_wrong_numbers(value, unit, message):

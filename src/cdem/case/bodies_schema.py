@@ -125,7 +125,7 @@ class Model(Part):
         None, description="Mesh file, relative to the case file; physical groups become groups"
     )
     blocks: list[Block] = Field([], description="Bodies made here")
-    split: dict[str, Literal["one", "connected", "elements"]] = Field(
+    split: dict[Name, Literal["one", "connected", "elements"]] = Field(
         {},
         description="What is one block, per group: the group, each connected part (default), "
         "or each element",

@@ -44,6 +44,8 @@ def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] |
     keys: Keys = ()
     model, kind = None, root
     for key in loc:
+        if key == "[key]":
+            continue
         kind = _unwrap(kind)
         if isinstance(kind, type) and issubclass(kind, BaseModel):
             model = kind
@@ -51,8 +53,6 @@ def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] |
             known = kind.model_fields.get(str(key))
             kind = known.annotation if known else None
         elif typing.get_origin(kind) in (dict, list, tuple):
-            if key == "[key]":
-                continue
             model, keys = None, (*keys, key)
             kind = next((a for a in reversed(typing.get_args(kind)) if a is not Ellipsis), None)
         elif isinstance(kind, _Choice):
@@ -89,7 +89,7 @@ def _unwrap(kind: Any) -> Any:
 def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
     kind, context, value = detail["type"], detail.get("ctx", {}), detail.get("input")
     if kind == "extra_forbidden":
-        return unknown_key(str(keys[-1]), model.model_fields if model else {})
+        return _extra(str(keys[-1]), value, model)
     if kind == "missing":
         known = model.model_fields.get(str(keys[-1])) if model else None
         meaning = f": {known.description}" if known and known.description else ""
@@ -111,7 +111,7 @@ def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
         "dict_type": "must be a mapping (key: value)",
         "model_type": "must be a mapping (key: value)",
         "model_attributes_type": "must be a mapping (key: value)",
-        "list_type": "must be a list, e.g. [a, b]",
+        "list_type": _list_wanted(keys, model),
         "tuple_type": "must be a list, e.g. [a, b]",
         "bool_type": "must be true or false",
         "bool_parsing": "must be true or false",
@@ -123,6 +123,19 @@ def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
         "greater_than_equal": f"must be at least {context.get('ge')}",
     }
     return f"{plain_words.get(kind, detail['msg'])}, got {describe(value)}"
+
+
+def _extra(key: str, value: Any, model: type[BaseModel] | None) -> str:
+    if value is None and key.isdigit():
+        return f"stands as a key; if it is the end of a number such as 2,{key}: no comma in it"
+    return unknown_key(key, model.model_fields if model else {})
+
+
+def _list_wanted(keys: Keys, model: type[BaseModel] | None) -> str:
+    """Say what list is wanted: three numbers along the axes have an example of their own."""
+    known = model.model_fields.get(str(keys[-1])) if model else None
+    lengths = [getattr(extra, "min_length", None) for extra in known.metadata] if known else []
+    return "must be a list, e.g. " + ("[0, 0, -9.81] (x, y, z)" if 3 in lengths else "[a, b]")
 
 
 def unknown_key(key: str, known: Iterable[str]) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import typing
 from collections.abc import Iterable
@@ -12,9 +11,16 @@ from typing import Any
 from pydantic import BaseModel
 
 from cdem.case.explain import unknown_key
+from cdem.case.input_file import read_text
 from cdem.case.source import Key, Keys, Source
+from cdem.case.yaml_text import parse
 from cdem.errors import CaseError
 from cdem.units import describe
+
+MOST_CHARACTERS = 20_000_000
+"""Of a case or study; reading so many takes minutes."""
+MOST_BITS = 1000
+"""Of a whole number; longer ones are no floating-point numbers."""
 
 
 def load_case_data(
@@ -33,14 +39,14 @@ def load_case_data(
     Raises:
         CaseError: No such file, not YAML, a key twice, an empty file, or a bad override.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise CaseError(f"{path}: cannot read the {what} file: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"{path}: not a text file; a {what} is a YAML file in UTF-8") from None
+    text = read_text(path, f"{what} file")
+    if len(text) > MOST_CHARACTERS:
+        raise CaseError(
+            f"{path}: too large for a {what} ({len(text):,} characters); meshes and terrain stand in "
+            "files of their own"
+        )
     source = Source(file=str(path))
-    tree = _parse(text, str(path))
+    tree = parse(text, str(path))
     if tree is None:
         hint = (
             "'cdem new incline' writes one to start from" if what == "case" else "see docs/sweep.md"
@@ -53,35 +59,6 @@ def load_case_data(
     for override in overrides:
         _override(data, override, source)
     return data, source
-
-
-def _parse(text: str, file: str) -> Any:
-    from ruamel.yaml import YAML
-    from ruamel.yaml.constructor import DuplicateKeyError
-    from ruamel.yaml.error import MarkedYAMLError, YAMLError
-
-    try:
-        return YAML(typ="rt", pure=True).load(io.StringIO(text))
-    except DuplicateKeyError as error:
-        key = str(error.problem).partition('"')[2].partition('"')[0]
-        raise CaseError(
-            f"{_mark(file, error.problem_mark)}: {key}: key is there twice; keep one"
-        ) from None
-    except MarkedYAMLError as error:
-        what = " ".join(filter(None, (error.context, error.problem)))
-        place = _mark(file, error.problem_mark or error.context_mark)
-        raise CaseError(
-            f"{place}: not valid YAML: {what}; look at the indentation, brackets, quotes and "
-            "colons here and just above"
-        ) from None
-    except TypeError:  # ruamel.yaml lets a list or mapping be a key, and then cannot hash it
-        raise CaseError(f"{file}: not valid YAML here: a list or mapping stands as a key") from None
-    except YAMLError as error:
-        raise CaseError(f"{file}: not valid YAML: {str(error).splitlines()[0]}") from None
-
-
-def _mark(file: str, mark: Any) -> str:
-    return f"{file}:{mark.line + 1}:{mark.column + 1}" if mark is not None else file
 
 
 def _note_places(node: Any, source: Source, keys: Keys) -> None:
@@ -100,7 +77,7 @@ def plain(value: Any, source: Source, keys: Keys = ()) -> Any:
     """Copy a tree as plain dicts, lists and scalars.
 
     Raises:
-        CaseError: A number somewhere is NaN or infinite.
+        CaseError: A number somewhere is NaN or infinite, or a whole one of hundreds of digits.
     """
     if isinstance(value, BaseModel):
         return value
@@ -113,6 +90,8 @@ def plain(value: Any, source: Source, keys: Keys = ()) -> Any:
     if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, int):
+        if value.bit_length() > MOST_BITS:
+            raise source.error([(keys, "is a number of too many digits")])
         return int(value)
     if isinstance(value, float):
         if not math.isfinite(value):
@@ -130,7 +109,7 @@ def _override(data: dict[str, Any], text: str, source: Source) -> None:
             f"--set {text}: write key.path=value" + (f", e.g. --set {known}" if known else "")
         )
     label = f"--set {text}"
-    put(data, path.strip(), _parse(value, label), source, label)
+    put(data, path.strip(), parse(value, label), source, label)
 
 
 def _first_number(data: dict[str, Any], path: str = "") -> str:

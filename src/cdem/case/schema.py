@@ -12,7 +12,9 @@ from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
 from cdem.case.output_fields import CHOICE
 from cdem.case.types import (
+    FileName,
     Length3,
+    Line,
     Name,
     Part,
     Quantity,
@@ -197,7 +199,9 @@ class Output(Part):
 class HistoryPoint(Part):
     """Quantities followed over time, for a group or at a node."""
 
-    name: Name = Field(description="Name, unique in the case; begins the columns")
+    name: FileName = Field(
+        description="Name, unique in the case; begins the columns, and names a picture"
+    )
     group: Name | None = Field(None, description="Follow this group")
     point: Length3 | None = Field(None, description="Follow the node nearest to this point [m]")
     quantities: list[Literal["centroid", "displacement", "velocity", "energy", "force"]] = Field(
@@ -220,11 +224,11 @@ class CaseParts(Part):
     """All parts of a case."""
 
     cdem: Literal[1] = Field(1, description="Version of the case format")
-    title: str = Field("", description="One line for reports")
+    title: Line = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
     model: Model = Field(description="The bodies")
-    materials: dict[str, AnyMaterial] = Field(description="Materials by name")
-    groups: dict[str, Group] = Field(description="Groups by name; every body is in one")
+    materials: dict[Name, AnyMaterial] = Field(description="Materials by name")
+    groups: dict[Name, Group] = Field(description="Groups by name; every body is in one")
     interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
     loads: Loads = Field(Loads(), description="What acts from outside")
     stages: list[Stage] = Field(min_length=1, description="Parts of the run, in order")

@@ -53,7 +53,7 @@ class Source:
         last = (10**9, 0)
         some = sorted(problems, key=lambda p: self.places.get(self._nearest(p[0]), last))
         lines = [
-            f"{self.where(keys)}: {'.'.join(map(str, keys))}: {what}".replace(": : ", ": ")
+            f"{self.where(keys)}: {_dotted(keys)}: {what}".replace(": : ", ": ")
             for keys, what in some[:MOST_PROBLEMS]
         ]
         if len(some) > MOST_PROBLEMS:
@@ -90,3 +90,11 @@ class Source:
                     break
             keys, parts = (*keys, key), parts[count:]
         return keys
+
+
+def _dotted(keys: Keys) -> str:
+    """A path as text of one line."""
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode()
+        for c in ".".join(map(str, keys))
+    )

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StringConstraints,
+)
 from pydantic_core import core_schema
 
 from cdem.units import describe, to_number
@@ -150,4 +158,27 @@ Acceleration3 = Annotated[list[Annotated[float, Quantity("m/s2")]], Three, Liste
 Stress3 = Annotated[list[Annotated[float, Quantity("Pa")]], Three, Listed]
 Divisions3 = Annotated[list[Annotated[int, Field(ge=1)]], Three, Listed]
 Angle = Annotated[float, Quantity("deg")]
-Name = Annotated[str, StringConstraints(min_length=1)]
+
+
+def _one_line(text: str) -> str:
+    """Refuse line ends and other characters that no one sees."""
+    for character in text:
+        if unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp"):
+            raise ValueError(f"must be plain text of one line, got the character {character!a}")
+    return text
+
+
+def _file_name(text: str) -> str:
+    """Refuse what some system does not take as a part of a file name."""
+    for character in text:
+        if character in '/\\:*?"<>|':
+            raise ValueError(f"names files, so it cannot have the character {character}")
+    if len(text.encode()) > LONGEST_FILE_NAME:
+        raise ValueError(f"names files, so it cannot be longer than {LONGEST_FILE_NAME} bytes")
+    return text
+
+
+LONGEST_FILE_NAME = 200
+Line = Annotated[str, AfterValidator(_one_line)]
+Name = Annotated[str, StringConstraints(min_length=1), AfterValidator(_one_line)]
+FileName = Annotated[Name, AfterValidator(_file_name)]

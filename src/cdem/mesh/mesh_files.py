@@ -1,11 +1,10 @@
-"""Volume meshes read from files, in any format that meshio knows."""
+"""Volume meshes read from files, in the formats of meshio that have volumes."""
 
 from __future__ import annotations
 
 import contextlib
 import gzip
 import io
-import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -13,30 +12,75 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.input_file import reading, refuse_entities
 from cdem.errors import MeshError
-from cdem.mesh.element_shapes import NODES
+from cdem.mesh.arrays import in_pieces
+from cdem.mesh.element_shapes import NODES, volumes
+from cdem.mesh.gmsh_nodes import check_node_ids
 from cdem.mesh.mesh import Mesh, drop_unused
 
 _MESHIO_SHAPES = {"tetra": "tet4", "pyramid": "pyramid5", "wedge": "wedge6", "hexahedron": "hex8"}
 _MESHIO_FACES = ("triangle", "quad")
+SURFACES = {".ply", ".off", ".svg", ".wkt", ".obj", ".stl"}
+"""Formats of meshio that hold no volume elements."""
+BODIES = {".obj", ".stl"}
+"""Those from which bodies are read."""
+MEND = "is it whole, and of the kind that its name says?"
+POLYHEDRA = " Polyhedral cells are read with model.blocks: [{group: NAME, file: FILE}]"
+UNPACKED = 100
+"""A packed mesh unpacks to at most so many times its size."""
+TURNED = {
+    "tet4": (0, 2, 1, 3),
+    "pyramid5": (0, 3, 2, 1, 4),
+    "wedge6": (3, 4, 5, 0, 1, 2),
+    "hex8": (4, 5, 6, 7, 0, 1, 2, 3),
+}
+"""Orders of an element's nodes in which it is turned inside out."""
 
 
 def read_mesh(path: str | Path) -> Mesh:
-    """Read a volume mesh in any format that meshio knows.
+    """Read a volume mesh in any format that meshio knows and that has volumes.
 
     A file packed with gzip (``.msh.gz``) is unpacked on the way. Physical groups of volumes (gmsh)
     and cell sets become groups, those of surfaces become named surfaces; cells in no group go to
-    the group "default", and a cell in several groups to the first, which `Mesh.notes` reports.
+    the group "default", and a cell in several groups to the first, which `Mesh.notes` reports. So
+    it does where all elements of a shape were numbered inside out, and have been turned.
 
     Raises:
-        MeshError: The file is missing, unreadable, or holds no linear volume elements.
+        MeshError: The file is missing, unreadable, names nodes that it does not have, or holds no
+            linear volume elements.
     """
     path = Path(path)
     if not path.is_file():
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
-    raw = _read_zipped(path) if path.suffix == ".gz" else read_raw(path)
+    kind = Path(path.stem).suffix if path.suffix.lower() == ".gz" else path.suffix
+    _refuse_surfaces(path, kind.lower())
+    mend = MEND + (POLYHEDRA if kind.lower() in (".vtu", ".vtk") else "")
+    with reading(path, MeshError, mend):
+        raw = _read_zipped(path) if path.suffix.lower() == ".gz" else read_raw(path)
+        return _to_mesh(path, raw)
+
+
+def _refuse_surfaces(path: Path, kind: str) -> None:
+    """Stop at formats that hold surfaces or lines only."""
+    if kind in BODIES:
+        raise MeshError(
+            f"{path}: holds surfaces, and a mesh needs volume elements; closed convex bodies are "
+            "read with model.blocks: [{group: NAME, file: FILE}]"
+        )
+    import meshio
+
+    known = {k for k in meshio.extension_to_filetypes if k.count(".") == 1} - SURFACES
+    if kind not in known:
+        raise MeshError(
+            f"{path}: no kind of mesh that is read; export the volume elements from the program "
+            f"that made it, as .msh (gmsh) best; there are: {', '.join(sorted(known))}"
+        )
+
+
+def _to_mesh(path: Path, raw: Any) -> Mesh:
     points = np.asarray(raw.points, float).reshape(len(raw.points), -1)
-    if points.shape[1] == 2:
+    if points.shape[1] != 3:
         raise MeshError(f"{path}: a mesh in a plane; cdem needs a volume mesh")
     others = {block.type for block in raw.cells} - {
         *_MESHIO_SHAPES,
@@ -49,6 +93,7 @@ def read_mesh(path: str | Path) -> Mesh:
             f"{path}: elements of kind {', '.join(sorted(others))} are not supported; use linear "
             "tetrahedra, pyramids, wedges and hexahedra (in gmsh: Mesh.ElementOrder = 1)"
         )
+    _check_nodes(path, raw)
     groups = _cell_groups(raw)
     mesh = Mesh(points, surfaces=_surfaces(raw, groups))
     _take_volumes(mesh, raw, groups)
@@ -56,8 +101,48 @@ def read_mesh(path: str | Path) -> Mesh:
         raise MeshError(
             f"{path}: holds no volume elements; export the volume mesh, not its surface"
         )
-    mesh.notes += _several_groups(raw, path)
+    mesh.notes += _several_groups(raw, path) + _turn_all_inverted(mesh, path)
     return drop_unused(mesh)
+
+
+def _check_nodes(path: Path, raw: Any) -> None:
+    """Refuse elements that name nodes that are not there: -1 would be taken for the last one."""
+    for block in raw.cells:
+        cells = np.asarray(block.data)
+        if cells.size == 0:
+            continue
+        if not np.issubdtype(cells.dtype, np.integer) or cells.ndim != 2:
+            raise MeshError(
+                f"{path}: the nodes of its elements of kind {block.type} are no numbers"
+            )
+        wrong = np.argwhere((cells < 0) | (cells >= len(raw.points)))
+        if len(wrong):
+            row, column = wrong[0]
+            raise MeshError(
+                f"{path}: element {row} of kind {block.type} names node {cells[row, column]}, which "
+                f"the file does not have: elements and nodes counted from 0, it has "
+                f"{len(raw.points)} nodes; write the mesh again, whole"
+            )
+
+
+def _turn_all_inverted(mesh: Mesh, path: Path) -> list[str]:
+    """Turn the elements of a shape if all of them are numbered inside out, as netgen numbers tets."""
+    notes = []
+    for shape, order in TURNED.items():
+        cells = mesh.cells.get(shape)
+        if cells is None or not len(cells):
+            continue
+
+        def highest(some: NDArray, shape: str = shape) -> NDArray[np.float64]:
+            return volumes(shape, mesh.points[some]).max(axis=1)
+
+        if highest(cells[:1])[0] < 0 and (in_pieces(highest, cells) < 0).all():
+            mesh.cells[shape] = cells[:, order]
+            notes.append(
+                f"{path}: all {len(cells):,} {shape} elements were numbered inside out, as in a "
+                "mirror, and have been turned; if the mesh was mirrored on purpose, nothing is wrong"
+            )
+    return notes
 
 
 def _take_volumes(mesh: Mesh, raw: Any, groups: dict[int, NDArray]) -> None:
@@ -111,37 +196,33 @@ def _several_groups(raw: Any, path: Path) -> list[str]:
 
 def _read_zipped(path: Path) -> Any:
     """Read ``name.msh.gz`` as ``name.msh``."""
+    allowed = UNPACKED * (path.stat().st_size + 1000)
     with tempfile.TemporaryDirectory() as folder:
         plain = Path(folder) / path.stem
-        try:
-            with gzip.open(path) as packed, plain.open("wb") as file:
-                shutil.copyfileobj(packed, file)
-        except (OSError, EOFError) as error:
-            raise MeshError(f"{path}: not a gzip file ({error})") from error
+        with gzip.open(path) as packed, plain.open("wb") as file:
+            while piece := packed.read(1 << 20):
+                allowed -= len(piece)
+                if allowed < 0:
+                    raise MeshError(
+                        f"{path}: unpacks to more than {UNPACKED} times its size, as no mesh does"
+                    )
+                file.write(piece)
         return read_raw(plain)
 
 
 def read_raw(path: Path) -> Any:
-    """Read a file with meshio, in silence.
-
-    Raises:
-        MeshError: It cannot be read.
-    """
+    """Read a file with meshio, in silence; call it inside of `reading`."""
     import meshio
 
-    try:
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        if path.suffix.lower() != ".msh":
+            refuse_entities(path)
             return meshio.read(path)
-    except SystemExit as error:  # meshio leaves the program when a reader fails
-        raise MeshError(
-            f"{path}: not a mesh that can be read; see the formats of meshio. Polyhedral cells are "
-            "read with model.blocks: [{group: NAME, file: FILE}]"
-        ) from error
-    except Exception as error:
-        raise MeshError(
-            f"{path}: not a mesh that can be read ({error or type(error).__name__}); "
-            "see the formats of meshio"
-        ) from error
+        with path.open("rb") as file:
+            ansys = file.read(1) == b"("
+        if not ansys:
+            check_node_ids(path)
+        return meshio.read(path, file_format="ansys" if ansys else "gmsh")
 
 
 def _cell_groups(raw: Any) -> dict[int, NDArray]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.input_file import reading, refuse_entities
 from cdem.errors import BodyError, MeshError
 from cdem.joints.cell_mesh import to_mesh
 from cdem.joints.convex_cells import from_polyhedron, join
 from cdem.mesh.arrays import components
 from cdem.mesh.mesh import Mesh
-from cdem.mesh.mesh_files import read_raw
+from cdem.mesh.mesh_files import MEND, read_raw
 from cdem.mesh.primitives import outward_faces
 
 Floats = NDArray[np.float64]
@@ -44,8 +46,14 @@ def read_bodies(path: Path, group: str) -> Mesh:
     readers = {".obj": _obj, ".stl": _stl, ".vtu": _vtk, ".vtk": _vtk}
     if kind not in readers:
         raise MeshError(f"{path}: bodies are read from {', '.join(readers)} files")
+    if readers[kind] is _vtk:
+        _pyvista(path)  # loading it takes more memory than reading may
+    with reading(path, MeshError, MEND):
+        bodies = list(readers[kind](path))
+    if not bodies:
+        raise MeshError(f"{path}: holds no bodies")
     parts = []
-    for name, points, faces in readers[kind](path):
+    for name, points, faces in bodies:
         try:
             _refuse_open(points, faces)
             near = ROUNDED * float(np.abs(points).max())
@@ -53,8 +61,6 @@ def read_bodies(path: Path, group: str) -> Mesh:
         except MeshError as error:
             error.args = (f"{path}: {name}: {error}",)
             raise
-    if not parts:
-        raise MeshError(f"{path}: holds no bodies")
     # meshed like what joints cut: bodies that share a face divide it alike
     return to_mesh(join(parts), [group], [], [])
 
@@ -105,7 +111,8 @@ def _own(name: str, points: Floats, loops: Loops) -> Body:
 
 def _obj(path: Path) -> Iterator[Body]:
     points, loops = [], []
-    for number, line in enumerate(path.read_text(errors="replace").splitlines(), start=1):
+    text = path.read_text(encoding="utf-8", errors="replace")
+    for number, line in enumerate(text.splitlines(), start=1):
         words = line.split()
         try:
             if words[:1] == ["v"]:
@@ -137,15 +144,18 @@ def _stl(path: Path) -> Iterator[Body]:
     yield from _surfaces(np.asarray(raw.points, float), np.concatenate(triangles).tolist())
 
 
-def _vtk(path: Path) -> Iterator[Body]:
+def _pyvista(path: Path) -> Any:
     try:
         import pyvista
     except ImportError:
         raise MeshError(f"{path}: reading this needs pyvista; pip install 'cdem[viz]'") from None
-    try:
-        grid = pyvista.read(path)
-    except Exception as error:
-        raise MeshError(f"{path}: cannot be read ({error})") from None
+    return pyvista
+
+
+def _vtk(path: Path) -> Iterator[Body]:
+    pyvista = _pyvista(path)
+    refuse_entities(path)
+    grid = pyvista.read(path)
     if not isinstance(grid, pyvista.UnstructuredGrid):
         raise MeshError(f"{path}: holds no volume cells, but {type(grid).__name__}")
     points = np.asarray(grid.points, float)

@@ -9,6 +9,8 @@ import operator
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from cdem.units import describe
+
 
 def _turned(function: Callable[[float], float]) -> Callable[[float], float]:
     return lambda degrees: function(math.radians(degrees))
@@ -41,6 +43,12 @@ OPERATORS: dict[type, Callable[..., float]] = {
 }
 
 
+LONGEST = 1000
+"""Characters of a formula."""
+DEEPEST = 100
+"""Operations inside one another, as in a sum of so many numbers."""
+
+
 def is_formula(value: object) -> bool:
     """Whether a value of a study is a formula: a text that begins with ``=``."""
     return isinstance(value, str) and value.lstrip().startswith("=")
@@ -65,12 +73,16 @@ class Formula:
 
     def __init__(self, text: str) -> None:
         self.text = text.strip()
+        if len(self.text) > LONGEST:
+            raise ValueError(f"a formula of {len(self.text):,} characters; {LONGEST} are allowed")
         try:
             self._tree = ast.parse(self.text.removeprefix("=").strip(), mode="eval").body
         except SyntaxError as error:
             raise ValueError(f"'{self.text}' is no formula ({error.msg})") from None
+        except (ValueError, RecursionError, MemoryError):  # a NUL, or hundreds of open brackets
+            raise ValueError(f"{describe(self.text)} is no formula") from None
         self.names: set[str] = set()
-        self._check(self._tree)
+        self._check(self._tree, DEEPEST)
 
     def value(self, numbers: Mapping[str, Any]) -> float:
         """Compute it; where it has no value (a division by zero, a root of -1), NaN.
@@ -89,25 +101,27 @@ class Formula:
             return math.nan
         return math.nan if isinstance(result, complex) else float(result)
 
-    def _check(self, node: ast.AST) -> None:
-        """Refuse what is not arithmetic, and collect names."""
+    def _check(self, node: ast.AST, levels: int) -> None:
+        """Refuse what is not arithmetic or has more levels, and collect names."""
+        if levels == 0:
+            raise ValueError(f"{describe(self.text)} has more than {DEEPEST} operations in a row")
         name = _dotted(node)
         if name is not None:
             self.names |= {name} - {"pi"}
         elif isinstance(node, ast.Call) and not node.keywords:
-            self._check_call(node)
+            self._check_call(node, levels - 1)
         elif isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
-            self._check(node.left)
-            self._check(node.right)
+            self._check(node.left, levels - 1)
+            self._check(node.right, levels - 1)
         elif isinstance(node, ast.UnaryOp) and type(node.op) in OPERATORS:
-            self._check(node.operand)
+            self._check(node.operand, levels - 1)
         elif not (isinstance(node, ast.Constant) and type(node.value) in (int, float)):
             raise ValueError(
                 f"'{self.text}': a formula is made of numbers, names, + - * / **, brackets and "
                 f"{', '.join(FUNCTIONS)}"
             )
 
-    def _check_call(self, node: ast.Call) -> None:
+    def _check_call(self, node: ast.Call, levels: int) -> None:
         called = _dotted(node.func)
         if called not in FUNCTIONS:
             raise ValueError(f"'{self.text}': function {unknown(called or '?', FUNCTIONS)}")
@@ -117,7 +131,7 @@ class Formula:
                 f"'{self.text}': {called} takes {wanted} number(s), got {len(node.args)}"
             )
         for argument in node.args:
-            self._check(argument)
+            self._check(argument, levels)
 
     def _compute(self, node: Any, numbers: Mapping[str, Any]) -> float:
         name = _dotted(node)

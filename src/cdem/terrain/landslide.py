@@ -13,7 +13,7 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from cdem.case.explain import explain
 from cdem.case.reader import load_case_data, plain
 from cdem.case.source import Source
-from cdem.case.types import Angle, Length3, Listed, Name, Part, Quantity
+from cdem.case.types import Angle, Length3, Line, Listed, Name, Part, Quantity
 from cdem.errors import CaseError
 from cdem.terrain import files
 from cdem.terrain.heights import Heights, Lines, Plane, Smooth
@@ -117,7 +117,7 @@ class Landslide(Part):
         CaseError: Every problem found, one line each: file:line:column: path: what.
     """
 
-    title: str = Field("", description="One line for people")
+    title: Line = Field("", description="One line for people")
     terrain: Terrain = Field(description="The ground")
     extent: Extent = Field(description="The rectangle that is meshed")
     surface: HeightsBy = Field(description="The sliding surface")

@@ -17,6 +17,10 @@ import pytest
         ('"50 GPa"', "-1", "must be above 0 [Pa], got -1"),
         ('"2.7 t/m3"', "0", "must be above 0 [kg/m3], got 0"),
         ('"50 GPa"', "[1]", "must be a number [Pa], got a list of 1"),
+        ('"50 GPa"', '"2,700"', "must be a number without a comma, got '2,700'; write 2700 for"),
+        ('"50 GPa"', "2,700", "materials.granite.700: stands as a key; if it is the end of a num"),
+        ('"50 GPa"', "9" * 400, "young_modulus: is a number of too many digits"),
+        ("[0, 0, -9.81]", "-9.81", "loads.gravity: must be a list, e.g. [0, 0, -9.81] (x, y, z)"),
         ('"50 GPa"', "true", "must be a number [Pa], got true"),
         (
             '"1 cm/s"',
@@ -26,4 +30,20 @@ import pytest
     ],
 )
 def test_numbers_that_are_not_allowed_are_answered(complaint, old, new, message):
+    assert message in complaint(old, new)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("name: toe", "name: a/b", "slope.yaml:34:6: histories.0.name: names files, so it cannot"),
+        ("name: toe", "name: '<b>'", "histories.0.name: names files, so it cannot have the char"),
+        ("name: toe", f"name: {'x' * 300}", "names files, so it cannot be longer than 200 bytes"),
+        ("name: toe", 'name: "a\\nb"', "must be plain text of one line, got the character '\\n'"),
+        ("name: settle", 'name: "\\e[2J"', "stages.0.name: must be plain text of one line"),
+        ("  granite: {", '  "a\\0": {}\n  granite: {', "materials.a\\x00: must be plain text"),
+        ("title: Block on an incline", 'title: "a\\nb"', "title: must be plain text of one line"),
+    ],
+)
+def test_names_are_plain_and_those_of_histories_fit_files(complaint, old, new, message):
     assert message in complaint(old, new)

@@ -111,7 +111,7 @@ def test_refusals_say_where(tmp_path, change, message):
     ("a.txt", "", "bodies are read from .obj, .stl, .vtu, .vtk files"),
     ("a.obj", "v 1 2\nv x 0 0\n", "a.obj:2: cannot be read"),
     ("a.obj", "", "holds no faces"),
-    ("a.stl", "not one", "not a mesh that can be read"),
+    ("a.stl", "not one", "a.stl: cannot be read"),
 ])  # fmt: skip
 def test_files_that_are_no_bodies(tmp_path, name, text, message):
     (tmp_path / name).write_text(text)

@@ -18,3 +18,22 @@ def test_formula():
         Formula("= sin(1, 2)")
     with pytest.raises(ValueError, match="phi is no number"):
         Formula("= phi").value({"phi": "10 deg"})
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["= " + "-" * 5000 + "1", "= " + "-" * 900 + "1", "= " + "(" * 400 + "1" + ")" * 400,
+     "= " + "sin(" * 150 + "1" + ")" * 150, "= 1" + " + 1" * 240, "= x\0"],
+)  # fmt: skip
+def test_formulas_that_nobody_writes_are_refused(text):
+    with pytest.raises(ValueError, match=r"characters|operations in a row|no formula"):
+        Formula(text)
+
+
+def test_a_formula_reaches_nothing_but_numbers():
+    assert Formula("= a.__class__").names == {"a.__class__"}
+    with pytest.raises(ValueError, match="is not known"):
+        Formula("= a.__class__").value({"a": 1.0})
+    for text in ("= (1).real", "= [1][0]", "= (lambda: 1)()", "= __import__(a)", "= f'{a}'"):
+        with pytest.raises(ValueError, match=r"formula is made of|is not known"):
+            Formula(text)
