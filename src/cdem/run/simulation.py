@@ -15,6 +15,7 @@ from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.errors import CdemError, UnstableError
 from cdem.model.audit import Audit
+from cdem.model.overlaps import adopt_overlaps
 from cdem.run import stages
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
@@ -86,7 +87,7 @@ class Simulation(RunState):
             self._restore()
         else:
             self.core.prepare()
-            self.overlap = self.core.adopt_overlaps()
+            self.overlap = adopt_overlaps(self.build)
         self.audit = Audit(self.build, self.overlap, self.threads)
         if self.results and not resume:
             self.results.open(self)
