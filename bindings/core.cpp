@@ -9,6 +9,7 @@
 #include "bindings/laws.hpp"
 #include "core/base/device.hpp"
 #include "core/base/machine_limits.hpp"
+#include "core/contact/pair_list/deep_overlaps.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
@@ -186,8 +187,12 @@ void bind_setup(nb::class_<Core>& core) {
       .def("restore", &restore)
       .def("prepare", [](Core& c) { prepare(c.model, c.state); })
       .def("adopt_overlaps", [](Core& c) {
-        const InitialOverlaps found = adopt_overlaps(c.model, c.state);
-        return std::make_tuple(found.deepest, found.count, found.face);
+        InitialOverlaps found = adopt_overlaps(c.model, c.state);
+        const DeepOverlaps deep = find_deep_overlaps(c.model, c.state, found);
+        const Vec3<Real>& at = deep.place;
+        return std::make_tuple(std::make_tuple(found.deepest, found.count, found.face),
+                               std::make_tuple(deep.count, deep.block[0], deep.block[1], deep.depth,
+                                               deep.allowed, std::make_tuple(at.x, at.y, at.z)));
       });
 }
 

@@ -16,6 +16,7 @@ from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.errors import CdemError, DiskError, UnstableError
 from cdem.model.audit import Audit
+from cdem.model.overlaps import adopt_overlaps
 from cdem.run import restored, stages
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
@@ -101,7 +102,7 @@ class Simulation(RunState):
             self._restore(force=force)
         else:
             self.core.prepare()
-            self.overlap = self.core.adopt_overlaps()
+            self.overlap = adopt_overlaps(self.build)
         self.audit = Audit(self.build, self.overlap, self.threads)
         if self.results and not resume:
             self.results.open(self)
