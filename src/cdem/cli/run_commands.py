@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from cdem.cli.options import STOPPED, CaseFile, Settings, Threads, stop_on_signal
+from cdem.cli.options import STOPPED, CaseFile, Settings, Strict, Threads, stop_on_signal
 from cdem.errors import CdemError
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def run(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace the results in the result folder.")
     ] = False,
+    strict: Strict = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print summary.json at the end.")] = False,
 ) -> None:
@@ -55,6 +56,7 @@ def run(
             overwrite=overwrite,
             resume=resume,
             device=device,
+            strict=strict,
         )
         status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)
     summary = folder / "summary.json"

@@ -36,9 +36,10 @@ class Simulation(RunState):
         overwrite: Replace what an existing result folder holds.
         resume: Go on from the checkpoint in the result folder.
         device: "cpu".
+        strict: Refuse a model that `cdem check` warns of, before anything is written.
 
     Raises:
-        CaseError: The case or its files are wrong.
+        CaseError: The case or its files are wrong, or strict and there are warnings.
 
     Example:
         >>> import cdem
@@ -67,6 +68,7 @@ class Simulation(RunState):
         overwrite: bool = False,
         resume: bool = False,
         device: str = "cpu",
+        strict: bool = False,
     ) -> None:
         if device != "cpu":
             raise CdemError(f"device {device!r}: only cpu can run cases; leave --device out")
@@ -88,6 +90,8 @@ class Simulation(RunState):
             self.core.prepare()
             self.overlap = self.core.adopt_overlaps()
         self.audit = Audit(self.build, self.overlap, self.threads)
+        if strict:
+            self.audit.refuse_warnings()
         if self.results and not resume:
             self.results.open(self)
 
@@ -143,10 +147,12 @@ class Simulation(RunState):
 
     def advance(self, stage: StageState, steps: int, until: float = np.inf) -> str:
         """Run towards the next event of a stage, at most `steps` steps; returns the outcome."""
+        self.check_case()
         return self._guard(partial(stages.advance, self, stage, steps, until))
 
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing and ending no stage."""
+        self.check_case()
         self._guard(partial(self.core.run, count, check_interval=CHECK_INTERVAL))
 
     def _run_stage(

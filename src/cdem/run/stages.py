@@ -69,6 +69,7 @@ def update_core(sim: RunState, index: int) -> None:
     sim.core.update_model(change(b))
     sim.core.set_curves([c[0] for c in b.curves], [c[1] for c in b.curves])
     sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])
+    sim.keep_case()
 
 
 def begin(sim: RunState) -> StageState:

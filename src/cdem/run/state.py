@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cdem._native import name as native_name
 from cdem._version import __version__
 from cdem.case.case import Case
+from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
 
@@ -68,11 +69,23 @@ class StageState:
         return self.start_time + (self.rows + 1) * self.row_every
 
 
+def difference(a: Any, b: Any) -> list[str]:
+    """Path to the first place where two nests of dicts and lists differ."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        pairs = [(key, a.get(key), b.get(key)) for key in {**a, **b}]
+    elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        pairs = [(str(i), x, y) for i, (x, y) in enumerate(zip(a, b, strict=True))]
+    else:
+        return []
+    return next(([key, *difference(x, y)] for key, x, y in pairs if x != y), [])
+
+
 class RunState:
     """A model and how far its run has come; looked at, and recorded, from here.
 
     Attributes:
-        case: The case, with what its stages have set so far.
+        case: The case, with what its stages have set so far. The model is made from it: a later
+            change would do nothing, so it stops the run.
         threads: Threads of the core.
         build: The model.
         core: The compiled core, holding model and state.
@@ -89,6 +102,7 @@ class RunState:
 
     def __init__(self, case: Case, threads: int) -> None:
         self.case = case.model_copy(deep=True)  # stages change it; the caller's stays
+        self.keep_case()
         self.threads = threads
         self.build: Build = build(self.case)
         self.core = self.build.core
@@ -98,6 +112,24 @@ class RunState:
         self.finished_stages: list[dict[str, Any]] = []
         self.reference = self.build.start_position
         self.wall_time = 0.0
+
+    def keep_case(self) -> None:
+        """Remember the case that the core has now."""
+        self._case = self.case.model_copy(deep=True)
+
+    def check_case(self) -> None:
+        """Refuse to go on with a case that was changed after the core got it.
+
+        Raises:
+            CaseError: It was changed; says where.
+        """
+        if self.case != self._case:
+            now, was = (case.model_dump(mode="json") for case in (self.case, self._case))
+            raise CaseError(
+                f"simulation.case.{'.'.join(difference(now, was))}: was changed after the model was "
+                "made from it, which would do nothing. Change the case before Simulation(case), or "
+                "give the stage a 'set'"
+            )
 
     @property
     def time(self) -> float:
