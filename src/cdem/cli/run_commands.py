@@ -14,6 +14,7 @@ from cdem.cli.options import STOPPED, CaseFile, Settings, Strict, Threads, stop_
 from cdem.errors import CdemError
 
 if TYPE_CHECKING:
+    from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
 
 
@@ -80,7 +81,17 @@ def _run(
     if not silent:
         for warning in simulation.audit.warnings:
             print(f"warning: {warning}", file=sys.stderr)
-    with watch(silent=silent, tty=tty) as progress:
+    told = len(simulation.departures)
+    with watch(silent=silent, tty=tty) as show:
+
+        def progress(now: Progress) -> None:
+            nonlocal told
+            for departure in [] if silent else simulation.departures[told:]:
+                print(f"warning: {departure.text()}", file=sys.stderr)
+            told = len(simulation.departures)
+            if show:
+                show(now)
+
         status = simulation.run(progress, lambda: bool(stop))
     if status != "stopped":
         write_report(folder, silent=silent)

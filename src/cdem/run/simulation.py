@@ -17,6 +17,7 @@ from cdem.errors import CdemError, UnstableError
 from cdem.model.audit import Audit
 from cdem.run import stages
 from cdem.run.progress import Progress
+from cdem.run.rest import Departure
 from cdem.run.result_folder import Results
 from cdem.run.state import RunState, StageState
 
@@ -109,8 +110,8 @@ class Simulation(RunState):
             should_stop: Asked as often; True stops the run with a checkpoint.
 
         Returns:
-            "converged" (the last stage was static and reached its tolerance), "finished" or
-            "stopped".
+            How the last stage ended: "converged" (it was static and reached its tolerance), "at
+            rest" (it had `until: rest`), "finished", or "stopped".
 
         Raises:
             UnstableError: The computation failed; the last checkpoint is kept.
@@ -176,6 +177,7 @@ class Simulation(RunState):
             self.wall_time += now - clock
             stage.wall_time += now - clock
             if stages.record_is_due(self, stage, outcome):
+                self._log_departures()
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
             status = stages.status(self, stage, outcome)
             known, note = (
@@ -212,6 +214,11 @@ class Simulation(RunState):
         self.stage_index += 1
         self.stage = None
         self.checkpoint()
+
+    def _log_departures(self) -> None:
+        for departure in self.look_for_departures():
+            if self.results:
+                self.results.log(f"warning: {departure.text()}")
 
     def _record(self, frame: bool = True) -> None:
         if self.core.scalars()["step"] > 0:
@@ -283,6 +290,12 @@ class Simulation(RunState):
                 f"{when}{where} has no finite position or velocity any more; dt = {dt:.3g} s. "
                 f"Use a smaller {smaller}, or look for a bad element there.{kept}"
             )
+        if block in self.fallen:
+            raise UnstableError(
+                f"{when}{where} fell past the edge of the model and now falls at {value:.3g} m/s, "
+                "faster than the P wave of the rock. Make the ground larger, or end the stage before "
+                f"that (until: rest).{kept}"
+            )
         raise UnstableError(
             f"{when}{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "
             f"dt = {dt:.3g} s. Use a smaller {smaller} or a lower stiffness_n.{kept}"
@@ -315,6 +328,7 @@ class Simulation(RunState):
         for done in range(self.stage_index + (attributes["stage"] is not None)):
             stages.apply_settings(self, done)
         if attributes["stage"] is not None:
-            self.stage = StageState(**attributes["stage"])
+            self.stage = StageState.from_dict(attributes["stage"])
+        self.departures = [Departure(**kept) for kept in attributes["departures"]]
         self.core.prepare()
         self.results.reopen(self, attributes)

@@ -126,6 +126,8 @@ def record_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
             passed = int((sim.time - stage.start_time) / stage.row_every)
             stage.rows = max(stage.rows, passed)
         stage.frame_due = stage.rows // ROWS_PER_FRAME > before // ROWS_PER_FRAME
+        if sim.case.stages[sim.stage_index].until == "rest":
+            stage.quiet.look(sim.time, sim.rigid_motion.without(sim.fallen))
     return due
 
 
@@ -141,6 +143,8 @@ def status(sim: RunState, stage: StageState, outcome: str) -> str | None:
     rules = sim.case.stages[sim.stage_index]
     if outcome == "converged":
         return "converged"
+    if stage.quiet.rests:
+        return "at rest"
     if stage.end_time is not None and sim.time >= stage.end_time:
         return "finished"
     if rules.max_steps is not None and sim.step_count - stage.start_step >= rules.max_steps:

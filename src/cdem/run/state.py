@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from cdem.case.case import Case
 from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
+from cdem.run.rest import Departure, Motion, Quiet, fallen, rigid_motion
 
 STALL_STEPS = 10_000
 """A static stage that comes no nearer to rest in as many steps is said to stall."""
@@ -35,6 +36,7 @@ class StageState:
         wall_time: Wall time spent in it [s].
         least_unbalance: Smallest unbalance ratio of a static stage so far, or None.
         least_step: Step at which it was reached.
+        quiet: Rest of a dynamic stage that ends with it: see `Quiet`.
     """
 
     name: str
@@ -48,6 +50,16 @@ class StageState:
     wall_time: float = 0.0
     least_unbalance: float | None = None
     least_step: int = 0
+    quiet: Quiet = field(default_factory=Quiet)
+
+    def as_dict(self) -> dict[str, Any]:
+        """What a checkpoint keeps."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, kept: dict[str, Any]) -> StageState:
+        """The stage that a checkpoint kept."""
+        return cls(**kept | {"quiet": Quiet(**kept["quiet"])})
 
     def note(self, step: int, unbalance: float) -> str:
         """What a user should know about a static stage that does not come to rest, or nothing."""
@@ -95,6 +107,7 @@ class RunState:
         stage: The running stage, or None between stages.
         finished_stages: A row of the summary for each stage that has ended.
         reference: Positions from which displacements count [m], shape (nodes, 3).
+        departures: The first block of each group that fell past the edge of the model.
         wall_time: Wall time spent in stages [s].
     """
 
@@ -111,6 +124,7 @@ class RunState:
         self.stage: StageState | None = None
         self.finished_stages: list[dict[str, Any]] = []
         self.reference = self.build.start_position
+        self.departures: list[Departure] = []
         self.wall_time = 0.0
 
     def keep_case(self) -> None:
@@ -195,6 +209,37 @@ class RunState:
         }
 
     @property
+    def rigid_motion(self) -> Motion:
+        """Speeds and kinetic energy of the blocks as rigid bodies."""
+        fields = self.fields
+        return rigid_motion(
+            self.build.topology.block_first_node,
+            fields["mass"],
+            fields["position"],
+            fields["velocity"],
+        )
+
+    @property
+    def fallen(self) -> NDArray[np.intp]:
+        """Blocks that have fallen past the edge of the model."""
+        first, gravity = self.build.topology.block_first_node, self.case.loads.gravity
+        return fallen(first, self.build.start_position, self.motion[:, :3], gravity)
+
+    def look_for_departures(self) -> list[Departure]:
+        """Note the groups of which a block has left the model since the last look; return these."""
+        t, found, position = self.build.topology, [], self.motion[:, :3]
+        known = {departure.group for departure in self.departures}
+        for block in self.fallen:
+            group = self.build.group_names[t.block_group[block]]
+            if group not in known:
+                nodes = slice(*t.block_first_node[block : block + 2])
+                place = position[nodes].mean(axis=0).tolist()
+                found.append(Departure(group, int(block), self.time, place))
+                known.add(group)
+        self.departures += found
+        return found
+
+    @property
     def energies(self) -> dict[str, float]:
         """Energy ledger at the last sampled step [J], and its closing "error" (a fraction)."""
         return self.core.energies()
@@ -222,7 +267,8 @@ class RunState:
             "core": self.core.scalars(),
             "overlap": list(self.overlap),
             "stage_index": self.stage_index,
-            "stage": None if self.stage is None else vars(self.stage),
+            "stage": None if self.stage is None else self.stage.as_dict(),
+            "departures": [vars(departure) for departure in self.departures],
             "finished_stages": self.finished_stages,
             "wall_time": self.wall_time,
         }
@@ -233,7 +279,8 @@ class RunState:
         counts = self.audit.counts
         energies = dict(self.energies) if self.step_count else {}
         groups = {}
-        for name in self.build.group_names:
+        speed = self.rigid_motion.speed
+        for index, name in enumerate(self.build.group_names):
             nodes = self.build.nodes_of(name)
             mass = fields["mass"][nodes]
             mean = {
@@ -247,6 +294,7 @@ class RunState:
                 "displacement": mean["displacement"],
                 "velocity": mean["velocity"],
                 "max_displacement": float(distance.max()),
+                "fastest_block": float(speed[self.build.topology.block_group == index].max()),
             }
         return {
             "status": status,
@@ -265,4 +313,5 @@ class RunState:
             "broken": self.broken,
             "stages": self.finished_stages,
             "groups": groups,
+            "departures": [departure.text() for departure in self.departures],
         }
