@@ -5,6 +5,7 @@ from pathlib import Path
 
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
 from cdem.case.output_fields import OUTPUT_FIELDS
+from cdem.case.plausible import RANGES, written
 
 DOCS = Path(__file__).parent.parent / "docs"
 BEGIN, END = "<!-- table -->\n\n", "\n<!-- end of table -->"
@@ -42,7 +43,24 @@ def laws_table() -> str:
     return "\n".join([*rows, ""])
 
 
-TABLES = {"output_fields.md": fields_table, "laws.md": laws_table}
+def checks_table() -> str:
+    """What values are usual and possible, with sources."""
+    rows = ["| quantity | usual | possible | source |", "|---|---|---|---|"]
+    for entry in RANGES:
+        usual, possible = (
+            "any" if limits is None else " to ".join(written(v, entry.unit) for v in limits)
+            for limits in (entry.usual, entry.possible)
+        )
+        zero = ", or 0" if entry.zero else ""
+        rows.append(f"| {entry.quantity} | {usual}{zero} | {possible} | {entry.source} |")
+    return "\n".join([*rows, ""])
+
+
+TABLES = {
+    "output_fields.md": fields_table,
+    "laws.md": laws_table,
+    "checks.md": checks_table,
+}
 
 
 def main() -> None:

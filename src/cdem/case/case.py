@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import PrivateAttr, ValidationError
 
-from cdem.case import checks
+from cdem.case import checks, plausible
 from cdem.case.explain import explain, problems_of
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
 from cdem.case.schema import CaseParts
@@ -37,6 +37,7 @@ class Case(CaseParts):
     """
 
     _source: Source = PrivateAttr(default_factory=Source)
+    _unusual: list[checks.Problem] = PrivateAttr(default_factory=list)
 
     def __init__(self, _source: Source | None = None, **data: Any) -> None:
         source, data = _source or Source(), plain(data, _source or Source())
@@ -50,14 +51,22 @@ class Case(CaseParts):
             except ValidationError:
                 raise source.error(problems) from None
         self._source = source
-        names = checks.contradictions(self, source.folder)
+        known = checks.contradictions(self, source.folder)
+        impossible, self._unusual = plausible.doubts(self)
+        known += impossible
         if not problems:  # else settings might fail for what was left out
             trial = self.model_copy(deep=True)
             trial._source = Source()  # so that errors name no line; the line is that of the setting
-            problems = checks.stage_settings(trial, trial.set, names)
-        problems += names
+            problems, later = checks.stage_settings(trial, trial.set, [*known, *self._unusual])
+            self._unusual += later
+        problems += known
         if problems:
             raise source.error(problems)
+
+    @property
+    def warnings(self) -> list[str]:
+        """Values that are possible but unusual: ``file:line:col: path: what is usual``."""
+        return self._source.lines(self._unusual)
 
     @classmethod
     def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Case:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from cdem.case.laws import BLOCK_LAWS, block_contradiction
+from cdem.case.plausible import doubts
 from cdem.case.schema import CaseParts
 from cdem.errors import CaseError
 
@@ -153,15 +154,20 @@ def _fixed_at_the_start(path: str, value: Any) -> str:
 
 def stage_settings(
     trial: CaseParts, put: Callable[[str, Any], None], known: Sequence[Problem]
-) -> list[Problem]:
-    """Try the ``set`` of all stages, one after the other; return what does not work.
+) -> tuple[list[Problem], list[Problem]]:
+    """Try the ``set`` of all stages, one after the other.
 
     Args:
         trial: A copy of the case; is changed.
         put: Sets the value at a path of the copy.
-        known: What is wrong with it already, which is not repeated.
+        known: What is wrong or unusual with it already, which is not repeated.
+
+    Returns:
+        What does not work or is impossible, and what is unusual.
     """
     problems: list[Problem] = []
+    doubtful: list[Problem] = []
+    known = list(known)
     for i, stage in enumerate(trial.stages):
         for path, value in stage.set.items():
             keys = ("stages", i, "set", path)
@@ -182,7 +188,15 @@ def stage_settings(
             for keys, what in _names(trial)
             if (keys, what) not in known
         ]
-    return problems
+        if stage.set:
+            for found, told in zip(doubts(trial), (problems, doubtful), strict=True):
+                told += [
+                    (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
+                    for keys, what in found
+                    if (keys, what) not in known
+                ]
+                known += found
+    return problems, doubtful
 
 
 def _no(kind: str, name: str, known: Iterable[str]) -> str:

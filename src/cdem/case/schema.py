@@ -87,6 +87,11 @@ class Stage(Part):
     duration: Annotated[float, Quantity("s", above=0)] | None = Field(
         None, description="Dynamic only: time to compute [s]"
     )
+    until: Literal["rest"] | None = Field(
+        None,
+        description="Dynamic only: end the stage when every block is at rest; duration is then the "
+        "longest time",
+    )
     max_steps: int | None = Field(None, ge=1, description="Stop the stage after so many steps")
     reset_displacement: bool = Field(
         False, description="Zero the displacements when the stage begins"
@@ -103,7 +108,7 @@ class Stage(Part):
 
     @model_validator(mode="after")
     def _fits_its_mode(self) -> Stage:
-        wrong = {"static": ("duration",), "dynamic": ("tolerance", "relax")}[self.mode]
+        wrong = {"static": ("duration", "until"), "dynamic": ("tolerance", "relax")}[self.mode]
         for field in wrong:
             if getattr(self, field) is not None:
                 raise ValueError(f"{field} has no meaning in a {self.mode} stage; remove it")

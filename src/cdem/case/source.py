@@ -50,6 +50,10 @@ class Source:
 
     def error(self, problems: Iterable[tuple[Keys, str]]) -> CaseError:
         """Make one error of (path, what is wrong) pairs, in the order of the file."""
+        return CaseError("\n".join(self.lines(problems)))
+
+    def lines(self, problems: Iterable[tuple[Keys, str]]) -> list[str]:
+        """One line for each of (path, what is wrong), in the order of the file."""
         last = (10**9, 0)
         some = sorted(problems, key=lambda p: self.places.get(self._nearest(p[0]), last))
         lines = [
@@ -58,7 +62,7 @@ class Source:
         ]
         if len(some) > MOST_PROBLEMS:
             lines.append(f"... and {len(some) - MOST_PROBLEMS} more")
-        return CaseError("\n".join(lines))
+        return lines
 
     @contextmanager
     def blame(self, path: str) -> Iterator[None]:

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from cdem.cli.options import CaseFile, Settings, Threads
+from cdem.cli.options import CaseFile, Settings, Strict, Threads
 from cdem.errors import BodyError, CaseError
 
 
@@ -54,6 +54,7 @@ def check(
             metavar="FILE.png", help="Draw groups, supports, loads, interfaces; or a refused body."
         ),
     ] = None,
+    strict: Strict = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Read everything and report on the model; runs nothing."""
@@ -79,6 +80,8 @@ def check(
         from cdem.output import model_picture, render
 
         render.write_image(picture, model_picture.draw_model(simulation))
+    if strict:
+        audit.refuse_warnings()
 
 
 def mesh(

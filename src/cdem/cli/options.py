@@ -21,6 +21,8 @@ Settings = Annotated[
 ]
 Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all cores.")]
 
+Strict = Annotated[bool, typer.Option("--strict", help="Take warnings for errors.")]
+
 
 def print_paths(paths: Path | Iterable[Path]) -> None:
     """Print one path a line."""

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from cdem.cli.options import STOPPED, CaseFile, Settings, Threads, stop_on_signal
+from cdem.cli.options import STOPPED, CaseFile, Settings, Strict, Threads, stop_on_signal
 from cdem.errors import CdemError
 
 if TYPE_CHECKING:
+    from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
 
 
@@ -32,6 +33,7 @@ def run(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace the results in the result folder.")
     ] = False,
+    strict: Strict = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print summary.json at the end.")] = False,
 ) -> None:
@@ -55,6 +57,7 @@ def run(
             resume=resume,
             force=force,
             device=device,
+            strict=strict,
         )
         status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)
     summary = folder / "summary.json"
@@ -79,7 +82,17 @@ def _run(
         assert simulation.results is not None
         for warning in simulation.audit.warnings + simulation.results.notes:
             print(f"warning: {warning}", file=sys.stderr)
-    with watch(silent=silent, tty=tty) as progress:
+    told = len(simulation.departures)
+    with watch(silent=silent, tty=tty) as show:
+
+        def progress(now: Progress) -> None:
+            nonlocal told
+            for departure in [] if silent else simulation.departures[told:]:
+                print(f"warning: {departure.text()}", file=sys.stderr)
+            told = len(simulation.departures)
+            if show:
+                show(now)
+
         status = simulation.run(progress, lambda: bool(stop))
     if status != "stopped" and not _is_reported(folder):
         write_report(folder, silent=silent)

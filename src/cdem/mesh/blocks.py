@@ -252,6 +252,7 @@ def _faces(t: Topology) -> None:
     members = np.bincount(np.concatenate([*t.element_block.values()]))
     some = np.flatnonzero((members > 1)[face_block])
     number = same_rows(np.sort(face_nodes[some], axis=1))
+    _check_inner_faces(t, face_nodes[some], number)
     outer = np.ones(len(face_nodes), bool)
     outer[some] = np.bincount(number)[number] == 1
     ids = np.flatnonzero(outer)
@@ -259,6 +260,44 @@ def _faces(t: Topology) -> None:
     t.face_nodes, t.face_block = face_nodes[ids], face_block[ids]
     t.face_group = np.concatenate(group)[ids]
     t.face_element = np.concatenate(element)[ids].astype(np.int32)
+
+
+def _check_inner_faces(t: Topology, faces: Ints, number: NDArray[np.int64]) -> None:
+    """Refuse elements of a block that lie inside one another.
+
+    A face of three elements, or one that two elements see running round in the same sense, has two
+    of them on the same side.
+
+    Args:
+        t: Nodes and elements.
+        faces: Nodes of the faces of all elements, (faces, 4), the fourth -1 for a triangle.
+        number: The same for faces with the same nodes.
+
+    Raises:
+        MeshError: Elements overlap.
+    """
+    order = np.argsort(number, kind="stable")
+    same = number[order][1:] == number[order][:-1]
+    wrong = np.flatnonzero(same[1:] & same[:-1])  # three elements
+    if len(wrong) == 0:
+        first, second = faces[order[:-1][same]], faces[order[1:][same]]
+        sides = np.where(first[:, 3] < 0, 3, 4)
+        start = np.where(first < 0, np.iinfo(np.int32).max, first).argmin(axis=1)
+        other = np.where(second < 0, np.iinfo(np.int32).max, second).argmin(axis=1)
+        rows = np.arange(len(first))
+        wrong = np.flatnonzero(
+            first[rows, (start + 1) % sides] == second[rows, (other + 1) % sides]
+        )
+        wrong = np.flatnonzero(same)[wrong]
+    if len(wrong):
+        nodes = faces[order[wrong[0]]]
+        group = t.group_names[t.block_group[t.node_block[nodes[0]]]]
+        place = ", ".join(f"{x:.6g}" for x in t.node_position[nodes[nodes >= 0]].mean(axis=0))
+        raise MeshError(
+            f"elements of group {group!r} lie inside one another: they share a face at ({place}) and "
+            f"are on the same side of it; {len(wrong)} such face(s). Mend the mesh: an element may "
+            "be there twice"
+        )
 
 
 def _edges(t: Topology) -> None:

@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
+from cdem.model.doubts import crowded_edges, idle_bonds
 
 SOFT = 20.0
 """Compliance of the interfaces above which the audit warns [%]."""
@@ -178,7 +180,7 @@ class Audit:
 
     def _warnings(self) -> list[str]:
         b = self._build
-        out = list(b.mesh.notes)
+        out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology), *idle_bonds(b)]
         if any(s.mode == "static" for s in b.case.stages):
             for name, count in self._unheld_blocks().items():
                 blocks = "1 block has" if count == 1 else f"{count:,} blocks have"
@@ -224,6 +226,12 @@ class Audit:
                 f"({100 * b.assembly.added_mass / total:.2g} % of the mass)"
             )
         return out
+
+    def refuse_warnings(self) -> None:
+        """Raise a CaseError of all warnings, if there are any."""
+        if self.warnings:
+            count = "1 warning" if len(self.warnings) == 1 else f"{len(self.warnings)} warnings"
+            raise CaseError("\n".join([*self.warnings, f"{count}, which --strict does not allow"]))
 
     # ------------------------------------------------------------------ output
 

@@ -16,6 +16,7 @@ from cdem.case.interface_schema import Interface
 from cdem.case.laws import BLOCK_LAWS
 from cdem.case.schema import Material
 from cdem.mesh.blocks import build_topology, snap_mates
+from cdem.mesh.extent import check_extent
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.topology import Topology
 from cdem.model.assemble import assemble
@@ -111,6 +112,7 @@ def build(case: Case) -> Build:
     bonds = bonded_pairs(laws, interface_of)
     sets = [joint.name for joint in case.model.joints]
     with case.blame("model"):
+        check_extent(merged)
         topology = build_topology(merged, case.model.split, sets, bonds)
     check_interfaces(case, topology, names, interface_of)
     snap_mates(topology)

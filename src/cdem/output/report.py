@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from cdem.output.figures import plot
 from cdem.output.reader import read_summary
 from cdem.output.render import render
 from cdem.run.energy_terms import ENERGY_TERMS
+from cdem.run.rest import REST_SPEED, SLOW_SPEED
 from cdem.whole_files import write_text
 
 
@@ -20,7 +22,7 @@ def info(folder: Path) -> str:
     """The summary as a page of text."""
     s = read_summary(folder)
     lines = [
-        f"{s['title'] or 'untitled case'}: {s['status']}",
+        f"{s['title'] or 'untitled case'}: {s['status']}{moving(s)}",
         f"  {s['steps']:,} steps to t = {s['time']:.6g} s in {s['wall_time']:.1f} s "
         f"({s['steps'] / max(s['wall_time'], 1e-9):,.0f} steps/s), dt {s['time_step']:.4g} s, "
         f"{s['device']}, {s['threads']} threads, cdem {s['version']}",
@@ -48,7 +50,17 @@ def info(folder: Path) -> str:
         lines.append(
             f"  {name:<18}{g['mass']:>13.5g}{moved:>12.5g}{g['max_displacement']:>12.5g}{speed:>13.5g}"
         )
+    lines += [f"  warning: {text}" for text in s.get("departures", [])]
     return "\n".join(lines) + "\n"
+
+
+def moving(summary: dict[str, Any]) -> str:
+    """Say how fast the fastest block moved at the end of a run; nothing if all rest, or not known."""
+    speeds = {name: g.get("fastest_block", 0.0) for name, g in summary["groups"].items()}
+    name = max(speeds, key=speeds.__getitem__)
+    if speeds[name] < (SLOW_SPEED if summary["status"] == "at rest" else REST_SPEED):
+        return ""
+    return f", still moving at {speeds[name]:.3g} m/s (a block of group {name})"
 
 
 def report(folder: Path) -> Path:

@@ -20,6 +20,7 @@ from cdem.output.deposit import Deposit
 from cdem.output.element_volumes import Solids
 from cdem.output.moving_mass import FRAGMENT, SECTION, STILL, Body, Line, Section
 from cdem.output.reader import read_histories
+from cdem.run.rest import REST_SPEED
 from cdem.whole_files import write_json
 
 Floats = NDArray[np.float64]
@@ -49,6 +50,10 @@ class RunOut:
         sections: Histories through sections.
         deposit: Map of the thickness at the end.
         source: The same map of the start.
+        speed_end: Speed of the fastest element that moves at the end [m/s]: as recorded, else its
+            mean since the frame before.
+        moving_share: Part of the mass that moves: whose speed at the end, and whose mean since the
+            frame before, is above `REST_SPEED`.
     """
 
     groups: list[str]
@@ -60,6 +65,23 @@ class RunOut:
     sections: list[Section]
     deposit: Deposit
     source: Deposit
+    speed_end: float
+    moving_share: float
+
+    @property
+    def rests(self) -> bool:
+        """Whether the rock has come to rest, so that its map is one of a deposit."""
+        return self.moving_share == 0
+
+    @property
+    def motion(self) -> str:
+        """How fast the rock still moves, or nothing."""
+        if self.rests:
+            return ""
+        return (
+            f"still moving at {self.speed_end:.3g} m/s ({100 * self.moving_share:.3g} % of the mass "
+            f"above {REST_SPEED:g} m/s)"
+        )
 
     @property
     def drop(self) -> float:
@@ -101,6 +123,9 @@ class RunOut:
             "speed_most": np.max(h["speed_most"]),
             "centre_speed_most": np.max(h["speed"]),
             "volume": h["volume"][-1],
+            "at_rest": self.rests,
+            "speed_end": self.speed_end,
+            "moving_share": self.moving_share,
             "deposit": {
                 "cell": d.cell,
                 "volume": d.volume,
@@ -126,6 +151,11 @@ class RunOut:
         lines = [
             f"run-out of {', '.join(self.groups)}: {h['volume'][-1]:.6g} m3 towards "
             f"{self.direction:.1f} deg, t = {h['time'][-1]:.6g} s",
+            *(
+                []
+                if self.rests
+                else [f"  {self.motion}: no deposit yet; front and reach are not final"]
+            ),
             f"  crown at ({x:.6g}, {y:.6g}, {z:.6g}), front at "
             f"({', '.join(f'{c:.6g}' for c in self.front)}) m",
             "",
@@ -135,7 +165,7 @@ class RunOut:
             _row("95 % of the mass", h["reach_95"][-1]),
             _row("centre of mass, moved", self.centre_travel, self.centre_drop),
             "",
-            f"  deposit: {d.volume:.6g} m3 on {d.area:.6g} m2, {d.volume / d.area:.4g} m thick on "
+            f"  {'deposit' if self.rests else 'rock now'}: {d.volume:.6g} m3 on {d.area:.6g} m2, {d.volume / d.area:.4g} m thick on "
             f"average, {d.thickness.max():.4g} m at most (solid rock; cells of {d.cell:g} m)",
             f"  fastest: centre of mass {np.max(h['speed']):.4g} m/s, an element "
             f"{np.max(h['speed_most']):.4g} m/s"
@@ -213,7 +243,8 @@ class RunOut:
             axes.plot([x0, x1], [y0, y1], "C2-", lw=1.5)
             axes.annotate(str(number), (x1, y1), color="C2")
         axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-        axes.set_title(f"t = {self.history['time'][-1]:.4g} s; dashed: the source", fontsize=10)
+        title = f"t = {self.history['time'][-1]:.4g} s; dashed: the source"
+        axes.set_title("\n".join([title, self.motion] if self.motion else [title]), fontsize=10)
         axes.autoscale_view()
         axes.legend(frameon=False, fontsize=8)
         path = Path(folder) / "deposit.png"
@@ -272,7 +303,20 @@ def measure(
         sections=[line.section() for line in lines],
         deposit=deposit,
         source=Deposit.of(body.start, deposit.cell),
+        **_motion_at_the_end(body, end),
     )
+
+
+def _motion_at_the_end(body: Body, end: Solids) -> dict[str, float]:
+    """`speed_end` and `moving_share` of a run-out."""
+    last, before = body.frames[-1], body.frames[-2]
+    passed = body.series.times[last] - body.series.times[before]
+    way = np.linalg.norm(end.centroids() - body.solids(before).centroids(), axis=1)
+    recorded = np.linalg.norm(body.velocities(last), axis=1)
+    speed = np.where(np.isnan(recorded), way / passed, recorded)
+    moves = (speed >= REST_SPEED) & (way / passed >= REST_SPEED)  # else it only vibrates
+    share = body.mass[moves].sum() / body.mass.sum()
+    return {"speed_end": float(speed[moves].max(initial=0.0)), "moving_share": float(share)}
 
 
 def _follow(

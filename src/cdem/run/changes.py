@@ -14,7 +14,7 @@ FILES = ("model.mesh", "model.blocks.*.file")
 """Values that may differ because the files themselves are compared."""
 FREE = ("title", "output.every", "output.checkpoint_every")
 """Values that a resumed run may change."""
-ENDS = ("duration", "tolerance", "max_steps")
+ENDS = ("duration", "until", "tolerance", "max_steps")
 """Values of the last stage that has begun which a resumed run may change."""
 
 Difference = tuple[str, Any, Any]  # path, value then, value now; None where there is none
@@ -67,7 +67,7 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
     """
     found = Changes()
     last = f"stages.{begun - 1}."
-    for path, a, b in _differences("", then, now):
+    for path, a, b in differences(then, now):
         later = path.startswith("stages.") and int(path.split(".")[1]) >= begun
         end = path.removeprefix(last) if path.startswith(last) else ""
         if any(fnmatchcase(path, pattern) for pattern in FILES):
@@ -81,12 +81,13 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
     return found
 
 
-def _differences(path: str, then: Any, now: Any) -> Iterator[Difference]:
+def differences(then: Any, now: Any, path: str = "") -> Iterator[Difference]:
+    """Places where two nests of dicts and lists differ, in order."""
     if isinstance(then, list) and isinstance(now, list):
         then, now = dict(enumerate(then)), dict(enumerate(now))
     if isinstance(then, dict) and isinstance(now, dict):
         for key in [*then, *(key for key in now if key not in then)]:
             inside = f"{path}.{key}" if path else str(key)
-            yield from _differences(inside, then.get(key), now.get(key))
+            yield from differences(then.get(key), now.get(key), inside)
     elif then != now:
         yield path, then, now

@@ -41,9 +41,11 @@ class Simulation(RunState):
         resume: Go on from the checkpoint in the result folder.
         force: Go on though the case has changed in a way that a run cannot change.
         device: "cpu".
+        strict: Refuse a model that `cdem check` warns of, before anything is written.
 
     Raises:
-        CaseError: The case or its files are wrong, or not those of the run that is resumed.
+        CaseError: The case or its files are wrong, or not those of the run that is resumed, or
+            strict and there are warnings.
         CdemError: The result folder is in use, or cannot be used.
 
     Example:
@@ -74,6 +76,7 @@ class Simulation(RunState):
         resume: bool = False,
         force: bool = False,
         device: str = "cpu",
+        strict: bool = False,
     ) -> None:
         if device != "cpu":
             raise CdemError(f"device {device!r}: only cpu can run cases; leave --device out")
@@ -87,13 +90,13 @@ class Simulation(RunState):
             )
         try:
             super().__init__(case, threads)
-            self._begin(resume=resume, force=force)
+            self._begin(resume=resume, force=force, strict=strict)
         except BaseException:
             if self.results:
                 self.results.release()
             raise
 
-    def _begin(self, *, resume: bool, force: bool) -> None:
+    def _begin(self, *, resume: bool, force: bool, strict: bool) -> None:
         """Bring the core to the state from which the run goes on."""
         if self.case.stages:  # so that it can be stepped before any stage begins
             self.core.set_damping(*stages.damping_of(self.case.stages[0]))
@@ -104,6 +107,8 @@ class Simulation(RunState):
             self.core.prepare()
             self.overlap = adopt_overlaps(self.build)
         self.audit = Audit(self.build, self.overlap, self.threads)
+        if strict:
+            self.audit.refuse_warnings()
         if self.results and not resume:
             self.results.open(self)
 
@@ -121,8 +126,8 @@ class Simulation(RunState):
             should_stop: Asked as often; True stops the run with a checkpoint.
 
         Returns:
-            "converged" (the last stage was static and reached its tolerance), "finished" or
-            "stopped".
+            How the last stage ended: "converged" (it was static and reached its tolerance), "at
+            rest" (it had `until: rest`), "finished", or "stopped".
 
         Raises:
             UnstableError: The computation failed; the last checkpoint is kept.
@@ -188,10 +193,12 @@ class Simulation(RunState):
 
     def advance(self, stage: StageState, steps: int, until: float = np.inf) -> str:
         """Run towards the next event of a stage, at most `steps` steps; returns the outcome."""
+        self.check_case()
         return self._guard(partial(stages.advance, self, stage, steps, until))
 
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing and ending no stage."""
+        self.check_case()
         self._guard(partial(self.core.run, count, check_interval=CHECK_INTERVAL))
 
     def _run_stage(
@@ -215,6 +222,7 @@ class Simulation(RunState):
             self.wall_time += now - clock
             stage.wall_time += now - clock
             if stages.record_is_due(self, stage, outcome):
+                self._log_departures()
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
             status = stages.status(self, stage, outcome)
             known, note = (
@@ -251,6 +259,11 @@ class Simulation(RunState):
         self.stage_index += 1
         self.stage, self.ended_stage = None, stage
         self.checkpoint()
+
+    def _log_departures(self) -> None:
+        for departure in self.look_for_departures():
+            if self.results:
+                self.results.log(f"warning: {departure.text()}")
 
     def _record(self, frame: bool = True) -> None:
         if self.core.scalars()["step"] > 0:
@@ -322,6 +335,12 @@ class Simulation(RunState):
                 f"{when}{where} has no finite position or velocity any more; dt = {dt:.3g} s. "
                 f"Use a smaller {smaller}, or look for a bad element there.{kept}"
             )
+        if block in self.fallen:
+            raise UnstableError(
+                f"{when}{where} fell past the edge of the model and now falls at {value:.3g} m/s, "
+                "faster than the P wave of the rock. Make the ground larger, or end the stage before "
+                f"that (until: rest).{kept}"
+            )
         raise UnstableError(
             f"{when}{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "
             f"dt = {dt:.3g} s. Use a smaller {smaller} or a lower stiffness_n.{kept}"
@@ -347,7 +366,7 @@ class Simulation(RunState):
         self.overlap = attributes.overlap
         self.stage_index, self.stage = attributes.stage_index, attributes.stage
         self.ended_stage, self.finished_stages = attributes.ended_stage, attributes.finished_stages
-        self.wall_time = attributes.wall_time
+        self.wall_time, self.departures = attributes.wall_time, attributes.departures
         begun = self.stage_index + (self.stage is not None)
         changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
         self.results.notes += changes.check(self.case, force=force)

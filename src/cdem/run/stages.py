@@ -69,6 +69,7 @@ def update_core(sim: RunState, index: int) -> None:
     sim.core.update_model(change(b))
     sim.core.set_curves([c[0] for c in b.curves], [c[1] for c in b.curves])
     sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])
+    sim.keep_case()
 
 
 def begin(sim: RunState) -> StageState:
@@ -141,6 +142,8 @@ def record_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
             passed = int((sim.time - stage.start_time) / stage.row_every)
             stage.rows = max(stage.rows, passed)
         stage.frame_due = stage.rows // ROWS_PER_FRAME > before // ROWS_PER_FRAME
+        if sim.case.stages[sim.stage_index].until == "rest":
+            stage.quiet.look(sim.time, sim.rigid_motion.without(sim.fallen))
     return due
 
 
@@ -156,6 +159,8 @@ def status(sim: RunState, stage: StageState, outcome: str) -> str | None:
     rules = sim.case.stages[sim.stage_index]
     if outcome == "converged":
         return "converged"
+    if stage.quiet.rests:
+        return "at rest"
     if stage.end_time is not None and sim.time >= stage.end_time:
         return "finished"
     if rules.max_steps is not None and sim.step_count - stage.start_step >= rules.max_steps:

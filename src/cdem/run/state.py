@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,11 @@ from pydantic import BaseModel, ConfigDict, NonNegativeInt
 from cdem._native import name as native_name
 from cdem._version import __version__
 from cdem.case.case import Case
+from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
+from cdem.run.changes import differences
+from cdem.run.rest import Departure, Motion, Quiet, fallen, rigid_motion
 
 STALL_STEPS = 10_000
 """A static stage that comes no nearer to rest in as many steps is said to stall."""
@@ -35,6 +38,7 @@ class StageState:
         wall_time: Wall time spent in it [s].
         least_unbalance: Smallest unbalance ratio of a static stage so far, or None.
         least_step: Step at which it was reached.
+        quiet: Rest of a dynamic stage that ends with it: see `Quiet`.
     """
 
     name: str
@@ -48,6 +52,7 @@ class StageState:
     wall_time: float = 0.0
     least_unbalance: float | None = None
     least_step: int = 0
+    quiet: Quiet = field(default_factory=Quiet)
 
     def note(self, step: int, unbalance: float) -> str:
         """What a user should know about a static stage that does not come to rest, or nothing."""
@@ -77,7 +82,8 @@ class Attributes(BaseModel):
         case: The case as it was given.
         nodes: Fingerprint of the model.
         core: Scalars of the core.
-        overlap, stage_index, stage, ended_stage, finished_stages, wall_time: As in `RunState`.
+        overlap, stage_index, stage, ended_stage, finished_stages, wall_time,
+        departures: As in `RunState`.
         rows: Rows of the histories.
         frames: Frames recorded.
     """
@@ -94,6 +100,7 @@ class Attributes(BaseModel):
     ended_stage: StageState | None
     finished_stages: list[dict[str, Any]]
     wall_time: float
+    departures: list[Departure]
     rows: NonNegativeInt
     frames: NonNegativeInt
 
@@ -102,7 +109,8 @@ class RunState:
     """A model and how far its run has come; looked at, and recorded, from here.
 
     Attributes:
-        case: The case, with what its stages have set so far.
+        case: The case, with what its stages have set so far. The model is made from it: a later
+            change would do nothing, so it stops the run.
         given_case: The case as it was given.
         threads: Threads of the core.
         build: The model.
@@ -114,6 +122,7 @@ class RunState:
         ended_stage: The stage that ended last, as long as no other has begun.
         finished_stages: A row of the summary for each stage that has ended.
         reference: Positions from which displacements count [m], shape (nodes, 3).
+        departures: The first block of each group that fell past the edge of the model.
         wall_time: Wall time spent in stages [s].
     """
 
@@ -122,6 +131,7 @@ class RunState:
     def __init__(self, case: Case, threads: int) -> None:
         self.case = case.model_copy(deep=True)  # stages change it; the caller's stays
         self.given_case = case.model_copy(deep=True)
+        self.keep_case()
         self.threads = threads
         self.build: Build = build(self.case)
         self.core = self.build.core
@@ -131,7 +141,26 @@ class RunState:
         self.ended_stage: StageState | None = None
         self.finished_stages: list[dict[str, Any]] = []
         self.reference = self.build.start_position
+        self.departures: list[Departure] = []
         self.wall_time = 0.0
+
+    def keep_case(self) -> None:
+        """Remember the case that the core has now."""
+        self._case = self.case.model_copy(deep=True)
+
+    def check_case(self) -> None:
+        """Refuse to go on with a case that was changed after the core got it.
+
+        Raises:
+            CaseError: It was changed; says where.
+        """
+        if self.case != self._case:
+            now, was = (case.model_dump(mode="json") for case in (self.case, self._case))
+            raise CaseError(
+                f"simulation.case.{next(differences(was, now))[0]}: was changed after the model was "
+                "made from it, which would do nothing. Change the case before Simulation(case), or "
+                "give the stage a 'set'"
+            )
 
     @property
     def time(self) -> float:
@@ -197,6 +226,37 @@ class RunState:
         }
 
     @property
+    def rigid_motion(self) -> Motion:
+        """Speeds and kinetic energy of the blocks as rigid bodies."""
+        fields = self.fields
+        return rigid_motion(
+            self.build.topology.block_first_node,
+            fields["mass"],
+            fields["position"],
+            fields["velocity"],
+        )
+
+    @property
+    def fallen(self) -> NDArray[np.intp]:
+        """Blocks that have fallen past the edge of the model."""
+        first, gravity = self.build.topology.block_first_node, self.case.loads.gravity
+        return fallen(first, self.build.start_position, self.motion[:, :3], gravity)
+
+    def look_for_departures(self) -> list[Departure]:
+        """Note the groups of which a block has left the model since the last look; return these."""
+        t, found, position = self.build.topology, [], self.motion[:, :3]
+        known = {departure.group for departure in self.departures}
+        for block in self.fallen:
+            group = self.build.group_names[t.block_group[block]]
+            if group not in known:
+                nodes = slice(*t.block_first_node[block : block + 2])
+                place = position[nodes].mean(axis=0).tolist()
+                found.append(Departure(group, int(block), self.time, place))
+                known.add(group)
+        self.departures += found
+        return found
+
+    @property
     def energies(self) -> dict[str, float]:
         """Energy ledger at the last sampled step [J], and its closing "error" (a fraction)."""
         return self.core.energies()
@@ -229,6 +289,7 @@ class RunState:
             ended_stage=self.ended_stage,
             finished_stages=self.finished_stages,
             wall_time=self.wall_time,
+            departures=self.departures,
             rows=rows,
             frames=frames,
         )
@@ -239,7 +300,8 @@ class RunState:
         counts = self.audit.counts
         energies = dict(self.energies) if self.step_count else {}
         groups = {}
-        for name in self.build.group_names:
+        speed = self.rigid_motion.speed
+        for index, name in enumerate(self.build.group_names):
             nodes = self.build.nodes_of(name)
             mass = fields["mass"][nodes]
             mean = {
@@ -253,6 +315,7 @@ class RunState:
                 "displacement": mean["displacement"],
                 "velocity": mean["velocity"],
                 "max_displacement": float(distance.max()),
+                "fastest_block": float(speed[self.build.topology.block_group == index].max()),
             }
         return {
             "status": status,
@@ -271,4 +334,5 @@ class RunState:
             "broken": self.broken,
             "stages": self.finished_stages,
             "groups": groups,
+            "departures": [departure.text() for departure in self.departures],
         }

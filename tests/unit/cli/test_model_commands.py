@@ -49,3 +49,26 @@ def test_schema_is_json(run_cli):
     assert status == 0
     assert "materials" in json.loads(out)["properties"]
     assert "parameters" in json.loads(run_cli("schema", "study")[1])["properties"]
+
+
+def test_a_warning_is_told_once_and_strict_refuses_it(run_cli, cube_folder):
+    odd = ("--set", "interfaces.default.friction_angle=0.35")
+    status, out, err = run_cli("check", "cube.yaml", *odd)
+    assert (status, err) == (0, "")
+    assert out.count("warning:") == 1
+    assert "interfaces.default.friction_angle: 0.35 deg is unusual" in out
+    assert json.loads(run_cli("check", "cube.yaml", "--json", *odd)[1])["warnings"]
+    status, _, err = run_cli("check", "cube.yaml", "--strict", *odd)
+    assert status == 1
+    assert "0.35 deg is unusual" in err
+    assert err.endswith("1 warning, which --strict does not allow\n")
+    assert run_cli("check", "cube.yaml", "--strict")[0] == 0
+
+
+def test_the_impossible_is_one_line(run_cli):
+    status, out, err = run_cli("check", "cube.yaml", "--set", "materials.rock.density=2.7")
+    assert (status, out) == (1, "")
+    assert err == (
+        "--set materials.rock.density=2.7: materials.rock.density: 2.7 kg/m3 is not possible; usual "
+        'is 500 kg/m3 to 8000 kg/m3; did you mean "2.7 t/m3"?\n'
+    )

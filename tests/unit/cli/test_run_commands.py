@@ -44,3 +44,18 @@ def test_a_failed_run_is_status_3(run_cli, cube_folder):
     assert (status, out) == (3, "")
     assert "Traceback" not in err
     assert json.loads((cube_folder / "cube.results/summary.json").read_text())["status"] == "failed"
+
+
+def test_warnings_go_to_stderr_and_the_log_and_strict_refuses_before_it_writes(
+    run_cli, cube_folder
+):
+    odd = ("--set", "interfaces.default.friction_angle=0.35")
+    status, _, err = run_cli("run", "cube.yaml", *odd)
+    assert status == 0
+    assert "warning: --set interfaces.default.friction_angle=0.35: interfaces.default" in err
+    assert "0.35 deg is unusual" in (cube_folder / "cube.results/run.log").read_text()
+    status, out, err = run_cli("run", "cube.yaml", "--strict", "--overwrite", *odd)
+    assert (status, out) == (1, "")
+    assert "0.35 deg is unusual" in err
+    assert "--strict does not allow" in err
+    assert (cube_folder / "cube.results/summary.json").exists()  # --overwrite removed nothing

@@ -45,7 +45,7 @@ def test_polyhedra_are_cut_as_one_cell_and_groups_left_alone():
             "joints": [{"name": "wall", "group": "rock", "normal": [1, 0, 0], "origin": [1, 0, 0]}],
             "translate": [0.5, 0, 0],
         },
-        "materials": {"m": {"density": 1, "young_modulus": 1e6, "poisson_ratio": 0.2}},
+        "materials": {"m": {"density": 2500, "young_modulus": 1e6, "poisson_ratio": 0.2}},
         "groups": {"rock": {"material": "m"}, "bed": {"material": "m"}},
         "interfaces": {"default": {"friction_angle": 30}},
         "stages": [{"name": "run", "mode": "dynamic", "duration": 1}],

@@ -72,7 +72,12 @@ def test_a_throw_is_measured_as_it_was_thrown(thrown):
     assert found.centre_drop == pytest.approx(fall, rel=1e-3)
     assert found.history["speed"][-1] == pytest.approx(np.hypot(SPEED, 10 * TIME), rel=1e-3)
     np.testing.assert_allclose(found.history["volume"], 9.0, rtol=1e-4)
+    assert not found.rests
+    assert found.moving_share == 1
+    assert found.speed_end == pytest.approx(np.hypot(SPEED, 10 * TIME), rel=1e-3)
     text = found.text()
+    assert f"still moving at {found.speed_end:.3g} m/s (100 % of the mass above 0.01 m/s)" in text
+    assert "deposit:" not in text
     assert "towards 30.0 deg" in text
     assert f"{found.drop / found.reach:.4f}" in text
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 
 import pytest
+import yaml
+from shared.cases import FALL
 
 import cdem
 from cdem.run.checkpoint import read_checkpoint, write_checkpoint
@@ -55,3 +57,21 @@ def test_a_run_leaves_the_case_of_its_caller_alone():
     sim.run()
     assert sim.case.interfaces.default.friction_angle == 10
     assert case.interfaces.default.friction_angle == 30
+
+
+def test_a_case_that_is_changed_after_the_start_stops_the_run():
+    """The model is made from it once: a change would do nothing, and would not be said."""
+    stages = [{"name": "a", "mode": "dynamic", "duration": 1e-3, "set": {"loads.gravity.2": -5}},
+              {"name": "b", "mode": "dynamic", "duration": 1e-3}]  # fmt: skip
+    given = cdem.Case(**(yaml.safe_load(FALL) | {"stages": stages}))
+    sim = cdem.Simulation(given, threads=1)
+    given.loads.gravity[2] = 0.0  # the caller's own is free
+    assert sim.run_stage("a") == "finished"
+    sim.case.loads.gravity[2] = -3.0
+    for go in (sim.run, lambda: sim.step(1)):
+        with pytest.raises(
+            cdem.CaseError, match=r"simulation\.case\.loads\.gravity\.2: was changed"
+        ):
+            go()
+    sim.case.loads.gravity[2] = -5.0
+    assert sim.run() == "finished"

@@ -67,9 +67,9 @@ def run(study):
         soften(study, limit, exact)
     case = study.case()
     simulation = Simulation(case, threads=study.threads)
-    tilt(simulation.case, 16.0)
+    tilt(case, 16.0)
     shown = [snapshot(simulation)]
-    simulation.core.set_gravity(simulation.case.loads.gravity)
+    simulation.core.set_gravity(case.loads.gravity)
     for time in (1.2, 2.0):
         while simulation.time < time:
             simulation.step(100)

@@ -1,0 +1,118 @@
+"""Geometry of a model that is possible but odd: crowded edges, strengths that bond nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.interface_schema import Interface, InterfacePair
+from cdem.case.laws import INTERFACE_LAWS
+from cdem.mesh.arrays import lengths
+from cdem.mesh.topology import Topology
+from cdem.model.build import Build
+
+Floats = NDArray[np.float64]
+
+NEAR = 0.01
+"""Gap over the size of the smaller group below which two groups seem meant to touch."""
+COMPARED = 2_000
+"""Vertices and faces on each side that are compared for a gap; the nearest by their boxes."""
+
+
+def crowded_edges(t: Topology) -> Iterator[str]:
+    """Say where more than two outer faces of a block meet at an edge: the mesh is no manifold."""
+    used = t.face_edges[t.face_edges >= 0]
+    crowded = np.flatnonzero(np.bincount(used, minlength=len(t.edge_nodes)) > 2)
+    if len(crowded) == 0:
+        return
+    nodes = t.edge_nodes[crowded[0]]
+    group = t.group_names[t.block_group[t.node_block[nodes[0]]]]
+    place = ", ".join(f"{x:.6g}" for x in t.node_position[nodes].mean(axis=0))
+    yield (
+        f"group {group}: more than two outer faces meet at {len(crowded)} edge(s), the first at "
+        f"({place}): bodies that hang together by an edge, or a mesh that is no manifold. Mend the "
+        "mesh, or use model.split"
+    )
+
+
+def idle_bonds(build: Build) -> Iterator[str]:
+    """Say which interfaces are given strength in the case but bond nothing at the start."""
+    case, t = build.case, build.topology
+    used = [
+        build.arrays[f"{kind}.interface"][: build.assembly.counts[f"{kind}.count"]]
+        for kind in ("triangles", "quads", "overlaps")
+    ]
+    numbers = set(np.unique(np.concatenate(used)).tolist())
+    laws: list[tuple[str, Interface]] = [
+        (f"interfaces.pairs.{i}", pair) for i, pair in enumerate(case.interfaces.pairs)
+    ]
+    if case.interfaces.default is not None and len(t.block_group) > 1 and not numbers:
+        laws.append(("interfaces.default", case.interfaces.default))
+    for number, (path, law) in enumerate(laws):
+        bonding = {p.name for p in INTERFACE_LAWS[law.law].parameters if p.bonds}
+        given = sorted(bonding & law.model_fields_set)
+        if number in numbers or not given or not INTERFACE_LAWS[law.law].bonds(law):
+            continue
+        yield f"{case.where(path)}: {path}: {' and '.join(given)} bond nothing{_why(t, law)}"
+
+
+def _why(t: Topology, law: Interface) -> str:
+    if not isinstance(law, InterfacePair):
+        return ": no faces of two blocks touch at the start"
+    if law.between is None:
+        return f": no two faces of the joint set {law.joint} touch at the start"
+    a, b = law.between
+    if a == b:
+        single = (t.block_group == t.group_names.index(a)).sum() == 1
+        return (
+            f": group {a} is one block (see model.split)" if single else f": no faces in {a} touch"
+        )
+    gap, size = _gap(t, a, b)
+    near = "; move them together if they are meant to touch" if gap < NEAR * size else ""
+    return f": no faces of {a} and {b} touch at the start, they lie about {gap:.3g} m apart{near}"
+
+
+def _gap(t: Topology, a: str, b: str) -> tuple[float, float]:
+    """Least distance of vertices of one group to faces of the other, and size of the smaller [m]."""
+    sides = [np.flatnonzero(t.face_group == t.group_names.index(name)) for name in (a, b)]
+    corners = [t.node_position[t.face_nodes[faces]] for faces in sides]
+    for faces, x in zip(sides, corners, strict=True):
+        triangles = t.face_nodes[faces, 3] < 0
+        x[triangles, 3] = x[triangles, 2]
+    gaps = []
+    for own, other in ((0, 1), (1, 0)):
+        points = corners[own].reshape(-1, 3)
+        low, high = (f(corners[other], axis=(0, 1)) for f in (np.min, np.max))
+        points = np.unique(_nearest(points, points, points, low, high), axis=0)
+        low, high = points.min(axis=0), points.max(axis=0)
+        x = corners[other]
+        x = _nearest(x, x.min(axis=1), x.max(axis=1), low, high)
+        gaps += [float(_distances(points, x[:, k]).min()) for k in ([0, 1, 2], [0, 2, 3])]
+    return min(gaps), min(float(np.ptp(x, axis=(0, 1)).max()) for x in corners)
+
+
+def _nearest(items: Floats, low: Floats, high: Floats, box_low: Floats, box_high: Floats) -> Floats:
+    """The items whose boxes lie nearest to a box, `COMPARED` at most."""
+    away = np.maximum(np.maximum(box_low - high, low - box_high), 0)
+    return items[np.argsort(lengths(away), kind="stable")[:COMPARED]]
+
+
+def _distances(points: Floats, triangles: Floats) -> Floats:
+    """Distance of each point to the nearest triangle: over its inside, or to a corner [m]."""
+    u, v = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    normal = np.cross(u, v)
+    square = np.einsum("ij,ij->i", normal, normal)
+    sound = square > 0  # the second half of a triangle that is written as a quadrilateral is flat
+    triangles, u, v, normal, square = (x[sound] for x in (triangles, u, v, normal, square))
+    best = np.full(len(points), np.inf)
+    for number, point in enumerate(points):
+        to = point - triangles[:, 0]
+        s = np.einsum("ij,ij->i", np.cross(to, v), normal) / square
+        r = np.einsum("ij,ij->i", np.cross(u, to), normal) / square
+        inside = (s >= 0) & (r >= 0) & (s + r <= 1)
+        height = np.abs(np.einsum("ij,ij->i", to, normal)) / np.sqrt(square)
+        corner = lengths(triangles - point).min(axis=1)
+        best[number] = np.where(inside, height, corner).min(initial=np.inf)
+    return best
