@@ -35,7 +35,7 @@ def test_resuming_with_another_case_is_said(run_cli):
     assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
     status, _, err = run_cli("run", "cube.yaml", "--resume", "--set", "title=Other")
     assert status == 0
-    assert "warning: this is not the case that cube.results was begun with: - title: A cube" in err
+    assert "warning: title changes from A cube falls to Other" in err
 
 
 def test_a_failed_run_is_status_3(run_cli, cube_folder):

@@ -165,6 +165,7 @@ def test_rest_is_the_same_for_any_split(slide):
     for time in (0.3, 0.9, 1.1):
         split.run_until(time)
         split.checkpoint()
+        split.close()
         split = cdem.Simulation(case, threads=1, output="split", resume=True)
     assert split.stage.quiet.peak > 0
     assert split.run() == "at rest"
