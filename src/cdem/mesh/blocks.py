@@ -14,9 +14,12 @@ from cdem.mesh.element_shapes import FACES, NODES, volumes
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.overlap import Overlaps, find_overlaps
 from cdem.mesh.topology import Floats, Ints, Topology
+from cdem.units import LARGEST, coordinates
 
 SAME_PLACE = 1e-9
 """Points of different pieces closer than this, over the model's size, are at the same place."""
+FAR = 1e-6
+"""Points are exact to less than this part of the smallest element; contacts need a thousandth."""
 LARGE_BLOCK = 10_000
 """Blocks of more nodes are put into an order of their own in memory: so many have 2 MB of state."""
 SLANTED = np.array([0.5426, 0.6477, 0.5348])
@@ -40,7 +43,8 @@ def build_topology(
             to be bonded, shape (kinds, kinds).
 
     Raises:
-        MeshError: An element is inverted or has no volume, or a point is not finite.
+        MeshError: An element is inverted, has no volume or is there twice, or a point is not finite
+            or too far from the origin.
     """
     check_elements(mesh)
     blocks = block_labels(mesh, split)
@@ -63,10 +67,11 @@ def build_topology(
 
 
 def check_elements(mesh: Mesh) -> None:
-    """Stop at points that are not finite and elements that are inverted or have no volume."""
-    bad = np.flatnonzero(~np.isfinite(mesh.points).all(axis=1))
+    """Stop at points that are not finite and elements that are inverted, flat or too far away."""
+    bad = np.flatnonzero(~(np.abs(mesh.points) <= LARGEST).all(axis=1))
     if len(bad):
         raise MeshError(f"mesh point {bad[0]} is not finite: {mesh.points[bad[0]].tolist()}")
+    exact = float(np.spacing(np.abs(mesh.points).max()))
     for shape, cells in mesh.cells.items():
         if len(cells) == 0:
             continue
@@ -79,11 +84,18 @@ def check_elements(mesh: Mesh) -> None:
             return np.stack([size, volume.min(axis=1), volume.sum(axis=1)], axis=1)
 
         size, least, total = in_pieces(measure, cells).T
+        smallest = np.min(size[size > 0], initial=LARGEST)
+        if exact > FAR * smallest:
+            raise MeshError(
+                f"points lie so far from the origin, at ({coordinates(mesh.points[cells[0, 0]])}), "
+                f"that coordinates are exact to {exact:.2g} m only, and the smallest {shape} element "
+                f"is {smallest:.3g} m; move the mesh to the origin where it is made"
+            )
         flat = np.flatnonzero(~(least > 1e-12 * size**3))
         if len(flat):
             cell = flat[0]
             group = mesh.group_names[mesh.cell_group[shape][cell]]
-            center = ", ".join(f"{x:.6g}" for x in mesh.points[cells[cell]].mean(axis=0))
+            center = coordinates(mesh.points[cells[cell]].mean(axis=0))
             what = "is inverted" if total[cell] < 0 else "has no volume or is folded"
             raise MeshError(
                 f"{shape} element {cell} of group {group!r}, centred at ({center}), {what} "
@@ -252,13 +264,28 @@ def _faces(t: Topology) -> None:
     members = np.bincount(np.concatenate([*t.element_block.values()]))
     some = np.flatnonzero((members > 1)[face_block])
     number = same_rows(np.sort(face_nodes[some], axis=1))
+    sharing = np.bincount(number)[number] if len(some) else number
     outer = np.ones(len(face_nodes), bool)
-    outer[some] = np.bincount(number)[number] == 1
+    outer[some] = sharing == 1
+    crowded = [*some[sharing > 2], *_without(face_block[outer], face_block)]
+    if crowded:
+        corners = t.node_position[face_nodes[crowded[0]][:3]]
+        raise MeshError(
+            f"group {t.group_names[np.concatenate(group)[crowded[0]]]!r}: more than two elements "
+            f"share the face centred at ({coordinates(corners.mean(axis=0))}): elements are there "
+            "twice or lie inside one another; mend the mesh"
+        )
     ids = np.flatnonzero(outer)
     ids = ids[np.argsort(face_block[ids], kind="stable")]
     t.face_nodes, t.face_block = face_nodes[ids], face_block[ids]
     t.face_group = np.concatenate(group)[ids]
     t.face_element = np.concatenate(element)[ids].astype(np.int32)
+
+
+def _without(outer: NDArray, every: NDArray) -> NDArray[np.intp]:
+    """A face of each block that has no outer one: all of its elements are there twice."""
+    blocks, first = np.unique(every, return_index=True)
+    return first[~np.isin(blocks, outer)]
 
 
 def _edges(t: Topology) -> None:

@@ -17,6 +17,7 @@ from cdem.mesh.arrays import components
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.mesh_files import MEND, read_raw
 from cdem.mesh.primitives import outward_faces
+from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Loops = list[list[int]]
@@ -77,7 +78,7 @@ def _refuse_open(points: Floats, faces: Loops) -> None:
         return
     named = []
     for edge in wrong[:SHOWN]:
-        ends = (", ".join(f"{x:.6g}" for x in points[v]) for v in edge)
+        ends = (coordinates(points[v]) for v in edge)
         named.append(" - ".join(f"({end})" for end in ends) + f" has {count[edge]}")
     more = f" and {len(wrong) - SHOWN} more" if len(wrong) > SHOWN else ""
     raise BodyError(

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from cdem.errors import BackendError, CaseError
 
 Floats = NDArray[np.float64]
+MOST_POINTS = 5_000_000
+"""Points to which lines are divided."""
 FIT = 24  # triangles whose corners give the plane beyond the outermost lines
 
 
@@ -75,10 +77,16 @@ class Lines:
             no triangle crosses a line that has a neighbour at that distance.
 
     Raises:
-        CaseError: All points lie on one line.
+        CaseError: All points lie on one line, or the lines are millions of spacings long.
     """
 
     def __init__(self, lines: list[Floats], spacing: float) -> None:
+        length = sum(float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum()) for line in lines)
+        if not length < MOST_POINTS * spacing:
+            raise CaseError(
+                f"the lines are {length:.3g} m long, {length / spacing:.2g} times the distance of "
+                "points along them; are the units the same?"
+            )
         points = np.concatenate([_divided(line, spacing) for line in lines])
         points = points[np.lexsort(points.T[::-1])]
         fresh = np.ones(len(points), bool)
