@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import reading, refuse_entities
+from cdem.case.input_file import reading
 from cdem.errors import BodyError, MeshError
 from cdem.joints.cell_mesh import to_mesh
 from cdem.joints.convex_cells import from_polyhedron, join
@@ -17,6 +16,7 @@ from cdem.mesh.arrays import components
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.mesh_files import MEND, read_raw
 from cdem.mesh.primitives import outward_faces
+from cdem.model import vtk_cells
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
@@ -48,9 +48,10 @@ def read_bodies(path: Path, group: str) -> Mesh:
     if kind not in readers:
         raise MeshError(f"{path}: bodies are read from {', '.join(readers)} files")
     if readers[kind] is _vtk:
-        _pyvista(path)  # loading it takes more memory than reading may
-    with reading(path, MeshError, MEND):
-        bodies = list(readers[kind](path))
+        bodies = list(_vtk(path))
+    else:
+        with reading(path, MeshError, MEND):
+            bodies = list(readers[kind](path))
     if not bodies:
         raise MeshError(f"{path}: holds no bodies")
     parts = []
@@ -145,22 +146,6 @@ def _stl(path: Path) -> Iterator[Body]:
     yield from _surfaces(np.asarray(raw.points, float), np.concatenate(triangles).tolist())
 
 
-def _pyvista(path: Path) -> Any:
-    try:
-        import pyvista
-    except ImportError:
-        raise MeshError(f"{path}: reading this needs pyvista; pip install 'cdem[viz]'") from None
-    return pyvista
-
-
 def _vtk(path: Path) -> Iterator[Body]:
-    pyvista = _pyvista(path)
-    refuse_entities(path)
-    grid = pyvista.read(path)
-    if not isinstance(grid, pyvista.UnstructuredGrid):
-        raise MeshError(f"{path}: holds no volume cells, but {type(grid).__name__}")
-    points = np.asarray(grid.points, float)
-    for number in range(grid.n_cells):
-        cell = grid.get_cell(number)
-        if cell.dimension == 3:
-            yield _own(f"cell {number}", points, [list(f.point_ids) for f in cell.faces])
+    for name, points, faces in vtk_cells.cells(path):
+        yield _own(name, points, faces)
