@@ -35,6 +35,8 @@ SLOW = 5.0
 """Seconds of processor time above which an input counts as a hang."""
 SILENT = 30.0
 """Wall seconds without a word after which a process is killed."""
+START = 120.0
+"""Wall seconds in which a process must begin."""
 BATCH = 500
 MOST_MEMORY = 1000
 """Peak of a process that is allowed [MB]."""
@@ -223,9 +225,10 @@ def run_batch(kind: str, seed: int, first: int, count: int, folder: Path, tally:
     assert process.stdout is not None
     said: queue.Queue[str] = queue.Queue()
     threading.Thread(target=_listen, args=(process.stdout, said), daemon=True).start()
-    done, open_now = 0, -1
+    done, open_now, patience = 0, -1, START
     try:
-        while words := said.get(timeout=SILENT).split():
+        while words := said.get(timeout=patience).split():
+            patience = SILENT
             if words[0] == "begin":
                 open_now = int(words[1])
             else:

@@ -20,6 +20,8 @@ SAME_PLACE = 1e-9
 """Points of different pieces closer than this, over the model's size, are at the same place."""
 FAR = 1e-6
 """Points are exact to less than this part of the smallest element; contacts need a thousandth."""
+NEAR = 1e-3
+"""Points of an element are further apart than those at the same place by this factor."""
 LARGE_BLOCK = 10_000
 """Blocks of more nodes are put into an order of their own in memory: so many have 2 MB of state."""
 SLANTED = np.array([0.5426, 0.6477, 0.5348])
@@ -71,7 +73,6 @@ def check_elements(mesh: Mesh) -> None:
     bad = np.flatnonzero(~(np.abs(mesh.points) <= LARGEST).all(axis=1))
     if len(bad):
         raise MeshError(f"mesh point {bad[0]} is not finite: {mesh.points[bad[0]].tolist()}")
-    exact = float(np.spacing(np.abs(mesh.points).max()))
     for shape, cells in mesh.cells.items():
         if len(cells) == 0:
             continue
@@ -84,13 +85,7 @@ def check_elements(mesh: Mesh) -> None:
             return np.stack([size, volume.min(axis=1), volume.sum(axis=1)], axis=1)
 
         size, least, total = in_pieces(measure, cells).T
-        smallest = np.min(size[size > 0], initial=LARGEST)
-        if exact > FAR * smallest:
-            raise MeshError(
-                f"points lie so far from the origin, at ({coordinates(mesh.points[cells[0, 0]])}), "
-                f"that coordinates are exact to {exact:.2g} m only, and the smallest {shape} element "
-                f"is {smallest:.3g} m; move the mesh to the origin where it is made"
-            )
+        _check_scale(mesh, shape, float(np.min(size[size > 0], initial=LARGEST)))
         flat = np.flatnonzero(~(least > 1e-12 * size**3))
         if len(flat):
             cell = flat[0]
@@ -102,6 +97,23 @@ def check_elements(mesh: Mesh) -> None:
                 f"(volume {total[cell]:.3g} m3); {len(flat)} such element(s). Mend the mesh: nodes must be "
                 "in gmsh/VTK order and no element may be flat"
             )
+
+
+def _check_scale(mesh: Mesh, shape: str, smallest: float) -> None:
+    """Stop where places of points are not told apart well enough for an element so small [m]."""
+    exact = float(np.spacing(np.abs(mesh.points).max()))
+    if exact > FAR * smallest:
+        raise MeshError(
+            f"points lie so far from the origin, at ({coordinates(mesh.points[0])}), that "
+            f"coordinates are exact to {exact:.2g} m only, and the smallest {shape} element is "
+            f"{smallest:.3g} m; move the mesh to the origin where it is made"
+        )
+    wide = float(np.ptp(mesh.points, axis=0).max())
+    if SAME_PLACE * wide > NEAR * smallest:
+        raise MeshError(
+            f"the model is {wide:.3g} m wide, and its smallest {shape} element {smallest:.3g} m: too "
+            "small to be told apart; is a body far off, or a length in another unit?"
+        )
 
 
 def block_labels(mesh: Mesh, split: Mapping[str, str]) -> NDArray:

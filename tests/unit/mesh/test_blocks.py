@@ -91,3 +91,11 @@ def test_points_whose_places_are_not_exact_are_refused(far, refused):
         return
     with pytest.raises(MeshError, match=r"so far from the origin|is not finite"):
         build_topology(made, {})
+
+
+def test_a_body_that_lies_a_million_elements_off_is_refused():
+    """Points closer than 1e-9 of the model would be taken for one."""
+    near, far = one_element("hex8"), one_element("hex8")
+    far.points = far.points + [0, 0, 4e6]
+    with pytest.raises(MeshError, match=r"the model is 4e\+06 m wide, and its smallest hex8"):
+        build_topology(mesh.merge([near, far]), {})
