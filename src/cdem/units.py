@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 
 Dimension = tuple[int, int, int, int]  # powers of kilogram, metre, second, radian
 
@@ -34,6 +35,7 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     for name, factor in factors.items()
 }
 
+SMALLEST, LARGEST = 1e-30, 1e30  # products of what is beyond overflow
 MOST_POWER_DIGITS = 2  # of a power with its sign
 SHOWN = 60  # characters of a value that messages repeat
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
@@ -77,10 +79,11 @@ def to_number(value: object, unit: str) -> float:
         unit: The unit that the result is in, e.g. ``"Pa"``, ``"deg"`` or ``"1"``.
 
     Returns:
-        A finite number in ``unit``.
+        A finite number in ``unit``; what is below 1e-30, as rounding leaves it, is 0.
 
     Raises:
-        ValueError: Not a number, not finite, an unknown unit or one of another dimension.
+        ValueError: Not a number, not finite, beyond all measure, an unknown unit or one of another
+            dimension.
 
     Example:
         >>> to_number("30 GPa", "Pa"), to_number(21, "deg")
@@ -108,7 +111,14 @@ def to_number(value: object, unit: str) -> float:
             number = math.inf
     if not math.isfinite(number):
         raise ValueError(f"must be a finite number, got {describe(value)}")
-    return number
+    if abs(number) > LARGEST:
+        raise ValueError(f"must lie within -1e30 and 1e30 [{unit}], got {describe(value)}")
+    return number if abs(number) >= SMALLEST else 0.0
+
+
+def coordinates(point: Iterable[float]) -> str:
+    """Coordinates [m] as text: exact to a millimetre on maps, without the noise of rounding."""
+    return ", ".join(f"{x:.10g}" for x in point)
 
 
 def describe(value: object) -> str:

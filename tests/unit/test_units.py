@@ -82,6 +82,8 @@ def test_every_dimension_has_its_si_unit(dimension):
         (math.nan, "m", "finite"),
         ("1e999 m", "m", "finite"),
         (10**400, "m", "finite"),
+        (1e31, "Pa", "must lie within -1e30 and 1e30"),
+        ("-1e28 GPa", "Pa", "must lie within -1e30 and 1e30"),
         ("1 km999", "m", "unknown unit"),
         ("1 km" + "9" * 5000, "m", "unknown unit"),
         ("2,700", "kg/m3", "without a comma, got '2,700'; write 2700"),
@@ -90,6 +92,11 @@ def test_every_dimension_has_its_si_unit(dimension):
 def test_wrong_numbers(value, unit, message):
     with pytest.raises(ValueError, match=message):
         to_number(value, unit)
+
+
+def test_what_rounding_leaves_is_zero():
+    assert to_number(-1.5e-32, "m/s") == 0 and to_number("1e-300 m", "m") == 0
+    assert to_number(1e-29, "m") == 1e-29 and to_number(1e30, "Pa") == 1e30
 
 
 def test_one_degree_is_not_a_plain_number():

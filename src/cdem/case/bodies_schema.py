@@ -6,7 +6,17 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from cdem.case.types import Angle, Direction3, Divisions3, Length3, Name, Part, Quantity, Size3
+from cdem.case.types import (
+    MOST_SEEDS,
+    Angle,
+    Direction3,
+    Divisions3,
+    Length3,
+    Name,
+    Part,
+    Quantity,
+    Size3,
+)
 
 
 class Rotate(Part):
@@ -103,7 +113,9 @@ class Joint(Part):
         1.0, description="Chance that a plane cuts a block that it meets [1]"
     )
     scatter: Scatter | None = Field(None, description="Scatter of the planes' directions")
-    seed: int = Field(0, ge=0, description="Another number gives other scatter and persistence")
+    seed: int = Field(
+        0, ge=0, le=MOST_SEEDS, description="Another number gives other scatter and persistence"
+    )
 
     @model_validator(mode="after")
     def _one_direction(self) -> Joint:
@@ -127,8 +139,8 @@ class Model(Part):
     blocks: list[Block] = Field([], description="Bodies made here")
     split: dict[Name, Literal["one", "connected", "elements"]] = Field(
         {},
-        description="What is one block, per group: the group, each connected part (default), "
-        "or each element",
+        description="What is one block, per group: one (the whole group), connected (each connected "
+        "part; the default) or elements (each element)",
     )
     joints: list[Joint] = Field(
         [], description="Sets of joints that cut the bodies, in this order, once all are in place"

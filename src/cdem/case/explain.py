@@ -121,6 +121,7 @@ def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
         "int_from_float": "must be a whole number",
         "string_too_short": "must not be empty",
         "greater_than_equal": f"must be at least {context.get('ge')}",
+        "less_than_equal": f"must be at most {context.get('le')}",
     }
     return f"{plain_words.get(kind, detail['msg'])}, got {describe(value)}"
 

@@ -140,6 +140,8 @@ def read_text(path: Path, what: str, kind: type[CdemError] = CaseError) -> str:
     Raises:
         CdemError: Of the class ``kind``: no such file, or not UTF-8; says where.
     """
+    if path.is_char_device():  # some have no end
+        raise kind(f"{path}: a device, not a {what}")
     try:
         raw = path.read_bytes()
     except OSError as error:

@@ -17,8 +17,8 @@ from cdem.case.yaml_text import parse
 from cdem.errors import CaseError
 from cdem.units import describe
 
-MOST_CHARACTERS = 20_000_000
-"""Of a case or study; reading so many takes minutes."""
+LARGEST_FILE = 20_000_000
+"""A case or study [bytes]; reading so many takes minutes."""
 MOST_BITS = 1000
 """Of a whole number; longer ones are no floating-point numbers."""
 
@@ -39,12 +39,12 @@ def load_case_data(
     Raises:
         CaseError: No such file, not YAML, a key twice, an empty file, or a bad override.
     """
-    text = read_text(path, f"{what} file")
-    if len(text) > MOST_CHARACTERS:
+    if path.is_file() and path.stat().st_size > LARGEST_FILE:
         raise CaseError(
-            f"{path}: too large for a {what} ({len(text):,} characters); meshes and terrain stand in "
-            "files of their own"
+            f"{path}: too large for a {what} ({path.stat().st_size:,} bytes); meshes and terrain "
+            "stand in files of their own"
         )
+    text = read_text(path, f"{what} file")
     source = Source(file=str(path))
     tree = parse(text, str(path))
     if tree is None:

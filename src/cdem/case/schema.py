@@ -22,6 +22,9 @@ from cdem.case.types import (
     Velocity3,
 )
 
+MOST_STEPS = 2_000_000_000
+"""So many steps can be counted."""
+
 
 class Material(Part):
     """What the elements are made of."""
@@ -92,7 +95,9 @@ class Stage(Part):
         description="Dynamic only: end the stage when every block is at rest; duration is then the "
         "longest time",
     )
-    max_steps: int | None = Field(None, ge=1, description="Stop the stage after so many steps")
+    max_steps: int | None = Field(
+        None, ge=1, le=MOST_STEPS, description="Stop the stage after so many steps"
+    )
     reset_displacement: bool = Field(
         False, description="Zero the displacements when the stage begins"
     )
@@ -136,7 +141,7 @@ class Contact(Part):
     )
     refresh: Annotated[
         Annotated[Literal["displacement"], Tag("word")]
-        | Annotated[Annotated[int, Field(ge=1)], Tag("steps")],
+        | Annotated[Annotated[int, Field(ge=1, le=MOST_STEPS)], Tag("steps")],
         Discriminator(lambda value: "word" if isinstance(value, str) else "steps"),
     ] = Field("displacement", description="Renew the search by displacement, or every N steps")
     action: Literal["vertex", "indented"] = Field(

@@ -63,8 +63,7 @@ class Quantity:
             self.at_most is not None and number > self.at_most
         )
         if too_low or too_high:
-            got = describe(value) if isinstance(value, str) else f"{number:g}"
-            raise ValueError(f"must {self.range_text()} [{self.unit}], got {got}")
+            raise ValueError(f"must {self.range_text()} [{self.unit}], got {describe(value)}")
         return number
 
     def range_text(self) -> str:
@@ -156,7 +155,7 @@ Velocity3 = Annotated[list[Annotated[float, Quantity("m/s")]], Three, Listed]
 Spin3 = Annotated[list[Annotated[float, Quantity("rad/s")]], Three, Listed]
 Acceleration3 = Annotated[list[Annotated[float, Quantity("m/s2")]], Three, Listed]
 Stress3 = Annotated[list[Annotated[float, Quantity("Pa")]], Three, Listed]
-Divisions3 = Annotated[list[Annotated[int, Field(ge=1)]], Three, Listed]
+Divisions3 = Annotated[list[Annotated[int, Field(ge=1, le=100_000)]], Three, Listed]
 Angle = Annotated[float, Quantity("deg")]
 
 
@@ -179,6 +178,7 @@ def _file_name(text: str) -> str:
 
 
 LONGEST_FILE_NAME = 200
+MOST_SEEDS = 2**63 - 1
 Line = Annotated[str, AfterValidator(_one_line)]
 Name = Annotated[str, StringConstraints(min_length=1), AfterValidator(_one_line)]
 FileName = Annotated[Name, AfterValidator(_file_name)]

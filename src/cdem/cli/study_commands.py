@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 from functools import partial
 from pathlib import Path
@@ -21,7 +22,10 @@ if TYPE_CHECKING:
 def critical(
     case_file: CaseFile,
     between: Annotated[
-        tuple[float, float], typer.Option(help="A value that rests, one that fails.")
+        tuple[str, str],
+        typer.Option(
+            metavar="RESTS FAILS", help="A value that rests, one that fails: --between 20 50."
+        ),
     ],
     parameter: Annotated[
         str | None, typer.Option(metavar="PATH", help="Value of the case to vary.")
@@ -51,6 +55,7 @@ def critical(
     """
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
+    ends = _two_numbers(between)
     from cdem.case.case import Case
     from cdem.study import critical as search
     from cdem.study.criterion import Criterion
@@ -64,7 +69,7 @@ def critical(
     found = search.find_critical(
         case,
         vary,
-        between,
+        ends,
         tolerance=tolerance,
         criterion=criterion,
         threads=threads,
@@ -74,6 +79,19 @@ def critical(
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:
         print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+
+
+def _two_numbers(words: tuple[str, str]) -> tuple[float, float]:
+    try:
+        first, second = map(float, words)
+    except ValueError:
+        first = second = math.nan
+    if not (math.isfinite(first) and math.isfinite(second)):
+        raise typer.BadParameter(
+            "--between takes two numbers with a space between them: --between 20 50; got "
+            + " ".join(words)
+        )
+    return first, second
 
 
 def _print_trial(name: str, trial: Trial, stable: float, failed: float) -> None:

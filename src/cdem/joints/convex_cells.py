@@ -12,6 +12,7 @@ from cdem.errors import MeshError
 from cdem.mesh.blocks import SAME_PLACE, SLANTED
 from cdem.mesh.element_shapes import FACES, NODES
 from cdem.mesh.mesh import Mesh
+from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -183,7 +184,7 @@ def _refuse_warped(points: Floats, faces: Ints) -> None:
     off = np.abs(np.einsum("ij,ij->i", x[:, 1] - x[:, 0], normal)) / np.maximum(size, 1e-300) ** 2
     bad = np.flatnonzero(off > WARPED * size)
     if len(bad):
-        at = ", ".join(f"{v:.6g}" for v in x[bad[0]].mean(axis=0))
+        at = coordinates(x[bad[0]].mean(axis=0))
         raise MeshError(
             f"joints cut elements with plane sides only; {len(bad)} of their sides are warped, "
             f"the first at ({at}) by {off[bad[0]]:.3g} m. Use tetrahedra in the groups that joints cut"

@@ -14,9 +14,14 @@ from cdem.mesh.element_shapes import FACES, NODES, volumes
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.overlap import Overlaps, find_overlaps
 from cdem.mesh.topology import Floats, Ints, Topology
+from cdem.units import LARGEST, coordinates
 
 SAME_PLACE = 1e-9
 """Points of different pieces closer than this, over the model's size, are at the same place."""
+FAR = 1e-6
+"""Points are exact to less than this part of the smallest element; contacts need a thousandth."""
+NEAR = 1e-3
+"""Points of an element are further apart than those at the same place by this factor."""
 LARGE_BLOCK = 10_000
 """Blocks of more nodes are put into an order of their own in memory: so many have 2 MB of state."""
 SLANTED = np.array([0.5426, 0.6477, 0.5348])
@@ -40,7 +45,8 @@ def build_topology(
             to be bonded, shape (kinds, kinds).
 
     Raises:
-        MeshError: An element is inverted or has no volume, or a point is not finite.
+        MeshError: An element is inverted, has no volume or is there twice, or a point is not finite
+            or too far from the origin.
     """
     check_elements(mesh)
     blocks = block_labels(mesh, split)
@@ -63,8 +69,8 @@ def build_topology(
 
 
 def check_elements(mesh: Mesh) -> None:
-    """Stop at points that are not finite and elements that are inverted or have no volume."""
-    bad = np.flatnonzero(~np.isfinite(mesh.points).all(axis=1))
+    """Stop at points that are not finite and elements that are inverted, flat or too far away."""
+    bad = np.flatnonzero(~(np.abs(mesh.points) <= LARGEST).all(axis=1))
     if len(bad):
         raise MeshError(f"mesh point {bad[0]} is not finite: {mesh.points[bad[0]].tolist()}")
     for shape, cells in mesh.cells.items():
@@ -79,17 +85,35 @@ def check_elements(mesh: Mesh) -> None:
             return np.stack([size, volume.min(axis=1), volume.sum(axis=1)], axis=1)
 
         size, least, total = in_pieces(measure, cells).T
+        _check_scale(mesh, shape, float(np.min(size[size > 0], initial=LARGEST)))
         flat = np.flatnonzero(~(least > 1e-12 * size**3))
         if len(flat):
             cell = flat[0]
             group = mesh.group_names[mesh.cell_group[shape][cell]]
-            center = ", ".join(f"{x:.6g}" for x in mesh.points[cells[cell]].mean(axis=0))
+            center = coordinates(mesh.points[cells[cell]].mean(axis=0))
             what = "is inverted" if total[cell] < 0 else "has no volume or is folded"
             raise MeshError(
                 f"{shape} element {cell} of group {group!r}, centred at ({center}), {what} "
                 f"(volume {total[cell]:.3g} m3); {len(flat)} such element(s). Mend the mesh: nodes must be "
                 "in gmsh/VTK order and no element may be flat"
             )
+
+
+def _check_scale(mesh: Mesh, shape: str, smallest: float) -> None:
+    """Stop where places of points are not told apart well enough for an element so small [m]."""
+    exact = float(np.spacing(np.abs(mesh.points).max()))
+    if exact > FAR * smallest:
+        raise MeshError(
+            f"points lie so far from the origin, at ({coordinates(mesh.points[0])}), that "
+            f"coordinates are exact to {exact:.2g} m only, and the smallest {shape} element is "
+            f"{smallest:.3g} m; move the mesh to the origin where it is made"
+        )
+    wide = float(np.ptp(mesh.points, axis=0).max())
+    if SAME_PLACE * wide > NEAR * smallest:
+        raise MeshError(
+            f"the model is {wide:.3g} m wide, and its smallest {shape} element {smallest:.3g} m: too "
+            "small to be told apart; is a body far off, or a length in another unit?"
+        )
 
 
 def block_labels(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
@@ -292,7 +316,7 @@ def _check_inner_faces(t: Topology, faces: Ints, number: NDArray[np.int64]) -> N
     if len(wrong):
         nodes = faces[order[wrong[0]]]
         group = t.group_names[t.block_group[t.node_block[nodes[0]]]]
-        place = ", ".join(f"{x:.6g}" for x in t.node_position[nodes[nodes >= 0]].mean(axis=0))
+        place = coordinates(t.node_position[nodes[nodes >= 0]].mean(axis=0))
         raise MeshError(
             f"elements of group {group!r} lie inside one another: they share a face at ({place}) and "
             f"are on the same side of it; {len(wrong)} such face(s). Mend the mesh: an element may "

@@ -79,6 +79,8 @@ def _refuse_surfaces(path: Path, kind: str) -> None:
 
 
 def _to_mesh(path: Path, raw: Any) -> Mesh:
+    if not len(raw.points):
+        raise MeshError(f"{path}: holds no nodes")
     points = np.asarray(raw.points, float).reshape(len(raw.points), -1)
     if points.shape[1] != 3:
         raise MeshError(f"{path}: a mesh in a plane; cdem needs a volume mesh")

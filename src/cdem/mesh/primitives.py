@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from cdem.errors import BodyError, MeshError
 from cdem.mesh.element_shapes import FACES
 from cdem.mesh.mesh import Floats, Mesh
+from cdem.units import coordinates
 
 _KUHN = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
 
@@ -93,10 +94,6 @@ def _centroid(points: Floats, triangles: NDArray) -> Floats:
     return middle + (volume[:, None] * (a + b + c) / 4).sum(axis=0) / volume.sum()
 
 
-def _text(point: Floats) -> str:
-    return ", ".join(f"{c:g}" for c in point)
-
-
 def _tolerance(points: Floats) -> float:
     return 1e-9 * float(np.ptp(points, axis=0).max())
 
@@ -159,7 +156,7 @@ def _hull(points: Floats) -> list[list[int]]:
         raise MeshError("a polyhedron has no volume: its vertices lie in a plane")
     if missing:
         raise BodyError(
-            f"a polyhedron is not convex: vertex {missing[0]} at ({_text(points[missing[0]])}) is no corner of the hull; "
+            f"a polyhedron is not convex: vertex {missing[0]} at ({coordinates(points[missing[0]])}) is no corner of the hull; "
             "leave it out if it repeats another or lies on a side, else cut the block into convex ones",
             points,
             faces,
@@ -202,9 +199,9 @@ def _outward(points: Floats, faces: Sequence[Sequence[int]], near: float) -> lis
         out = np.argmax((points - x[0]) @ normal)
         if (points[out] - x[0]) @ normal > near:
             raise BodyError(
-                f"a polyhedron is not convex: vertex {out} at ({_text(points[out])}) lies "
+                f"a polyhedron is not convex: vertex {out} at ({coordinates(points[out])}) lies "
                 f"{(points[out] - x[0]) @ normal:.3g} m outside face {number} "
-                f"({'; '.join(map(_text, x[:4]))}); cut the block into convex ones",
+                f"({'; '.join(map(coordinates, x[:4]))}); cut the block into convex ones",
                 points,
                 faces,
                 [[int(out)], *zip(loop, loop[1:] + loop[:1], strict=True)],

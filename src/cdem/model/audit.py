@@ -292,7 +292,7 @@ class Audit:
             )
         low = np.min([g["low"] for g in self.groups.values()], axis=0)
         high = np.max([g["high"] for g in self.groups.values()], axis=0)
-        spans = ", ".join(f"{a:.6g} .. {b:.6g}" for a, b in zip(low, high, strict=True))
+        spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))
         lines += ["", f"  extent x, y, z [m]: {spans}"]
         if self.interfaces:
             lines += ["", "  bonded interfaces"]

@@ -54,6 +54,8 @@ def check_groups(case: Case, names: list[str]) -> None:
         names: Groups of the model.
     """
     listed = ", ".join(names)
+    if case.model.mesh is not None and "default" in names:
+        listed += "; elements that are in no group of the mesh file are in 'default'"
     for name in names:
         if name not in case.groups:
             raise CaseError(

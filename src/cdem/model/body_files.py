@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import reading, refuse_entities
+from cdem.case.input_file import reading
 from cdem.errors import BodyError, MeshError
 from cdem.joints.cell_mesh import to_mesh
 from cdem.joints.convex_cells import from_polyhedron, join
@@ -17,6 +16,8 @@ from cdem.mesh.arrays import components
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.mesh_files import MEND, read_raw
 from cdem.mesh.primitives import outward_faces
+from cdem.model import vtk_cells
+from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Loops = list[list[int]]
@@ -47,9 +48,10 @@ def read_bodies(path: Path, group: str) -> Mesh:
     if kind not in readers:
         raise MeshError(f"{path}: bodies are read from {', '.join(readers)} files")
     if readers[kind] is _vtk:
-        _pyvista(path)  # loading it takes more memory than reading may
-    with reading(path, MeshError, MEND):
-        bodies = list(readers[kind](path))
+        bodies = list(_vtk(path))
+    else:
+        with reading(path, MeshError, MEND):
+            bodies = list(readers[kind](path))
     if not bodies:
         raise MeshError(f"{path}: holds no bodies")
     parts = []
@@ -77,7 +79,7 @@ def _refuse_open(points: Floats, faces: Loops) -> None:
         return
     named = []
     for edge in wrong[:SHOWN]:
-        ends = (", ".join(f"{x:.6g}" for x in points[v]) for v in edge)
+        ends = (coordinates(points[v]) for v in edge)
         named.append(" - ".join(f"({end})" for end in ends) + f" has {count[edge]}")
     more = f" and {len(wrong) - SHOWN} more" if len(wrong) > SHOWN else ""
     raise BodyError(
@@ -144,22 +146,6 @@ def _stl(path: Path) -> Iterator[Body]:
     yield from _surfaces(np.asarray(raw.points, float), np.concatenate(triangles).tolist())
 
 
-def _pyvista(path: Path) -> Any:
-    try:
-        import pyvista
-    except ImportError:
-        raise MeshError(f"{path}: reading this needs pyvista; pip install 'cdem[viz]'") from None
-    return pyvista
-
-
 def _vtk(path: Path) -> Iterator[Body]:
-    pyvista = _pyvista(path)
-    refuse_entities(path)
-    grid = pyvista.read(path)
-    if not isinstance(grid, pyvista.UnstructuredGrid):
-        raise MeshError(f"{path}: holds no volume cells, but {type(grid).__name__}")
-    points = np.asarray(grid.points, float)
-    for number in range(grid.n_cells):
-        cell = grid.get_cell(number)
-        if cell.dimension == 3:
-            yield _own(f"cell {number}", points, [list(f.point_ids) for f in cell.faces])
+    for name, points, faces in vtk_cells.cells(path):
+        yield _own(name, points, faces)

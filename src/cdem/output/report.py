@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import base64
-import html
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jinja2 import Environment
 
 from cdem.errors import CdemError
 from cdem.output.figures import plot
@@ -72,29 +73,20 @@ def report(folder: Path) -> Path:
         pictures = render(folder)[-1:] + pictures
         missing = ""
     except CdemError as error:
-        missing = f"<p>No pictures: {html.escape(str(error))}</p>"
+        missing = str(error)
     e = s["energies"]
-    rows = "".join(
-        f"<tr><td>{t.name}</td><td>{e[t.name]:.6g} J</td></tr>" for t in ENERGY_TERMS if e
+    # case files come from strangers: whatever they name is escaped
+    page = Environment(autoescape=True).from_string(
+        (resources.files("cdem.output") / "report_page.html").read_text(encoding="utf-8")
     )
-    images = "".join(
-        f'<img alt="{p.stem}" src="data:image/png;base64,'
-        f'{base64.b64encode(p.read_bytes()).decode()}">'
-        for p in pictures
+    text = page.render(
+        title=s["title"] or "cdem run",
+        closing=f"{100 * e['error']:.3g} %" if e else "not sampled",
+        info=info(folder),
+        missing=missing,
+        images=[(p.stem, base64.b64encode(p.read_bytes()).decode()) for p in pictures],
+        energies=[(t.name, f"{e[t.name]:.6g}") for t in ENERGY_TERMS if e],
     )
-    closing = f"{100 * e['error']:.3g} %" if e else "not sampled"
-    page = f"""<!doctype html>
-<html lang="en"><meta charset="utf-8"><title>{html.escape(s["title"] or "cdem run")}</title>
-<style>body{{font:16px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}}
-img{{max-width:100%;display:block;margin:1em 0}}td{{padding:.1em 1.5em .1em 0}}
-pre{{background:#f4f4f4;padding:1em;overflow:auto}}</style>
-<h1>{html.escape(s["title"] or "cdem run")}</h1>
-<p>Energy balance closes to <b>{closing}</b>.</p>
-<pre>{html.escape(info(folder))}</pre>{missing}{images}
-<h2>Energies at the end</h2><table>{rows}</table>
-<p>Files beside this page: case.yaml, summary.json, histories.csv, frames.vtkhdf, surface.vtkhdf,
-checkpoint.h5, run.log.</p></html>
-"""
     path = folder / "report.html"
-    write_text(path, page)
+    write_text(path, text)
     return path

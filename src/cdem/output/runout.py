@@ -21,6 +21,7 @@ from cdem.output.element_volumes import Solids
 from cdem.output.moving_mass import FRAGMENT, SECTION, STILL, Body, Line, Section
 from cdem.output.reader import read_histories
 from cdem.run.rest import REST_SPEED
+from cdem.units import coordinates
 from cdem.whole_files import write_json
 
 Floats = NDArray[np.float64]
@@ -147,7 +148,6 @@ class RunOut:
     def text(self) -> str:
         """The result as a page of text."""
         h, d = self.history, self.deposit
-        x, y, z = self.crown
         lines = [
             f"run-out of {', '.join(self.groups)}: {h['volume'][-1]:.6g} m3 towards "
             f"{self.direction:.1f} deg, t = {h['time'][-1]:.6g} s",
@@ -156,8 +156,7 @@ class RunOut:
                 if self.rests
                 else [f"  {self.motion}: no deposit yet; front and reach are not final"]
             ),
-            f"  crown at ({x:.6g}, {y:.6g}, {z:.6g}), front at "
-            f"({', '.join(f'{c:.6g}' for c in self.front)}) m",
+            f"  crown at ({coordinates(self.crown)}), front at ({coordinates(self.front)}) m",
             "",
             f"  {'from the crown to':<22}{'L [m]':>12}{'H [m]':>12}{'H/L':>9}{'angle [deg]':>13}",
             _row("front", self.reach, self.drop),
@@ -186,7 +185,7 @@ class RunOut:
         for number, section in enumerate(self.sections, start=1):
             s = section.history
             lines.append(
-                f"  section {number} ({', '.join(f'{v:g}' for v in section.line)}): passed "
+                f"  section {number} ({coordinates(section.line)}): passed "
                 f"{s['passed'][-1]:.5g} m3, at most {s['area'].max():.5g} m2, "
                 f"{np.nanmax(np.append(s['velocity'], 0)):.4g} m/s, "
                 f"{np.nanmax(np.append(s['discharge'], 0)):.5g} m3/s"

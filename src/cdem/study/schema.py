@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from cdem.case.types import Name, Part, Quantity
+from cdem.case.types import MOST_SEEDS, Name, Part, Quantity
 from cdem.study.criterion import Criterion
 
 Number = Annotated[float, Quantity("1")]
@@ -14,6 +14,7 @@ Positive = Annotated[float, Quantity("1", above=0)]
 CRITICAL_RESULTS = ("value", "stable", "failed", "trials", "steps")
 COLUMNS = ("run", "status", "wall_time", "error")
 """Columns of every table, whose names a study cannot use for others."""
+MOST_RUNS = 1_000_000
 KINDS = ("values", "grid", "uniform", "normal", "lognormal", "triangular")
 
 
@@ -22,7 +23,7 @@ class Grid(Part):
 
     first: Number = Field(description="First value")
     last: Number = Field(description="Last value")
-    count: int = Field(ge=2, description="Number of values")
+    count: int = Field(ge=2, le=MOST_RUNS, description="Number of values")
 
 
 def _rising(low: float | None, high: float | None) -> None:
@@ -137,8 +138,8 @@ class Sampling(Part):
         "latin-hypercube",
         description="One value in each of COUNT equally likely parts, or independent values",
     )
-    count: int = Field(ge=1, description="Number of draws")
-    seed: int = Field(1, ge=0, description="Another seed draws other values")
+    count: int = Field(ge=1, le=MOST_RUNS, description="Number of draws")
+    seed: int = Field(1, ge=0, le=MOST_SEEDS, description="Another seed draws other values")
 
 
 class CriticalSearch(Part):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
 from collections.abc import Iterator
 from itertools import groupby
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.input_file import read_text, reading
 from cdem.errors import CaseError
 from cdem.terrain.heights import Grid, extra
 
@@ -24,6 +26,9 @@ COLUMNS = {
     "y": re.compile(r"(y|north)", re.IGNORECASE),
     "z": ELEVATION,
 }
+GEOJSON = (".geojson", ".json")
+CONVERT = "convert others with ogr2ogr -f GeoJSON NEW.geojson OLD"
+WHAT = "terrain file"
 LINE = re.compile(r"(line|id|contour_?id)", re.IGNORECASE)
 
 
@@ -40,13 +45,14 @@ def read_lines(path: Path, elevation: str | None = None) -> list[Floats]:
         CaseError: The file is missing, of another kind, has no heights, or is in degrees.
     """
     kind = path.suffix.lower()
-    text = _text(path)
-    if kind in (".geojson", ".json"):
-        lines = list(_geojson_lines(path, text, elevation))
-    elif kind in (".csv", ".txt"):
-        lines = list(_csv_lines(path, text, elevation))
-    else:
-        raise CaseError(f"{path}: contours are read from .geojson or .csv; a grid goes to 'grid'")
+    if kind not in (*GEOJSON, ".csv", ".txt"):
+        raise CaseError(
+            f"{path}: contours are read from .geojson or .csv ({CONVERT}); a grid goes to 'grid'"
+        )
+    with reading(path, CaseError, "contours are GeoJSON or CSV"):
+        text = read_text(path, WHAT)
+        read = _geojson_lines if kind in GEOJSON else _csv_lines
+        lines = [line for line in read(path, text, elevation) if len(line)]
     if not lines:
         raise CaseError(f"{path}: holds no lines")
     if len({float(z) for line in lines for z in line[:, 2]}) < 2:
@@ -64,13 +70,22 @@ def read_outline(path: Path) -> Floats:
     Raises:
         CaseError: The file holds no polygon, or its outline is open.
     """
-    for geometry, _ in _geometries(path, _text(path)):
+    if path.suffix.lower() not in GEOJSON:
+        raise CaseError(f"{path}: outlines are read from .geojson ({CONVERT})")
+    with reading(path, CaseError, "an outline is a polygon or closed line in GeoJSON"):
+        return _outline(path)
+
+
+def _outline(path: Path) -> Floats:
+    for geometry, _ in _geometries(path, read_text(path, WHAT)):
         kind, points = geometry.get("type"), geometry.get("coordinates", [])
         if kind == "Polygon":
-            points = points[0]
+            points = points[0] if points else []
         elif kind != "LineString":
             continue
         ring = np.array([p[:2] for p in points], float)
+        if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
+            raise CaseError(f"{path}: its {kind} is not a list of points [x, y]")
         if len(ring) < 4 or (ring[0] != ring[-1]).any():
             raise CaseError(
                 f"{path}: the outline is open: it starts at {ring[0].tolist()} and ends at "
@@ -88,19 +103,15 @@ def read_grid(path: Path) -> Grid:
     """
     kind = path.suffix.lower()
     if kind in (".asc", ".grd", ".txt"):
-        return _ascii_grid(path, _text(path))
+        with reading(path, CaseError, "a grid is ESRI ASCII or GeoTIFF"):
+            return _ascii_grid(path, read_text(path, WHAT))
     if kind in (".tif", ".tiff"):
-        return _geotiff(path)
-    raise CaseError(f"{path}: grids are read from .asc (ESRI ASCII) or .tif (GeoTIFF)")
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise CaseError(f"{path}: cannot read it: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"{path}: not a text file in UTF-8") from None
+        rasterio = extra("rasterio")
+        with reading(path, CaseError, "a grid is ESRI ASCII or GeoTIFF"):
+            return _geotiff(path, rasterio)
+    raise CaseError(
+        f"{path}: grids are read from .asc (ESRI ASCII) or .tif (GeoTIFF); gdal_translate makes them"
+    )
 
 
 def _refuse_degrees(path: Path, points: Floats) -> None:
@@ -118,6 +129,8 @@ def _refuse_degrees(path: Path, points: Floats) -> None:
 
 
 def _geometries(path: Path, text: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+    if text.lstrip().startswith("<"):
+        raise CaseError(f"{path}: is KML or another XML, not GeoJSON; {CONVERT}")
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:
@@ -126,8 +139,10 @@ def _geometries(path: Path, text: str) -> Iterator[tuple[dict[str, Any], dict[st
     if not isinstance(features, list) or not all(isinstance(f, dict) for f in features):
         raise CaseError(f"{path}: not GeoJSON: no features in it")
     for feature in features:
-        geometry = feature.get("geometry") or feature
-        yield geometry, feature.get("properties") or {}
+        geometry, properties = feature.get("geometry") or feature, feature.get("properties") or {}
+        if not isinstance(geometry, dict) or not isinstance(properties, dict):
+            raise CaseError(f"{path}: not GeoJSON: a geometry or properties are no {{...}}")
+        yield geometry, properties
 
 
 def _geojson_lines(path: Path, text: str, elevation: str | None) -> Iterator[Floats]:
@@ -197,9 +212,12 @@ def _columns(path: Path, head: list[str], elevation: str | None) -> dict[str, in
 
 def _point(path: Path, number: int, row: list[str], at: dict[str, int]) -> list[float]:
     try:
-        return [float(row[at[key]]) for key in "xyz"]
+        point = [float(row[at[key]]) for key in "xyz"]
     except (ValueError, IndexError):
-        raise CaseError(f"{path}: row {number} has no numbers x, y, z: {','.join(row)}") from None
+        point = [math.nan]
+    if not all(map(math.isfinite, point)):
+        raise CaseError(f"{path}: row {number} has no numbers x, y, z: {','.join(row)}")
+    return point
 
 
 # ------------------------------------------------------------------ grids
@@ -207,21 +225,15 @@ def _point(path: Path, number: int, row: list[str], at: dict[str, int]) -> list[
 
 def _ascii_grid(path: Path, text: str) -> Grid:
     lines = text.splitlines()
-    head: dict[str, float] = {}
-    for count, line in enumerate(lines):
-        words = line.split()
-        if len(words) != 2 or not words[0][0].isalpha():
-            break
-        try:
-            head[words[0].lower()] = float(words[1])
-        except ValueError:
-            raise CaseError(f"{path}:{count + 1}: '{words[1]}' is not a number") from None
+    head, count = _grid_head(path, lines)
     corner = "xllcorner" in head
     needed = ["ncols", "nrows", "cellsize"]
     needed += ["xllcorner", "yllcorner"] if corner else ["xllcenter", "yllcenter"]
     missing = [key for key in needed if key not in head]
     if missing:
         raise CaseError(f"{path}: not an ESRI ASCII grid: its head has no {', '.join(missing)}")
+    if not all(math.isfinite(head[key]) for key in needed) or head["cellsize"] <= 0:
+        raise CaseError(f"{path}: its head has a number that is not finite, or no cellsize above 0")
     columns, rows, step = int(head["ncols"]), int(head["nrows"]), head["cellsize"]
     try:
         values = np.array(" ".join(lines[count:]).split(), float)
@@ -238,12 +250,26 @@ def _ascii_grid(path: Path, text: str) -> Grid:
     return _checked(path, Grid(west, south, (step, step), values.reshape(rows, columns)[::-1]))
 
 
-def _geotiff(path: Path) -> Grid:
-    rasterio = extra("rasterio")
+def _grid_head(path: Path, lines: list[str]) -> tuple[dict[str, float], int]:
+    """Numbers of the head by their names, and the number of its lines."""
+    head: dict[str, float] = {}
+    for count, line in enumerate(lines):
+        words = line.split()
+        if len(words) != 2 or not words[0][0].isalpha():
+            return head, count
+        try:
+            head[words[0].lower()] = float(words[1])
+        except ValueError:
+            raise CaseError(f"{path}:{count + 1}: '{words[1]}' is not a number") from None
+    return head, len(lines)
+
+
+def _geotiff(path: Path, rasterio: Any) -> Grid:
     if not path.is_file():
-        raise CaseError(f"{path}: cannot read it: No such file or directory")
+        raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
     try:
-        with rasterio.open(path) as file:
+        # other drivers of GDAL would follow links to other files, and into the net
+        with rasterio.open(path, driver="GTiff") as file:
             values = file.read(1, masked=True).astype(float).filled(np.nan)
             place, system = file.transform, file.crs
     except rasterio.errors.RasterioError as error:

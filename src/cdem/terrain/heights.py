@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from cdem.errors import BackendError, CaseError
 
 Floats = NDArray[np.float64]
+MOST_POINTS, LONGEST = 2_000_000, 20_000
+"""Parts into which all lines together, and the way between two points, are divided."""
 FIT = 24  # triangles whose corners give the plane beyond the outermost lines
 
 
@@ -75,10 +77,16 @@ class Lines:
             no triangle crosses a line that has a neighbour at that distance.
 
     Raises:
-        CaseError: All points lie on one line.
+        CaseError: All points lie on one line, or the lines are millions of spacings long.
     """
 
     def __init__(self, lines: list[Floats], spacing: float) -> None:
+        sides = np.concatenate([np.hypot(*np.diff(line[:, :2], axis=0).T) for line in lines])
+        if not sides.max(initial=0.0) < LONGEST * spacing or sides.sum() > MOST_POINTS * spacing:
+            raise CaseError(
+                f"the lines are {sides.sum():.3g} m long, and {sides.max():.3g} m between two points: "
+                f"much for the {spacing:.3g} m at which they are divided; are the units the same?"
+            )
         points = np.concatenate([_divided(line, spacing) for line in lines])
         points = points[np.lexsort(points.T[::-1])]
         fresh = np.ones(len(points), bool)

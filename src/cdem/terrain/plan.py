@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from cdem.errors import MeshError
 from cdem.terrain.heights import Heights, extra
 from cdem.terrain.landslide import Landslide
+from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -75,7 +76,7 @@ def _check_base(landslide: Landslide, plan: Plan) -> None:
 
 
 def _at(point: Floats) -> str:
-    return f"({point[0]:.6g}, {point[1]:.6g})"
+    return f"({coordinates(point)})"
 
 
 def _known(landslide: Landslide, key: str, heights: Heights, points: Floats) -> Floats:

@@ -12,6 +12,7 @@ from cdem.errors import MeshError
 from cdem.terrain.heights import extra
 from cdem.terrain.landslide import Landslide
 from cdem.terrain.plan import Plan, flat_mesh
+from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -203,10 +204,9 @@ def _open_edges(triangles: Ints) -> Ints:
 def _check_closed(shell: Ints, points: Floats) -> None:
     bad = _open_edges(shell)
     if len(bad):
-        x, y, z = points[bad[0]].mean(axis=0)
         raise MeshError(
             f"the surface of the bedrock has {len(bad)} edges that are not shared by two faces, "
-            f"e.g. at ({x:.6g}, {y:.6g}, {z:.6g}); give another outline or sizes.body"
+            f"e.g. at ({coordinates(points[bad[0]].mean(axis=0))}); give another outline or sizes.body"
         )
 
 

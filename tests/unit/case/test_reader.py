@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
@@ -14,8 +16,6 @@ def load(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
     def load(text: str | bytes, overrides=()):
-        from pathlib import Path
-
         path = Path("a.yaml")
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return load_case_data(path, overrides)
@@ -55,6 +55,15 @@ def test_a_missing_file_is_named(tmp_path):
         load_case_data(tmp_path / "none.yaml")
     with pytest.raises(CaseError, match="Is a directory"):
         load_case_data(tmp_path)
+
+
+def test_what_is_no_small_file_is_refused(tmp_path):
+    with pytest.raises(CaseError, match="/dev/zero: a device, not a case file"):
+        load_case_data(Path("/dev/zero"))
+    with (tmp_path / "a.yaml").open("wb") as file:
+        file.truncate(30_000_000)
+    with pytest.raises(CaseError, match=r"too large for a study \(30,000,000 bytes\); meshes"):
+        load_case_data(tmp_path / "a.yaml", what="study")
 
 
 def test_positions_count_from_one(load):

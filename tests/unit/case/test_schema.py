@@ -38,6 +38,13 @@ import pytest
         ),
         (', duration: "2 s"', "", "slope.yaml:30:5: stages.1: a dynamic stage needs a duration"),
         ("refresh: 50", "refresh: 0", "contact.refresh: must be at least 1, got 0"),
+        ("refresh: 50", "refresh: 99999999999", "contact.refresh: must be at most 2000000000, got"),
+        ("mode: static", "mode: static, max_steps: 99999999999", "must be at most 2000000000, got"),
+        (
+            "[10, 4, 1]}}",
+            "[10, 4, 100001]}}",
+            "box.divisions.2: must be at most 100000, got 100001",
+        ),
         ("refresh: 50", "refresh: often", "contact.refresh: must be displacement, got 'often'"),
         ("refresh: 50", "tolerance: atuo", "contact.tolerance: must be a number, got 'atuo'"),
         (

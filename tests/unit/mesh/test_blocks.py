@@ -68,3 +68,34 @@ def test_nodes_of_a_large_block_lie_as_its_elements_come_to_them(monkeypatch):
             t.node_position[t.element_nodes["tet4"]],
             box.points[box.cells["tet4"][t.element_cell["tet4"]]],
         )
+
+
+TETS = [[0, 1, 2, 3], [1, 2, 3, 4], [1, 2, 3, 5]]
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1], [2, 2, 2.0]])
+
+
+@pytest.mark.parametrize("rows", [[0, 0], [0, 1, 0], [0, 1, 2], [1, 1, 1, 1]])
+def test_elements_that_are_there_twice_are_refused(rows):
+    cells = np.array([TETS[row] for row in rows])
+    made = mesh.Mesh(CORNERS, {"tet4": cells}, {"tet4": np.zeros(len(cells), int)}, ["rock"])
+    with pytest.raises(MeshError, match=r"'rock': more than two elements share the face centred"):
+        build_topology(mesh.drop_unused(made), {})
+
+
+@pytest.mark.parametrize("far, refused", [(1e6, False), (1e12, True), (1e25, True), (1e200, True)])
+def test_points_whose_places_are_not_exact_are_refused(far, refused):
+    made = one_element("hex8")
+    made.points = made.points + [far, 0, 0]
+    if not refused:
+        assert len(build_topology(made, {}).face_nodes) == 6
+        return
+    with pytest.raises(MeshError, match=r"so far from the origin|is not finite"):
+        build_topology(made, {})
+
+
+def test_a_body_that_lies_a_million_elements_off_is_refused():
+    """Points closer than 1e-9 of the model would be taken for one."""
+    near, far = one_element("hex8"), one_element("hex8")
+    far.points = far.points + [0, 0, 4e6]
+    with pytest.raises(MeshError, match=r"the model is 4e\+06 m wide, and its smallest hex8"):
+        build_topology(mesh.merge([near, far]), {})

@@ -1,5 +1,7 @@
 """Convex bodies from files, and refusals of those that cannot be used."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -105,6 +107,23 @@ def test_refusals_say_where(tmp_path, change, message):
     write_obj(tmp_path / "a.obj", points, faces)
     with pytest.raises(cdem.MeshError, match=message):
         read_bodies(tmp_path / "a.obj", "rock")
+
+
+def test_vtk_may_die_of_a_file(tmp_path):
+    """A corner that is not there, far outside of the points, makes VTK read foreign memory."""
+    pyvista = pytest.importorskip("pyvista")
+    points, faces = cubes()
+    row = [len(faces), *(v for face in faces for v in (len(face), *face))]
+    grid = pyvista.UnstructuredGrid([len(row), *row], [pyvista.CellType.POLYHEDRON], points)
+    path = tmp_path / "a.vtu"
+    grid.save(path, binary=False)
+    assert volume(read_bodies(path, "rock")) == pytest.approx(1, rel=1e-12)
+    path.write_text(re.sub(r"(?<=\s)7(?=\s)", "99999999", path.read_text()))
+    with pytest.raises(cdem.MeshError, match=r"a\.vtu: VTK died of it"):
+        read_bodies(path, "rock")
+    path.write_text(path.read_text()[:700])
+    with pytest.raises(cdem.MeshError, match=r"a\.vtu: holds no bodies"):
+        read_bodies(path, "rock")
 
 
 @pytest.mark.parametrize("name, text, message", [

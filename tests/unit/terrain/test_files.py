@@ -75,6 +75,41 @@ def test_an_outline_is_read_and_an_open_one_refused(tmp_path: Path):
 
 
 @pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ('{"type": "Polygon", "coordinates": []}', "its Polygon is not a list of points"),
+        ('{"type": "Polygon", "coordinates": [[]]}', "its Polygon is not a list of points"),
+        ('{"type": "Polygon", "coordinates": [[[1], [2], [3], [1]]]}', "its Polygon is not a list"),
+        ('{"type": "Polygon", "coordinates": [[[NaN, 1]]]}', "its Polygon is not a list of points"),
+        ('{"type": "Polygon", "coordinates": {"a": 1}}', "cannot be read .*an outline is a polyg"),
+        ("<kml/>", "is KML or another XML"),
+        ("3", "not GeoJSON"),
+    ],
+)
+def test_bad_outlines_are_refused(tmp_path: Path, content: str, message: str):
+    path = tmp_path / "o.geojson"
+    path.write_text(content)
+    with pytest.raises(CaseError, match=message):
+        read_outline(path)
+    with pytest.raises(CaseError, match=r"o.kml: outlines are read from .geojson \(convert"):
+        read_outline(path.with_suffix(".kml"))
+
+
+def test_a_geotiff_is_no_link_to_another_file(tmp_path: Path):
+    pytest.importorskip("rasterio")
+    (tmp_path / "other.asc").write_text(
+        "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3 4\n"
+    )
+    (tmp_path / "g.tif").write_text(
+        '<VRTDataset rasterXSize="2" rasterYSize="2"><VRTRasterBand dataType="Float32" band="1">'
+        f"<SimpleSource><SourceFilename>{tmp_path}/other.asc</SourceFilename></SimpleSource>"
+        "</VRTRasterBand><GeoTransform>0, 10, 0, 20, 0, -10</GeoTransform></VRTDataset>"
+    )
+    with pytest.raises(CaseError, match=r"g\.tif: not a GeoTIFF"):
+        read_grid(tmp_path / "g.tif")
+
+
+@pytest.mark.parametrize(
     ("name", "content", "message"),
     [
         ("a.csv", "a,b,c\n1,2,3\n", "must name the columns x, y and z"),
@@ -89,7 +124,14 @@ def test_an_outline_is_read_and_an_open_one_refused(tmp_path: Path):
             r"feature 0 has no height; name its property with 'elevation' \(it has: name\)",
         ),
         ("a.csv", "x,y,z\n107.1,29.2,800\n107.2,29.3,1400\n", "longitude and latitude in degrees"),
-        ("a.shp", "", "contours are read from .geojson or .csv"),
+        ("a.shp", "", r"contours are read from .geojson or .csv \(convert others with ogr2ogr"),
+        ("a.geojson", "<kml/>", "is KML or another XML, not GeoJSON; convert others with ogr2ogr"),
+        ("a.geojson", "[" * 100_000, "is nested deeper than a sound file does; contours are"),
+        ("a.geojson", '{"features": [{"geometry": 3}]}', "a geometry or properties are no {"),
+        ("a.geojson", '{"type": "LineString", "coordinates": 3}', "a.geojson: "),
+        ("a.geojson", '{"type": "LineString", "coordinates": []}', "a.geojson: "),
+        ("a.csv", "x,y,z\n1,nan,3\n", "row 2 has no numbers x, y, z: 1,nan,3"),
+        ("a.csv", "x,y,z\n" + "1" * 200_000, "cannot be read .field larger than field limit"),
     ],
 )
 def test_bad_contours_are_refused(tmp_path: Path, name: str, content: str, message: str):
@@ -103,6 +145,12 @@ def test_bad_grids_are_refused(tmp_path: Path):
     path = tmp_path / "g.asc"
     path.write_text("ncols 2\nnrows 2\ncellsize 10\n1 2\n3 4\n")
     with pytest.raises(CaseError, match="its head has no xllcenter, yllcenter"):
+        read_grid(path)
+    path.write_text("ncols 2\nnrows nan\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3\n")
+    with pytest.raises(CaseError, match="its head has a number that is not finite"):
+        read_grid(path)
+    path.write_text("ncols -2\nnrows -2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3 4\n")
+    with pytest.raises(CaseError, match=r"g\.asc: cannot be read .*; a grid is ESRI ASCII"):
         read_grid(path)
     path.write_text("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3\n")
     with pytest.raises(CaseError, match="holds 3 heights, but its head says 2 x 2"):

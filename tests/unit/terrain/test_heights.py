@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from shared.slopes import PLANE, SOMEWHERE, contours_of
 
-from cdem.errors import BackendError
+from cdem.errors import BackendError, CaseError
 from cdem.terrain.heights import Grid, Lines, Smooth, extra
 
 pytest.importorskip("scipy", reason="needs the extra 'terrain'")
@@ -18,6 +18,11 @@ def test_beyond_the_outermost_contours_the_plane_goes_on():
     )
     far = np.array([[400.0, 300.0], [-300.0, 10.0]])
     assert np.abs(found(far) - PLANE(far)).max() < 1e-6
+
+
+def test_lines_millions_of_spacings_long_are_refused():
+    with pytest.raises(CaseError, match=r"2e\+09 m long, and 1e\+09 m between .* units"):
+        Lines([np.array([[0.0, 0, 0], [1e9, 0, 1]]), np.array([[0.0, 1, 0], [1e9, 1, 1]])], 1.0)
 
 
 def test_smoothing_keeps_a_plane_and_rounds_an_edge():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cdem.terrain.plan import Plan, _split_pinched
+from cdem.terrain.plan import Plan, _at, _split_pinched
 
 pytest.importorskip("scipy", reason="needs the extra 'terrain'")
 pytest.importorskip("netgen", reason="needs the extra 'terrain'")
@@ -24,3 +24,8 @@ def test_an_edge_without_thickness_across_a_body_is_divided():
     ]
     sides = plan.points[plan.triangles]
     assert np.linalg.det(sides[:, 1:] - sides[:, :1]) == pytest.approx(8.0)
+
+
+def test_places_on_a_map_are_exact_to_a_millimetre():
+    assert _at(np.array([512345.678, 4123456.789])) == "(512345.678, 4123456.789)"
+    assert _at(np.array([0.1 + 0.2, 1e-3])) == "(0.3, 0.001)"

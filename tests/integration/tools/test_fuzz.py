@@ -1,0 +1,54 @@
+"""Readers meet mutated files: they read them or refuse them, and never raise, hang or die."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FUZZ = Path(__file__).parents[3] / "tools/torture/fuzz.py"
+ALL_WELL = "0 tracebacks, 0 hangs over 5 s, 0 aborts, 0 empty messages"
+
+
+@pytest.mark.parametrize(("kind", "count"), [("cases", 150), ("files", 60)])
+def test_mutated_files_are_read_or_refused(tmp_path, kind, count):
+    if kind == "files":
+        pytest.importorskip("pyvista", reason="needs the extra 'viz'")
+        pytest.importorskip("rasterio", reason="needs the extra 'terrain'")
+        pytest.importorskip("scipy", reason="needs the extra 'terrain'")
+    command = [sys.executable, FUZZ, kind, str(count), "--seed", "7", "--out", tmp_path]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert ALL_WELL in done.stdout and done.stdout.startswith(f"{count} {kind}, seed 7: ")
+    read, refused = (int(done.stdout.split(": ")[1].split()[i]) for i in (0, 2))
+    assert read + refused == count and read > 2 and refused > 2
+
+
+def test_what_fails_is_counted_and_kept(tmp_path, monkeypatch):
+    """A reader that raises, one that dies, and one that never ends."""
+    monkeypatch.syspath_prepend(str(FUZZ.parent))
+    import fuzz
+
+    worker = tmp_path / "worker.py"
+    worker.write_text(
+        "import os, sys, time\n"
+        f"sys.path.insert(0, {str(FUZZ.parent)!r})\n"
+        "import fuzz\n"
+        "acts = [lambda: None, lambda: 1 / 0, lambda: os.abort(), lambda: time.sleep(99)]\n"
+        "calls = int(sys.argv[sys.argv.index('--first') + 1])\n"
+        "def read(path):\n"
+        "    global calls\n"
+        "    calls += 1\n"
+        "    acts[(calls - 1) % 4]()\n"
+        "fuzz.read_case = read\n"
+        "sys.exit(fuzz.main())\n"
+    )
+    monkeypatch.setattr(fuzz, "__file__", str(worker))
+    monkeypatch.setattr(fuzz, "SILENT", 2.0)
+    tally = fuzz.fuzz("cases", 8, 1, tmp_path)
+    assert tally.counts == {"read": 2, "traceback": 2, "abort": 2, "hang": 2} and tally.failed
+    kept = {path.name.split("-")[0].split(".")[0] for path in (tmp_path / "failed").iterdir()}
+    assert kept == {"1", "2", "3", "5", "6", "7"}
+    assert "ZeroDivisionError" in (tmp_path / "failed/1.txt").read_text()

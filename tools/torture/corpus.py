@@ -1,0 +1,138 @@
+"""Sound files to start from: all cases of the repository, and a small file of every format read."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import shutil
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent.parent
+
+
+def write_cases(folder: Path) -> None:
+    """Write cases, studies and landslide files, and the small files that they name."""
+    places = [ROOT / "src/cdem/templates", ROOT / "src/cdem/verification", ROOT / "examples"]
+    sys.path.insert(0, str(ROOT / "tests"))
+    from shared import cases
+
+    found = [path for place in places for path in sorted(place.rglob("*.yaml"))]
+    for path in found:
+        name = "-".join(path.relative_to(ROOT).parts[-2:])
+        (folder / name).write_bytes(path.read_bytes())
+    for name, text in vars(cases).items():
+        if isinstance(text, str) and not name.startswith("_"):
+            (folder / f"tests-{name.lower()}.yaml").write_text(text)
+    (folder / "cube.yaml").write_text(cases.CUBE)
+    (folder / "case.yaml").write_text(cases.CUBE)
+    shutil.copy(ROOT / "src/cdem/templates/slope.msh", folder)
+
+
+def write_files(folder: Path) -> None:
+    """Write small meshes, bodies and terrain in every format that is read."""
+    _write_meshes(folder)
+    _write_bodies(folder)
+    _write_terrain(folder)
+
+
+def _write_meshes(folder: Path) -> None:
+    import meshio
+    import numpy as np
+
+    from cdem.mesh.primitives import box
+
+    tets = box("a", (1, 2, 3), (1, 1, 2), shape="tet4")
+    hexes = box("b", (1, 1, 1), (2, 1, 1))
+    wedges = box("c", (1, 1, 1), (1, 1, 1), shape="wedge6")
+    points = np.concatenate([tets.points, hexes.points + 5, wedges.points + 9])
+    first, second = len(tets.points), len(tets.points) + len(hexes.points)
+    cells = [
+        ("tetra", tets.cells["tet4"]),
+        ("hexahedron", hexes.cells["hex8"] + first),
+        ("wedge", wedges.cells["wedge6"] + second),
+    ]
+    tags = [np.full(len(c), 1 + i) for i, (_, c) in enumerate(cells)]
+    names = {n: np.array([1 + i, 3]) for i, n in enumerate(("rock", "bed", "wall"))}
+    mixed = meshio.Mesh(
+        points,
+        cells,
+        cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+        field_data=names,
+    )
+    plain = meshio.Mesh(points[:first], cells[:1])
+    formats = [
+        (mixed, "gmsh22", "a22.msh", {"binary": False}), (mixed, "gmsh22", "b22.msh", {}),
+        (plain, "gmsh", "a41.msh", {"binary": False}), (plain, "gmsh", "b41.msh", {}),
+        (plain, "ansys", "a.msh", {"binary": False}), (plain, "ansys", "b.msh", {}),
+        (plain, "abaqus", "a.inp", {}), (plain, "nastran", "a.bdf", {}),
+        (plain, "netgen", "a.vol", {}), (plain, "medit", "a.mesh", {}),
+        (plain, "medit", "b.meshb", {}), (mixed, "vtk42", "a.vtk", {"binary": False}),
+        (mixed, "vtk51", "c.vtk", {"binary": False}), (mixed, "vtk", "b.vtk", {}),
+        (mixed, "vtu", "a.vtu", {"binary": False}), (mixed, "vtu", "b.vtu", {}),
+        (plain, "su2", "a.su2", {}), (plain, "flac3d", "a.f3grid", {"binary": False}),
+        (plain, "flac3d", "b.f3grid", {"binary": True}), (plain, "tetgen", "a.node", {}),
+        (plain, "avsucd", "a.avs", {}), (plain, "mdpa", "a.mdpa", {}),
+        (plain, "permas", "a.post", {}), (plain, "tecplot", "a.dat", {}),
+        (plain, "dolfin-xml", "a.xml", {}), (plain, "xdmf", "a.xdmf", {"data_format": "XML"}),
+        (plain, "med", "a.med", {}), (plain, "h5m", "a.h5m", {}), (plain, "cgns", "a.cgns", {}),
+        (plain, "hmf", "a.hmf", {}),
+    ]  # fmt: skip
+    silent = io.StringIO()
+    with contextlib.redirect_stdout(silent), contextlib.redirect_stderr(silent):
+        for mesh, form, name, options in formats:
+            meshio.write(folder / f"mesh-{name}", mesh, file_format=form, **options)
+
+
+def _write_bodies(folder: Path) -> None:
+    import meshio
+    import numpy as np
+    import pyvista
+
+    from cdem.mesh.primitives import box
+
+    corner = box("a", (1, 1, 1)).points
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    lines = [f"v {x:g} {y:g} {z:g}" for x, y, z in corner]
+    lines += ["f " + " ".join(str(v + 1) for v in face) for face in faces]
+    (folder / "body-a.obj").write_text("\n".join(lines) + "\n")
+    triangles = [(f[0], f[m], f[m + 1]) for f in faces for m in (1, 2)]
+    skin = meshio.Mesh(corner, [("triangle", np.array(triangles))])
+    skin.write(folder / "body-a.stl", binary=False)
+    skin.write(folder / "body-b.stl", binary=True)
+    row = [len(faces), *(v for face in faces for v in (len(face), *face))]
+    grid = pyvista.UnstructuredGrid([len(row), *row], [pyvista.CellType.POLYHEDRON], corner)
+    for name, binary in (("a.vtu", False), ("b.vtu", True), ("a.vtk", False), ("b.vtk", True)):
+        grid.save(folder / f"body-{name}", binary=binary)
+
+
+def _write_terrain(folder: Path) -> None:
+    import numpy as np
+    import rasterio
+
+    lines = [[[x, 10 * k + x / 9] for x in range(0, 50, 10)] for k in range(5)]
+    features = [
+        {
+            "type": "Feature",
+            "properties": {"id": k, "elev": 5.0 * k},
+            "geometry": {"type": "LineString", "coordinates": line},
+        }
+        for k, line in enumerate(lines)
+    ]
+    (folder / "lines-a.geojson").write_text(json.dumps({"features": features}, indent=0))
+    rows = [f"{k},{x},{y},{5 * k}" for k, line in enumerate(lines) for x, y in line]
+    (folder / "lines-a.csv").write_text("\n".join(["line,x,y,z", *rows]))
+    ring = [[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]]
+    (folder / "outline-a.geojson").write_text(
+        json.dumps({"type": "Polygon", "coordinates": [ring]})
+    )
+    heights = np.add.outer(np.arange(6.0), np.arange(5.0))
+    body = "\n".join(" ".join(map(str, row)) for row in heights)
+    head = "ncols 5\nnrows 6\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n"
+    (folder / "grid-a.asc").write_text(head + body)
+    place = rasterio.transform.from_origin(0, 60, 10, 10)
+    shape = {"width": 5, "height": 6, "count": 1, "dtype": "float64", "transform": place}
+    for name, more in (("a.tif", {}), ("b.tif", {"compress": "lzw"}), ("c.tif", {"tiled": True})):
+        with rasterio.open(folder / f"grid-{name}", "w", driver="GTiff", **shape, **more) as file:
+            file.write(heights, 1)

@@ -1,0 +1,290 @@
+"""Feed mutated files to every reader: `fuzz.py cases 20000 --seed 1`, `fuzz.py files 10000`.
+
+Each input is made from the seed and its number alone. A batch runs in a process of its own; one that
+dies or hangs is counted, and the next begins behind it. What fails is kept in a folder. Prints one
+line of counts, and ends with status 1 if anything failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gzip
+import io
+import os
+import queue
+import random
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import corpus
+import mutations
+
+SLOW = 5.0
+"""Seconds of processor time above which an input counts as a hang."""
+SILENT = 30.0
+"""Wall seconds without a word after which a process is killed."""
+START = 120.0
+"""Wall seconds in which a process must begin."""
+BATCH = 500
+MOST_MEMORY = 1000
+"""Peak of a process that is allowed [MB]."""
+SMALL = 300
+"""Elements up to which a model is built."""
+
+
+# ------------------------------------------------------------------ inputs
+
+
+def make_case(rng: random.Random, path: Path) -> tuple[str, bytes]:
+    """A mutated case, study or landslide file: its name, and its bytes."""
+    text = path.read_text()
+    if rng.random() < 0.6:
+        from ruamel.yaml import YAML
+
+        yaml, out = YAML(typ="safe", pure=True), io.StringIO()
+        tree = yaml.load(text)
+        for _ in range(rng.choice((1, 1, 1, 2, 4))):
+            change = mutations.scale_number if rng.random() < 0.5 else mutations.mutate_tree
+            tree = change(rng, tree) if tree else tree
+        yaml.sort_base_mapping_type_on_output = False
+        yaml.dump(tree, out)
+        text = out.getvalue()
+    else:
+        for _ in range(rng.choice((1, 1, 2, 4))):
+            text = mutations.mutate_text(rng, text)
+    return path.name, mutations.encode(rng, text)
+
+
+def make_file(rng: random.Random, path: Path) -> tuple[str, bytes]:
+    """A mutated mesh, body or terrain file: its name, and its bytes."""
+    raw, name = path.read_bytes(), path.name
+    for _ in range(rng.choice((1, 1, 1, 2, 4))):
+        raw = mutations.mutate_bytes(rng, raw)
+    if name.startswith("mesh-") and rng.random() < 0.03:
+        raw, name = gzip.compress(raw), name + ".gz"
+        raw = mutations.mutate_bytes(rng, raw) if rng.random() < 0.5 else raw
+    return name, raw
+
+
+def make(kind: str, seed: int, number: int, seeds: list[Path]) -> tuple[str, bytes]:
+    """Input of a number, the same in every process."""
+    rng = random.Random(f"{kind} {seed} {number}")
+    path = rng.choice(seeds)
+    if ".vt" in path.name and rng.random() < 0.7:  # VTK takes a second for each
+        path = rng.choice(seeds)
+    return (make_case if kind == "cases" else make_file)(rng, path)
+
+
+# ------------------------------------------------------------------ what is done with one
+
+
+def read_case(path: Path) -> None:
+    """Read a case, study or landslide file; build the model of a case if it is small."""
+    from cdem.case.case import Case
+    from cdem.run.simulation import Simulation
+    from cdem.study.study import Study
+    from cdem.terrain.landslide import Landslide
+
+    sound = path.with_name(path.name.replace("-now-", "-")).read_text()
+    if "\nparameters:" in sound:
+        Study.load(path)
+        return
+    if "\nextent:" in sound:
+        Landslide.load(path)
+        return
+    case = Case.load(path)
+    if _is_small(case):
+        audit = Simulation(case, threads=1).audit
+        audit.as_dict()
+        audit.text()
+
+
+def _is_small(case: Any) -> bool:
+    boxes = [b.box for b in case.model.blocks if b.box is not None]
+    elements = sum(6 * b.divisions[0] * b.divisions[1] * b.divisions[2] for b in boxes)
+    mesh = case.model.mesh and case.path_of(case.model.mesh)
+    large = mesh and mesh.stat().st_size > 50_000
+    return elements <= SMALL and not large and not case.model.joints
+
+
+def read_file(path: Path) -> None:
+    """Read a mesh, bodies, contours, a grid or an outline, and do the first thing that follows."""
+    from cdem.mesh.blocks import build_topology
+    from cdem.mesh.mesh_files import read_mesh
+    from cdem.model.body_files import read_bodies
+    from cdem.terrain.files import read_grid, read_lines, read_outline
+    from cdem.terrain.heights import Lines
+
+    kind = path.name.split("-")[0]
+    if kind == "mesh":
+        build_topology(read_mesh(path), {})
+    elif kind == "body":
+        build_topology(read_bodies(path, "rock"), {})
+    elif kind == "lines":
+        Lines(read_lines(path), 5.0)
+    elif kind == "grid":
+        read_grid(path)
+    else:
+        read_outline(path)
+
+
+def work(kind: str, seed: int, first: int, count: int, folder: Path) -> None:
+    """Feed a batch of inputs, and say of each what came of it."""
+    words = os.fdopen(os.dup(1), "w")
+    silent = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(silent, 1)
+    os.dup2(silent, 2)
+    from cdem.errors import CdemError
+
+    read: Callable[[Path], None] = read_case if kind == "cases" else read_file
+    seeds = seeds_of(folder / "seeds")
+    for number in range(first, first + count):
+        name, raw = make(kind, seed, number, seeds)
+        path = folder / "seeds" / f"{name.split('-')[0]}-now-{name.partition('-')[2]}"
+        path.write_bytes(raw)
+        print(f"begin {number}", file=words, flush=True)
+        began, what = time.process_time(), "read"
+        try:
+            read(path)
+        except CdemError as error:
+            what = "refused" if str(error) else "nameless"
+        except BaseException:
+            what = "traceback"
+            keep(folder, number, name, raw, traceback.format_exc())
+        seconds = time.process_time() - began
+        path.unlink()
+        if seconds > SLOW:
+            what = "hang"
+            keep(folder, number, name, raw, f"{seconds:.1f} s")
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1000
+        print(f"end {number} {what} {seconds:.3f} {memory}", file=words, flush=True)
+
+
+def seeds_of(folder: Path) -> list[Path]:
+    """Files to start from."""
+    return [p for p in sorted(folder.iterdir()) if "-" in p.name and "-now-" not in p.name]
+
+
+def keep(folder: Path, number: int, name: str, raw: bytes, why: str) -> None:
+    """Keep an input that failed, and what happened."""
+    kept = folder / "failed"
+    kept.mkdir(exist_ok=True)
+    (kept / f"{number}-{name}").write_bytes(raw)
+    (kept / f"{number}.txt").write_text(why)
+
+
+# ------------------------------------------------------------------ batches
+
+
+class Tally:
+    """Counts of what came of the inputs, the longest time, and the largest memory."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+        self.slowest, self.memory = 0.0, 0
+
+    def take(self, what: str, seconds: str, memory: str) -> None:
+        """Add one input."""
+        self.counts[what] += 1
+        self.slowest = max(self.slowest, float(seconds))
+        self.memory = max(self.memory, int(memory))
+
+    @property
+    def failed(self) -> bool:
+        """Whether anything went wrong."""
+        bad = ("traceback", "hang", "abort", "nameless")
+        return any(self.counts[what] for what in bad) or self.memory > MOST_MEMORY
+
+    def text(self) -> str:
+        """One line."""
+        c = self.counts
+        return (
+            f"{c['read']} read, {c['refused']} refused; {c['traceback']} tracebacks, {c['hang']} "
+            f"hangs over {SLOW:g} s, {c['abort']} aborts, {c['nameless']} empty messages; slowest "
+            f"{self.slowest:.1f} s, peak memory {self.memory} MB"
+        )
+
+
+def run_batch(kind: str, seed: int, first: int, count: int, folder: Path, tally: Tally) -> int:
+    """Run inputs in a process until it ends, dies or hangs; returns how many are done."""
+    command = [sys.executable, __file__, kind, str(count), "--seed", str(seed)]
+    command += ["--out", str(folder), "--first", str(first), "--worker"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, bufsize=1)
+    assert process.stdout is not None
+    said: queue.Queue[str] = queue.Queue()
+    threading.Thread(target=_listen, args=(process.stdout, said), daemon=True).start()
+    done, open_now, patience = 0, -1, START
+    try:
+        while words := said.get(timeout=patience).split():
+            patience = SILENT
+            if words[0] == "begin":
+                open_now = int(words[1])
+            else:
+                tally.take(*words[2:])
+                done, open_now = done + 1, -1
+    except queue.Empty:
+        process.kill()
+    status = process.wait()
+    if open_now >= 0:
+        what = "hang" if status == -9 else "abort"
+        tally.counts[what] += 1
+        keep(folder, open_now, *make(kind, seed, open_now, seeds_of(folder / "seeds")), what)
+        return done + 1
+    if status or done < count:
+        raise SystemExit(f"a worker ended with status {status} between two inputs")
+    return done
+
+
+def _listen(stream: Any, said: queue.Queue[str]) -> None:
+    """Hand on each line of a process; an empty one at its end."""
+    for line in stream:
+        said.put(line)
+    said.put("")
+
+
+def fuzz(kind: str, count: int, seed: int, folder: Path) -> Tally:
+    """Feed so many inputs."""
+    seeds = folder / "seeds"
+    shutil.rmtree(seeds, ignore_errors=True)
+    seeds.mkdir(parents=True)
+    (corpus.write_cases if kind == "cases" else corpus.write_files)(seeds)
+    tally, number = Tally(), 0
+    while number < count:
+        number += run_batch(kind, seed, number, min(BATCH, count - number), folder, tally)
+    return tally
+
+
+def main() -> int:
+    """Read the command line; returns the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("kind", choices=("cases", "files"))
+    parser.add_argument("count", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, help="folder of inputs that failed")
+    parser.add_argument("--first", type=int, default=0, help=argparse.SUPPRESS)
+    parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
+    a = parser.parse_args()
+    folder = a.out or Path(tempfile.mkdtemp(prefix="cdem-fuzz-"))
+    if a.worker:
+        work(a.kind, a.seed, a.first, a.count, folder)
+        return 0
+    tally = fuzz(a.kind, a.count, a.seed, folder)
+    where = f"; failed inputs are in {folder / 'failed'}" if tally.failed else ""
+    print(f"{a.count} {a.kind}, seed {a.seed}: {tally.text()}{where}")
+    return int(tally.failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
