@@ -116,7 +116,7 @@ nb::dict energy_ledger(const Core& core) {
 }
 
 nb::list energy_term_infos() {
-  static constexpr const char* kinds[] = {"stored", "lost", "supplied"};
+  static constexpr const char* kinds[] = {"stored", "lost", "supplied", "hidden"};
   nb::list infos;
   for (const EnergyTerm& term : energy_terms) {
     if (!is_told(term)) continue;

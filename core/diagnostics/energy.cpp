@@ -18,11 +18,22 @@ Real largest_term(const Energies& e) {
   return largest;
 }
 
-/// What is stored and lost, less what was supplied  [J].
+/// What a term adds to what is stored and lost, less what was supplied  [J].
+Real counted(EnergyKind kind, Real term) {
+  switch (kind) {
+    case EnergyKind::supplied:
+      return -term;
+    case EnergyKind::hidden:
+      return std::max(term, 0.0);
+    default:
+      return term;
+  }
+}
+
 Real balance(const Energies& e) {
   Real sum = 0;
   for (std::size_t k = 0; k < energy_term_count; ++k)
-    sum += energy_terms[k].kind == EnergyKind::supplied ? -e.terms[k] : e.terms[k];
+    sum += counted(energy_terms[k].kind, e.terms[k]);
   return sum;
 }
 
@@ -35,6 +46,7 @@ Energies sum_terms(const Model& m, const State& s) {
   Energies e;
   Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];
   e.terms[energy_term("kinetic")] = sample(0);
+  e.terms[energy_term("step_change")] = column_sum(s.nodes.step_change) - sample(3);
   e.terms[energy_term("external")] = column_sum(s.nodes.work_external) - sample(1);
   e.terms[energy_term("damping")] = column_sum(s.nodes.work_damping) - sample(2) +
                                     s.stopped_energy + column_sum(s.springs.dashpot) +

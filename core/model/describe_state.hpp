@@ -28,6 +28,11 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .meaning = "work taken out by damping",
           .rows = "nodes"},
          n.work_damping);
+  stored({.name = "node.step_change",
+          .unit = "J",
+          .meaning = "energy that changes of the step hide",
+          .rows = "nodes"},
+         n.step_change);
   stored({.name = "node.reaction",
           .unit = "N",
           .meaning = "force of its support, and a pad",

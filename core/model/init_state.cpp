@@ -73,7 +73,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) n.motion[8 * i + axis] = position[3 * i + axis];
   for (Column<Real>* column : {&n.force, &n.reaction, &n.sample}) column->resize(4 * count);
-  for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.unbalance})
+  for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.step_change, &n.unbalance})
     column->resize(count);
   n.bonded_node.resize(count);
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });

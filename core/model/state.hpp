@@ -12,6 +12,7 @@ namespace cdem {
 struct NodeState {
   Column<Real> motion;  // rows of 8: position, velocity
   Column<Real> work_external, work_damping;
+  Column<Real> step_change;              // energy that changes of the step hide
   Column<Real> force, reaction, sample;  // rows of 4
   Column<Real> damping_force;            // rows of 4, empty until something damps
   Column<Real> unbalance;

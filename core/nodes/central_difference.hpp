@@ -64,7 +64,9 @@ struct SumNodeForces {
 ///
 /// The force of time n acts from the middle of the step before to the middle of this one, with the
 /// mean of the velocities before and after it. Counted so, and with 1/2 v_before . M v_after as
-/// kinetic energy, central differences keep the sum of all energies exactly when forces are linear.
+/// kinetic energy, central differences keep the sum of all energies exactly when forces are linear
+/// and the step does not change. A change of the step takes 1/4 (dt - dt_before) f . (v_after -
+/// v_before) from that sum, see SampleNodes: the rest is exact again.
 struct MoveNodes {
   MassColumns mass;
   LoadColumns loads;
@@ -76,6 +78,8 @@ struct MoveNodes {
   Real* reaction;             // row of 4: force of the support  [N]
   Real* work_external;        // [node] of loads, gravity and supports so far  [J]
   Real* work_damping;         // [node] taken out by damping so far  [J]
+  Real* step_change;          // [node] hidden by changes of the step so far  [J]; null where this
+                              // step is as long as the last one
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
@@ -86,11 +90,16 @@ struct MoveNodes {
     v1.store(r + 4);
     (Row::at(r) + dt * v1).store(r);
     const Row way = 0.5 * (dt_before * v0 + dt * v1);
-    Row external = loads.at(i);
-    if (supports.support[i] >= 0) external = external + react(i, v0, v1);
+    Row external = loads.at(i), support = Row::zero();
+    if (supports.support[i] >= 0) support = react(i, v0, v1);
+    external = external + support;
     work_external[i] += dot(external.vector(), way.vector());
     if (damping_force)
       work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way.vector());
+    if (step_change) {
+      const Row acting = Row::at(force + std::size_t(i) * 4) + support;
+      step_change[i] += 0.25 * (dt - dt_before) * dot(acting.vector(), (v1 - v0).vector());
+    }
   }
 
  private:

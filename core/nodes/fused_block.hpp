@@ -44,16 +44,18 @@ struct AdvanceFused {
   Real dt_before, dt;   // of the last step and of this one  [s]
   Real* motion;         // row of 8
   Real* work_external;  // [node] of gravity so far  [J]
+  Real* step_change;    // [node] see MoveNodes
 
   template <class I>
   CDEM_HD void operator()(I e) const {
     using T = Number<I>;
     const auto first = element.columns.element_nodes.at(0, e);  // the others follow it
     const CornerForces<Shape, T> own = element.forces(e);
-    T heavy[count], m[count], work[count];
+    T heavy[count], m[count], work[count], hidden[count];
     read(loads.gravity_mass, first, heavy);
     read(mass.mass, first, m);
     read(work_external, first, work);
+    if (step_change) read(step_change, first, hidden);
     Vec3<T> weight[count], f[count];
     for (Index k = 0; k < count; ++k) {
       weight[k] = {heavy[k] * T(loads.gravity.x), heavy[k] * T(loads.gravity.y),
@@ -74,9 +76,10 @@ struct AdvanceFused {
       const T row[8] = {x1.x, x1.y, x1.z, zero, v1.x, v1.y, v1.z, zero};
       set_rows(motion, node, row);
       work[k] += dot(weight[k], T(0.5) * (T(dt_before) * v0.vector() + T(dt) * v1));
+      if (step_change) hidden[k] += T(0.25 * (dt - dt_before)) * dot(f[k], v1 - v0.vector());
     }
-    for (Index k = 0; k < count; k += 4)
-      set_fours(work_external, after(first, k), {work[k], work[k + 1], work[k + 2], work[k + 3]});
+    write(work_external, first, work);
+    if (step_change) write(step_change, first, hidden);
   }
 
   static constexpr Fetching fetching{4, 4096};
@@ -108,6 +111,12 @@ struct AdvanceFused {
       numbers[k] = some.x, numbers[k + 1] = some.y, numbers[k + 2] = some.z;
       numbers[k + 3] = some.w;
     }
+  }
+  template <class Ids, class T>
+  CDEM_HD static void write(Real* list, const Ids& place, const T* numbers) {
+    for (Index k = 0; k < count; k += 4)
+      set_fours(list, after(place, k),
+                {numbers[k], numbers[k + 1], numbers[k + 2], numbers[k + 3]});
   }
   template <class I, class T>
   CDEM_HD Vec3<T> add_bonds(I e, Index corner, Vec3<T> f) const {

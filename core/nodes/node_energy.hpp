@@ -7,28 +7,39 @@
 
 namespace cdem {
 
-/// Momentum M v of each node before the step: half of what the kinetic energy needs. Kept in the
-/// rows of `SampleNodes` until that has the other half.
+/// Momentum M v of each node before the step, and v . M v: half of what the kinetic energy needs.
+/// Kept in the rows of `SampleNodes` until that has the other half.
 struct NodeMomentum {
   InMotion nodes;
   MassColumns mass;
-  Real* momentum;  // row of 4  [kg m/s]
+  Real* momentum;  // row of 4  [kg m/s], [J]
 
   CDEM_HD void operator()(One node) const {
-    mass.momentum(nodes, node.i).store(momentum + std::size_t(node.i) * 4);
+    Row row = mass.momentum(nodes, node.i);
+    row.n[3] = dot(row.vector(), nodes.velocity(node.i));
+    row.store(momentum + std::size_t(node.i) * 4);
   }
 };
 
 /// Energy of the nodes at the time of the forces; runs after the motion.
+///
+/// The kinetic energy is that of the middle of the step before, 1/2 v . M v, and what the forces f
+/// have done since then over half of that step, 1/2 dt_before f . v. With steps of one length that
+/// is 1/2 v_before . M v_after. By the middle of this step the forces will have changed 1/2 v . M v
+/// by their work over the mean of both steps, 1/4 (dt_before + dt) f . (v_before + v_after). That
+/// is less than along the path, 1/2 f . (dt_before v_before + dt v_after), by the step change 1/4
+/// (dt - dt_before) f . (v_after - v_before) = 1/8 (dt^2 - dt_before^2) f . M^-1 f.
 struct SampleNodes {
   InMotion nodes;  // velocity: after
+  MassColumns mass;
   LoadColumns loads;
   SupportColumns supports;
   const Real* reaction;
   const Real* damping_force;  // null where nothing damps
-  Real dt;
-  Real* sample;  // row of 4, comes with M v before; kinetic energy; the external and the damping
-                 // work of the half step that follows, which the sums contain already  [J]
+  Real dt_before, dt;
+  Real* sample;  // row of 4, comes from NodeMomentum; kinetic energy; the external and the damping
+                 // work of the half step that follows, and the step change of this step, which the
+                 // sums contain already  [J]
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
@@ -36,7 +47,11 @@ struct SampleNodes {
     Row external = loads.at(i);
     if (supports.support[i] >= 0) external = external + Row::at(reaction + std::size_t(i) * 4);
     Real* r = sample + std::size_t(i) * 4;
-    r[0] = 0.5 * dot(Row::at(r).vector(), v1);
+    const Real kick = 0.5 * (dt_before + dt), share = dt_before / kick;
+    const Real before = r[3], mixed = dot(Row::at(r).vector(), v1);
+    const Real after = dot(mass.momentum(nodes, i).vector(), v1);
+    r[0] = 0.5 * (share * mixed + (1 - share) * before);
+    r[3] = 0.25 * (dt - dt_before) / kick * (after - 2 * mixed + before);
     r[1] = 0.5 * dt * dot(external.vector(), v1);
     r[2] = damping_force ? -0.5 * dt * dot(Row::at(damping_force + std::size_t(i) * 4).vector(), v1)
                          : 0;

@@ -23,6 +23,11 @@ NodeDamping node_damping(const Model& m, const State& s) {
   return {m.damping.local, m.damping.mass + s.relax_damping};
 }
 
+/// Where to book the energy that this step hides by being longer or shorter than the last one.
+Real* step_change_if_any(State& s) {
+  return s.dt != s.dt_last ? s.nodes.step_change.data() : nullptr;
+}
+
 template <class Shape>
 void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
                    ElementState& es) {
@@ -43,7 +48,8 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
                                     .dt_before = s.dt_last,
                                     .dt = s.dt,
                                     .motion = s.nodes.motion.data(),
-                                    .work_external = s.nodes.work_external.data()});
+                                    .work_external = s.nodes.work_external.data(),
+                                    .step_change = step_change_if_any(s)});
 }
 
 void advance_fused_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
@@ -82,7 +88,8 @@ MoveNodes node_motion(const Model& m, State& s) {
           .motion = s.nodes.motion.data(),
           .reaction = s.nodes.reaction.data(),
           .work_external = s.nodes.work_external.data(),
-          .work_damping = s.nodes.work_damping.data()};
+          .work_damping = s.nodes.work_damping.data(),
+          .step_change = step_change_if_any(s)};
 }
 
 void sample_before(const Model& m, State& s, Queue q) {
@@ -94,10 +101,12 @@ void sample_before(const Model& m, State& s, Queue q) {
 void sample_after(const Model& m, State& s, Queue q) {
   for_each_item(q, m.node_count,
                 SampleNodes{.nodes = {s.nodes.motion.data()},
+                            .mass = mass_columns(m, s),
                             .loads = load_columns(m, s),
                             .supports = support_columns(m, s),
                             .reaction = s.nodes.reaction.data(),
                             .damping_force = damping_forces(s),
+                            .dt_before = s.dt_last,
                             .dt = s.dt,
                             .sample = s.nodes.sample.data()});
   finish(q);

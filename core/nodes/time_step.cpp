@@ -68,10 +68,13 @@ StepLimit step_limit(const Model& m, const State& s) {
 }
 
 void renew_step(const Model& m, State& s) {
-  s.dt_stable = m.step_given > 0 ? m.step_given : m.step_safety * step_limit(m, s).dt;
+  const StepLimit limit = m.step_given > 0 ? StepLimit{} : step_limit(m, s);
+  const Real stable = m.step_given > 0 ? m.step_given : m.step_safety * limit.dt;
   const bool relaxes = s.nodes.relax_mass.size() > 0;
   const bool at_once = m.step_given > 0 || relaxes || !(s.dt > 0);
-  s.dt = at_once ? s.dt_stable : std::min(s.dt, s.dt_stable);
+  s.dt = at_once ? stable : std::min(s.dt, stable);
+  const bool flies = limit.contact_frequency_squared < limit.element_frequency_squared;
+  s.dt_stable = !at_once && flies ? std::max(s.dt, flight_growth * stable) : stable;
   if (relaxes) scale_masses(m, s);
 }
 

@@ -7,8 +7,9 @@
 
 namespace cdem {
 
-/// How a term counts: what is stored or lost must have been supplied.
-enum class EnergyKind { stored, lost, supplied };
+/// How a term counts: what is stored or lost must have been supplied. What is hidden counts as
+/// stored, but never below zero: energy that was made must not be hidden.
+enum class EnergyKind { stored, lost, supplied, hidden };
 
 struct EnergyTerm {
   const char* name;
@@ -33,6 +34,9 @@ inline constexpr EnergyTerm energy_terms[] = {
      .meaning = "inelastic strain of the elements",
      .needs_flow = true},
     {.name = "fracture", .kind = EnergyKind::lost, .meaning = "breaking of bonds"},
+    {.name = "step_change",
+     .kind = EnergyKind::hidden,
+     .meaning = "of vibrations, hidden by a step that grew; negative: made by one that shrank"},
     {.name = "external",
      .kind = EnergyKind::supplied,
      .meaning = "work of loads, gravity and supports"},

@@ -117,7 +117,10 @@ def test_step_of_an_irregular_mesh_is_bounded_by_its_nodes(tmp_path, mass):
 
 
 def test_step_of_a_body_without_contact_is_that_of_its_elements():
-    """A cube far from the bed that it has hit has the step of a cube alone, however the run is split."""
+    """A cube far from the bed that it has hit has half the step of a cube alone, however the run is split.
+
+    Half: with all of it the next impact would change the energy of its vibrations by up to 67 %.
+    """
 
     def fly(*runs):
         sim = simulate(
@@ -134,5 +137,5 @@ def test_step_of_a_body_without_contact_is_that_of_its_elements():
 
     alone = simulate([{"group": "a", "box": {"size": [1, 1, 1]}}], {"a": {}}).core.scalars()["dt"]
     at_once = fly(2000)
-    assert at_once["dt"] == alone
+    assert at_once["dt"] == pytest.approx(alone / 2, rel=1e-12)
     assert at_once == fly(*[100] * 20)

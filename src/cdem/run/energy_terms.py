@@ -27,7 +27,7 @@ class EnergyTerm:
 
 
 ENERGY_TERMS = [
-    EnergyTerm(term["name"], "energy" if term["kind"] == "stored" else "work")
+    EnergyTerm(term["name"], "energy" if term["kind"] in ("stored", "hidden") else "work")
     for term in native.energy_terms()
 ]
 """As the core lists them."""

@@ -12,7 +12,7 @@ namespace cdem::test {
 struct Points {
   Index count;
   std::vector<Real> motion, mass, force, damping_force, unbalance, reaction, work_external,
-      work_damping;
+      work_damping, step_change;
   std::vector<Index> corner_first, corner, contact_first, contact_corner;
   std::vector<Real> corner_force, contact_force;
   std::vector<Index> load_first, load_curve;
@@ -36,6 +36,7 @@ struct Points {
         reaction(4 * nodes),
         work_external(nodes),
         work_damping(nodes),
+        step_change(nodes),
         corner_first(nodes + 1),
         contact_first(nodes + 1),
         load_first(nodes + 1),
@@ -105,7 +106,8 @@ struct Points {
             motion.data(),
             reaction.data(),
             work_external.data(),
-            work_damping.data()};
+            work_damping.data(),
+            dt != dt_before ? step_change.data() : nullptr};
   }
   /// Both in one pass.
   void advance() {

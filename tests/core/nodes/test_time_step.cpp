@@ -77,13 +77,24 @@ TEST_CASE("the coming step shrinks at once and grows by one per cent") {
   s.node_bonds[0] = 0;
   renew_step(floating.model, s);
   CHECK(s.dt == short_step);
-  CHECK(relative_error(s.dt_stable, before) < 1e-15);
+  CHECK(relative_error(s.dt_stable, flight_growth * before) < 1e-15);
   advance_clock(floating.model, s);
   CHECK(s.dt_last == short_step);
   CHECK(s.time == short_step);
   CHECK(relative_error(s.dt, step_growth * short_step) < 1e-15);
   for (int n = 0; n < 500; ++n) advance_clock(floating.model, s);
   CHECK(s.dt == s.dt_stable);
+}
+
+TEST_CASE("where contacts limit the step it grows back to all of the stable one") {
+  Floating floating;
+  State& s = floating.state;
+  s.node_bonds[0] = 1e10;
+  renew_step(floating.model, s);
+  s.node_bonds[0] = 5e9;
+  renew_step(floating.model, s);
+  CHECK(s.dt < s.dt_stable);
+  CHECK(relative_error(s.dt_stable, 0.8 * step_limit(floating.model, s).dt) < 1e-15);
 }
 
 TEST_CASE("a given step is taken as it is") {
