@@ -193,24 +193,6 @@ def test_damping_does_not_change_the_reaction_of_a_driven_end(damping, divisions
     assert force[height > 1.99].sum() == pytest.approx(-pressed, rel=within)
 
 
-def test_estimated_wall_time_leaves_out_fixed_rock():
-    """512 more elements at 2 million elements and steps in a second, to round-off."""
-
-    def estimate(**bed):
-        return simulate(
-            [
-                {"group": "bed", "box": {"size": [8, 8, 8], "divisions": [8, 8, 8]}},
-                {"group": "block", "box": {"size": [1, 1, 1]}, "translate": [3, 3, 8]},
-            ],
-            {"bed": bed, "block": {}},
-            stages=[{"name": "fall", "mode": "dynamic", "duration": 1}],
-            time={"step": 1e-4},
-        ).audit.wall_time()
-
-    held, moved = estimate(fix=["x", "y", "z"]), estimate(fix=["x", "y"])
-    assert moved - held == pytest.approx(1e4 * 512 / 2e6, abs=5e-15)
-
-
 def test_static_stage_without_load_converges_at_once():
     """Forces and energies are round-off: neither the unbalance ratio nor the closing error is."""
     sim = simulate(

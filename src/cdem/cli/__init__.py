@@ -41,6 +41,13 @@ def _main() -> None:
     except CdemError as error:
         print(error, file=sys.stderr)
         sys.exit(error.exit_code)
+    except MemoryError as error:
+        print(
+            f"out of memory{f' ({error})' if str(error) else ''}: the model is too large for this "
+            "machine or its limits; use fewer elements",
+            file=sys.stderr,
+        )
+        sys.exit(1)
     except BrokenPipeError:  # the reader of our output, e.g. head, has enough
         sys.stderr.close()
         sys.exit(0)

@@ -75,11 +75,15 @@ def check(
             print(f"wrote {picture}: the body, with what is wrong in red")
         raise
     audit = simulation.audit
-    print(json.dumps(audit.as_dict(), indent=2) if as_json else audit.text().rstrip())
     if picture:
         from cdem.output import model_picture, render
 
         render.write_image(picture, model_picture.draw_model(simulation))
+    from cdem.run.estimate import estimate
+
+    cost = estimate(simulation)
+    facts = audit.as_dict() | cost.as_dict()
+    print(json.dumps(facts, indent=2) if as_json else audit.text(cost.text()).rstrip())
     if strict:
         audit.refuse_warnings()
 

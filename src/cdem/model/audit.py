@@ -250,33 +250,11 @@ class Audit:
             "interfaces": self.interfaces,
             "time_step": self.step,
             "memory_bytes": self.memory,
-            "wall_time_estimate": self.wall_time(),
             "warnings": self.warnings,
         }
 
-    def wall_time(self) -> float | None:
-        """Rough wall time of the dynamic stages [s]; None when there are none."""
-        duration = sum(s.duration or 0.0 for s in self._build.case.stages)
-        if duration == 0:
-            return None
-        exposed = len(self._build.core.fields()["search.exposed_face"])
-        # measured on one Zen 5 core: about two million elements and a million exposed faces per second
-        work = self._moving_elements() / 2e6 + exposed / 1e6
-        return duration / self.step["dt"] * work / max(1.0, 0.9 * self._threads)
-
-    def _moving_elements(self) -> int:
-        """Elements that are not held still: what is held is not computed."""
-        t, a = self._build.topology, self._build.arrays
-        row = a["support.row"][: len(t.node_block)]
-        still = a["support.component"].reshape(-1, 3).astype(bool) & (
-            a["support.velocity"].reshape(-1, 3) == 0
-        )
-        moves = row < 0
-        moves[row >= 0] = ~still.all(axis=1)[row[row >= 0]]
-        return sum(int(moves[nodes].any(axis=1).sum()) for nodes in t.element_nodes.values())
-
-    def text(self) -> str:
-        """The report as a page of text."""
+    def text(self, estimate: str = "") -> str:
+        """The report as a page of text, with lines on what the run will cost."""
         lines = [self._build.case.title or "untitled case", ""]
         lines += [
             f"  {key.replace('_', ' '):<14}{value:>12,}" for key, value in self.counts.items()
@@ -307,11 +285,10 @@ class Audit:
             "",
             f"  time step {s['dt']:.4g} s ({s['rules']} of group {s['group']} decides; stable below "
             f"{s['limit']:.4g} s)",
-            f"  memory {self.memory / 1e6:,.0f} MB",
+            f"  memory of model and state {self.memory / 1e6:,.0f} MB",
         ]
-        wall = self.wall_time()
-        if wall is not None:
-            lines.append(f"  dynamic stages: about {wall:,.0f} s of wall time while little moves")
+        if estimate:
+            lines.append(estimate.rstrip())
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
 

@@ -31,6 +31,7 @@ from cdem.model.interfaces import (
     stiffness_row,
 )
 from cdem.model.loads import drop_gravity, set_velocities, tractions_of
+from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of
 from cdem.model.supports import supports_of
 
@@ -104,7 +105,10 @@ def build(case: Case) -> Build:
     Raises:
         CaseError: Something in the case file does not fit the model.
         MeshError: A mesh cannot be used.
+        ModelError: It takes more memory than there is.
     """
+    with case.blame("model"):
+        check_memory(pieces_of_boxes(case))
     merged = read_model(case)
     names = merged.group_names
     check_groups(case, names)
@@ -112,6 +116,7 @@ def build(case: Case) -> Build:
     bonds = bonded_pairs(laws, interface_of)
     sets = [joint.name for joint in case.model.joints]
     with case.blame("model"):
+        check_memory(pieces_of_mesh(case, merged))
         check_extent(merged)
         topology = build_topology(merged, case.model.split, sets, bonds)
     check_interfaces(case, topology, names, interface_of)

@@ -1,0 +1,178 @@
+"""How long a case will take and how much memory: measured by steps of the model itself."""
+
+from __future__ import annotations
+
+import importlib.util
+import resource
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cdem.case.laws import INTERFACE_LAWS
+from cdem.model.interfaces import interface_entry, interfaces_of
+from cdem.run import stages
+from cdem.run.state import RunState
+
+SECONDS = 1.0
+"""Wall time given to each measurement [s]."""
+LEAST_STEPS = 40
+"""Steps of a measurement at least: a rebuild of the pair lists should be among them."""
+PIECE = (20, 0.02)
+"""Between two looks at the clock there are so many steps, or as many as take so long [s]."""
+DRAWING = 340_000_000
+"""Memory of matplotlib, pyvista and VTK when they draw report.html [bytes], measured in five runs."""
+
+
+@dataclass
+class StageEstimate:
+    """Cost of one stage.
+
+    Attributes:
+        name: Its name.
+        mode: "static" or "dynamic".
+        step_seconds: Wall time of a step as the stage begins [s].
+        wall_time: Of the whole stage if bonds break no more than they do as it begins [s]; None for
+            a static stage, whose number of steps nobody knows beforehand.
+        wall_time_broken: The same with all bonds without strength; None where nothing is bonded.
+    """
+
+    name: str
+    mode: str
+    step_seconds: float
+    wall_time: float | None
+    wall_time_broken: float | None
+
+    @property
+    def expected(self) -> float | None:
+        """The middle of the two, as a ratio [s]."""
+        if self.wall_time is None or self.wall_time_broken is None:
+            return self.wall_time
+        return float(np.sqrt(self.wall_time * self.wall_time_broken))
+
+
+@dataclass
+class Estimate:
+    """Cost of a case.
+
+    Attributes:
+        stages: In their order.
+        peak_memory: Largest memory of a run: building the model, its contacts with all bonds
+            broken, drawing the report [bytes].
+    """
+
+    stages: list[StageEstimate]
+    peak_memory: int
+
+    @property
+    def wall_time(self) -> float | None:
+        """Expected wall time of the dynamic stages [s]; None when there are none."""
+        times = [stage.expected for stage in self.stages if stage.expected is not None]
+        return sum(times) if times else None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON."""
+        return {
+            "wall_time_estimate": self.wall_time,
+            "peak_memory_bytes": self.peak_memory,
+            "stage_estimates": [asdict(s) | {"expected": s.expected} for s in self.stages],
+        }
+
+    def text(self) -> str:
+        """Lines for the report."""
+        lines = [f"  peak memory {self.peak_memory / 1e6:,.0f} MB, report.html included"]
+        for s in self.stages:
+            step = f"  stage {s.name}: {1e3 * s.step_seconds:.3g} ms a step"
+            if s.wall_time is None:
+                lines.append(f"{step}; it takes as many steps as rest needs")
+            elif s.wall_time_broken is None:
+                lines.append(f"{step}, about {_clock(s.wall_time)}")
+            else:
+                low, high = sorted((s.wall_time, s.wall_time_broken))
+                lines.append(
+                    f"{step}, about {_clock(s.expected or 0)} ({_clock(low)} to {_clock(high)}, as "
+                    "few or all bonds break)"
+                )
+        return "\n".join(lines) + "\n"
+
+
+def estimate(sim: RunState) -> Estimate:
+    """Measure every stage by some of its steps; the simulation is of no use afterwards.
+
+    Args:
+        sim: A simulation that has not begun.
+    """
+    found = []
+    for index, stage in enumerate(sim.case.stages):
+        sim.stage_index = index
+        stages.begin(sim)
+        step, length = _measure(sim)
+        wall = broken = None
+        if stage.duration is not None:
+            wall = stage.duration / length * step
+            if index == len(sim.case.stages) - 1 and _bonded(sim):
+                _take_strength(sim)
+                step_broken, length = _measure(sim)
+                broken = stage.duration / length * step_broken
+        found.append(StageEstimate(stage.name, stage.mode, step, wall, broken))
+    return Estimate(found, peak_memory())
+
+
+def _bonded(sim: RunState) -> bool:
+    counts = sim.build.assembly.counts
+    return any(counts[f"{kind}.count"] for kind in ("triangles", "quads", "overlaps"))
+
+
+def _take_strength(sim: RunState) -> None:
+    """Take from all interfaces what bonds them; the case stays."""
+    laws, _ = interfaces_of(sim.case, sim.build.group_names)
+    entries = []
+    for law in laws:
+        none = {p.name: 0.0 for p in INTERFACE_LAWS[law.law].parameters if p.bonds}
+        entry = interface_entry(law)
+        entries.append(entry | {"parameters": entry["parameters"] | none})
+    sim.core.set_interfaces(entries)
+
+
+def _measure(sim: RunState) -> tuple[float, float]:
+    """Wall time and simulated time of a step [s]: the second half of what `SECONDS` allow."""
+    begin = (time.perf_counter(), sim.step_count, sim.time)
+    marks, steps = [begin], PIECE[0]
+    while marks[-1][0] - begin[0] < SECONDS or marks[-1][1] - begin[1] < LEAST_STEPS:
+        try:
+            outcome = sim.core.run(steps)[0]
+        except RuntimeError:  # the core cannot go on: no room left for contacts
+            break
+        marks.append((time.perf_counter(), sim.step_count, sim.time))
+        if outcome != "steps_done":
+            break
+        wall, done, _ = np.subtract(marks[-1], marks[-2])
+        steps = max(PIECE[0], int(PIECE[1] * done / max(wall, 1e-9)))
+    wall, done, passed = np.subtract(marks[-1], marks[(len(marks) - 1) // 2])
+    if done == 0:
+        return 0.0, float(sim.core.scalars()["dt"])
+    return wall / done, passed / done
+
+
+def peak_memory() -> int:
+    """Largest memory that a run takes [bytes].
+
+    That of this process so far, or what it has now and the libraries that draw the report need.
+    """
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    most = most if sys.platform == "darwin" else 1024 * most
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+    except OSError:  # no Linux
+        pages = most // resource.getpagesize()
+    draws = all(importlib.util.find_spec(name) for name in ("matplotlib", "pyvista"))
+    return max(most, pages * resource.getpagesize() + (DRAWING if draws else 0))
+
+
+def _clock(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.2g} s"
+    return f"{seconds / 60:.2g} min" if seconds < 5400 else f"{seconds / 3600:.2g} h"

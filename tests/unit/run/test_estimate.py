@@ -1,0 +1,104 @@
+"""What a run will cost: measured by steps of the model."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import pytest
+import yaml
+from shared.cases import FALL, WALL
+
+import cdem
+from cdem.run import estimate as module
+from cdem.run.estimate import StageEstimate, estimate
+
+pytestmark = pytest.mark.usefixtures("cube_folder")
+
+
+def test_the_estimate_is_the_time_that_a_run_takes():
+    """Within a factor of 2; a busy machine is given three chances."""
+    data = yaml.safe_load(WALL)
+    data["stages"] = [{"name": "push", "mode": "dynamic", "duration": 0.1}]
+    ratios = []
+    for _ in range(3):
+        case = cdem.Case(**data)
+        said = estimate(cdem.Simulation(case, threads=1)).wall_time
+        sim = cdem.Simulation(case, threads=1)
+        began = time.perf_counter()
+        sim.run()
+        ratios.append((time.perf_counter() - began) / said)
+    assert any(0.5 < ratio < 2 for ratio in ratios), ratios
+
+
+class Clock:
+    """A clock that goes with the steps of a core: a second each, two once the bonds are gone."""
+
+    def __init__(self) -> None:
+        self.now, self.pace = 0.0, 1.0
+
+    def perf_counter(self) -> float:
+        return self.now
+
+
+class Core:
+    """A core whose steps move the clock."""
+
+    def __init__(self, core, clock: Clock) -> None:
+        self._core, self._clock = core, clock
+
+    def run(self, steps, **more):
+        self._clock.now += self._clock.pace * steps
+        return self._core.run(steps, **more)
+
+    def set_interfaces(self, entries):
+        if all(e["parameters"]["cohesion"] == 0 for e in entries):
+            self._clock.pace = 2.0
+        self._core.set_interfaces(entries)
+
+    def __getattr__(self, name):
+        return getattr(self._core, name)
+
+
+def measured(monkeypatch, text: str) -> tuple[cdem.Simulation, module.Estimate]:
+    clock = Clock()
+    monkeypatch.setattr(module, "time", clock)
+    sim = cdem.Simulation(cdem.Case(**yaml.safe_load(text)), threads=1)
+    sim.core = Core(sim.core, clock)
+    return sim, estimate(sim)
+
+
+def test_time_is_seconds_a_step_times_steps(monkeypatch):
+    sim, found = measured(monkeypatch, FALL)
+    dt = sim.core.scalars()["dt"]
+    (stage,) = found.stages
+    assert stage.step_seconds == pytest.approx(1.0)
+    assert stage.wall_time == pytest.approx(0.005 / dt, rel=0.05)  # a step may still grow
+    assert stage.wall_time_broken is None
+    assert found.wall_time == stage.wall_time
+
+
+def test_bonded_rock_is_measured_broken_too(monkeypatch):
+    _, found = measured(monkeypatch, WALL)
+    (stage,) = found.stages
+    ratio = stage.wall_time_broken / stage.wall_time
+    assert 1.8 < ratio < 6  # twice the time a step, and steps that may be shorter
+    assert found.wall_time == pytest.approx(stage.wall_time * ratio**0.5)
+    assert "as few or all bonds break" in found.text()
+
+
+def test_static_stages_have_no_time():
+    stages = [StageEstimate("settle", "static", 1e-3, None, None)]
+    found = module.Estimate(stages, 10**9)
+    assert found.wall_time is None
+    assert "stage settle: 1 ms a step; it takes as many steps as rest needs" in found.text()
+    assert "peak memory 1,000 MB" in found.text()
+
+
+def test_check_says_it(run_cli):
+    out = run_cli("check", "cube.yaml", "--threads", "1")[1]
+    assert "stage fall: " in out
+    facts = json.loads(run_cli("check", "cube.yaml", "--json", "--threads", "1")[1])
+    assert facts["stage_estimates"][0]["name"] == "fall"
+    assert facts["wall_time_estimate"] > 0
+    assert facts["peak_memory_bytes"] > 3e7
