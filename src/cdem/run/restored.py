@@ -21,9 +21,12 @@ def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:
 
 def wrong_array(core: Any) -> str:
     """Name and fault of a stored array with a wrong length or an index out of range, or ""."""
-    counts = {kind["name"]: kind["count"] for kind in core.describe_rows()}
-    arrays = core.fields()
-    for info in core.describe():
+    infos, arrays = core.describe(), core.fields()
+    kept = {info["rows"] for info in infos if info["origin"] != "rebuilt"}
+    rebuilt = {info["rows"] for info in infos} - kept  # such rows are not there yet
+    rows = core.describe_rows()
+    counts = {kind["name"]: kind["count"] for kind in rows if kind["name"] not in rebuilt}
+    for info in infos:
         if info["origin"] == "stored" and (fault := fault_of(info, arrays[info["name"]], counts)):
             return f"{info['name']} {fault}"
     return ""
@@ -35,7 +38,7 @@ def fault_of(info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int])
     Args:
         info: Its description, of `Core.describe`.
         array: Its numbers.
-        counts: How many rows there are of each kind.
+        counts: How many rows there are of each kind; references to other kinds are not looked at.
     """
     may_be_empty = info["optional"] or info["origin"] == "rebuilt"
     if len(array) == 0 and may_be_empty:
@@ -43,6 +46,8 @@ def fault_of(info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int])
     if info["rows"] and len(array) != (length := length_of(info, counts)):
         return f"holds {len(array)} numbers, not {length}"
     for kind, index in references(info, array, counts):
+        if kind not in counts:
+            continue
         if info["layout"] == "starts":
             if index[0] != 0 or (np.diff(index) < 0).any() or index[-1] != counts[kind]:
                 return f"does not divide {counts[kind]} {kind} into lists"
