@@ -8,9 +8,12 @@ namespace cdem {
 Report check_health(const Model& m, const State& s) {
   Real fastest = 0;
   Index node = -1;
+  const bool scaled = s.nodes.relax_mass.size() > 0;
   for (Index i = 0; i < m.node_count; ++i) {
     const Real* r = s.nodes.motion.data() + std::size_t(i) * 8;
-    const Real v2 = r[4] * r[4] + r[5] * r[5] + r[6] * r[6];
+    // scaled masses: the speed with which the true one would have as much energy
+    const Real heavier = scaled ? s.nodes.relax_mass[i] / m.mass[i] : 1.0;
+    const Real v2 = heavier * (r[4] * r[4] + r[5] * r[5] + r[6] * r[6]);
     if (!std::isfinite(v2) || !std::isfinite(r[0] + r[1] + r[2]))
       return {Outcome::not_finite, i, v2};
     if (v2 > fastest) fastest = v2, node = i;

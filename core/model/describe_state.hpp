@@ -52,7 +52,7 @@ void describe_motion(NodeState& n, Stored&& stored) {
          n.unbalance);
   stored({.name = "node.relax",
           .unit = "N, m/s",
-          .meaning = "force and velocity of the last step, of adaptive relaxation",
+          .meaning = "force, slowing down and velocity of the last step, of adaptive relaxation",
           .rows = "nodes",
           .numbers = 8,
           .optional = true},

@@ -22,6 +22,17 @@ void change_mass(Model& m, State& s, bool lumped) {
   s.stopped_energy += before - energy_of_motion(m, s);
 }
 
+void slow_heavier_nodes(const Model& m, State& s) {
+  const Real before = energy_of_motion(m, s);
+  const SupportColumns supports = support_columns(m, s);
+  for (Index i = 0; i < m.node_count; ++i) {
+    const Real ratio = s.nodes.relax[8 * std::size_t(i) + 3];
+    for (Index axis = 0; axis < 3; ++axis)
+      if (!supports.given(i, axis)) s.nodes.motion[8 * std::size_t(i) + 4 + axis] *= ratio;
+  }
+  s.stopped_energy += before - energy_of_motion(m, s);
+}
+
 void stop_motion(const Model& m, State& s) {
   const LoadColumns loads = load_columns(m, s);
   const Real* damping = damping_forces(s);

@@ -13,6 +13,10 @@ Real energy_of_motion(const Model& model, const State& state);
 /// damping.
 void change_mass(Model& model, State& state, bool lumped);
 
+/// Adaptive relaxation, at the time of the forces: nodes whose scaled mass has grown keep their
+/// momentum. What kinetic energy that takes is booked as damping.
+void slow_heavier_nodes(const Model& model, State& state);
+
 /// Between forces and motion: zero all velocities; their energy is booked as damping. The step that
 /// follows starts from rest with half a kick, as a central difference must.
 void stop_motion(const Model& model, State& state);

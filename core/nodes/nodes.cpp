@@ -137,6 +137,7 @@ void sum_and_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
 
 void advance_nodes(const Model& m, State& s, Queue q, const StepPlan& plan) {
   const PhaseTimer timer(s, Phase::node);
+  if (s.nodes.relax.size() > 0) slow_heavier_nodes(m, s);
   if (plan.sample || plan.stop_motion)
     sum_then_move(m, s, q, plan);
   else

@@ -19,42 +19,83 @@ void relax_kinetically(const Model& m, State& s) {
   s.kinetic_peak = s.stop_due ? 0 : kinetic;
 }
 
-/// Adaptive relaxation: damp critically the mode that moves now. Its frequency is the Rayleigh
-/// quotient of the last displacement, v . K v / v . M v, with K v from the change of the forces.
-void relax_adaptively(const Model& m, State& s) {
-  const std::size_t rows = 8 * std::size_t(m.node_count);
-  const bool known = s.nodes.relax.size() == rows;
-  s.nodes.relax.resize(rows);
-  Real* before = s.nodes.relax.data();
-  const Real *force = s.nodes.force.data(), *damping = damping_forces(s),
-             *motion = s.nodes.motion.data();
-  const auto undamped = [&](std::size_t i, std::size_t k) {
+namespace {
+
+/// Forces on nodes less what damping adds, one component  [N].
+struct Undamped {
+  const Real *force, *damping;
+  explicit Undamped(const State& s) : force(s.nodes.force.data()), damping(damping_forces(s)) {}
+  Real operator()(std::size_t i, std::size_t k) const {
     return damping ? force[4 * i + k] - damping[4 * i + k] : force[4 * i + k];
-  };
-  if (known) {
-    const Real stiff = ordered_sum(m.node_count, [&](std::size_t i) {
-      Real sum = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        sum -= before[8 * i + 4 + k] * (undamped(i, k) - before[8 * i + k]);
-      return sum;
-    });
-    const Column<Real>& mass = lumped_masses(m, s);
-    const Real heavy = ordered_sum(m.node_count, [&](std::size_t i) {
-      const Real* v = before + 8 * i + 4;
-      return mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    });
-    // the damping force lags by half a step, so w dt < sqrt(4 - 2 c dt) must hold for the fastest
-    // mode
-    const Real most = 1.8 * (1 - relax_safety * relax_safety) / s.dt_last;
-    const Real critical = heavy > 0 && stiff > 0 ? 2 * std::sqrt(stiff / (s.dt_last * heavy)) : 0;
-    s.relax_damping = std::min(critical, most);
   }
+};
+
+/// Remember forces and velocities of a step; no node has been slowed down since.
+void remember(const Model& m, State& s) {
+  const Undamped undamped(s);
+  const Real* motion = s.nodes.motion.data();
+  Real* before = s.nodes.relax.data();
 #pragma omp parallel for schedule(static) if (m.node_count >= worth_threads)
-  for (std::size_t i = 0; i < std::size_t(m.node_count); ++i)
+  for (std::size_t i = 0; i < std::size_t(m.node_count); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       before[8 * i + k] = undamped(i, k);
       before[8 * i + 4 + k] = motion[8 * i + 4 + k];
     }
+    before[8 * i + 3] = 1;
+  }
+}
+
+/// Nodes that were slowed down at the time of the forces moved with their old velocity until then:
+/// book what the forces have done on the half step that their new velocity lacks.
+void book_slowed(const Model& m, State& s) {
+  const Undamped undamped(s);
+  const LoadColumns loads = load_columns(m, s);
+  const SupportColumns supports = support_columns(m, s);
+  s.stopped_energy += ordered_sum(m.node_count, [&](Index i) {
+    const Real* before = s.nodes.relax.data() + 8 * std::size_t(i);
+    const Row way = supports.without_given(
+        i, (0.5 * s.dt_last * (1 - before[3])) * Row::of(before[4], before[5], before[6]));
+    s.nodes.work_external[i] += dot(loads.at(i).vector(), way.vector());
+    return dot(Vec3<Real>{undamped(i, 0), undamped(i, 1), undamped(i, 2)}, way.vector());
+  });
+}
+
+}  // namespace
+
+void scale_masses_if_due(const Model& m, State& s) {
+  if (s.nodes.relax.size() == 0) {
+    s.nodes.relax.resize(8 * std::size_t(m.node_count));
+    remember(m, s);
+    s.dt_stable = s.dt;
+    scale_masses(m, s);
+  } else if (step_is_due(s)) {
+    renew_step(m, s);
+  }
+}
+
+/// Adaptive relaxation: damp critically the mode that moves now. Its frequency is the Rayleigh
+/// quotient of the last displacement, v . K v / v . M v, with K v from the change of the forces.
+void relax_adaptively(const Model& m, State& s) {
+  book_slowed(m, s);
+  const Undamped undamped(s);
+  const Real* before = s.nodes.relax.data();
+  const Real stiff = ordered_sum(m.node_count, [&](std::size_t i) {
+    Real sum = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      sum -= before[8 * i + 4 + k] * (undamped(i, k) - before[8 * i + k]);
+    return sum;
+  });
+  const Column<Real>& mass = lumped_masses(m, s);
+  const Real heavy = ordered_sum(m.node_count, [&](std::size_t i) {
+    const Real* v = before + 8 * i + 4;
+    return mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  });
+  // the damping force lags by half a step, so w dt < sqrt(4 - 2 c dt) must hold for the fastest
+  // mode
+  const Real most = 1.8 * (1 - relax_safety * relax_safety) / s.dt_last;
+  const Real critical = heavy > 0 && stiff > 0 ? 2 * std::sqrt(stiff / (s.dt_last * heavy)) : 0;
+  s.relax_damping = std::min(critical, most);
+  remember(m, s);
 }
 
 }  // namespace cdem

@@ -68,25 +68,32 @@ StepLimit step_limit(const Model& m, const State& s) {
 }
 
 void renew_step(const Model& m, State& s) {
+  if (s.nodes.relax_mass.size() > 0) {  // its masses are made for any step
+    s.dt_stable = s.dt;
+    scale_masses(m, s);
+    return;
+  }
   const StepLimit limit = m.step_given > 0 ? StepLimit{} : step_limit(m, s);
   const Real stable = m.step_given > 0 ? m.step_given : m.step_safety * limit.dt;
-  const bool relaxes = s.nodes.relax_mass.size() > 0;
-  const bool at_once = m.step_given > 0 || relaxes || !(s.dt > 0);
+  const bool at_once = m.step_given > 0 || !(s.dt > 0);
   s.dt = at_once ? stable : std::min(s.dt, stable);
   const bool flies = limit.contact_frequency_squared < limit.element_frequency_squared;
   s.dt_stable = !at_once && flies ? std::max(s.dt, flight_growth * stable) : stable;
-  if (relaxes) scale_masses(m, s);
+}
+
+bool step_is_due(const State& s) {
+  return has_contact_pairs(s) || s.step % step_check_interval == 0;
 }
 
 void advance_clock(const Model& m, State& s) {
   const PhaseTimer timer(s, Phase::node);
-  const bool contacts = has_contact_pairs(s);
   s.dt_last = s.dt;
   s.time += s.dt;
   s.step += 1;
   s.dt = std::min(step_growth * s.dt, s.dt_stable);
-  // more contacts may press on a node than the pair list expects
-  if (contacts || s.step % step_check_interval == 0) renew_step(m, s);
+  // more contacts may press on a node than the pair list expects; scaled masses follow later, when
+  // a sample of this step has been taken
+  if (s.nodes.relax_mass.size() == 0 && step_is_due(s)) renew_step(m, s);
 }
 
 void scale_masses(const Model& m, State& s) {
@@ -95,10 +102,15 @@ void scale_masses(const Model& m, State& s) {
   const Real squared =
       (limit.element_frequency_squared + limit.contact_frequency_squared) / (part * part);
   const Real before = energy_of_motion(m, s);
-  s.nodes.relax_mass.resize(m.node_count);
-  for (Index i = 0; i < m.node_count; ++i)
-    s.nodes.relax_mass[i] =
+  s.nodes.relax_mass.assign(lumped_masses(m, s).data(), m.node_count);
+  for (Index i = 0; i < m.node_count; ++i) {
+    Real& mass = s.nodes.relax_mass[i];
+    const Real needed =
         (m.mass[i] * m.lumped_frequency_squared[i] + 2 * stiffness_at(s, i)) / squared;
+    if (needed > mass && s.nodes.relax.size() > 0)
+      s.nodes.relax[8 * std::size_t(i) + 3] *= mass / needed;
+    mass = needed;
+  }
   s.stopped_energy += before - energy_of_motion(m, s);
 }
 

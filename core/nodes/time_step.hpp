@@ -41,12 +41,16 @@ StepLimit step_limit(const Model& model, const State& state);
 /// Find the stable step; the coming step shrinks to it at once and grows slowly.
 void renew_step(const Model& model, State& state);
 
+/// Is the stable step, or are the masses scaled for the step, to be renewed after this step?
+bool step_is_due(const State& state);
+
 /// End a step: the clock moves on, and the coming step grows if it may.
 void advance_clock(const Model& model, State& state);
 
 /// Adaptive relaxation: give every node the least mass that its stiffness allows in the present
-/// step (Gershgorin), so that stiff and small parts hold up no others. What kinetic energy that
-/// takes is booked as damping. It lasts until `change_mass`.
+/// step (Gershgorin), so that stiff and small parts hold up no others. A node that becomes heavier
+/// keeps its momentum, one that becomes lighter its velocity: either takes energy, which is booked
+/// as damping. It lasts until `change_mass`.
 void scale_masses(const Model& model, State& state);
 
 }  // namespace cdem

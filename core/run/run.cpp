@@ -57,10 +57,9 @@ StepPlan plan_step(const Model& m, const State& s, const Goal& goal, const Place
           .fuse_blocks = !sample && !place.first && !s.stop_due && !damps_nodes(m, s)};
 }
 
-void begin_run(const Model& m, State& s, const Goal& goal) {
+void begin_run(State& s, const Goal& goal) {
   if (goal.relaxation != Relaxation::adaptive) s.relax_damping = 0;
   if (goal.relaxation != Relaxation::kinetic) s.stop_due = false;
-  if (goal.relaxation == Relaxation::adaptive && s.nodes.relax_mass.size() == 0) scale_masses(m, s);
 }
 
 void end_step(const Model& m, State& s, const Goal& goal, const StepPlan& plan) {
@@ -84,8 +83,9 @@ Report report_of(const Model& m, const State& s, const Goal& goal, const Place& 
 }  // namespace
 
 Report run(const Model& m, State& s, const Goal& goal) {
-  begin_run(m, s, goal);
+  begin_run(s, goal);
   for (std::int64_t n = 1; n <= goal.steps; ++n) {
+    if (goal.relaxation == Relaxation::adaptive) scale_masses_if_due(m, s);
     const Place place = place_of(s, goal, n);
     const StepPlan plan = plan_step(m, s, goal, place);
     step(m, s, {}, plan);

@@ -320,6 +320,40 @@ def test_resumed_relaxation_gives_identical_results(tmp_path, way):
     assert digest(resumed) == digest(whole)
 
 
+def test_adaptive_relaxation_with_contacts_gives_identical_results(tmp_path):
+    """Scaled masses that follow contacts: 1 and 3 threads, and a run that is stopped and resumed."""
+
+    def settle(threads, **more):
+        stones = [
+            {"group": "stone", "box": {"size": [1, 1, 1]}, "translate": [0.6 * k, 0, 1.01 * k + 0.001]}
+            for k in range(3)
+        ]
+        bed = {"group": "bed", "box": {"size": [4, 3, 1]}, "translate": [-1, -1, -1]}
+        return cdem.Simulation(
+            case(
+                [bed, *stones],
+                {"bed": {"fix": ["x", "y", "z"]}, "stone": {}},
+                interfaces={"default": {"friction_angle": 30}},
+                loads={"gravity": [0.3, 0.1, -9.81]},
+                stages=[{"name": "rest", "mode": "static", "relax": "adaptive", "max_steps": 300}],
+            ),
+            threads=threads,
+            **more,
+        )
+
+    whole = settle(1, output=tmp_path / "whole")
+    whole.run()
+    assert len(whole.contacts["kind"]) > 0
+    other = settle(3)
+    other.run()
+    assert digest(other) == digest(whole)
+    asked = iter([False, True, False])
+    assert settle(2, output=tmp_path / "broken").run(should_stop=lambda: next(asked)) == "stopped"
+    resumed = settle(1, output=tmp_path / "broken", resume=True)
+    resumed.run()
+    assert digest(resumed) == digest(whole)
+
+
 def test_restored_state_repeats_the_motion():
     """A cube that has touched the bed is restored to a state before: it flies on with the same bits."""
     sim = cdem.Simulation(

@@ -254,6 +254,7 @@ def results():
         half = cdem.Simulation(case(), output=f"{folder}/b", threads=1)
         half.run_until(0.1)
         half.checkpoint()
+        half.close()
         rest = cdem.Simulation(case(), output=f"{folder}/b", threads=1, resume=True)
         rest.run()
         own, other = whole.core.fields(), rest.core.fields()

@@ -265,3 +265,61 @@ def test_energy_ledger_stays_closed_when_damping_ends():
     sim.run()
     assert sim.energies["damping"] > 0
     assert abs(sim.energies["error"]) < 1e-4
+
+
+def soft_on_stiff(ratio, gravity=9.81, shape="hex8"):
+    """A block of rock that is softer by a ratio rests on a fixed slab by relaxation."""
+    box = {"size": [1, 1, 1], "divisions": [2, 2, 2], "shape": shape}
+    bed = {"size": [2, 2, 1], "divisions": [4, 4, 1], "shape": shape}
+    base = {"min": [-9, -9, -1.001], "max": [9, 9, -0.999]}
+    rock = {"density": 2500, "young_modulus": 10e9, "poisson_ratio": 0.25}
+    return cdem.Simulation(
+        cdem.Case.from_dict(
+            {
+                "cdem": 1,
+                "model": {
+                    "blocks": [
+                        {"group": "bed", "box": bed, "translate": [-0.5, -0.5, -1]},
+                        {"group": "block", "box": box, "translate": [0, 0, 0]},
+                    ]
+                },
+                "materials": {"hard": rock, "soft": rock | {"young_modulus": 10e9 / ratio}},
+                "groups": {"bed": {"material": "hard"}, "block": {"material": "soft"}},
+                "interfaces": {"default": {"friction_angle": 30}},
+                "loads": {
+                    "gravity": [0, 0, -gravity],
+                    "supports": [{"box": base, "fix": ["x", "y", "z"]}],
+                },
+                "stages": [{"name": "rest", "mode": "static", "relax": "adaptive"}],
+            }
+        ),
+        threads=1,
+    )
+
+
+@pytest.mark.parametrize("shape", ["hex8", "tet4"])
+@pytest.mark.parametrize("ratio", [1, 1e4])
+def test_soft_block_comes_to_rest_on_a_stiff_one(ratio, shape):
+    """Contacts change the scaled masses by up to the ratio: momentum is kept, energy is booked.
+
+    The soft block settles by rho g h^2 / 2E of a free column, more by Poisson's ratio: within 20 %.
+    """
+    sim = soft_on_stiff(ratio, shape=shape)
+    assert sim.run() == "converged"
+    assert abs(sim.energies["error"]) < 1e-2
+    assert sim.energies["damping"] > 0
+    assert sim.energies["friction"] > -1e-6 * sim.energies["external"]
+    if ratio > 1:
+        top = sim.build.start_position[:, 2] > 1 - 1e-9
+        settled = -sim.fields["displacement"][top, 2].mean()
+        assert settled == pytest.approx(2500 * 9.81 * ratio / 2 / 10e9, rel=0.2)
+
+
+@pytest.mark.parametrize(("ratio", "gravity"), [(4e4, 9.81), (1e6, 0.0981)])
+def test_block_far_softer_than_its_bed_keeps_the_ledger_closed(ratio, gravity):
+    """Either blew up; the second in its first step, as its scaled nodes seemed too fast."""
+    sim = soft_on_stiff(ratio, gravity)
+    sim.run(should_stop=lambda: sim.step_count > 3000)
+    assert np.isfinite(sim.fields["position"]).all()
+    assert np.abs(sim.fields["displacement"]).max() < 0.1
+    assert abs(sim.energies["error"]) < 1e-2

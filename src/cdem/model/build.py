@@ -30,7 +30,7 @@ from cdem.model.interfaces import (
     interfaces_of,
     stiffness_row,
 )
-from cdem.model.loads import drop_gravity, set_velocities, tractions_of
+from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of
 from cdem.model.supports import supports_of
@@ -135,6 +135,14 @@ def build(case: Case) -> Build:
     built = Build(case, merged, topology, parts, core, curves, topology.node_position, bonds)
     motion = core.fields()["node.motion"].reshape(-1, 8)
     set_velocities(case, topology, names, built.arrays["node.mass"], motion)
+    lost = start_on_supports(built.arrays, curves, motion)
+    groups = built.node_groups()
+    for group in np.unique(groups[lost]):
+        count, of = (lost & (groups == group)).sum(), (groups == group).sum()
+        merged.notes.append(
+            f"group {names[group]}: {count:,} of its {of:,} nodes are supported; they begin with "
+            "the velocity of their support, not with that of the group"
+        )
     return built
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -69,3 +71,29 @@ def set_velocities(
         center = (mass[nodes, None] * x).sum(axis=0) / mass[nodes].sum()
         spin = np.cross(np.asarray(group.angular_velocity, float), x - center)
         motion[nodes, 4:7] = np.asarray(group.velocity, float) + spin
+
+
+def start_on_supports(
+    arrays: Mapping[str, NDArray], curves: Curves, motion: Floats
+) -> NDArray[np.bool_]:
+    """Let supported components begin with the velocity that their support gives: no jolt.
+
+    Args:
+        arrays: Of the core.
+        curves: Times and factors.
+        motion: Rows of the core: position, then velocity from the fifth number on; is changed.
+
+    Returns:
+        Nodes that had another velocity, not zero, of their own, shape (nodes,).
+    """
+    nodes = np.flatnonzero(arrays["support.row"] >= 0)
+    row = arrays["support.row"][nodes]
+    factor = np.array([np.interp(0.0, times, factors) for times, factors in curves])
+    given = arrays["support.component"].reshape(-1, 3)[row].astype(bool)
+    velocity = arrays["support.velocity"].reshape(-1, 3)[row]
+    velocity = velocity * factor[arrays["support.curve"].reshape(-1, 3)[row]]
+    own = motion[nodes, 4:7]
+    lost = np.zeros(len(motion), bool)
+    lost[nodes] = (given & (own != 0) & (own != velocity)).any(axis=1)
+    motion[nodes, 4:7] = np.where(given, velocity, own)
+    return lost

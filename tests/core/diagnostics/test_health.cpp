@@ -50,6 +50,17 @@ TEST_CASE("the fastest node is named when it is too fast") {
   CHECK(report.value == 11);
 }
 
+TEST_CASE("a node with a scaled mass is too fast if its energy is") {
+  Box box;
+  box.model.speed_limit = 10;
+  box.motion(3)[5] = 1000;
+  box.state.nodes.relax_mass.assign(box.model.mass.data(), box.model.node_count);
+  box.state.nodes.relax_mass[3] *= 0.99e-4;
+  CHECK(box.health().outcome == Outcome::steps_done);
+  box.state.nodes.relax_mass[3] *= 1.03;
+  CHECK(box.health().outcome == Outcome::too_fast);
+}
+
 TEST_CASE("a contact that penetrated too deep is named by its face") {
   Box box;
   box.state.springs.lost[4 * 2 + 3] = 1;
