@@ -35,9 +35,9 @@ def test_intact_bonded_cube_has_the_stated_compliance():
     top = sim.build.start_position[:, 2] > 1 - 1e-9
     strain = -sim.fields["displacement"][top, 2].mean()
     added = 100 * (strain / (1e6 / 10e9) - 1)
-    stated = sim.audit.interfaces[0]["compliance_percent"]
-    # the statement is a mean over directions, and this mesh is not the same in all of them
-    assert added == pytest.approx(stated, rel=0.2)
+    stated = sim.audit.interfaces[0]["compliance_along_xyz"][2]
+    # stated for a uniform stress, which is an upper bound: this mesh carries past its soft bonds
+    assert 0.85 * stated < added < stated
 
 
 def test_unloaded_bonded_cube_stays_at_rest():

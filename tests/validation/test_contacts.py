@@ -231,6 +231,7 @@ def test_overlapping_blocks_are_reported_and_free_of_stress(depth):
             {"group": "upper", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -depth]},
         ],
         {"lower": {"fix": ["x", "y", "z"]}, "upper": {}},
+        loads={"gravity": [0, 0, 0]},
     )
     assert f"up to {depth:g} m" in sim.audit.warnings[0]
     sim.step(200)

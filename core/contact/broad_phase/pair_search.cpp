@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,18 @@ void list_edge_sides(Unset<Patch>& patches, Unset<Index>& sides) {
     }
 }
 
+/// What two patches may touch of each other before the next rebuild.
+void list_pairs(const PairContext& f, const Patch& a, const Patch& b, PairBuffer& found) {
+  const SeparatedParts separated(f, a, b);
+  const FacePairMask pairs(f, a, b, separated);
+  if (!pairs.any()) return;
+  ListedFacePairs listed;
+  list_vertex_face_pairs(f, a, b, pairs, separated, false, listed, found);
+  list_vertex_face_pairs(f, b, a, pairs, separated, true, listed, found);
+  if (f.m.semi_edges) list_edges(f, a, b, pairs, separated, listed, found);
+  listed.list(a, b, found);
+}
+
 }  // namespace
 
 void search_pairs(const Model& m, const State& s, PairSearch& search) {
@@ -87,36 +100,31 @@ void search_pairs(const Model& m, const State& s, PairSearch& search) {
   all.by_patch.assign(count, {});
   list_edge_sides(patches, all.edge_sides);
   for (PairBuffer& found : all.by_thread) found.clear();
+  std::exception_ptr failure;  // memory may run out, and no exception may leave a parallel loop
 #pragma omp parallel if (count >= worth_threads)
   {
-    PairBuffer& found = all.by_thread[omp_get_thread_num()];
+    const Index thread = omp_get_thread_num();
+    PairBuffer& found = all.by_thread[thread];
     std::vector<Index> others;
 #pragma omp for schedule(dynamic, 32)
-    for (Index p = 0; p < count; ++p) {
-      const Patch& a = patches[p];
-      if (!a.movable) continue;  // movable patches find it
-      others.clear();
-      tree.query(boxes[p], [&](Index q) {
-        if ((q > p || !patches[q].movable) && a.block != patches[q].block &&
-            !apart(m, s, exposed, a, patches[q]))
-          others.push_back(q);
-      });
-      std::sort(others.begin(), others.end());
-      all.by_patch[p].begin(omp_get_thread_num(), found);
-      for (const Index q : others) {
-        const Patch& b = patches[q];
-        const SeparatedParts separated(f, a, b);
-        const FacePairMask pairs(f, a, b, separated);
-        if (!pairs.any()) continue;
-        ListedFacePairs listed;
-        list_vertex_face_pairs(f, a, b, pairs, separated, false, listed, found);
-        list_vertex_face_pairs(f, b, a, pairs, separated, true, listed, found);
-        if (m.semi_edges) list_edges(f, a, b, pairs, separated, listed, found);
-        listed.list(a, b, found);
+    for (Index p = 0; p < count; ++p) try {
+        if (!patches[p].movable) continue;  // movable patches find it
+        others.clear();
+        tree.query(boxes[p], [&](Index q) {
+          if ((q > p || !patches[q].movable) && patches[p].block != patches[q].block &&
+              !apart(m, s, exposed, patches[p], patches[q]))
+            others.push_back(q);
+        });
+        std::sort(others.begin(), others.end());
+        all.by_patch[p].begin(thread, found);
+        for (const Index q : others) list_pairs(f, patches[p], patches[q], found);
+        all.by_patch[p].end(found);
+      } catch (...) {
+#pragma omp critical
+        failure = std::current_exception();
       }
-      all.by_patch[p].end(found);
-    }
   }
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace cdem

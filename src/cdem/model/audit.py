@@ -11,10 +11,11 @@ from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
-from cdem.model.doubts import crowded_edges, idle_bonds
+from cdem.model.compliance import bonded_interfaces, coarse_beams
+from cdem.model.doubts import crowded_edges, doubled_blocks, idle_bonds
 
-SOFT = 20.0
-"""Compliance of the interfaces above which the audit warns [%]."""
+SOFT = 30.0
+"""Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
 
 
 class Audit:
@@ -47,7 +48,7 @@ class Audit:
             "bonded_pairs": sum(counts[f"{k}.count"] for k in ("triangles", "quads", "overlaps")),
         }
         self.groups = self._groups()
-        self.interfaces = self._interfaces()
+        self.interfaces = bonded_interfaces(build)
         self.step = self._step()
         self.warnings = self._warnings()
 
@@ -74,58 +75,6 @@ class Audit:
                 "high": b.start_position[nodes].max(axis=0).tolist(),
             }
         return out
-
-    def _interfaces(self) -> list[dict[str, Any]]:
-        """One row per bonded pair of groups or set of joints: pairs, area, stiffness, compliance."""
-        b = self._build
-        t, a = b.topology, b.assembly
-        case = self._build.case
-        sim_young = np.array(
-            [case.materials[case.groups[n].material].young_modulus for n in b.group_names]
-        )
-        volume = np.concatenate(list(a.element_volume.values()))
-        sets = [None, *(joint.name for joint in case.model.joints)]
-        rows: dict[tuple[str, str, str | None], dict[str, Any]] = {}
-        for kind in ("triangles", "quads", "overlaps"):
-            count = a.counts[f"{kind}.count"]
-            if count == 0:
-                continue
-            faces = a.pair_faces[kind]
-            stride = len(b.arrays[f"{kind}.interface"])
-            normal, shear = b.arrays[f"{kind}.stiffness"].reshape(2, stride)[:, :count]
-            area = b.arrays[f"{kind}.area"][:count]
-            # strain per stress that the interfaces add, averaged over directions: a joint of normal
-            # n adds A (n_z^4 / k_n + n_z^2 (1 - n_z^2) / k_s); the means are 1/5 and 2/15
-            young = sim_young[t.face_group[faces]].mean(axis=1)
-            soft = area * young * (1 / (5 * normal) + 2 / (15 * shear))
-            group = np.sort(t.face_group[faces], axis=1)
-            joint = (t.face_kind // len(b.group_names))[faces]
-            joint = np.where(joint[:, 0] == joint[:, 1], joint[:, 0], 0)
-            groups = len(b.group_names)
-            where = (joint.astype(np.int64) * groups + group[:, 0]) * groups + group[:, 1]
-            for number in np.unique(where):
-                some = where == number
-                k, i, j = number // groups**2, number // groups % groups, number % groups
-                key = (b.group_names[i], b.group_names[j], sets[k])
-                row = rows.setdefault(key, {"pairs": 0, "area": 0.0, "soft": 0.0, "k": [], "e": []})
-                row["pairs"] += int(some.sum())
-                row["area"] += float(area[some].sum())
-                row["soft"] += float(soft[some].sum())
-                row["k"] += [float(normal[some].min()), float(normal[some].max())]
-                row["e"].append(t.face_element[faces[some]].ravel())
-        return [
-            {
-                "between": list(key[:2]),
-                "joint": key[2],
-                "bonded_pairs": row["pairs"],
-                "area": row["area"],
-                "stiffness_n": [min(row["k"]), max(row["k"])],
-                "compliance_percent": float(
-                    100 * row["soft"] / volume[np.unique(np.concatenate(row["e"]))].sum()
-                ),
-            }
-            for key, row in rows.items()
-        ]
 
     def _step(self) -> dict[str, Any]:
         b = self._build
@@ -180,7 +129,8 @@ class Audit:
 
     def _warnings(self) -> list[str]:
         b = self._build
-        out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology), *idle_bonds(b)]
+        out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
+        out += [*doubled_blocks(b.topology), *idle_bonds(b)]
         if any(s.mode == "static" for s in b.case.stages):
             for name, count in self._unheld_blocks().items():
                 blocks = "1 block has" if count == 1 else f"{count:,} blocks have"
@@ -212,8 +162,10 @@ class Audit:
         for row in soft:
             out.append(
                 f"the interface {_place(row)} adds "
-                f"{row['compliance_percent']:.0f} % compliance; raise its stiffness_n"
+                f"{row['compliance_percent']:.0f} % compliance in tension and bending; raise its "
+                "stiffness_n"
             )
+        out += coarse_beams(b)
         if b.assembly.lumped_blocks:
             out.append(
                 f"{b.assembly.lumped_blocks} large blocks one element thick keep lumped masses: "
@@ -278,7 +230,8 @@ class Audit:
             lines.append(
                 f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
                 f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
-                f"{row['stiffness_n'][1]:.3g} Pa/m, adds {row['compliance_percent']:.3g} % compliance"
+                f"{row['stiffness_n'][1]:.3g} Pa/m, adds {row['compliance_percent']:.3g} % compliance in "
+                f"tension and bending, {row['shear_compliance_percent']:.3g} % in shear"
             )
         s = self.step
         lines += [

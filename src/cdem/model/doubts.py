@@ -37,6 +37,21 @@ def crowded_edges(t: Topology) -> Iterator[str]:
     )
 
 
+def doubled_blocks(t: Topology) -> Iterator[str]:
+    """Say which blocks have faces at the same place that look the same way: they fill one space."""
+    if len(t.same_faces) == 0:
+        return
+    blocks = t.face_block[t.same_faces[0]]
+    a, b = (t.group_names[t.block_group[block]] for block in blocks)
+    nodes = t.face_nodes[t.same_faces[0, 0]]
+    place = ", ".join(f"{x:.6g}" for x in t.node_position[nodes[nodes >= 0]].mean(axis=0))
+    yield (
+        f"blocks {blocks[0]} (group {a}) and {blocks[1]} (group {b}) fill the same space: "
+        f"{len(t.same_faces)} pair(s) of faces lie at one place and look the same way, the first at "
+        f"({place}); is a body there twice?"
+    )
+
+
 def idle_bonds(build: Build) -> Iterator[str]:
     """Say which interfaces are given strength in the case but bond nothing at the start."""
     case, t = build.case, build.topology
@@ -70,8 +85,9 @@ def _why(t: Topology, law: Interface) -> str:
             f": group {a} is one block (see model.split)" if single else f": no faces in {a} touch"
         )
     gap, size = _gap(t, a, b)
-    near = "; move them together if they are meant to touch" if gap < NEAR * size else ""
-    return f": no faces of {a} and {b} touch at the start, they lie about {gap:.3g} m apart{near}"
+    near = "; put them face on face if they are meant to be bonded" if gap < NEAR * size else ""
+    away = f"the nearest vertex is about {gap:.3g} m from the other's surface"
+    return f": no faces of {a} and {b} touch at the start, {away}{near}"
 
 
 def _gap(t: Topology, a: str, b: str) -> tuple[float, float]:

@@ -42,8 +42,8 @@ def test_a_gap_that_leaves_a_named_strength_idle_is_told_with_its_width():
     warnings = told(two(1e-3, {"pairs": [pair], "default": {"friction_angle": 30}}))
     assert warnings == [
         "case: interfaces.pairs.0: cohesion and tensile_strength bond nothing: no faces of bed and "
-        "block touch at the start, they lie about 0.001 m apart; move them together if they are "
-        "meant to touch"
+        "block touch at the start, the nearest vertex is about 0.001 m from the other's surface; "
+        "put them face on face if they are meant to be bonded"
     ]
 
 
@@ -107,3 +107,12 @@ def test_bodies_that_hang_together_by_an_edge_are_told():
         "group rock: more than two outer faces meet at 1 edge(s), the first at (1, 1, 0.5)"
     )
     assert list(crowded_edges(build_topology(mesh, {"rock": "elements"}))) == []
+
+
+def test_a_body_given_twice_is_told():
+    data = two(0, {"default": {"friction_angle": 30}}).model_dump(mode="json", exclude_none=True)
+    data["model"]["blocks"].append(data["model"]["blocks"][1])
+    warnings = [w for w in told(Case(**data)) if "fill the same space" in w]
+    assert len(warnings) == 1
+    assert "(group block) and" in warnings[0]
+    assert "6 pair(s) of faces lie at one place and look the same way" in warnings[0]

@@ -1,0 +1,137 @@
+"""How much softer bonds make a body, and bodies whose mesh is too coarse to bend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh.arrays import components, lengths
+from cdem.model.build import Build
+
+Floats = NDArray[np.float64]
+
+KINDS = ("triangles", "quads", "overlaps")
+PLANES = ((0, 1), (1, 2), (2, 0))
+BEAM = 4.0
+"""A body so many times as long as it is wide and high is a beam."""
+HELD = 0.25
+"""Part of its points: a body that is held at more of them does not bend as a beam."""
+DEEP = 2.5
+"""Tets over the depth of a beam below which the audit warns: 3, less what irregular ones vary."""
+
+
+def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
+    """One row per bonded pair of groups or set of joints: pairs, area, stiffness, compliance.
+
+    The compliance is that of the bonds over that of the rock beside them, both under the same uniform
+    stress: exact for layers, an upper bound for other patterns. Of tension or bending along x, y, z,
+    and of shear in the three planes, the largest is given.
+    """
+    t, a, case = build.topology, build.assembly, build.case
+    volume = np.concatenate(list(a.element_volume.values()))
+    groups, sets = len(build.group_names), [None, *(joint.name for joint in case.model.joints)]
+    rows: dict[tuple[str, str, str | None], dict[str, Any]] = {}
+    for kind in KINDS:
+        faces = a.pair_faces[kind]
+        if len(faces) == 0:
+            continue
+        stride = len(build.arrays[f"{kind}.interface"])
+        normal = build.arrays[f"{kind}.stiffness"].reshape(2, stride)[0, : len(faces)]
+        area = build.arrays[f"{kind}.area"][: len(faces)]
+        soft = _softness(build, kind)
+        group = np.sort(t.face_group[faces], axis=1)
+        joint = (t.face_kind // groups)[faces]
+        joint = np.where(joint[:, 0] == joint[:, 1], joint[:, 0], 0)
+        where = (joint.astype(np.int64) * groups + group[:, 0]) * groups + group[:, 1]
+        for number in np.unique(where):
+            some = where == number
+            k, i, j = number // groups**2, number // groups % groups, number % groups
+            key = (build.group_names[i], build.group_names[j], sets[k])
+            empty = {"pairs": 0, "area": 0.0, "soft": np.zeros(6), "k": [], "e": []}
+            row = rows.setdefault(key, empty)
+            row["pairs"] += int(some.sum())
+            row["area"] += float(area[some].sum())
+            row["soft"] += soft[some].sum(axis=0)
+            row["k"] += [float(normal[some].min()), float(normal[some].max())]
+            row["e"].append(t.face_element[faces[some]].ravel())
+    return [_row(key, row, volume) for key, row in rows.items()]
+
+
+def _row(key: tuple, row: dict[str, Any], volume: Floats) -> dict[str, Any]:
+    percent = 100 * row["soft"] / volume[np.unique(np.concatenate(row["e"]))].sum()
+    return {
+        "between": list(key[:2]),
+        "joint": key[2],
+        "bonded_pairs": row["pairs"],
+        "area": row["area"],
+        "stiffness_n": [min(row["k"]), max(row["k"])],
+        "compliance_percent": float(percent[:3].max()),
+        "compliance_along_xyz": percent[:3].tolist(),
+        "shear_compliance_percent": float(percent[3:].max()),
+        "shear_compliance_in_xy_yz_zx": percent[3:].tolist(),
+    }
+
+
+def _softness(build: Build, kind: str) -> Floats:
+    """Strain that each pair adds, over that of the rock, times a volume [m3], (pairs, 6).
+
+    A plane of normal n and area A adds A (n_x^4 / k_n + n_x^2 (1 - n_x^2) / k_s) to the compliance
+    along x, and A (4 n_x^2 n_y^2 / k_n + (n_x^2 + n_y^2 - 4 n_x^2 n_y^2) / k_s) to that of shear in
+    the plane x, y.
+    """
+    t, case = build.topology, build.case
+    faces = build.assembly.pair_faces[kind]
+    stride = len(build.arrays[f"{kind}.interface"])
+    k_n, k_s = build.arrays[f"{kind}.stiffness"].reshape(2, stride)[:, : len(faces), None]
+    area = build.arrays[f"{kind}.area"][: len(faces), None]
+    rock = [case.materials[case.groups[name].material] for name in build.group_names]
+    young = np.array([m.young_modulus for m in rock])
+    shear = young / (2 + 2 * np.array([m.poisson_ratio for m in rock]))
+    young, shear = (of[t.face_group[faces]].mean(axis=1)[:, None] for of in (young, shear))
+    nodes = t.face_nodes[faces[:, 0]]
+    x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    square = (normal / lengths(normal)[:, None]) ** 2
+    first, second = (square[:, [plane[side] for plane in PLANES]] for side in (0, 1))
+    both = 4 * first * second
+    along = young * area * (square**2 / k_n + square * (1 - square) / k_s)
+    across = shear * area * (both / k_n + (first + second - both) / k_s)
+    return np.concatenate([along, across], axis=1)
+
+
+def coarse_beams(build: Build) -> Iterator[str]:
+    """Say which bodies are beams of tets less than three deep: they bend too little."""
+    t = build.topology
+    pairs = np.concatenate([t.face_block[build.assembly.pair_faces[kind]] for kind in KINDS])
+    block_body = components(len(t.block_group), *pairs.T)
+    body = block_body[t.element_block["tet4"]]
+    volume = build.assembly.element_volume["tet4"]
+    count = np.bincount(body, minlength=len(t.block_group))
+    whole = np.bincount(body, volume, len(t.block_group))
+    node_body = block_body[t.node_block]
+    held = build.arrays["support.row"][: len(t.node_block)] >= 0
+    told: set[str] = set()
+    order = np.argsort(node_body, kind="stable")
+    begin = np.searchsorted(node_body[order], np.arange(len(count) + 1))
+    for number in np.flatnonzero(count >= 6 * BEAM):
+        nodes = order[begin[number] : begin[number + 1]]
+        _, first = np.unique(t.node_place[nodes], return_index=True)
+        if held[nodes[first]].mean() > HELD:
+            continue
+        x = t.node_position[nodes[first]]
+        _, axes = np.linalg.eigh(np.cov(x.T))
+        high, wide, long = np.sort(np.ptp(x @ axes, axis=0))
+        if wide < 1.5 * high:  # a square section may be seen along its diagonals
+            high = wide = np.sqrt(whole[number] / long)
+        cell = np.cbrt(6 * whole[number] / count[number])  # of a box that is cut into six tets
+        group = build.group_names[t.block_group[number]]
+        if long >= BEAM * wide and high < DEEP * cell and group not in told:
+            told.add(group)
+            yield (
+                f"group {group}: a beam of tets {high / cell:.1f} deep bends too little: by a "
+                "quarter with three, by almost half with two. Use at least four, or hexahedra with "
+                "elements.hexahedra: one-point"
+            )
