@@ -185,6 +185,11 @@ class Time(Part):
         0.8, description="Share of the stability limit that an automatic step uses [1]"
     )
     mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst elements")
+    energy_error: Annotated[float, Quantity("1", above=0)] | Literal["any"] = Field(
+        0.05,
+        description="Closing error of the energy balance, as a share of its largest term, at which a "
+        "run ends as failed; any: never [1]",
+    )
 
 
 if TYPE_CHECKING:

@@ -394,7 +394,6 @@ def _pairs(t: Topology, place: NDArray) -> None:
     facing = ((mate == at[a]) | (k >= sides)).all(axis=1)
     t.pair_faces = pairs[facing].astype(np.int32)
     t.pair_shift = shift[facing].astype(np.int32)
-    t.same_faces = pairs[~facing].astype(np.int32)
 
 
 def _surfaces(t: Topology, mesh: Mesh) -> None:

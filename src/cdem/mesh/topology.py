@@ -39,7 +39,6 @@ class Topology:
         node_ring: Other ends of the exterior edges at each node.
         pair_faces: Conforming faces of different blocks, (pairs, 2).
         pair_shift: Vertex k of the first coincides with vertex (shift - k) mod n of the second.
-        same_faces: Faces of two blocks at the same place that look the same way, (pairs, 2).
         overlap_faces: Touching faces that do not conform, (overlaps, 2).
         overlap_first: Start of each overlap's points, (overlaps + 1,).
         overlap_weights_a: Weights of a point on the first face's vertices, (points, 4).
@@ -71,7 +70,6 @@ class Topology:
     node_ring: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
     pair_faces: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
     pair_shift: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
-    same_faces: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
     overlap_faces: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
     overlap_first: Ints = field(default_factory=lambda: np.zeros(1, np.int32))
     overlap_weights_a: Floats = field(default_factory=lambda: np.zeros((0, 4)))

@@ -12,7 +12,7 @@ from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
-from cdem.model.doubts import crowded_edges, doubled_blocks, idle_bonds
+from cdem.model.doubts import crowded_edges, idle_bonds
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
@@ -130,7 +130,7 @@ class Audit:
     def _warnings(self) -> list[str]:
         b = self._build
         out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
-        out += [*doubled_blocks(b.topology), *idle_bonds(b)]
+        out += idle_bonds(b)
         if any(s.mode == "static" for s in b.case.stages):
             for name, count in self._unheld_blocks().items():
                 blocks = "1 block has" if count == 1 else f"{count:,} blocks have"

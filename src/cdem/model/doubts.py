@@ -37,21 +37,6 @@ def crowded_edges(t: Topology) -> Iterator[str]:
     )
 
 
-def doubled_blocks(t: Topology) -> Iterator[str]:
-    """Say which blocks have faces at the same place that look the same way: they fill one space."""
-    if len(t.same_faces) == 0:
-        return
-    blocks = t.face_block[t.same_faces[0]]
-    a, b = (t.group_names[t.block_group[block]] for block in blocks)
-    nodes = t.face_nodes[t.same_faces[0, 0]]
-    place = ", ".join(f"{x:.6g}" for x in t.node_position[nodes[nodes >= 0]].mean(axis=0))
-    yield (
-        f"blocks {blocks[0]} (group {a}) and {blocks[1]} (group {b}) fill the same space: "
-        f"{len(t.same_faces)} pair(s) of faces lie at one place and look the same way, the first at "
-        f"({place}); is a body there twice?"
-    )
-
-
 def idle_bonds(build: Build) -> Iterator[str]:
     """Say which interfaces are given strength in the case but bond nothing at the start."""
     case, t = build.case, build.topology

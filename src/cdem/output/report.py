@@ -18,6 +18,9 @@ from cdem.run.energy_terms import ENERGY_TERMS
 from cdem.run.rest import REST_SPEED, SLOW_SPEED
 from cdem.whole_files import write_text
 
+DOUBTFUL = 0.01
+"""Closing error of the energy balance that is flagged, as a share of its largest term."""
+
 
 def info(folder: Path) -> str:
     """The summary as a page of text."""
@@ -36,7 +39,7 @@ def info(folder: Path) -> str:
         )
     e = s["energies"]
     if e:
-        lines.append(f"  energy closing error {100 * e['error']:.3g} %")
+        lines.append(f"  energy closing error {closing(e)}")
         lines.append("  " + ", ".join(f"{t.name} {e[t.name]:.4g} J" for t in ENERGY_TERMS))
     if s["unbalance_ratio"] is not None:
         lines.append(f"  unbalance ratio {s['unbalance_ratio']:.3g}")
@@ -53,6 +56,13 @@ def info(folder: Path) -> str:
         )
     lines += [f"  warning: {text}" for text in s.get("departures", [])]
     return "\n".join(lines) + "\n"
+
+
+def closing(energies: dict[str, float]) -> str:
+    """How well the energy balance closes, with a word if that is not well enough."""
+    error = energies["error"]
+    doubt = "" if abs(error) <= DOUBTFUL else f": above {100 * DOUBTFUL:g} %, look before you trust it"
+    return f"{100 * error:.3g} %{doubt}"
 
 
 def moving(summary: dict[str, Any]) -> str:
@@ -81,7 +91,7 @@ def report(folder: Path) -> Path:
     )
     text = page.render(
         title=s["title"] or "cdem run",
-        closing=f"{100 * e['error']:.3g} %" if e else "not sampled",
+        closing=closing(e) if e else "not sampled",
         info=info(folder),
         missing=missing,
         images=[(p.stem, base64.b64encode(p.read_bytes()).decode()) for p in pictures],

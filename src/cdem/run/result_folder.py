@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
@@ -247,7 +248,9 @@ class Results:
 
     def fail(self, sim: RunState) -> None:
         """Record where a run failed."""
-        write_json(self.folder / "summary.json", sim.summary("failed"))
+        with np.errstate(all="ignore"):  # numbers may be beyond measure
+            summary = sim.summary("failed")
+        write_json(self.folder / "summary.json", summary)
         self.log(f"failed at step {sim.step_count}, t = {sim.time:.6g} s")
 
 

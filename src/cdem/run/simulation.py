@@ -270,6 +270,30 @@ class Simulation(RunState):
             self.core.keep_energy_scale()
         if self.results:
             self.results.record(self, frame)
+        self._check_energy()
+
+    def _check_energy(self) -> None:
+        """End a run whose energy balance is too far from closing for its results to be trusted."""
+        error, limit = self.energies["error"], self.case.time.energy_error
+        if limit == "any" or abs(error) <= limit:
+            return
+        smaller = "time.safety" if self.case.time.step == "auto" else "time.step"
+        raise self._failed(
+            f"the energy balance is off by {100 * error:.3g} % of its largest term, more than "
+            f"time.energy_error allows ({100 * limit:.3g} %), so that the results are not to be "
+            f"trusted. Use a smaller {smaller}; time.energy_error: any goes on whatever it is."
+        )
+
+    def _failed(self, why: str) -> UnstableError:
+        """The error that says where a run failed and why; the result folder says so, too."""
+        kept = ""
+        if self.results:
+            self.results.fail(self)
+            if has_checkpoint(self.results.folder):
+                kept = (
+                    " The last good checkpoint is kept; look at it with cdem info and cdem render."
+                )
+        return UnstableError(f"step {self.step_count}, t = {self.time:.6g} s: {why}{kept}")
 
     def _progress(self, stage: StageState, speed: float, note: str) -> Progress:
         end = stage.end_time
@@ -305,45 +329,40 @@ class Simulation(RunState):
         if outcome in ("steps_done", "time_reached", "converged"):
             return outcome
         topology, names = self.build.topology, self.build.group_names
-        when = f"step {self.step_count}, t = {self.time:.6g} s: "
-        kept = ""
-        if self.results:
-            self.results.fail(self)
-            kept = " The last good checkpoint is kept; look at it with cdem info and cdem render."
         if failure:
-            raise UnstableError(f"{when}{failure}. A smaller time.safety may help too.{kept}")
+            raise self._failed(f"{failure}. A smaller time.safety may help too.")
         dt = float(self.core.scalars()["dt"])
         smaller = "time.safety" if self.case.time.step == "auto" else "time.step"
         if outcome == "lost_contact":
             face = int(self.core.fields()["search.exposed_face"][culprit])
             block = int(topology.face_block[face])
             group = names[topology.block_group[block]]
-            raise UnstableError(
-                f"{when}a loaded contact of block {block} (group {group}) penetrated too deep to be "
-                f"followed. Raise stiffness_n of its interface, or lower the impact speed.{kept}"
+            raise self._failed(
+                f"a loaded contact of block {block} (group {group}) penetrated too deep to be "
+                f"followed. Raise stiffness_n of its interface, or lower the impact speed."
             )
         if outcome == "missed_contact":
-            raise UnstableError(
-                f"{when}the all-pairs search of contact.check found {int(value)} contact(s) that the "
-                f"lists had missed. Please report this case.{kept}"
+            raise self._failed(
+                f"the all-pairs search of contact.check found {int(value)} contact(s) that the "
+                f"lists had missed. Please report this case."
             )
         block = int(topology.node_block[culprit])
         group = names[topology.block_group[block]]
         where = f"node {culprit} of block {block} (group {group})"
         if outcome == "not_finite":
-            raise UnstableError(
-                f"{when}{where} has no finite position or velocity any more; dt = {dt:.3g} s. "
-                f"Use a smaller {smaller}, or look for a bad element there.{kept}"
+            raise self._failed(
+                f"{where} has no finite position or velocity any more; dt = {dt:.3g} s. "
+                f"Use a smaller {smaller}, or look for a bad element there."
             )
         if block in self.fallen:
-            raise UnstableError(
-                f"{when}{where} fell past the edge of the model and now falls at {value:.3g} m/s, "
+            raise self._failed(
+                f"{where} fell past the edge of the model and now falls at {value:.3g} m/s, "
                 "faster than the P wave of the rock. Make the ground larger, or end the stage before "
-                f"that (until: rest).{kept}"
+                f"that (until: rest)."
             )
-        raise UnstableError(
-            f"{when}{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "
-            f"dt = {dt:.3g} s. Use a smaller {smaller} or a lower stiffness_n.{kept}"
+        raise self._failed(
+            f"{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "
+            f"dt = {dt:.3g} s. Use a smaller {smaller} or a lower stiffness_n."
         )
 
     # ------------------------------------------------------------------ keeping

@@ -7,8 +7,12 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "tools/torture"))
+from runs import CASE, run_words
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
@@ -36,3 +40,17 @@ def test_a_signal_stops_with_a_checkpoint_and_the_run_goes_on(run_cli, cube_fold
     assert (
         json.loads((cube_folder / "cube.results/summary.json").read_text())["steps"] == steps + 100
     )
+
+
+def test_an_energy_balance_that_does_not_close_ends_the_run(run_cli, tmp_path, monkeypatch):
+    """Bonds break and blocks bounce in this case, so that it closes to some per mille."""
+    monkeypatch.chdir(tmp_path)
+    Path("case.yaml").write_text(CASE)
+    words = run_words(Path("case.yaml"), Path("out"))
+    status, out, err = run_cli(*words, "--set", "time.energy_error=1e-4")
+    assert (status, out) == (3, "")
+    assert "the energy balance is off by" in err and "time.energy_error allows (0.01 %)" in err
+    assert json.loads(Path("out/summary.json").read_text())["status"] == "failed"
+    assert run_cli(*words, "--overwrite", "--set", "time.energy_error=any")[0] == 0
+    error = json.loads(Path("out/summary.json").read_text())["energies"]["error"]
+    assert abs(error) > 1e-4

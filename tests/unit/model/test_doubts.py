@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cdem import Case, CaseError, Simulation
-from cdem.errors import MeshError
+from cdem.errors import MeshError, ModelError
 from cdem.mesh.blocks import build_topology
 from cdem.mesh.primitives import box
 from cdem.model.doubts import crowded_edges
@@ -109,10 +109,8 @@ def test_bodies_that_hang_together_by_an_edge_are_told():
     assert list(crowded_edges(build_topology(mesh, {"rock": "elements"}))) == []
 
 
-def test_a_body_given_twice_is_told():
+def test_a_body_given_twice_is_refused():
     data = two(0, {"default": {"friction_angle": 30}}).model_dump(mode="json", exclude_none=True)
     data["model"]["blocks"].append(data["model"]["blocks"][1])
-    warnings = [w for w in told(Case(**data)) if "fill the same space" in w]
-    assert len(warnings) == 1
-    assert "(group block) and" in warnings[0]
-    assert "6 pair(s) of faces lie at one place and look the same way" in warnings[0]
+    with pytest.raises(ModelError, match=r"\(group block\).* remove what is there twice"):
+        told(Case(**data))

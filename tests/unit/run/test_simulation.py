@@ -9,6 +9,7 @@ import yaml
 from shared.cases import FALL
 
 import cdem
+from cdem.output.report import closing
 from cdem.run.checkpoint import read_checkpoint, write_checkpoint
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
@@ -75,3 +76,8 @@ def test_a_case_that_is_changed_after_the_start_stops_the_run():
             go()
     sim.case.loads.gravity[2] = -5.0
     assert sim.run() == "finished"
+
+
+def test_energy_that_is_off_by_more_than_a_percent_is_flagged():
+    assert closing({"error": 0.0099}) == "0.99 %"
+    assert closing({"error": -0.02}) == "-2 %: above 1 %, look before you trust it"
