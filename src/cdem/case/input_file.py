@@ -75,11 +75,12 @@ def reading(path: Path, kind: type[CdemError], mend: str) -> Iterator[None]:
 def _words(error: BaseException) -> str:
     """A library's own words, in one short line."""
     said = " ".join(str(error).split())
-    name = type(error).__name__
     if isinstance(error, KeyError):
         said = f"{' '.join(map(str, error.args))} is named, but not there"
-    elif not said or isinstance(error, SystemExit):
-        said = f"{name} {said}".strip()
+    elif isinstance(error, SystemExit):
+        said = "its reader gave up"
+    elif not said:
+        said = type(error).__name__
     return said if len(said) <= WORDS else said[:WORDS] + " ..."
 
 

@@ -47,6 +47,9 @@ def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]
             raise MeshError(f"{path}: VTK died of it (status {ended.returncode}); {MEND}")
         with np.load(out) as read:
             points, sizes, corners, faces, numbers = (read[name] for name in read.files)
+    wrong = (corners < 0) | (corners >= len(points))
+    if (faces < 4).any() or (sizes < 3).any() or wrong.any():
+        raise MeshError(f"{path}: a cell has less than four faces, or corners that are not there")
     loops = [loop.tolist() for loop in np.split(corners, np.cumsum(sizes)[:-1])]
     ends = np.cumsum(faces)
     for number, first, end in zip(numbers, ends - faces, ends, strict=True):
