@@ -116,7 +116,19 @@ def _is_small(case: Any) -> bool:
     elements = sum(6 * b.divisions[0] * b.divisions[1] * b.divisions[2] for b in boxes)
     mesh = case.model.mesh and case.path_of(case.model.mesh)
     large = mesh and mesh.stat().st_size > 50_000
-    return elements <= SMALL and not large and not case.model.joints
+    if large or elements > SMALL:
+        return False
+    return not case.model.joints or (elements <= SMALL // 10 and _few_planes(case, boxes))
+
+
+def _few_planes(case: Any, boxes: list[Any]) -> bool:
+    """Whether the joints of a case are some dozens of planes."""
+    joints, bodies = case.model.joints, [*case.model.blocks, case.model]
+    lengths = [x for box in boxes for x in box.size]
+    lengths += [abs(x) for body in bodies for x in body.translate or []]
+    lengths += [abs(x) for joint in joints for x in joint.origin]
+    near = all(j.spacing is None or 20 * j.spacing > max(lengths) for j in joints)
+    return len(joints) <= 3 and near
 
 
 def read_file(path: Path) -> None:

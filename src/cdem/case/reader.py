@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from cdem.case.explain import unknown_key
 from cdem.case.input_file import read_text
-from cdem.case.source import Key, Keys, Source
+from cdem.case.source import Key, Keys, Source, is_index
 from cdem.case.yaml_text import parse
 from cdem.errors import CaseError
 from cdem.units import describe
@@ -196,7 +196,7 @@ def _list_index(node: typing.Sequence[Any], key: str, label: str, keys: Keys) ->
     names = [_children(entry).get("name") for entry in node]
     if key in names:
         return names.index(key)
-    if key.isdigit() and int(key) < len(node):
+    if is_index(key) and int(key) < len(node):
         return int(key)
     allowed = [str(name) for name in names if name]
     if node:
