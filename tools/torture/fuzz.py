@@ -94,12 +94,16 @@ def read_case(path: Path) -> None:
     """Read a case, study or landslide file; build the model of a case if it is small."""
     from cdem.case.case import Case
     from cdem.run.simulation import Simulation
+    from cdem.study.plan import plan
+    from cdem.study.schema import run_count
     from cdem.study.study import Study
     from cdem.terrain.landslide import Landslide
 
     sound = path.with_name(path.name.replace("-now-", "-")).read_text()
     if "\nparameters:" in sound:
-        Study.load(path)
+        study = Study.load(path)
+        if run_count(study) <= 20:
+            plan(study, path.parent)
         return
     if "\nextent:" in sound:
         Landslide.load(path)
@@ -127,7 +131,7 @@ def _few_planes(case: Any, boxes: list[Any]) -> bool:
     lengths = [x for box in boxes for x in box.size]
     lengths += [abs(x) for body in bodies for x in body.translate or []]
     lengths += [abs(x) for joint in joints for x in joint.origin]
-    near = all(j.spacing is None or 20 * j.spacing > max(lengths) for j in joints)
+    near = all(j.spacing is None or 8 * j.spacing > max(lengths) for j in joints)
     return len(joints) <= 3 and near
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from cdem.case.explain import unknown_key
-from cdem.case.input_file import read_text
+from cdem.case.input_file import is_file, read_text
 from cdem.case.source import Key, Keys, Source, is_index
 from cdem.case.yaml_text import parse
 from cdem.errors import CaseError
@@ -39,7 +39,7 @@ def load_case_data(
     Raises:
         CaseError: No such file, not YAML, a key twice, an empty file, or a bad override.
     """
-    if path.is_file() and path.stat().st_size > LARGEST_FILE:
+    if is_file(path) and path.stat().st_size > LARGEST_FILE:
         raise CaseError(
             f"{path}: too large for a {what} ({path.stat().st_size:,} bytes); meshes and terrain "
             "stand in files of their own"

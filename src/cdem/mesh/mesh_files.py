@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import reading, refuse_entities
+from cdem.case.input_file import is_file, reading, refuse_entities
 from cdem.errors import MeshError
 from cdem.mesh.arrays import in_pieces
 from cdem.mesh.element_shapes import NODES, volumes
@@ -51,7 +51,7 @@ def read_mesh(path: str | Path) -> Mesh:
             linear volume elements.
     """
     path = Path(path)
-    if not path.is_file():
+    if not is_file(path):
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
     kind = Path(path.stem).suffix if path.suffix.lower() == ".gz" else path.suffix
     _refuse_surfaces(path, kind.lower())
