@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.errors import ModelError
+from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
@@ -133,7 +133,7 @@ class Audit:
         group = b.group_names[t.block_group[t.node_block[node]]]
         dt = float(b.core.scalars()["dt"])
         if not dt > 0:
-            raise ModelError(
+            raise CaseError(
                 f"the stable time step is {limit:.3g} s, for group {group}: nothing could move; look at "
                 "its density, Young's modulus and damping, and at stiffness_n of its interfaces"
             )
