@@ -142,7 +142,7 @@ PYTHON = [
         "mesh_file",
         "a missing mesh file is not checked for",
         "src/cdem/mesh/mesh_files.py",
-        "if not path.is_file():",
+        "if not is_file(path):",
         "if path.is_dir():",
         "tests/unit/mesh/test_mesh_files.py",
     ),

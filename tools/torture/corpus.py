@@ -10,6 +10,29 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
+JOINTED = """\
+model:
+  blocks:
+    - {group: a, box: {size: [2, 2, 2]}, translate: [0, 0, 1]}
+    - {group: b, polyhedron: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}}
+    - {group: b, box: {size: [1, 1, 1], shape: tet4}, translate: [5, 0, 0],
+       rotate: {axis: [0, 0, 1], angle: 30}}
+  joints:
+    - {name: x, group: a, dip: 40, dip_direction: 90, spacing: 0.7, scatter: {fisher: 50}, seed: 2}
+    - {name: y, normal: [0.1, 1, 0.3], origin: [0.2, 0.3, 1.4], persistence: 0.5}
+  thinnest: 0.01
+materials: {rock: {density: 2700, young_modulus: "1 GPa", poisson_ratio: 0.25}}
+groups: {a: {material: rock, velocity: [0, 0, 1]}, b: {material: rock, fix: [x, y, z]}}
+interfaces:
+  default: {friction_angle: 30, cohesion: 1e5, tensile_strength: 1e4}
+  pairs: [{joint: x, friction_angle: 20, stiffness_n: "5 GPa/m"}]
+loads: {gravity: [0, 0, -9.81], supports: [{box: {min: [0, 0, 0], max: [9, 9, 0.1]}, fix: [z]}]}
+stages:
+  - {name: s, mode: static}
+  - {name: d, mode: dynamic, duration: 0.1, set: {interfaces.default.friction_angle: 10}}
+histories: [{name: h, group: a, quantities: [velocity, energy]}]
+"""
+"""A case with two sets of joints, supports, histories and a stage that sets a value."""
 
 
 def write_cases(folder: Path) -> None:
@@ -25,6 +48,7 @@ def write_cases(folder: Path) -> None:
     for name, text in vars(cases).items():
         if isinstance(text, str) and not name.startswith("_"):
             (folder / f"tests-{name.lower()}.yaml").write_text(text)
+    (folder / "tests-jointed.yaml").write_text(JOINTED)
     (folder / "cube.yaml").write_text(cases.CUBE)
     (folder / "case.yaml").write_text(cases.CUBE)
     shutil.copy(ROOT / "src/cdem/templates/slope.msh", folder)

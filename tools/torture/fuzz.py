@@ -40,6 +40,8 @@ START = 120.0
 BATCH = 500
 MOST_MEMORY = 1000
 """Peak of a process that is allowed [MB]."""
+ASIDE = (".vtk", ".vtu", ".med", ".h5m", ".cgns", ".hmf", ".xdmf")
+"""Formats that are often read in a process of their own."""
 SMALL = 300
 """Elements up to which a model is built."""
 
@@ -82,7 +84,7 @@ def make(kind: str, seed: int, number: int, seeds: list[Path]) -> tuple[str, byt
     """Input of a number, the same in every process."""
     rng = random.Random(f"{kind} {seed} {number}")
     path = rng.choice(seeds)
-    if ".vt" in path.name and rng.random() < 0.7:  # VTK takes a second for each
+    if path.suffix in ASIDE and rng.random() < 0.7:  # a process for each takes a second
         path = rng.choice(seeds)
     return (make_case if kind == "cases" else make_file)(rng, path)
 
@@ -94,12 +96,16 @@ def read_case(path: Path) -> None:
     """Read a case, study or landslide file; build the model of a case if it is small."""
     from cdem.case.case import Case
     from cdem.run.simulation import Simulation
+    from cdem.study.plan import plan
+    from cdem.study.schema import run_count
     from cdem.study.study import Study
     from cdem.terrain.landslide import Landslide
 
     sound = path.with_name(path.name.replace("-now-", "-")).read_text()
     if "\nparameters:" in sound:
-        Study.load(path)
+        study = Study.load(path)
+        if run_count(study) <= 20:
+            plan(study, path.parent)
         return
     if "\nextent:" in sound:
         Landslide.load(path)
@@ -116,7 +122,19 @@ def _is_small(case: Any) -> bool:
     elements = sum(6 * b.divisions[0] * b.divisions[1] * b.divisions[2] for b in boxes)
     mesh = case.model.mesh and case.path_of(case.model.mesh)
     large = mesh and mesh.stat().st_size > 50_000
-    return elements <= SMALL and not large and not case.model.joints
+    if large or elements > SMALL:
+        return False
+    return not case.model.joints or (elements <= SMALL // 10 and _few_planes(case, boxes))
+
+
+def _few_planes(case: Any, boxes: list[Any]) -> bool:
+    """Whether the joints of a case are some dozens of planes."""
+    joints, bodies = case.model.joints, [*case.model.blocks, case.model]
+    lengths = [x for box in boxes for x in box.size]
+    lengths += [abs(x) for body in bodies for x in body.translate or []]
+    lengths += [abs(x) for joint in joints for x in joint.origin]
+    near = all(j.spacing is None or 8 * j.spacing > max(lengths) for j in joints)
+    return len(joints) <= 3 and near
 
 
 def read_file(path: Path) -> None:

@@ -15,6 +15,7 @@ from cdem.case.reader import load_case_data, plain, replace_at, resolve
 from cdem.case.schema import CaseParts
 from cdem.case.source import Source
 from cdem.case.types import Part
+from cdem.errors import CaseError
 
 
 class Case(CaseParts):
@@ -125,7 +126,13 @@ class Case(CaseParts):
         part: Part = self
         keep, node = 0, part
         for depth, key in enumerate(keys[:-1], start=1):
-            node = getattr(node, str(key)) if isinstance(node, Part) else node[key]
+            if isinstance(node, dict):
+                node = node.get(str(key))
+            else:
+                node = getattr(node, str(key)) if isinstance(node, Part) else node[key]
+            if node is None:
+                there = ".".join(map(str, keys[:depth]))
+                raise CaseError(f"{path}: {there} is not given, so nothing in it can change")
             if isinstance(node, Part):
                 part, keep = node, depth
         field, inner = str(keys[keep]), keys[keep + 1 :]

@@ -8,6 +8,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
+from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, block_contradiction
 from cdem.case.plausible import doubts
 from cdem.case.schema import CaseParts
@@ -36,15 +37,18 @@ def _names(case: CaseParts) -> Iterator[Problem]:
 
 
 def _mesh_file(case: CaseParts, folder: Path) -> Iterator[Problem]:
-    if case.model.mesh is not None and not (folder / case.model.mesh).is_file():
+    if case.model.mesh is not None and not is_file(folder / case.model.mesh):
         path = folder / case.model.mesh
-        near = difflib.get_close_matches(
-            path.name, [p.name for p in path.parent.glob("*") if p.is_file()], n=1
-        )
+        try:
+            names = [p.name for p in path.parent.glob("*") if p.is_file()]
+            whole = path.resolve()
+        except (OSError, RuntimeError):  # no system takes such a path
+            names, whole = [], path
+        near = difflib.get_close_matches(path.name, names, n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
         yield (
             ("model", "mesh"),
-            f"no file {path.resolve()} (a relative path starts at the case file's folder){hint}",
+            f"no file {whole} (a relative path starts at the case file's folder){hint}",
         )
 
 

@@ -127,7 +127,7 @@ def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
 
 
 def _extra(key: str, value: Any, model: type[BaseModel] | None) -> str:
-    if value is None and key.isdigit():
+    if value is None and key.isdecimal():
         return f"stands as a key; if it is the end of a number such as 2,{key}: no comma in it"
     return unknown_key(key, model.model_fields if model else {})
 

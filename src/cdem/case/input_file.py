@@ -75,11 +75,12 @@ def reading(path: Path, kind: type[CdemError], mend: str) -> Iterator[None]:
 def _words(error: BaseException) -> str:
     """A library's own words, in one short line."""
     said = " ".join(str(error).split())
-    name = type(error).__name__
     if isinstance(error, KeyError):
         said = f"{' '.join(map(str, error.args))} is named, but not there"
-    elif not said or isinstance(error, SystemExit):
-        said = f"{name} {said}".strip()
+    elif isinstance(error, SystemExit):
+        said = "its reader gave up"
+    elif not said:
+        said = type(error).__name__
     return said if len(said) <= WORDS else said[:WORDS] + " ..."
 
 
@@ -129,6 +130,14 @@ def _memory_limited(allowed: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_AS, before)
 
 
+def is_file(path: Path) -> bool:
+    """Whether a path that a user wrote leads to a file; also of one that no system takes."""
+    try:
+        return path.is_file()
+    except OSError:  # a name of thousands of letters, a folder that may not be read
+        return False
+
+
 def read_text(path: Path, what: str, kind: type[CdemError] = CaseError) -> str:
     """Read a text file in UTF-8, with or without a mark of byte order.
 
@@ -140,9 +149,9 @@ def read_text(path: Path, what: str, kind: type[CdemError] = CaseError) -> str:
     Raises:
         CdemError: Of the class ``kind``: no such file, or not UTF-8; says where.
     """
-    if path.is_char_device():  # some have no end
-        raise kind(f"{path}: a device, not a {what}")
     try:
+        if path.is_char_device():  # some have no end
+            raise kind(f"{path}: a device, not a {what}")
         raw = path.read_bytes()
     except OSError as error:
         raise kind(f"{path}: cannot read the {what}: {error.strerror}") from None

@@ -11,8 +11,8 @@ from typing import Any
 from pydantic import BaseModel
 
 from cdem.case.explain import unknown_key
-from cdem.case.input_file import read_text
-from cdem.case.source import Key, Keys, Source
+from cdem.case.input_file import is_file, read_text
+from cdem.case.source import Key, Keys, Source, is_index
 from cdem.case.yaml_text import parse
 from cdem.errors import CaseError
 from cdem.units import describe
@@ -39,7 +39,7 @@ def load_case_data(
     Raises:
         CaseError: No such file, not YAML, a key twice, an empty file, or a bad override.
     """
-    if path.is_file() and path.stat().st_size > LARGEST_FILE:
+    if is_file(path) and path.stat().st_size > LARGEST_FILE:
         raise CaseError(
             f"{path}: too large for a {what} ({path.stat().st_size:,} bytes); meshes and terrain "
             "stand in files of their own"
@@ -196,7 +196,7 @@ def _list_index(node: typing.Sequence[Any], key: str, label: str, keys: Keys) ->
     names = [_children(entry).get("name") for entry in node]
     if key in names:
         return names.index(key)
-    if key.isdigit() and int(key) < len(node):
+    if is_index(key) and int(key) < len(node):
         return int(key)
     allowed = [str(name) for name in names if name]
     if node:

@@ -88,12 +88,17 @@ class Source:
         while parts:
             for count in range(len(parts), 0, -1):
                 joined = ".".join(parts[:count])
-                number = joined.isdigit() and (*keys, int(joined)) in known
+                number = is_index(joined) and (*keys, int(joined)) in known
                 key: Key = int(joined) if number else joined
                 if count == 1 or (*keys, key) in known:
                     break
             keys, parts = (*keys, key), parts[count:]
         return keys
+
+
+def is_index(text: str) -> bool:
+    """Whether a part of a dotted path may be the number of an entry."""
+    return text.isdecimal() and len(text) < 10
 
 
 def _dotted(keys: Keys) -> str:

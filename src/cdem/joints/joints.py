@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.bodies_schema import Joint, Model
-from cdem.errors import CaseError
+from cdem.errors import CaseError, MeshError
 from cdem.joints.cell_mesh import close_short_edges, to_mesh
 from cdem.joints.convex_cells import Cells, from_mesh, from_polyhedron, join
 from cdem.joints.cutting import cut
@@ -179,7 +179,20 @@ def cut_model(
         if inside.cells:
             inside.surfaces = {name: piece.surfaces.get(name, []) for name in surfaces}
             parts.append(_cells_of(inside, faces, names, model))
-    return merge([*rest, _cut_and_mesh(join(parts), model, names, surfaces)])
+    whole = merge([*rest, _cut_and_mesh(join(parts), model, names, surfaces)])
+    _refuse_lost(whole, names)
+    return whole
+
+
+def _refuse_lost(whole: Mesh, names: list[str]) -> None:
+    """Stop if nothing is left of a group."""
+    left = {whole.group_names[k] for groups in whole.cell_group.values() for k in np.unique(groups)}
+    for name in names:
+        if name not in left:
+            raise MeshError(
+                f"nothing is left of group {name!r}: its bodies are thinner than what joints leave "
+                "(model.thinnest)"
+            )
 
 
 def _cells_of(

@@ -12,17 +12,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import reading, refuse_entities
+from cdem.case import aside
+from cdem.case.input_file import is_file, reading, refuse_entities
 from cdem.errors import MeshError
 from cdem.mesh.arrays import in_pieces
 from cdem.mesh.element_shapes import NODES, volumes
 from cdem.mesh.gmsh_nodes import check_node_ids
 from cdem.mesh.mesh import Mesh, drop_unused
+from cdem.mesh.mesh_arrays import from_arrays
 
 _MESHIO_SHAPES = {"tetra": "tet4", "pyramid": "pyramid5", "wedge": "wedge6", "hexahedron": "hex8"}
 _MESHIO_FACES = ("triangle", "quad")
 SURFACES = {".ply", ".off", ".svg", ".wkt", ".obj", ".stl"}
 """Formats of meshio that hold no volume elements."""
+HDF5 = {".med", ".h5m", ".cgns", ".hmf", ".xdmf", ".xmf", ".e", ".exo", ".ex2"}
+"""Formats that are HDF5, or name HDF5 files."""
 BODIES = {".obj", ".stl"}
 """Those from which bodies are read."""
 MEND = "is it whole, and of the kind that its name says?"
@@ -51,11 +55,23 @@ def read_mesh(path: str | Path) -> Mesh:
             linear volume elements.
     """
     path = Path(path)
-    if not path.is_file():
+    if not is_file(path):
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
-    kind = Path(path.stem).suffix if path.suffix.lower() == ".gz" else path.suffix
-    _refuse_surfaces(path, kind.lower())
-    mend = MEND + (POLYHEDRA if kind.lower() in (".vtu", ".vtk") else "")
+    _refuse_surfaces(path, _kind(path))
+    if _kind(path) in HDF5:
+        return from_arrays(aside.read("cdem.mesh.hdf5_mesh", path, MEND))
+    return read_here(path)
+
+
+def _kind(path: Path) -> str:
+    """Ending of a file, or of what is packed in it."""
+    packed = path.suffix.lower() == ".gz"
+    return (Path(path.stem) if packed else path).suffix.lower()
+
+
+def read_here(path: Path) -> Mesh:
+    """Read a volume mesh in this process, see `read_mesh`."""
+    mend = MEND + (POLYHEDRA if _kind(path) in (".vtu", ".vtk") else "")
     with reading(path, MeshError, mend):
         raw = _read_zipped(path) if path.suffix.lower() == ".gz" else read_raw(path)
         return _to_mesh(path, raw)

@@ -81,8 +81,14 @@ class Audit:
         limit, node, element2, contact2 = b.core.step_limit()
         t = b.topology
         group = b.group_names[t.block_group[t.node_block[node]]]
+        dt = float(b.core.scalars()["dt"])
+        if not dt > 0:
+            raise CaseError(
+                f"the stable time step is {limit:.3g} s, for group {group}: nothing could move; look at "
+                "its density, Young's modulus and damping, and at stiffness_n of its interfaces"
+            )
         return {
-            "dt": float(b.core.scalars()["dt"]),
+            "dt": dt,
             "limit": limit,
             "node": int(node),
             "group": group,

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import reading
+from cdem.case.input_file import is_file, reading
 from cdem.errors import BodyError, MeshError
 from cdem.joints.cell_mesh import to_mesh
 from cdem.joints.convex_cells import from_polyhedron, join
@@ -41,7 +41,7 @@ def read_bodies(path: Path, group: str) -> Mesh:
         MeshError: The file cannot be read.
         BodyError: A body is open or not convex; says where.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise MeshError(f"{path}: no such file; give a path relative to the case file")
     kind = path.suffix.lower()
     readers = {".obj": _obj, ".stl": _stl, ".vtu": _vtk, ".vtk": _vtk}

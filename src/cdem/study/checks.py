@@ -7,7 +7,15 @@ from typing import Any
 
 from cdem.case.source import Keys
 from cdem.study.formula import Formula, is_formula, unknown
-from cdem.study.schema import COLUMNS, CRITICAL_RESULTS, CriticalSearch, Parameter, StudyParts
+from cdem.study.schema import (
+    COLUMNS,
+    CRITICAL_RESULTS,
+    MOST_RUNS,
+    CriticalSearch,
+    Parameter,
+    StudyParts,
+    run_count,
+)
 
 
 def formulas(study: StudyParts) -> Iterator[tuple[Keys, str]]:
@@ -96,6 +104,11 @@ def _sampling(study: StudyParts) -> Iterator[tuple[Keys, str]]:
     if study.combine == "together" and len(set(lengths.values())) > 1:
         counts = ", ".join(f"{name} {count}" for name, count in lengths.items())
         yield ("combine",), f"together needs as many values of each parameter; there are: {counts}"
+    if run_count(study) > MOST_RUNS:
+        yield (
+            ("combine",),
+            f"{run_count(study):,} runs are too many; at most {MOST_RUNS:,} are made",
+        )
     if study.sampling and len(lengths) == len(study.parameters):
         yield ("sampling",), "no parameter has a distribution to draw from"
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from cdem._version import __version__
 from cdem.case.case import Case
+from cdem.case.input_file import is_file
 from cdem.case.reader import load_case_data, put
 from cdem.case.source import Source
 from cdem.errors import CaseError
@@ -113,7 +114,7 @@ def _identity(case: Case, search: dict[str, Any] | None) -> str:
     data = case.model_dump(mode="json")
     for holder, key in files_of(data):
         path = case.path_of(holder[key])
-        holder[key] = _digest(path, path.stat().st_mtime_ns) if path.is_file() else holder[key]
+        holder[key] = _digest(path, path.stat().st_mtime_ns) if is_file(path) else holder[key]
     whole = {"case": data, "critical": search, "version": __version__}
     return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -200,6 +201,18 @@ class Plot(Part):
     def result(self) -> str:
         """The result that it shows."""
         return getattr(self, self.kind)
+
+
+def run_count(study: StudyParts) -> int:
+    """How many runs the parameters and draws of a study make."""
+    counts = [p.count for p in study.parameters.values() if not p.is_drawn]
+    if study.combine == "together":
+        combined = min(counts, default=1)
+    elif study.combine == "product":
+        combined = math.prod(counts)
+    else:
+        combined = 1 + sum(count - 1 for count in counts)
+    return combined * (study.sampling.count if study.sampling else 1)
 
 
 class StudyParts(Part):

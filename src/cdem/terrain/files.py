@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import read_text, reading
+from cdem.case.input_file import is_file, read_text, reading
 from cdem.errors import CaseError
 from cdem.terrain.heights import Grid, extra
 
@@ -265,7 +265,7 @@ def _grid_head(path: Path, lines: list[str]) -> tuple[dict[str, float], int]:
 
 
 def _geotiff(path: Path, rasterio: Any) -> Grid:
-    if not path.is_file():
+    if not is_file(path):
         raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
     try:
         # other drivers of GDAL would follow links to other files, and into the net

@@ -6,7 +6,7 @@ import copy
 
 import numpy as np
 import pytest
-from shared.cases import INCLINE
+from shared.cases import FALL, INCLINE
 
 from cdem import Case, CaseError
 
@@ -183,3 +183,22 @@ def test_schema_knows_units_and_refuses_unknown_keys():
 
     parts = {"case": schema} | schema["$defs"]
     assert [missing for name, part in parts.items() for missing in undescribed(name, part)] == []
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("interfaces.default.friction_angle", "interfaces.default is not given, so nothing in it"),
+        ("groups.none.fix.0", "groups.none is not given, so nothing in it can change"),
+        ("loads.gravity.²", "no entry '²' in loads.gravity; it has: 0 to 2"),
+        (f"loads.gravity.{'9' * 900}", "in loads.gravity; it has: 0 to 2"),
+    ],
+)
+def test_a_setting_of_what_is_not_there_is_answered(write, path, message):
+    text = FALL.replace("interfaces: {default: {friction_angle: 30, cohesion: 0}}\n", "")
+    with pytest.raises(CaseError) as caught:
+        Case.load(write(text.replace('"5 ms"', f'"5 ms", set: {{"{path}": 1}}')))
+    assert "stages.0.set." in str(caught.value) and message in str(caught.value)
+    with pytest.raises(CaseError) as caught:
+        Case.load(write(text)).set(path, 1)
+    assert message in str(caught.value)

@@ -86,6 +86,11 @@ def test_a_similar_mesh_file_is_suggested(write, tmp_path):
         ),
         ("name: slide", "name: settle", "stages.1.name: 'settle' is the name of two entries"),
         ("  blocks:\n", "  mesh: slop.msh\n  blocks:\n", "slope.yaml:5:3: model.mesh: no file "),
+        (
+            "  blocks:\n",
+            f"  mesh: {'x' * 300}/a.msh\n  blocks:\n",
+            "slope.yaml:5:3: model.mesh: no fi",
+        ),
     ],
 )
 def test_contradictions_are_answered(complaint, old, new, message):

@@ -21,7 +21,7 @@ def fail(error):
     [
         (lambda: fail(ValueError("bad\n  thing")), "a.msh: cannot be read (bad thing); mend it"),
         (lambda: fail(KeyError("x")), "cannot be read (x is named, but not there); mend it"),
-        (lambda: sys.exit(1), "cannot be read (SystemExit 1); mend it"),
+        (lambda: sys.exit(1), "cannot be read (its reader gave up); mend it"),
         (lambda: fail(MemoryError()), "asks for more memory than a sound file does"),
         (lambda: fail(RecursionError()), "is nested deeper than a sound file does"),
         (lambda: fail(ValueError("x" * 5000)), "xxx ...); mend it"),

@@ -58,6 +58,8 @@ def test_a_missing_file_is_named(tmp_path):
 
 
 def test_what_is_no_small_file_is_refused(tmp_path):
+    with pytest.raises(CaseError, match="cannot read the case file: File name too long"):
+        load_case_data(tmp_path / ("x" * 300))
     with pytest.raises(CaseError, match="/dev/zero: a device, not a case file"):
         load_case_data(Path("/dev/zero"))
     with (tmp_path / "a.yaml").open("wb") as file:

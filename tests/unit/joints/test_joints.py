@@ -150,3 +150,16 @@ def test_a_jointed_case_is_checked_and_run(run_cli, tmp_path, monkeypatch, no_re
     assert resolved.model.joints[1].persistence == 0.7
     status, out, _ = run_cli("check", "rock.yaml", "--set", "model.joints.2.origin=[90, 0, 0]")
     assert status == 0 and "joint set fault cuts nothing" in out
+
+
+def test_a_group_of_which_joints_leave_nothing_is_named(tmp_path):
+    path = tmp_path / "case.yaml"
+    path.write_text(
+        "model:\n  blocks: [{group: a, box: {size: [2, 2, 1.0e-12]}}, {group: b, box: {size: [1, 1, 1]}}]\n"
+        "  joints: [{name: x, normal: [1, 0, 0], spacing: 0.7}]\n"
+        "materials: {m: {density: 2500, young_modulus: 1e9, poisson_ratio: 0.2}}\n"
+        "groups: {a: {material: m}, b: {material: m}}\n"
+        "stages: [{name: fall, mode: dynamic, duration: 1}]\n"
+    )
+    with pytest.raises(cdem.MeshError, match=r"model.joints: nothing is left of group 'a'"):
+        cdem.Simulation(path)

@@ -8,6 +8,7 @@ import meshio
 import numpy as np
 import pytest
 
+from cdem.case import input_file
 from cdem.errors import MeshError
 from cdem.mesh.blocks import check_elements
 from cdem.mesh.element_shapes import NODES, volumes
@@ -82,6 +83,17 @@ def test_files_that_are_no_meshes(tmp_path, name, raw, message):
     path = tmp_path / name
     path.write_bytes(raw)
     with pytest.raises(MeshError, match=message):
+        read_mesh(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "raw"), [("a.node", b"# Th"), ("a.mdpa", b"Begin Nodes\n1 0 0 0\n")]
+)
+def test_readers_of_meshio_that_never_end_are_ended(tmp_path, monkeypatch, name, raw):
+    monkeypatch.setattr(input_file, "LEAST_SECONDS", 0.3)
+    path = tmp_path / name
+    path.write_bytes(raw)
+    with pytest.raises(MeshError, match=rf"{name}: reading it does not come to an end; is it"):
         read_mesh(path)
 
 

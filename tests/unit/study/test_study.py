@@ -32,6 +32,11 @@ from cdem.errors import CaseError
             "parameters: {a.b: [1]}\ncritical: {parameter: a.b, between: [1, 2]}",
             "critical.parameter: 'a.b' is also given by parameters; vary it once",
         ),
+        (
+            "parameters: {a.b: {grid: {first: 0, last: 1, count: 10001}}, "
+            "c.d: {grid: {first: 0, last: 1, count: 10001}}}",
+            "combine: 100,020,001 runs are too many; at most 1,000,000 are made",
+        ),
         ("parameters: {a.b: [1]}\nresults: {error: time}", "a column of every table"),
         ("parameters: {a.b: [1]}\nplots: [{lines: x}]", "lines needs x"),
         ("parameters: {a.b: [1]}\nplots: [{lines: f, x: a.c}]", "'a.c' is not known; did you"),

@@ -1,0 +1,13 @@
+"""The process that reads meshes in HDF5 files, see `cdem.case.aside`."""
+
+from __future__ import annotations
+
+from cdem.case import aside
+from cdem.mesh.mesh_arrays import to_arrays
+from cdem.mesh.mesh_files import MEND, read_here
+
+if __name__ == "__main__":
+    import h5py  # noqa: F401  # loading takes more time than reading may
+    import meshio  # noqa: F401
+
+    aside.answer(lambda path: to_arrays(read_here(path)), MEND)
