@@ -325,7 +325,11 @@ def test_adaptive_relaxation_with_contacts_gives_identical_results(tmp_path):
 
     def settle(threads, **more):
         stones = [
-            {"group": "stone", "box": {"size": [1, 1, 1]}, "translate": [0.6 * k, 0, 1.01 * k + 0.001]}
+            {
+                "group": "stone",
+                "box": {"size": [1, 1, 1]},
+                "translate": [0.6 * k, 0, 1.01 * k + 0.001],
+            }
             for k in range(3)
         ]
         bed = {"group": "bed", "box": {"size": [4, 3, 1]}, "translate": [-1, -1, -1]}
