@@ -22,22 +22,51 @@ void for_live_pairs(const Model& m, const State& s, Visit&& visit) {
   });
 }
 
-void join_nodes(const Model& m, State& s) {
-  Index* label = s.nodes.bonded_node.data();
-  std::iota(label, label + m.node_count, 0);
-  const auto root = [&](Index i) {
-    while (label[i] != i) i = label[i] = label[label[i]];
+/// Joins items; each part has the number of its first item as label.
+class Parts {
+ public:
+  explicit Parts(Column<Index>& labels, Index count) : label_(labels.data()), count_(count) {
+    std::iota(label_, label_ + count_, 0);
+  }
+  void join(Index i, Index j) {
+    const Index a = root(i), b = root(j);
+    label_[std::max(a, b)] = std::min(a, b);
+  }
+  void finish() {
+    for (Index i = 0; i < count_; ++i) label_[i] = root(i);
+  }
+
+ private:
+  Index root(Index i) {
+    while (label_[i] != i) i = label_[i] = label_[label_[i]];
     return i;
-  };
+  }
+  Index* label_;
+  Index count_;
+};
+
+void join_nodes(const Model& m, State& s) {
+  Parts parts(s.nodes.bonded_node, m.node_count);
   for_live_pairs(m, s, [&](const PairSet& p, const PairState& ps, Index i) {
-    for (Index k = 0; k < p.points; ++k) {
-      if (!(ps.bond[std::size_t(k) * p.point_stride + i] > 0)) continue;
-      const Index a = root(p.nodes[std::size_t(k) * p.stride + i]);
-      const Index b = root(p.nodes[std::size_t(p.points + k) * p.stride + i]);
-      label[std::max(a, b)] = std::min(a, b);
-    }
+    for (Index k = 0; k < p.points; ++k)
+      if (ps.bond[std::size_t(k) * p.point_stride + i] > 0)
+        parts.join(p.nodes[std::size_t(k) * p.stride + i],
+                   p.nodes[std::size_t(p.points + k) * p.stride + i]);
   });
-  for (Index i = 0; i < m.node_count; ++i) label[i] = root(i);
+  parts.finish();
+}
+
+/// Label the nodes of blocks that any live pair joins.
+void join_bodies(const Model& m, State& s) {
+  Parts parts(s.nodes.body, m.node_count);
+  for (Index i = 1; i < m.node_count; ++i)
+    if (m.node_block[i] == m.node_block[i - 1]) parts.join(i - 1, i);
+  for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
+    for (Index i = 0; i < p.count; ++i)
+      if (is_active(ps, i))
+        parts.join(m.face_nodes[4 * p.faces[2 * i]], m.face_nodes[4 * p.faces[2 * i + 1]]);
+  });
+  parts.finish();
 }
 
 /// Edge stars of the points that vertices of exposed faces belong to: other ends of all edges that
@@ -137,6 +166,7 @@ void join_surfaces(const Model& m, State& s, bool released) {
   s.search.joined_faces = faces;
   s.search.joined_points = points;
   join_nodes(m, s);
+  join_bodies(m, s);
   merge_edge_stars(m, s);
   find_across(m, s);
 }

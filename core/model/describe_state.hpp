@@ -68,6 +68,11 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes",
           .refers_to = {"nodes"}},
          n.bonded_node);
+  stored({.name = "node.body",
+          .meaning = "label shared by nodes of all blocks that bonds join",
+          .rows = "nodes",
+          .refers_to = {"nodes"}},
+         n.body);
 }
 
 /// Forces of the nodes: part of `describe_state`.

@@ -76,6 +76,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.step_change, &n.unbalance})
     column->resize(count);
   n.bonded_node.resize(count);
+  n.body.resize(count);
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);

@@ -18,8 +18,9 @@ struct NodeState {
   Column<Real> unbalance;
   Column<Real> relax;       // adaptive relaxation only, rows of 8: force, velocity of the last step
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
-  Column<Index> bonded_node, awake;  // awake: blocks of nodes, see nodes/sleep.hpp
-  Column<Flag> sleeps, listed;       // see nodes/sleep.hpp
+  Column<Index> bonded_node, body;  // labels, see bonds/bonded_surface.hpp
+  Column<Index> awake;              // blocks of nodes, see nodes/sleep.hpp
+  Column<Flag> sleeps, listed;      // see nodes/sleep.hpp
   Column<Flag> fused;     // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
   Column<Index> general;  // awake blocks of nodes but those of which all are fused
   bool damped = false;    // in the last step, else damping_force does not count

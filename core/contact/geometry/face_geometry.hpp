@@ -27,6 +27,7 @@ struct FaceColumns {
   const Index* edge_star_first;  // [label + 1]
   const Index* edge_star;        // other ends of the edges that leave a point
   const Index* bonded_node;      // label shared by nodes that intact bonds hold together
+  const Index* body;             // label shared by nodes of all blocks that bonds join
   const Index* node_place;       // label shared by nodes that began at the same place
   const Index* face_exposed;     // [face]: place in the list of exposed faces, or -1
   Real dt;                       // [s]

@@ -18,6 +18,7 @@ inline FaceColumns face_columns(const Model& m, const State& s) {
           .edge_star_first = s.search.edge_star_first.data(),
           .edge_star = s.search.edge_star.data(),
           .bonded_node = s.nodes.bonded_node.data(),
+          .body = s.nodes.body.data(),
           .node_place = m.node_place.data(),
           .face_exposed = s.search.face_exposed.data(),
           .dt = s.dt_last};

@@ -163,6 +163,7 @@ struct FilterNewTargets : FaceSearch {
 /// their spring, or beside a rim where an edge that leaves them reaches deeper, in free air. A
 /// vertex that is truly inside a block may begin as deep as a contact is kept, at the nearest face
 /// and whatever its edges do; like every contact that begins inside, it is free of stress there.
+/// A vertex is never inside the body that bonds make of its own block and others.
 struct ResolveTargets : FaceSearch {
   CDEM_HD void operator()(One m) const {
     const Flag* unresolved = springs.unresolved + 4 * m.i;
@@ -198,7 +199,7 @@ struct ResolveTargets : FaceSearch {
       // shallower contacts may begin whatever the approach
       const bool flat = geometry.is_triangle(t) && plane > -0.9 * rules.entry * length;
       const Real entry = rules.entry * length + (flat ? 0.0 : approach(s.node, t)) + s.turn_depth;
-      const bool penetration = s.free && plane < -entry && encloses(t, s.v, plane);
+      const bool penetration = s.free && plane < -entry && encloses(t, s, plane);
       const Real limit = penetration ? deepest_inside(t, length) : entry;
       const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, penetration});
       if (gap < none && gap > s.gap) {
@@ -273,8 +274,11 @@ struct ResolveTargets : FaceSearch {
     return min_of(rules.depth * length, 0.5 * faces.face_height[exposed_face[t]]);
   }
   /// Is a point that lies behind face t by `plane` < 0 at least as far behind the faces that bend
-  /// away across its sides? Then t is where the way out of the block is shortest.
-  CDEM_HD bool encloses(Index t, const Vec3<Real>& v, Real plane) const {
+  /// away across its sides? Then t is where the way out of the block is shortest. A vertex of the
+  /// body that bonds make of that block and others lies on a face of its own block, not inside.
+  CDEM_HD bool encloses(Index t, const Seeker& s, Real plane) const {
+    if (faces.body[s.node] == faces.body[faces.vertex(exposed_face[t], 0)]) return false;
+    const Vec3<Real>& v = s.v;
     for (Index k = 0; k < faces.vertex_count(exposed_face[t]); ++k) {
       const Index across = faces.across(t, k);
       if (across < 0) continue;

@@ -50,6 +50,21 @@ TEST_CASE("nodes that intact bonds hold together share a label") {
             (distance(stack.position(i), stack.position(j)) == 0));
 }
 
+TEST_CASE("nodes of blocks that bonds join, directly or through others, are of one body") {
+  Scene chain;
+  chain.bonded = true;
+  for (int k = 0; k < 3; ++k) chain.add_box({0, 0, Real(k)}, {1, 1, 1});
+  chain.add_box({5, 0, 0}, {1, 1, 1});
+  chain.build();
+  chain.set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}});
+  chain.start();
+  State& s = chain.state;
+  for (Index i = 0; i < 32; ++i) CHECK(s.nodes.body[i] == (i < 24 ? 0 : 24));
+  s.quads.status[1] = Flag(PairStatus::released);
+  join_surfaces(chain.model, s, true);
+  for (Index i = 0; i < 32; ++i) CHECK(s.nodes.body[i] == (i < 16 ? 0 : i < 24 ? 16 : 24));
+}
+
 TEST_CASE("beyond a side at a bond lies the face of the other block, flush with it") {
   const Stack stack;
   for (const Vec& side : {Vec{1, 0, 0}, Vec{-1, 0, 0}, Vec{0, 1, 0}, Vec{0, -1, 0}}) {

@@ -80,6 +80,41 @@ TEST_CASE("a vertex deep beside a rim is adopted although an edge from it reache
   CHECK(relative_error(adopted.deepest, 0.2) < 1e-14);
 }
 
+TEST_CASE_TEMPLATE("a small tet inside an element of any shape is found, one outside is not", Shape,
+                   Tet4, Pyramid5, Wedge6, Hex8) {
+  const auto corners = Reference<Shape>::corners();
+  Vec middle{0, 0, 0};
+  for (const Vec& x : corners) middle = middle + Real(1.0 / corners.size()) * x;
+  Random random(9);
+  int inside = 0, outside = 0;
+  for (int n = 0; n < 300; ++n) {
+    const Vec place = middle + random.vector(n % 2 ? 1.2 : 0.25);
+    // is it inside? Where all corners but those in one plane lie on one side, that plane is a face
+    bool in = true, near = false;
+    for (std::size_t a = 0; a < corners.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        for (std::size_t c = 0; c < b; ++c) {
+          const Vec across = cross(corners[b] - corners[a], corners[c] - corners[a]);
+          if (norm(across) < 1e-9) continue;
+          Vec out = unit(across);
+          if (dot(out, corners[a] - middle) < 0) out = Real(-1) * out;
+          bool face = true;
+          for (const Vec& x : corners) face = face && dot(out, x - corners[a]) < 1e-9;
+          if (!face) continue;
+          in = in && dot(out, place - corners[a]) < 0;
+          near = near || std::abs(dot(out, place - corners[a])) < 0.05;
+        }
+    if (near) continue;  // partly in, or in contact
+    Scene scene;
+    scene.add<Shape>(corners);
+    scene.add_tet(random, place, 0.02);
+    CHECK((found_in(scene).count == 1) == in);
+    (in ? inside : outside) += 1;
+  }
+  CHECK(inside > 5);
+  CHECK(outside > 30);
+}
+
 TEST_CASE("two blocks that cannot move do not count") {
   Scene scene;
   scene.add_box({0, 0, 0}, {1, 1, 1}, true);
