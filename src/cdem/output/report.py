@@ -67,7 +67,8 @@ def closing(energies: dict[str, float]) -> str:
 
 def moving(summary: dict[str, Any]) -> str:
     """Say how fast the fastest block moved at the end of a run; nothing if all rest, or not known."""
-    speeds = {name: g.get("fastest_block", 0.0) for name, g in summary["groups"].items()}
+    # of a run that failed, numbers that are not finite are null
+    speeds = {name: g.get("fastest_block") or 0.0 for name, g in summary["groups"].items()}
     name = max(speeds, key=speeds.__getitem__)
     if speeds[name] < (SLOW_SPEED if summary["status"] == "at rest" else REST_SPEED):
         return ""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import resource
-import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -162,14 +161,14 @@ def peak_memory() -> int:
 
     That of this process so far, or what it has now and the libraries that draw the report need.
     """
-    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    most = most if sys.platform == "darwin" else 1024 * most
-    try:
-        pages = int(Path("/proc/self/statm").read_text().split()[1])
+    try:  # what getrusage says begins with the memory of the process that began this one
+        lines = [line.split() for line in Path("/proc/self/status").read_text().splitlines()]
+        kilobytes = {words[0]: int(words[1]) for words in lines if words[-1] == "kB"}
+        most, now = 1024 * kilobytes["VmHWM:"], 1024 * kilobytes["VmRSS:"]
     except OSError:  # no Linux
-        pages = most // resource.getpagesize()
+        most = now = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS
     draws = all(importlib.util.find_spec(name) for name in ("matplotlib", "pyvista"))
-    return max(most, pages * resource.getpagesize() + (DRAWING if draws else 0))
+    return max(most, now + (DRAWING if draws else 0))
 
 
 def _clock(seconds: float) -> str:

@@ -43,6 +43,7 @@ class Motion:
         return Motion(*(np.delete(column, blocks, axis=0) for column in columns))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a run that failed is summed up, too
 def rigid_motion(
     first: NDArray[np.int32], mass: Floats, position: Floats, velocity: Floats
 ) -> Motion:

@@ -354,7 +354,7 @@ class Simulation(RunState):
                 f"{where} has no finite position or velocity any more; dt = {dt:.3g} s. "
                 f"Use a smaller {smaller}, or look for a bad element there."
             )
-        if block in self.fallen:
+        if block in self.fallen and any(d.group == group for d in self.departures):
             raise self._failed(
                 f"{where} fell past the edge of the model and now falls at {value:.3g} m/s, "
                 "faster than the P wave of the rock. Make the ground larger, or end the stage before "

@@ -50,6 +50,15 @@ def test_vibration_is_no_motion():
     assert found.speed[0] < 1e-12
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e300])
+def test_a_motion_that_blew_up_is_summed_up_without_a_word(bad, recwarn):
+    velocity = np.zeros((8, 3))
+    velocity[0, 0] = bad
+    found = rigid_motion(np.array([0, 8], np.int32), np.ones(8), CUBE, velocity)
+    assert not np.isfinite(found.speed[0])
+    assert not recwarn.list
+
+
 def test_rest_must_last():
     quiet = Quiet()
     quiet.look(0.0, motion(5.0))
@@ -181,3 +190,20 @@ def test_until_belongs_to_dynamic_stages(run_cli, slide):
     )
     assert status == 1
     assert "until has no meaning in a static stage; remove it" in err
+
+
+def test_info_of_a_run_that_failed(run_cli, slide):
+    """Null where a speed is not finite; a blow-up is no fall past the edge."""
+    bad = ("--set", "time.step=0.02", "--set", "stages.0.until=null")
+    status, _, err = run_cli("run", "slide.yaml", "--threads", "1", *bad)
+    assert status == 3
+    assert "fell past the edge" not in err
+    assert "failed" in run_cli("info", "slide.results")[1].splitlines()[0]
+
+
+def test_a_fall_as_fast_as_a_wave_is_said_to_be_a_fall(run_cli, slide):
+    rock = ("materials.rock.young_modulus=1 MPa", "stages.0.until=null", "stages.0.duration=20")
+    words = [word for setting in rock for word in ("--set", setting)]
+    status, _, err = run_cli("run", "slide.yaml", "--threads", "1", *words)
+    assert status == 3
+    assert "of block 2 (group goes) fell past the edge of the model and now falls at" in err
