@@ -61,7 +61,9 @@ def info(folder: Path) -> str:
 def closing(energies: dict[str, float]) -> str:
     """How well the energy balance closes, with a word if that is not well enough."""
     error = energies["error"]
-    doubt = "" if abs(error) <= DOUBTFUL else f": above {100 * DOUBTFUL:g} %, look before you trust it"
+    doubt = (
+        "" if abs(error) <= DOUBTFUL else f": above {100 * DOUBTFUL:g} %, look before you trust it"
+    )
     return f"{100 * error:.3g} %{doubt}"
 
 

@@ -224,6 +224,7 @@ class Simulation(RunState):
             if stages.record_is_due(self, stage, outcome):
                 self._log_departures()
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
+                self._check_energy()  # not at the begin, where masses may change between samples
             status = stages.status(self, stage, outcome)
             known, note = (
                 note,
@@ -270,7 +271,6 @@ class Simulation(RunState):
             self.core.keep_energy_scale()
         if self.results:
             self.results.record(self, frame)
-        self._check_energy()
 
     def _check_energy(self) -> None:
         """End a run whose energy balance is too far from closing for its results to be trusted."""
