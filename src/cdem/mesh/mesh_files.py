@@ -169,7 +169,7 @@ def _take_volumes(mesh: Mesh, raw: Any, groups: dict[int, NDArray]) -> None:
     group: dict[str, list[NDArray]] = {s: [] for s in NODES}
     number: dict[str, int] = {}
     for index, block in enumerate(raw.cells):
-        if block.type not in _MESHIO_SHAPES:
+        if block.type not in _MESHIO_SHAPES or not len(block.data):
             continue
         shape = _MESHIO_SHAPES[block.type]
         names = groups.get(index, np.full(len(block.data), "default", object))

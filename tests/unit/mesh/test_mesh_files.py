@@ -64,6 +64,12 @@ def test_other_formats_name_no_node_that_is_not_there(tmp_path, kind, node):
         ("a.stl", b"solid", r"holds surfaces, .* read with model.blocks: \[{group: NAME, file"),
         ("a.ply", b"ply", "no kind of mesh that is read"),
         ("a.msh", b"", "a.msh: cannot be read"),
+        (
+            "a.post",
+            b"!\n!\n$ENTER COMPONENT NAME=DFLT_COMP\n$STRUCTURE\n$COOR\n1 0.0 0.0 0.0\n2 1.0 0 0\n!\n"
+            b"$ELEMENT TYPE=TET4\n!\n",
+            "holds no volume elements",
+        ),
         ("a.msh", b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0", "it has 9 nodes"),
         ("a.msh", b"(10 (0 1 ", "a.msh: cannot be read"),
         ("a.inp", b"*NODE\n1, x, 0, 0\n", "cannot be read"),
