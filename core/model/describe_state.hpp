@@ -39,17 +39,6 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes",
           .numbers = 4},
          n.reaction);
-  stored({.name = "node.sample",
-          .unit = "J",
-          .meaning = "kinetic energy; external and damping work of the half step to come; pad",
-          .rows = "nodes",
-          .numbers = 4},
-         n.sample);
-  stored({.name = "node.unbalance",
-          .unit = "N",
-          .meaning = "|x| + |y| + |z| of the unbalanced force on free components",
-          .rows = "nodes"},
-         n.unbalance);
   stored({.name = "node.relax",
           .unit = "N, m/s",
           .meaning = "force, slowing down and velocity of the last step, of adaptive relaxation",
@@ -73,6 +62,22 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes",
           .refers_to = {"nodes"}},
          n.body);
+}
+
+/// What the last sampled step left for the energy ledger: part of `describe_state`.
+template <class Stored>
+void describe_samples(NodeState& n, Stored&& stored) {
+  stored({.name = "node.sample",
+          .unit = "J",
+          .meaning = "kinetic energy; external and damping work of the half step to come; pad",
+          .rows = "nodes",
+          .numbers = 4},
+         n.sample);
+  stored({.name = "node.unbalance",
+          .unit = "N",
+          .meaning = "|x| + |y| + |z| of the unbalanced force on free components",
+          .rows = "nodes"},
+         n.unbalance);
 }
 
 /// Forces of the nodes: part of `describe_state`.
@@ -300,6 +305,7 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
 template <class Stored, class Rebuilt>
 void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt) {
   describe_motion(s.nodes, stored);
+  describe_samples(s.nodes, stored);
   describe_node_forces(s.nodes, rebuilt);
   describe_node_lists(s, rebuilt);
   for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {

@@ -76,24 +76,31 @@ class Trial:
             self._shim.faults_arm(str(self.broken).encode(), number, HOWS[how])
             return self._run(self.broken)
 
-        status, said = in_child(work, self.said)
-        if how == "kill" and status != -9:
-            return "wrong", f"was not killed, but ended with {status}: {said}"
-        if how != "kill" and (status != 1 or "Traceback" in said or said.count("\n") > 2):
-            return "wrong", f"ended with {status} and said: {said}"
+        if wrong := self._wrong_end(how, *in_child(work, self.said)):
+            return "wrong", wrong
         status, trouble = in_child(lambda: opens(self.broken), self.said)
         if status:
             return "wrong", trouble
         status, said = in_child(lambda: self._run(self.broken, "--resume"), self.said)
+        result = "same"
         if status == 1 and "no checkpoint to resume from" in said and said.count("\n") == 1:
-            again = "--overwrite" if (self.broken / ".cdem-results").is_file() else "--quiet"
-            if again == "--quiet":
-                shutil.rmtree(self.broken, ignore_errors=True)
-            status, trouble = in_child(lambda: self._run(self.broken, again), self.said)
-            found = differences(self.whole, self.broken) if status == 0 else [trouble]
-            return ("wrong", "; ".join(found[:4])) if found else ("lost", said.strip())
+            result, (status, said) = "lost", self._run_again()
         found = differences(self.whole, self.broken) if status == 0 else [said]
-        return ("wrong", "; ".join(found[:4])) if found else ("same", said)
+        return ("wrong", "; ".join(found[:4])) if found else (result, said)
+
+    def _wrong_end(self, how: str, status: int, said: str) -> str:
+        """What is wrong with how a run ended in which a call failed, or nothing."""
+        if how == "kill":
+            return "" if status == -9 else f"was not killed, but ended with {status}: {said}"
+        told = status == 1 and "Traceback" not in said and said.count("\n") <= 2
+        return "" if told else f"ended with {status} and said: {said}"
+
+    def _run_again(self) -> tuple[int, str]:
+        """Run into a folder of which nothing can be resumed."""
+        if (self.broken / ".cdem-results").is_file():
+            return in_child(lambda: self._run(self.broken, "--overwrite"), self.said)
+        shutil.rmtree(self.broken, ignore_errors=True)
+        return in_child(lambda: self._run(self.broken), self.said)
 
 
 def main() -> None:

@@ -100,29 +100,36 @@ def opens(folder: Path) -> int:
 
 def differences(one: Path, other: Path) -> list[str]:
     """Names of the results that differ, but for times of the machine."""
-    from cdem.run.checkpoint import read_checkpoint
-
     names = {p.relative_to(one) for p in one.rglob("*") if p.is_file()}
     others = {p.relative_to(other) for p in other.rglob("*") if p.is_file()}
     found = [f"{name} is in one only" for name in sorted(names ^ others)]
     for name in sorted(names & others):
-        if name.name == "checkpoint-before.h5":
-            same = bool(read_checkpoint(other / name))  # which one depends on where the run broke
-        elif name.name == "checkpoint.h5":
-            (a, told), (b, other_told) = (read_checkpoint(p / name) for p in (one, other))
-            same = a.keys() == b.keys() and all(a[k].tobytes() == b[k].tobytes() for k in a)
-            same = same and without_times(json.loads(told)) == without_times(json.loads(other_told))
-        elif name.name == "summary.json":
-            texts = [json.loads((p / name).read_text()) for p in (one, other)]
-            same = without_times(texts[0]) == without_times(texts[1])
-        elif name.name == "report.html":
-            same = (other / name).read_text().rstrip().endswith("</html>")
-        else:
-            passes = name.name in ("run.log", ".cdem-results", ".cdem-lock")
-            same = passes or (one / name).read_bytes() == (other / name).read_bytes()
-        if not same:
+        same = SAME.get(name.name, lambda a, b: a.read_bytes() == b.read_bytes())
+        if not same(one / name, other / name):
             found.append(f"{name} differs")
     return found
+
+
+def same_checkpoints(one: Path, other: Path) -> bool:
+    """Whether two checkpoints hold the same."""
+    from cdem.run.checkpoint import read_checkpoint
+
+    (a, told), (b, other_told) = read_checkpoint(one), read_checkpoint(other)
+    same = a.keys() == b.keys() and all(a[name].tobytes() == b[name].tobytes() for name in a)
+    return same and without_times(json.loads(told)) == without_times(json.loads(other_told))
+
+
+def is_checkpoint(_: Path, other: Path) -> bool:
+    """Whether a checkpoint can be read; which one was before depends on where the run broke."""
+    from cdem.run.checkpoint import read_checkpoint
+
+    return bool(read_checkpoint(other))
+
+
+def same_summaries(one: Path, other: Path) -> bool:
+    """Whether two summaries hold the same."""
+    a, b = (without_times(json.loads(path.read_text())) for path in (one, other))
+    return a == b
 
 
 def without_times(tree: object) -> object:
@@ -130,3 +137,15 @@ def without_times(tree: object) -> object:
     if isinstance(tree, dict):
         return {k: without_times(v) for k, v in tree.items() if k not in OF_THE_MACHINE}
     return [without_times(v) for v in tree] if isinstance(tree, list) else tree
+
+
+SAME: dict[str, Callable[[Path, Path], bool]] = {
+    "checkpoint.h5": same_checkpoints,
+    "checkpoint-before.h5": is_checkpoint,
+    "summary.json": same_summaries,
+    "report.html": lambda _, other: other.read_text().rstrip().endswith("</html>"),
+    "run.log": lambda *_: True,
+    ".cdem-results": lambda *_: True,
+    ".cdem-lock": lambda *_: True,
+}
+"""How files are compared that hold times of the machine; all others byte by byte."""

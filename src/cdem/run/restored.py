@@ -46,17 +46,21 @@ def fault_of(info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int])
     if info["rows"] and len(array) != (length := length_of(info, counts)):
         return f"holds {len(array)} numbers, not {length}"
     for kind, index in references(info, array, counts):
-        if kind not in counts:
-            continue
-        if info["layout"] == "starts":
-            if index[0] != 0 or (np.diff(index) < 0).any() or index[-1] != counts[kind]:
-                return f"does not divide {counts[kind]} {kind} into lists"
-            continue
-        if info["opposite"]:
-            index = np.where(index < 0, ~index, index)
-        least = 0 if info["opposite"] else -1
-        if len(index) and (index.min() < least or index.max() >= counts[kind]):
-            return f"refers to {kind} that are not there"
+        if kind in counts and (fault := _fault_of_indices(info, kind, index, counts[kind])):
+            return fault
+    return ""
+
+
+def _fault_of_indices(info: Mapping[str, Any], kind: str, index: NDArray, count: int) -> str:
+    """What is wrong with indices of rows of a kind, or ""."""
+    if info["layout"] == "starts":
+        sound = index[0] == 0 and (np.diff(index) >= 0).all() and index[-1] == count
+        return "" if sound else f"does not divide {count} {kind} into lists"
+    if info["opposite"]:
+        index = np.where(index < 0, ~index, index)
+    least = 0 if info["opposite"] else -1
+    if len(index) and (index.min() < least or index.max() >= count):
+        return f"refers to {kind} that are not there"
     return ""
 
 
