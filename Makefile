@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants nightly verify lint format demo cuda clean
+.PHONY: setup build dev check test validate coverage mutants torture nightly verify lint format demo cuda clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -47,6 +47,13 @@ coverage: setup
 # Faults planted one by one must each fail a test; with T=name some of them.
 mutants: setup
 	$(BIN)/python tools/mutants.py $(T)
+
+# What may happen to a run and to its input; see docs/results.md.
+torture: build
+	$(BIN)/python tools/torture/damage.py
+	$(BIN)/python tools/torture/fuzz.py cases 20000
+	$(BIN)/python tools/torture/fuzz.py files 10000
+	$(BIN)/python tools/torture/faults.py
 
 nightly: test validate coverage mutants
 	$(BIN)/cdem verify --full

@@ -27,7 +27,7 @@ def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
     """One row per bonded pair of groups or set of joints: pairs, area, stiffness, compliance.
 
     The compliance is that of the bonds over that of the rock beside them, both under the same uniform
-    stress: exact for layers, an upper bound for other patterns. Of tension or bending along x, y, z,
+    stress, which is exact for layers. Of tension or bending along x, y, z,
     and of shear in the three planes, the largest is given.
     """
     t, a, case = build.topology, build.assembly, build.case
