@@ -73,20 +73,27 @@ def main() -> None:
     parser.add_argument(
         "--coverage", action="store_true", help="module and tests that count executed lines"
     )
+    parser.add_argument(
+        "--sanitize",
+        choices=["address", "thread"],
+        help="module and tests, by clang, that end at a wrong access or at a race of threads",
+    )
     wants = parser.parse_args()
-    module = f"_core_{native()}" if wants.native or wants.coverage else "_core_*"
-    targets = [module] if wants.native or wants.coverage else ["all"]
+    special = "coverage" if wants.coverage else wants.sanitize
+    module = f"_core_{native()}" if wants.native or special else "_core_*"
+    targets = [module] if wants.native or special else ["all"]
     settings = {}
-    if wants.tests or wants.coverage:
+    if wants.tests or special:
         targets.append("core_tests")
     if wants.own_laws:
         targets.append("_core_own_laws")
-    if wants.tests or wants.coverage or wants.own_laws:
+    if wants.tests or special or wants.own_laws:
         settings["CDEM_TESTS"] = native()
-    folder = ROOT / "build" / "core"
-    if wants.coverage:
-        folder = ROOT / "build" / "coverage"
-        settings["CMAKE_BUILD_TYPE"] = "Coverage"
+    if special:
+        settings["CMAKE_BUILD_TYPE"] = special.capitalize()
+    if wants.sanitize:
+        settings["CMAKE_CXX_COMPILER"] = "clang++"
+    folder = ROOT / "build" / (special or "core")
     build(folder, settings, targets)
     place(folder, module)
 

@@ -15,9 +15,9 @@ struct FusedRows {
   const Index* first;  // [block of elements + 1]
   const Index* row;    // ~row where the opposite is meant
 
-  /// Where the rows of the element of this number begin, and how many a corner has.
-  CDEM_HD const Index* of(Index element) const {
-    return row + first[element / block_size] + element % block_size;
+  /// Where in `row` those of the element of this number begin, and how many a corner has.
+  CDEM_HD Index begin(Index element) const {
+    return first[element / block_size] + element % block_size;
   }
   CDEM_HD Index most(Index element, Index corners) const {
     const Index* f = first + element / block_size;
@@ -92,9 +92,9 @@ struct AdvanceFused {
     if (e.i % 2 == 0)  // a line of numbers serves two tets
       for (const Real* list : {loads.gravity_mass, mass.mass, (const Real*)work_external})
         cdem::fetch(list + first);
-    const Index* row = rows.of(e.i);
-    for (Index c = 0; c < count * rows.most(e.i, count); ++c, row += block_size)
-      bond_force.fetch_signed(*row);
+    Index place = rows.begin(e.i);
+    for (Index c = 0; c < count * rows.most(e.i, count); ++c, place += block_size)
+      bond_force.fetch_signed(rows.row[place]);
   }
 
  private:
@@ -121,8 +121,9 @@ struct AdvanceFused {
   template <class I, class T>
   CDEM_HD Vec3<T> add_bonds(I e, Index corner, Vec3<T> f) const {
     const Index most = rows.most(e.i, count);
-    const InIndices of{rows.of(e.i) + corner * most * block_size, block_size};
-    for (Index c = 0; c < most; ++c) f = f + bond_force.signed_at(of.at(c, I{0}));
+    Index place = rows.begin(e.i) + corner * most * block_size;
+    for (Index c = 0; c < most; ++c, place += block_size)
+      f = f + bond_force.signed_at(InIndices{rows.row, 1}.at(place, I{0}));
     return f;
   }
 };

@@ -84,9 +84,10 @@ void list_rows(const Elements& of, FusedBlocks& fused) {
     const Index block = fused.blocks[b];
     const Index most = (first[block + 1] - first[block]) / (of.corners * block_size);
     of.visit_nodes(block, [&](Index lane, Index corner, Index node) {
-      Index* row = rows.data() + first[block] + corner * most * block_size + lane;
+      Index row = first[block] + corner * most * block_size + lane;
       const Range bonds = of.bond_rows(node);
-      for (Index c = bonds.first; c < bonds.last; ++c, row += block_size) *row = s.nodes.corner[c];
+      for (Index c = bonds.first; c < bonds.last; ++c, row += block_size)
+        rows[row] = s.nodes.corner[c];
     });
   }
 }

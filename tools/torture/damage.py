@@ -21,6 +21,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from runs import CASE, command, differences, in_child, run_words
 
+REFUSED = ("is damaged", "another version of cdem", "belongs to another model")
 RESUMED = 50  # of so many flipped bits one is resumed to the end
 
 
@@ -93,7 +94,7 @@ class Damages:
         for _ in range(count):
             what: list[str] = []
             status, said = self.resume(lambda path, what=what: what.append(self._bend(path)))
-            if status == 1 and "Traceback" not in said and ("is damaged" in said or "cdem" in said):
+            if status == 1 and "Traceback" not in said and any(one in said for one in REFUSED):
                 found["refused"] += 1
             elif status == 0 and not differences(self.whole, self.trial):
                 found["to the same bytes"] += 1

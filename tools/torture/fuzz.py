@@ -75,7 +75,7 @@ def make_file(rng: random.Random, path: Path) -> tuple[str, bytes]:
     for _ in range(rng.choice((1, 1, 1, 2, 4))):
         raw = mutations.mutate_bytes(rng, raw)
     if name.startswith("mesh-") and rng.random() < 0.03:
-        raw, name = gzip.compress(raw), name + ".gz"
+        raw, name = gzip.compress(raw, mtime=0), name + ".gz"
         raw = mutations.mutate_bytes(rng, raw) if rng.random() < 0.5 else raw
     return name, raw
 

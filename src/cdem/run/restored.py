@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
+from cdem.run.state import Attributes
 
 
 def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:
@@ -16,6 +17,17 @@ def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:
     for name, own in core.fields().items():
         if arrays[name].dtype != own.dtype or arrays[name].ndim != 1:
             return f"{name} holds {arrays[name].dtype}, not a row of {own.dtype}"
+    return ""
+
+
+def wrong_stage(attributes: Attributes) -> str:
+    """What is wrong with the stage that a run has come to, or ""."""
+    index, stages = attributes.stage_index, attributes.case.get("stages", [])
+    if index + (attributes.stage is not None) > len(stages):
+        return "it is in a stage that the case does not have"
+    for place, kept in ((index, attributes.stage), (index - 1, attributes.ended_stage)):
+        if kept is not None and (place < 0 or kept.name != stages[place]["name"]):
+            return f"its stage {kept.name!r} is not that of the case"
     return ""
 
 

@@ -424,10 +424,7 @@ class Simulation(RunState):
         fault = restored.wrong_type(self.core, arrays)
         if self.reference.shape != self.build.start_position.shape:
             fault = "simulation.reference has another shape"
-        if attributes.stage_index + (attributes.stage is not None) > len(
-            attributes.case.get("stages", [])
-        ):
-            fault = "it is in a stage that the case does not have"
+        fault = fault or restored.wrong_stage(attributes)
         if not fault:
             self.core.restore(arrays, attributes.core)
             fault = restored.wrong_array(self.core)

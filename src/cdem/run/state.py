@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, NonNegativeInt
+from pydantic import BaseModel, ConfigDict, NonNegativeInt, field_validator
 
 from cdem._native import name as native_name
 from cdem._version import __version__
@@ -103,6 +103,18 @@ class Attributes(BaseModel):
     departures: list[Departure]
     rows: NonNegativeInt
     frames: NonNegativeInt
+
+    @field_validator("stage", "ended_stage", mode="before")
+    @classmethod
+    def _is_whole(cls, stage: Any) -> Any:
+        """Refuse a stage without one of its values: it would go on with a default."""
+        if isinstance(stage, dict):
+            quiet = stage.get("quiet")
+            for kept, kind in ((stage, StageState), (quiet, Quiet)):
+                names = {one.name for one in fields(kind)}
+                if not isinstance(kept, dict) or kept.keys() != names:
+                    raise ValueError(f"not the values of a {kind.__name__}")
+        return stage
 
 
 class RunState:
