@@ -170,6 +170,55 @@ PYTHON = [
         "np.cbrt(whole) / 24",
         "tests/validation/test_elements.py",
     ),
+    Mutant(
+        "checksum",
+        "a damaged checkpoint is taken for a whole one",
+        "src/cdem/run/checkpoint.py",
+        "if file.read(HEAD_BYTES) != _head(file):",
+        "if len(file.read(HEAD_BYTES)) != len(_head(file)):",
+        "tests/unit/run/test_checkpoint.py",
+    ),
+    Mutant(
+        "lock",
+        "two runs write into one folder",
+        "src/cdem/run/folder_lock.py",
+        "            self._lock.acquire()",
+        "            pass",
+        "tests/integration/cli/test_resume.py::test_two_runs_cannot_write_into_one_folder",
+    ),
+    Mutant(
+        "stage value",
+        "a checkpoint whose stage lacks a value is gone on from",
+        "src/cdem/run/state.py",
+        "kept.keys() != names",
+        "not kept.keys() <= names",
+        "tests/integration/cli/test_resume.py::test_a_stage_without_a_value_or_of_another_case_is_damage",
+    ),
+    Mutant(
+        "other case",
+        "a resumed run takes any change of its case",
+        "src/cdem/run/changes.py",
+        "allowed = later or path in FREE or end in ENDS",
+        "allowed = True",
+        "tests/unit/run/test_changes.py",
+    ),
+    Mutant(
+        "energy limit",
+        "energy that does not balance ends no run",
+        "src/cdem/run/simulation.py",
+        'if limit == "any" or abs(error) <= limit:',
+        "if limit:",
+        "tests/integration/cli/test_run_commands.py::"
+        "test_an_energy_balance_that_does_not_close_ends_the_run",
+    ),
+    Mutant(
+        "rest",
+        "a slow slide is taken for rest",
+        "src/cdem/run/rest.py",
+        "elif self.since is None or self._moved(motion) > REST_SPEED * REST_SPAN:",
+        "elif self.since is None:",
+        "tests/unit/run/test_rest.py",
+    ),
 ]
 """Faults in Python: nothing is built."""
 
@@ -416,6 +465,22 @@ CORE = [
         "for (int step = 0; step < 3; ++step)",
         "for (int step = 0; step < 2; ++step)",
         "tests/core/base/test_math.cpp",
+    ),
+    Mutant(
+        "heavier",
+        "nodes that grow heavier keep their velocity, not their momentum",
+        "core/nodes/masses.cpp",
+        "s.nodes.motion[8 * std::size_t(i) + 4 + axis] *= ratio;",
+        "s.nodes.motion[8 * std::size_t(i) + 4 + axis] *= ratio / ratio;",
+        "tests/validation/test_rest.py",
+    ),
+    Mutant(
+        "step change",
+        "changes of the step are not booked",
+        "core/nodes/nodes.cpp",
+        "return s.dt != s.dt_last ? s.nodes.step_change.data() : nullptr;",
+        "return s.dt < 0 ? s.nodes.step_change.data() : nullptr;",
+        "tests/validation/test_impact_energy.py",
     ),
 ]
 """Faults in the core: those in headers that many files include come last."""

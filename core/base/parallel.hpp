@@ -7,8 +7,13 @@
 
 namespace cdem {
 
-/// Loops over fewer items than this run on one thread: starting the others would cost more.
+/// Loops over fewer items than this run on one thread: starting the others would cost more. A build
+/// that looks for races (`tools/build.py --sanitize thread`) starts them for every loop.
+#if defined(CDEM_ALWAYS_THREADS)
+inline constexpr Index worth_threads = 1;
+#else
 inline constexpr Index worth_threads = 1024;
+#endif
 
 /// Blocks of so many consecutive items that a launch may be limited to.
 inline constexpr Index block_size = 8;

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import cdem
+from cdem.run.checkpoint import read_checkpoint, write_checkpoint
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools/torture"))
 from runs import CASE, differences, run_words
@@ -123,6 +124,22 @@ def test_the_checkpoint_before_is_used_when_the_last_is_damaged(run_cli, folder,
         "checkpoint.h5: is damaged (its checksum is another); going on from the one before" in err
     )
     assert differences(unbroken(folder), stopped) == []
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [("rows", "stage: Value error, not the values of a StageState"), ("name", "its stage 'junk'")],
+)
+def test_a_stage_without_a_value_or_of_another_case_is_damage(run_cli, stopped, value, said):
+    for name in ("checkpoint.h5", "checkpoint-before.h5"):
+        arrays, text = read_checkpoint(stopped / name)
+        attributes = json.loads(text)
+        attributes["stage"].pop(value)
+        if value == "name":
+            attributes["stage"]["name"] = "junk"
+        write_checkpoint(stopped, arrays, json.dumps(attributes))
+    status, out, err = run_cli(*WORDS, "--resume")
+    assert (status, out) == (1, "") and said in err and err.count("\n") == 1
 
 
 def test_two_damaged_checkpoints_are_one_message(run_cli, stopped):
