@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.joints.convex_cells import Cells, Floats, Ints
+from cdem.mesh.arrays import along
 
 Part = tuple[Ints, Ints, Ints]
 """Corners of some faces, how many each has, and which faces they are parts of."""
@@ -45,7 +46,7 @@ def cut(
         The cells now, and how many blocks were left whole because a part would be too thin.
     """
     near = c.near
-    distance = c.points @ normal - offset
+    distance = along(c.points, normal) - offset
     side = (distance > near).astype(np.int8) - (distance < -near).astype(np.int8)
     blocks = c.block[c.cell]
     low, high = np.full(c.blocks, np.inf), np.full(c.blocks, -np.inf)

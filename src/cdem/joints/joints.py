@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zlib
 from collections.abc import Iterator, Sequence
 
@@ -13,6 +14,7 @@ from cdem.errors import CaseError, MeshError
 from cdem.joints.cell_mesh import close_short_edges, to_mesh
 from cdem.joints.convex_cells import Cells, from_mesh, from_polyhedron, join
 from cdem.joints.cutting import cut
+from cdem.mesh.arrays import along
 from cdem.mesh.blocks import block_labels
 from cdem.mesh.element_shapes import NODES
 from cdem.mesh.mesh import Mesh, drop_unused, merge
@@ -41,7 +43,8 @@ def pole(dip: float, dip_direction: float) -> Floats:
         array([1., 0., 0.])
     """
     dip, azimuth = np.radians(dip), np.radians(dip_direction)
-    return np.array([np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth), np.cos(dip)])
+    across = math.sin(dip)
+    return np.array([across * math.sin(azimuth), across * math.cos(azimuth), math.cos(dip)])
 
 
 def fisher(mean: Floats, concentration: float, random: np.random.Generator) -> Floats:
@@ -53,11 +56,13 @@ def fisher(mean: Floats, concentration: float, random: np.random.Generator) -> F
         random: Two numbers are drawn from it.
     """
     u, turn = random.random(), 2 * np.pi * random.random()
-    cosine = 1 + np.log(u + (1 - u) * np.exp(-2 * concentration)) / concentration
+    cosine = 1 + math.log(u + (1 - u) * math.exp(-2 * concentration)) / concentration
     sine = np.sqrt(max(0.0, 1 - cosine**2))
     across = np.cross(mean, np.eye(3)[np.abs(mean).argmin()])
     across /= np.linalg.norm(across)
-    return cosine * mean + sine * (np.cos(turn) * across + np.sin(turn) * np.cross(mean, across))
+    return cosine * mean + sine * (
+        math.cos(turn) * across + math.sin(turn) * np.cross(mean, across)
+    )
 
 
 def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.random.Generator]]:
@@ -79,8 +84,8 @@ def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.ran
     else:
         mean = pole(joint.dip, joint.dip_direction)
     mean = mean / np.linalg.norm(mean)
-    along = (points - joint.origin) @ mean
-    low, high = along.min(), along.max()
+    reach = along(points - joint.origin, mean)
+    low, high = reach.min(), reach.max()
     if joint.scatter is not None:  # planes turned by up to 60 deg reach the body from so far
         high = 2 * np.linalg.norm(points - joint.origin, axis=1).max()
         low = -high
@@ -99,7 +104,7 @@ def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.ran
         )
         normal = mean if joint.scatter is None else fisher(mean, joint.scatter.fisher, random)
         through = joint.origin + k * (joint.spacing or 0.0) * mean
-        yield normal, float(normal @ through), random
+        yield normal, float((normal * through).sum()), random
 
 
 def thinnest_of(model: Model, points: Floats) -> float:

@@ -32,6 +32,76 @@ def lengths(vectors: Floats) -> Floats:
     return np.sqrt(np.einsum("...x,...x->...", vectors, vectors))
 
 
+def matrix_product(a: Floats, b: Floats) -> Floats:
+    """Products of small matrices, summed in one order on every CPU; BLAS has one for each kind."""
+    return np.einsum("...ij,...jk->...ik", a, b)
+
+
+def along(vectors: Floats, direction: Floats) -> Floats:
+    """Components of vectors (rows) along one direction, with the same bits on every CPU."""
+    return np.einsum("...x,x->...", vectors, direction)
+
+
+def in_plane(a: Floats, b: Floats, normal: Floats, x: Floats) -> tuple[Floats, Floats]:
+    """u, v of x = u a + v b + w normal, for vectors x in rows; with the same bits on every CPU."""
+    across, over = np.cross(b, normal), np.cross(normal, a)
+    whole = along(across, a)
+    return along(x, across) / whole, along(x, over) / whole
+
+
+def same_everywhere(values: Floats) -> Floats:
+    """Numbers rounded up to single precision.
+
+    For what LAPACK and vectorized functions give, whose last bits depend on the kind of CPU, and of
+    which seven digits are enough.
+    """
+    rounded = values.astype(np.float32)
+    low = rounded < values
+    rounded[low] = np.nextafter(rounded[low], np.float32(np.inf))
+    return rounded.astype(np.float64)
+
+
+def inverses(m: Floats) -> Floats:
+    """Inverses of positive definite matrices (..., n, n), with the same bits on every CPU."""
+    n = m.shape[-1]
+    a, out = m.copy(), np.broadcast_to(np.eye(n), m.shape).copy()
+    for k in range(n):
+        pivot = a[..., k, k, None].copy()
+        a[..., k, :] /= pivot
+        out[..., k, :] /= pivot
+        factor = a[..., :, k].copy()
+        factor[..., k] = 0.0
+        a -= factor[..., None] * a[..., None, k, :]
+        out -= factor[..., None] * out[..., None, k, :]
+    return out
+
+
+def solve_semidefinite(m: Floats, target: Floats, tolerance: float) -> Floats:
+    """A solution of m x = target, with the same bits on every CPU.
+
+    Args:
+        m: Symmetric, with no negative eigenvalue, shape (n, n).
+        target: Right side; a sum of columns of m.
+        tolerance: Pivots below this part of the largest count as zero, and their unknowns are zero.
+    """
+    a, right = m.copy(), target.copy()
+    left = np.ones(len(m), bool)
+    least = tolerance * np.diag(m).max()
+    while left.any():
+        k = int(np.argmax(np.where(left, np.diag(a), -np.inf)))
+        if a[k, k] <= least:
+            break
+        left[k] = False
+        right[k] /= a[k, k]
+        a[k] /= a[k, k]
+        factor = a[:, k].copy()
+        factor[k] = 0.0
+        a -= factor[:, None] * a[k]
+        right -= factor * right[k]
+    right[left] = 0.0
+    return right
+
+
 def determinant(m: Floats) -> Floats:
     """Determinants of 3 x 3 matrices; many times faster than one by one in LAPACK."""
     a, b, c = (m[..., row, :] for row in range(3))

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.mesh.arrays import determinant, in_pieces
+from cdem.mesh.arrays import determinant, in_pieces, matrix_product, same_everywhere
 
 Array = NDArray[np.float64]
 
@@ -129,7 +129,7 @@ def one_point(
     whole = volume.sum(axis=1, keepdims=True)
     mean = np.einsum("epnx,ep->enx", gradient, volume)[:, None] / whole[:, :, None, None]
     moments = np.einsum("an,enx->eax", HOURGLASS, corners).reshape(len(corners), 12)
-    stiffness = young[:, None] * np.cbrt(whole) / 48
+    stiffness = young[:, None] * same_everywhere(np.cbrt(whole)) / 48
     return mean, whole, np.concatenate([moments, stiffness], axis=1)
 
 
@@ -165,7 +165,7 @@ def reference_gradients(shape: str, corners: Array) -> tuple[Array, Array]:
     a, b, c = (jacobian[:, :, row] for row in range(3))
     cofactors = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=2)
     whole = determinant(jacobian)
-    gradient = slopes @ (cofactors / whole[..., None, None])
+    gradient = matrix_product(slopes, cofactors / whole[..., None, None])
     return gradient, weights * whole
 
 
@@ -179,7 +179,7 @@ def _jacobians(shape: str, corners: Array) -> tuple[Array, Array, Array]:
     """dX_x / dr_r at the Gauss points, row r; slopes of the shape functions; weights."""
     points, weights = _stiffness_rule(shape)
     _, slopes = _FUNCTIONS[shape](points)
-    return slopes.transpose(0, 2, 1) @ corners[:, None], slopes, weights
+    return matrix_product(slopes.transpose(0, 2, 1), corners[:, None]), slopes, weights
 
 
 def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
@@ -195,9 +195,9 @@ def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
     values, slopes = _FUNCTIONS[shape](points)
     volume = np.empty((len(corners), len(points)))
     for p in range(len(points)):
-        jacobian = corners.transpose(0, 2, 1) @ slopes[p]
+        jacobian = matrix_product(corners.transpose(0, 2, 1), slopes[p])
         volume[:, p] = weights[p] * determinant(jacobian)
-    return np.einsum("e,ep,pi,pj->eij", density, volume, values, values, optimize=True)
+    return np.einsum("ep,pij->eij", density[:, None] * volume, values[:, :, None] * values[:, None])
 
 
 def _strain_rows(shape: str, gradient: Array, volume: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.bodies_schema import Rotate
+from cdem.mesh.arrays import matrix_product
 from cdem.mesh.element_shapes import NODES
 
 Floats = NDArray[np.float64]
@@ -59,9 +61,9 @@ def place(
         x, y, z = axis / np.linalg.norm(axis)
         angle = np.radians(rotate.angle)
         k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        turn = np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
+        turn = np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * matrix_product(k, k)
         origin = np.zeros(3) if rotate.origin is None else np.asarray(rotate.origin, float)
-        mesh.points = (mesh.points - origin) @ turn.T + origin
+        mesh.points = matrix_product(mesh.points - origin, turn.T) + origin
     if translate is not None:
         mesh.points = mesh.points + np.asarray(translate, float)
     return mesh

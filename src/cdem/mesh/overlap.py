@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.mesh.arrays import along, in_plane
 from cdem.mesh.topology import Floats, Topology
 
 COPLANAR = 1e-6
@@ -117,10 +118,10 @@ def clip(a: Floats, b: Floats) -> Floats | None:
     normal = np.cross(a[2] - a[0], a[-1] - a[1])
     least = 0.5 * LEAST_AREA * np.linalg.norm(normal)
     normal = normal / np.linalg.norm(normal)
-    polygon = b[::-1] - np.outer((b[::-1] - a[0]) @ normal, normal)
+    polygon = b[::-1] - np.outer(along(b[::-1] - a[0], normal), normal)
     for start, end in zip(a, np.roll(a, -1, axis=0), strict=True):
         inward = np.cross(normal, end - start)
-        distance = (polygon - start) @ inward
+        distance = along(polygon - start, inward)
         kept = []
         for k in range(len(polygon)):
             p, q = distance[k - 1], distance[k]
@@ -151,8 +152,7 @@ def _weights(face: Floats, points: Floats) -> Floats:
     normal = normal / np.linalg.norm(normal)
     out = np.zeros((len(points), 4))
     if len(face) == 3:
-        system = np.column_stack([face[1] - face[0], face[2] - face[0], normal])
-        u, v, _ = np.linalg.solve(system, (points - face[0]).T)
+        u, v = in_plane(face[1] - face[0], face[2] - face[0], normal, points - face[0])
         out[:, :3] = np.column_stack([1 - u - v, u, v])
         return out
     for row, point in zip(out, points, strict=True):
@@ -161,8 +161,8 @@ def _weights(face: Floats, points: Floats) -> Floats:
             low = face[0] + u * (face[1] - face[0])
             high = face[3] + u * (face[2] - face[3])
             miss = point - (low + v * (high - low))
-            along = (1 - v) * (face[1] - face[0]) + v * (face[2] - face[3])
-            du, dv, _ = np.linalg.solve(np.column_stack([along, high - low, normal]), miss)
+            aside = (1 - v) * (face[1] - face[0]) + v * (face[2] - face[3])
+            du, dv = in_plane(aside, high - low, normal, miss)
             u, v = u + du, v + dv
             if abs(du) + abs(dv) < 1e-15:
                 break

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.mesh import element_shapes
+from cdem.mesh.arrays import along, inverses, matrix_product, same_everywhere, solve_semidefinite
 from cdem.mesh.topology import Topology
 from cdem.model.flat_arrays import Assembly, Floats, Properties
 
@@ -89,19 +90,23 @@ def _scaled_masses(
         rock = (p.lame[group], p.shear[group])
         gradient, volume, hourglass = geometry[shape]
         row_sums = m.sum(axis=2)
-        lumped_square = element_shapes.squared_frequencies(
-            shape, gradient, volume, rock[0], rock[1], row_sums, hourglass
+        lumped_square = same_everywhere(
+            element_shapes.squared_frequencies(
+                shape, gradient, volume, rock[0], rock[1], row_sums, hourglass
+            )
         )
         square = lumped_square.copy()
         if dense.any():
-            square[dense] = element_shapes.squared_frequencies(
-                shape,
-                gradient[dense],
-                volume[dense],
-                rock[0][dense],
-                rock[1][dense],
-                m[dense],
-                hourglass[dense],
+            square[dense] = same_everywhere(
+                element_shapes.squared_frequencies(
+                    shape,
+                    gradient[dense],
+                    volume[dense],
+                    rock[0][dense],
+                    rock[1][dense],
+                    m[dense],
+                    hourglass[dense],
+                )
             )
         heavier = np.maximum(1.0, square * (p.target_step / 2) ** 2)
         out.added_mass += float(((heavier - 1) * out.element_mass[shape]).sum())
@@ -126,7 +131,7 @@ def _second_moments(
             continue
         block = t.element_block[shape][some]
         x = t.node_position[t.element_nodes[shape][some]] - origin[block][:, None]
-        np.add.at(second, block, np.einsum("eij,eix,ejy->exy", m[some], x, x, optimize=True))
+        np.add.at(second, block, matrix_product(x.transpose(0, 2, 1), matrix_product(m[some], x)))
     return origin, second
 
 
@@ -155,17 +160,17 @@ def _correct_lumps(
         nodes = slice(t.block_first_node[b], t.block_first_node[b + 1])
         m = lumped[nodes]
         x = t.node_position[nodes] - origin[b]
-        center = m @ x / m.sum()
+        center = (m[:, None] * x).sum(axis=0) / m.sum()
         x = x - center
         exact = second[b] - m.sum() * np.outer(center, center)
         scale = np.sqrt(np.trace(exact) / m.sum())
         x, exact = x / scale, exact / scale**2
         rows = np.vstack([np.ones(len(m)), x.T, (x[:, upper[0]] * x[:, upper[1]]).T])
         target = np.concatenate([[m.sum()], np.zeros(3), exact[upper]])
-        shift = m * (
-            rows.T @ np.linalg.lstsq((rows * m) @ rows.T, target - rows @ m, rcond=1e-12)[0]
-        )
-        good = np.abs(rows @ (m + shift) - target).max() < 1e-9 * m.sum()
+        normal = matrix_product(rows * m, rows.T)
+        multipliers = solve_semidefinite(normal, target - along(rows, m), 1e-12)
+        shift = m * along(rows.T, multipliers)
+        good = np.abs(along(rows, m + shift) - target).max() < 1e-9 * m.sum()
         if good and (m + shift > LEAST_LUMP * m).all():
             mass[nodes] = m + shift
         elif len(m) <= DENSE_NODES_MOST:
@@ -230,18 +235,18 @@ def _dense_blocks(
                 continue
             nodes = first[blocks][:, None] + np.arange(n)
             m = _block_matrices(t, scaled, blocks, n)
-            bound[nodes] = (1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
+            bound[nodes] = same_everywhere(1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
             # K <= diag(stiffness) as well, which the worst element alone often exceeds
             root = np.sqrt(stiffness[nodes])
             least = np.linalg.eigvalsh(m / root[:, :, None] / root[:, None])[:, 0]
-            frequency2[nodes] = np.minimum(frequency2[nodes], 1 / least[:, None])
+            frequency2[nodes] = np.minimum(frequency2[nodes], same_everywhere(1 / least)[:, None])
             if blocks is free:
                 per_row = mass[nodes][:, :, None]
-                table.keep(nodes, np.linalg.inv(m) * per_row, m / per_row)
+                table.keep(nodes, inverses(m) * per_row, m / per_row)
             else:
                 per_row = mass[nodes][:, None, :, None]
-                inverses = _supported_inverses(m, p.supported[nodes])
-                table.keep(nodes, inverses * per_row, np.repeat(m[:, None], 3, axis=1) / per_row)
+                by_axis = _supported_inverses(m, p.supported[nodes])
+                table.keep(nodes, by_axis * per_row, np.repeat(m[:, None], 3, axis=1) / per_row)
     out.arrays["node.mass_row_first"] = table.first
     out.arrays["node.mass_axis_stride"] = table.step
     out.arrays["node.inverse_mass_bound"] = bound
@@ -278,5 +283,5 @@ def _supported_inverses(matrices: Floats, supported: NDArray[np.bool_]) -> Float
         for axis in range(3):
             free = np.flatnonzero(~supported[b, :, axis])
             if len(free):
-                out[b, axis][np.ix_(free, free)] = np.linalg.inv(m[np.ix_(free, free)])
+                out[b, axis][np.ix_(free, free)] = inverses(m[np.ix_(free, free)])
     return out

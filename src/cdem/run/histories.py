@@ -38,7 +38,7 @@ def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.
         return fields["reaction"][nodes].sum(axis=0)
     name = "position" if quantity == "centroid" else quantity
     mass = fields["mass"][nodes]
-    return mass @ fields[name][nodes] / mass.sum()
+    return (mass[:, None] * fields[name][nodes]).sum(axis=0) / mass.sum()
 
 
 def _kinetic(sim: RunState, nodes: NDArray[np.intp]) -> float:

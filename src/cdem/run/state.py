@@ -317,7 +317,7 @@ class RunState:
             nodes = self.build.nodes_of(name)
             mass = fields["mass"][nodes]
             mean = {
-                key: (mass @ fields[key][nodes] / mass.sum()).tolist()
+                key: ((mass[:, None] * fields[key][nodes]).sum(axis=0) / mass.sum()).tolist()
                 for key in ("position", "displacement", "velocity")
             }
             distance = np.linalg.norm(fields["displacement"][nodes], axis=1)
