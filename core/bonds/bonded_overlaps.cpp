@@ -6,7 +6,7 @@ namespace cdem {
 Bonded live_overlaps(const Model& m, const State& s) {
   Bonded bonded;
   for (Index i = 0; i < m.overlaps.count; ++i) {
-    if (!is_live(PairStatus(s.overlaps.status[i]))) continue;
+    if (PairStatus(s.overlaps.status[i]) != PairStatus::bonded) continue;
     for (Index side = 0; side < 2; ++side) {
       const Index face = m.overlaps.faces[2 * i + side];
       const Index mate = s.search.face_exposed[m.overlaps.faces[2 * i + 1 - side]];

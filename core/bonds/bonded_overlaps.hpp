@@ -1,4 +1,4 @@
-// bonded_overlaps.hpp - faces and vertices that live bonds of overlapping faces hold.
+// bonded_overlaps.hpp - faces and vertices that bonds of overlapping faces keep from the search.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace cdem {
 
-/// Faces and vertices that live bonds of overlaps hold, as sorted keys.
+/// Faces and vertices that bonds of overlaps hold, hinges left out, as sorted keys.
 struct Bonded {
   using Pairs = std::vector<std::pair<Index, Index>>;
   Pairs faces;     // exposed face and the one it is bonded to

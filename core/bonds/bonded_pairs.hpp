@@ -231,10 +231,11 @@ struct OverlapBonds {
     const Vec3<Real> none{0.0, 0.0, 0.0};
     Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};
     const Frame<Real> frame = frame_of(a, b);
+    const bool open = pairs.are_hinges(p);
     Real widest = 0, intact = 0, stored = 0, fracture = 0, friction = 0, tension = 0, shear = 0;
     for (Index c = point_first[p.i]; c < point_first[p.i + 1]; ++c) {
       const One point{c};
-      const Vec3<Real> jump = at(b, weights_b, c) - at(a, weights_a, c);
+      const Vec3<Real> jump = jump_at(a, b, c);
       const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
       BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
                           pairs.slip2.at(0, point)};
@@ -242,7 +243,7 @@ struct OverlapBonds {
       pairs.load_history(point, 0, 1, state);
       const BondForce<Real> f =
           bond_force(pairs.interfaces, pairs.interface.at(0, p), pairs.spring(p, point_area[c]),
-                     frame, jump, jump - faces.dt * rate, false, h, state);
+                     frame, jump, jump - faces.dt * rate, open, h, state);
       pairs.store_history(point, 0, 1, true, state);
       pairs.bond.set(0, point, h.bond);
       pairs.slip1.set(0, point, h.slip1);
@@ -265,13 +266,18 @@ struct OverlapBonds {
     pairs.broken_shear.set(0, p, pairs.broken_shear.at(0, p) + shear);
   }
 
- private:
+  /// Jump of displacement at a bond point  [m].
+  CDEM_HD Vec3<Real> jump_at(Index a, Index b, Index c) const {
+    return at(b, weights_b, c) - at(a, weights_a, c);
+  }
   CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
     const Frame<Real> f = faces.shape(a).frame();
     const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
     const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
     return {n, t1, cross(n, t1)};
   }
+
+ private:
   CDEM_HD Vec3<Real> at(Index face, const Real* weights, Index c) const {
     Vec3<Real> sum{0.0, 0.0, 0.0};
     for (Index k = 0; k < faces.vertex_count(face); ++k)

@@ -3,7 +3,6 @@
 
 #include "core/base/parallel.hpp"
 #include "core/bonds/views.hpp"
-#include "core/contact/geometry/views.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/phase_timer.hpp"
@@ -35,15 +34,7 @@ void update_bonds(PairKind<ConformingBonds<count>>, const Model& m, State& s, Qu
 
 void update_bonds(PairKind<OverlapBonds>, const Model& m, State& s, Queue q, const StepPlan& plan,
                   const PairSet& p, PairState& ps) {
-  for_each_item(q, p.count, awake(plan, ps.awake),
-                OverlapBonds{.faces = face_columns(m, s),
-                             .pair_faces = p.faces.data(),
-                             .point_first = p.point_first.data(),
-                             .weights_a = p.weights_a.data(),
-                             .weights_b = p.weights_b.data(),
-                             .point_area = p.point_area.data(),
-                             .pairs = pair_columns(m, p, ps),
-                             .corner_force = corner_forces(s, p)});
+  for_each_item(q, p.count, awake(plan, ps.awake), overlap_bonds(m, s));
 }
 
 }  // namespace

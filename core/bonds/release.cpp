@@ -2,6 +2,7 @@
 #include "core/bonds/release.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "core/base/parallel.hpp"
 #include "core/bonds/transfer_to_contact.hpp"
@@ -30,8 +31,43 @@ bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
 /// hinge: what comes between its faces touches them.
 constexpr Real hinge_part = 0.05;
 
-/// Expose the faces of conforming pairs that have opened as hinges. Their broken points carry
-/// nothing any more; what little those held is lost to friction.
+/// Is a pair bonded by some of its points, of which `place` gives the places in the point tables?
+template <class Place>
+bool holds_in_part(const PairState& ps, Index i, Index count, Place&& place) {
+  Index holding = 0;
+  for (Index k = 0; k < count; ++k) holding += ps.bond[place(k)] > 0;
+  return status_of(ps, i) == PairStatus::bonded && holding > 0 && holding < count;
+}
+
+/// A broken point of a pair that may be a hinge.
+struct BrokenPoint {
+  std::size_t place;  // in the point tables
+  Vec3<Real> jump;
+  BondSpring<Real> spring;
+  Real history[InterfaceLaws::most_state + 1];
+};
+
+/// If a pair has opened as a hinge, expose its faces. Its broken points carry nothing any more;
+/// what little those held is lost to friction.
+void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, Index i,
+                   const Frame<Real>& frame, std::vector<BrokenPoint>& broken) {
+  Real widest = 0;
+  for (const BrokenPoint& point : broken) widest = std::max(widest, norm(point.jump));
+  if (!(widest > hinge_part * pair_length(m, p, i))) return;
+  for (BrokenPoint& point : broken) {
+    const JointInput<Real> in =
+        point.spring.input(frame, point.jump, 0.0, ps.slip1[point.place], ps.slip2[point.place]);
+    const JointAnswer<Real> joint = respond(interface_table(m), p.interface[i], in, point.history);
+    const Real held = point.spring.area * (joint.stored_n + joint.stored_s);
+    ps.friction[i] += held;
+    ps.stored[i] -= held;
+  }
+  ps.status[i] = Flag(PairStatus::hinge);
+  expose(s, p.faces[2 * i]);
+  expose(s, p.faces[2 * i + 1]);
+  give_history(m, s, p, ps, i);
+}
+
 template <Index count>
 void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real indentation) {
   const ConformingBonds<count> bonds{.nodes = {s.nodes.motion.data()},
@@ -41,35 +77,41 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
                                      .dt = 0,
                                      .sampled = false,
                                      .corner_force = {}};
+  std::vector<BrokenPoint> broken;
   for (Index i = 0; i < p.count; ++i) {
-    const auto point = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
-    const auto holds = [&](Index k) { return ps.bond[point(k)] > 0; };
-    Index holding = 0;
-    for (Index k = 0; k < count; ++k) holding += holds(k);
-    if (status_of(ps, i) != PairStatus::bonded || holding == 0 || holding == count) continue;
+    const auto place = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
+    if (!holds_in_part(ps, i, count, place)) continue;
     Vec3<Real> mean[count], jump[count];
     bonds.gather_jumps(One{i}, mean, jump);
-    Real widest = 0;
-    for (Index k = 0; k < count; ++k)
-      if (!holds(k)) widest = std::max(widest, norm(jump[k]));
-    if (!(widest > hinge_part * pair_length(m, p, i))) continue;
-    const Frame<Real> frame = pair_frame<count>(mean);
-    const BondSpring<Real> spring = bonds.spring(One{i});
+    broken.clear();
     for (Index k = 0; k < count; ++k) {
-      if (holds(k)) continue;
-      Real state[InterfaceLaws::most_state + 1];
-      bonds.pairs.load_history(One{i}, k, count, state);
-      const JointAnswer<Real> joint =
-          respond(bonds.pairs.interfaces, p.interface[i],
-                  spring.input(frame, jump[k], 0.0, ps.slip1[point(k)], ps.slip2[point(k)]), state);
-      const Real held = spring.area * (joint.stored_n + joint.stored_s);
-      ps.friction[i] += held;
-      ps.stored[i] -= held;
+      if (ps.bond[place(k)] > 0) continue;
+      broken.push_back({place(k), jump[k], bonds.spring(One{i}), {}});
+      bonds.pairs.load_history(One{i}, k, count, broken.back().history);
     }
-    ps.status[i] = Flag(PairStatus::hinge);
-    expose(s, p.faces[2 * i]);
-    expose(s, p.faces[2 * i + 1]);
-    give_history(m, s, p, ps, i);
+    open_if_hinge(m, s, p, ps, i, pair_frame<count>(mean), broken);
+  }
+}
+
+void open_overlap_hinges(const Model& m, State& s) {
+  const PairSet& p = m.overlaps;
+  PairState& ps = s.overlaps;
+  const OverlapBonds bonds = overlap_bonds(m, s);
+  std::vector<BrokenPoint> broken;
+  for (Index i = 0; i < p.count; ++i) {
+    const Index first = p.point_first[i], count = p.point_first[i + 1] - first;
+    if (!holds_in_part(ps, i, count, [&](Index k) { return std::size_t(first + k); })) continue;
+    const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
+    broken.clear();
+    for (Index c = first; c < first + count; ++c) {
+      if (ps.bond[c] > 0) continue;
+      broken.push_back({std::size_t(c),
+                        bonds.jump_at(a, b, c),
+                        bonds.pairs.spring(One{i}, p.point_area[c]),
+                        {}});
+      bonds.pairs.load_history(One{c}, 0, 1, broken.back().history);
+    }
+    open_if_hinge(m, s, p, ps, i, bonds.frame_of(a, b), broken);
   }
 }
 
@@ -82,11 +124,11 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
     give_history(m, s, p, ps, i);
-    if (p.point_first.size() > 0) {
+    const bool hinge = status_of(ps, i) == PairStatus::hinge;
+    if (p.point_first.size() > 0 && !hinge) {
       s.released_overlaps.push(i);
     } else {
-      if (status_of(ps, i) == PairStatus::bonded)
-        ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);
+      if (!hinge) ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);
       ps.friction[i] += ps.stored[i];
       ps.stored[i] = 0;
     }
@@ -108,6 +150,7 @@ bool release_is_due(const Model& m, const State& s) {
 bool release_bonds(const Model& m, State& s) {
   open_hinges<3>(m, s, m.triangles, s.triangles, m.bond_indentation_triangle);
   open_hinges<4>(m, s, m.quads, s.quads, m.bond_indentation_quad);
+  open_overlap_hinges(m, s);
   const bool triangles = release_pairs(m, s, m.triangles, s.triangles);
   const bool quads = release_pairs(m, s, m.quads, s.quads);
   const bool overlaps = release_pairs(m, s, m.overlaps, s.overlaps);

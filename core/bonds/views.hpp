@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/bonds/bonded_pairs.hpp"
+#include "core/contact/geometry/views.hpp"
 #include "core/model/interface_table.hpp"
 #include "core/model/state.hpp"
 
@@ -27,6 +28,18 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           .stored = inout(s.stored),
           .fracture = inout(s.fracture),
           .friction = inout(s.friction)};
+}
+
+inline OverlapBonds overlap_bonds(const Model& m, State& s) {
+  const PairSet& p = m.overlaps;
+  return {.faces = face_columns(m, s),
+          .pair_faces = p.faces.data(),
+          .point_first = p.point_first.data(),
+          .weights_a = p.weights_a.data(),
+          .weights_b = p.weights_b.data(),
+          .point_area = p.point_area.data(),
+          .pairs = pair_columns(m, p, s.overlaps),
+          .corner_force = {s.corner_force.data() + std::size_t(p.corner_first) * 4}};
 }
 
 }  // namespace cdem

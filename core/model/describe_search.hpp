@@ -219,6 +219,11 @@ void describe_inner_faces(InnerList& inner, Rebuilt&& rebuilt) {
            .rows = "inner_faces",
            .refers_to = {"exposed"}},
           inner.candidate);
+  rebuilt("prune_pair_list",
+          {.name = "inner.rises",
+           .meaning = "1: the surface may rise at a side of the face",
+           .rows = "inner_faces"},
+          inner.rises);
   rebuilt("find_target_faces",
           {.name = "inner.may_begin",
            .meaning = "1: a contact may begin in this step",

@@ -119,6 +119,7 @@ struct InnerList {
   Column<Flag> candidates;       // [outer slot face] is it near?
   Column<Index> first, count;    // by slot
   Column<Index> candidate;       // exposed faces
+  Column<Flag> rises;            // [candidate] may the surface rise at a side of it?
   Column<Flag> may_begin;        // [candidate] see FilterNewTargets; made in every step
   Column<Index> near_edges;      // outer pairs of edges
   Column<Index> edge_ends, edge_sides, edge_codes;  // of the inner pairs of edges, see EdgePairs

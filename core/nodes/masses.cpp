@@ -6,19 +6,34 @@
 
 namespace cdem {
 
+namespace {
+
+/// What a node has of the kinetic energy  [J].
+Real energy_of_node(const MassColumns& mass, const State& s, Index i) {
+  const InMotion nodes{s.nodes.motion.data()};
+  return 0.5 * dot(mass.momentum(nodes, i).vector(), nodes.velocity(i));
+}
+
+}  // namespace
+
 Real energy_of_motion(const Model& m, const State& s) {
   const MassColumns mass = mass_columns(m, s);
-  const InMotion nodes{s.nodes.motion.data()};
-  return ordered_sum(m.node_count, [&](Index i) {
-    return 0.5 * dot(mass.momentum(nodes, i).vector(), nodes.velocity(i));
-  });
+  return ordered_sum(m.node_count, [&](Index i) { return energy_of_node(mass, s, i); });
 }
 
 void change_mass(Model& m, State& s, bool lumped) {
   const Real before = energy_of_motion(m, s);
+  // the last sample holds the energy of the masses before
+  const auto count_in_sample = [&](Real sign) {
+    const MassColumns mass = mass_columns(m, s);
+    for (Index i = 0; i < m.node_count; ++i)
+      s.nodes.sample[4 * std::size_t(i)] += sign * energy_of_node(mass, s, i);
+  };
+  count_in_sample(-1);
   m.lumped = lumped;
   s.nodes.relax_mass.resize(0);
   s.nodes.relax.resize(0);
+  count_in_sample(1);
   s.stopped_energy += before - energy_of_motion(m, s);
 }
 

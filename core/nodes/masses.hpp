@@ -10,7 +10,7 @@ namespace cdem {
 Real energy_of_motion(const Model& model, const State& state);
 
 /// Move lumped or exact masses from now on, unscaled; what kinetic energy that takes is booked as
-/// damping.
+/// damping, and taken from the last sample.
 void change_mass(Model& model, State& state, bool lumped);
 
 /// Adaptive relaxation, at the time of the forces: nodes whose scaled mass has grown keep their

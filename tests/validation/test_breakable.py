@@ -346,3 +346,42 @@ def test_contact_search_finds_the_faces_of_an_open_hinge():
     assert least[2] == pytest.approx(0, abs=2e-4)  # hit the base
     assert least[0] == pytest.approx(0, abs=2e-4)  # and the lid
     assert sim.core.fields()["quads.status"][0] == 2
+
+
+@pytest.mark.parametrize("base", ["beside", "below"])
+def test_a_lid_turned_aside_on_its_last_bond_point_falls_or_is_borne(base):
+    """Faces that do not conform: a broken point carries nothing, and the search has both faces.
+
+    The lid, a cube, is turned by 90 degrees about the bond point at its corner. If it then lies
+    beside the base, it hangs by that point and swings: after a time t its centre is at least 0.3 g
+    t2 / 2 lower. Three broken points whose two sides are up to 1.4 m apart held it up. If the base
+    is below it, contacts bear it; it sinks by its settlement, 2 rho g h / k_n = 1e-6 m at most.
+    """
+    g, t, low = 9.81, 0.2, {"beside": 0, "below": -1.5}[base]
+    sim = simulate(
+        [
+            {"group": "base", "box": {"size": [2 - low, 1, 0.5]}, "translate": [low, 0, -0.5]},
+            {"group": "lid", "box": {"size": [1, 1, 1]}},
+        ],
+        {"base": {"fix": ["x", "y", "z"]}, "lid": {}},
+        loads={"gravity": [0, 0, -g]},
+        interfaces={"default": {"friction_angle": 30, "cohesion": 1e15, "tensile_strength": 1e15}},
+        stages=[{"name": "hang", "mode": "dynamic", "duration": t}],
+        contact={"check": True},
+    )
+    lid, topology = sim.build.nodes_of("lid"), sim.build.topology
+    x, y, z = sim.fields["position"][lid].T
+    sim.fields["position"][lid] = np.column_stack([-y, x, z])
+    corners = topology.node_position[topology.face_nodes[topology.overlap_faces[0, 0]]]
+    points = topology.overlap_weights_a @ corners
+    state = sim.core.fields()
+    state["overlaps.bond"][: len(points)][np.linalg.norm(points, axis=1) > 1e-9] = 0
+    sim.run()
+    fallen = 0.5 - sim.fields["position"][lid, 2].mean()
+    if base == "beside":
+        assert fallen > 0.3 * g * t**2 / 2
+        assert abs(sim.energies["error"]) < 1e-3
+    else:
+        assert 0 < fallen < 3e-6
+        assert (sim.contacts["kind"] == 0).sum() > 3
+    assert sim.core.fields()["overlaps.status"][0] == 2

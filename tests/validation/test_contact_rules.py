@@ -27,6 +27,7 @@ class Scene:
             {"rock": {"fix": ["x", "y", "z"]}, "tet": {}},
             interfaces=interfaces,
             model={"rotate": {"axis": AXIS, "angle": angle}},
+            contact={"check": True},
         )
         self.nodes = self.sim.build.nodes_of("tet")
         at = self.sim.fields["position"][self.nodes] @ self.turned - [0, 0, 9.0]
@@ -113,6 +114,40 @@ def test_vertex_that_slides_into_a_corner_keeps_its_contact_with_the_floor(angle
     normal, after = scene.springs()
     on_floor = after[(normal == [0, 0, 1]).all(axis=1)]
     np.testing.assert_allclose(on_floor, before, rtol=ROUND_OFF)
+
+
+@pytest.mark.parametrize("angle", [0.0, 40.0])
+@pytest.mark.parametrize("depth", [0.01, 0.05])
+@pytest.mark.parametrize("pressed", ["floor", "wall"])
+def test_vertex_pressed_into_one_side_of_a_corner_meets_the_other(pressed, depth, angle):
+    """The vertex is 10 or 50 mm deep in the floor and slides into the wall, or the other way round.
+
+    It touches the wall in the first step in which it is behind it, 0.5 mm deep, and keeps the floor
+    with the force on it. From there the force on the wall grows in proportion to the depth.
+    """
+    arms = np.array([[0, 0, 0], [-1, 0, 0.9], [-0.6, 0.5, 1.2], [-0.6, -0.5, 1.2]])
+    held, met = [0, 0, 1], [-1, 0, 0]
+    into = np.array([1.0, 0, -1])  # the wall, and the floor
+    along = np.array([1.0, 0, 0]) if pressed == "floor" else np.array([0, 0, -1.0])
+    scene = Scene(CORNER, [-0.1, 0, 0.1] + arms, angle, BONDED)
+    if pressed == "wall":
+        held, met = met, held
+    start = into * depth - along * (depth + 0.1)
+    for way in (*np.arange(depth + 1e-3, 0, -4e-3), 0):
+        scene.put(start - (into - along) * way + arms)
+    normal, before = scene.springs()
+    assert len(before) > 0 and (before > 0).all() and (normal == held).all()
+    forces = []
+    for way in np.arange(-9.5e-3, 9.6e-3, 1e-3):
+        scene.put(start + along * (0.1 + way) + arms)
+        normal, force = scene.springs()
+        np.testing.assert_allclose(force[(normal == held).all(axis=1)], before, rtol=ROUND_OFF)
+        on_met = force[(normal == met).all(axis=1)]
+        assert (len(on_met) > 0) == (way > 0)
+        forces.append(on_met.sum())
+    growth = np.diff(forces[-9:])
+    np.testing.assert_allclose(growth, growth[0], rtol=1e-9)
+    assert growth[0] > 0
 
 
 @pytest.mark.parametrize("angle", [0.0, 40.0])

@@ -96,7 +96,7 @@ bool may_touch(const PairContext& f, Index node, const ExposedFace& x, Real leng
   return true;
 }
 
-/// Room of a vertex and a face that may touch; `length` and `least` as above, `indented` is how far
+/// Room of a vertex and a face that may touch; `length` as above, `indented` is how far
 /// its indented points are from the vertex, at most, and `deviation` how far its faces are strained
 /// and rotated while an inner list holds.
 ///
@@ -104,7 +104,7 @@ bool may_touch(const PairContext& f, Index node, const ExposedFace& x, Real leng
 /// behind a corner (or from the centre of a warped face), of which the rotation of the face changes
 /// what is seen along its sides, or its normal.
 PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index place_y, Real length,
-                                       Real indented, Real deviation, Real least) {
+                                       Real indented, Real deviation) {
   const SearchRules& rules = f.m.rules;
   const ExposedFace& y = f.exposed[place_y];
   const Real slack = 1e-6 * y.length;  // for round-off
@@ -112,8 +112,8 @@ PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index p
   const Real aside = rules.tolerance * length + indented + slack;
   const Index last = y.shape.count() == 3 ? 2 : 3;
   const ExposedSide* sides = f.sides.data() + 4 * std::size_t(place_y);
-  const bool behind = std::any_of(sides, sides + y.shape.count(),
-                                  [](const ExposedSide& side) { return side.rises; });
+  Index behind = 0;  // sides, as bits
+  for (Index k = 0; k <= 3; ++k) behind |= Index(sides[std::min(k, last)].rises) << k;
   const Real reach = 1.34 * f.m.face_reach[y.face] + aside;
   const Real off =
       behind ? 2 * reach : std::max(2 * aside * y.slender, last == 3 ? 0.5 * reach : 0.0);
@@ -124,8 +124,7 @@ PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index p
       parted + rules.indentation * 2 * deviation + 2 * y.rotation_soon * off + slack;
   return {{node, place_y},
           {above + rules.lifted + motion, above + rules.depth * length + motion, aside + motion,
-           behind ? std::max(rules.entry * std::min(least, y.length) - slack - motion, 0.0) : 1e30,
-           reach + motion, motion}};
+           Real(behind), reach + motion, motion}};
 }
 
 /// The faces of a patch that meet at one of its vertices and may touch a face of another patch.
@@ -193,7 +192,7 @@ struct VertexFaceSearch {
     const IndentedPoints points = list_semi_springs(v, j, at.touches, length, listed, found);
     if (points.shift == 0) return;  // nothing is listed
     found.vertex_faces.push_back(
-        vertex_face(f, a.vertex[v], b.face[j], length, points.shift, points.deviation, at.least));
+        vertex_face(f, a.vertex[v], b.face[j], length, points.shift, points.deviation));
   }
 };
 

@@ -96,7 +96,10 @@ struct FilterNewTargets : FaceSearch {
     if (!any_of(may)) return mark(item, may);
     const auto corners = geometry.vertices(t);
     const FaceShape<T> shape = faces.shape(corners);
-    const auto inside = may & shape.inside(c.p, c.normal, room);
+    auto inside = may & shape.inside(c.p, c.normal, room);
+    const auto aside = may & !inside;
+    if (any_of(aside) && any_of(aside & rises(item.id)))
+      inside = inside | (aside & rises(item.id) & behind_corner(c, item.row, t, shape, room));
     const auto deep = may & (plane < T(-rules.entry) * c.length);
     auto begins = inside;
     if (any_of(inside)) {
@@ -129,6 +132,39 @@ struct FilterNewTargets : FaceSearch {
     const Vec3<T> mean = select(corners.quad(), T(1.0 / 4.0) * (sum + v3), T(1.0 / 3.0) * sum);
     return T(rules.approach_steps * faces.dt) *
            abs_of(dot(c.normal, faces.nodes.velocity(node) - mean));
+  }
+  template <class Ids>
+  CDEM_HD auto rises(const Ids& candidate) const {
+    return numbers_of([&](Index c) { return candidates.rises[c]; }, candidate) > Number<Ids>(0.0);
+  }
+  /// May the vertex be behind a corner of the surface at every side of t that the indented point
+  /// is outside of? See ResolveTargets::behind_corner.
+  template <class T, class Ids>
+  CDEM_HD Truth<T> behind_corner(const VertexFace<T>& c, const Ids& m, const Ids& t,
+                                 const FaceShape<T>& shape, const T& room) const {
+    const T slack = T(1e-6) * c.length, sine(1e-6);  // for round-off
+    Truth<T> found = c.opposes;
+    for (Index k = 0; k < 4; ++k) {
+      const Vec3<T> a = shape.x[k], side = shape.x[k == 3 ? 0 : k + 1] - a;
+      const auto out = outside(a, side, c.normal, c.p, room);
+      if (!any_of(found & out)) continue;
+      const auto beside = indices_of(
+          [&](Index y) {
+            const ExposedRow& row = geometry.table[y];
+            const Index other = row.beside[k < row.count() ? k : 2];
+            return other >= 0 ? other : y;
+          },
+          t);
+      const auto beyond = geometry.row(beside);
+      const Vec3<T> away = cross(beyond.normal, side);
+      const T over = -slack * c.length,
+              up = dot(geometry.normal(m), beyond.normal) + T(rules.opposing);
+      const auto over_it = ((dot(away, c.p - a) < over) | (up > sine)) &
+                           ((dot(away, c.v - a) < over) | (up < -sine));
+      found = found & !(out & ((dot(c.normal, beyond.center - a) < -slack) |
+                               (dot(beyond.normal, c.v - a) > slack) | over_it));
+    }
+    return found;
   }
   /// Is the way out of the block shorter through a face beside t? See ResolveTargets::encloses.
   /// Faces that are not exposed are left to it.
@@ -226,8 +262,7 @@ struct ResolveTargets : FaceSearch {
   /// Conditions of a contact.
   struct Terms {
     Real lifted, limit;  // highest gap, and lowest below zero  [m]
-    bool inside;  // it is inside the block: need not be the deepest point, and may lie behind
-                  // a corner, beside neither face
+    bool inside;         // it is inside the block: need not be the deepest point
   };
 
   CDEM_HD Seeker start(Index m, Index k, Flag* lost) const {
@@ -277,7 +312,7 @@ struct ResolveTargets : FaceSearch {
   /// away across its sides? Then t is where the way out of the block is shortest. A vertex of the
   /// body that bonds make of that block and others lies on a face of its own block, not inside.
   CDEM_HD bool encloses(Index t, const Seeker& s, Real plane) const {
-    if (faces.body[s.node] == faces.body[faces.vertex(exposed_face[t], 0)]) return false;
+    if (is_of_body(s.node, t)) return false;
     const Vec3<Real>& v = s.v;
     for (Index k = 0; k < faces.vertex_count(exposed_face[t]); ++k) {
       const Index across = faces.across(t, k);
@@ -289,6 +324,9 @@ struct ResolveTargets : FaceSearch {
         return false;
     }
     return true;
+  }
+  CDEM_HD bool is_of_body(Index node, Index t) const {
+    return faces.body[node] == faces.body[faces.vertex(exposed_face[t], 0)];
   }
   /// A warped face may reach above its mean plane; a plane one does not.
   CDEM_HD Real above(Index t) const {
@@ -315,18 +353,21 @@ struct ResolveTargets : FaceSearch {
   }
   /// Is a point that is not beside face t behind it all the same, between the normals of t and of
   /// the faces that rise beyond its sides, where it is beside none of them? A vertex that is
-  /// pressed into a corner from inside comes there.
-  CDEM_HD bool behind_corner(Index t, const FaceShape<Real>& f, const Vec3<Real>& v,
-                             const Vec3<Real>& p, const Vec3<Real>& n, Real room) const {
+  /// pressed into a corner from inside comes there. The indented point decides between two faces
+  /// that may both be the target, else the vertex itself.
+  CDEM_HD bool behind_corner(Index m, Index t, const FaceShape<Real>& f, const Vec3<Real>& v,
+                             const Vec3<Real>& p, const Vec3<Real>& n, Real room,
+                             bool inside) const {
     for (Index k = 0; k < f.count(); ++k) {
       const Vec3<Real> a = f.x[k], side = f.x[k + 1 == f.count() ? 0 : k + 1] - a;
       if (!outside(a, side, n, p, room)) continue;
       const Index across = faces.across(t, k);
-      if (across < 0) return false;
+      if (across < 0 || !(inside || faces.face_exposed[across] >= 0)) return false;
       const FaceShape<Real> beyond_it = faces.shape(across);
       const Vec3<Real> u = beyond_it.normal();
       const bool rises = dot(n, beyond_it.center() - a) > 0 && !(dot(n, u) > coplanar_faces);
-      if (!rises || dot(u, v - a) > 0 || dot(cross(u, side), p - a) < 0) return false;
+      const Vec3<Real>& point = dot(geometry.normal(m), u) < -rules.opposing ? p : v;
+      if (!rises || dot(u, v - a) > 0 || dot(cross(u, side), point - a) < 0) return false;
     }
     return true;
   }
@@ -337,7 +378,9 @@ struct ResolveTargets : FaceSearch {
     const Vec3<Real> n = geometry.normal(t);
     const FaceShape<Real> f = faces.shape(exposed_face[t]);
     const Real room = rules.tolerance * smaller_length(m, t);
-    if (!f.inside(p, n, room) && !(terms.inside && behind_corner(t, f, v, p, n, room))) return none;
+    if (!f.inside(p, n, room) && ((!terms.inside && is_of_body(node, t)) ||
+                                  !behind_corner(m, t, f, v, p, n, room, terms.inside)))
+      return none;
     const Real gap = project(f, v, n).gap;
     if (gap > terms.lifted || gap < -terms.limit) return none;
     for (Index j = 0; j < f.count(); ++j)

@@ -10,6 +10,7 @@ namespace cdem {
 struct Candidates {
   const Index* first;  // [4 * exposed + 1], slot = 4 * exposed face + vertex
   const Index* other;  // exposed face, ascending in a row
+  const Flag* rises;   // of those: may the surface rise at a side of the face?
   Flag* may_begin;     // of those, see FilterNewTargets
 };
 

@@ -11,6 +11,7 @@ inline Candidates candidate_columns(State& s) {
   InnerList& inner = s.search.inner;
   return {.first = inner.first.data(),
           .other = inner.candidate.data(),
+          .rises = inner.rises.data(),
           .may_begin = inner.may_begin.data()};
 }
 

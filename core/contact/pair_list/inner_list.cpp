@@ -63,6 +63,7 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
   const ListedFaces listed{.first = search.outer.slot_first.data(),
                            .other = search.outer.slot_faces.data(),
                            .pair = search.outer.slot_pairs.data(),
+                           .room = {search.outer.vf_bounds.data(), stride},
                            .near = inner.faces.data(),
                            .motion = inner.motion.data(),
                            .rotation = search.outer.rotation_soon.data()};
@@ -81,12 +82,14 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
   inner.first.resize(slots + 1);
   for (Index i = 0; i < slots; ++i) inner.first[i + 1] = inner.first[i] + inner.count[i];
   inner.candidate.resize(inner.first[slots]);
+  inner.rises.resize(inner.first[slots]);
   inner.may_begin.resize(inner.first[slots]);
   for_each_item(q, slots,
                 ListInnerFaces{.listed = listed,
                                .close = inner.candidates.data(),
                                .first = inner.first.data(),
-                               .other = inner.candidate.data()});
+                               .other = inner.candidate.data(),
+                               .rises = inner.rises.data()});
 }
 
 /// Where faces of two elements meet at an edge, a contact may be found through another pair than

@@ -18,9 +18,10 @@ struct MarkNearFaces {
   FaceGeometry geometry;
   InIndices of;   // [2][pair]: node of the vertex; exposed face
   InBounds room;  // [6][pair]: highest above the face and lowest below it, farthest outside a
-                  // side; depth from which it may lie outside, and distance from the centre of
-                  // three corners that it has then at most; how far the vertex may soon move
-                  // as seen from the face, which all have room for: without skins  [m]
+                  // side [m]; the sides, as bits, at which the surface may rise, so that it may lie
+                  // outside; distance from the centre of three corners that it has then at most;
+                  // how far the vertex may soon move as seen from the face, which all have room
+                  // for: without skins  [m]
   const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
   const Real* skin;      // [node]  [m]
   Flag* near;
@@ -46,13 +47,12 @@ struct MarkNearFaces {
     // how far a point above the face moves along it as the face rotates
     const T along = T(2.0) * look_up(rotation, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
     const T reach = room.at(4, p) + skins + along, aside = room.at(2, p) + skins + along;
-    const T penetration = max_of(room.at(3, p) - skins, T(0.0));
     auto outside = beyond(x[0], x[1], n, n2, v, aside) | beyond(x[1], x[2], n, n2, v, aside);
     outside = outside | beyond(x[2], x[3], n, n2, v, aside) | beyond(x[3], x[0], n, n2, v, aside);
     const Vec3<T> arm = v - T(1.0 / 3.0) * (x[0] + x[1] + x[2]);
     const auto beside = dot(arm, arm) * n2 - gap2 > reach * reach * n2;
-    const auto deep = below & (gap2 > penetration * penetration * n2);
-    set_flags(near, p, !((gap2 > most * most * n2) | beside | (outside & !deep)));
+    const auto flat = room.at(3, p) < T(0.5);
+    set_flags(near, p, !((gap2 > most * most * n2) | beside | (outside & flat)));
   }
 
  private:
@@ -71,7 +71,8 @@ struct ListedFaces {
   const Index* first;    // [4 * exposed + 1], slot = 4 * exposed face + vertex
   const Index* other;    // exposed face, ascending in a row
   const Index* pair;     // pair of vertex and face
-  const Flag* near;      // [pair] see MarkNearFaces
+  InBounds room;         // [6][pair] see MarkNearFaces
+  const Flag* near;      // [pair] the same
   const Real* motion;    // [pair] the same
   const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
 };
@@ -105,12 +106,26 @@ struct MarkInnerFaces {
     const T room = T(rules.tolerance) * c.length + motion + along;
     auto may = opposes & !(plane > above + T(rules.lifted)) &
                !(plane < T(-rules.depth) * c.length - above);
-    if (any_of(may)) {
-      const auto inside = faces.shape(geometry.vertices(t)).inside(c.p, c.normal, room);
-      // a vertex deeper than a contact may begin may be behind a corner
-      may = may & (inside | (plane < motion - T(rules.entry) * c.length));
-    }
+    if (any_of(may)) may = may & !is_beside(item.id, c, faces.shape(geometry.vertices(t)), room);
     for_lanes(item, [&](Index lane, Index, Index id) { close[id] = holds(may, lane); });
+  }
+
+ private:
+  /// Is the indented point outside a side at which the surface does not rise?
+  template <class T, class Ids>
+  CDEM_HD Truth<T> is_beside(const Ids& id, const VertexFace<T>& c, const FaceShape<T>& shape,
+                             const T& room) const {
+    Truth<T> found = !(c.length > T(0.0));
+    for (Index k = 0; k < 4; ++k) {
+      const Vec3<T> a = shape.x[k];
+      const auto out = outside(a, shape.x[k == 3 ? 0 : k + 1] - a, c.normal, c.p, room);
+      if (!any_of(out)) continue;
+      const T rises = numbers_of(
+          [&](Index x) { return Real(Index(listed.room.at(3, One{listed.pair[x]})) >> k & 1); },
+          id);
+      found = found | (out & !(rises > T(0.5)));
+    }
+    return found;
   }
 };
 
@@ -133,11 +148,15 @@ struct ListInnerFaces {
   const Flag* close;
   const Index* first;  // [4 * exposed + 1] of the new list
   Index* other;
+  Flag* rises;  // may the surface rise at a side of it?
 
   CDEM_HD void operator()(One slot) const {
     Index place = first[slot.i];
-    for (Index c = listed.first[slot.i]; c < listed.first[slot.i + 1]; ++c)
-      if (close[c]) other[place++] = listed.other[c];
+    for (Index c = listed.first[slot.i]; c < listed.first[slot.i + 1]; ++c) {
+      if (!close[c]) continue;
+      rises[place] = listed.room.at(3, One{listed.pair[c]}) > 0;
+      other[place++] = listed.other[c];
+    }
   }
 };
 

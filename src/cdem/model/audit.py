@@ -12,7 +12,7 @@ from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
-from cdem.model.doubts import crowded_edges, idle_bonds
+from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
@@ -137,6 +137,7 @@ class Audit:
         b = self._build
         out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
         out += idle_bonds(b)
+        out += uneven_tiles(b)
         if any(s.mode == "static" for s in b.case.stages):
             for name, count in self._unheld_blocks().items():
                 blocks = "1 block has" if count == 1 else f"{count:,} blocks have"

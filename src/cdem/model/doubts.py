@@ -19,6 +19,10 @@ NEAR = 0.01
 """Gap over the size of the smaller group below which two groups seem meant to touch."""
 COMPARED = 2_000
 """Vertices and faces on each side that are compared for a gap; the nearest by their boxes."""
+UNEVEN = 4
+"""Ratio of contact areas over the faces that a body may slide on, from which it is told of."""
+FACING = -0.9
+"""Cosine of the normals of faces that lie on each other."""
 
 
 def crowded_edges(t: Topology) -> Iterator[str]:
@@ -117,3 +121,39 @@ def _distances(points: Floats, triangles: Floats) -> Floats:
         corner = lengths(triangles - point).min(axis=1)
         best[number] = np.where(inside, height, corner).min(initial=np.inf)
     return best
+
+
+def uneven_tiles(build: Build) -> Iterator[str]:
+    """Say where a group lies on faces of another, smaller than its own, whose areas differ much.
+
+    Blocks of one group, as joints cut them, always differ and seldom travel over many seams.
+    """
+    t, core = build.topology, build.core.fields()
+    exposed, first = core["search.exposed_face"], core["outer.slot_first"]
+    mother = exposed[np.repeat(np.arange(len(first) - 1) // 4, np.diff(first))]
+    target = exposed[core["outer.slot_faces"]]
+    normal = _normals(t)
+    lie = np.einsum("ij,ij->i", normal[mother], normal[target]) < FACING
+    lie &= t.face_group[mother] != t.face_group[target]
+    mother, target = mother[lie], target[lie]
+    share = build.arrays["face.area"] / (t.face_nodes >= 0).sum(axis=1)
+    part = np.minimum(1, share[target] / share[mother])
+    groups = len(t.group_names) * t.face_group[mother].astype(int) + t.face_group[target]
+    for pair in np.unique(groups):
+        least, most = np.quantile(part[groups == pair], [0.05, 0.95])
+        if most < UNEVEN * least:
+            continue
+        a, b = (t.group_names[i] for i in divmod(int(pair), len(t.group_names)))
+        yield (
+            f"group {a} lies on faces of {b} that are smaller than its own and whose areas differ "
+            f"{most / least:.2g} times: where it slides over their seams without being lifted, it "
+            "goes down by up to half its settlement at each. Make these faces alike, or larger"
+        )
+
+
+def _normals(t: Topology) -> Floats:
+    """Unit normals of all faces."""
+    nodes = np.where(t.face_nodes < 0, t.face_nodes[:, 2:3], t.face_nodes)
+    x = t.node_position[nodes]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    return normal / lengths(normal)[:, None]

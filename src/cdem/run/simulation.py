@@ -224,7 +224,7 @@ class Simulation(RunState):
             if stages.record_is_due(self, stage, outcome):
                 self._log_departures()
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
-                self._check_energy()  # not at the begin, where masses may change between samples
+                self._check_energy()
             status = stages.status(self, stage, outcome)
             known, note = (
                 note,

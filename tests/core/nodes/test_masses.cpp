@@ -1,5 +1,6 @@
 // Masses that move change, or all motion stops; the energy of it is booked.
 #include "core/nodes/masses.hpp"
+#include "core/nodes/nodes.hpp"
 #include "tests/core/scene.hpp"
 
 namespace cdem::test {
@@ -26,6 +27,7 @@ TEST_CASE("lumped masses have more inertia than the exact ones: the difference i
   const Real lumped = energy_of_motion(tet.model, tet.state);
   CHECK(lumped > before);
   CHECK(tet.state.stopped_energy == before - lumped);
+  CHECK(relative_error(kinetic_energy(tet.model, tet.state), lumped - before) < 1e-14);
   change_mass(tet.model, tet.state, false);
   CHECK(energy_of_motion(tet.model, tet.state) == before);
   CHECK(std::abs(tet.state.stopped_energy) < 1e-12 * before);

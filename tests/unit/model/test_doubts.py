@@ -16,13 +16,20 @@ BONDED = {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}
 
 def two(gap: float, interfaces, **more) -> Case:
     """A block over a bed, which are meshed otherwise."""
+    return resting(
+        [
+            {"group": "bed", "box": {"size": [4, 4, 1], "divisions": [3, 3, 1]}},
+            {"group": "block", "box": {"size": [2, 2, 1]}, "translate": [0.5, 0.5, 1 + gap]},
+        ],
+        interfaces,
+        **more,
+    )
+
+
+def resting(blocks, interfaces, **more) -> Case:
+    """Blocks of the groups bed, which is fixed, and block."""
     return Case(
-        model={
-            "blocks": [
-                {"group": "bed", "box": {"size": [4, 4, 1], "divisions": [3, 3, 1]}},
-                {"group": "block", "box": {"size": [2, 2, 1]}, "translate": [0.5, 0.5, 1 + gap]},
-            ]
-        },
+        model={"blocks": blocks},
         materials={"rock": {"density": 2700, "young_modulus": "10 GPa", "poisson_ratio": 0.25}},
         groups={"bed": {"material": "rock", "fix": ["x", "y", "z"]}, "block": {"material": "rock"}},
         interfaces=interfaces,
@@ -114,3 +121,22 @@ def test_a_body_given_twice_is_refused():
     data["model"]["blocks"].append(data["model"]["blocks"][1])
     with pytest.raises(ModelError, match=r"\(group block\).* remove what is there twice"):
         told(Case(**data))
+
+
+@pytest.mark.parametrize(
+    ("second", "expected"),
+    [((0.2, 8), "differ 5 times"), ((0.4, 4), None), ((2.0, 1), "differ 5 times")],
+)
+def test_tiles_whose_areas_differ_are_told_where_a_larger_face_lies_on_them(second, expected):
+    """Tiles of 0.5 x 0.4 m beside others of 0.2 x 0.2, 0.4 x 0.4 and 2 x 1.6 m, under 1 x 1 m."""
+    blocks, x = [], 0.0
+    while x < 6:
+        length, rows = [(0.5, 4), second][len(blocks) % 2]
+        tiles = {"size": [length, 1.6, 0.5], "divisions": [1, rows, 1]}
+        blocks.append({"group": "bed", "box": tiles, "translate": [x, 0, 0]})
+        x += length
+    block = {"group": "block", "box": {"size": [1, 1, 0.5]}, "translate": [0.3, 0.3, 0.5]}
+    case = resting([*blocks, block], {"default": {"friction_angle": 0}})
+    said = [text for text in told(case) if "areas" in text]
+    assert len(said) == (expected is not None)
+    assert not expected or (expected in said[0] and "group block lies on faces of bed" in said[0])

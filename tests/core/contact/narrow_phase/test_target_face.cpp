@@ -147,8 +147,8 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
       if (of_tip) other.insert(other.end(), {0, 1, 2, 3, 4, 5});
       first[slot + 1] = Index(other.size());
     }
-    std::vector<Flag> may_begin(other.size());
-    search.candidates = {first.data(), other.data(), may_begin.data()};
+    std::vector<Flag> rises(other.size()), may_begin(other.size());
+    search.candidates = {first.data(), other.data(), rises.data(), may_begin.data()};
     for_each_selected({}, exposed, UpdateHeldTargets{search});
     for_each_selected({}, exposed, FilterNewTargets{search});
     for_each_item({}, exposed, ResolveTargets{search});
