@@ -156,7 +156,7 @@ def _weights(face: Floats, points: Floats) -> Floats:
         out[:, :3] = np.column_stack([1 - u - v, u, v])
         return out
     for row, point in zip(out, points, strict=True):
-        u = v = 0.5
+        u = v = np.asarray(0.5)
         for _ in range(20):
             low = face[0] + u * (face[1] - face[0])
             high = face[3] + u * (face[2] - face[3])
