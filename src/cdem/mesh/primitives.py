@@ -172,6 +172,8 @@ def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
     side = np.cross(normal, first)
     angle = [np.arctan2((points[v] - center) @ side, (points[v] - center) @ first) for v in on]
     loop = [on[i] for i in np.argsort(angle, kind="stable")]
+    start = loop.index(on[0])  # not at half a turn, where round-off decides who is first
+    loop = loop[start:] + loop[:start]
     corners = []
     for a, b, c in zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True):
         turn = np.cross(points[b] - points[a], points[c] - points[b]) @ normal

@@ -29,3 +29,15 @@ def test_polyhedra():
     np.testing.assert_allclose(block.points[-1], [0.5, 1, 1.5])
     with pytest.raises(MeshError, match="not convex"):
         primitives.polyhedron("a", [*corners, [0.5, 1, 1.4]])
+
+
+def test_round_off_does_not_choose_the_triangles_of_a_polyhedron():
+    """Opposite corners of a square lie at half a turn, where the sign of an angle is round-off."""
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    turned = corners @ np.linalg.qr(np.random.default_rng(3).random((3, 3)))[0]
+    random = np.random.default_rng(4)
+    faces = [
+        primitives.outward_faces(turned + random.normal(0, 1e-16, turned.shape)) for _ in range(20)
+    ]
+    assert all(one == faces[0] for one in faces)
+    assert all(face[0] == min(face) for face in faces[0])
