@@ -54,6 +54,18 @@ void describe_scalars(State& s, Visit&& visit) {
                    .unit = "J",
                    .meaning = "energy taken out by kinetic relaxation and changes of mass"},
         s.stopped_energy);
+  visit(ScalarInfo{.name = "taken_out",
+                   .unit = "J",
+                   .meaning = "stored energy that went with blocks taken out"},
+        s.taken_out);
+  visit(ScalarInfo{.name = "taken_out_friction",
+                   .unit = "J",
+                   .meaning = "frictional work of contacts on their faces until then"},
+        s.taken_out_friction);
+  visit(ScalarInfo{.name = "taken_out_dashpot",
+                   .unit = "J",
+                   .meaning = "work of the dashpots of these contacts"},
+        s.taken_out_dashpot);
   visit(ScalarInfo{.name = "kinetic_peak",
                    .unit = "J",
                    .meaning = "peak of the kinetic energy since all motion was last stopped"},

@@ -178,6 +178,7 @@ class Results:
     def _record_frame(self, sim: RunState, volume: FrameFiles, surface: SurfaceFiles) -> None:
         wanted = sim.case.output.fields
         kept = [f for f in OUTPUT_FIELDS if f.frames == "chosen" and f.name in wanted]
+        kept += [f for f in OUTPUT_FIELDS if f.frames == "domain" and sim.case.model.domain]
         shown = [f for f in CARRIED if f.surface == "always" or f.name in wanted]
         values = values_of(sim, [f for f in OUTPUT_FIELDS if f in kept or f in shown])
         nodes, elements = (

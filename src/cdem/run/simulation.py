@@ -223,6 +223,7 @@ class Simulation(RunState):
             stage.wall_time += now - clock
             if stages.record_is_due(self, stage, outcome):
                 self._log_departures()
+                stages.look_for_rest(self, stage)
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
                 self._check_energy()  # not at the begin, where masses may change between samples
             status = stages.status(self, stage, outcome)
