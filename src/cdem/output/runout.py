@@ -312,19 +312,19 @@ def measure(
         deposit=deposit,
         source=Deposit.of(body.start, deposit.cell),
         taken_out=float(body.start.volumes()[~stays].sum()),
-        **_motion_at_the_end(body, end),
+        **_motion_at_the_end(body, end, stays),
     )
 
 
-def _motion_at_the_end(body: Body, end: Solids) -> dict[str, float]:
-    """`speed_end` and `moving_share` of a run-out."""
+def _motion_at_the_end(body: Body, end: Solids, stays: NDArray[np.bool_]) -> dict[str, float]:
+    """`speed_end` and `moving_share` of a run-out, of the elements that stay."""
     last, before = body.frames[-1], body.frames[-2]
     passed = body.series.times[last] - body.series.times[before]
     way = np.linalg.norm(end.centroids() - body.solids(before).centroids(), axis=1)
     recorded = np.linalg.norm(body.velocities(last), axis=1)
     speed = np.where(np.isnan(recorded), way / passed, recorded)
-    moves = (speed >= REST_SPEED) & (way / passed >= REST_SPEED)  # else it only vibrates
-    share = body.mass[moves].sum() / body.mass.sum()
+    moves = stays & (speed >= REST_SPEED) & (way / passed >= REST_SPEED)  # else it only vibrates
+    share = body.mass[moves].sum() / body.mass[stays].sum()
     return {"speed_end": float(speed[moves].max(initial=0.0)), "moving_share": float(share)}
 
 
