@@ -199,3 +199,51 @@ def test_other_formulations_and_static_stages_let_blocks_go(way):
     assert np.abs(simulation.fields["displacement"][stands]).max() < 0.02
     for values in simulation.core.stress().values():
         assert np.isfinite(values).all()
+
+
+SLIDE = """\
+title: A weak body breaks up on a slope that ends
+model:
+  blocks:
+    - {group: slope, box: {size: [6, 4, 1], divisions: [3, 2, 1]}, translate: [0, 0, -1]}
+    - {group: body, box: {size: [1.5, 1.5, 1], divisions: [3, 3, 2], shape: tet4},
+       translate: [1, 1.2, 0]}
+    - {group: stone, box: {size: [0.5, 0.5, 0.5]}, translate: [0.2, 0.2, 0]}
+  split: {body: elements}
+  domain: {min: [null, -3, -4], max: [9, 7, null]}
+materials: {rock: {density: 2600, young_modulus: "1 MPa", poisson_ratio: 0.25}}
+groups:
+  slope: {material: rock, fix: [x, y, z]}
+  body: {material: rock}
+  stone: {material: rock}
+interfaces:
+  default: {friction_angle: 50}
+  pairs:
+    - {between: [slope, body], friction_angle: 10}
+    - {between: [body, body], friction_angle: 20, cohesion: "3 kPa", tensile_strength: "1 kPa"}
+loads: {gravity: [5.6, 0, -8.0]}     # 35 degrees
+stages:
+  - {name: slide, mode: dynamic, duration: 8, until: rest,
+     damping: {contact: 0.3, stiffness: 0.1}}
+output: {every: 0.25}
+"""
+
+
+def test_a_landslide_off_the_edge_comes_to_its_end(tmp_path, monkeypatch, run_cli, no_report):
+    """Without the domain its fall ends the run at the speed of the P wave."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "slide.yaml").write_text(SLIDE)
+    words = ("run", "slide.yaml", "--threads", "2")
+    on = ("--set", "model.domain=null", "--set", "stages.0.until=null", "-o", "open")
+    status, _, err = run_cli(*words, *on)
+    assert status == 3 and "or let model.domain take such blocks out" in err
+    status, out, err = run_cli(*words)
+    assert (status, out) == (0, "at rest; results are in slide.results\n")
+    assert err.count("of group body left model.domain") == 1
+    rows = read_histories(tmp_path / "slide.results")
+    assert np.abs(rows["energy error"]).max() < 1e-2
+    assert rows["broken tension"][-1] + rows["broken shear"][-1] > 50
+    assert len(np.unique(rows["taken_out work [J]"])) > 4
+    lost = json.loads((tmp_path / "slide.results/summary.json").read_text())["taken_out"]
+    assert lost["body"]["blocks"] > 100 and "stone" not in lost
+    assert run_cli("runout", "slide.results", "--groups", "stone,body", "--direction", "90")[0] == 0
