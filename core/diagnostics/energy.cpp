@@ -63,8 +63,7 @@ Energies sum_terms(const Model& m, const State& s) {
     }
     return sum;
   });
-  friction =
-      column_sum(s.springs.friction) + column_sum(s.edges.friction) + s.taken_out_friction;
+  friction = column_sum(s.springs.friction) + column_sum(s.edges.friction) + s.taken_out_friction;
   e.terms[energy_term("taken_out")] = s.taken_out;
   for_each_set(m, s, [&](auto, const auto&, const auto& state) {
     for_each_energy(state, [&](std::size_t term, const Column<Real>& column) {

@@ -12,32 +12,9 @@ struct ScalarInfo {
   const char* meaning;
 };
 
-/// Visit every number that a checkpoint keeps.
+/// What the energy ledger keeps: part of `describe_scalars`.
 template <class Visit>
-void describe_scalars(State& s, Visit&& visit) {
-  visit(ScalarInfo{.name = "time", .unit = "s", .meaning = "simulated time"}, s.time);
-  visit(ScalarInfo{.name = "dt", .unit = "s", .meaning = "length of the coming step"}, s.dt);
-  visit(ScalarInfo{.name = "dt_last", .unit = "s", .meaning = "length of the last step"},
-        s.dt_last);
-  visit(ScalarInfo{.name = "dt_stable", .unit = "s", .meaning = "step that dt grows towards"},
-        s.dt_stable);
-  visit(ScalarInfo{.name = "step", .unit = "1", .meaning = "steps done"}, s.step);
-  visit(ScalarInfo{.name = "rebuilds", .unit = "1", .meaning = "outer pair lists made so far"},
-        s.rebuilds);
-  visit(ScalarInfo{.name = "built_step",
-                   .unit = "1",
-                   .meaning = "step before which the outer pair list was made, or -1"},
-        s.built_step);
-  visit(ScalarInfo{.name = "built_time", .unit = "s", .meaning = "time at which it was made"},
-        s.search.outer.built_time);
-  visit(ScalarInfo{.name = "lookahead_time",
-                   .unit = "s",
-                   .meaning = "how long the outer pair list holds at most"},
-        s.search.outer.lookahead_time);
-  visit(ScalarInfo{.name = "least_skin",
-                   .unit = "1",
-                   .meaning = "least skin of a node, in parts of the smallest L of its faces"},
-        s.search.outer.least_skin);
+void describe_ledger(State& s, Visit&& visit) {
   visit(
       ScalarInfo{
           .name = "ledger_started", .unit = "1", .meaning = "the energy ledger has been opened"},
@@ -66,6 +43,35 @@ void describe_scalars(State& s, Visit&& visit) {
                    .unit = "J",
                    .meaning = "work of the dashpots of these contacts"},
         s.taken_out_dashpot);
+}
+
+/// Visit every number that a checkpoint keeps.
+template <class Visit>
+void describe_scalars(State& s, Visit&& visit) {
+  visit(ScalarInfo{.name = "time", .unit = "s", .meaning = "simulated time"}, s.time);
+  visit(ScalarInfo{.name = "dt", .unit = "s", .meaning = "length of the coming step"}, s.dt);
+  visit(ScalarInfo{.name = "dt_last", .unit = "s", .meaning = "length of the last step"},
+        s.dt_last);
+  visit(ScalarInfo{.name = "dt_stable", .unit = "s", .meaning = "step that dt grows towards"},
+        s.dt_stable);
+  visit(ScalarInfo{.name = "step", .unit = "1", .meaning = "steps done"}, s.step);
+  visit(ScalarInfo{.name = "rebuilds", .unit = "1", .meaning = "outer pair lists made so far"},
+        s.rebuilds);
+  visit(ScalarInfo{.name = "built_step",
+                   .unit = "1",
+                   .meaning = "step before which the outer pair list was made, or -1"},
+        s.built_step);
+  visit(ScalarInfo{.name = "built_time", .unit = "s", .meaning = "time at which it was made"},
+        s.search.outer.built_time);
+  visit(ScalarInfo{.name = "lookahead_time",
+                   .unit = "s",
+                   .meaning = "how long the outer pair list holds at most"},
+        s.search.outer.lookahead_time);
+  visit(ScalarInfo{.name = "least_skin",
+                   .unit = "1",
+                   .meaning = "least skin of a node, in parts of the smallest L of its faces"},
+        s.search.outer.least_skin);
+  describe_ledger(s, visit);
   visit(ScalarInfo{.name = "kinetic_peak",
                    .unit = "J",
                    .meaning = "peak of the kinetic energy since all motion was last stopped"},

@@ -136,7 +136,7 @@ def test_any_number_of_threads_gives_the_same_bits(whole, case_file):
 
 
 def test_any_split_gives_the_same_bits(whole, case_file):
-    """Also right after a body has left, and over a stage that sets supports and loads anew."""
+    """Also right after a body has left, and over a stage that sets supports and loads again."""
     folder = case_file.parent / "split"
     simulation = cdem.Simulation(case_file, threads=1, output=folder)
     seen = 0

@@ -351,11 +351,12 @@ def _follow(
         volume, speeds = left.volumes(), velocity[stays]
         centre = mass @ centroid[stays] / mass.sum()
         density = mass / volume  # the mass stays while the volume changes
+        places = left.triangles @ way
         pieces = body.pieces(frame, volume, stays)
         rows.append(
             [
                 time,
-                (left.triangles @ way).max() - origin,
+                places.max() - origin,
                 *(left.level_below_which(q, way, density) - origin for q in (0.999, 0.95)),
                 centre @ way - origin,
                 *centre,

@@ -142,7 +142,8 @@ class Departure:
             )
         return (
             f"block {self.block} of group {self.group} fell past the edge of the model: it is at "
-            f"({place}) m at t = {self.time:.4g} s, below everything at the start, and falls on"
+            f"({place}) m at t = {self.time:.4g} s, below everything at the start, and falls on "
+            "unless model.domain takes it out"
         )
 
 

@@ -43,8 +43,14 @@ def test_a_domain_without_sense_is_refused(domain, said):
 @pytest.mark.parametrize(
     ("domain", "said"),
     [
-        ({"max": [3.5, None, None]}, r"model.domain.max: is 3.5 m along x, but group 'b' begins at \(4"),
-        ({"min": [-1, 0.25, 0]}, r"model.domain.min: is 0.25 m along y, but group 'a' begins at \(0, 0"),
+        (
+            {"max": [3.5, None, None]},
+            r"model.domain.max: is 3.5 m along x, but group 'b' begins at \(4",
+        ),
+        (
+            {"min": [-1, 0.25, 0]},
+            r"model.domain.min: is 0.25 m along y, but group 'a' begins at \(0, 0",
+        ),
     ],
 )
 def test_the_whole_model_must_begin_inside(domain, said):
