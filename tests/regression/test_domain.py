@@ -81,14 +81,14 @@ def test_blocks_leave_one_after_the_other_and_the_others_go_on(whole):
 def test_the_energy_of_what_leaves_is_booked(whole, case_file):
     rows = read_histories(case_file.parent / "whole")
     gone, error = rows["taken_out work [J]"], rows["energy error"]
-    assert np.abs(error).max() < 1e-3
+    assert np.abs(error).max() < 1e-5
     assert len(np.unique(gone)) == 4 and (np.diff(gone) >= 0).all()  # three bodies
     # each took its kinetic energy with it, 4 m/s and the fall, and hardly anything else
     assert 3 * 0.5 * 2700 * 3.5**2 < gone[-1] < 3 * 0.5 * 2700 * 5.0**2
     at = np.flatnonzero(np.diff(gone)) + 1
     kinetic = rows["kinetic energy [J]"]
     assert (kinetic[at] < kinetic[at - 1]).all()
-    assert (np.abs(np.diff(error))[at - 1] < 3e-4).all()
+    assert (np.abs(np.diff(error))[at - 1] < 2e-6).all()
 
 
 def test_what_left_is_told(whole, case_file, run_cli):
@@ -194,7 +194,7 @@ def test_other_formulations_and_static_stages_let_blocks_go(way):
     status = simulation.run()
     assert status == ("converged" if way == "static" else "finished")
     assert simulation.taken_out["falls"]["blocks"] == 2
-    assert abs(simulation.energies["error"]) < 1e-2
+    assert abs(simulation.energies["error"]) < 2e-7
     stands = simulation.build.nodes_of("stands")
     assert np.abs(simulation.fields["displacement"][stands]).max() < 0.02
     for values in simulation.core.stress().values():
@@ -241,7 +241,7 @@ def test_a_landslide_off_the_edge_comes_to_its_end(tmp_path, monkeypatch, run_cl
     assert (status, out) == (0, "at rest; results are in slide.results\n")
     assert err.count("of group body left model.domain") == 1
     rows = read_histories(tmp_path / "slide.results")
-    assert np.abs(rows["energy error"]).max() < 1e-2
+    assert np.abs(rows["energy error"]).max() < 5e-3
     assert rows["broken tension"][-1] + rows["broken shear"][-1] > 50
     assert len(np.unique(rows["taken_out work [J]"])) > 4
     lost = json.loads((tmp_path / "slide.results/summary.json").read_text())["taken_out"]
