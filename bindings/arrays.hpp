@@ -8,6 +8,7 @@
 #include "core/model/describe.hpp"
 #include "core/model/describe_scalars.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/run/take_out.hpp"
 
 namespace nb = nanobind;
 
@@ -66,6 +67,7 @@ inline void update_model(Core& core, const nb::dict& arrays) {
   describe_model(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
     if (arrays.contains(info.name.c_str())) copy(arrays[info.name.c_str()], column);
   });
+  hold_taken_out(core.model, core.state);
 }
 
 /// Views of the arrays that a checkpoint keeps; only until one of them is resized.

@@ -20,6 +20,7 @@
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/run/run.hpp"
+#include "core/run/take_out.hpp"
 
 using namespace nb::literals;
 
@@ -144,6 +145,13 @@ void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
   c.model.contact_damping = contact;
 }
 
+/// Take whole bodies out, given by a flag for each node.
+void take_out_nodes(Core& c, Array<Flag> leaves) {
+  if (leaves.ndim() != 1 || leaves.shape(0) != std::size_t(c.model.node_count))
+    throw nb::value_error("one flag for each node");
+  take_out(c.model, c.state, leaves.data());
+}
+
 auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
               std::int64_t check_interval, const std::string& way) {
   const Goal goal{.steps = steps,
@@ -185,7 +193,11 @@ void bind_setup(nb::class_<Core>& core) {
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
       .def("restore", &restore)
-      .def("prepare", [](Core& c) { prepare(c.model, c.state); })
+      .def("prepare",
+           [](Core& c) {
+             hold_taken_out(c.model, c.state);
+             prepare(c.model, c.state);
+           })
       .def("adopt_overlaps", [](Core& c) {
         InitialOverlaps found = adopt_overlaps(c.model, c.state);
         const DeepOverlaps deep = find_deep_overlaps(c.model, c.state, found);
@@ -200,6 +212,7 @@ void bind_setup(nb::class_<Core>& core) {
 void bind_run(nb::class_<Core>& core) {
   core.def("run", &run_core, "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0,
            "check_interval"_a = 20, "relaxation"_a = "none")
+      .def("take_out", &take_out_nodes, "leaves"_a)
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
       .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });

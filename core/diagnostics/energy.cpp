@@ -50,7 +50,7 @@ Energies sum_terms(const Model& m, const State& s) {
   e.terms[energy_term("external")] = column_sum(s.nodes.work_external) - sample(1);
   e.terms[energy_term("damping")] = column_sum(s.nodes.work_damping) - sample(2) +
                                     s.stopped_energy + column_sum(s.springs.dashpot) +
-                                    column_sum(s.edges.dashpot);
+                                    column_sum(s.edges.dashpot) + s.taken_out_dashpot;
   const Index exposed = Index(s.search.exposed_face.size());
   const auto spring = [&](Index slot) { return ContactState::at(s.springs.state.data(), slot); };
   contact = ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_n; }) +
@@ -63,7 +63,8 @@ Energies sum_terms(const Model& m, const State& s) {
     }
     return sum;
   });
-  friction = column_sum(s.springs.friction) + column_sum(s.edges.friction);
+  friction = column_sum(s.springs.friction) + column_sum(s.edges.friction) + s.taken_out_friction;
+  e.terms[energy_term("taken_out")] = s.taken_out;
   for_each_set(m, s, [&](auto, const auto&, const auto& state) {
     for_each_energy(state, [&](std::size_t term, const Column<Real>& column) {
       e.terms[term] += column_sum(column);

@@ -12,6 +12,39 @@ struct ScalarInfo {
   const char* meaning;
 };
 
+/// What the energy ledger keeps: part of `describe_scalars`.
+template <class Visit>
+void describe_ledger(State& s, Visit&& visit) {
+  visit(
+      ScalarInfo{
+          .name = "ledger_started", .unit = "1", .meaning = "the energy ledger has been opened"},
+      s.ledger_started);
+  visit(
+      ScalarInfo{
+          .name = "energy_start", .unit = "J", .meaning = "energy when the ledger was opened"},
+      s.energy_start);
+  visit(
+      ScalarInfo{
+          .name = "energy_scale", .unit = "J", .meaning = "largest term of the ledger so far"},
+      s.energy_scale);
+  visit(ScalarInfo{.name = "stopped_energy",
+                   .unit = "J",
+                   .meaning = "energy taken out by kinetic relaxation and changes of mass"},
+        s.stopped_energy);
+  visit(ScalarInfo{.name = "taken_out",
+                   .unit = "J",
+                   .meaning = "stored energy that went with blocks taken out"},
+        s.taken_out);
+  visit(ScalarInfo{.name = "taken_out_friction",
+                   .unit = "J",
+                   .meaning = "frictional work of contacts on their faces until then"},
+        s.taken_out_friction);
+  visit(ScalarInfo{.name = "taken_out_dashpot",
+                   .unit = "J",
+                   .meaning = "work of the dashpots of these contacts"},
+        s.taken_out_dashpot);
+}
+
 /// Visit every number that a checkpoint keeps.
 template <class Visit>
 void describe_scalars(State& s, Visit&& visit) {
@@ -38,22 +71,7 @@ void describe_scalars(State& s, Visit&& visit) {
                    .unit = "1",
                    .meaning = "least skin of a node, in parts of the smallest L of its faces"},
         s.search.outer.least_skin);
-  visit(
-      ScalarInfo{
-          .name = "ledger_started", .unit = "1", .meaning = "the energy ledger has been opened"},
-      s.ledger_started);
-  visit(
-      ScalarInfo{
-          .name = "energy_start", .unit = "J", .meaning = "energy when the ledger was opened"},
-      s.energy_start);
-  visit(
-      ScalarInfo{
-          .name = "energy_scale", .unit = "J", .meaning = "largest term of the ledger so far"},
-      s.energy_scale);
-  visit(ScalarInfo{.name = "stopped_energy",
-                   .unit = "J",
-                   .meaning = "energy taken out by kinetic relaxation and changes of mass"},
-        s.stopped_energy);
+  describe_ledger(s, visit);
   visit(ScalarInfo{.name = "kinetic_peak",
                    .unit = "J",
                    .meaning = "peak of the kinetic energy since all motion was last stopped"},

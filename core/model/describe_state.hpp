@@ -62,6 +62,11 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes",
           .refers_to = {"nodes"}},
          n.body);
+  stored({.name = "node.out",
+          .meaning = "1: of a block that was taken out",
+          .rows = "nodes",
+          .optional = true},
+         n.out);
 }
 
 /// What the last sampled step left for the energy ledger: part of `describe_state`.

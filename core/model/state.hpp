@@ -21,6 +21,7 @@ struct NodeState {
   Column<Index> bonded_node, body;  // labels, see bonds/bonded_surface.hpp
   Column<Index> awake;              // blocks of nodes, see nodes/sleep.hpp
   Column<Flag> sleeps, listed;      // see nodes/sleep.hpp
+  Column<Flag> out;                 // 1: taken out, see run/take_out.hpp; empty: none is
   Column<Flag> fused;     // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
   Column<Index> general;  // awake blocks of nodes but those of which all are fused
   bool damped = false;    // in the last step, else damping_force does not count
@@ -151,6 +152,9 @@ struct State {
   std::int64_t step = 0, rebuilds = 0, built_step = -1;
   Real energy_start = 0, energy_scale = 0;  // of the ledger
   Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]
+  Real taken_out = 0;                       // stored energy that went with blocks taken out  [J]
+  Real taken_out_friction = 0;              // what contacts on their faces had lost until then  [J]
+  Real taken_out_dashpot = 0;               // and in their dashpots  [J]
   Real kinetic_peak = 0;                    // since the motion was last stopped  [J]
   bool stop_due = false;                    // kinetic relaxation: stop all motion in the next step
   Real relax_damping = 0;  // mass damping that adaptive relaxation has found  [1/s]

@@ -60,22 +60,30 @@ bool make_room_for_edges(State& s) {
 void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Index>& to) {
   begin_edges(s);
   EdgeState& e = s.edges;
+  const std::vector<Real> reaction(e.reaction.data(), e.reaction.data() + e.reaction.size());
+  e.first.resize(from.size() + 1);
   e.contact.resize(e.old_contact.size());
   e.state.resize(e.old_state.size());
   Index next = 0;
   for (std::size_t x = 0; x < from.size(); ++x) {
     e.first[x] = next;
-    for (Index c = e.old_first[from[x]]; c < e.old_first[from[x] + 1]; ++c, ++next) {
+    for (Index c = e.old_first[from[x]]; c < e.old_first[from[x] + 1]; ++c) {
       const EdgeContact old = EdgeContact::at(e.old_contact.data(), c);
+      if (to[old.face] < 0) continue;
       EdgeContact{.mother = 4 * Index(x) + old.mother % 4,
                   .face = to[old.face],
                   .edge = old.edge,
                   .before = old.before}
           .store(e.contact.data(), next);
       ContactState::at(e.old_state.data(), c).store(e.state.data(), next);
+      std::copy_n(reaction.data() + 8 * std::size_t(c), 8,
+                  e.reaction.data() + 8 * std::size_t(next++));
     }
   }
   e.first[from.size()] = next;
+  e.contact.resize(4 * std::size_t(next));
+  e.state.resize(8 * std::size_t(next));
+  e.reaction.resize(8 * std::size_t(next));
 }
 
 }  // namespace cdem

@@ -14,7 +14,8 @@ void begin_edges(State& state);
 /// on a face than it had places for: there are more places now, search again.
 bool make_room_for_edges(State& state);
 
-/// Bring the list into a new order of the exposed faces: place x was from[x], y becomes to[y].
+/// Bring the list into a new order of the exposed faces: place x was from[x], y becomes to[y];
+/// where that is -1 the contacts end.
 void sort_edges(State& state, const std::vector<Index>& from, const std::vector<Index>& to);
 
 }  // namespace cdem

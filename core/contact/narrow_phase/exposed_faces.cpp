@@ -64,16 +64,15 @@ void expose(State& s, Index face) {
   s.edges.first.resize(count + 1, Index(s.edges.contact.size() / 4));
 }
 
-/// Put exposed faces into the order of the model, in which faces that are near each other mostly
-/// lie together, also in memory.
-void sort_exposed(State& s) {
+namespace {
+
+/// Keep these exposed faces, in this order: place x was from[x].
+void keep_exposed(State& s, const std::vector<Index>& from) {
   Column<Index>&exposed = s.search.exposed_face, &place = s.search.face_exposed;
-  const std::size_t count = exposed.size();
-  if (std::is_sorted(exposed.data(), exposed.data() + count)) return;
-  std::vector<Index> from(count), to(count);  // places
-  std::iota(from.begin(), from.end(), 0);
-  std::sort(from.begin(), from.end(), [&](Index a, Index b) { return exposed[a] < exposed[b]; });
+  const std::size_t count = from.size();
+  std::vector<Index> to(exposed.size(), -1);  // places
   for (std::size_t x = 0; x < count; ++x) to[from[x]] = Index(x);
+  for (std::size_t x = 0; x < to.size(); ++x) place[exposed[x]] = to[x];
   const auto follow = [&](Column<Index>& targets) {
     for (std::size_t k = 0; k < targets.size(); ++k)
       if (targets[k] >= 0) targets[k] = to[targets[k]];
@@ -82,13 +81,41 @@ void sort_exposed(State& s) {
   follow(s.springs.target_before);
   sort_edges(s, from, to);
   const auto sort_rows = [&](auto& column, std::size_t row, auto) {
-    const auto before = std::vector(column.data(), column.data() + row * count);
+    const auto before = std::vector(column.data(), column.data() + row * to.size());
     for (std::size_t x = 0; x < count; ++x)
       std::copy_n(before.data() + row * from[x], row, column.data() + row * x);
+    column.resize(row * count);
   };
   visit_faces(s, sort_rows);
   sort_rows(exposed, 1, Index(-1));
-  for (std::size_t x = 0; x < count; ++x) place[exposed[x]] = Index(x);
+}
+
+}  // namespace
+
+void sort_exposed(State& s) {
+  const Column<Index>& exposed = s.search.exposed_face;
+  if (std::is_sorted(exposed.data(), exposed.data() + exposed.size())) return;
+  std::vector<Index> from(exposed.size());
+  std::iota(from.begin(), from.end(), 0);
+  std::sort(from.begin(), from.end(), [&](Index a, Index b) { return exposed[a] < exposed[b]; });
+  keep_exposed(s, from);
+}
+
+void hide(State& s, const std::vector<Flag>& hidden) {
+  const Index count = Index(s.search.exposed_face.size());
+  const auto leaves = [&](Index x) { return hidden[s.search.exposed_face[x]] != 0; };
+  std::vector<Index> from;
+  for (Index x = 0; x < count; ++x)
+    if (!leaves(x)) from.push_back(x);
+  for (Index slot = 0; slot < 4 * count; ++slot) {
+    const Index target = s.springs.target[slot];
+    if (target < 0 || !leaves(target)) continue;
+    s.springs.target[slot] = s.springs.target_before[slot] = -1;
+    for (std::size_t k = 0; k < 8; ++k)
+      s.springs.state[8 * std::size_t(slot) + k] = s.springs.reaction[8 * std::size_t(slot) + k] =
+          0;
+  }
+  keep_exposed(s, from);
 }
 
 void list_exposed(const Model& m, State& s) {

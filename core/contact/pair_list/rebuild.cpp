@@ -35,6 +35,10 @@ void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {
   }
   const bool released = release_bonds(m, s) || first;
   sort_exposed(s);
+  list_pairs_of_exposed(m, s, plan, released);
+}
+
+void list_pairs_of_exposed(const Model& m, State& s, const StepPlan& plan, bool released) {
   join_surfaces(m, s, released);
   list_exposed(m, s);
   list_candidates(m, s);

@@ -14,4 +14,7 @@ bool pair_list_is_due(const Model& model, State& state);
 /// it: corner rows, sleep, the stable step.
 void rebuild_pair_list(const Model& model, State& state, const StepPlan& plan);
 
+/// The same with bonds and exposed faces as they are; `released`: pairs were released meanwhile.
+void list_pairs_of_exposed(const Model& model, State& state, const StepPlan& plan, bool released);
+
 }  // namespace cdem

@@ -12,10 +12,12 @@ from cdem.case.types import (
     Direction3,
     Divisions3,
     Length3,
+    Listed,
     Name,
     Part,
     Quantity,
     Size3,
+    Three,
 )
 
 
@@ -130,6 +132,25 @@ class Joint(Part):
         return self
 
 
+OpenCorner = Annotated[list[Annotated[float, Quantity("m")] | None], Three, Listed]
+
+
+class Domain(Part):
+    """A box along the axes; blocks that leave it are taken out of the computation."""
+
+    min: OpenCorner = Field([None] * 3, description="Lowest corner [m]; null: open on that side")
+    max: OpenCorner = Field([None] * 3, description="Highest corner [m]; null: open on that side")
+
+    @model_validator(mode="after")
+    def _holds_something(self) -> Domain:
+        if not any(side is not None for side in self.min + self.max):
+            raise ValueError("is open on all sides; give min, max or both")
+        for axis, low, high in zip("xyz", self.min, self.max, strict=True):
+            if low is not None and high is not None and low >= high:
+                raise ValueError(f"min must be below max, but along {axis} they are {low}, {high}")
+        return self
+
+
 class Model(Part):
     """The bodies: a mesh file, bodies made here, or both."""
 
@@ -152,6 +173,11 @@ class Model(Part):
     )
     rotate: Rotate | None = Field(None, description="Rotation of the whole model")
     translate: Length3 | None = Field(None, description="Shift of the whole model [m]")
+    domain: Domain | None = Field(
+        None,
+        description="Blocks that leave this box, after rotate and translate, are taken out of the "
+        "computation",
+    )
 
     @model_validator(mode="after")
     def _has_bodies(self) -> Model:

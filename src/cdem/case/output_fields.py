@@ -11,8 +11,9 @@ from typing import Literal
 
 from cdem.case.laws import STATES
 
-Recorded = Literal["always", "chosen", "never"]
-"""When a file holds a field: "chosen" where `output.fields` of the case names it."""
+Recorded = Literal["always", "chosen", "domain", "never"]
+"""When a file holds a field: "chosen" where `output.fields` of the case names it, "domain" where the
+case has `model.domain`."""
 Colors = Literal["amount", "whole range", "label", "scattered label"]
 """How a field is coloured: an amount up to the 99.5th percentile of the last frame, or from 0 to the
 largest value; a label by one of few colours, or of many so that neighbours differ."""
@@ -70,6 +71,10 @@ OUTPUT_FIELDS = [
     OutputField(
         "piece", "Least block that the element hangs together with", "", "elements",
         frames="chosen", surface="always", colors="scattered label",
+    ),
+    OutputField(
+        "out", "1 where the block has left the domain: it stays where it left, held", "", "elements",
+        frames="domain", surface="never", colors=None,
     ),
     OutputField(
         "joint", "Number of the set of joints that made the face, from 1; else 0", "", "faces",

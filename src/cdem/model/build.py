@@ -22,6 +22,7 @@ from cdem.mesh.topology import Topology
 from cdem.model.assemble import assemble
 from cdem.model.bodies import check_groups, read_model
 from cdem.model.curves import Curves, constant
+from cdem.model.domain import check_domain
 from cdem.model.flat_arrays import Assembly, Properties
 from cdem.model.interfaces import (
     bonded_pairs,
@@ -119,6 +120,7 @@ def build(case: Case) -> Build:
         check_memory(pieces_of_mesh(case, merged))
         check_extent(merged)
         topology = build_topology(merged, case.model.split, sets, bonds)
+    check_domain(case, topology, names)
     check_interfaces(case, topology, names, interface_of)
     snap_mates(topology)
 

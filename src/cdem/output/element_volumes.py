@@ -52,6 +52,13 @@ class Solids:
             first += len(nodes)
         return cls(np.concatenate(triangles), np.concatenate(owner), np.concatenate(middle))
 
+    def only(self, chosen: NDArray[np.bool_]) -> Solids:
+        """Those of the elements that are chosen, shape (elements,)."""
+        if chosen.all():
+            return self
+        number, of = np.cumsum(chosen) - 1, chosen[self.owner]
+        return Solids(self.triangles[of], number[self.owner[of]], self.middle[chosen])
+
     def _tets(self) -> tuple[Floats, Floats]:
         """Each triangle's tet with the middle of its element: corners from there, volume [m3]."""
         arms = self.triangles - self.middle[self.owner][:, None]

@@ -97,13 +97,35 @@ class Body:
         nodal = self.series.field("PointData", "velocity", frame)
         return np.concatenate([nodal[nodes].mean(axis=1) for nodes in self.cells.values()])
 
-    def pieces(self, frame: int, volume: Floats) -> Pieces | None:
-        """Connected pieces of the moving elements, or None if they were not recorded."""
+    def stays(self, frame: int) -> NDArray[np.bool_]:
+        """Which elements have not left the domain of the case.
+
+        Raises:
+            CdemError: All have.
+        """
+        if "out" not in self.series.names["CellData"]:
+            return np.ones(len(self.mass), bool)
+        stays = self.series.field("CellData", "out", frame)[self.chosen] == 0
+        if not stays.any():
+            raise CdemError(
+                f"{self.series.folder}: all of {', '.join(self.groups)} has left model.domain at t = "
+                f"{self.series.times[frame]:.6g} s, so there is no run-out to measure; make it larger"
+            )
+        return stays
+
+    def pieces(self, frame: int, volume: Floats, stays: NDArray[np.bool_]) -> Pieces | None:
+        """Connected pieces of the elements that stay, or None if they were not recorded.
+
+        Args:
+            frame: Number of the frame.
+            volume: Of these elements [m3].
+            stays: Which of the moving elements they are.
+        """
         if "piece" not in self.series.names["CellData"]:
             return None
         piece = self.series.field("CellData", "piece", frame)
         others = np.unique(piece[~self.chosen])
-        ids, member = np.unique(piece[self.chosen], return_inverse=True)
+        ids, member = np.unique(piece[self.chosen][stays], return_inverse=True)
         return Pieces(ids, member, np.bincount(member, volume).astype(float), np.isin(ids, others))
 
 
@@ -182,10 +204,17 @@ class Line:
         self.rows: list[list[float]] = []
 
     def follow(
-        self, time: float, solids: Solids, velocity: Floats, before: Floats, now: Floats
+        self,
+        time: float,
+        solids: Solids,
+        stays: NDArray[np.bool_],
+        velocity: Floats,
+        before: Floats,
+        now: Floats,
     ) -> None:
-        """Add a frame: its time [s], elements, their velocities, and centroids before and now."""
-        area = solids.cut_areas(self.begin, self.along, self.length)
+        """Add a frame: its time [s], elements, which of them have not left the domain, their
+        velocities, and centroids before and now."""
+        area = stays * solids.cut_areas(self.begin, self.along, self.length)
         discharge = float(area @ (velocity[:, :2] @ self.normal))
         share = solids.shares_ahead(self.begin, self.normal)
         last, here = ((c[:, :2] - self.begin) @ self.normal for c in (before, now))

@@ -54,6 +54,12 @@ def info(folder: Path) -> str:
         lines.append(
             f"  {name:<18}{g['mass']:>13.5g}{moved:>12.5g}{g['max_displacement']:>12.5g}{speed:>13.5g}"
         )
+    for name, lost in s.get("taken_out", {}).items():
+        share = lost["mass"] / s["groups"][name]["mass"]
+        lines.append(
+            f"  left the domain: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
+            f"({100 * share:.3g} % of its mass)"
+        )
     lines += [f"  warning: {text}" for text in s.get("departures", [])]
     return "\n".join(lines) + "\n"
 

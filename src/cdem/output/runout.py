@@ -53,6 +53,7 @@ class RunOut:
         source: The same map of the start.
         speed_end: Speed of the fastest element that moves at the end [m/s]: as recorded, else its
             mean since the frame before.
+        taken_out: Volume at the start of what has left the domain of the case by the end [m3].
         moving_share: Part of the mass that moves: whose speed at the end, and whose mean since the
             frame before, is above `REST_SPEED`.
     """
@@ -66,6 +67,7 @@ class RunOut:
     sections: list[Section]
     deposit: Deposit
     source: Deposit
+    taken_out: float
     speed_end: float
     moving_share: float
 
@@ -124,6 +126,7 @@ class RunOut:
             "speed_most": np.max(h["speed_most"]),
             "centre_speed_most": np.max(h["speed"]),
             "volume": h["volume"][-1],
+            "taken_out": self.taken_out,
             "at_rest": self.rests,
             "speed_end": self.speed_end,
             "moving_share": self.moving_share,
@@ -155,6 +158,11 @@ class RunOut:
                 []
                 if self.rests
                 else [f"  {self.motion}: no deposit yet; front and reach are not final"]
+            ),
+            *(
+                [f"  {self.taken_out:.6g} m3 more have left model.domain and do not count"]
+                if self.taken_out
+                else []
             ),
             f"  crown at ({coordinates(self.crown)}), front at ({coordinates(self.front)}) m",
             "",
@@ -291,7 +299,8 @@ def measure(
     crown = _crown(body.series.points(body.frames[0])[body.nodes], way)
     lines = [Line(line, way[:2], body.start) for line in sections]
     history, fragments = _follow(body, way, crown @ way, lines)
-    deposit = Deposit.of(end, cell)
+    stays = body.stays(body.frames[-1])
+    deposit = Deposit.of(end.only(stays), cell)
     return RunOut(
         groups=body.groups,
         direction=float(direction % 360),
@@ -302,19 +311,20 @@ def measure(
         sections=[line.section() for line in lines],
         deposit=deposit,
         source=Deposit.of(body.start, deposit.cell),
-        **_motion_at_the_end(body, end),
+        taken_out=float(body.start.volumes()[~stays].sum()),
+        **_motion_at_the_end(body, end, stays),
     )
 
 
-def _motion_at_the_end(body: Body, end: Solids) -> dict[str, float]:
-    """`speed_end` and `moving_share` of a run-out."""
+def _motion_at_the_end(body: Body, end: Solids, stays: NDArray[np.bool_]) -> dict[str, float]:
+    """`speed_end` and `moving_share` of a run-out, of the elements that stay."""
     last, before = body.frames[-1], body.frames[-2]
     passed = body.series.times[last] - body.series.times[before]
     way = np.linalg.norm(end.centroids() - body.solids(before).centroids(), axis=1)
     recorded = np.linalg.norm(body.velocities(last), axis=1)
     speed = np.where(np.isnan(recorded), way / passed, recorded)
-    moves = (speed >= REST_SPEED) & (way / passed >= REST_SPEED)  # else it only vibrates
-    share = body.mass[moves].sum() / body.mass.sum()
+    moves = stays & (speed >= REST_SPEED) & (way / passed >= REST_SPEED)  # else it only vibrates
+    share = body.mass[moves].sum() / body.mass[stays].sum()
     return {"speed_end": float(speed[moves].max(initial=0.0)), "moving_share": float(share)}
 
 
@@ -336,29 +346,31 @@ def _follow(
             body.solids(frame),
             body.velocities(frame),
         )
-        volume, centroid = solids.volumes(), solids.centroids()
-        centre = body.mass @ centroid / body.mass.sum()
-        places = body.series.points(frame)[body.nodes] @ way
-        density = body.mass / volume  # the mass stays while the volume changes
-        pieces = body.pieces(frame, volume)
+        stays, centroid = body.stays(frame), solids.centroids()
+        left, mass = solids.only(stays), body.mass[stays]
+        volume, speeds = left.volumes(), velocity[stays]
+        centre = mass @ centroid[stays] / mass.sum()
+        density = mass / volume  # the mass stays while the volume changes
+        places = left.triangles @ way
+        pieces = body.pieces(frame, volume, stays)
         rows.append(
             [
                 time,
                 places.max() - origin,
-                *(solids.level_below_which(q, way, density) - origin for q in (0.999, 0.95)),
+                *(left.level_below_which(q, way, density) - origin for q in (0.999, 0.95)),
                 centre @ way - origin,
                 *centre,
-                np.linalg.norm(body.mass @ velocity) / body.mass.sum(),
-                np.linalg.norm(velocity, axis=1).max(),
+                np.linalg.norm(mass @ speeds) / mass.sum(),
+                np.linalg.norm(speeds, axis=1).max(),
                 volume.sum(),
                 *((np.nan,) * 3 if pieces is None else pieces.row()),
             ]
         )
         for line in lines:
-            line.follow(time, solids, velocity, before, centroid)
+            line.follow(time, solids, stays, velocity, before, centroid)
         before = centroid
     history = dict(zip(list(HISTORY)[: len(rows[0])], np.array(rows).T, strict=True))
-    return history, {} if pieces is None else pieces.table(body.mass, centroid)
+    return history, {} if pieces is None else pieces.table(mass, centroid[stays])
 
 
 def _direction(body: Body, end: Solids) -> float:
@@ -384,9 +396,13 @@ def _front(body: Body, frame: int, way: Floats) -> Floats:
 
     A front may be upright, so that top and bottom are equally far; it is the foot that counts.
     """
-    points = body.series.points(frame)
-    best, foot = -np.inf, 0.0
-    for nodes in body.cells.values():
+    points, stays = body.series.points(frame), body.stays(frame)
+    best, foot, first = -np.inf, 0.0, 0
+    for all_of_shape in body.cells.values():
+        nodes = all_of_shape[stays[first : first + len(all_of_shape)]]
+        first += len(all_of_shape)
+        if len(nodes) == 0:
+            continue
         x = points[nodes]
         element, corner = np.unravel_index((x @ way).argmax(), x.shape[:2])
         if x[element, corner] @ way > best:

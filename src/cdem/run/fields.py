@@ -91,6 +91,12 @@ def block_of(sim: RunState) -> NDArray[np.int32]:
     return np.concatenate(list(sim.build.topology.element_block.values()))
 
 
+@output_field("out")
+def out_of(sim: RunState) -> NDArray[np.int8]:
+    """Whether the block of each element has left the domain, shapes one after the other."""
+    return sim.out[block_of(sim)].astype(np.int8)
+
+
 def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """Bonded pairs of faces, shape (pairs, 2), and the part of each one's bond points that holds."""
     b = sim.build
@@ -148,7 +154,10 @@ def stress_of(sim: RunState) -> NDArray[np.float64]:
 
 
 def visible_faces(sim: RunState) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Outer faces and those whose bonds are all broken; the second says which are the latter."""
+    """Outer faces and those whose bonds are all broken; the second says which are the latter.
+
+    Those of blocks that have left the domain are not among them.
+    """
     b = sim.build
     state = sim.core.fields()
     glued = np.zeros(len(b.topology.face_nodes), bool)
@@ -159,5 +168,5 @@ def visible_faces(sim: RunState) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
         intact = state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].any(axis=0)
         glued[faces[intact].ravel()] = True
         bonded[faces.ravel()] = True
-    shown = np.flatnonzero(~glued)
+    shown = np.flatnonzero(~glued & ~sim.out[b.topology.face_block])
     return shown, bonded[shown]

@@ -43,6 +43,12 @@ class Motion:
         return Motion(*(np.delete(column, blocks, axis=0) for column in columns))
 
 
+def middles(first: NDArray[np.int32], mass: Floats, position: Floats) -> Floats:
+    """Centre of mass of each block [m], shape (blocks, 3); arguments as in `rigid_motion`."""
+    whole = np.add.reduceat(mass, first[:-1])
+    return np.add.reduceat(mass[:, None] * position, first[:-1], axis=0) / whole[:, None]
+
+
 @np.errstate(over="ignore", invalid="ignore")  # a run that failed is summed up, too
 def rigid_motion(
     first: NDArray[np.int32], mass: Floats, position: Floats, velocity: Floats
@@ -62,7 +68,7 @@ def rigid_motion(
 
     whole = sums(mass)
     mean = sums(mass[:, None] * velocity) / whole[:, None]
-    middle = sums(mass[:, None] * position) / whole[:, None]
+    middle = middles(first, mass, position)
     arm = position - middle[block]
     spin = sums(mass[:, None] * np.cross(arm, velocity))
     square = mass * np.einsum("ij,ij->i", arm, arm)
@@ -110,26 +116,34 @@ class Quiet:
 
 @dataclass
 class Departure:
-    """The first block of a group that fell below the model.
+    """The first block of a group that fell below the model, or left its domain.
 
     Attributes:
         group: Its group.
         block: Its number.
         time: When it was seen [s].
         place: Its middle then [m].
+        out: Whether it left the domain, and was taken out.
     """
 
     group: str
     block: int
     time: float
     place: list[float]
+    out: bool = False
 
     def text(self) -> str:
         """One line for the user."""
         place = ", ".join(f"{x:.4g}" for x in self.place)
+        if self.out:
+            return (
+                f"block {self.block} of group {self.group} left model.domain: it was at ({place}) m at "
+                f"t = {self.time:.4g} s, and is taken out, as all will be that follow it"
+            )
         return (
             f"block {self.block} of group {self.group} fell past the edge of the model: it is at "
-            f"({place}) m at t = {self.time:.4g} s, below everything at the start, and falls on"
+            f"({place}) m at t = {self.time:.4g} s, below everything at the start, and falls on "
+            "unless model.domain takes it out"
         )
 
 

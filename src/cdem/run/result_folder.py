@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS
+from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS, OutputField
 from cdem.errors import CdemError
 from cdem.run.checkpoint import (
     CHECKPOINT,
@@ -177,7 +177,7 @@ class Results:
 
     def _record_frame(self, sim: RunState, volume: FrameFiles, surface: SurfaceFiles) -> None:
         wanted = sim.case.output.fields
-        kept = [f for f in OUTPUT_FIELDS if f.frames == "chosen" and f.name in wanted]
+        kept = _kept_in_frames(sim)
         shown = [f for f in CARRIED if f.surface == "always" or f.name in wanted]
         values = values_of(sim, [f for f in OUTPUT_FIELDS if f in kept or f in shown])
         nodes, elements = (
@@ -252,6 +252,16 @@ class Results:
             summary = sim.summary("failed")
         write_json(self.folder / "summary.json", summary)
         self.log(f"failed at step {sim.step_count}, t = {sim.time:.6g} s")
+
+
+def _kept_in_frames(sim: RunState) -> list[OutputField]:
+    """Fields that change and that each frame of the volume has."""
+    wanted, bounded = sim.case.output.fields, sim.case.model.domain is not None
+    return [
+        f
+        for f in OUTPUT_FIELDS
+        if (f.frames == "chosen" and f.name in wanted) or (f.frames == "domain" and bounded)
+    ]
 
 
 def _identity(stat: os.stat_result | None) -> tuple[int, ...]:

@@ -223,6 +223,7 @@ class Simulation(RunState):
             stage.wall_time += now - clock
             if stages.record_is_due(self, stage, outcome):
                 self._log_departures()
+                stages.look_for_rest(self, stage)
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
                 self._check_energy()
             status = stages.status(self, stage, outcome)
@@ -357,8 +358,8 @@ class Simulation(RunState):
         if block in self.fallen and any(d.group == group for d in self.departures):
             raise self._failed(
                 f"{where} fell past the edge of the model and now falls at {value:.3g} m/s, "
-                "faster than the P wave of the rock. Make the ground larger, or end the stage before "
-                f"that (until: rest)."
+                "faster than the P wave of the rock. Make the ground larger, end the stage before that "
+                "(until: rest), or let model.domain take such blocks out."
             )
         raise self._failed(
             f"{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "

@@ -142,9 +142,13 @@ def record_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
             passed = int((sim.time - stage.start_time) / stage.row_every)
             stage.rows = max(stage.rows, passed)
         stage.frame_due = stage.rows // ROWS_PER_FRAME > before // ROWS_PER_FRAME
-        if sim.case.stages[sim.stage_index].until == "rest":
-            stage.quiet.look(sim.time, sim.rigid_motion.without(sim.fallen))
     return due
+
+
+def look_for_rest(sim: RunState, stage: StageState) -> None:
+    """At a history row: see whether the blocks of a stage with `until: rest` rest."""
+    if sim.case.stages[sim.stage_index].until == "rest":
+        stage.quiet.look(sim.time, sim.motion_of_rest)
 
 
 def frame_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:

@@ -15,8 +15,9 @@ from cdem.case.case import Case
 from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
+from cdem.model.domain import leaving
 from cdem.run.changes import differences
-from cdem.run.rest import Departure, Motion, Quiet, fallen, rigid_motion
+from cdem.run.rest import Departure, Motion, Quiet, fallen, middles, rigid_motion
 
 STALL_STEPS = 10_000
 """A static stage that comes no nearer to rest in as many steps is said to stall."""
@@ -134,7 +135,8 @@ class RunState:
         ended_stage: The stage that ended last, as long as no other has begun.
         finished_stages: A row of the summary for each stage that has ended.
         reference: Positions from which displacements count [m], shape (nodes, 3).
-        departures: The first block of each group that fell past the edge of the model.
+        departures: The first block of each group that fell past the edge of the model, and that left
+            its domain.
         wall_time: Wall time spent in stages [s].
     """
 
@@ -249,24 +251,67 @@ class RunState:
         )
 
     @property
+    def out(self) -> NDArray[np.bool_]:
+        """Whether each block has left the domain, and is no part of the computation any more."""
+        first, flags = self.build.topology.block_first_node[:-1], self.core.fields()["node.out"]
+        return flags[first] != 0 if len(flags) else np.zeros(len(first), bool)
+
+    @property
     def fallen(self) -> NDArray[np.intp]:
-        """Blocks that have fallen past the edge of the model."""
+        """Blocks that have fallen past the edge of the model, and fall on."""
         first, gravity = self.build.topology.block_first_node, self.case.loads.gravity
-        return fallen(first, self.build.start_position, self.motion[:, :3], gravity)
+        below = fallen(first, self.build.start_position, self.motion[:, :3], gravity)
+        return below[~self.out[below]]
+
+    @property
+    def motion_of_rest(self) -> Motion:
+        """The rigid motion of the blocks that have not left the model."""
+        gone = np.concatenate([self.fallen, np.flatnonzero(self.out)])
+        return self.rigid_motion.without(gone)
+
+    def take_out(self) -> NDArray[np.intp]:
+        """Take the bodies out that have left the domain since the last look; return their blocks."""
+        domain, t = self.case.model.domain, self.build.topology
+        if domain is None:
+            return np.zeros(0, np.intp)
+        fields, body = self.fields, self.core.fields()["node.body"][t.block_first_node[:-1]]
+        middle = middles(t.block_first_node, fields["mass"], fields["position"])
+        blocks = leaving(domain, middle, body, self.out)
+        if len(blocks):
+            leaves = np.zeros(len(t.block_group), np.int8)
+            leaves[blocks] = 1
+            self.core.take_out(leaves[t.node_block])
+        return blocks
 
     def look_for_departures(self) -> list[Departure]:
-        """Note the groups of which a block has left the model since the last look; return these."""
+        """Take out what has left the domain, and note what fell below the model since the last look.
+
+        Returns:
+            The first block of each group of which none had before.
+        """
         t, found, position = self.build.topology, [], self.motion[:, :3]
-        known = {departure.group for departure in self.departures}
-        for block in self.fallen:
-            group = self.build.group_names[t.block_group[block]]
-            if group not in known:
-                nodes = slice(*t.block_first_node[block : block + 2])
-                place = position[nodes].mean(axis=0).tolist()
-                found.append(Departure(group, int(block), self.time, place))
-                known.add(group)
+        known = {(departure.group, departure.out) for departure in self.departures}
+        for out, blocks in ((True, self.take_out()), (False, self.fallen)):
+            for block in blocks:
+                group = self.build.group_names[t.block_group[block]]
+                if (group, out) not in known:
+                    nodes = slice(*t.block_first_node[block : block + 2])
+                    place = position[nodes].mean(axis=0).tolist()
+                    found.append(Departure(group, int(block), self.time, place, out))
+                    known.add((group, out))
         self.departures += found
         return found
+
+    @property
+    def taken_out(self) -> dict[str, dict[str, float]]:
+        """Number and mass [kg] of the blocks that were taken out, of each group that lost any."""
+        t, out = self.build.topology, self.out
+        mass = np.add.reduceat(self.fields["mass"], t.block_first_node[:-1])
+        lost = {}
+        for index, name in enumerate(self.build.group_names):
+            if (these := out & (t.block_group == index)).any():
+                lost[name] = {"blocks": int(these.sum()), "mass": float(mass[these].sum())}
+        return lost
 
     @property
     def energies(self) -> dict[str, float]:
@@ -346,5 +391,6 @@ class RunState:
             "broken": self.broken,
             "stages": self.finished_stages,
             "groups": groups,
+            "taken_out": self.taken_out,
             "departures": [departure.text() for departure in self.departures],
         }

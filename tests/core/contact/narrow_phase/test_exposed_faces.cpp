@@ -34,6 +34,7 @@ TEST_CASE("sorted faces keep their springs and edges, and targets follow them") 
   s.edges.first.assign(first, 4);
   s.edges.contact.resize(12);
   s.edges.state.resize(24);
+  s.edges.reaction.resize(24);
   EdgeContact{4 * place(7) + 2, place(5), 20, 0}.store(s.edges.contact.data(), 0);
   EdgeContact{4 * place(5) + 1, place(3), 21, 1}.store(s.edges.contact.data(), 1);
   EdgeContact{4 * place(5) + 3, place(7), 22, 2}.store(s.edges.contact.data(), 2);

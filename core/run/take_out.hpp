@@ -1,0 +1,17 @@
+// take_out.hpp - blocks that leave the computation for good. Host code.
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Between two runs, take whole bodies out, given by a flag for each node. Their nodes stay where
+/// they are, their elements and bonds carry nothing, their faces cannot be touched, and their
+/// contacts end. The energy that is stored in them is booked as taken out.
+void take_out(Model& model, State& state, const Flag* leaves);
+
+/// Hold what has been taken out, after Python has handed over arrays of the model.
+void hold_taken_out(Model& model, const State& state);
+
+}  // namespace cdem
