@@ -37,7 +37,8 @@ def test_round_off_does_not_choose_the_triangles_of_a_polyhedron():
     turned = corners @ np.linalg.qr(np.random.default_rng(3).random((3, 3)))[0]
     random = np.random.default_rng(4)
     faces = [
-        primitives.outward_faces(turned + random.normal(0, 1e-16, turned.shape)) for _ in range(20)
+        primitives.outward_faces(turned + random.normal(0, 1e-16, turned.shape), None)
+        for _ in range(20)
     ]
     assert all(one == faces[0] for one in faces)
     assert all(face[0] == min(face) for face in faces[0])
