@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants torture nightly verify lint format demo cuda clean
+.PHONY: setup build dev check test validate coverage mutants torture sanitize nightly verify lint format demo cuda clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -53,7 +53,19 @@ torture: build
 	$(BIN)/python tools/torture/damage.py
 	$(BIN)/python tools/torture/fuzz.py cases 20000
 	$(BIN)/python tools/torture/fuzz.py files 10000
+	$(BIN)/python tools/torture/kills.py
+	$(BIN)/python tools/torture/soak.py small
+	$(BIN)/python tools/torture/soak.py landslide
 	$(BIN)/python tools/torture/faults.py
+
+# The tests of the core by clang: wrong accesses, undefined behaviour, races. Needs libomp.
+sanitize: setup
+	$(BIN)/python tools/build.py --sanitize address
+	LD_PRELOAD=$$(clang++ -print-file-name=libclang_rt.asan-x86_64.so) ASAN_OPTIONS=detect_leaks=0 \
+	  build/address/core_tests
+	$(BIN)/python tools/build.py --sanitize thread
+	OMP_NUM_THREADS=3 OMP_TOOL_LIBRARIES=$$(clang++ -print-file-name=libarcher.so) \
+	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 build/thread/core_tests
 
 nightly: test validate coverage mutants
 	$(BIN)/cdem verify --full

@@ -95,7 +95,8 @@ def main() -> None:
         settings["CMAKE_CXX_COMPILER"] = "clang++"
     folder = ROOT / "build" / (special or "core")
     build(folder, settings, targets)
-    place(folder, module)
+    if not wants.sanitize:  # Python loads such a module only with the library of the sanitizer
+        place(folder, module)
 
 
 if __name__ == "__main__":
