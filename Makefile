@@ -64,7 +64,7 @@ sanitize: setup
 	LD_PRELOAD=$$(clang++ -print-file-name=libclang_rt.asan-x86_64.so) ASAN_OPTIONS=detect_leaks=0 \
 	  build/address/core_tests
 	$(BIN)/python tools/build.py --sanitize thread
-	OMP_NUM_THREADS=3 OMP_TOOL_LIBRARIES=$$(clang++ -print-file-name=libarcher.so) \
+	OMP_NUM_THREADS=3 OMP_TOOL_LIBRARIES=$$(clang++ -print-resource-dir)/../../libarcher.so \
 	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 build/thread/core_tests
 
 nightly: test validate coverage mutants
