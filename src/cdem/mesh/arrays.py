@@ -50,15 +50,13 @@ def in_plane(a: Floats, b: Floats, normal: Floats, x: Floats) -> tuple[Floats, F
 
 
 def same_everywhere(values: Floats) -> Floats:
-    """Numbers rounded up to single precision.
+    """Numbers rounded up to 20 bits, by a millionth at most.
 
     For what LAPACK and vectorized functions give, whose last bits depend on the kind of CPU, and of
-    which seven digits are enough.
+    which six digits are enough: bounds of the time step, springs against hourglass modes.
     """
-    rounded = values.astype(np.float32)
-    low = rounded < values
-    rounded[low] = np.nextafter(rounded[low], np.float32(np.inf))
-    return rounded.astype(np.float64)
+    mantissa, exponent = np.frexp(values)
+    return np.ldexp(np.ceil(mantissa * 2.0**20) / 2.0**20, exponent)
 
 
 def inverses(m: Floats) -> Floats:

@@ -8,7 +8,12 @@ from cdem.output.render import can_draw
 from cdem.run.written_files import MARKER
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
-COMMANDS = (("plot",), ("export",), ("runout", "--section", "0.5,-1,0.5,2"), ("render", "--movie"))
+COMMANDS = (
+    ("plot",),
+    ("export",),
+    ("runout", "--direction", "90", "--section", "0.5,-1,0.5,2"),
+    ("render", "--movie"),
+)
 
 
 def test_what_all_commands_write_is_replaced(run_cli, cube_folder):
