@@ -77,13 +77,13 @@ class Deposit:
         return np.where(self.covered, self.thickness, NOTHING)[::-1]
 
     def write_asc(self, path: Path) -> None:
-        """Write an ESRI ASCII grid, nine digits."""
+        """Write an ESRI ASCII grid that reads back to the same numbers."""
         rows, columns = self.thickness.shape
         head = (
             f"ncols {columns}\nnrows {rows}\nxllcorner {self.x!r}\nyllcorner {self.y!r}\n"
             f"cellsize {self.cell!r}\nNODATA_value {NOTHING:g}\n"
         )
-        lines = "\n".join(" ".join(f"{v:.9g}" for v in row) for row in self._rows())
+        lines = "\n".join(" ".join(repr(float(v)) for v in row) for row in self._rows())
         path.write_text(f"{head}{lines}\n")
 
     def write_tiff(self, path: Path) -> None:
