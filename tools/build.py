@@ -64,38 +64,44 @@ def place(folder: Path, module: str) -> None:
             fresh.replace(old)
 
 
-def main() -> None:
-    """Build what the options ask for."""
+def options() -> argparse.Namespace:
+    """The options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--native", action="store_true", help="only the module for this CPU")
     parser.add_argument("--tests", action="store_true", help="core_tests as well")
     parser.add_argument("--own-laws", action="store_true", help="the core with laws of tests/core")
     parser.add_argument(
-        "--coverage", action="store_true", help="module and tests that count executed lines"
+        "--coverage",
+        dest="special",
+        action="store_const",
+        const="coverage",
+        help="module and tests that count executed lines",
     )
     parser.add_argument(
         "--sanitize",
+        dest="special",
         choices=["address", "thread"],
         help="module and tests, by clang, that end at a wrong access or at a race of threads",
     )
-    wants = parser.parse_args()
-    special = "coverage" if wants.coverage else wants.sanitize
-    module = f"_core_{native()}" if wants.native or special else "_core_*"
-    targets = [module] if wants.native or special else ["all"]
-    settings = {}
-    if wants.tests or special:
-        targets.append("core_tests")
-    if wants.own_laws:
-        targets.append("_core_own_laws")
-    if wants.tests or special or wants.own_laws:
-        settings["CDEM_TESTS"] = native()
-    if special:
-        settings["CMAKE_BUILD_TYPE"] = special.capitalize()
-    if wants.sanitize:
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Build what the options ask for."""
+    wants = options()
+    one, tests = wants.native or wants.special, wants.tests or wants.special
+    sanitized = wants.special in ("address", "thread")
+    module = f"_core_{native()}" if one else "_core_*"
+    targets = [module if one else "all"]
+    targets += ["core_tests"] * bool(tests) + ["_core_own_laws"] * wants.own_laws
+    settings = {"CDEM_TESTS": native()} if tests or wants.own_laws else {}
+    if wants.special:
+        settings["CMAKE_BUILD_TYPE"] = wants.special.capitalize()
+    if sanitized:
         settings["CMAKE_CXX_COMPILER"] = "clang++"
-    folder = ROOT / "build" / (special or "core")
+    folder = ROOT / "build" / (wants.special or "core")
     build(folder, settings, targets)
-    if not wants.sanitize:  # Python loads such a module only with the library of the sanitizer
+    if not sanitized:  # Python loads such a module only with the library of the sanitizer
         place(folder, module)
 
 
