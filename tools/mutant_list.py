@@ -27,6 +27,22 @@ FAILURE = "tests/validation/test_failure.py::"
 
 PYTHON = [
     Mutant(
+        "round values",
+        "bounds of the step change with the CPU where they are round numbers",
+        "src/cdem/mesh/arrays.py",
+        "np.ceil(mantissa * 2.0**20 - 2.0**-10)",
+        "np.ceil(mantissa * 2.0**20)",
+        "tests/regression/test_model_arrays.py",
+    ),
+    Mutant(
+        "matrix product",
+        "matrices multiplied by BLAS",
+        "src/cdem/mesh/arrays.py",
+        'np.einsum("...ij,...jk->...ik", a, b)',
+        "a @ b",
+        "tests/regression/test_model_arrays.py",
+    ),
+    Mutant(
         "degrees",
         "angles of a law taken for radians",
         "src/cdem/case/laws.py",
@@ -481,6 +497,22 @@ CORE = [
         "return s.dt != s.dt_last ? s.nodes.step_change.data() : nullptr;",
         "return s.dt < 0 ? s.nodes.step_change.data() : nullptr;",
         "tests/validation/test_impact_energy.py",
+    ),
+    Mutant(
+        "taken out",
+        "the energy of blocks that leave the domain is not booked",
+        "core/run/take_out.cpp",
+        "s.taken_out += before - stored_energy(m, s);",
+        "",
+        "tests/core/run/test_take_out.cpp",
+    ),
+    Mutant(
+        "taken out friction",
+        "losses at contacts leave with the blocks",
+        "core/run/take_out.cpp",
+        "s.taken_out_friction += s.springs.friction[slot];",
+        "",
+        "tests/core/run/test_take_out.cpp",
     ),
 ]
 """Faults in the core: those in headers that many files include come last."""
