@@ -25,6 +25,9 @@ def wrong_stage(attributes: Attributes) -> str:
     index, stages = attributes.stage_index, attributes.case.get("stages", [])
     if index + (attributes.stage is not None) > len(stages):
         return "it is in a stage that the case does not have"
+    begun = attributes.stage is not None or attributes.ended_stage is not None
+    if begun != (index > 0 or attributes.stage is not None or attributes.core["step"] > 0):
+        return "it is neither in a stage nor behind one"
     for place, kept in ((index, attributes.stage), (index - 1, attributes.ended_stage)):
         if kept is not None and (place < 0 or kept.name != stages[place]["name"]):
             return f"its stage {kept.name!r} is not that of the case"

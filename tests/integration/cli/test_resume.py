@@ -128,13 +128,19 @@ def test_the_checkpoint_before_is_used_when_the_last_is_damaged(run_cli, folder,
 
 @pytest.mark.parametrize(
     ("value", "said"),
-    [("rows", "stage: Value error, not the values of a StageState"), ("name", "its stage 'junk'")],
+    [
+        ("rows", "stage: Value error, not the values of a StageState"),
+        ("name", "its stage 'junk'"),
+        ("all", "it is neither in a stage nor behind one"),
+    ],
 )
 def test_a_stage_without_a_value_or_of_another_case_is_damage(run_cli, stopped, value, said):
     for name in ("checkpoint.h5", "checkpoint-before.h5"):
         arrays, text = read_checkpoint(stopped / name)
         attributes = json.loads(text)
-        attributes["stage"].pop(value)
+        attributes["stage"].pop(value, None)
+        if value == "all":
+            attributes["stage"] = None
         if value == "name":
             attributes["stage"]["name"] = "junk"
         write_checkpoint(stopped, arrays, json.dumps(attributes))
