@@ -79,7 +79,8 @@ nb::list declarations() {
   return laws;
 }
 
-/// The interfaces of the model: law, stiffness_n and stiffness_s as (value, factor), parameters.
+/// The interfaces of the model: law and its parameters, stiffness_n and stiffness_s of contacts as
+/// (value, factor), and whether that is of the sides in series.
 inline void set_interfaces(Core& core, const nb::list& interfaces) {
   Model& m = core.model;
   constexpr std::size_t width = InterfaceTable::row;
@@ -92,6 +93,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
       return nb::cast<std::tuple<Real, Real>>(entry[name]);
     };
     Interface& interface = m.interfaces[i];
+    interface.in_series = nb::cast<bool>(entry["in_series"]);
     std::tie(interface.stiffness_n_value, interface.stiffness_n_factor) = stiffness("stiffness_n");
     std::tie(interface.stiffness_s_value, interface.stiffness_s_factor) = stiffness("stiffness_s");
     const auto name = nb::cast<std::string>(entry["law"]);

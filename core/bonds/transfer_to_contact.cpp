@@ -22,6 +22,8 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairS
   const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
   const Frame<Real> frame_a = faces.shape_before(a).frame(),
                     frame_b = faces.shape_before(b).frame();
+  const Interface& contact = m.interfaces[p.interface[i]];
+  const Real side_a = m.face_stiffness[a], side_b = m.face_stiffness[b];
   Real handed = 0;
   for (Index k = 0; k < p.points; ++k) {
     const Index node_a = p.nodes[std::size_t(k) * p.stride + i];
@@ -31,11 +33,14 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairS
     if (norm(jump) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
     const std::size_t point = std::size_t(k) * p.point_stride + i;
     // half of it on either side
-    const Real area = 0.5 * p.area[i] / p.points, kn = area * p.stiffness[i],
-               ks = area * p.stiffness[std::size_t(p.stride) + i];
+    const Real area = 0.5 * p.area[i] / p.points, bond_n = area * p.stiffness[i],
+               bond_s = area * p.stiffness[std::size_t(p.stride) + i];
+    const Real kn = area * contact.stiffness_n(side_a, side_b),
+               ks = area * contact.stiffness_s(side_a, side_b);
+    const Real part = std::min(1.0, kn / bond_n);  // of the force: no deeper than the faces are
     const Vec3<Real> slip = ps.slip1[point] * frame_a.t1 + ps.slip2[point] * frame_a.t2;
     const Vec3<Real> along = jump - dot(frame_a.n, jump) * frame_a.n;
-    const Vec3<Real> on_b = -ks * (along - slip);
+    const Vec3<Real> on_b = -part * bond_s * (along - slip);
     const auto give = [&](Index place, Index face, Index node, Index target,
                           const Frame<Real>& frame, const Vec3<Real>& force) {
       for (Index v = 0; v < faces.vertex_count(face); ++v) {
@@ -45,7 +50,8 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairS
         ContactState spring = ContactState::at(s.springs.state.data(), slot);
         spring.shear1 = dot(force, frame.t1);
         spring.shear2 = dot(force, frame.t2);
-        spring.penetration = -dot(frame_a.n, jump);
+        spring.penetration = -std::min(1.0, bond_n / kn) * dot(frame_a.n, jump);
+        spring.stress_free_gap = spring.penetration + dot(frame_a.n, jump);
         spring.force_n = kn * spring.penetration;
         spring.energy_n = 0.5 * kn * spring.penetration * spring.penetration;
         spring.energy_s =

@@ -11,9 +11,10 @@ namespace cdem {
 Real pair_length(const Model& model, const PairSet& pairs, Index pair);
 
 /// Give the springs of a conforming pair the force that its bond points carried, half to either
-/// side, so that the change of bookkeeping is no jolt. A point whose vertices have parted, as those
-/// of a hinge do before its last point breaks, carries nothing. Returns the energy that the springs
-/// hold  [J].
+/// side, so that the change of bookkeeping is no jolt; of a contact that is softer than the bond
+/// only what it can hold at the present depth. A point whose vertices have parted, as those of a
+/// hinge do before its last point breaks, carries nothing. Returns the energy that the springs hold
+/// [J].
 Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs,
                          const PairState& bonds, Index pair);
 

@@ -5,19 +5,26 @@
 
 namespace cdem {
 
-/// Law and stiffness of the interface between two classes of faces. A stiffness is `value` [Pa/m]
-/// where that is positive, else `factor` times the stiffer side's modulus over its element height
-/// [Pa/m].
+/// Law of the interface between two classes of faces, and stiffness of its contacts. A stiffness is
+/// `value` [Pa/m] where that is positive, else `factor` times the modulus over the element height
+/// [Pa/m]: of both sides in series, or of the stiffer one. Bonds bring their own stiffness.
 struct Interface {
-  Index law;  // number in InterfaceLaws
+  Index law;       // number in InterfaceLaws
+  bool in_series;  // sides
   Real stiffness_n_value, stiffness_n_factor;
   Real stiffness_s_value, stiffness_s_factor;
 
-  CDEM_HD Real stiffness_n(Real auto_stiffness) const {
-    return stiffness_n_value > 0 ? stiffness_n_value : stiffness_n_factor * auto_stiffness;
+  /// Normal and shear stiffness between sides whose elements have these stiffnesses.
+  CDEM_HD Real stiffness_n(Real a, Real b) const {
+    return stiffness_n_value > 0 ? stiffness_n_value : stiffness_n_factor * between(a, b);
   }
-  CDEM_HD Real stiffness_s(Real auto_stiffness) const {
-    return stiffness_s_value > 0 ? stiffness_s_value : stiffness_s_factor * auto_stiffness;
+  CDEM_HD Real stiffness_s(Real a, Real b) const {
+    return stiffness_s_value > 0 ? stiffness_s_value : stiffness_s_factor * between(a, b);
+  }
+
+ private:
+  CDEM_HD Real between(Real a, Real b) const {
+    return in_series ? 2 * a * b / (a + b) : max_of(a, b);
   }
 };
 

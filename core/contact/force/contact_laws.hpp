@@ -32,10 +32,10 @@ struct ContactLaws {
     const Interface* table = interfaces.interfaces;
     const auto area = [&](Index a, Index b) { return geometry.contact_area(a, b); };
     const auto normal = [&](Index l, Index a, Index b) {
-      return table[l].stiffness_n(geometry.stiffer(a, b));
+      return table[l].stiffness_n(geometry.stiffness(a), geometry.stiffness(b));
     };
     const auto shear = [&](Index l, Index a, Index b) {
-      return table[l].stiffness_s(geometry.stiffer(a, b));
+      return table[l].stiffness_s(geometry.stiffness(a), geometry.stiffness(b));
     };
     using T = Number<Ids>;
     return ContactSpring<T>{.area = numbers_of(area, m, t),

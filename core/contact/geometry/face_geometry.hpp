@@ -87,10 +87,8 @@ struct FaceGeometry {
   /// that of the face it meets; else a large face gives a small block a spring that no step can
   /// follow.
   CDEM_HD Real contact_area(Index m, Index t) const { return min_of(table[m].area, table[t].area); }
-  /// Stiffness of the stiffer of two faces' elements  [Pa/m].
-  CDEM_HD Real stiffer(Index m, Index t) const {
-    return max_of(table[m].stiffness, table[t].stiffness);
-  }
+  /// Stiffness of the element behind a face  [Pa/m].
+  CDEM_HD Real stiffness(Index exposed) const { return table[exposed].stiffness; }
   template <class Ids>
   CDEM_HD auto center(const Ids& exposed) const {
     return InRows{rows}.at(exposed, 0).vector();

@@ -2,13 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from cdem.case.bodies_schema import exactly_one
 from cdem.case.laws import INTERFACE_LAWS, choice, interface_contradiction, models
-from cdem.case.types import AUTO_STIFFNESS, Name, Part, Stiffness
+from cdem.case.types import AUTO, Name, Part, Quantity, Stiffness
+
+
+class Overlap(Part):
+    """How far blocks in contact may overlap, from which the stiffness of contacts follows."""
+
+    overlap: Annotated[float, Quantity("1", above=0, below=0.05)] = Field(
+        description="Overlap under the weight of the rock above, over the height of the element [1]"
+    )
+    impact: Annotated[float, Quantity("1", above=0, below=0.05)] = Field(
+        0.01, description="Overlap in an impact, over the height of the element [1]"
+    )
+    speed: Annotated[float, Quantity("m/s", at_least=0)] | None = Field(
+        None,
+        description="Greatest speed of an impact [m/s]; by default the largest with which a group "
+        "starts or is driven",
+    )
 
 
 class Interface(Part):
@@ -17,10 +33,20 @@ class Interface(Part):
     if TYPE_CHECKING:
         law: str
     stiffness_n: Stiffness = Field(
-        AUTO_STIFFNESS, description="Normal stiffness: auto (10 E/h), a number [Pa/m], or '5 E/h'"
+        AUTO,
+        description="Normal stiffness of bonds: auto (10 E/h; with cdem: 2, between elements that are "
+        "blocks, compensated by their modulus), a number [Pa/m], or '5 E/h'",
     )
     stiffness_s: Stiffness = Field(
-        AUTO_STIFFNESS, description="Shear stiffness: auto (10 E/h), a number [Pa/m], or '5 E/h'"
+        AUTO, description="Shear stiffness of bonds: auto, a number [Pa/m], or '5 E/h'"
+    )
+    contact_stiffness: Annotated[
+        Annotated[Stiffness, Tag("value")] | Annotated[Overlap, Tag("overlap")],
+        Discriminator(lambda v: "overlap" if isinstance(v, dict | Overlap) else "value"),
+    ] = Field(
+        AUTO,
+        description="Normal and shear stiffness of contacts: auto (1 E/h; with cdem: 1 that of bonds), "
+        "a number [Pa/m], '0.3 E/h', or an allowed overlap",
     )
 
 

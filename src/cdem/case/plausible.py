@@ -65,7 +65,7 @@ class Range:
     def _meant(self, value: float) -> str:
         fitting = []
         for unit in self.meant:
-            if self.usual[0] <= to_number(f"{abs(value)!r} {unit}", self.unit) <= self.usual[1]:
+            if self.usual[0] <= abs(value) * to_number(f"1 {unit}", self.unit) <= self.usual[1]:
                 fitting.append(f'"{value:g} {unit}"')
         return f"; did you mean {' or '.join(fitting)}?" if fitting else ""
 

@@ -238,7 +238,9 @@ class HistoryPoint(Part):
 class CaseParts(Part):
     """All parts of a case."""
 
-    cdem: Literal[1] = Field(1, description="Version of the case format")
+    cdem: Literal[1, 2] = Field(
+        1, description="Version of the case format: defaults differ between versions"
+    )
     title: Line = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
     model: Model = Field(description="The bodies")

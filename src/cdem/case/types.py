@@ -97,9 +97,9 @@ class Stiffness:
     """Stiffness of an interface per area.
 
     Attributes:
-        value: Stiffness [Pa/m], or when ``relative`` the multiple of E/h [1].
-        relative: Whether ``value`` multiplies E/h of the stiffer side, E the Young's modulus and
-            h the height of the element behind the face.
+        value: Stiffness [Pa/m], or when ``relative`` the multiple of E/h [1]; 0 for auto.
+        relative: Whether ``value`` multiplies E/h, E the Young's modulus and h the height of the
+            element behind the face.
     """
 
     value: float
@@ -111,7 +111,7 @@ class Stiffness:
         if isinstance(value, cls):
             return value
         if value == "auto":
-            return AUTO_STIFFNESS
+            return AUTO
         if isinstance(value, str) and (match := re.fullmatch(r"\s*(\S+)\s+E\s*/\s*h\s*", value)):
             return cls(Quantity("1", above=0).read(match[1]), relative=True)  # type: ignore[arg-type]
         return cls(Quantity("Pa/m", above=0).read(value), relative=False)  # type: ignore[arg-type]
@@ -121,7 +121,9 @@ class Stiffness:
         return (0.0, self.value) if self.relative else (self.value, 0.0)
 
     def write(self) -> float | str:
-        """Return what a case file would say: a number [Pa/m] or ``"10 E/h"``."""
+        """Return what a case file would say: auto, a number [Pa/m] or ``"10 E/h"``."""
+        if self == AUTO:
+            return "auto"
         return f"{self.value!r} E/h" if self.relative else self.value
 
     @classmethod
@@ -138,7 +140,8 @@ class Stiffness:
         return {"anyOf": [{"const": "auto"}, number, texts], "unit": "Pa/m"}
 
 
-AUTO_STIFFNESS = Stiffness(10.0, relative=True)  # a compliance of 1/10 of one element's
+AUTO = Stiffness(0.0, relative=True)
+"""What the version of the case chooses."""
 
 
 def _as_list(value: object) -> object:

@@ -12,11 +12,22 @@ from cdem.mesh.element_shapes import FACES
 from cdem.mesh.mesh import Floats, Mesh
 from cdem.units import coordinates
 
+Steps = int | NDArray[np.int64]
+
 _KUHN = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
 
 
+_CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
+"""Corners of a cell as a hexahedron has them."""
+
+
 def box(
-    group: str, size: Sequence[float], divisions: Sequence[int] = (1, 1, 1), *, shape: str = "hex8"
+    group: str,
+    size: Sequence[float],
+    divisions: Sequence[int] = (1, 1, 1),
+    *,
+    shape: str = "hex8",
+    mirrored: bool = False,
 ) -> Mesh:
     """A box from the origin to `size`, divided into cells.
 
@@ -25,22 +36,29 @@ def box(
         size: Edge lengths [m].
         divisions: Cells along each edge.
         shape: "hex8", or each cell divided: "wedge6" (2), "pyramid5" (6), "tet4" (6, conforming).
+        mirrored: Whether the tets of neighbouring cells are mirror images: the faces of all have no
+            preferred direction. Else all cells are divided along the same diagonal.
     """
     counts = [int(n) for n in divisions]
     axes = [np.linspace(0, s, n + 1) for s, n in zip(size, counts, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     i, j, k = (a.ravel() for a in np.meshgrid(*map(range, counts), indexing="ij"))
 
-    def at(di: int, dj: int, dk: int) -> NDArray[np.int64]:
+    def at(di: Steps, dj: Steps, dk: Steps) -> NDArray[np.int64]:
         return ((i + di) * (counts[1] + 1) + j + dj) * (counts[2] + 1) + k + dk
 
-    hexes = np.column_stack(
-        [at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0)]
-        + [at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)]
-    )
+    hexes = np.column_stack([at(*corner) for corner in _CORNERS])
     cells = hexes
     if shape == "tet4":
+        if mirrored:
+            odd = i % 2, j % 2, k % 2
+            hexes = np.column_stack(
+                [at(a ^ odd[0], b ^ odd[1], c ^ odd[2]) for a, b, c in _CORNERS]
+            )
         cells = np.concatenate([hexes[:, t] for t in _KUHN])
+        if mirrored:
+            turned = np.tile(sum(odd) % 2 == 1, len(_KUHN))
+            cells[turned, :2] = cells[turned, 1::-1]
     elif shape == "wedge6":
         cells = np.concatenate([hexes[:, w] for w in ((0, 1, 2, 4, 5, 6), (0, 2, 3, 4, 6, 7))])
     elif shape == "pyramid5":

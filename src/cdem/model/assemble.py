@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cdem.mesh import element_shapes
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.topology import Topology
+from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
 from cdem.model.masses import node_masses
 
@@ -61,7 +62,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
         hourglass = np.zeros((count, 0))
         if shape == "hex8" and p.one_point:
             gradient, volume, hourglass = element_shapes.one_point(
-                corners, gradient, volume, p.young_modulus[group]
+                corners, gradient, volume, p.softening[group] * p.young_modulus[group]
             )
         geometry[shape] = (gradient, volume, hourglass)
         mass[shape] = matrices
@@ -85,28 +86,6 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
     node_masses(t, p, mass, geometry, out)
 
 
-def face_heights(t: Topology, volumes: dict[str, Floats], area: Floats) -> Floats:
-    """Height of the element behind each face above it [m]: the h of k_n = factor E / h."""
-    # volume = area * height / divisor, for a prism 1 and for a pyramid 3; the sides of a wedge stand
-    # across from an edge (2), those of a pyramid between the two cases
-    by_sides = {
-        "tet4": (3.0, 3.0),
-        "pyramid5": (3.0, 3.0),
-        "wedge6": (1.0, 2.0),
-        "hex8": (1.0, 1.0),
-    }
-    triangle, quad = (
-        np.concatenate([by_sides[s][k] * volumes[s] for s in element_shapes.NODES]) for k in (0, 1)
-    )
-    return np.where(t.face_nodes[:, 3] < 0, triangle[t.face_element], quad[t.face_element]) / area
-
-
-def face_areas(position: Floats, face_nodes: NDArray) -> Floats:
-    """Area of triangles and (mean-plane) quadrilaterals [m2], shape (faces,)."""
-    x = position[np.where(face_nodes < 0, face_nodes[:, 2:3], face_nodes)]
-    return 0.5 * lengths(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]))
-
-
 def _faces(t: Topology, p: Properties, out: Assembly) -> None:
     def geometry(nodes: NDArray) -> Floats:
         """Area, mean and largest distance of the vertices from their middle."""
@@ -120,7 +99,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
 
     area, length, reach = in_pieces(geometry, t.face_nodes).T.copy()
     young = p.young_modulus[t.face_group]
-    height = face_heights(t, out.element_volume, area)
+    height = face_heights(t, np.concatenate(list(out.element_volume.values())), area)
     out.arrays |= {
         "face.nodes": t.face_nodes.ravel(),
         "face.edges": t.face_edges.ravel(),
@@ -207,16 +186,15 @@ def _pair_set(
     out.arrays[f"{kind}.faces"] = faces.astype(np.int32).ravel()
     out.arrays[f"{kind}.interface"] = table(interface[None], stride)
     out.arrays[f"{kind}.area"] = table(area[None], stride)
-    out.arrays[f"{kind}.stiffness"] = pair_stiffness(out, kind, p.stiffness, interface, stride)
-
-
-def pair_stiffness(out: Assembly, kind: str, laws: Floats, interface: Ints, stride: int) -> Floats:
-    """k_n and k_s of each pair [Pa/m] from its interface and the stiffer of its two sides."""
-    faces = out.pair_faces[kind]
     stiffer = out.arrays["face.stiffness"][faces].reshape(-1, 2).max(axis=1, initial=0.0)
-    law = laws[interface]
+    law = p.stiffness[interface]
     rows = [np.where(law[:, i] > 0, law[:, i], law[:, i + 1] * stiffer) for i in (0, 2)]
-    return table(np.array(rows), stride)
+    group = np.where(sides < len(p.density), sides, -1)  # not in a set of joints
+    own = np.where(group >= 0, p.bond_stiffness[group], 0.0)
+    both = (own > 0).all(axis=1) & p.automatic[interface]
+    in_series = 2 * own[:, 0] * own[:, 1] / np.maximum(own.sum(axis=1), 1e-300)
+    rows = [np.where(both, in_series, row) for row in rows]
+    out.arrays[f"{kind}.stiffness"] = table(np.array(rows), stride)
 
 
 def _corners(t: Topology, out: Assembly) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -12,6 +14,7 @@ from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
+from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
 
 SOFT = 30.0
@@ -49,6 +52,8 @@ class Audit:
         }
         self.groups = self._groups()
         self.interfaces = bonded_interfaces(build)
+        self.contacts = contact_interfaces(build)
+        self.compensation = self._compensation()
         self.step = self._step()
         self.warnings = self._warnings()
 
@@ -73,6 +78,16 @@ class Audit:
                 "mass": float(mass),
                 "low": b.start_position[nodes].min(axis=0).tolist(),
                 "high": b.start_position[nodes].max(axis=0).tolist(),
+            }
+        return out
+
+    def _compensation(self) -> dict[str, dict[str, Any]]:
+        b, out = self._build, {}
+        for name, made_up in b.compensation.items():
+            rock = b.case.materials[b.case.groups[name].material]
+            out[name] = asdict(made_up) | {
+                "young_modulus": made_up.softening * rock.young_modulus,
+                "poisson_ratio": made_up.softening * rock.poisson_ratio,
             }
         return out
 
@@ -133,6 +148,15 @@ class Audit:
         names = [self._build.group_names[g] for g in t.block_group[~held]]
         return {name: names.count(name) for name in dict.fromkeys(names)}
 
+    def _soft_interfaces(self) -> Iterator[str]:
+        for row in self.interfaces:
+            made_up = set(row["between"]) <= self.compensation.keys()
+            if row["compliance_percent"] > SOFT and not made_up:
+                yield (
+                    f"the interface {_place(row)} adds {row['compliance_percent']:.0f} % compliance in "
+                    "tension and bending; raise its stiffness_n"
+                )
+
     def _warnings(self) -> list[str]:
         b = self._build
         out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
@@ -165,13 +189,7 @@ class Audit:
                 f"{slivers} sliver elements (height below {SLIVER:.0%} of the longest edge) shorten "
                 "the time step; remesh, or use time.mass_scaling"
             )
-        soft = [i for i in self.interfaces if i["compliance_percent"] > SOFT]
-        for row in soft:
-            out.append(
-                f"the interface {_place(row)} adds "
-                f"{row['compliance_percent']:.0f} % compliance in tension and bending; raise its "
-                "stiffness_n"
-            )
+        out += self._soft_interfaces()
         out += coarse_beams(b)
         if b.assembly.lumped_blocks:
             out.append(
@@ -207,6 +225,8 @@ class Audit:
             "counts": self.counts,
             "groups": self.groups,
             "interfaces": self.interfaces,
+            "compensation": self.compensation,
+            "contacts": self.contacts,
             "time_step": self.step,
             "memory_bytes": self.memory,
             "warnings": self.warnings,
@@ -234,12 +254,18 @@ class Audit:
         if self.interfaces:
             lines += ["", "  bonded interfaces"]
         for row in self.interfaces:
+            adds = "made up for by the elements"
+            if not set(row["between"]) <= self.compensation.keys():
+                adds = (
+                    f"adds {row['compliance_percent']:.3g} % compliance in tension and bending, "
+                    f"{row['shear_compliance_percent']:.3g} % in shear"
+                )
             lines.append(
                 f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
                 f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
-                f"{row['stiffness_n'][1]:.3g} Pa/m, adds {row['compliance_percent']:.3g} % compliance in "
-                f"tension and bending, {row['shear_compliance_percent']:.3g} % in shear"
+                f"{row['stiffness_n'][1]:.3g} Pa/m, {adds}"
             )
+        lines += self._stiffness_text()
         s = self.step
         lines += [
             "",
@@ -251,6 +277,28 @@ class Audit:
             lines.append(estimate.rstrip())
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+    def _stiffness_text(self) -> list[str]:
+        """What makes up for bonds, and how far contacts overlap."""
+        lines = ["", "  elements that make up for bonds"] if self.compensation else []
+        for name, c in self.compensation.items():
+            young, shear, bulk = (100 * error for error in c["errors"])
+            lines.append(
+                f"    {name}: E {c['young_modulus']:.4g} Pa, nu {c['poisson_ratio']:.3g}, bonds of "
+                f"{c['stiffness']:.3g} Pa/m (q {c['q']:.3g}, faces "
+                f"{c['area_per_volume']:.3g} m2/m3, h {c['height']:.3g} m); left in E up to "
+                f"{young:+.2g} %, in G {shear:+.2g} %, in K {bulk:+.2g} %"
+            )
+        lines += ["", "  contacts"]
+        for row in self.contacts:
+            low, high = row["stiffness_n"]
+            lines.append(
+                f"    {row['interface']}: k_n {low:.3g} .. {high:.3g} Pa/m; blocks overlap by up to "
+                f"{100 * row['overlap_under_weight']:.2g} % of an element under "
+                f"{row['height']:.3g} m of rock, {100 * row['overlap_at_speed']:.2g} % at "
+                f"{row['speed']:.3g} m/s"
+            )
+        return lines
 
 
 def _place(row: dict[str, Any]) -> str:

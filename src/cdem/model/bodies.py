@@ -39,7 +39,8 @@ def _block(case: Case, block: Block) -> Mesh:
     if block.file is not None:
         piece = read_bodies(case.path_of(block.file), block.group)
     elif block.box is not None:
-        piece = box(block.group, block.box.size, block.box.divisions, shape=block.box.shape)
+        b = block.box
+        piece = box(block.group, b.size, b.divisions, shape=b.shape, mirrored=case.cdem > 1)
     else:
         assert block.polyhedron is not None
         piece = polyhedron(block.group, block.polyhedron.vertices, block.polyhedron.faces)

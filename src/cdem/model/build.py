@@ -15,25 +15,26 @@ from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
 from cdem.case.laws import BLOCK_LAWS
 from cdem.case.schema import Material
+from cdem.errors import CaseError
 from cdem.mesh.blocks import build_topology, snap_mates
 from cdem.mesh.extent import check_extent
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.topology import Topology
 from cdem.model.assemble import assemble
 from cdem.model.bodies import check_groups, read_model
+from cdem.model.compensation import Compensation, compensate, compensated_groups, is_automatic
 from cdem.model.curves import Curves, constant
 from cdem.model.domain import check_domain
 from cdem.model.flat_arrays import Assembly, Properties
 from cdem.model.interfaces import (
     bonded_pairs,
     check_interfaces,
-    interface_entry,
     interfaces_of,
-    stiffness_row,
 )
 from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of
+from cdem.model.stiffness import bond_row, interface_entries
 from cdem.model.supports import supports_of
 
 Floats = NDArray[np.float64]
@@ -60,6 +61,7 @@ class Build:
         core: The compiled core, holding model and state.
         curves: Times and factors of load and velocity histories; the first is constant.
         start_position: Positions at the start [m], shape (nodes, 3).
+        compensation: By group, what makes up for the compliance of bonds between its elements.
         bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
             at the start, shape (kinds, kinds).
     """
@@ -71,6 +73,7 @@ class Build:
     core: Any  # Core of the module for this machine's instruction set
     curves: Curves
     start_position: Floats
+    compensation: dict[str, Compensation]
     bonded: NDArray[np.bool_]
 
     @property
@@ -125,16 +128,19 @@ def build(case: Case) -> Build:
     snap_mates(topology)
 
     core, curves = native.Core(), constant()
-    parts = _assemble(case, topology, names, laws, interface_of, bonds, curves)
+    made_up = compensate(case, topology, names, laws, interface_of, bonds)
+    parts = _assemble(case, topology, names, laws, interface_of, bonds, made_up, curves)
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
     _share(topology, core.model())
     core.set_curves([c[0] for c in curves], [c[1] for c in curves])
-    core.set_interfaces([interface_entry(law) for law in laws])
+    core.set_interfaces(interface_entries(case, laws, names, topology.node_position))
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(topology.node_position)
-    built = Build(case, merged, topology, parts, core, curves, topology.node_position, bonds)
+    built = Build(
+        case, merged, topology, parts, core, curves, topology.node_position, made_up, bonds
+    )
     motion = core.fields()["node.motion"].reshape(-1, 8)
     set_velocities(case, topology, names, built.arrays["node.mass"], motion)
     lost = start_on_supports(built.arrays, curves, motion)
@@ -162,6 +168,7 @@ def _assemble(
     laws: list[Interface],
     interface_of: NDArray[np.int32],
     bonds: NDArray[np.bool_],
+    made_up: dict[str, Compensation],
     curves: Curves,
 ) -> Assembly:
     """Arrays of the core, with supports and loads as the case has them now."""
@@ -177,7 +184,10 @@ def _assemble(
         law_parameters=np.array([_law_row(m) for m in materials]),
         interface_of=np.maximum(interface_of, 0),
         bonded=bonds,
-        stiffness=np.array([stiffness_row(law) for law in laws]).reshape(-1, 4),
+        stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
+        automatic=np.array([is_automatic(law) for law in laws], bool),
+        softening=np.array([made_up[n].softening if n in made_up else 1.0 for n in names]),
+        bond_stiffness=np.array([made_up[n].stiffness if n in made_up else 0.0 for n in names]),
         exact_mass=case.elements.mass == "exact",
         supported=held & (supports["row"] >= 0)[:, None],
         target_step=0.0 if scaling is None else scaling.step,
@@ -204,6 +214,21 @@ def change(built: Build) -> dict[str, NDArray]:
     case, names = built.case, built.group_names
     laws, interface_of = interfaces_of(case, names)
     del built.curves[1:]
-    parts = _assemble(case, built.topology, names, laws, interface_of, built.bonded, built.curves)
+    groups = compensated_groups(case, built.topology, names, laws, interface_of, built.bonded)
+    for name in built.compensation.keys() - {names[group] for group in groups}:
+        raise CaseError(
+            f"{case.where('interfaces')}: stiffness_n and stiffness_s of the interface of group {name!r} cannot change: its "
+            "elements make up for the bonds that it had at the start"
+        )
+    parts = _assemble(
+        case,
+        built.topology,
+        names,
+        laws,
+        interface_of,
+        built.bonded,
+        built.compensation,
+        built.curves,
+    )
     kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s")
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}

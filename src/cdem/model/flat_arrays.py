@@ -26,7 +26,11 @@ class Properties:
         interface_of: Index of the interface between two kinds of faces (see
             `Topology.face_kind`), shape (kinds, kinds).
         bonded: Whether that interface starts bonded (has cohesion or tension), the same shape.
-        stiffness: (value, factor) of k_n and k_s by interface, shape (interfaces, 4).
+        stiffness: (value, factor) of k_n and k_s of bonds by interface, shape (interfaces, 4).
+        automatic: Whether the case leaves them to the program, shape (interfaces,).
+        softening: How much stiffer the elements are than the whole, see `Compensation`, shape
+            (groups,).
+        bond_stiffness: Of bonds that are made up for [Pa/m], else 0, shape (groups,).
         exact_mass: Exact inertia (default) or lumped masses as they come.
         supported: Components of nodes that are held or moved, shape (nodes, 3).
         target_step: Time step for which elements are made heavier where needed, or 0 [s].
@@ -41,6 +45,9 @@ class Properties:
     interface_of: Ints
     bonded: NDArray[np.bool_]
     stiffness: Floats
+    automatic: NDArray[np.bool_]
+    softening: Floats
+    bond_stiffness: Floats
     exact_mass: bool
     supported: NDArray[np.bool_]
     target_step: float = 0.0
@@ -48,14 +55,15 @@ class Properties:
 
     @property
     def lame(self) -> Floats:
-        """First Lame constant by group [Pa]."""
-        e, nu = self.young_modulus, self.poisson_ratio
+        """First Lame constant of the elements by group [Pa]."""
+        e, nu = self.softening * self.young_modulus, self.softening * self.poisson_ratio
         return e * nu / ((1 + nu) * (1 - 2 * nu))
 
     @property
     def shear(self) -> Floats:
-        """Shear modulus by group [Pa]."""
-        return self.young_modulus / (2 * (1 + self.poisson_ratio))
+        """Shear modulus of the elements by group [Pa]."""
+        nu = self.softening * self.poisson_ratio
+        return self.softening * self.young_modulus / (2 * (1 + nu))
 
 
 @dataclass

@@ -1,8 +1,6 @@
-"""Which interface holds between two kinds of faces, and its numbers for the core."""
+"""Which interface holds between two kinds of faces."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,18 +73,3 @@ def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.
     """Which pairs of groups have strength, shape (groups, groups); those without a law have none."""
     strong = [INTERFACE_LAWS[law.law].bonds(law) for law in laws]
     return np.array([*strong, False])[table]
-
-
-def interface_entry(law: Interface) -> dict[str, Any]:
-    """An interface as the core takes it."""
-    return {
-        "law": law.law,
-        "stiffness_n": law.stiffness_n.as_pair(),
-        "stiffness_s": law.stiffness_s.as_pair(),
-        "parameters": INTERFACE_LAWS[law.law].numbers(law),
-    }
-
-
-def stiffness_row(law: Interface) -> list[float]:
-    """Value and factor of k_n, then of k_s; a value of 0 means factor times E / h."""
-    return [*law.stiffness_n.as_pair(), *law.stiffness_s.as_pair()]

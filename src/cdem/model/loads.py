@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from cdem.case.case import Case
 from cdem.mesh.topology import Topology
-from cdem.model.assemble import face_areas
 from cdem.model.curves import Curves, add_curve
+from cdem.model.faces import face_areas
 from cdem.model.flat_arrays import Assembly, Floats, ragged
 from cdem.model.selection import select_faces
 

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from cdem.case.laws import INTERFACE_LAWS
-from cdem.model.interfaces import interface_entry, interfaces_of
+from cdem.model.interfaces import interfaces_of
+from cdem.model.stiffness import interface_entries
 from cdem.run import stages
 from cdem.run.state import RunState
 
@@ -127,12 +128,11 @@ def _bonded(sim: RunState) -> bool:
 
 def _take_strength(sim: RunState) -> None:
     """Take from all interfaces what bonds them; the case stays."""
-    laws, _ = interfaces_of(sim.case, sim.build.group_names)
-    entries = []
-    for law in laws:
-        none = {p.name: 0.0 for p in INTERFACE_LAWS[law.law].parameters if p.bonds}
-        entry = interface_entry(law)
-        entries.append(entry | {"parameters": entry["parameters"] | none})
+    names, position = sim.build.group_names, sim.build.start_position
+    entries = interface_entries(sim.case, interfaces_of(sim.case, names)[0], names, position)
+    for entry in entries:
+        bonds = [p.name for p in INTERFACE_LAWS[entry["law"]].parameters if p.bonds]
+        entry["parameters"] |= dict.fromkeys(bonds, 0.0)
     sim.core.set_interfaces(entries)
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from cdem.case.schema import Stage
 from cdem.errors import CaseError
 from cdem.model.build import change
-from cdem.model.interfaces import bonded_pairs, interface_entry, interfaces_of
+from cdem.model.interfaces import bonded_pairs, interfaces_of
+from cdem.model.stiffness import interface_entries
 from cdem.run.state import RunState, StageState
 
 STATIC_RECORD_STEPS = 200
@@ -65,7 +66,7 @@ def update_core(sim: RunState, index: int) -> None:
             f"{names[i]!r} and {names[j]!r} was not bonded at the start (cohesion and "
             "tensile_strength 0), so it cannot be given strength now; start with a strength"
         )
-    sim.core.set_interfaces([interface_entry(law) for law in laws])
+    sim.core.set_interfaces(interface_entries(sim.case, laws, names, b.start_position))
     sim.core.update_model(change(b))
     sim.core.set_curves([c[0] for c in b.curves], [c[1] for c in b.curves])
     sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])

@@ -36,6 +36,7 @@ struct Joints {
   Joints(std::initializer_list<Named> each) {
     for (const Named& named : each) {
       interfaces.push_back({.law = 0,
+                            .in_series = false,
                             .stiffness_n_value = 0,
                             .stiffness_n_factor = 1,
                             .stiffness_s_value = 0,

@@ -8,7 +8,7 @@ from shared.joints import SETS, jointed_case
 
 import cdem
 from cdem import Case, CaseError
-from cdem.case.types import Stiffness
+from cdem.case.types import AUTO, Stiffness
 
 
 def test_a_pair_takes_what_it_does_not_say_from_the_default(write):
@@ -17,7 +17,7 @@ def test_a_pair_takes_what_it_does_not_say_from_the_default(write):
     assert (pair.friction_angle, pair.cohesion) == (26, 10e3)
     assert pair.stiffness_n == Stiffness(2e9, relative=False)
     assert pair.stiffness_s == Stiffness(5, relative=True)
-    assert case.interfaces.default.stiffness_n.as_pair() == (0, 10)
+    assert case.interfaces.default.stiffness_n == AUTO
     case.set("interfaces.default.friction_angle", 20)
     case.set("interfaces.default.cohesion", 5)
     assert (pair.friction_angle, pair.cohesion) == (20, 10e3)

@@ -123,3 +123,9 @@ def test_stresses_are_written_with_a_prefix():
     assert written(-2500, "Pa/m") == "-2.5 kPa/m"
     assert written(2.7, "kg/m3") == "2.7 kg/m3"
     assert written(0.3, "1") == "0.3"
+
+
+def test_a_number_far_beyond_all_units_is_answered_too(tmp_path):
+    """1e22 GPa would be more than a number of a case may be."""
+    with pytest.raises(CaseError, match=r"young_modulus: 1e\+13 GPa is not possible; usual is"):
+        load(tmp_path, "materials.rock.young_modulus=1e22")

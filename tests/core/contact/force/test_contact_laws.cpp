@@ -17,7 +17,8 @@ struct TwoClasses : Scene {
     model.class_count = 2;
     const Index of[] = {0, 1, 1, 2};
     model.interface_of.assign(of, 4);
-    const Interface rows[] = {{0, 5e9, 0, 0, 3}, {0, 0, 2, 7e8, 0}, {0, 0, 1, 0, 1}};
+    const Interface rows[] = {
+        {0, false, 5e9, 0, 0, 3}, {0, false, 0, 2, 7e8, 0}, {0, true, 0, 1, 0, 1}};
     model.interfaces.assign(rows, 3);
     for (Index f = 6; f < 12; ++f) model.face_interface_class[f] = 1;
     start();
@@ -47,7 +48,7 @@ TEST_CASE("the classes of two faces choose the interface, for one pair and for a
   }
 }
 
-TEST_CASE("a stiffness is the given value, or a factor times the stiffer side") {
+TEST_CASE("a stiffness is the given value, or a factor times the stiffer side or both in series") {
   const TwoClasses blocks;
   const ContactLaws laws = contact_laws(blocks.model, blocks.state);
   const FaceGeometry geometry = face_geometry(blocks.state);
@@ -60,6 +61,10 @@ TEST_CASE("a stiffness is the given value, or a factor times the stiffer side") 
   CHECK(both.stiffness.s == 7e8);
   CHECK(both.area == 0.25);  // a vertex's share of the smaller face
   CHECK(relative_error(both.n(), 0.25 * 2 * young) < 1e-15);
+  const auto series = laws.spring(geometry, Index(2), Index(0), Index(8));  // of E and E/2
+  CHECK(relative_error(series.stiffness.n, 2 * young / 3) < 1e-15);
+  CHECK(relative_error(laws.spring(geometry, Index(2), Index(0), Index(1)).n(), 0.25 * young) <
+        1e-15);
 }
 
 TEST_CASE("the dashpot is a part of the critical one of its spring and masses") {

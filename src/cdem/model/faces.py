@@ -1,0 +1,40 @@
+"""Areas of faces, and heights of the elements behind them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh import element_shapes
+from cdem.mesh.arrays import lengths
+from cdem.mesh.topology import Topology
+
+Floats = NDArray[np.float64]
+
+
+def face_heights(t: Topology, volume: Floats, area: Floats) -> Floats:
+    """Height of the element behind each face above it [m]: the h of k_n = factor E / h.
+
+    Args:
+        t: The faces.
+        volume: Of all elements, shapes in the order of `element_shapes.NODES` [m3].
+        area: Of all faces [m2].
+    """
+    # volume = area * height / divisor, for a prism 1 and for a pyramid 3; the sides of a wedge stand
+    # across from an edge (2), those of a pyramid between the two cases
+    by_sides = {
+        "tet4": (3.0, 3.0),
+        "pyramid5": (3.0, 3.0),
+        "wedge6": (1.0, 2.0),
+        "hex8": (1.0, 1.0),
+    }
+    counts = [len(t.element_nodes[shape]) for shape in element_shapes.NODES]
+    divisors = np.array([by_sides[shape] for shape in element_shapes.NODES])
+    triangle, quad = (np.repeat(divisors[:, k], counts) * volume for k in (0, 1))
+    return np.where(t.face_nodes[:, 3] < 0, triangle[t.face_element], quad[t.face_element]) / area
+
+
+def face_areas(position: Floats, face_nodes: NDArray) -> Floats:
+    """Area of triangles and (mean-plane) quadrilaterals [m2], shape (faces,)."""
+    x = position[np.where(face_nodes < 0, face_nodes[:, 2:3], face_nodes)]
+    return 0.5 * lengths(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]))

@@ -1,0 +1,213 @@
+"""The elastic compliance of tets that hold together by springs on their faces, found numerically."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh import element_shapes
+from cdem.mesh.arrays import inverses, lengths, matrix_product
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+TOLERANCE = 1e-5
+"""Residual of the equilibrium, of the load, at which the search for it ends."""
+MOST_STEPS = 2000
+TINY = 1e-300
+STATES = np.array([[[1, 0, 0], [0, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, 1, 0], [0, 0, 0]],
+                   [[0, 0, 0], [0, 0, 0], [0, 0, 1]], [[0, 0, 0], [0, 0, 1], [0, 1, 0]],
+                   [[0, 0, 1], [0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 0, 0], [0, 0, 0]]], float)  # fmt: skip
+"""Six uniform stresses [Pa]: xx, yy, zz, yz, zx, xy."""
+
+
+@dataclass
+class BondedTets:
+    """Tets, each a block of its own, and the faces between them.
+
+    Attributes:
+        x: Positions of the tets' corners [m], shape (tets, 4, 3).
+        tet: The tets on either side of each face, shape (faces, 2).
+        corner: Which of their corners the face has, those that touch in the same place, shape
+            (faces, 2, 3).
+    """
+
+    x: Floats
+    tet: Ints
+    corner: Ints
+
+    @property
+    def volume(self) -> Floats:
+        """Of the tets [m3], shape (tets,)."""
+        return element_shapes.volumes("tet4", self.x)[:, 0]
+
+    def vectors(self) -> Floats:
+        """Area vectors of the faces, out of the first tet [m2], shape (faces, 3)."""
+        x = self.x[self.tet[:, 0, None], self.corner[:, 0]]
+        vector = 0.5 * np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+        out = (x.mean(axis=1) - self.x[self.tet[:, 0]].mean(axis=1)) * vector
+        return vector * np.sign(out.sum(axis=1))[:, None]
+
+    def inner(self, layers: int) -> NDArray[np.bool_]:
+        """Tets that lie so many layers of faces inside the rest, shape (tets,)."""
+        faces = np.bincount(self.tet.ravel(), minlength=len(self.x))
+        inside = faces == 4
+        for _ in range(layers - 1):
+            edge = ~inside[self.tet].all(axis=1)
+            inside[self.tet[edge].ravel()] = False
+        return inside
+
+
+def compliance(
+    tets: BondedTets, young: float, poisson: float, stiffness: float, inner: NDArray[np.bool_]
+) -> Floats:
+    """Compliance of the whole under six uniform stresses, from what its inner tets do.
+
+    Args:
+        tets: The tets.
+        young: Young's modulus of the tets [Pa].
+        poisson: Their Poisson's ratio.
+        stiffness: Of the faces, normal and shear [Pa/m].
+        inner: Tets whose mean strain and stress count.
+
+    Returns:
+        Strains (engineering shears) by stresses, in the order of `STATES` [1/Pa], shape (6, 6).
+    """
+    gradient, volume = element_shapes.reference_gradients("tet4", tets.x)
+    gradient, volume = gradient[:, 0], volume[:, 0]
+    vectors = tets.vectors()
+    area = lengths(vectors)
+    lame, shear = _lame(young, poisson)
+    own = _stiffness(gradient, volume, lame, shear)
+    mate, spring = _springs(tets, stiffness * area / 3)
+    held = spring.sum(axis=1)
+    block, axes = own.copy(), np.arange(12)
+    block[:, axes, axes] += np.repeat(held.reshape(-1, 4), 3, axis=1)
+
+    def force(u: Floats) -> Floats:
+        """K u of displacements (tets, 12, states)."""
+        at = u.reshape(len(mate), -1)
+        out = held[:, None] * at
+        for k in range(3):
+            out -= spring[:, k, None] * at[mate[:, k]]
+        return np.einsum("eij,ejs->eis", own, u) + out.reshape(u.shape)
+
+    load = _loads(tets, vectors, gradient, volume)
+    start = _start(tets, young, poisson, stiffness, vectors)
+    u = _solve(force, inverses(block), load, start)
+    strains, stresses = means(tets, u, young, poisson, inner)
+    normal = matrix_product(stresses, stresses.T)
+    return matrix_product(matrix_product(strains, stresses.T), inverses(normal))
+
+
+def _springs(tets: BondedTets, stiffness: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """Which corner touches each corner on each of its three faces, and by what spring (or 0)."""
+    mate = np.zeros((4 * len(tets.x), 3), np.intp)
+    spring = np.zeros(mate.shape)
+    place = np.array([[0, 0, 0, 0], [0, 0, 1, 1], [1, 1, 0, 2], [2, 2, 2, 0]])  # [opposite, corner]
+    a, b = (4 * tets.tet[:, side, None] + tets.corner[:, side] for side in (0, 1))
+    for this, other, side in ((a, b, 0), (b, a, 1)):
+        opposite = 6 - tets.corner[:, side].sum(axis=1)
+        at = place[opposite[:, None], tets.corner[:, side]]
+        mate[this, at], spring[this, at] = other, stiffness[:, None]
+    return mate, spring
+
+
+def _stiffness(gradient: Floats, volume: Floats, lame: float, shear: float) -> Floats:
+    """Stiffness matrices of tets [N/m], shape (tets, 12, 12)."""
+    dots = np.einsum("eax,ebx->eab", gradient, gradient)
+    first = lame * np.einsum("eax,eby->eaxby", gradient, gradient)
+    second = shear * np.einsum("eay,ebx->eaxby", gradient, gradient)
+    third = shear * np.einsum("eab,xy->eaxby", dots, np.eye(3))
+    return (volume[:, None, None, None, None] * (first + second + third)).reshape(-1, 12, 12)
+
+
+def _loads(tets: BondedTets, vectors: Floats, gradient: Floats, volume: Floats) -> Floats:
+    """Forces on the corners by the six stresses on the faces that no other tet touches [N]."""
+    # a uniform stress in the tets balances that on all their faces; less that on the inner faces
+    load = np.einsum("e,eay,sxy->eaxs", volume, gradient, STATES)
+    traction = np.einsum("sxy,fy->fxs", STATES, vectors) / 3
+    for side, sign in ((0, 1.0), (1, -1.0)):
+        for k in range(3):
+            np.add.at(load, (tets.tet[:, side], tets.corner[:, side, k]), -sign * traction)
+    return load.reshape(-1, 12, len(STATES))
+
+
+def _start(
+    tets: BondedTets, young: float, poisson: float, stiffness: float, vectors: Floats
+) -> Floats:
+    """Displacements under the six stresses if these were uniform, the faces' share spread evenly."""
+    trace = np.einsum("sxx->s", STATES)[:, None, None] * np.eye(3)
+    own = ((1 + poisson) * STATES - poisson * trace) / young
+    area = lengths(vectors)
+    moment = np.einsum("fx,fy,f->xy", vectors, vectors, 1 / area) / tets.volume.sum()
+    jumps = np.einsum("xy,syz->sxz", moment, STATES) / stiffness
+    whole = own + 0.5 * (jumps + jumps.transpose(0, 2, 1))
+    center = tets.x.mean(axis=1, keepdims=True)
+    u = np.einsum("sxy,eay->eaxs", own, tets.x - center)
+    u += np.einsum("sxy,eay->eaxs", whole, center)
+    return u.reshape(-1, 12, len(STATES))
+
+
+def _solve(force: Callable[[Floats], Floats], inverse: Floats, load: Floats, u: Floats) -> Floats:
+    """Conjugate gradients for all loads at once, with the inverse of each tet's own block."""
+
+    def product(p: Floats, q: Floats) -> Floats:
+        return np.einsum("eis,eis->s", p, q)
+
+    r = load - force(u)
+    z = np.einsum("eij,ejs->eis", inverse, r)
+    p, rho = z, product(r, z)
+    limit = TOLERANCE**2 * product(load, load)
+    for _ in range(MOST_STEPS):
+        if (product(r, r) <= limit).all():
+            break
+        moved = force(p)
+        step = rho / np.maximum(product(p, moved), TINY)
+        u = u + step * p
+        r = r - step * moved
+        z = np.einsum("eij,ejs->eis", inverse, r)
+        before, rho = rho, product(r, z)
+        p = z + rho / np.maximum(before, TINY) * p
+    return u
+
+
+def means(
+    tets: BondedTets, u: Floats, young: float, poisson: float, inner: NDArray[np.bool_]
+) -> tuple[Floats, Floats]:
+    """Mean strain and stress of the inner tets, half of their faces to others included.
+
+    Args:
+        tets: The tets.
+        u: Displacements of their corners in several states [m], shape (tets, 12, states).
+        young: Young's modulus of the tets [Pa].
+        poisson: Their Poisson's ratio.
+        inner: Tets that count.
+
+    Returns:
+        Strains (engineering shears) [1] and stresses [Pa], shape (6, states), as in `STATES`.
+    """
+    gradient, volume = element_shapes.reference_gradients("tet4", tets.x)
+    gradient, volume = gradient[inner, 0], volume[inner, 0]
+    lame, shear = _lame(young, poisson)
+    u = u.reshape(len(tets.x), 4, 3, -1)
+    slope = np.einsum("eaxs,eay->sexy", u[inner], gradient)
+    strain = 0.5 * (slope + slope.transpose(0, 1, 3, 2))
+    trace = np.einsum("sexx->se", strain)[:, :, None, None] * np.eye(3)
+    stress = np.einsum("e,sexy->sxy", volume, lame * trace + 2 * shear * strain)
+    total = np.einsum("e,sexy->sxy", volume, strain)
+    share = 0.5 * inner[tets.tet].sum(axis=1)
+    a, b = (u[tets.tet[:, side, None], tets.corner[:, side]] for side in (0, 1))
+    opened = np.einsum("f,fxs,fy->sxy", share, (b - a).mean(axis=1), tets.vectors())
+    total += 0.5 * (opened + opened.transpose(0, 2, 1))
+    first, second = [0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1]
+    strains = total[:, first, second] * np.array([1, 1, 1, 2, 2, 2])
+    return strains.T / volume.sum(), stress[:, first, second].T / volume.sum()
+
+
+def _lame(young: float, poisson: float) -> tuple[float, float]:
+    shear = young / (2 * (1 + poisson))
+    return 2 * shear * poisson / (1 - 2 * poisson), shear

@@ -1,0 +1,123 @@
+"""Stiffness of bonds and contacts: as the case gives it, by its version, or by an allowed overlap."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.case import Case
+from cdem.case.interface_schema import Interface, InterfacePair, Overlap
+from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.types import AUTO, Stiffness
+from cdem.mesh.arrays import along, lengths
+
+Floats = NDArray[np.float64]
+
+BOND = Stiffness(10.0, relative=True)
+"""Of joints: they add a tenth of the compliance of the elements beside them."""
+CONTACT = Stiffness(1.0, relative=True)
+"""Where nothing is known: friction and limit loads do not depend on it, and steps are long."""
+SOFTEST, STIFFEST = 0.03, 10.0
+"""Bounds of a stiffness from an allowed overlap, in E / h."""
+
+
+def bond_row(law: Interface) -> list[float]:
+    """Value and factor of k_n, then of k_s of bonds; a value of 0 means factor times E / h."""
+    normal, shear = _of_bonds(law)
+    return [*normal.as_pair(), *shear.as_pair()]
+
+
+def interface_entries(
+    case: Case, laws: list[Interface], names: list[str], position: Floats
+) -> list[dict[str, Any]]:
+    """Interfaces as the core takes them, with the stiffness of their contacts.
+
+    Args:
+        case: The case.
+        laws: Its interfaces.
+        names: Groups of the model.
+        position: Of the model's nodes at the start [m], shape (nodes, 3).
+    """
+    entries, height = [], height_along_gravity(case, position)
+    for law in laws:
+        normal, shear, in_series = _of_contacts(case, law, names, height)
+        entries.append(
+            {
+                "law": law.law,
+                "stiffness_n": normal.as_pair(),
+                "stiffness_s": shear.as_pair(),
+                "in_series": in_series,
+                "parameters": INTERFACE_LAWS[law.law].numbers(law),
+            }
+        )
+    return entries
+
+
+def _of_bonds(law: Interface) -> tuple[Stiffness, Stiffness]:
+    normal, shear = (BOND if k == AUTO else k for k in (law.stiffness_n, law.stiffness_s))
+    return normal, shear
+
+
+def _of_contacts(
+    case: Case, law: Interface, names: list[str], height: float
+) -> tuple[Stiffness, Stiffness, bool]:
+    """k_n, k_s, and whether E / h is that of both sides in series (else of the stiffer one)."""
+    given = law.contact_stiffness
+    if isinstance(given, Overlap):
+        both = Stiffness(overlap_factor(case, law, given, names, height), relative=True)
+        return both, both, True
+    if given == AUTO and case.cdem == 1:
+        return *_of_bonds(law), False
+    both = CONTACT if given == AUTO else given
+    return both, both, True
+
+
+def overlap_factor(
+    case: Case, law: Interface, allowed: Overlap, names: list[str], height: float
+) -> float:
+    """Stiffness over E / h with which contacts overlap so much under weight and in impacts.
+
+    A column of rock of this height makes a joint overlap by rho g H / k, twice as much where the
+    vertices of one side alone touch; a block of speed v by v / c sqrt(2 E h / k), c = sqrt(E / rho).
+    Of the groups that may have the interface the softest counts.
+    """
+    gravity = math.hypot(*case.loads.gravity)
+    speed = greatest_speed(case, law)
+    most = 0.0
+    for name in groups_of(law, names):
+        rock = case.materials[case.groups[name].material]
+        ratio = rock.density / rock.young_modulus
+        weight = 2 * ratio * gravity * height / allowed.overlap
+        impact = 2 * ratio * (speed / allowed.impact) ** 2
+        most = max(most, weight, impact)
+    return min(STIFFEST, max(SOFTEST, most))
+
+
+def groups_of(law: Interface, names: list[str]) -> list[str]:
+    """Groups that may have an interface."""
+    if isinstance(law, InterfacePair) and law.between is not None:
+        return law.between
+    return names
+
+
+def greatest_speed(case: Case, law: Interface) -> float:
+    """Of impacts: as given, or the largest with which a group starts or is driven [m/s]."""
+    allowed = law.contact_stiffness
+    if isinstance(allowed, Overlap) and allowed.speed is not None:
+        return allowed.speed
+    speeds = [math.hypot(*group.velocity) for group in case.groups.values()]
+    for driven in case.loads.velocities:
+        most = max(abs(factor) for _, factor in driven.history) if driven.history else 1.0
+        speeds.append(most * math.hypot(*driven.velocity))
+    return max(speeds)
+
+
+def height_along_gravity(case: Case, position: Floats) -> float:
+    """Height of a model along gravity, or its greatest length where nothing has weight [m]."""
+    gravity = np.array(case.loads.gravity)
+    if not gravity.any():
+        return float(np.ptp(position, axis=0).max())
+    return float(np.ptp(along(position, gravity / lengths(gravity))))

@@ -1,0 +1,77 @@
+"""Rock whose every element is a block, as a continuum: E and nu of the whole are what the case says.
+
+A cube of bonded tets is pulled or sheared by uniform tractions until it rests. Mean strain and
+stress are those of its tets and faces, but for the outer layers.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scenes import case, irregular_tets
+
+import cdem
+from cdem.model.compensation import bonded_tets
+from cdem.model.homogenize import STATES, means
+
+YOUNG, NU, SIDE = 1e10, 0.25, 8
+STRONG = {"friction_angle": 30, "cohesion": 1e12, "tensile_strength": 1e12}
+
+
+def compliance(model, group):
+    """Strains by stresses of a cube, in the order of `STATES` [1/Pa], shape (6, 6)."""
+    found = [pulled(dict(model), group, 1e5 * stress) for stress in STATES]
+    strains, stresses = (np.concatenate(of, axis=1) for of in zip(*found, strict=True))
+    return strains @ np.linalg.inv(stresses)
+
+
+def pulled(model, group, stress):
+    """Mean strain and stress of the inner tets of a cube under a uniform stress."""
+    normals = [sign * np.eye(3)[axis] for axis in range(3) for sign in (1, -1)]
+    tractions = [
+        {"surface": {"group": group, "normal": n.tolist()}, "traction": (stress @ n).tolist()}
+        for n in normals
+        if (stress @ n).any()
+    ]
+    sim = cdem.Simulation(
+        case(
+            model.pop("blocks", []), {group: {}}, cdem=2, interfaces={"default": STRONG},
+            rock={"young_modulus": YOUNG, "poisson_ratio": NU}, model=model,
+            loads={"tractions": tractions, "gravity": [0, 0, 0]},
+            stages=[{"name": "pull", "mode": "static", "relax": "adaptive", "tolerance": 1e-5}],
+        ),
+        threads=1,
+    )  # fmt: skip
+    assert sim.run() == "converged"
+    t, made = sim.build.topology, sim.build.compensation[group]
+    tets = bonded_tets(t, np.arange(len(t.pair_faces)), np.arange(len(t.element_nodes["tet4"])))
+    u = sim.fields["displacement"][t.element_nodes["tet4"]].reshape(-1, 12, 1)
+    return means(tets, u, made.softening * YOUNG, made.softening * NU, tets.inner(2))
+
+
+def elastic():
+    """What the case says [1/Pa]."""
+    exact = -NU * np.ones((3, 3)) + (1 + NU) * np.eye(3)
+    return (
+        np.block([[exact, np.zeros((3, 3))], [np.zeros((3, 3)), 2 * (1 + NU) * np.eye(3)]]) / YOUNG
+    )
+
+
+def test_regular_tets():
+    box = {"size": [SIDE] * 3, "divisions": [SIDE] * 3, "shape": "tet4"}
+    found = compliance(
+        {"blocks": [{"group": "rock", "box": box}], "split": {"rock": "elements"}}, "rock"
+    )
+    np.testing.assert_allclose(found, elastic(), atol=1e-4 / YOUNG)
+
+
+def test_irregular_tets(tmp_path):
+    """The isotropic part: 3 sum C_nn + 2 sum C_cross + sum C_ss = 15 / E; sum over normals 1 / K."""
+    mesh = irregular_tets(tmp_path / "m.vtk", [SIDE] * 3, [SIDE] * 3)
+    c = compliance({**mesh, "split": {"default": "elements"}}, "default")
+    normal, bulk = np.trace(c[:3, :3]), c[:3, :3].sum()
+    young = 15 / (3 * normal + (bulk - normal) + np.trace(c[3:, 3:]))
+    assert young == pytest.approx(YOUNG, rel=0.003)
+    assert 1 / bulk == pytest.approx(YOUNG / (3 * (1 - 2 * NU)), rel=0.003)
+    shear = 1 / (3 / young - bulk / 3)
+    assert shear == pytest.approx(YOUNG / (2 * (1 + NU)), rel=0.003)
