@@ -30,8 +30,8 @@ PYTHON = [
         "round values",
         "bounds of the step change with the CPU where they are round numbers",
         "src/cdem/mesh/arrays.py",
-        "np.ceil(mantissa * 2.0**20 - 2.0**-10)",
-        "np.ceil(mantissa * 2.0**20)",
+        "np.ceil(mantissa * 2.0**28 - 2.0**-10)",
+        "np.ceil(mantissa * 2.0**28)",
         "tests/regression/test_model_arrays.py",
     ),
     Mutant(

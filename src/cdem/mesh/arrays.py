@@ -50,15 +50,15 @@ def in_plane(a: Floats, b: Floats, normal: Floats, x: Floats) -> tuple[Floats, F
 
 
 def same_everywhere(values: Floats) -> Floats:
-    """Numbers rounded up to 20 bits, by two millionths at most.
+    """Numbers rounded up to 28 bits, by a hundred-millionth at most.
 
-    One that lies a billionth above such a number goes down to it: values of regular bodies often are
-    such numbers but for round-off. For what LAPACK and vectorized functions give, whose last bits
-    depend on the kind of CPU, and of which six digits are enough: bounds of the time step, springs
+    One that lies 4e-12 above such a number goes down to it: values of regular bodies often are such
+    numbers but for round-off. For what LAPACK and vectorized functions give, whose last bits depend
+    on the kind of CPU, and of which eight digits are enough: bounds of the time step, springs
     against hourglass modes.
     """
     mantissa, exponent = np.frexp(values)
-    return np.ldexp(np.ceil(mantissa * 2.0**20 - 2.0**-10) / 2.0**20, exponent)
+    return np.ldexp(np.ceil(mantissa * 2.0**28 - 2.0**-10) / 2.0**28, exponent)
 
 
 def inverses(m: Floats) -> Floats:
