@@ -179,15 +179,17 @@ def test_two_runs_cannot_write_into_one_folder(run_cli, folder):
     words = [*WORDS, "--set", "stages.fall.duration=1000", "--set", "output.every=1000"]
     words += ["--set", "output.checkpoint_every=0.01"]
     with subprocess.Popen([*PROGRAM, *words]) as run:
-        deadline = time.monotonic() + 60
-        while not Path("out/checkpoint.h5").is_file():
-            assert time.monotonic() < deadline and run.poll() is None
-            time.sleep(0.02)
-        for way in ("--resume", "--overwrite"):
-            status, out, err = run_cli(*WORDS, way)
-            assert (status, out) == (1, "")
-            assert f"out: a run is writing into this folder (process {run.pid} on " in err
-        os.kill(run.pid, signal.SIGKILL)
+        try:
+            deadline = time.monotonic() + 60
+            while not Path("out/checkpoint.h5").is_file():
+                assert time.monotonic() < deadline and run.poll() is None
+                time.sleep(0.02)
+            for way in ("--resume", "--overwrite"):
+                status, out, err = run_cli(*WORDS, way)
+                assert (status, out) == (1, "")
+                assert f"out: a run is writing into this folder (process {run.pid} on " in err
+        finally:
+            os.kill(run.pid, signal.SIGKILL)
     assert run_cli(*WORDS, "--resume", "--set", "stages.fall.duration=6 ms")[0] == 0
 
 
