@@ -38,10 +38,12 @@ output: {every: 20}
 """
 SHAKE = {"group": "floor", "velocity": [3, 0.3, 0]}
 """Of this speed at most, once forth and back in a second: the block slides most of the time."""
+TRIM = ctypes.CDLL(None).malloc_trim
 STEPS = {"small": 10_000_000, "landslide": 100_000}
 ENERGY = 0.01
 """Largest closing error allowed, of the largest term."""
-TRIM = ctypes.CDLL(None).malloc_trim
+LOOKS = 100
+"""At the memory in a run."""
 GROWTH = 0.02
 """Largest growth allowed of the memory of the process over the second half of a run."""
 
@@ -80,6 +82,7 @@ class Watch:
     def __init__(self, simulation: Simulation, steps: int) -> None:
         self.simulation, self.steps = simulation, steps
         self.worst = self.early = self.late = 0.0
+        self.looks = 0
 
     def __call__(self) -> bool:
         """Note memory [MB] and closing error; whether the run is to stop."""
@@ -88,10 +91,12 @@ class Watch:
         if stage.mode == "static":
             return False
         self.worst = max(self.worst, abs(self.simulation.energies["error"]))
-        if done < self.steps / 2:
-            self.early = max(self.early, memory())
-        else:
-            self.late = max(self.late, memory())
+        if done >= self.looks * self.steps / LOOKS:
+            self.looks += 1
+            if done < self.steps / 2:
+                self.early = max(self.early, memory())
+            else:
+                self.late = max(self.late, memory())
         return done >= self.steps
 
 
