@@ -109,7 +109,9 @@ RANGES = (
     ),
     Range(
         "interface stiffness", ("interfaces.default.stiffness_n", "interfaces.default.stiffness_s",
-                                "interfaces.pairs.*.stiffness_n", "interfaces.pairs.*.stiffness_s"),
+                                "interfaces.default.contact_stiffness",
+                                "interfaces.pairs.*.stiffness_n", "interfaces.pairs.*.stiffness_s",
+                                "interfaces.pairs.*.contact_stiffness"),
         "Pa/m", (1e5, 1e14), None,
         "Bandis, Lumsden & Barton (1983): joints 0.1 to 1000 GPa/m; soft fillings below",
         meant=("GPa/m", "MPa/m"),

@@ -340,7 +340,7 @@ class Simulation(RunState):
             group = names[topology.block_group[block]]
             raise self._failed(
                 f"a loaded contact of block {block} (group {group}) penetrated too deep to be "
-                f"followed. Raise stiffness_n of its interface, or lower the impact speed."
+                f"followed. Raise contact_stiffness of its interface, or lower the impact speed."
             )
         if outcome == "missed_contact":
             raise self._failed(
@@ -363,7 +363,7 @@ class Simulation(RunState):
             )
         raise self._failed(
             f"{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "
-            f"dt = {dt:.3g} s. Use a smaller {smaller} or a lower stiffness_n."
+            f"dt = {dt:.3g} s. Use a smaller {smaller}, or a lower stiffness_n or contact_stiffness."
         )
 
     # ------------------------------------------------------------------ keeping

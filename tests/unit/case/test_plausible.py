@@ -125,6 +125,12 @@ def test_stresses_are_written_with_a_prefix():
     assert written(0.3, "1") == "0.3"
 
 
+def test_stiffness_of_contacts_is_looked_at(tmp_path):
+    (warning,) = load(tmp_path, "interfaces.default.contact_stiffness=5").warnings
+    assert "contact_stiffness: 5 Pa/m is unusual" in warning
+    assert load(tmp_path, "interfaces.default.contact_stiffness=0.3 E/h").warnings == []
+
+
 def test_a_number_far_beyond_all_units_is_answered_too(tmp_path):
     """1e22 GPa would be more than a number of a case may be."""
     with pytest.raises(CaseError, match=r"young_modulus: 1e\+13 GPa is not possible; usual is"):
