@@ -200,7 +200,7 @@ def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
     return np.einsum("ep,pij->eij", density[:, None] * volume, values[:, :, None] * values[:, None])
 
 
-def _strain_rows(shape: str, gradient: Array, volume: Array) -> Array:
+def strain_rows(shape: str, gradient: Array, volume: Array) -> Array:
     """Strain matrix B in Voigt order xx yy zz xy yz zx (engineering shear); B-bar for hexahedra."""
     elements, points, nodes, _ = gradient.shape
     b: Array = np.zeros((elements, points, 6, nodes, 3))
@@ -217,6 +217,11 @@ def _strain_rows(shape: str, gradient: Array, volume: Array) -> Array:
         mean = np.einsum("epk,ep->ek", trace, volume) / volume.sum(axis=1)[:, None]
         b[:, :, :3] += ((mean[:, None] - trace) / 3)[:, :, None]
     return b
+
+
+def lame_constants(young: Array, poisson: Array) -> tuple[Array, Array]:
+    """First Lame constant and shear modulus [Pa] of Young's modulus [Pa] and Poisson's ratio."""
+    return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
 
 
 def elasticity(lame: Array, shear: Array) -> Array:
@@ -268,7 +273,7 @@ def squared_frequencies(
     for start in range(0, len(first), 4096):
         some = first[start : start + 4096]
         largest[start : start + 4096] = _largest_eigenvalue(
-            _strain_rows(shape, gradient[some], volume[some]),
+            strain_rows(shape, gradient[some], volume[some]),
             volume[some],
             elasticity(lame[some], shear[some]),
             mass[some],

@@ -62,7 +62,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
         hourglass = np.zeros((count, 0))
         if shape == "hex8" and p.one_point:
             gradient, volume, hourglass = element_shapes.one_point(
-                corners, gradient, volume, p.softening[group] * p.young_modulus[group]
+                corners, gradient, volume, p.stiffening[group] * p.young_modulus[group]
             )
         geometry[shape] = (gradient, volume, hourglass)
         mass[shape] = matrices

@@ -86,8 +86,8 @@ class Audit:
         for name, made_up in b.compensation.items():
             rock = b.case.materials[b.case.groups[name].material]
             out[name] = asdict(made_up) | {
-                "young_modulus": made_up.softening * rock.young_modulus,
-                "poisson_ratio": made_up.softening * rock.poisson_ratio,
+                "young_modulus": made_up.stiffening * rock.young_modulus,
+                "poisson_ratio": made_up.stiffening * rock.poisson_ratio,
             }
         return out
 
@@ -100,7 +100,7 @@ class Audit:
         if not dt > 0:
             raise CaseError(
                 f"the stable time step is {limit:.3g} s, for group {group}: nothing could move; look at "
-                "its density, Young's modulus and damping, and at stiffness_n of its interfaces"
+                "its density, Young's modulus and damping, and at the stiffness of its interfaces"
             )
         return {
             "dt": dt,

@@ -128,7 +128,9 @@ def build(case: Case) -> Build:
     snap_mates(topology)
 
     core, curves = native.Core(), constant()
-    made_up = compensate(case, topology, names, laws, interface_of, bonds)
+    made_up = compensate(
+        case, topology, names, compensated_groups(case, topology, names, laws, interface_of, bonds)
+    )
     parts = _assemble(case, topology, names, laws, interface_of, bonds, made_up, curves)
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
@@ -186,7 +188,7 @@ def _assemble(
         bonded=bonds,
         stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
         automatic=np.array([is_automatic(law) for law in laws], bool),
-        softening=np.array([made_up[n].softening if n in made_up else 1.0 for n in names]),
+        stiffening=np.array([made_up[n].stiffening if n in made_up else 1.0 for n in names]),
         bond_stiffness=np.array([made_up[n].stiffness if n in made_up else 0.0 for n in names]),
         exact_mass=case.elements.mass == "exact",
         supported=held & (supports["row"] >= 0)[:, None],

@@ -23,10 +23,10 @@ from cdem.case.interface_schema import Interface
 from cdem.case.types import AUTO
 from cdem.errors import CaseError
 from cdem.mesh import element_shapes
-from cdem.mesh.arrays import in_pieces, same_everywhere
+from cdem.mesh.arrays import in_pieces, inverses, same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
-from cdem.model.homogenize import BondedTets, compliance
+from cdem.model.homogenize import COLUMN, ROW, BondedTets, compliance, elasticity
 
 Floats = NDArray[np.float64]
 
@@ -34,6 +34,8 @@ FACTOR = 5.0
 """a, where Poisson's ratio allows it: softer bonds no longer lengthen the step."""
 MOST_POISSON = 0.42
 """nu' of the elements, at most: a larger one shortens the step, and 0.5 is out of reach."""
+LARGEST_POISSON = 0.4
+"""nu of the case, at most: a is 40 there, and grows without bound towards `MOST_POISSON`."""
 MOST_TETS = 2000
 """So many tets around the middle of a group stand for all of them."""
 LAYERS = 2
@@ -41,10 +43,10 @@ LAYERS = 2
 
 
 def _pulls() -> Floats:
-    """Unit pulls along the axes and diagonals of space, as xx, yy, zz, yz, zx, xy."""
+    """Unit pulls along the axes and diagonals of space, in the order of `STATES`."""
     ways = [w for w in product((-1, 0, 1), repeat=3) if w > (0, 0, 0)]
     n = np.array(ways) / np.sqrt((np.array(ways) ** 2).sum(axis=1))[:, None]
-    return np.concatenate([n**2, n[:, [1, 2, 0]] * n[:, [2, 0, 1]]], axis=1)
+    return n[:, ROW] * n[:, COLUMN]
 
 
 DIRECTIONS = _pulls()
@@ -59,7 +61,7 @@ class Compensation:
         area_per_volume: S_v, of the faces of inner elements [1/m].
         height: h [m].
         factor: a.
-        softening: e = E' / E = nu' / nu.
+        stiffening: e = E' / E = nu' / nu, of the elements.
         stiffness: Of the bonds [Pa/m].
         errors: What is left: in E along the axis or diagonal of space where it is worst, and in the
             isotropic G and K [1].
@@ -69,26 +71,20 @@ class Compensation:
     area_per_volume: float
     height: float
     factor: float
-    softening: float
+    stiffening: float
     stiffness: float
     errors: tuple[float, float, float]
 
 
 def compensate(
-    case: Case,
-    t: Topology,
-    names: list[str],
-    laws: list[Interface],
-    interface_of: NDArray[np.int32],
-    bonds: NDArray[np.bool_],
+    case: Case, t: Topology, names: list[str], groups: list[int]
 ) -> dict[str, Compensation]:
-    """The groups whose bonds are made up for, see `compensated_groups`.
+    """What makes up for the bonds of groups, those of `compensated_groups`.
 
     Raises:
-        CaseError: Poisson's ratio of one leaves no room for it.
+        CaseError: Poisson's ratio of one leaves no room for it, or its mesh cannot be solved.
     """
     out: dict[str, Compensation] = {}
-    groups = compensated_groups(case, t, names, laws, interface_of, bonds)
     if not groups:
         return out
     volume = np.concatenate(
@@ -103,16 +99,17 @@ def compensate(
         pairs = np.flatnonzero((t.face_kind[t.pair_faces] == group).all(axis=1))
         material = case.groups[names[group]].material
         rock = case.materials[material]
-        if rock.poisson_ratio >= MOST_POISSON - 0.01:
+        if rock.poisson_ratio > LARGEST_POISSON:
             place = f"materials.{material}.poisson_ratio"
             raise CaseError(
                 f"{case.where(place)}: {place}: {rock.poisson_ratio:g} is too large for bonds "
                 f"between the elements of group {names[group]!r} to be made up for (at most "
-                f"{MOST_POISSON - 0.02:g}); give stiffness_n and stiffness_s of its interface"
+                f"{LARGEST_POISSON:g}); give stiffness_n and stiffness_s of its interface"
             )
-        out[names[group]] = _of_group(
-            t, pairs, volume, area, height, rock.young_modulus, rock.poisson_ratio
-        )
+        with case.blame("model"):
+            out[names[group]] = _of_group(
+                t, pairs, volume, area, height, rock.young_modulus, rock.poisson_ratio
+            )
     return out
 
 
@@ -172,14 +169,14 @@ def _of_group(
     if (elements < tets).all():
         q, errors = _found(t, pairs, inner, q, h, factor, poisson)
     q = float(same_everywhere(q))
-    softening = 1 + q / (3 * factor)
+    stiffening = 1 + q / (3 * factor)
     return Compensation(
         q=q,
         area_per_volume=float(area_per_volume),
         height=h,
         factor=factor,
-        softening=softening,
-        stiffness=factor * softening * young / h,
+        stiffening=stiffening,
+        stiffness=factor * stiffening * young / h,
         errors=errors,
     )
 
@@ -195,15 +192,14 @@ def _found(
 ) -> tuple[float, tuple[float, float, float]]:
     """q of tets as it acts, and what errors are left, for Young's modulus 1."""
     tets = bonded_tets(t, pairs, _around_the_middle(t, pairs, inner))
-    counted = tets.inner(LAYERS)
-    if not counted.any():
-        counted[:] = True
+    layers = [tets.inner(n) for n in range(LAYERS, 0, -1)]
+    counted = next((inside for inside in layers if inside.any()), np.ones(len(tets.x), bool))
     e = 1 + q / (3 * a)
     c = compliance(tets, e, poisson * e, a * e / h, counted)
     acts = 3 * a * (e * _isotropic(c)[0] - 1)
     e_new = 1 + acts / (3 * a)
-    faces = (c - _elastic(e, poisson * e)) * e / e_new
-    left = faces + _elastic(e_new, poisson * e_new)
+    own, new = inverses(np.stack([elasticity(x, poisson * x) for x in (e, e_new)]))
+    left = (c - own) * e / e_new + new
     along = 1 / np.einsum("di,ij,dj->d", DIRECTIONS, left, DIRECTIONS) - 1
     worst = float(along[np.argmax(abs(along))])
     young, bulk = (1 / part for part in _isotropic(left))
@@ -219,15 +215,6 @@ def _isotropic(c: Floats) -> tuple[float, float]:
     """1/E and 1/K of the isotropic part of a compliance."""
     normal, cross, shear = np.trace(c[:3, :3]), c[0, 1] + c[1, 2] + c[2, 0], np.trace(c[3:, 3:])
     return float(3 * normal + 2 * cross + shear) / 15, float(c[:3, :3].sum())
-
-
-def _elastic(young: float, poisson: float) -> Floats:
-    """Compliance of isotropic rock, as in `homogenize.compliance`."""
-    c = np.zeros((6, 6))
-    c[:3, :3] = -poisson / young
-    c[range(3), range(3)] = 1 / young
-    c[range(3, 6), range(3, 6)] = 2 * (1 + poisson) / young
-    return c
 
 
 def _around_the_middle(

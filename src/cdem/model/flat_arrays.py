@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.mesh.arrays import first_of_each
+from cdem.mesh.element_shapes import lame_constants
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -28,7 +29,7 @@ class Properties:
         bonded: Whether that interface starts bonded (has cohesion or tension), the same shape.
         stiffness: (value, factor) of k_n and k_s of bonds by interface, shape (interfaces, 4).
         automatic: Whether the case leaves them to the program, shape (interfaces,).
-        softening: How much stiffer the elements are than the whole, see `Compensation`, shape
+        stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
             (groups,).
         bond_stiffness: Of bonds that are made up for [Pa/m], else 0, shape (groups,).
         exact_mass: Exact inertia (default) or lumped masses as they come.
@@ -46,7 +47,7 @@ class Properties:
     bonded: NDArray[np.bool_]
     stiffness: Floats
     automatic: NDArray[np.bool_]
-    softening: Floats
+    stiffening: Floats
     bond_stiffness: Floats
     exact_mass: bool
     supported: NDArray[np.bool_]
@@ -56,14 +57,17 @@ class Properties:
     @property
     def lame(self) -> Floats:
         """First Lame constant of the elements by group [Pa]."""
-        e, nu = self.softening * self.young_modulus, self.softening * self.poisson_ratio
-        return e * nu / ((1 + nu) * (1 - 2 * nu))
+        return self._elements[0]
 
     @property
     def shear(self) -> Floats:
         """Shear modulus of the elements by group [Pa]."""
-        nu = self.softening * self.poisson_ratio
-        return self.softening * self.young_modulus / (2 * (1 + nu))
+        return self._elements[1]
+
+    @property
+    def _elements(self) -> tuple[Floats, Floats]:
+        e = self.stiffening
+        return lame_constants(e * self.young_modulus, e * self.poisson_ratio)
 
 
 @dataclass

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.errors import ModelError
 from cdem.mesh import element_shapes
 from cdem.mesh.arrays import inverses, lengths, matrix_product
 
@@ -18,10 +20,18 @@ TOLERANCE = 1e-5
 """Residual of the equilibrium, of the load, at which the search for it ends."""
 MOST_STEPS = 2000
 TINY = 1e-300
-STATES = np.array([[[1, 0, 0], [0, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, 1, 0], [0, 0, 0]],
-                   [[0, 0, 0], [0, 0, 0], [0, 0, 1]], [[0, 0, 0], [0, 0, 1], [0, 1, 0]],
-                   [[0, 0, 1], [0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 0, 0], [0, 0, 0]]], float)  # fmt: skip
-"""Six uniform stresses [Pa]: xx, yy, zz, yz, zx, xy."""
+ROW, COLUMN = [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]
+"""Components xx, yy, zz, xy, yz, zx of a tensor, the order of `element_shapes.strain_rows`."""
+
+
+def _states() -> Floats:
+    tensors = np.zeros((6, 3, 3))
+    tensors[range(6), ROW, COLUMN] = tensors[range(6), COLUMN, ROW] = 1
+    return tensors
+
+
+STATES = _states()
+"""Six uniform stresses [Pa], each of one component."""
 
 
 @dataclass
@@ -39,11 +49,19 @@ class BondedTets:
     tet: Ints
     corner: Ints
 
-    @property
+    @cached_property
     def volume(self) -> Floats:
         """Of the tets [m3], shape (tets,)."""
         return element_shapes.volumes("tet4", self.x)[:, 0]
 
+    @cached_property
+    def strain_rows(self) -> Floats:
+        """Strains by displacements of the corners [1/m], shape (tets, 6, 12)."""
+        return element_shapes.strain_rows(
+            "tet4", *element_shapes.reference_gradients("tet4", self.x)
+        )[:, 0]
+
+    @cached_property
     def vectors(self) -> Floats:
         """Area vectors of the faces, out of the first tet [m2], shape (faces, 3)."""
         x = self.x[self.tet[:, 0, None], self.corner[:, 0]]
@@ -76,13 +94,10 @@ def compliance(
     Returns:
         Strains (engineering shears) by stresses, in the order of `STATES` [1/Pa], shape (6, 6).
     """
-    gradient, volume = element_shapes.reference_gradients("tet4", tets.x)
-    gradient, volume = gradient[:, 0], volume[:, 0]
-    vectors = tets.vectors()
-    area = lengths(vectors)
-    lame, shear = _lame(young, poisson)
-    own = _stiffness(gradient, volume, lame, shear)
-    mate, spring = _springs(tets, stiffness * area / 3)
+    rows = tets.strain_rows
+    stresses_of = np.einsum("ij,ejk->eik", elasticity(young, poisson), rows)
+    own = np.einsum("e,eik,eil->ekl", tets.volume, rows, stresses_of)
+    mate, spring = _springs(tets, stiffness * lengths(tets.vectors) / 3)
     held = spring.sum(axis=1)
     block, axes = own.copy(), np.arange(12)
     block[:, axes, axes] += np.repeat(held.reshape(-1, 4), 3, axis=1)
@@ -95,9 +110,8 @@ def compliance(
             out -= spring[:, k, None] * at[mate[:, k]]
         return np.einsum("eij,ejs->eis", own, u) + out.reshape(u.shape)
 
-    load = _loads(tets, vectors, gradient, volume)
-    start = _start(tets, young, poisson, stiffness, vectors)
-    u = _solve(force, inverses(block), load, start)
+    start = _start(tets, young, poisson, stiffness)
+    u = _solve(force, inverses(block), _loads(tets), start)
     strains, stresses = means(tets, u, young, poisson, inner)
     normal = matrix_product(stresses, stresses.T)
     return matrix_product(matrix_product(strains, stresses.T), inverses(normal))
@@ -116,34 +130,31 @@ def _springs(tets: BondedTets, stiffness: Floats) -> tuple[NDArray[np.intp], Flo
     return mate, spring
 
 
-def _stiffness(gradient: Floats, volume: Floats, lame: float, shear: float) -> Floats:
-    """Stiffness matrices of tets [N/m], shape (tets, 12, 12)."""
-    dots = np.einsum("eax,ebx->eab", gradient, gradient)
-    first = lame * np.einsum("eax,eby->eaxby", gradient, gradient)
-    second = shear * np.einsum("eay,ebx->eaxby", gradient, gradient)
-    third = shear * np.einsum("eab,xy->eaxby", dots, np.eye(3))
-    return (volume[:, None, None, None, None] * (first + second + third)).reshape(-1, 12, 12)
+def elasticity(young: float, poisson: float) -> Floats:
+    """Stresses by strains of isotropic rock [Pa], shape (6, 6)."""
+    return element_shapes.elasticity(
+        *element_shapes.lame_constants(np.array([young]), np.array([poisson]))
+    )[0]
 
 
-def _loads(tets: BondedTets, vectors: Floats, gradient: Floats, volume: Floats) -> Floats:
+def _loads(tets: BondedTets) -> Floats:
     """Forces on the corners by the six stresses on the faces that no other tet touches [N]."""
     # a uniform stress in the tets balances that on all their faces; less that on the inner faces
-    load = np.einsum("e,eay,sxy->eaxs", volume, gradient, STATES)
-    traction = np.einsum("sxy,fy->fxs", STATES, vectors) / 3
+    load = (tets.volume[:, None, None] * tets.strain_rows).transpose(0, 2, 1).reshape(-1, 4, 3, 6)
+    load = np.ascontiguousarray(load)
+    traction = np.einsum("sxy,fy->fxs", STATES, tets.vectors) / 3
     for side, sign in ((0, 1.0), (1, -1.0)):
         for k in range(3):
             np.add.at(load, (tets.tet[:, side], tets.corner[:, side, k]), -sign * traction)
     return load.reshape(-1, 12, len(STATES))
 
 
-def _start(
-    tets: BondedTets, young: float, poisson: float, stiffness: float, vectors: Floats
-) -> Floats:
+def _start(tets: BondedTets, young: float, poisson: float, stiffness: float) -> Floats:
     """Displacements under the six stresses if these were uniform, the faces' share spread evenly."""
     trace = np.einsum("sxx->s", STATES)[:, None, None] * np.eye(3)
     own = ((1 + poisson) * STATES - poisson * trace) / young
-    area = lengths(vectors)
-    moment = np.einsum("fx,fy,f->xy", vectors, vectors, 1 / area) / tets.volume.sum()
+    area = lengths(tets.vectors)
+    moment = np.einsum("fx,fy,f->xy", tets.vectors, tets.vectors, 1 / area) / tets.volume.sum()
     jumps = np.einsum("xy,syz->sxz", moment, STATES) / stiffness
     whole = own + 0.5 * (jumps + jumps.transpose(0, 2, 1))
     center = tets.x.mean(axis=1, keepdims=True)
@@ -164,7 +175,7 @@ def _solve(force: Callable[[Floats], Floats], inverse: Floats, load: Floats, u: 
     limit = TOLERANCE**2 * product(load, load)
     for _ in range(MOST_STEPS):
         if (product(r, r) <= limit).all():
-            break
+            return u
         moved = force(p)
         step = rho / np.maximum(product(p, moved), TINY)
         u = u + step * p
@@ -172,7 +183,7 @@ def _solve(force: Callable[[Floats], Floats], inverse: Floats, load: Floats, u: 
         z = np.einsum("eij,ejs->eis", inverse, r)
         before, rho = rho, product(r, z)
         p = z + rho / np.maximum(before, TINY) * p
-    return u
+    raise ModelError("no equilibrium of its elements and bonds was found; is the mesh very flat?")
 
 
 def means(
@@ -190,24 +201,13 @@ def means(
     Returns:
         Strains (engineering shears) [1] and stresses [Pa], shape (6, states), as in `STATES`.
     """
-    gradient, volume = element_shapes.reference_gradients("tet4", tets.x)
-    gradient, volume = gradient[inner, 0], volume[inner, 0]
-    lame, shear = _lame(young, poisson)
-    u = u.reshape(len(tets.x), 4, 3, -1)
-    slope = np.einsum("eaxs,eay->sexy", u[inner], gradient)
-    strain = 0.5 * (slope + slope.transpose(0, 1, 3, 2))
-    trace = np.einsum("sexx->se", strain)[:, :, None, None] * np.eye(3)
-    stress = np.einsum("e,sexy->sxy", volume, lame * trace + 2 * shear * strain)
-    total = np.einsum("e,sexy->sxy", volume, strain)
+    volume, states = tets.volume[inner], u.shape[2]
+    strain = np.einsum("eik,eks,e->is", tets.strain_rows[inner], u[inner], volume)
+    stress = np.einsum("ij,js->is", elasticity(young, poisson), strain)
     share = 0.5 * inner[tets.tet].sum(axis=1)
-    a, b = (u[tets.tet[:, side, None], tets.corner[:, side]] for side in (0, 1))
-    opened = np.einsum("f,fxs,fy->sxy", share, (b - a).mean(axis=1), tets.vectors())
-    total += 0.5 * (opened + opened.transpose(0, 2, 1))
-    first, second = [0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1]
-    strains = total[:, first, second] * np.array([1, 1, 1, 2, 2, 2])
-    return strains.T / volume.sum(), stress[:, first, second].T / volume.sum()
-
-
-def _lame(young: float, poisson: float) -> tuple[float, float]:
-    shear = young / (2 * (1 + poisson))
-    return 2 * shear * poisson / (1 - 2 * poisson), shear
+    at = u.reshape(-1, 4, 3, states)
+    a, b = (at[tets.tet[:, side, None], tets.corner[:, side]] for side in (0, 1))
+    opened = np.einsum("f,fxs,fy->xys", share, (b - a).mean(axis=1), tets.vectors)
+    both = 0.5 * (opened + opened.transpose(1, 0, 2))
+    strain += both[ROW, COLUMN] * np.array([1, 1, 1, 2, 2, 2])[:, None]
+    return strain / volume.sum(), stress / volume.sum()

@@ -6,7 +6,7 @@ import pytest
 from cdem.errors import MeshError
 from cdem.mesh import primitives
 from cdem.mesh.blocks import build_topology
-from cdem.mesh.element_shapes import NODES, reference_gradients
+from cdem.mesh.element_shapes import NODES, reference_gradients, volumes
 
 
 @pytest.mark.parametrize("shape", NODES)
@@ -42,3 +42,17 @@ def test_round_off_does_not_choose_the_triangles_of_a_polyhedron():
     ]
     assert all(one == faces[0] for one in faces)
     assert all(face[0] == min(face) for face in faces[0])
+
+
+def test_mirrored_cells_of_tets_fit_and_have_no_preferred_direction():
+    mesh = primitives.box("rock", [4, 4, 4], [4, 4, 4], shape="tet4", mirrored=True)
+    tets = mesh.cells["tet4"]
+    assert (volumes("tet4", mesh.points[tets]) > 0).all()
+    faces = np.sort(tets[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].reshape(-1, 3), axis=1)
+    corners, count = np.unique(faces, axis=0, return_counts=True)
+    assert (count == 1).sum() == 6 * 4 * 4 * 2 and set(count) == {1, 2}
+    x = mesh.points[corners[count == 2]]
+    normal = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+    area = np.linalg.norm(normal, axis=1)
+    moment = np.einsum("fx,fy,f->xy", normal, normal, 1 / area)
+    np.testing.assert_allclose(moment, moment[0, 0] * np.eye(3), atol=1e-12 * moment[0, 0])

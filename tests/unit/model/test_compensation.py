@@ -32,21 +32,21 @@ def regular():
 def test_regular_tets_follow_the_sum_over_faces(regular):
     """q = 6: every tet has A h = 3 V at its four faces, of which each has two sides."""
     made = regular.compensation["rock"]
-    assert made.q == pytest.approx(6, rel=3e-6)
-    assert made.softening == pytest.approx(1.4, rel=3e-6)
-    assert made.height * made.area_per_volume == pytest.approx(6, rel=3e-6)
-    assert np.abs(made.errors).max() < 1e-4
+    assert made.q == pytest.approx(6, rel=1e-6)
+    assert made.stiffening == pytest.approx(1.4, rel=3e-7)
+    assert made.height * made.area_per_volume == pytest.approx(6, rel=1e-8)
+    assert np.abs(made.errors).max() < 5e-7
 
 
 def test_elements_and_bonds_have_what_was_found(regular):
     made, a = regular.compensation["rock"], regular.arrays
     young, nu = 1.4e10, 0.35
-    np.testing.assert_allclose(a["material.mu"], young / (2 + 2 * nu), rtol=1e-5)
+    np.testing.assert_allclose(a["material.mu"], young / (2 + 2 * nu), rtol=3e-7)
     lame = young * nu / ((1 + nu) * (1 - 2 * nu))
-    np.testing.assert_allclose(a["material.lambda"], lame, rtol=1e-5)
+    np.testing.assert_allclose(a["material.lambda"], lame, rtol=3e-7)
     stiffness = a["triangles.stiffness"]
     assert set(stiffness[stiffness > 0]) == {made.stiffness}
-    assert made.stiffness == pytest.approx(5 * young / made.height, rel=1e-5)
+    assert made.stiffness == pytest.approx(5 * young / made.height, rel=3e-7)
     # contacts keep the modulus of the rock: the elements are up to 1 m high
     assert a["face.stiffness"].min() == pytest.approx(1e10 / 1.0)
 
@@ -67,8 +67,8 @@ def test_irregular_tets_are_found_numerically(tmp_path):
 @pytest.mark.parametrize(("nu", "factor"), [(0, 5), (0.3, 5), (0.36, 12)])
 def test_bonds_are_stiffer_where_poissons_ratio_leaves_less_room(nu, factor):
     made = build(bonded(CUBES | {"divisions": [3, 3, 3]}, nu=nu)).compensation["rock"]
-    assert made.factor == pytest.approx(factor, rel=1e-5)
-    assert made.softening * nu <= 0.42 + 1e-6
+    assert made.factor == pytest.approx(factor, rel=1e-6)
+    assert made.stiffening * nu <= 0.42 + 1e-6
 
 
 def test_a_poissons_ratio_without_room_is_refused():
@@ -93,7 +93,7 @@ def test_nothing_is_made_up_for(changes):
 def test_bricks_have_half_the_faces():
     """Cubes: three faces each, q = 3."""
     made = build(bonded(CUBES | {"shape": "hex8"})).compensation["rock"]
-    assert made.q == pytest.approx(3, rel=3e-6)
+    assert made.q == pytest.approx(3, rel=1e-8)
 
 
 def test_between_two_groups_the_bonds_are_in_series():
