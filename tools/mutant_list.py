@@ -27,6 +27,38 @@ FAILURE = "tests/validation/test_failure.py::"
 
 PYTHON = [
     Mutant(
+        "made up",
+        "elements make up for bonds in E but not in Poisson's ratio",
+        "src/cdem/model/flat_arrays.py",
+        "return lame_constants(e * self.young_modulus, e * self.poisson_ratio)",
+        "return lame_constants(e * self.young_modulus, self.poisson_ratio)",
+        "tests/validation/test_compensated_rock.py",
+    ),
+    Mutant(
+        "q",
+        "irregular tets taken for regular ones",
+        "src/cdem/model/compensation.py",
+        "    e_new = 1 + acts / (3 * a)",
+        "    acts = q\n    e_new = 1 + acts / (3 * a)",
+        "tests/validation/test_compensated_rock.py",
+    ),
+    Mutant(
+        "mirrored",
+        "all cells of a box divided along the same diagonal",
+        "src/cdem/model/bodies.py",
+        "mirrored=case.cdem > 1",
+        "mirrored=False",
+        "tests/validation/test_compensated_rock.py",
+    ),
+    Mutant(
+        "allowed overlap",
+        "contacts half as stiff as the allowed overlap wants",
+        "src/cdem/model/stiffness.py",
+        "weight = 2 * ratio",
+        "weight = ratio",
+        "tests/unit/model/test_stiffness.py",
+    ),
+    Mutant(
         "round values",
         "bounds of the step change with the CPU where they are round numbers",
         "src/cdem/mesh/arrays.py",
@@ -497,6 +529,22 @@ CORE = [
         "return s.dt != s.dt_last ? s.nodes.step_change.data() : nullptr;",
         "return s.dt < 0 ? s.nodes.step_change.data() : nullptr;",
         "tests/validation/test_impact_energy.py",
+    ),
+    Mutant(
+        "series",
+        "contacts as stiff as the stiffer side where both count",
+        "core/records/interface.hpp",
+        "return in_series ? 2 * a * b / (a + b) : max_of(a, b);",
+        "return max_of(a, b);",
+        "tests/core/contact/force/test_contact_laws.cpp",
+    ),
+    Mutant(
+        "softer",
+        "a softer contact is pressed by more than its depth",
+        "core/bonds/transfer_to_contact.cpp",
+        "spring.penetration = -std::min(1.0, bond_n / kn) * dot(frame_a.n, jump);",
+        "spring.penetration = -bond_n / kn * dot(frame_a.n, jump);",
+        "tests/core/bonds/test_transfer_to_contact.cpp",
     ),
     Mutant(
         "taken out",

@@ -36,6 +36,10 @@ def models():
         {"name": "y", "normal": [0.1, 1, 0.3], "spacing": 0.8, "persistence": 0.8},
     ]  # fmt: skip
     cut = {"joints": joints, "thinnest": 0.01}
+    whole = {"default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}}
+    tets = _box(0, {"size": [4, 3.3, 3], "divisions": [4, 3, 3], "shape": "tet4"})
+    split = {"split": {"a": "elements"}}
+    yield "made up for", case([tets], {"a": {}}, cdem=2, interfaces=whole, model=split)
     yield "cut", case([_box(0, {"size": [3, 2, 2]})], {"a": {}}, model=cut)
 
 

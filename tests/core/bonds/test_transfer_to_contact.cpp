@@ -1,4 +1,7 @@
 // What a released pair carried goes to the contacts that follow it.
+#include <algorithm>
+#include <cmath>
+
 #include "core/bonds/transfer_to_contact.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "tests/core/scene.hpp"
@@ -49,6 +52,30 @@ TEST_CASE("both sides take half of the force of a pressed pair, and all of its e
     normal += s.force_n;
   }
   CHECK(relative_error(normal, k * 3e-4) < 5e-13);
+}
+
+TEST_CASE(
+    "a softer contact takes what it holds at that depth, a stiffer one all that was carried") {
+  for (const Real part : {0.1, 10.0}) {
+    Slid slid({1e-4, 2e-4, -3e-4});
+    const PairSet& p = slid.model.quads;
+    const Real k = p.stiffness[0], corner = k * p.area[0] / 8;
+    Interface& contact = slid.model.interfaces[p.interface[0]];
+    contact.stiffness_n_value = contact.stiffness_s_value = part * k;
+    const Real energy = slid.transfer(), taken = std::min(1.0, part), depth = taken / part * 3e-4;
+    CHECK(slid.held() == 8);
+    for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
+      if (slid.state.springs.target[slot] < 0) continue;
+      const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
+      CHECK(relative_error(s.force_n, taken * corner * 3e-4) < 5e-12);
+      CHECK(relative_error(s.penetration, depth) < 5e-12);
+      CHECK(relative_error(s.stress_free_gap - depth, -3e-4) < 5e-12);
+      CHECK(relative_error(std::hypot(s.shear1, s.shear2), taken * corner * std::sqrt(5e-8)) <
+            5e-12);
+    }
+    const Real carried = taken * taken / part * dot(slid.jump, slid.jump);
+    CHECK(relative_error(energy, 0.5 * k * p.area[0] * carried) < 1e-11);
+  }
 }
 
 TEST_CASE("what has slipped already carries no shear") {
