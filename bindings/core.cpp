@@ -68,6 +68,7 @@ void set_options(Core& core, const nb::dict& o) {
   m.bond_indentation_triangle = real("bond_indentation_triangle");
   m.bond_indentation_quad = real("bond_indentation_quad");
   m.semi_edges = nb::cast<bool>(o["semi_edges"]);
+  m.lumped_while_bonded = nb::cast<bool>(o["lumped_while_bonded"]);
   m.check_search = nb::cast<bool>(o["check_search"]);
   m.rebuild_interval = nb::cast<Index>(o["rebuild_interval"]);
   m.step_safety = real("step_safety");

@@ -5,8 +5,11 @@
 
 namespace cdem {
 
-template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Tet4>&);
-template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8>&);
-template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8OnePoint>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Tet4, false>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Tet4, true>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8, false>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8, true>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8OnePoint, false>&);
+template void for_each_lane(Queue, Index, Blocks, const AdvanceFused<Hex8OnePoint, true>&);
 
 }  // namespace cdem

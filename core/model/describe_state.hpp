@@ -131,6 +131,12 @@ void describe_node_lists(State& s, Rebuilt&& rebuilt) {
            .meaning = "awake blocks of nodes but those that are fused as a whole",
            .refers_to = {blocks_of("nodes")}},
           n.general);
+}
+
+/// What acts on nodes as far as it follows from the rest: part of `describe_state`.
+template <class Rebuilt>
+void describe_node_sums(State& s, Rebuilt&& rebuilt) {
+  NodeState& n = s.nodes;
   rebuilt("list_corners",
           {.name = "node.corner_first",
            .meaning = "corner rows of elements and live pairs at a node",
@@ -145,6 +151,12 @@ void describe_node_lists(State& s, Rebuilt&& rebuilt) {
            .refers_to = {"corner_rows"},
            .opposite = true},
           n.corner);
+  rebuilt("list_lumped",
+          {.name = "node.lumped",
+           .meaning = "1: its block has bonds and moves lumped masses",
+           .rows = "nodes",
+           .optional = true},
+          n.lumped);
   rebuilt("sum_stiffness",
           {.name = "node.contact_stiffness",
            .unit = "N/m",
@@ -173,9 +185,14 @@ void describe_fused(const char* rows, FusedBlocks& fused, Rebuilt&& rebuilt) {
   const std::string name = std::string(rows) + ".", blocks = blocks_of(rows);
   rebuilt("find_fused_blocks",
           {.name = name + "fused.blocks",
-           .meaning = "blocks of elements that the fused kernel moves",
+           .meaning = "blocks of elements that the fused kernel moves, full mass matrices",
            .refers_to = {blocks}},
           fused.blocks);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.lumped",
+           .meaning = "the same with lumped masses",
+           .refers_to = {blocks}},
+          fused.lumped);
   rebuilt("find_fused_blocks",
           {.name = name + "fused.general",
            .meaning = "awake blocks of the other elements",
@@ -313,6 +330,7 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
   describe_samples(s.nodes, stored);
   describe_node_forces(s.nodes, rebuilt);
   describe_node_lists(s, rebuilt);
+  describe_node_sums(s, rebuilt);
   for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {
     describe_set(kind.name, set, state, stored, rebuilt);
   });

@@ -86,9 +86,10 @@ struct Model {
   bool check_search = false;   // compare every search with an all-pairs search
   Index rebuild_interval = 0;  // 0: by displacement; else the paper's every so many steps
   NodeDamping damping{0, 0};
-  bool lumped = false;         // lumped masses for all: quicker to rest, wrong inertia
-  Real stiffness_damping = 0;  // Rayleigh, fraction of critical at the stability limit
-  Real contact_damping = 0;    // fraction of critical
+  bool lumped = false;               // lumped masses for all: quicker to rest, wrong inertia
+  bool lumped_while_bonded = false;  // lumped masses for blocks with bonds, see list_lumped
+  Real stiffness_damping = 0;        // Rayleigh, fraction of critical at the stability limit
+  Real contact_damping = 0;          // fraction of critical
   Real step_safety = 0.8;
   Real step_given = 0;   // 0: automatic
   Real speed_limit = 0;  // faster than this the run has gone wrong  [m/s]

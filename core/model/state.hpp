@@ -21,6 +21,7 @@ struct NodeState {
   Column<Index> bonded_node, body;  // labels, see bonds/bonded_surface.hpp
   Column<Index> awake;              // blocks of nodes, see nodes/sleep.hpp
   Column<Flag> sleeps, listed;      // see nodes/sleep.hpp
+  Column<Flag> lumped;              // 1: its block has bonds, see list_lumped; empty: none has
   Column<Flag> out;                 // 1: taken out, see run/take_out.hpp; empty: none is
   Column<Flag> fused;     // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
   Column<Index> general;  // awake blocks of nodes but those of which all are fused
@@ -28,10 +29,11 @@ struct NodeState {
   Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
 };
 
-/// Blocks of elements of which all are fused, see nodes/fused_block.hpp, and the other blocks that
-/// are awake.
+/// Blocks of elements of which all are fused and have full mass matrices, see
+/// nodes/fused_block.hpp, those fused with lumped masses, and the other blocks that are awake.
 struct FusedBlocks {
   Column<Index> blocks, general;
+  Column<Index> lumped;          // those of which the nodes move lumped masses
   Column<Index> row_first, row;  // see FusedRows
 };
 

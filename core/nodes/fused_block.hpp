@@ -31,8 +31,8 @@ inline constexpr bool has_fused_kernel = Shape::nodes % 4 == 0;
 
 /// Force and motion of single-element blocks without load, support, contact or damping: no other
 /// block reads or writes their nodes in this pass, so nothing is stored in between. The
-/// arithmetic is that of SumNodeForces and MoveNodes.
-template <class Shape>
+/// arithmetic is that of SumNodeForces and MoveNodes, with lumped masses or with the full matrix.
+template <class Shape, bool lumped>
 struct AdvanceFused {
   static_assert(has_fused_kernel<Shape>);
   static constexpr Index count = Shape::nodes;
@@ -62,13 +62,16 @@ struct AdvanceFused {
                    heavy[k] * T(loads.gravity.z)};
       f[k] = add_bonds(e, k, weight[k] + own.f[k]);
     }
-    const auto matrix = look_up(mass.mass_row_first, first);
     const T kick(0.5 * (dt_before + dt)), zero(0.0);
     for (Index k = 0; k < count; ++k) {
-      T inverse[count];
-      read(mass.inverse, after(matrix, count * k), inverse);
-      Vec3<T> a{zero, zero, zero};
-      for (Index j = 0; j < count; ++j) a = a + inverse[j] * f[j];
+      Vec3<T> a = f[k];
+      if constexpr (!lumped) {
+        const auto matrix = look_up(mass.mass_row_first, first);
+        T inverse[count];
+        read(mass.inverse, after(matrix, count * k), inverse);
+        a = {zero, zero, zero};
+        for (Index j = 0; j < count; ++j) a = a + inverse[j] * f[j];
+      }
       const auto node = after(first, k);
       const Four<T> x0 = InRows{motion}.at(node, 0), v0 = InRows{motion}.at(node, 4);
       const Vec3<T> v1 = v0.vector() + kick * Vec3<T>{a.x / m[k], a.y / m[k], a.z / m[k]};

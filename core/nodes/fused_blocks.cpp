@@ -7,6 +7,7 @@
 #include "core/base/parallel.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/fused_block.hpp"
+#include "core/nodes/views.hpp"
 
 namespace cdem {
 
@@ -17,6 +18,7 @@ struct Elements {
   const Model& m;
   const State& s;
   const ElementSet& e;
+  MassColumns mass = mass_columns(m, s);
   Index corners = e.corners;
   Index rows_of_elements = element_row_count(m, s);  // those of bonds follow
 
@@ -25,30 +27,30 @@ struct Elements {
   Range bond_rows(Index node) const {
     return {s.nodes.corner_first[node] + 1, s.nodes.corner_first[node + 1]};
   }
+  bool is_lumped(Index i) const { return mass.row(first_node(i)) < 0; }
   bool is_fused(Index i) const {
-    const Index first = first_node(i), last = first + corners;
+    const Index first = first_node(i), last = first + corners, row = mass.row(first);
     if (m.block_first[first] != first || m.block_count[first] != corners ||
         m.load_first[first] < m.load_first[last] ||
-        s.search.contact_first[first] < s.search.contact_first[last] || m.mass_row_first[first] < 0)
+        s.search.contact_first[first] < s.search.contact_first[last])
       return false;
     for (Index k = 0; k < corners; ++k) {
       const Index node = first + k;
       const Range bonds = bond_rows(node);
       const Index own = e.corner_first + corners * i + k;
       if (e.nodes[std::size_t(k) * e.stride + i] != node || m.support[node] >= 0 ||
-          m.mass_row_first[node] != m.mass_row_first[first] + corners * k ||
-          m.mass_axis_stride[node] > 0 || bonds.first > bonds.last ||
-          s.nodes.corner[bonds.first - 1] != own ||
+          mass.row(node) != (row < 0 ? row : row + corners * k) || mass.held(node) ||
+          bonds.first > bonds.last || s.nodes.corner[bonds.first - 1] != own ||
           (bonds.first < bonds.last && is_of_element(s.nodes.corner[bonds.first])))
         return false;
     }
     return true;
   }
-  /// Are all elements of a block fused?
+  /// Are all elements of a block fused, with masses of one kind?
   bool are_fused(Index block) const {
     const Index begin = block * block_size, end = std::min(begin + block_size, e.count);
     for (Index i = begin; i < end; ++i)
-      if (!is_fused(i)) return false;
+      if (!is_fused(i) || is_lumped(i) != is_lumped(begin)) return false;
     return begin < end;
   }
   template <class Visit>
@@ -63,25 +65,24 @@ struct Elements {
 };
 
 /// List the rows that the nodes of fused blocks sum, see FusedRows.
-void list_rows(const Elements& of, FusedBlocks& fused) {
+void list_rows(const Elements& of, const std::vector<Index>& blocks, FusedBlocks& fused) {
   const State& s = of.s;
   Column<Index>&first = fused.row_first, &rows = fused.row;
   first.resize((of.e.count + block_size - 1) / block_size + 1);
   first.fill(0);
-  for (std::size_t b = 0; b < fused.blocks.size(); ++b) {
+  for (const Index block : blocks) {
     Index most = 0;
-    of.visit_nodes(fused.blocks[b], [&](Index, Index, Index node) {
+    of.visit_nodes(block, [&](Index, Index, Index node) {
       const Range bonds = of.bond_rows(node);
       most = std::max(most, bonds.last - bonds.first);
     });
-    first[fused.blocks[b] + 1] = most * of.corners * block_size;
+    first[block + 1] = most * of.corners * block_size;
   }
   for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
   rows.resize(first[first.size() - 1]);
   rows.fill(of.m.corner_rows);  // adds nothing
-#pragma omp parallel for schedule(static) if (fused.blocks.size() * block_size >= worth_threads)
-  for (std::size_t b = 0; b < fused.blocks.size(); ++b) {
-    const Index block = fused.blocks[b];
+#pragma omp parallel for schedule(static) if (blocks.size() * block_size >= worth_threads)
+  for (const Index block : blocks) {
     const Index most = (first[block + 1] - first[block]) / (of.corners * block_size);
     of.visit_nodes(block, [&](Index lane, Index corner, Index node) {
       Index row = first[block] + corner * most * block_size + lane;
@@ -97,16 +98,24 @@ void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementS
   const Elements of{m, s, e};
   const Index count = Index(es.awake.size());
   std::vector<Flag> are_fused(count);
+  std::vector<Index> all;  // of either masses
 #pragma omp parallel for schedule(static) if (count * block_size >= worth_threads)
   for (Index b = 0; b < count; ++b) are_fused[b] = of.are_fused(es.awake[b]);
-  fused.blocks.resize(0);
-  fused.general.resize(0);
-  for (Index b = 0; b < count; ++b) (are_fused[b] ? fused.blocks : fused.general).push(es.awake[b]);
-  list_rows(of, fused);
-  if (fused.blocks.size() == 0) return;
+  for (Column<Index>* list : {&fused.blocks, &fused.lumped, &fused.general}) list->resize(0);
+  for (Index b = 0; b < count; ++b) {
+    const Index block = es.awake[b];
+    if (!are_fused[b]) {
+      fused.general.push(block);
+      continue;
+    }
+    (of.is_lumped(block * block_size) ? fused.lumped : fused.blocks).push(block);
+    all.push_back(block);
+  }
+  list_rows(of, all, fused);
+  if (all.empty()) return;
   s.nodes.fused.resize(m.node_count);
-  for (std::size_t b = 0; b < fused.blocks.size(); ++b)
-    of.visit_nodes(fused.blocks[b], [&](Index, Index, Index node) {
+  for (const Index block : all)
+    of.visit_nodes(block, [&](Index, Index, Index node) {
       s.nodes.fused[node] = 1;
       s.nodes.force[4 * std::size_t(node) + 3] = 0;  // no contact stiffens it any more
     });
@@ -117,7 +126,7 @@ void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementS
 void find_fused_blocks(const Model& m, State& s) {
   NodeState& nodes = s.nodes;
   nodes.fused.resize(0);
-  if (m.lumped || m.formulation != Formulation::corotational) return;
+  if (s.nodes.relax_mass.size() > 0 || m.formulation != Formulation::corotational) return;
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
                          if constexpr (has_fused_kernel<Shape>)

@@ -11,6 +11,7 @@ namespace cdem {
 /// one.
 struct MassColumns {
   bool lumped;                    // only the numbers count, whatever the matrices
+  const Flag* node_lumped;        // [node] 1: for this node only the number counts; null: for none
   const Real* mass;               // [node] row sum of the mass matrix  [kg]
   const Index* mass_row_first;    // [node]: start of the node's row in `inverse`, or -1 when lumped
   const Index* mass_axis_stride;  // [node]: from one axis to the next (0 when all three share)
@@ -20,7 +21,9 @@ struct MassColumns {
   const Real* matrix;             // rows of the matrix over `mass`, in the same places
 
   /// Start of a node's row in `inverse` and `matrix`, or -1 when its mass is lumped.
-  CDEM_HD Index row(Index node) const { return lumped ? -1 : mass_row_first[node]; }
+  CDEM_HD Index row(Index node) const { return is_lumped(node) ? -1 : mass_row_first[node]; }
+  /// Does only the number count at a node, whether or not its block has a matrix?
+  CDEM_HD bool is_lumped(Index node) const { return lumped || (node_lumped && node_lumped[node]); }
   /// Is a node of the block supported, so that the inverse differs from axis to axis?
   CDEM_HD bool held(Index node) const { return row(node) >= 0 && mass_axis_stride[node] > 0; }
   /// Part of M a of a node that the given motion of supported nodes of its block makes, row by row

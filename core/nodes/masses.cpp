@@ -1,7 +1,11 @@
 // masses.cpp - see masses.hpp.
 #include "core/nodes/masses.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "core/base/reduce.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/nodes/views.hpp"
 
 namespace cdem {
@@ -21,20 +25,48 @@ Real energy_of_motion(const Model& m, const State& s) {
   return ordered_sum(m.node_count, [&](Index i) { return energy_of_node(mass, s, i); });
 }
 
-void change_mass(Model& m, State& s, bool lumped) {
+namespace {
+
+/// Change the masses that move; what kinetic energy that takes is booked, and taken from the last
+/// sample, which holds the energy of the masses before.
+template <class Change>
+void book_change(const Model& m, State& s, Change&& change) {
   const Real before = energy_of_motion(m, s);
-  // the last sample holds the energy of the masses before
   const auto count_in_sample = [&](Real sign) {
     const MassColumns mass = mass_columns(m, s);
     for (Index i = 0; i < m.node_count; ++i)
       s.nodes.sample[4 * std::size_t(i)] += sign * energy_of_node(mass, s, i);
   };
   count_in_sample(-1);
-  m.lumped = lumped;
-  s.nodes.relax_mass.resize(0);
-  s.nodes.relax.resize(0);
+  change();
   count_in_sample(1);
   s.stopped_energy += before - energy_of_motion(m, s);
+}
+
+}  // namespace
+
+void change_mass(Model& m, State& s, bool lumped) {
+  book_change(m, s, [&] {
+    m.lumped = lumped;
+    s.nodes.relax_mass.resize(0);
+    s.nodes.relax.resize(0);
+  });
+}
+
+void list_lumped(const Model& m, State& s) {
+  if (!m.lumped_while_bonded) return;
+  std::vector<Flag> bonded(m.node_count), lumped(m.node_count);  // the first by block's first node
+  for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
+    for (Index i = 0; i < p.count; ++i)
+      if (is_active(ps, i))
+        for_each_node(m, p, i, [&](Index node) { bonded[m.block_first[node]] = 1; });
+  });
+  for (Index i = 0; i < m.node_count; ++i) lumped[i] = bonded[m.block_first[i]];
+  const auto change = [&] { s.nodes.lumped.assign(lumped.data(), lumped.size()); };
+  if (s.nodes.lumped.size() == 0)  // of a new or a restored state: nothing changes
+    change();
+  else if (!std::equal(lumped.begin(), lumped.end(), s.nodes.lumped.data()))
+    book_change(m, s, change);
 }
 
 void slow_heavier_nodes(const Model& m, State& s) {

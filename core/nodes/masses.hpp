@@ -13,6 +13,12 @@ Real energy_of_motion(const Model& model, const State& state);
 /// damping, and taken from the last sample.
 void change_mass(Model& model, State& state, bool lumped);
 
+/// Where the model wants it, list the nodes of blocks with bonds that are not released: they move
+/// lumped masses, which allow a step more than twice as long, and move the full mass matrix from
+/// the release of the last bond of their block on. That keeps velocities; what kinetic energy it
+/// takes is booked as damping. Call it whenever pairs have been released.
+void list_lumped(const Model& model, State& state);
+
 /// Adaptive relaxation, at the time of the forces: nodes whose scaled mass has grown keep their
 /// momentum. What kinetic energy that takes is booked as damping.
 void slow_heavier_nodes(const Model& model, State& state);

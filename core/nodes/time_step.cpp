@@ -35,12 +35,12 @@ Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLi
       stiffness = std::max(stiffness, stiffness_at(s, j));
       element_frequency_squared =
           std::max(element_frequency_squared,
-                   m.lumped ? m.lumped_frequency_squared[j] : m.frequency_squared[j]);
+                   mass.is_lumped(j) ? m.lumped_frequency_squared[j] : m.frequency_squared[j]);
     }
     if (!free) continue;
     // Gershgorin: a spring between two points adds at most twice its stiffness to a row
     const Real contact_frequency_squared =
-        2 * stiffness * (m.lumped ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
+        2 * stiffness * (mass.is_lumped(i) ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
     if (element_frequency_squared + contact_frequency_squared > largest) {
       largest = element_frequency_squared + contact_frequency_squared;
       limit.node = i;

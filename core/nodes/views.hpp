@@ -17,6 +17,7 @@ inline const Column<Real>& lumped_masses(const Model& m, const State& s) {
 
 inline MassColumns mass_columns(const Model& m, const State& s) {
   return {.lumped = m.lumped,
+          .node_lumped = s.nodes.lumped.size() > 0 ? s.nodes.lumped.data() : nullptr,
           .mass = lumped_masses(m, s).data(),
           .mass_row_first = m.mass_row_first.data(),
           .mass_axis_stride = m.mass_axis_stride.data(),

@@ -9,6 +9,7 @@
 #include "core/diagnostics/unbalance.hpp"
 #include "core/nodes/corner_lists.hpp"
 #include "core/nodes/curves.hpp"
+#include "core/nodes/masses.hpp"
 #include "core/nodes/nodes.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/step.hpp"
@@ -29,6 +30,7 @@ void prepare(const Model& m, State& s) {
   list_exposed(m, s);
   sum_stiffness(m, s);
   list_corners(m, s);
+  list_lumped(m, s);
   place_predicted_nodes(m, s);
 }
 

@@ -1,4 +1,4 @@
-"""Twelve small scenes whose results are pinned, and the hash of a result.
+"""Thirteen small scenes whose results are pinned, and the hash of a result.
 
 `python tests/regression/golden_scenes.py` prints every scene's hash and time; with `--write` it
 renews golden.json. A renewed golden.json needs a line in CHANGELOG.md that says why, and names it
@@ -117,6 +117,16 @@ def breaking(threads):
     """A cube of bonded tets breaks on a bed."""
     sim = thrown(threads, 5e4, 400)
     assert sum(sim.broken.values()) > 10
+    return sim
+
+
+@scene
+def version_2(threads):
+    """The same with the defaults of cdem: 2: lumped masses until the last bond breaks."""
+    sim = thrown(threads, 5e4, 400, cdem=2)
+    assert sum(sim.broken.values()) > 10
+    lumped = sim.core.rebuilt()["node.lumped"]
+    assert lumped.any() and not lumped.all()
     return sim
 
 

@@ -24,7 +24,7 @@ STAGES = [
 ]
 
 
-def breaking_cube():
+def breaking_cube(**more):
     """A cube of 384 bonded tets thrown at a bed, so that it breaks: every kernel has work."""
     return case(
         [
@@ -42,6 +42,7 @@ def breaking_cube():
         stages=STAGES,
         model={"split": {"body": "elements"}},
         output={"every": 0.002},
+        **more,
     )
 
 
@@ -124,6 +125,30 @@ def test_resumed_run_gives_identical_results(tmp_path, whole, stops):
     assert status == "finished"
     assert digest(sim) == digest(expected)
     assert (broken / "histories.csv").read_text() == histories
+
+
+def test_a_resumed_run_knows_which_blocks_have_bonds(tmp_path):
+    """With cdem: 2 bonded blocks move lumped masses: not stored, but found again."""
+
+    def cube():
+        return breaking_cube(cdem=2)
+
+    expected = cdem.Simulation(cube(), threads=2)
+    expected.run()
+    lumped = expected.core.rebuilt()["node.lumped"]
+    assert lumped.any() and not lumped.all()
+    asked = 0
+
+    def should_stop():
+        nonlocal asked
+        asked += 1
+        return asked == 4
+
+    stopped = cdem.Simulation(cube(), threads=2, output=tmp_path / "run")
+    assert stopped.run(should_stop=should_stop) == "stopped"
+    resumed = cdem.Simulation(cube(), threads=1, output=tmp_path / "run", resume=True)
+    resumed.run()
+    assert digest(resumed) == digest(expected)
 
 
 def test_split_runs_give_identical_results():

@@ -77,7 +77,8 @@ def test_irregular_tets(tmp_path):
     assert shear == pytest.approx(YOUNG / (2 * (1 + NU)), rel=0.003)
 
 
-def test_the_ledger_closes_when_bonds_are_released_to_softer_contacts():
+@pytest.mark.parametrize("mass", ["exact", "lumped-while-bonded"])
+def test_the_ledger_closes_when_bonds_are_released_to_softer_contacts(mass):
     """A cube breaks on a bed: its bonds have about 7 E/h, its contacts 1 E/h."""
     cube = {"size": [1, 1, 1], "divisions": [4, 4, 4], "shape": "tet4"}
     bed = {"group": "bed", "box": {"size": [4, 4, 1]}, "translate": [-1, -1, -1]}
@@ -87,7 +88,7 @@ def test_the_ledger_closes_when_bonds_are_released_to_softer_contacts():
             {"body": {"velocity": [0.2, 0.1, -2]}, "bed": {"fix": ["x", "y", "z"]}}, cdem=2,
             interfaces={"default": STRONG | {"cohesion": 2e5, "tensile_strength": 1e5}},
             rock={"young_modulus": 1e8}, model={"split": {"body": "elements"}},
-            loads={"gravity": [0, 0, -9.81]},
+            loads={"gravity": [0, 0, -9.81]}, elements={"mass": mass},
             stages=[{"name": "fall", "mode": "dynamic", "duration": 0.02}],
         ),
         threads=1,

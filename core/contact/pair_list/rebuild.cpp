@@ -9,6 +9,7 @@
 #include "core/contact/pair_list/outer_list.hpp"
 #include "core/model/phase_timer.hpp"
 #include "core/nodes/corner_lists.hpp"
+#include "core/nodes/masses.hpp"
 #include "core/nodes/sleep.hpp"
 #include "core/nodes/time_step.hpp"
 
@@ -43,7 +44,10 @@ void list_pairs_of_exposed(const Model& m, State& s, const StepPlan& plan, bool 
   list_exposed(m, s);
   list_candidates(m, s);
   sum_stiffness(m, s);
-  if (released) list_corners(m, s);
+  if (released) {
+    list_corners(m, s);
+    list_lumped(m, s);
+  }
   list_contact_corners(m, s);
   if (!plan.everything_awake) list_awake_nodes(m, s);
   s.built_step = s.step;

@@ -160,8 +160,11 @@ class Elements(Part):
     formulation: Literal["corotational", "incremental", "paper-incremental", "paper-total"] = Field(
         "corotational", description="How the forces of an element follow from its motion"
     )
-    mass: Literal["exact", "lumped"] = Field(
-        "exact", description="Exact inertia of blocks of one element, or lumped mass everywhere"
+    mass: Literal["auto", "exact", "lumped-while-bonded", "lumped"] = Field(
+        "auto",
+        description="Exact inertia of blocks of few elements; lumped mass of blocks that have bonds, "
+        "exact inertia of others; or lumped mass everywhere. auto: lumped-while-bonded, with cdem: 1 "
+        "exact",
     )
     hexahedra: Literal["full", "one-point"] = Field(
         "full",
@@ -254,3 +257,10 @@ class CaseParts(Part):
     time: Time = Field(Time(), description="The time step")
     output: Output = Field(Output(), description="What is written")
     histories: list[HistoryPoint] = Field([], description="Quantities followed over time")
+
+    @property
+    def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:
+        """`elements.mass`, what `auto` stands for in it."""
+        if self.elements.mass == "auto":
+            return "exact" if self.cdem == 1 else "lumped-while-bonded"
+        return self.elements.mass

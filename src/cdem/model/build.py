@@ -190,7 +190,7 @@ def _assemble(
         automatic=np.array([is_automatic(law) for law in laws], bool),
         stiffening=np.array([made_up[n].stiffening if n in made_up else 1.0 for n in names]),
         bond_stiffness=np.array([made_up[n].stiffness if n in made_up else 0.0 for n in names]),
-        exact_mass=case.elements.mass == "exact",
+        exact_mass=case.moved_masses != "lumped",
         supported=held & (supports["row"] >= 0)[:, None],
         target_step=0.0 if scaling is None else scaling.step,
         one_point=case.elements.hexahedra == "one-point",

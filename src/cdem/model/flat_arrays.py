@@ -32,7 +32,7 @@ class Properties:
         stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
             (groups,).
         bond_stiffness: Of bonds that are made up for [Pa/m], else 0, shape (groups,).
-        exact_mass: Exact inertia (default) or lumped masses as they come.
+        exact_mass: Whether blocks have their exact inertia, at least once they have no bonds.
         supported: Components of nodes that are held or moved, shape (nodes, 3).
         target_step: Time step for which elements are made heavier where needed, or 0 [s].
         one_point: Whether hexahedra have one Gauss point and hourglass springs.

@@ -73,9 +73,15 @@ struct Points {
             load_curve.data(), load_force.data(), curve.data()};
   }
   MassColumns mass_columns() const {
-    return {false,          mass.data(),        row.data(),
-            stride.data(),  block_first.data(), block_count.data(),
-            inverse.data(), matrix.data()};
+    return {.lumped = false,
+            .node_lumped = nullptr,
+            .mass = mass.data(),
+            .mass_row_first = row.data(),
+            .mass_axis_stride = stride.data(),
+            .block_first = block_first.data(),
+            .block_count = block_count.data(),
+            .inverse = inverse.data(),
+            .matrix = matrix.data()};
   }
   bool damps() const { return damping.local > 0 || damping.mass > 0; }
   SumNodeForces sum_kernel() {

@@ -8,7 +8,7 @@ namespace {
 
 /// Tets that fly, a cluster of them bonded.
 struct Swarm : Scene {
-  Swarm() {
+  explicit Swarm(bool lumped = false) {
     Random random(1);
     bonded = true;
     // a box of six tets around its diagonal
@@ -24,6 +24,7 @@ struct Swarm : Scene {
     build();
     set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}, {"friction_angle", 0.5}});
     model.gravity = {0, 0, -9.81};
+    model.lumped = lumped;
     for (Index b = 0; b < 3 * block_size + 1; ++b)
       set_motion(b, random.vector(0.1), random.vector(0.1));
     start();
@@ -32,11 +33,9 @@ struct Swarm : Scene {
 
 }  // namespace
 
-TEST_CASE("fused or not, blocks move by the same bits") {
-  Swarm fused, apart;
+void check_same_bits(Swarm& fused, Swarm& apart) {
   fused.step(50);
   CHECK(fused.state.nodes.fused.size() > 0);
-  CHECK(fused.state.tet4.fused.blocks.size() >= 3);
   for (int n = 0; n < 50; ++n) apart.step(1);  // the first step of a run computes all
   REQUIRE(apart.state.time == fused.state.time);
   for (std::size_t k = 0; k < fused.state.nodes.motion.size(); ++k)
@@ -44,6 +43,20 @@ TEST_CASE("fused or not, blocks move by the same bits") {
       CHECK(same_bits(fused.state.nodes.motion[k], apart.state.nodes.motion[k]));
   for (Index i = 0; i < fused.model.node_count; ++i)
     CHECK(same_bits(fused.state.nodes.work_external[i], apart.state.nodes.work_external[i]));
+}
+
+TEST_CASE("fused or not, blocks move by the same bits") {
+  Swarm fused, apart;
+  check_same_bits(fused, apart);
+  CHECK(fused.state.tet4.fused.blocks.size() >= 3);
+  CHECK(fused.state.tet4.fused.lumped.size() == 0);
+}
+
+TEST_CASE("fused or not, blocks with lumped masses move by the same bits") {
+  Swarm fused(true), apart(true);
+  check_same_bits(fused, apart);
+  CHECK(fused.state.tet4.fused.lumped.size() >= 3);
+  CHECK(fused.state.tet4.fused.blocks.size() == 0);
 }
 
 TEST_CASE("rows of a fused block begin at the place of its element") {

@@ -38,17 +38,32 @@ TEST_CASE("free blocks are fused, those with a load or a support are not") {
   CHECK(tets.fused() == std::vector<Index>{1});
 }
 
-TEST_CASE("blocks with contacts, lumped masses or another formulation are not fused") {
+TEST_CASE("blocks with contacts, scaled masses or another formulation are not fused") {
   Tets tets;
   for (Index i = 1; i <= tets.model.node_count; ++i) tets.state.search.contact_first[i] = 1;
   CHECK(tets.fused() == std::vector<Index>{1});
-  tets.model.lumped = true;
+  tets.state.nodes.relax_mass.resize(tets.model.node_count);
   tets.fused();
   CHECK(tets.state.nodes.fused.size() == 0);
-  tets.model.lumped = false;
+  tets.state.nodes.relax_mass.resize(0);
   tets.model.formulation = Formulation::incremental;
   tets.fused();
   CHECK(tets.state.nodes.fused.size() == 0);
+}
+
+TEST_CASE("blocks with lumped masses are fused apart, and blocks with both not at all") {
+  Tets tets;
+  tets.state.nodes.lumped.resize(tets.model.node_count);
+  const Index second = 4 * block_size;
+  for (Index i = second; i < tets.model.node_count; ++i) tets.state.nodes.lumped[i] = 1;
+  CHECK(tets.fused() == std::vector<Index>{0});
+  CHECK(tets.state.tet4.fused.lumped.size() == 1);
+  CHECK(tets.state.tet4.fused.lumped[0] == 1);
+  CHECK(tets.state.nodes.fused[second] == 1);
+  for (Index i = 0; i < 4; ++i) tets.state.nodes.lumped[second + i] = 0;
+  CHECK(tets.fused() == std::vector<Index>{0});
+  CHECK(tets.state.tet4.fused.lumped.size() == 0);
+  CHECK(tets.state.tet4.fused.general.size() == 1);
 }
 
 }  // namespace cdem::test

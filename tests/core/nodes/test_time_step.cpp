@@ -54,6 +54,25 @@ TEST_CASE("springs add twice their stiffness over the mass, Gershgorin") {
         1e-15);
 }
 
+TEST_CASE("lumped masses bound the step of a block with bonds, exact ones that of others") {
+  Scene tet;
+  Random random(1);
+  tet.add_tet(random, {0, 0, 0}, 1);
+  tet.build();
+  tet.start();
+  tet.state.node_bonds[0] = 1e8;
+  Model& m = tet.model;
+  for (Index i = 0; i < 4; ++i) {  // the mass matrix of a tet has 5 times the inverse
+    m.lumped_frequency_squared[i] = 1e8;
+    m.frequency_squared[i] = 5e8;
+    m.inverse_mass_bound[i] = 5 / m.mass[i];
+  }
+  const Real exact = step_limit(m, tet.state).dt;
+  tet.state.nodes.lumped.resize(4);
+  for (Index i = 0; i < 4; ++i) tet.state.nodes.lumped[i] = 1;
+  CHECK(relative_error(step_limit(m, tet.state).dt, std::sqrt(5.0) * exact) < 1e-14);
+}
+
 TEST_CASE("damping shortens the step") {
   Floating floating;
   const Real free = step_limit(floating.model, floating.state).dt;
