@@ -35,6 +35,22 @@ PYTHON = [
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
+        "scaled bonds",
+        "mass scaling that does not count bonds",
+        "src/cdem/model/mass_scaling.py",
+        "springs = 2 * (bond_stiffness(t, out) + contact_stiffness(t, p, out))",
+        "springs = 2 * contact_stiffness(t, p, out)",
+        "tests/unit/model/test_mass_scaling.py",
+    ),
+    Mutant(
+        "scaled again",
+        "mass scaling that follows what a stage changes",
+        "src/cdem/model/build.py",
+        "        built.assembly.added_mass,\n",
+        "        None,\n",
+        "tests/unit/model/test_mass_scaling.py",
+    ),
+    Mutant(
         "q",
         "irregular tets taken for regular ones",
         "src/cdem/model/compensation.py",
@@ -285,6 +301,14 @@ CORE = [
         "core/nodes/time_step.cpp",
         "2 * stiffness * (mass.is_lumped",
         "0 * stiffness * (mass.is_lumped",
+        "tests/core/nodes/test_time_step.cpp",
+    ),
+    Mutant(
+        "held nodes",
+        "held nodes bound the step of blocks with added mass",
+        "core/nodes/time_step.cpp",
+        "    if (is_held(supports, j)) continue;\n",
+        "",
         "tests/core/nodes/test_time_step.cpp",
     ),
     Mutant(

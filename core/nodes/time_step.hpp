@@ -14,6 +14,7 @@ struct StepLimit {
   Index node = -1;                     // where it is reached
   Real element_frequency_squared = 0;  // squared frequency of its elements there  [1/s2]
   Real contact_frequency_squared = 0;  // and of its bonds and contacts  [1/s2]
+  Real bond_part = 0;                  // of these, what bonds have
 };
 
 /// The stable step is renewed every so many steps, after every rebuild of the pair list, and after

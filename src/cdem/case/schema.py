@@ -173,9 +173,22 @@ class Elements(Part):
 
 
 class MassScaling(Part):
-    """Mass added to the elements that would force a smaller step."""
+    """Mass added where small elements, bonds and contacts would force a smaller step."""
 
-    step: Annotated[float, Quantity("s", above=0)] = Field(description="Step to reach [s]")
+    step: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None, description="Step to reach without damping [s]"
+    )
+    most: Annotated[float, Quantity("1", above=0, at_most=1)] | None = Field(
+        None,
+        description="Most mass to add, as a share of all; without step, the longest step that it buys "
+        "[1]",
+    )
+
+    @model_validator(mode="after")
+    def _asks_for_something(self) -> MassScaling:
+        if self.step is None and self.most is None:
+            raise ValueError("give a step to reach, or the most mass to add, e.g. most: 0.001")
+        return self
 
 
 class Time(Part):
@@ -187,7 +200,7 @@ class Time(Part):
     safety: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.8, description="Share of the stability limit that an automatic step uses [1]"
     )
-    mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst elements")
+    mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst nodes")
     energy_error: Annotated[float, Quantity("1", above=0)] | Literal["any"] = Field(
         0.05,
         description="Closing error of the energy balance, as a share of its largest term, at which a "

@@ -12,7 +12,8 @@ from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
-from cdem.model.masses import node_masses
+from cdem.model.mass_scaling import OFFER, Scaling, least_masses
+from cdem.model.masses import Geometry, node_masses
 
 Stride = Callable[[int], int]
 """The core's function from item count to table stride."""
@@ -39,14 +40,18 @@ def assemble(topology: Topology, properties: Properties, padded_stride: Stride) 
     out.arrays["material.mu"] = properties.shear
     out.arrays["material.law"] = properties.law
     out.arrays["material.parameters"] = properties.law_parameters.ravel()
-    _elements(topology, properties, padded_stride, out)
+    masses, geometry = _elements(topology, properties, padded_stride, out)
     _faces(topology, properties, out)
     _pairs(topology, properties, padded_stride, out)
     _corners(topology, out)
+    _masses(topology, properties, masses, geometry, out)
     return out
 
 
-def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
+def _elements(
+    t: Topology, p: Properties, padded_stride: Stride, out: Assembly
+) -> tuple[dict[str, Floats], dict[str, Geometry]]:
+    """Fill the arrays of the elements; give their mass matrices and geometry by shape."""
     row = 0
     mass: dict[str, Floats] = {}
     gravity_mass = np.zeros(len(t.node_position))
@@ -83,7 +88,28 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
     out.arrays["node.gravity_mass"] = gravity_mass
     out.arrays["node.block"] = t.node_block
     out.arrays["node.place"] = t.node_place
-    node_masses(t, p, mass, geometry, out)
+    return mass, geometry
+
+
+def _masses(
+    t: Topology,
+    p: Properties,
+    matrices: dict[str, Floats],
+    geometry: dict[str, Geometry],
+    out: Assembly,
+) -> None:
+    """Masses of the nodes, with what mass scaling adds."""
+    out.added_mass = np.zeros(len(t.node_position)) if p.added_mass is None else p.added_mass
+    node_masses(t, p, matrices, geometry, out.added_mass, out)
+    if p.added_mass is None:
+        scaling = Scaling(t, p, matrices, out)
+        out.limits = (scaling.limit(0.0), scaling.limit(OFFER))
+        if p.mass_scaling is not None:
+            out.added_mass = scaling.wanted(p.mass_scaling, p.safety)
+            node_masses(t, p, matrices, geometry, out.added_mass, out)
+    scaled = out.added_mass.any()
+    least = least_masses(t, matrices, out) + out.added_mass if scaled else np.zeros(0)
+    out.arrays["node.least_mass"] = least
 
 
 def _faces(t: Topology, p: Properties, out: Assembly) -> None:

@@ -131,7 +131,7 @@ def build(case: Case) -> Build:
     made_up = compensate(
         case, topology, names, compensated_groups(case, topology, names, laws, interface_of, bonds)
     )
-    parts = _assemble(case, topology, names, laws, interface_of, bonds, made_up, curves)
+    parts = _assemble(case, topology, names, laws, interface_of, bonds, made_up, curves, None)
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
@@ -172,10 +172,14 @@ def _assemble(
     bonds: NDArray[np.bool_],
     made_up: dict[str, Compensation],
     curves: Curves,
+    added_mass: Floats | None,
 ) -> Assembly:
-    """Arrays of the core, with supports and loads as the case has them now."""
+    """Arrays of the core, with supports and loads as the case has them now.
+
+    What mass scaling adds is as given, or follows from the case.
+    """
+    entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]
-    scaling = case.time.mass_scaling
     supports = supports_of(case, topology, names, curves)
     held = supports["component"][np.maximum(supports["row"], 0)].astype(bool)
     properties = Properties(
@@ -190,9 +194,14 @@ def _assemble(
         automatic=np.array([is_automatic(law) for law in laws], bool),
         stiffening=np.array([made_up[n].stiffening if n in made_up else 1.0 for n in names]),
         bond_stiffness=np.array([made_up[n].stiffness if n in made_up else 0.0 for n in names]),
+        contact_stiffness=np.array([[*e["stiffness_n"], *e["stiffness_s"]] for e in entries]),
+        in_series=np.array([e["in_series"] for e in entries], bool),
         exact_mass=case.moved_masses != "lumped",
+        lumped_while_bonded=case.moved_masses == "lumped-while-bonded",
         supported=held & (supports["row"] >= 0)[:, None],
-        target_step=0.0 if scaling is None else scaling.step,
+        mass_scaling=case.time.mass_scaling,
+        safety=case.time.safety,
+        added_mass=added_mass,
         one_point=case.elements.hexahedra == "one-point",
     )
     parts = assemble(topology, properties, native.padded_stride)
@@ -231,6 +240,7 @@ def change(built: Build) -> dict[str, NDArray]:
         built.bonded,
         built.compensation,
         built.curves,
+        built.assembly.added_mass,
     )
     kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s")
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}
