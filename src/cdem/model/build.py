@@ -180,6 +180,7 @@ def _assemble(
     """
     entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]
+    stiffening, bond_stiffness = _made_up(names, made_up)
     supports = supports_of(case, topology, names, curves)
     held = supports["component"][np.maximum(supports["row"], 0)].astype(bool)
     properties = Properties(
@@ -192,8 +193,8 @@ def _assemble(
         bonded=bonds,
         stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
         automatic=np.array([is_automatic(law) for law in laws], bool),
-        stiffening=np.array([made_up[n].stiffening if n in made_up else 1.0 for n in names]),
-        bond_stiffness=np.array([made_up[n].stiffness if n in made_up else 0.0 for n in names]),
+        stiffening=stiffening,
+        bond_stiffness=bond_stiffness,
         contact_stiffness=np.array([[*e["stiffness_n"], *e["stiffness_s"]] for e in entries]),
         in_series=np.array([e["in_series"] for e in entries], bool),
         exact_mass=case.moved_masses != "lumped",
@@ -209,6 +210,15 @@ def _assemble(
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
     return parts
+
+
+def _made_up(names: list[str], made_up: dict[str, Compensation]) -> tuple[Floats, Floats]:
+    """By group, how much stiffer its elements are than the whole, and its bonds [Pa/m] or 0."""
+    found = [made_up.get(name) for name in names]
+    return (
+        np.array([1.0 if c is None else c.stiffening for c in found]),
+        np.array([0.0 if c is None else c.stiffness for c in found]),
+    )
 
 
 def _law_row(material: Material) -> list[float]:
