@@ -59,7 +59,7 @@ class Group(Part):
 
 
 class Damping(Part):
-    """What takes energy out; all are zero unless given, but local in a static stage."""
+    """What takes energy out."""
 
     local: Annotated[float, Quantity("1", at_least=0, below=1)] | None = Field(
         None,
@@ -74,8 +74,10 @@ class Damping(Part):
         description="Stiffness-proportional (Rayleigh), as a fraction of critical at the highest "
         "frequency that the time step resolves [1]",
     )
-    contact: Annotated[float, Quantity("1", at_least=0)] = Field(
-        0.0, description="Dashpot at each contact, as a fraction of critical [1]"
+    contact: Annotated[float, Quantity("1", at_least=0)] | None = Field(
+        None,
+        description="Dashpot at each contact, as a fraction of critical of the nodes that touch [1]; "
+        "default 0.1 in a dynamic stage, with cdem: 1 and in a static stage 0",
     )
 
 
@@ -104,8 +106,9 @@ class Stage(Part):
     damping: Damping = Field(Damping(), description="Damping")
     relax: Literal["local", "kinetic", "adaptive"] | None = Field(
         None,
-        description="Static only: the way to rest: local damping (default), kinetic (stop at peaks of "
-        "the kinetic energy), or adaptive (critical damping and scaled masses: the fewest steps)",
+        description="Static only: the way to rest: adaptive (critical damping and scaled masses: the "
+        "fewest steps; default), kinetic (stop at peaks of the kinetic energy), or local damping "
+        "(default with cdem: 1)",
     )
     set: dict[str, Any] = Field(
         {}, description="Values that change when the stage begins: {path in the case: value}"
@@ -122,10 +125,17 @@ class Stage(Part):
         # Not by assignment: that would start this check again.
         if self.mode == "static":
             self.__dict__["tolerance"] = self.tolerance or 1e-5
-            self.__dict__["relax"] = self.relax or "local"
+        return self
+
+    def complete(self, version: int) -> None:
+        """Fill in what the case has left out, as this version of the case format has it."""
+        if self.mode == "static":
+            self.__dict__["relax"] = self.relax or ("local" if version == 1 else "adaptive")
         if self.damping.local is None:
             self.damping.__dict__["local"] = 0.8 if self.relax == "local" else 0.0
-        return self
+        if self.damping.contact is None:
+            steady = self.mode == "dynamic" and version > 1
+            self.damping.__dict__["contact"] = 0.1 if steady else 0.0
 
 
 class Contact(Part):
@@ -270,6 +280,12 @@ class CaseParts(Part):
     time: Time = Field(Time(), description="The time step")
     output: Output = Field(Output(), description="What is written")
     histories: list[HistoryPoint] = Field([], description="Quantities followed over time")
+
+    @model_validator(mode="after")
+    def _complete(self) -> CaseParts:
+        for stage in self.stages:
+            stage.complete(self.cdem)
+        return self
 
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:
