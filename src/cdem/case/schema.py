@@ -265,7 +265,7 @@ class CaseParts(Part):
     """All parts of a case."""
 
     cdem: Literal[1, 2] = Field(
-        1, description="Version of the case format: defaults differ between versions"
+        2, description="Version of the case format: defaults differ between versions"
     )
     title: Line = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
