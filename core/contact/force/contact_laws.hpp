@@ -3,27 +3,22 @@
 
 #include "core/contact/force/contact_spring.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
+#include "core/contact/geometry/face_interfaces.hpp"
 #include "core/interfaces/laws.hpp"
 
 namespace cdem {
 
 /// Interfaces by pair of classes of faces, and the contact dashpot.
 struct ContactLaws {
-  const Index* interface_of;  // [class_m * class_count + class_t]
+  FaceInterfaces faces;
   InterfaceTable interfaces;
-  Index class_count;
   Real damping_ratio;     // of critical, on the effective mass of the two points
   const Real* node_mass;  // [kg]
 
   /// The interface between two exposed faces, or between one and another a lane.
   template <class Ids>
   CDEM_HD auto between(const FaceGeometry& geometry, const Ids& m, const Ids& t) const {
-    return indices_of(
-        [&](Index a, Index b) {
-          return interface_of[geometry.table[a].interface_class * class_count +
-                              geometry.table[b].interface_class];
-        },
-        m, t);
+    return faces.between(geometry.table, m, t);
   }
   /// Spring of a contact of theirs on its characteristic area.
   template <class Ids>

@@ -75,7 +75,10 @@ class Damping(Part):
         "frequency that the time step resolves [1]",
     )
     contact: Annotated[float, Quantity("1", at_least=0)] = Field(
-        0.0, description="Dashpot at each contact, as a fraction of critical [1]"
+        0.0,
+        description="Dashpot at each contact, as a fraction of critical of the two nodes that touch "
+        "[1]; how much speed an impact keeps then depends on mass, points and shape: for a given "
+        "coefficient use restitution of the interface",
     )
 
 

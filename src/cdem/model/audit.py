@@ -21,6 +21,10 @@ SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
 
 
+CONTACTS = "interface or contact stiffness"
+"""What decides the time step, if elements do not."""
+
+
 class Audit:
     """Report on a model that is ready to run.
 
@@ -107,7 +111,7 @@ class Audit:
             "limit": limit,
             "node": int(node),
             "group": group,
-            "rules": "element" if element2 > contact2 else "interface or contact stiffness",
+            "rules": "element" if element2 > contact2 else CONTACTS,
             "added_mass": b.assembly.added_mass,
         }
 
@@ -298,6 +302,11 @@ class Audit:
                 f"{row['height']:.3g} m of rock, {100 * row['overlap_at_speed']:.2g} % at "
                 f"{row['speed']:.3g} m/s"
             )
+            if row["restitution"] < 1 and self.step["rules"] == CONTACTS:
+                lines[-1] += (
+                    f"; restitution {row['restitution']:g} makes them "
+                    f"{row['restitution'] ** -2:.3g} times as stiff in unloading, which shortens the step"
+                )
         return lines
 
 
