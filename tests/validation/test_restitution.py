@@ -90,7 +90,7 @@ def test_restitution_does_not_depend_on_the_speed(body, e):
     expected, _ = rebound(*drop(body, e, 1.0), 1.0)
     for speed in (0.1, 10.0, 30.0):
         measured, _ = rebound(*drop(body, e, speed), speed)
-        assert measured == pytest.approx(expected, abs=0.01)
+        assert measured == pytest.approx(expected, abs=0.005)
 
 
 @pytest.mark.parametrize("e", [0.5])
