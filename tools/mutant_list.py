@@ -288,6 +288,38 @@ PYTHON = [
 
 CORE = [
     Mutant(
+        "restitution",
+        "contacts unload with e instead of e^2",
+        "bindings/laws.hpp",
+        "interface.returned_n = e_n * e_n;",
+        "interface.returned_n = e_n;",
+        "tests/validation/test_restitution.py",
+    ),
+    Mutant(
+        "unloading",
+        "a shear spring goes softer through zero than it unloads",
+        "core/contact/force/unloading.hpp",
+        "const T other_way = -max_of(size, -returned * unloaded);",
+        "const T other_way = returned * unloaded;",
+        "tests/core/contact/force/test_unloading.cpp",
+    ),
+    Mutant(
+        "stiffer",
+        "the step does not know how stiff contacts unload",
+        "core/contact/force/unloading.hpp",
+        "return max_of(spring.n() / returned_n, spring.s() / returned_s);",
+        "return max_of(spring.n(), spring.s());",
+        "tests/unit/model/test_stiffness.py",
+    ),
+    Mutant(
+        "unloaded",
+        "a contact that moves to another face forgets that it has unloaded",
+        "core/contact/force/change_of_target.hpp",
+        "const bool unloaded = s.approach > s.penetration;",
+        "const bool unloaded = false;",
+        "tests/core/contact/force/test_change_of_target.cpp",
+    ),
+    Mutant(
         "curve",
         "curves interpolated from the wrong end",
         "core/nodes/curves.cpp",

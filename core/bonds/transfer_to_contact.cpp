@@ -52,10 +52,11 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairS
         spring.shear2 = dot(force, frame.t2);
         spring.penetration = -std::min(1.0, bond_n / kn) * dot(frame_a.n, jump);
         spring.stress_free_gap = spring.penetration + dot(frame_a.n, jump);
+        spring.approach = spring.penetration;
         spring.force_n = kn * spring.penetration;
-        spring.energy_n = 0.5 * kn * spring.penetration * spring.penetration;
-        spring.energy_s =
-            0.5 / ks * (spring.shear1 * spring.shear1 + spring.shear2 * spring.shear2);
+        spring.energy_n = contact.returned_n * 0.5 * kn * spring.penetration * spring.penetration;
+        spring.energy_s = contact.returned_s * 0.5 / ks *
+                          (spring.shear1 * spring.shear1 + spring.shear2 * spring.shear2);
         spring.store(s.springs.state.data(), slot);
         handed += spring.energy_n + spring.energy_s;
       }
@@ -128,6 +129,7 @@ struct Successor {
   bool is_edge, on_b;  // does the force act on the second face?
   Frame<Real> frame;   // of its target
   Real depth, kn, ks;  // [m], [N/m]
+  Real returned_n, returned_s;
 };
 
 /// Contacts of exposed face x with y that begin now.
@@ -136,7 +138,10 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
   const FaceColumns faces = face_columns(m, s);
   const FaceGeometry geometry = face_geometry(s);
   const ContactLaws laws = contact_laws(m, s);
-  const auto spring = laws.spring(geometry, laws.between(geometry, x, y), x, y);
+  const Index interface = laws.between(geometry, x, y);
+  const auto spring = laws.spring(geometry, interface, x, y);
+  const Real returned_n = laws.faces.returned_n(interface),
+             returned_s = laws.faces.returned_s(interface);
   const FaceShape<Real> mother = faces.shape_before(s.search.exposed_face[x]),
                         target = faces.shape_before(s.search.exposed_face[y]);
   const Frame<Real> frame = target.frame();
@@ -153,7 +158,9 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
          .frame = frame,
          .depth = -project(target, acting, frame.n).gap,
          .kn = 0.5 * spring.n(),
-         .ks = 0.5 * spring.s()});
+         .ks = 0.5 * spring.s(),
+         .returned_n = returned_n,
+         .returned_s = returned_s});
   }
   for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
     const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
@@ -171,7 +178,9 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
          .frame = at,
          .depth = -cross_edges(mother.x[k], along_m, start, along_t, at.n).gap,
          .kn = spring.n(),
-         .ks = spring.s()});
+         .ks = spring.s(),
+         .returned_n = returned_n,
+         .returned_s = returned_s});
   }
 }
 
@@ -179,12 +188,14 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
 Real give(State& s, const Successor& c, Real part, const Vec3<Real>& shear) {
   ContactState state{};
   state.penetration = part * c.depth;
+  state.approach = state.penetration;
   state.stress_free_gap = state.penetration - c.depth;
   state.force_n = c.kn * state.penetration;
   state.shear1 = dot(shear, c.frame.t1);
   state.shear2 = dot(shear, c.frame.t2);
-  state.energy_n = 0.5 * state.force_n * state.penetration;
-  state.energy_s = 0.5 / c.ks * (state.shear1 * state.shear1 + state.shear2 * state.shear2);
+  state.energy_n = c.returned_n * 0.5 * state.force_n * state.penetration;
+  state.energy_s =
+      c.returned_s * 0.5 / c.ks * (state.shear1 * state.shear1 + state.shear2 * state.shear2);
   if (c.is_edge) {
     EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c.place);
     contact.before = Index(s.edges.old_state.size() / 8);

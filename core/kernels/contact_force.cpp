@@ -9,8 +9,10 @@
 namespace cdem {
 
 template void for_each_item(Queue, Index, const ChangeTargets&);
-template void for_each_selected(Queue, Index, const UpdateSpringForces&);
-template void for_each_lane(Queue, Index, const UpdateEdgeForces&);
+template void for_each_selected(Queue, Index, const UpdateSpringForces<ElasticUnloading>&);
+template void for_each_selected(Queue, Index, const UpdateSpringForces<HystereticUnloading>&);
+template void for_each_lane(Queue, Index, const UpdateEdgeForces<ElasticUnloading>&);
+template void for_each_lane(Queue, Index, const UpdateEdgeForces<HystereticUnloading>&);
 template void for_each_item(Queue, Index, const MergeSideHistories&);
 template void for_each_item(Queue, Index, const CountContactsByTarget&);
 template void for_each_item(Queue, Index, const ListContactsByTarget&);

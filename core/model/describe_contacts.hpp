@@ -37,8 +37,9 @@ void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
           .refers_to = {"exposed"}},
          c.target_before);
   stored({.name = "spring.state",
-          .unit = "N, m, N, N, m, J, J, -",
-          .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies",
+          .unit = "N, m, N, N, m, J, J, m",
+          .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies, "
+                     "approach",
           .rows = "slots",
           .numbers = 8},
          c.state);
@@ -82,8 +83,9 @@ void describe_edges(EdgeState& e, Stored&& stored) {
           .refers_to = {"slots", "exposed", "edges", "old_edge_states"}},
          e.contact);
   stored({.name = "edge.state",
-          .unit = "N, m, N, N, m, J, J, -",
-          .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies",
+          .unit = "N, m, N, N, m, J, J, m",
+          .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies, "
+                     "approach",
           .rows = "edge_contacts",
           .numbers = 8},
          e.state);
@@ -125,7 +127,7 @@ void describe_found_edges(EdgeState& e, Rebuilt&& rebuilt) {
           e.old_contact);
   rebuilt("find_target_edges",
           {.name = "edge.old_state",
-           .unit = "N, m, N, N, m, J, J, -",
+           .unit = "N, m, N, N, m, J, J, m",
            .meaning = "edge.state, one step ago",
            .rows = "old_edge_states",
            .numbers = 8},

@@ -10,10 +10,12 @@ namespace cdem {
 /// What a contact remembers from step to step: a row of 8 numbers.
 struct ContactState {
   Real force_n;      // compression > 0  [N]
-  Real penetration;  // effective penetration: stress_free_gap - gap, or 0; -1 before it begins  [m]
+  Real penetration;  // effective: stress_free_gap - gap, or 0; less where a hysteretic contact has
+                     // unloaded; -1 before it begins  [m]
   Real shear1, shear2;      // in the frame of target face or edge pair  [N]
   Real stress_free_gap;     // gap at which the contact is free of stress  [m]
   Real energy_n, energy_s;  // stored in the normal and in the shear spring  [J]
+  Real approach = 0;        // stress_free_gap - gap; 0 where no interface is hysteretic  [m]
 
   CDEM_HD static ContactState at(const Real* rows, std::size_t place) {
     const Real* r = rows + 8 * place;
@@ -23,8 +25,11 @@ struct ContactState {
             .shear2 = r[3],
             .stress_free_gap = r[4],
             .energy_n = r[5],
-            .energy_s = r[6]};
+            .energy_s = r[6],
+            .approach = r[7]};
   }
+  /// How far it lies beyond its stress-free gap, with or without force  [m].
+  CDEM_HD Real depth() const { return max_of(penetration, approach); }
   /// That of a contact that was none.
   CDEM_HD static ContactState none() {
     ContactState s{};
@@ -34,7 +39,7 @@ struct ContactState {
   CDEM_HD void store(Real* rows, std::size_t place) const {
     Real* r = rows + 8 * place;
     r[0] = force_n, r[1] = penetration, r[2] = shear1, r[3] = shear2;
-    r[4] = stress_free_gap, r[5] = energy_n, r[6] = energy_s;
+    r[4] = stress_free_gap, r[5] = energy_n, r[6] = energy_s, r[7] = approach;
   }
 };
 

@@ -13,6 +13,7 @@ struct Interface {
   bool in_series;  // sides
   Real stiffness_n_value, stiffness_n_factor;
   Real stiffness_s_value, stiffness_s_factor;
+  Real returned_n = 1, returned_s = 1;  // e^2: share of the work of loading that contacts give back
 
   /// Normal and shear stiffness between sides whose elements have these stiffnesses.
   CDEM_HD Real stiffness_n(Real a, Real b) const {
@@ -21,6 +22,8 @@ struct Interface {
   CDEM_HD Real stiffness_s(Real a, Real b) const {
     return stiffness_s_value > 0 ? stiffness_s_value : stiffness_s_factor * between(a, b);
   }
+  /// Do contacts unload stiffer than they load?
+  CDEM_HD bool is_hysteretic() const { return returned_n < 1 || returned_s < 1; }
 
  private:
   CDEM_HD Real between(Real a, Real b) const {

@@ -20,11 +20,11 @@ Real deepest_gap(const State& s, Index place) {
   for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
     if (s.springs.target[k] >= 0) {
       const ContactState spring = ContactState::at(s.springs.state.data(), k);
-      deepest = std::max(deepest, spring.penetration - spring.stress_free_gap);
+      deepest = std::max(deepest, spring.depth() - spring.stress_free_gap);
     }
   for (Index c = s.edges.first[place]; c < s.edges.first[place + 1]; ++c) {
     const ContactState edge = ContactState::at(s.edges.state.data(), c);
-    deepest = std::max(deepest, edge.penetration - edge.stress_free_gap);
+    deepest = std::max(deepest, edge.depth() - edge.stress_free_gap);
   }
   return 2 * deepest;
 }

@@ -35,8 +35,9 @@ struct ChangeTargets {
  private:
   /// A contact that changes its face keeps the shear force, turned into the new plane with its
   /// length kept, and penetrates as far as gives the normal spring there the energy it had: as deep
-  /// as before would make some where the new face is the stiffer one. Until it has its new force,
-  /// its energies are what its springs held on the old face and did not give back.
+  /// as before would make some where the new face is the stiffer one. Where it has unloaded, its
+  /// approach is scaled alike. Until it has its new force, its energies are what its springs held
+  /// on the old face and did not give back.
   CDEM_HD void move_to_target(Index m, Index slot, Index before, Index t) const {
     ContactState s = ContactState::at(springs.state, slot);
     const DissipatedAtEnd left = lost_on(m, slot, before);
@@ -49,11 +50,18 @@ struct ChangeTargets {
     const Real scale = in_plane > 0 ? sqrt_of(s1 * s1 + s2 * s2) / in_plane : 0.0;
     s.shear1 = scale * a;
     s.shear2 = scale * b;
-    const Real kn = 0.5 * laws.spring(geometry, laws.between(geometry, m, t), m, t).n();
+    const bool unloaded = s.approach > s.penetration;
+    const Real kn = storing_stiffness(m, t);
     s.penetration = sqrt_of(2 / kn * s.energy_n);
+    s.approach = unloaded ? sqrt_of(storing_stiffness(m, before) / kn) * s.approach : s.penetration;
     s.energy_n = left.dashpot;
     s.energy_s = left.friction;
     s.store(springs.state, slot);
+  }
+  /// Of the energy that a normal spring gives back, by its effective penetration  [N/m].
+  CDEM_HD Real storing_stiffness(Index m, Index t) const {
+    const Index interface = laws.between(geometry, m, t);
+    return 0.5 * laws.spring(geometry, interface, m, t).n() * laws.faces.returned_n(interface);
   }
   /// A contact that ended forgets its forces.
   CDEM_HD void close_contact(Index m, Index slot, Index before) const {
@@ -78,7 +86,8 @@ struct ChangeTargets {
     const Projection<Real> foot = project(shape, mother.x_old, frame.n);
     Vec3<Real> way = mother.x - mother.x_old;
     for (Index j = 0; j < 4; ++j) way = way - foot.weight[j] * moved[j];
-    return {ContactState::at(springs.state, slot), frame, way};
+    const Real returned = laws.faces.returned_n(laws.between(geometry, m, before));
+    return {ContactState::at(springs.state, slot), returned, frame, way};
   }
 };
 

@@ -53,6 +53,7 @@ template <class T>
 struct ContactBefore {
   T force_n, penetration;  // [N], [m]
   T shear1, shear2;        // [N]
+  T approach = T(0.0);     // of a hysteretic contact  [m]
 };
 
 /// Force of one contact and what it stores and loses.

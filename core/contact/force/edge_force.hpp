@@ -3,6 +3,7 @@
 
 #include "core/contact/force/contact_force.hpp"
 #include "core/contact/force/contact_laws.hpp"
+#include "core/contact/force/unloading.hpp"
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/interfaces/history.hpp"
@@ -10,6 +11,7 @@
 namespace cdem {
 
 /// Force of every semi-edge contact.
+template <template <class> class Unloading>
 struct UpdateEdgeForces {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -30,28 +32,30 @@ struct UpdateEdgeForces {
     const ContactSpring<T> spring =
         laws.spring(geometry, interface, contact.mother_face, contact.target_face);
     const auto pair = relative_motion(contact);
+    const auto unloading = Unloading<T>::of(laws, interface);
     const Before<T> old = before(contact.before);
     const T gap = pair.crossing.gap;
     const T free =
         select(old.begins, starting_stress_free_gap(gap, pair.gap_rate, T(faces.dt), zero, zero),
                lifted_stress_free_gap(old.stress_free_gap, gap));
-    const ContactMotion<T> motion{.gap = gap - free,
-                                  .stress_free_gap = free,
-                                  .gap_rate = pair.gap_rate,
-                                  .slip1 = pair.slip1,
-                                  .slip2 = pair.slip2,
-                                  .dashpot = laws.dashpot(spring, pair.inverse_mass),
-                                  .may_rise = zero,
-                                  .dt = faces.dt};
+    const ContactMotion<T> motion{
+        .gap = unloading.gap(gap - free, old.force),
+        .stress_free_gap = free,
+        .gap_rate = pair.gap_rate,
+        .slip1 = pair.slip1,
+        .slip2 = pair.slip2,
+        .dashpot = unloading.dashpot(laws.dashpot(spring, pair.inverse_mass)),
+        .may_rise = zero,
+        .dt = faces.dt};
     const auto place = indices_of([](Index c) { return c; }, item);
     const JointAnswer<T> joint =
-        respond_with_history(laws.interfaces, interface, contact_input(spring, motion, old.force),
+        respond_with_history(laws.interfaces, interface, unloading.input(spring, motion, old.force),
                              side_history, contact.mother_side, contact_history, place);
-    const ContactForce<T> f = contact_force(spring, motion, old.force, joint);
+    const ContactForce<T> f = unloading.force(spring, motion, gap - free, old.force, joint);
     const T state[8] = {f.force_n, f.penetration, f.shear1,   f.shear2,
-                        free,      f.energy_n,    f.energy_s, zero};
+                        free,      f.energy_n,    f.energy_s, unloading.approach(gap - free, f)};
     set_rows(edges.state, item, state);
-    write_reaction(item, contact, pair, spring, f);
+    write_reaction(item, contact, pair, unloading.stiffness(spring), f);
   }
 
  private:
@@ -104,7 +108,8 @@ struct UpdateEdgeForces {
     return {.force = {.force_n = was([](const ContactState& s) { return s.force_n; }),
                       .penetration = max_of(penetration, zero),
                       .shear1 = was([](const ContactState& s) { return s.shear1; }),
-                      .shear2 = was([](const ContactState& s) { return s.shear2; })},
+                      .shear2 = was([](const ContactState& s) { return s.shear2; }),
+                      .approach = was([](const ContactState& s) { return s.approach; })},
             .stress_free_gap = was([](const ContactState& s) { return s.stress_free_gap; }),
             .begins = penetration < zero};
   }
@@ -157,7 +162,7 @@ struct UpdateEdgeForces {
   /// Both edges take the force on one line of action: no couple is left over.
   template <class I, class Ids, class T>
   CDEM_HD void write_reaction(const I& item, const Contact<Ids>& contact,
-                              const RelativeMotion<T>& pair, const ContactSpring<T>& spring,
+                              const RelativeMotion<T>& pair, const T& stiffness,
                               const ContactForce<T>& f) const {
     const T zero(0.0), one(1.0);
     const Frame<T>& frame = pair.frame;
@@ -174,7 +179,7 @@ struct UpdateEdgeForces {
     };
     const T forward = numbers_of(same_way, contact.target_face, contact.target_edge, contact.t0);
     const T reaction[8] = {force.x,    force.y,
-                           force.z,    select(pressed, max_of(spring.n(), spring.s()), zero),
+                           force.z,    select(pressed, stiffness, zero),
                            on_m,       select(forward > zero, on_t, one - on_t),
                            f.friction, f.dashpot};
     set_rows(edges.reaction, item, reaction);

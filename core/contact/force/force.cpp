@@ -14,6 +14,7 @@ namespace cdem {
 
 namespace {
 
+template <template <class> class Unloading>
 void update_spring_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
   const FaceColumns faces = face_columns(m, s);
@@ -27,14 +28,15 @@ void update_spring_forces(const Model& m, State& s, Queue q) {
                               .laws = laws,
                               .springs = springs});
   for_each_selected(q, count,
-                    UpdateSpringForces{.faces = faces,
-                                       .geometry = geometry,
-                                       .rules = m.rules,
-                                       .laws = laws,
-                                       .springs = springs,
-                                       .history = history_rows(s.springs.history)});
+                    UpdateSpringForces<Unloading>{.faces = faces,
+                                                  .geometry = geometry,
+                                                  .rules = m.rules,
+                                                  .laws = laws,
+                                                  .springs = springs,
+                                                  .history = history_rows(s.springs.history)});
 }
 
+template <template <class> class Unloading>
 void update_edge_forces(const Model& m, State& s, Queue q) {
   const Index contacts = Index(s.edges.contact.size() / 4);
   s.edges.contact_history.rows.resize(HistoryRows::width * std::size_t(contacts));
@@ -42,14 +44,14 @@ void update_edge_forces(const Model& m, State& s, Queue q) {
   const HistoryRows sides = history_rows(s.edges.side_history),
                     own = history_rows(s.edges.contact_history);
   for_each_lane(q, contacts,
-                UpdateEdgeForces{.faces = face_columns(m, s),
-                                 .geometry = face_geometry(s),
-                                 .exposed_face = s.search.exposed_face.data(),
-                                 .laws = contact_laws(m, s),
-                                 .state_before = s.edges.old_state.data(),
-                                 .edges = edge_columns(s),
-                                 .side_history = sides,
-                                 .contact_history = own});
+                UpdateEdgeForces<Unloading>{.faces = face_columns(m, s),
+                                            .geometry = face_geometry(s),
+                                            .exposed_face = s.search.exposed_face.data(),
+                                            .laws = contact_laws(m, s),
+                                            .state_before = s.edges.old_state.data(),
+                                            .edges = edge_columns(s),
+                                            .side_history = sides,
+                                            .contact_history = own});
   if (HistoryRows::width > 0)
     for_each_item(q, Index(s.search.exposed_face.size()),
                   MergeSideHistories{edge_columns(s), sides, own});
@@ -87,8 +89,13 @@ void accumulate_forces(const Model& m, State& s, Queue q) {
 
 void update_contact_forces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::contact);
-  update_spring_forces(m, s, q);
-  update_edge_forces(m, s, q);
+  if (any_hysteretic(m)) {
+    update_spring_forces<HystereticUnloading>(m, s, q);
+    update_edge_forces<HystereticUnloading>(m, s, q);
+  } else {
+    update_spring_forces<ElasticUnloading>(m, s, q);
+    update_edge_forces<ElasticUnloading>(m, s, q);
+  }
   accumulate_forces(m, s, q);
 }
 

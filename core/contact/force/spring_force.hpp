@@ -4,12 +4,14 @@
 #include "core/contact/force/contact_force.hpp"
 #include "core/contact/force/contact_laws.hpp"
 #include "core/contact/force/mother_point.hpp"
+#include "core/contact/force/unloading.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/interfaces/history.hpp"
 
 namespace cdem {
 
 /// Force of every semi-spring in contact; slot = 4 * exposed face + vertex.
+template <template <class> class Unloading>
 struct UpdateSpringForces {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -31,30 +33,34 @@ struct UpdateSpringForces {
     const auto interface = laws.between(geometry, item.row, target.face);
     ContactSpring<T> spring = laws.spring(geometry, interface, item.row, target.face);
     spring.area = T(0.5) * spring.area;  // the other block's semi-springs see the contact too
-    const Before<T> old = before(slot, target.begins);
-    const T gap = pair.foot.gap;
+    const auto unloading = Unloading<T>::of(laws, interface);
+    Before<T> old = before(slot, target.begins);
+    const T gap = pair.foot.gap, dt(faces.dt);
     const T free =
         select(target.changes,
-               starting_stress_free_gap(gap, pair.gap_rate, T(faces.dt), old.force.penetration,
+               starting_stress_free_gap(gap, pair.gap_rate, dt, unloading.depth(old.force),
                                         max_of(old.stress_free_gap, zero)),
                lifted_stress_free_gap(old.stress_free_gap, gap));
-    const ContactMotion<T> motion{.gap = gap - free,
-                                  .stress_free_gap = free,
-                                  .gap_rate = pair.gap_rate,
-                                  .slip1 = pair.slip1,
-                                  .slip2 = pair.slip2,
-                                  .dashpot = laws.dashpot(spring, pair.inverse_mass),
-                                  .may_rise = T(1.0),
-                                  .dt = faces.dt};
+    unloading.begin(target.changes, free - (gap - pair.gap_rate * dt), old.force);
+    const ContactMotion<T> motion{
+        .gap = unloading.gap(gap - free, old.force),
+        .stress_free_gap = free,
+        .gap_rate = pair.gap_rate,
+        .slip1 = pair.slip1,
+        .slip2 = pair.slip2,
+        .dashpot = unloading.dashpot(laws.dashpot(spring, pair.inverse_mass)),
+        .may_rise = T(1.0),
+        .dt = faces.dt};
     const JointAnswer<T> joint =
-        respond_with_history(laws.interfaces, interface, contact_input(spring, motion, old.force),
+        respond_with_history(laws.interfaces, interface, unloading.input(spring, motion, old.force),
                              history, slot, history, slot);
-    const ContactForce<T> f = contact_force(spring, motion, old.force, joint);
-    const T state[8] = {f.force_n,     f.penetration, f.shear1,   f.shear2,
-                        free + f.rise, f.energy_n,    f.energy_s, zero};
+    const ContactForce<T> f = unloading.force(spring, motion, gap - free, old.force, joint);
+    const T state[8] = {
+        f.force_n,     f.penetration, f.shear1,   f.shear2,
+        free + f.rise, f.energy_n,    f.energy_s, unloading.approach(gap - free, f)};
     set_rows(springs.state, slot, state);
     count_losses(slot, target.changes & !target.begins, old, f, motion);
-    write_reaction(slot, pair, spring, f);
+    write_reaction(slot, pair, unloading.stiffness(spring), f);
   }
 
  private:
@@ -89,7 +95,8 @@ struct UpdateSpringForces {
     return {.force = {.force_n = select(begins, zero, forces.x),
                       .penetration = select(begins, zero, forces.y),
                       .shear1 = select(begins, zero, forces.z),
-                      .shear2 = select(begins, zero, forces.w)},
+                      .shear2 = select(begins, zero, forces.w),
+                      .approach = select(begins, zero, rest.w)},
             .stress_free_gap = select(begins, zero, rest.x),
             .undelivered_n = rest.y,
             .undelivered_s = rest.z};
@@ -155,8 +162,8 @@ struct UpdateSpringForces {
 
   /// The target takes the force where its line of action meets the face: no couple is left over.
   template <class Ids, class T>
-  CDEM_HD void write_reaction(const Ids& slot, const RelativeMotion<T>& pair,
-                              const ContactSpring<T>& spring, const ContactForce<T>& f) const {
+  CDEM_HD void write_reaction(const Ids& slot, const RelativeMotion<T>& pair, const T& stiffness,
+                              const ContactForce<T>& f) const {
     const T zero(0.0);
     const Frame<T>& frame = pair.frame;
     const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
@@ -166,9 +173,8 @@ struct UpdateSpringForces {
     const auto weight = [&](Index j) {
       return select(pressed, meet.weight[j], pair.foot.weight[j]);
     };
-    const T reaction[8] = {
-        force.x,   force.y,   force.z,   select(pressed, max_of(spring.n(), spring.s()), zero),
-        weight(0), weight(1), weight(2), weight(3)};
+    const T reaction[8] = {force.x,   force.y,   force.z,   select(pressed, stiffness, zero),
+                           weight(0), weight(1), weight(2), weight(3)};
     set_rows(springs.reaction, slot, reaction);
   }
 };

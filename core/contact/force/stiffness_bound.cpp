@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "core/contact/force/unloading.hpp"
 #include "core/contact/force/views.hpp"
 #include "core/contact/geometry/views.hpp"
 #include "core/model/force_sets.hpp"
@@ -43,8 +44,10 @@ void sum_stiffness(const Model& m, State& s) {
   for (Index y = 0; y < exposed; ++y)
     for (Index c = s.search.outer.acting_first[y]; c < s.search.outer.acting_first[y + 1]; ++c) {
       const Index x = s.search.outer.faces_acting_on[c];
-      const auto spring = laws.spring(geometry, laws.between(geometry, x, y), x, y);
-      for (const Index face : {x, y}) raise_to(stiffest_of[face], std::max(spring.n(), spring.s()));
+      const Index interface = laws.between(geometry, x, y);
+      const auto spring = laws.spring(geometry, interface, x, y);
+      const Real most = HystereticUnloading<Real>::of(laws, interface).stiffness(spring);
+      for (const Index face : {x, y}) raise_to(stiffest_of[face], most);
     }
   for (Index x = 0; x < exposed; ++x) {  // either side's semi-springs, as much again for semi-edges
     const Index face = s.search.exposed_face[x];

@@ -1,7 +1,10 @@
 // views.hpp - what the kernels of contact forces see of the interfaces.
 #pragma once
 
+#include <algorithm>
+
 #include "core/contact/force/contact_laws.hpp"
+#include "core/contact/geometry/views.hpp"
 #include "core/interfaces/history.hpp"
 #include "core/model/interface_table.hpp"
 #include "core/model/state.hpp"
@@ -10,11 +13,18 @@
 namespace cdem {
 
 inline ContactLaws contact_laws(const Model& m, const State& s) {
-  return {.interface_of = m.interface_of.data(),
+  return {.faces = face_interfaces(m),
           .interfaces = interface_table(m),
-          .class_count = m.class_count,
           .damping_ratio = m.contact_damping,
+          .dt = s.dt,
           .node_mass = lumped_masses(m, s).data()};
+}
+
+/// Does any interface ask for restitution?
+inline bool any_hysteretic(const Model& m) {
+  const Interface* first = m.interfaces.data();
+  return std::any_of(first, first + m.interfaces.size(),
+                     [](const Interface& i) { return i.is_hysteretic(); });
 }
 
 inline HistoryRows history_rows(HistoryColumns& h) { return {h.rows.data(), h.law.data()}; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/contact/geometry/face_geometry.hpp"
+#include "core/contact/geometry/face_interfaces.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 
@@ -26,6 +27,10 @@ inline FaceColumns face_columns(const Model& m, const State& s) {
 
 inline FaceGeometry face_geometry(const State& s) {
   return {s.face_geometry.data(), s.search.exposed.data()};
+}
+
+inline FaceInterfaces face_interfaces(const Model& m) {
+  return {m.interface_of.data(), m.interfaces.data(), m.class_count};
 }
 
 }  // namespace cdem

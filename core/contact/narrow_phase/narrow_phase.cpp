@@ -36,6 +36,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {
   } while (!make_room_for_edges(s));
   for_each_item(q, Index(s.search.exposed_face.size()),
                 ListEdgeContacts{.touch = edge_search(m, s),
+                                 .interfaces = face_interfaces(m),
                                  .first = s.edges.first.data(),
                                  .contact = s.edges.contact.data(),
                                  .friction = s.edges.friction.data(),

@@ -5,6 +5,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/contact/geometry/edge.hpp"
+#include "core/contact/geometry/face_interfaces.hpp"
 #include "core/contact/narrow_phase/closed_contact.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/contact/narrow_phase/edge_pair.hpp"
@@ -269,6 +270,7 @@ struct ResolveTargetEdges {
 /// springs of ended contacts did not give back is lost to friction and dashpot.
 struct ListEdgeContacts {
   ResolveTargetEdges touch;
+  FaceInterfaces interfaces;
   const Index* first;  // [exposed + 1] of the list
   Index* contact;      // rows of EdgeContact
   Real* friction;      // [exposed] lost so far  [J]
@@ -319,7 +321,9 @@ struct ListEdgeContacts {
                crossed = side(target[0], target[1]);
     const Vec3<Real> n = edge_normal(mother.along, crossed.along, out);
     const Crossing<Real> at = cross_edges(mother.x, mother.along, crossed.x, crossed.along, n);
-    return {ContactState::at(touch.held.state, c), edge_frame(n, crossed.along),
+    const Real returned =
+        interfaces.returned_n(interfaces.between(geometry.table, m, contact.face));
+    return {ContactState::at(touch.held.state, c), returned, edge_frame(n, crossed.along),
             mother.way(at.s) - crossed.way(at.t)};
   }
   /// An edge one step ago, and how its ends have moved since.

@@ -172,6 +172,7 @@ def stage_settings(
     problems: list[Problem] = []
     doubtful: list[Problem] = []
     known = list(known)
+    restitution = trial.interfaces.restitution()
     for i, stage in enumerate(trial.stages):
         for path, value in stage.set.items():
             keys = ("stages", i, "set", path)
@@ -187,6 +188,10 @@ def stage_settings(
             except CaseError as error:
                 what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
                 problems.append((keys, what.partition(": ")[2]))
+        if trial.interfaces.restitution() != restitution:
+            fixed = "'restitution' of an interface holds from the start and cannot change"
+            problems.append((("stages", i, "set"), fixed))
+            restitution = trial.interfaces.restitution()
         problems += [
             (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
             for keys, what in _names(trial)

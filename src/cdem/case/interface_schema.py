@@ -27,6 +27,24 @@ class Overlap(Part):
     )
 
 
+Coefficient = Annotated[float, Quantity("1", above=0.05, at_most=1)]
+"""Of restitution. Contacts unload 1 / e^2 times as stiff as they load, so at the lower limit their
+stable step is a twentieth; an impact that keeps 0.25 % of its energy is as good as one without."""
+
+
+class Restitution(Part):
+    """How much of the speed of an impact contacts give back."""
+
+    normal: Coefficient = Field(
+        1.0, description="Normal coefficient of restitution e_n: speed after over speed before [1]"
+    )
+    tangential: Coefficient = Field(
+        1.0,
+        description="Tangential coefficient e_t: contacts give back e_t^2 of the work that loaded "
+        "their shear springs [1]",
+    )
+
+
 class Interface(Part):
     """What every interface has; the parameters of its law come with the model of the law."""
 
@@ -48,6 +66,21 @@ class Interface(Part):
         description="Normal and shear stiffness of contacts: auto (that of bonds where it is given, "
         "else 1 E/h; with cdem: 1 that of bonds), a number [Pa/m], '0.3 E/h', or an allowed overlap",
     )
+    restitution: Annotated[
+        Annotated[Coefficient, Tag("value")] | Annotated[Restitution, Tag("each")],
+        Discriminator(lambda v: "each" if isinstance(v, dict | Restitution) else "value"),
+    ] = Field(
+        1.0,
+        description="Coefficient of restitution of contacts [1], whatever the masses: normal, or "
+        "{normal: 0.5, tangential: 0.8}; 1 gives back all. Contacts unload stiffer than they load",
+    )
+
+    def coefficients(self) -> tuple[float, float]:
+        """Normal and tangential coefficient of restitution [1]."""
+        given = self.restitution
+        if isinstance(given, Restitution):
+            return given.normal, given.tangential
+        return given, 1.0
 
 
 class InterfacePair(Interface):
@@ -128,6 +161,11 @@ class Interfaces(Part):
                 if hasattr(self.default, field):  # another law may have no such parameter
                     # Not by assignment: the field must keep counting as left out.
                     pair.__dict__[field] = getattr(self.default, field)
+
+    def restitution(self) -> list[tuple[float, float]]:
+        """Coefficients of all interfaces [1], the default's last."""
+        last = [] if self.default is None else [self.default]
+        return [law.coefficients() for law in [*self.pairs, *last]]
 
     def between(self, group_a: str, group_b: str) -> Interface | None:
         """Return the interface of two groups, or None when the case says nothing about them."""

@@ -76,8 +76,10 @@ class Damping(Part):
     )
     contact: Annotated[float, Quantity("1", at_least=0)] | None = Field(
         None,
-        description="Dashpot at each contact, as a fraction of critical of the nodes that touch [1]; "
-        "default 0.1 in a dynamic stage, with cdem: 1 and in a static stage 0",
+        description="Dashpot at each contact without restitution, as a fraction of critical of the two "
+        "nodes that touch [1]; how much speed an impact keeps then depends on mass, points and shape: "
+        "for a given coefficient use restitution of the interface. Default 0.1 in a dynamic stage; 0 in "
+        "a static one and with cdem: 1",
     )
 
 

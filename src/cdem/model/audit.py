@@ -297,6 +297,11 @@ class Audit:
                 f"{row['height']:.3g} m of rock, {100 * row['overlap_at_speed']:.2g} % at "
                 f"{row['speed']:.3g} m/s"
             )
+            if row["restitution"] < 1 and self.step["rules"] == "contact":
+                lines[-1] += (
+                    f"; restitution {row['restitution']:g} makes them "
+                    f"{row['restitution'] ** -2:.3g} times as stiff in unloading, which shortens the step"
+                )
         return lines
 
 

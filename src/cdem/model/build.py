@@ -195,7 +195,7 @@ def _assemble(
         automatic=np.array([is_automatic(law) for law in laws], bool),
         stiffening=stiffening,
         bond_stiffness=bond_stiffness,
-        contact_stiffness=np.array([[*e["stiffness_n"], *e["stiffness_s"]] for e in entries]),
+        contact_stiffness=np.array([_unloading_row(e) for e in entries]).reshape(-1, 4),
         in_series=np.array([e["in_series"] for e in entries], bool),
         exact_mass=case.moved_masses != "lumped",
         lumped_while_bonded=case.moved_masses == "lumped-while-bonded",
@@ -219,6 +219,12 @@ def _made_up(names: list[str], made_up: dict[str, Compensation]) -> tuple[Floats
         np.array([1.0 if c is None else c.stiffening for c in found]),
         np.array([0.0 if c is None else c.stiffness for c in found]),
     )
+
+
+def _unloading_row(entry: dict[str, Any]) -> list[float]:
+    """(value, factor) of k_n / e_n^2, then of k_s / e_t^2: the stiffness of contacts that unload."""
+    sides = zip(("stiffness_n", "stiffness_s"), entry["restitution"], strict=True)
+    return [k / e**2 for key, e in sides for k in entry[key]]
 
 
 def _law_row(material: Material) -> list[float]:

@@ -20,7 +20,8 @@ from cdem.model.stiffness import (
 
 
 def contact_interfaces(build: Build) -> list[dict[str, Any]]:
-    """One row per interface of the case: stiffness, overlap under weight and at the greatest speed.
+    """One row per interface of the case: stiffness, overlap under weight and at the greatest speed,
+    and the smaller coefficient of restitution.
 
     Overlaps are over the height of the element, the largest of all its groups: 2 rho g H / (k h) for
     a column as high as the model, and v / c sqrt(2 E / (k h)) with c = sqrt(E / rho).
@@ -50,6 +51,7 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
                 "overlap_under_weight": float(weight),
                 "speed": speed,
                 "overlap_at_speed": float(impact),
+                "restitution": min(law.coefficients()),
             }
         )
     return rows

@@ -33,8 +33,8 @@ class Properties:
         stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
             (groups,).
         bond_stiffness: Of bonds that are made up for [Pa/m], else 0, shape (groups,).
-        contact_stiffness: (value, factor) of k_n and k_s of contacts by interface, shape
-            (interfaces, 4).
+        contact_stiffness: (value, factor) of k_n and k_s of contacts that unload by interface,
+            shape (interfaces, 4).
         in_series: Whether E / h of contacts is that of both sides in series, shape (interfaces,).
         exact_mass: Whether blocks have their exact inertia, at least once they have no bonds.
         lumped_while_bonded: Whether they have it only then.

@@ -33,7 +33,7 @@ def bond_row(law: Interface) -> list[float]:
 def interface_entries(
     case: Case, laws: list[Interface], names: list[str], position: Floats
 ) -> list[dict[str, Any]]:
-    """Interfaces as the core takes them, with the stiffness of their contacts.
+    """Interfaces as the core takes them, with stiffness and restitution of their contacts.
 
     Args:
         case: The case.
@@ -50,6 +50,7 @@ def interface_entries(
                 "stiffness_n": normal.as_pair(),
                 "stiffness_s": shear.as_pair(),
                 "in_series": in_series,
+                "restitution": law.coefficients(),
                 "parameters": INTERFACE_LAWS[law.law].numbers(law),
             }
         )

@@ -78,6 +78,21 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a contact with restitution takes the force, and holds what it can give back") {
+  Slid slid({1e-4, 2e-4, -3e-4});
+  const PairSet& p = slid.model.quads;
+  slid.model.interfaces[p.interface[0]].returned_n = 0.25;
+  slid.model.interfaces[p.interface[0]].returned_s = 0.64;
+  const Real k = p.stiffness[0] * p.area[0], energy = slid.transfer();
+  CHECK(relative_error(energy, 0.5 * k * (0.25 * 9e-8 + 0.64 * 5e-8)) < 1e-11);
+  for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
+    if (slid.state.springs.target[slot] < 0) continue;
+    const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
+    CHECK(relative_error(s.force_n, k / 8 * 3e-4) < 5e-12);
+    CHECK(s.approach == s.penetration);
+  }
+}
+
 TEST_CASE("what has slipped already carries no shear") {
   Slid slid({1e-4, 0, -3e-4});
   const PairSet& p = slid.model.quads;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import scenes
 from shared.cases import INCLINE
 from shared.joints import SETS, jointed_case
 
@@ -59,3 +60,52 @@ def test_mistakes_about_joints_are_named(changes, message):
     with pytest.raises(cdem.CaseError) as error:
         jointed_case(changes)
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({}, (1, 1)),
+        ({"restitution": 0.5}, (0.5, 1)),
+        ({"restitution": {"tangential": 0.8}}, (1, 0.8)),
+        ({"restitution": {"normal": "0.3", "tangential": 0.8}}, (0.3, 0.8)),
+    ],
+)
+def test_restitution_is_one_number_or_two(given, expected):
+    case = jointed_case({"interfaces.default": {"friction_angle": 30, **given}})
+    assert case.interfaces.default.coefficients() == expected
+
+
+def test_a_pair_takes_the_restitution_of_the_default():
+    pairs = [{"joint": "a"}, {"joint": "b", "restitution": 0.9}]
+    default = {"friction_angle": 30, "restitution": {"normal": 0.4}}
+    case = jointed_case(
+        {"model.joints": SETS, "interfaces.pairs": pairs, "interfaces.default": default}
+    )
+    assert case.interfaces.restitution() == [(0.4, 1), (0.9, 1), (0.4, 1)]
+
+
+@pytest.mark.parametrize("value", [0.05, 1.01, -0.5, {"normal": 0.01}, {"shear": 0.5}, "high"])
+def test_a_wrong_restitution_is_refused(value):
+    with pytest.raises(CaseError, match="restitution"):
+        jointed_case({"interfaces.default": {"friction_angle": 30, "restitution": value}})
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        {"interfaces.default.restitution": 0.5},
+        {"interfaces.default.restitution": {"tangential": 0.5}},
+        {"interfaces.default": {"friction_angle": 20}},
+    ],
+)
+def test_a_stage_cannot_change_the_restitution(setting):
+    stage = {"name": "late", "mode": "dynamic", "duration": 1, "set": setting}
+    default = {"friction_angle": 30, "restitution": 0.7}
+    with pytest.raises(CaseError, match="'restitution' of an interface holds from the start"):
+        scenes.case(
+            [{"group": "a", "box": {"size": [1, 1, 1]}}],
+            {"a": {}},
+            interfaces={"default": default},
+            stages=[stage],
+        )

@@ -131,6 +131,13 @@ def test_stiffness_of_contacts_is_looked_at(tmp_path):
     assert load(tmp_path, "interfaces.default.contact_stiffness=0.3 E/h").warnings == []
 
 
+def test_restitution_is_looked_at(tmp_path):
+    (warning,) = load(tmp_path, "interfaces.default.restitution=0.08").warnings
+    assert "restitution: 0.08 is unusual; usual is 0.1 to 1" in warning
+    two = load(tmp_path, "interfaces.default.restitution={normal: 0.5, tangential: 0.06}").warnings
+    assert "restitution.tangential: 0.06 is unusual" in two[0]
+
+
 def test_a_number_far_beyond_all_units_is_answered_too(tmp_path):
     """1e22 GPa would be more than a number of a case may be."""
     with pytest.raises(CaseError, match=r"young_modulus: 1e\+13 GPa is not possible; usual is"):

@@ -91,3 +91,20 @@ def test_the_audit_tells_how_far_blocks_overlap():
     ]
     settled = -sim.fields["displacement"][bottom, 2].mean()
     assert settled == pytest.approx(2 * 2500 * 9.81 / 1e10, rel=0.02)
+
+
+def test_the_audit_tells_of_restitution_where_it_shortens_the_step():
+    def audit(restitution, **more):
+        blocks = [{"group": "cube", "box": {"size": [1, 1, 1]}},
+                  {"group": "floor", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]}]  # fmt: skip
+        law = FRICTION | {"restitution": restitution} | more
+        return simulate(blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, cdem=2,
+                        interfaces={"default": law}).audit  # fmt: skip
+
+    told = "restitution 0.5 makes them 4 times as stiff in unloading, which shortens the step"
+    stiff = audit(0.5)
+    assert told in stiff.text()
+    assert stiff.step["limit"] < 0.6 * audit(1.0).step["limit"]
+    assert "restitution" not in audit(1.0).text()
+    soft = audit(0.5, contact_stiffness="0.01 E/h")
+    assert "restitution" not in soft.text()

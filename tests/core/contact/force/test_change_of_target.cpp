@@ -31,7 +31,7 @@ struct Corner : Scene {
     update_all_face_geometry(model, state, {});
     state.dt_last = 1e-4;
   }
-  void change(Index before, Index now) {
+  void change(Index before, Index now, const ContactState& held = test::held) {
     State& s = state;
     s.springs.target_before[slot] = before;
     s.springs.target[slot] = now;
@@ -42,6 +42,12 @@ struct Corner : Scene {
                                 contact_laws(model, s), spring_columns(s)});
   }
   ContactState now() const { return ContactState::at(state.springs.state.data(), slot); }
+  /// K_n of its contact with a face  [N/m].
+  Real kn(Index target) const {
+    const Index mother = slot / 4;
+    return 0.5 *
+           contact_laws(model, state).spring(face_geometry(state), Index(0), mother, target).n();
+  }
 };
 
 }  // namespace
@@ -74,15 +80,25 @@ TEST_CASE(
   corner.change(top, side);
   const ContactState s = corner.now();
   CHECK(relative_error(std::hypot(s.shear1, s.shear2), 5e3) < 1e-14);
-  const ContactLaws laws = contact_laws(corner.model, corner.state);
-  const FaceGeometry geometry = face_geometry(corner.state);
-  const Index mother = corner.slot / 4;
-  const Real kn = 0.5 * laws.spring(geometry, Index(0), mother, side).n();
-  CHECK(relative_error(0.5 * kn * s.penetration * s.penetration, held.energy_n) < 1e-15);
+  CHECK(relative_error(0.5 * corner.kn(side) * s.penetration * s.penetration, held.energy_n) <
+        1e-15);
   // until it has its new force, its energies are what the springs did not give back
   CHECK(s.energy_n == held.energy_n);
   CHECK(s.energy_s == held.energy_s);
   CHECK(corner.state.springs.friction[corner.slot] == 0);
+}
+
+TEST_CASE("a contact that has unloaded keeps its share of the approach on the next face") {
+  Corner corner;
+  corner.model.interfaces[0].returned_n = 0.25;
+  ContactState unloaded = held;
+  unloaded.energy_n = 2;
+  unloaded.penetration = std::sqrt(2 * 2 / (0.25 * corner.kn(top)));
+  unloaded.approach = 1.6 * unloaded.penetration;
+  corner.change(top, side, unloaded);
+  const ContactState s = corner.now();
+  CHECK(relative_error(s.approach / s.penetration, 1.6) < 1e-14);
+  CHECK(relative_error(0.5 * 0.25 * corner.kn(side) * s.penetration * s.penetration, 2) < 1e-14);
 }
 
 namespace {

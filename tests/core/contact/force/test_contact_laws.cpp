@@ -67,6 +67,21 @@ TEST_CASE("a stiffness is the given value, or a factor times the stiffer side or
         1e-15);
 }
 
+TEST_CASE("contacts of an interface give back its share, for one pair and for a lane") {
+  TwoClasses blocks;
+  blocks.model.interfaces[1].returned_n = 0.25;
+  blocks.model.interfaces[1].returned_s = 0.64;
+  const FaceInterfaces faces = contact_laws(blocks.model, blocks.state).faces;
+  const ExposedRow* table = face_geometry(blocks.state).table;
+  CHECK(faces.returned_n(faces.between(table, 0, 8)) == 0.25);
+  CHECK(faces.returned_s(faces.between(table, 8, 0)) == 0.64);
+  CHECK(faces.returned_n(faces.between(table, 7, 8)) == 1);
+  IndexPack interface;
+  for (Index j = 0; j < lanes; ++j) interface.id[j] = j % 3;
+  const Pack returned = faces.returned_n(interface);
+  for (Index j = 0; j < lanes; ++j) CHECK(returned.n[j] == (j % 3 == 1 ? 0.25 : 1));
+}
+
 TEST_CASE("the dashpot is a part of the critical one of its spring and masses") {
   TwoClasses blocks;
   blocks.model.contact_damping = 0.1;
