@@ -620,6 +620,14 @@ CORE = [
         "tests/validation/test_impact_energy.py",
     ),
     Mutant(
+        "strong dashpots",
+        "dashpots above a fifth of critical act in full, and stacks gain energy",
+        "core/contact/force/contact_laws.hpp",
+        "return min_of(T(damping_ratio) * critical, most);",
+        "return T(damping_ratio) * critical;",
+        "tests/core/contact/force/test_contact_laws.cpp",
+    ),
+    Mutant(
         "series",
         "contacts as stiff as the stiffer side where both count",
         "core/records/interface.hpp",

@@ -12,7 +12,7 @@ from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
-from cdem.model.mass_scaling import OFFER, Scaling, least_masses
+from cdem.model.mass_scaling import OFFER, Scaling
 from cdem.model.masses import Geometry, node_masses
 
 Stride = Callable[[int], int]
@@ -40,18 +40,29 @@ def assemble(topology: Topology, properties: Properties, padded_stride: Stride) 
     out.arrays["material.mu"] = properties.shear
     out.arrays["material.law"] = properties.law
     out.arrays["material.parameters"] = properties.law_parameters.ravel()
-    masses, geometry = _elements(topology, properties, padded_stride, out)
+    _elements(topology, properties, padded_stride, out)
     _faces(topology, properties, out)
     _pairs(topology, properties, padded_stride, out)
     _corners(topology, out)
-    _masses(topology, properties, masses, geometry, out)
+    if properties.added_mass is None:
+        _scale_masses(topology, properties, out)
     return out
 
 
-def _elements(
-    t: Topology, p: Properties, padded_stride: Stride, out: Assembly
-) -> tuple[dict[str, Floats], dict[str, Geometry]]:
-    """Fill the arrays of the elements; give their mass matrices and geometry by shape."""
+def _element_tables(t: Topology, p: Properties, shape: str) -> tuple[Geometry, Floats]:
+    """Geometry and mass matrices of the elements of a shape."""
+    corners, group = t.node_position[t.element_nodes[shape]], t.element_group[shape]
+    gradient, volume = element_shapes.reference_gradients(shape, corners)
+    hourglass = np.zeros((len(corners), 0))
+    if shape == "hex8" and p.one_point:
+        gradient, volume, hourglass = element_shapes.one_point(
+            corners, gradient, volume, p.stiffening[group] * p.young_modulus[group]
+        )
+    matrices = element_shapes.mass_matrices(shape, corners, p.density[group])
+    return (gradient, volume, hourglass), matrices
+
+
+def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
     row = 0
     mass: dict[str, Floats] = {}
     gravity_mass = np.zeros(len(t.node_position))
@@ -60,16 +71,9 @@ def _elements(
         connectivity = t.element_nodes[shape]
         count = len(connectivity)
         stride = padded_stride(count)
-        corners = t.node_position[connectivity]
         group = t.element_group[shape]
-        gradient, volume = element_shapes.reference_gradients(shape, corners)
-        matrices = element_shapes.mass_matrices(shape, corners, p.density[group])
-        hourglass = np.zeros((count, 0))
-        if shape == "hex8" and p.one_point:
-            gradient, volume, hourglass = element_shapes.one_point(
-                corners, gradient, volume, p.stiffening[group] * p.young_modulus[group]
-            )
-        geometry[shape] = (gradient, volume, hourglass)
+        geometry[shape], matrices = _element_tables(t, p, shape)
+        gradient, volume, hourglass = geometry[shape]
         mass[shape] = matrices
         np.add.at(gravity_mass, connectivity, matrices.sum(axis=2))
         points = volume.shape[1]
@@ -88,28 +92,20 @@ def _elements(
     out.arrays["node.gravity_mass"] = gravity_mass
     out.arrays["node.block"] = t.node_block
     out.arrays["node.place"] = t.node_place
-    return mass, geometry
-
-
-def _masses(
-    t: Topology,
-    p: Properties,
-    matrices: dict[str, Floats],
-    geometry: dict[str, Geometry],
-    out: Assembly,
-) -> None:
-    """Masses of the nodes, with what mass scaling adds."""
     out.added_mass = np.zeros(len(t.node_position)) if p.added_mass is None else p.added_mass
-    node_masses(t, p, matrices, geometry, out.added_mass, out)
-    if p.added_mass is None:
-        scaling = Scaling(t, p, matrices, out)
-        out.limits = (scaling.limit(0.0), scaling.limit(OFFER))
-        if p.mass_scaling is not None:
-            out.added_mass = scaling.wanted(p.mass_scaling, p.safety)
-            node_masses(t, p, matrices, geometry, out.added_mass, out)
-    scaled = out.added_mass.any()
-    least = least_masses(t, matrices, out) + out.added_mass if scaled else np.zeros(0)
-    out.arrays["node.least_mass"] = least
+    node_masses(t, p, mass, geometry, out.added_mass, out)
+
+
+def _scale_masses(t: Topology, p: Properties, out: Assembly) -> None:
+    """Add what the case allows, and note what a little mass would buy."""
+    scaling = Scaling(t, p, out)
+    out.limits = (scaling.limit(0.0), scaling.limit(OFFER))
+    if p.mass_scaling is None:
+        return
+    out.added_mass = scaling.wanted(p.mass_scaling, p.safety)
+    tables = {shape: _element_tables(t, p, shape) for shape in element_shapes.NODES}
+    geometry = {shape: of for shape, (of, _) in tables.items()}
+    node_masses(t, p, {shape: m for shape, (_, m) in tables.items()}, geometry, out.added_mass, out)
 
 
 def _faces(t: Topology, p: Properties, out: Assembly) -> None:

@@ -87,7 +87,8 @@ class Properties:
 class Assembly:
     """Flat arrays of the model by name, counts, and what the audit wants to know.
 
-    `added_mass` is that of mass scaling by node, `limits` the stable step without it and with 0.1 %
+    `added_mass` is that of mass scaling by node, `least_mass` a diagonal that is no more than the mass
+    matrix of each block, `limits` the stable step without it and with 0.1 %
     of mass added [s].
     """
 
@@ -97,6 +98,7 @@ class Assembly:
     element_volume: dict[str, Floats] = field(default_factory=dict)
     element_frequency: dict[str, Floats] = field(default_factory=dict)
     added_mass: Floats = field(default_factory=lambda: np.zeros(0))
+    least_mass: Floats = field(default_factory=lambda: np.zeros(0))
     limits: tuple[float, float] = (0.0, 0.0)
     lumped_blocks: int = 0
     pair_faces: dict[str, Ints] = field(default_factory=dict)

@@ -28,13 +28,10 @@ class Scaling:
     Args:
         t: Blocks, elements, faces and pairs.
         p: What the case says about them.
-        matrices: Mass matrices of the elements by shape.
         out: Masses without scaling, and pairs.
     """
 
-    def __init__(
-        self, t: Topology, p: Properties, matrices: dict[str, Floats], out: Assembly
-    ) -> None:
+    def __init__(self, t: Topology, p: Properties, out: Assembly) -> None:
         arrays = out.arrays
         self._mass = arrays["node.mass"]
         dense = arrays["node.mass_row_first"] >= 0
@@ -43,7 +40,7 @@ class Scaling:
         springs = 2 * (bond_stiffness(t, out) + contact_stiffness(t, p, out))
         load = arrays["node.lumped_frequency_squared"] * self._mass + springs
         self._load = np.where(held, 0.0, load)
-        self._least = np.where(lumped, self._mass, least_masses(t, matrices, out))
+        self._least = np.where(lumped, self._mass, out.least_mass)
         # of blocks with a matrix, as the core has it: whatever the step, less need not be
         square = arrays["node.frequency_squared"] + _most_of_block(
             springs * arrays["node.inverse_mass_bound"], t
@@ -82,29 +79,6 @@ class Scaling:
         if asked.most is not None:
             limit = min(limit, self.limit(asked.most))
         return self.added(limit)
-
-
-def least_masses(t: Topology, matrices: dict[str, Floats], out: Assembly) -> Floats:
-    """Diagonal that is no more than the mass matrix of each block, D <= M [kg], shape (nodes,).
-
-    Of an element with row sums m it is lambda diag(m), lambda the least eigenvalue of
-    diag(m)^-1/2 M diag(m)^-1/2: 1/5 for a tet, 1/27 for a box. Of lumped masses it is these.
-    """
-    dense = out.arrays["node.mass_row_first"] >= 0
-    least = np.zeros(len(dense))
-    for shape, m in matrices.items():
-        nodes = t.element_nodes[shape]
-        if len(m) == 0:
-            continue
-        rows = m.sum(axis=2)
-        part = np.full(len(m), 0.2)
-        if shape != "tet4":
-            some = dense[nodes[:, 0]]
-            root = np.sqrt(rows[some])
-            scaled = m[some] / root[:, :, None] / root[:, None]
-            part[some] = same_everywhere(1 / np.linalg.eigvalsh(scaled)[:, 0]) ** -1.0
-        least += np.bincount(nodes.ravel(), (part[:, None] * rows).ravel(), len(least))
-    return np.where(dense, least, out.arrays["node.mass"])
 
 
 def bond_stiffness(t: Topology, out: Assembly) -> Floats:

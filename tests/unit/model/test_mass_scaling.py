@@ -17,12 +17,19 @@ JOINTS = [{"name": "flat", "dip": 30, "dip_direction": 90, "spacing": 0.7, "orig
 
 
 def shaken(path, **more):
-    """Bonded tets whose corners are shaken, in a cube of 4 cells."""
+    """Bonded tets whose corners are shaken, in a cube of 4 cells; nothing damps."""
     model = {
         **irregular_tets(path / "m.vtk", [4, 4, 4], [4, 4, 4]),
         "split": {"default": "elements"},
     }
-    return case([], {"default": {}}, model=model, interfaces={"default": STRONG}, **more)
+    stages = [{"name": "run", "mode": "dynamic", "duration": 1, "damping": {"contact": 0}}]
+    return case(
+        [],
+        {"default": {}},
+        model=model,
+        interfaces={"default": STRONG},
+        **{"stages": stages} | more,
+    )
 
 
 def jointed(**more):
