@@ -621,11 +621,11 @@ CORE = [
     ),
     Mutant(
         "strong dashpots",
-        "dashpots above a fifth of critical act in full, and stacks gain energy",
-        "core/contact/force/contact_laws.hpp",
-        "return min_of(T(damping_ratio) * critical, most);",
-        "return T(damping_ratio) * critical;",
-        "tests/core/contact/force/test_contact_laws.cpp",
+        "strong contact dashpots shorten the step as one does, and stacks gain energy",
+        "core/nodes/time_step.cpp",
+        "if (xi <= sure_contact_damping) return 1;",
+        "if (xi >= 0) return 1;",
+        "tests/core/nodes/test_time_step.cpp",
     ),
     Mutant(
         "series",

@@ -13,6 +13,15 @@ namespace cdem {
 
 namespace {
 
+/// What a dashpot of ratio xi at the highest frequency leaves of the stable step.
+Real damped(Real xi) { return std::sqrt(1 + xi * xi) - xi; }
+
+/// What strong contact dashpots leave of that.
+Real strongly_damped(Real xi) {
+  if (xi <= sure_contact_damping) return 1;
+  return sure_contact_damping * damped(sure_contact_damping) / (xi * damped(xi));
+}
+
 /// Stiffness of bonds and contacts, those that may begin included, on a node  [N/m].
 Real stiffness_at(const State& s, Index i) {
   return std::max(s.nodes.force[std::size_t(i) * 4 + 3], s.node_potential[i]) + s.node_bonds[i];
@@ -92,8 +101,8 @@ StepLimit step_limit(const Model& m, const State& s) {
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real xi =
       m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);
-  limit.dt =
-      2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) / std::sqrt(1 + m.damping.local);
+  limit.dt = 2 / std::sqrt(largest) * damped(xi) / std::sqrt(1 + m.damping.local) *
+             strongly_damped(m.contact_damping);
   return limit;
 }
 

@@ -37,6 +37,11 @@ inline constexpr Real flight_growth = 0.5;
 /// bounds that hold.
 inline constexpr Real relax_safety = 0.9;
 
+/// Contact damping up to this ratio shortens the step as one dashpot at the highest frequency does.
+/// A node has many dashpots, and with a full mass matrix a cube's corner has an eighth of its mass:
+/// above it the step goes with one over the ratio, else a stack of cubes gains energy (at 0.25).
+inline constexpr Real sure_contact_damping = 0.2;
+
 StepLimit step_limit(const Model& model, const State& state);
 
 /// Find the stable step; the coming step shrinks to it at once and grows slowly.

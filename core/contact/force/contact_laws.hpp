@@ -8,17 +8,11 @@
 
 namespace cdem {
 
-/// A dashpot acts with the velocity of half a step ago, a node has many of them, and with a full
-/// mass matrix its effective mass is an eighth of its own. Up to this ratio all stacks tried keep
-/// their energy; a dashpot with more takes at most this part of the relative velocity in a step.
-inline constexpr Real sure_ratio = 0.2, dashpot_part = 0.03;
-
 /// Interfaces by pair of classes of faces, and the contact dashpot.
 struct ContactLaws {
   FaceInterfaces faces;
   InterfaceTable interfaces;
   Real damping_ratio;     // of critical, on the effective mass of the two points
-  Real dt;                // [s]
   const Real* node_mass;  // [kg]
 
   /// The interface between two exposed faces, or between one and another a lane.
@@ -46,9 +40,7 @@ struct ContactLaws {
   /// The contact dashpot of a spring between points of this effective mass  [N s/m].
   template <class T>
   CDEM_HD T dashpot(const ContactSpring<T>& spring, const T& inverse_mass) const {
-    const T critical = T(2.0) * sqrt_of(spring.n() / inverse_mass);
-    const T most = max_of(T(sure_ratio) * critical, T(dashpot_part) / (T(dt) * inverse_mass));
-    return min_of(T(damping_ratio) * critical, most);
+    return T(2.0 * damping_ratio) * sqrt_of(spring.n() / inverse_mass);
   }
 };
 

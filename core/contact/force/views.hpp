@@ -16,7 +16,6 @@ inline ContactLaws contact_laws(const Model& m, const State& s) {
   return {.faces = face_interfaces(m),
           .interfaces = interface_table(m),
           .damping_ratio = m.contact_damping,
-          .dt = s.dt,
           .node_mass = lumped_masses(m, s).data()};
 }
 

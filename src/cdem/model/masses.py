@@ -191,9 +191,7 @@ def _correct_lumps(
     return np.array(without, np.intp)
 
 
-def _least_masses(
-    t: Topology, matrices: dict[str, Floats], added: Floats, out: Assembly
-) -> Floats:
+def _least_masses(t: Topology, matrices: dict[str, Floats], added: Floats, out: Assembly) -> Floats:
     """Diagonal that is no more than the mass matrix of each block, D <= M [kg], shape (nodes,).
 
     Of an element with row sums m it is lambda diag(m), lambda the least eigenvalue of

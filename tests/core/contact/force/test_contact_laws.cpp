@@ -90,18 +90,4 @@ TEST_CASE("the dashpot is a part of the critical one of its spring and masses") 
   CHECK(relative_error(laws.dashpot(spring, 0.25), 2 * 0.1 * std::sqrt(4 * 4.0)) < 1e-15);
 }
 
-TEST_CASE("a strong dashpot takes a small part of the relative velocity in a step") {
-  TwoClasses blocks;
-  blocks.model.contact_damping = 1.0;
-  const ContactSpring<Real> spring{.area = 0.5, .stiffness = JointStiffness<Real>::of(8, 1)};
-  const Real critical = 2 * std::sqrt(4 * 4.0);  // of the effective mass of 4 kg
-  const auto in_step_of = [&](Real dt) {
-    blocks.state.dt = dt;
-    return contact_laws(blocks.model, blocks.state).dashpot(spring, 0.25);
-  };
-  CHECK(relative_error(in_step_of(0.001), critical) < 1e-15);             // short: all of it
-  CHECK(relative_error(in_step_of(0.03), 0.03 / (0.03 * 0.25)) < 1e-15);  // c dt / m = 0.03
-  CHECK(relative_error(in_step_of(1.0), 0.2 * critical) < 1e-15);         // never below a fifth
-}
-
 }  // namespace cdem::test
