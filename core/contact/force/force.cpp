@@ -120,7 +120,7 @@ void update_contact_forces(const Model& m, State& s, Queue q) {
     update_edge_forces<ElasticUnloading>(m, s, q);
   }
   accumulate_forces(m, s, q);
-  if (any_resists_rolling(m)) add_rolling_couples(m, s, q);
+  if (any_resists_rolling(m) || s.springs.rolling.size() > 0) add_rolling_couples(m, s, q);
 }
 
 }  // namespace cdem

@@ -137,6 +137,21 @@ TEST_CASE(
   CHECK(relative_error(s.springs.friction[slot], held.energy) < 1e-12);
 }
 
+TEST_CASE("a resistance that a stage takes away lets go of what springs hold") {
+  Tilting tilting(0.3);
+  tilting.step(10);
+  const auto held = [&] {
+    Real sum = 0;
+    for (std::size_t k = 0; k < tilting.state.springs.rolling.size(); ++k)
+      sum += std::abs(tilting.state.springs.rolling[k]);
+    return sum;
+  };
+  CHECK(held() > 0);
+  tilting.model.interfaces[0].rolling_resistance = 0;
+  tilting.step(1);
+  CHECK(held() == 0);
+}
+
 TEST_CASE("without rolling resistance nothing is kept") {
   Tilting tilting(0);
   tilting.step(10);
