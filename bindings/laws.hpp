@@ -80,8 +80,8 @@ nb::list declarations() {
 }
 
 /// The interfaces of the model: law and its parameters, stiffness_n and stiffness_s of contacts as
-/// (value, factor), whether that is of the sides in series, and their restitution, normal and
-/// tangential.
+/// (value, factor), whether that is of the sides in series, their restitution, normal and
+/// tangential, and their rolling resistance.
 inline void set_interfaces(Core& core, const nb::list& interfaces) {
   Model& m = core.model;
   constexpr std::size_t width = InterfaceTable::row;
@@ -97,6 +97,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
     interface.in_series = nb::cast<bool>(entry["in_series"]);
     std::tie(interface.stiffness_n_value, interface.stiffness_n_factor) = stiffness("stiffness_n");
     std::tie(interface.stiffness_s_value, interface.stiffness_s_factor) = stiffness("stiffness_s");
+    interface.rolling_resistance = nb::cast<Real>(entry["rolling_resistance"]);
     const auto [e_n, e_t] = nb::cast<std::tuple<Real, Real>>(entry["restitution"]);
     interface.returned_n = e_n * e_n;
     interface.returned_s = e_t * e_t;

@@ -288,6 +288,22 @@ PYTHON = [
 
 CORE = [
     Mutant(
+        "rolling",
+        "rolling resistance acts on the mother alone",
+        "core/contact/force/rolling.hpp",
+        "couple = couple - s.couple;",
+        "couple = couple - 0.0 * s.couple;",
+        "tests/core/contact/force/test_rolling.cpp",
+    ),
+    Mutant(
+        "couple",
+        "a couple that moves to another face brings energy",
+        "core/contact/force/rolling.hpp",
+        "energy > s.energy ? sqrt_of(s.energy / energy) : 1.0",
+        "1.0",
+        "tests/core/contact/force/test_rolling.cpp",
+    ),
+    Mutant(
         "restitution",
         "contacts unload with e instead of e^2",
         "bindings/laws.hpp",

@@ -55,6 +55,9 @@ Energies sum_terms(const Model& m, const State& s) {
   const auto spring = [&](Index slot) { return ContactState::at(s.springs.state.data(), slot); };
   contact = ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_n; }) +
             ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_s; });
+  if (s.springs.rolling.size() > 0)
+    contact += ordered_sum(
+        4 * exposed, [&](Index i) { return RollingState::at(s.springs.rolling.data(), i).energy; });
   contact += ordered_sum(exposed, [&](Index i) {
     Real sum = 0;
     for (Index c = s.edges.first[i]; c < s.edges.first[i + 1]; ++c) {

@@ -4,6 +4,7 @@
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/force/change_of_target.hpp"
 #include "core/contact/force/edge_force.hpp"
+#include "core/contact/force/rolling.hpp"
 #include "core/contact/force/spring_force.hpp"
 
 namespace cdem {
@@ -17,5 +18,7 @@ template void for_each_item(Queue, Index, const MergeSideHistories&);
 template void for_each_item(Queue, Index, const CountContactsByTarget&);
 template void for_each_item(Queue, Index, const ListContactsByTarget&);
 template void for_each_item(Queue, Index, const AccumulateFaceForces&);
+template void for_each_item(Queue, Index, const UpdateRollingCouples&);
+template void for_each_item(Queue, Index, const AddRollingCouples&);
 
 }  // namespace cdem

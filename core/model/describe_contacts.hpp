@@ -56,6 +56,14 @@ void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
           .rows = "slots",
           .numbers = 8},
          c.reaction);
+  stored({.name = "spring.rolling",
+          .unit = "N m, N m, J, N m, N m, N m, N m, -",
+          .meaning =
+              "couple in the frame of the target, stored energy, stiffness, couple on the mother",
+          .rows = "slots",
+          .numbers = 8,
+          .optional = true},
+         c.rolling);
   stored({.name = "spring.lost",
           .meaning = "1: a loaded contact was lost by its depth",
           .rows = "slots"},

@@ -245,6 +245,11 @@ void describe_faces(Model& m, Visit&& given) {
          .meaning = "Young's modulus of the element behind it over its height",
          .rows = "faces"},
         m.face_stiffness);
+  given({.name = "face.radius",
+         .unit = "m",
+         .meaning = "radius of a sphere of the volume of its block; 1e300: the block cannot move",
+         .rows = "faces"},
+        m.face_radius);
   given(
       {.name = "face.initially_exposed", .meaning = "1: not bonded at the start", .rows = "faces"},
       m.face_initially_exposed);

@@ -55,7 +55,7 @@ struct Model {
   // exterior faces and edges
   Index face_count = 0, edge_count = 0;
   Column<Index> face_nodes, face_edges, face_interface_class, face_block, face_element;
-  Column<Real> face_length, face_reach, face_area, face_height, face_stiffness;
+  Column<Real> face_length, face_reach, face_area, face_height, face_stiffness, face_radius;
   Column<Index> edge_nodes, edge_faces, edge_star_first, edge_star;
   Column<Flag> face_initially_exposed, face_movable;
 

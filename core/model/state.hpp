@@ -67,6 +67,7 @@ struct SpringState {
   Column<Real> friction, dashpot;
   Column<Flag> lost, unresolved;
   HistoryColumns history;  // [slot]
+  Column<Real> rolling;    // rows of 8 of RollingState; empty where no interface resists rolling
 };
 
 /// Contacts of semi-edges, see EdgeColumns; every step makes the list from the one before.

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "core/base/lanes.hpp"
+#include "core/base/math.hpp"
 
 namespace cdem {
 
@@ -40,6 +40,24 @@ struct ContactState {
     Real* r = rows + 8 * place;
     r[0] = force_n, r[1] = penetration, r[2] = shear1, r[3] = shear2;
     r[4] = stress_free_gap, r[5] = energy_n, r[6] = energy_s, r[7] = approach;
+  }
+};
+
+/// What the rotation spring of a semi-spring remembers: a row of 8 numbers.
+struct RollingState {
+  Real couple1, couple2;  // on the mother, in the frame of the target  [N m]
+  Real energy;            // stored  [J]
+  Real stiffness;         // [N m]
+  Vec3<Real> couple;      // on the mother  [N m]
+
+  CDEM_HD static RollingState at(const Real* rows, std::size_t place) {
+    const Real* r = rows + 8 * place;
+    return {r[0], r[1], r[2], r[3], {r[4], r[5], r[6]}};
+  }
+  CDEM_HD void store(Real* rows, std::size_t place) const {
+    Real* r = rows + 8 * place;
+    r[0] = couple1, r[1] = couple2, r[2] = energy, r[3] = stiffness;
+    r[4] = couple.x, r[5] = couple.y, r[6] = couple.z;
   }
 };
 

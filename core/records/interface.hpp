@@ -13,6 +13,7 @@ struct Interface {
   bool in_series;  // sides
   Real stiffness_n_value, stiffness_n_factor;
   Real stiffness_s_value, stiffness_s_factor;
+  Real rolling_resistance = 0;          // mu_r: couples on contacts up to mu_r R F_n
   Real returned_n = 1, returned_s = 1;  // e^2: share of the work of loading that contacts give back
 
   /// Normal and shear stiffness between sides whose elements have these stiffnesses.

@@ -221,6 +221,7 @@ void Scene::build_faces() {
       m.face_stiffness.push(rock.young_modulus() / height);
       m.face_initially_exposed.push(1);
       m.face_movable.push(!blocks_[b].fixed);
+      m.face_radius.push(blocks_[b].fixed ? 1e300 : std::cbrt(0.75 / M_PI * blocks_[b].whole));
       ++m.face_count;
     }
 }

@@ -5,6 +5,7 @@
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/force/change_of_target.hpp"
 #include "core/contact/force/edge_force.hpp"
+#include "core/contact/force/rolling.hpp"
 #include "core/contact/force/spring_force.hpp"
 #include "core/contact/force/views.hpp"
 #include "core/contact/narrow_phase/views.hpp"
@@ -85,6 +86,28 @@ void accumulate_forces(const Model& m, State& s, Queue q) {
                                      s.contact_force.data()});
 }
 
+void add_rolling_couples(const Model& m, State& s, Queue q) {
+  const Index count = Index(s.search.exposed_face.size());
+  s.springs.rolling.resize(4 * 8 * std::size_t(count), Real(0));
+  for_each_item(q, count,
+                UpdateRollingCouples{.faces = face_columns(m, s),
+                                     .geometry = face_geometry(s),
+                                     .laws = contact_laws(m, s),
+                                     .springs = spring_columns(s),
+                                     .exposed_face = s.search.exposed_face.data(),
+                                     .face_radius = m.face_radius.data(),
+                                     .rows = s.springs.rolling.data()});
+  for_each_item(q, count,
+                AddRollingCouples{.contacts = {spring_columns(s), edge_columns(s), count},
+                                  .faces = face_columns(m, s),
+                                  .geometry = face_geometry(s),
+                                  .listed = s.search.outer.face_listed.data(),
+                                  .acting = {s.contacts_by_target.first.data(),
+                                             s.contacts_by_target.contact.data()},
+                                  .rows = s.springs.rolling.data(),
+                                  .corner_force = s.contact_force.data()});
+}
+
 }  // namespace
 
 void update_contact_forces(const Model& m, State& s, Queue q) {
@@ -97,6 +120,7 @@ void update_contact_forces(const Model& m, State& s, Queue q) {
     update_edge_forces<ElasticUnloading>(m, s, q);
   }
   accumulate_forces(m, s, q);
+  if (any_resists_rolling(m) || s.springs.rolling.size() > 0) add_rolling_couples(m, s, q);
 }
 
 }  // namespace cdem

@@ -46,7 +46,9 @@ void sum_stiffness(const Model& m, State& s) {
       const Index x = s.search.outer.faces_acting_on[c];
       const Index interface = laws.between(geometry, x, y);
       const auto spring = laws.spring(geometry, interface, x, y);
-      const Real most = HystereticUnloading<Real>::of(laws, interface).stiffness(spring);
+      Real most = HystereticUnloading<Real>::of(laws, interface).stiffness(spring);
+      // the rotation springs of four vertices, see UpdateRollingCouples
+      if (m.interfaces[interface].rolling_resistance > 0) most += 2 * spring.n();
       for (const Index face : {x, y}) raise_to(stiffest_of[face], most);
     }
   for (Index x = 0; x < exposed; ++x) {  // either side's semi-springs, as much again for semi-edges

@@ -26,6 +26,13 @@ inline bool any_hysteretic(const Model& m) {
                      [](const Interface& i) { return i.is_hysteretic(); });
 }
 
+/// Does any interface resist rolling?
+inline bool any_resists_rolling(const Model& m) {
+  const Interface* first = m.interfaces.data();
+  return std::any_of(first, first + m.interfaces.size(),
+                     [](const Interface& i) { return i.rolling_resistance > 0; });
+}
+
 inline HistoryRows history_rows(HistoryColumns& h) { return {h.rows.data(), h.law.data()}; }
 
 }  // namespace cdem

@@ -24,6 +24,7 @@ void visit_faces(State& s, Visit&& visit) {
   visit(c.target_before, 4, Index(-1));
   for (Column<Real>* column : {&c.friction, &c.dashpot}) visit(*column, 4, Real(0));
   for (Column<Real>* column : {&c.state, &c.reaction}) visit(*column, 4 * 8, Real(0));
+  if (c.rolling.size() > 0) visit(c.rolling, 4 * 8, Real(0));
   visit(c.lost, 4, Flag(0));
   visit(s.edges.friction, 1, Real(0));
   visit(s.edges.dashpot, 1, Real(0));
@@ -111,9 +112,9 @@ void hide(State& s, const std::vector<Flag>& hidden) {
     const Index target = s.springs.target[slot];
     if (target < 0 || !leaves(target)) continue;
     s.springs.target[slot] = s.springs.target_before[slot] = -1;
-    for (std::size_t k = 0; k < 8; ++k)
-      s.springs.state[8 * std::size_t(slot) + k] = s.springs.reaction[8 * std::size_t(slot) + k] =
-          0;
+    for (Column<Real>* rows : {&s.springs.state, &s.springs.reaction, &s.springs.rolling})
+      for (std::size_t k = 8 * std::size_t(slot); k < 8 * std::size_t(slot) + 8; ++k)
+        if (k < rows->size()) (*rows)[k] = 0;
   }
   keep_exposed(s, from);
 }

@@ -75,6 +75,12 @@ class Interface(Part):
         "{normal: 0.5, tangential: 0.8}; 1 gives back all. Contacts unload stiffer than they load",
     )
 
+    rolling_resistance: Annotated[float, Quantity("1", at_least=0, below=1)] = Field(
+        0.0,
+        description="mu_r: contacts of vertices with faces resist rolling with couples up to "
+        "mu_r R F_n, R the radius of a sphere of the block's volume [1]",
+    )
+
     def coefficients(self) -> tuple[float, float]:
         """Normal and tangential coefficient of restitution [1]."""
         given = self.restitution

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.mesh import element_shapes
-from cdem.mesh.arrays import in_pieces, lengths
+from cdem.mesh.arrays import in_pieces, lengths, same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
@@ -134,6 +134,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.height": height,
         "face.stiffness": young / height,
         "face.movable": _movable(t, p),
+        "face.radius": _radius(t, p, out),
         "edge.nodes": t.edge_nodes.ravel(),
         "edge.faces": t.edge_faces.ravel(),
         "edge_star.first": t.node_ring_first,
@@ -147,6 +148,15 @@ def _movable(t: Topology, p: Properties) -> NDArray[np.int8]:
     free = np.zeros(len(t.block_group), np.int8)
     free[t.node_block[~p.supported.all(axis=1)]] = 1
     return free[t.face_block]
+
+
+def _radius(t: Topology, p: Properties, out: Assembly) -> Floats:
+    """Radius of a sphere of the volume of a face's block [m]; 1e300 where it cannot move."""
+    volume = np.zeros(len(t.block_group))
+    for shape, of_elements in out.element_volume.items():
+        np.add.at(volume, t.node_block[t.element_nodes[shape][:, 0]], of_elements)
+    radius = same_everywhere(np.cbrt(0.75 / np.pi * volume))[t.face_block]
+    return np.where(_movable(t, p), radius, 1e300)
 
 
 def _pairs(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:

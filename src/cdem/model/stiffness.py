@@ -33,7 +33,7 @@ def bond_row(law: Interface) -> list[float]:
 def interface_entries(
     case: Case, laws: list[Interface], names: list[str], position: Floats
 ) -> list[dict[str, Any]]:
-    """Interfaces as the core takes them, with stiffness and restitution of their contacts.
+    """Interfaces as the core takes them, with stiffness, restitution and rolling resistance.
 
     Args:
         case: The case.
@@ -51,6 +51,7 @@ def interface_entries(
                 "stiffness_s": shear.as_pair(),
                 "in_series": in_series,
                 "restitution": law.coefficients(),
+                "rolling_resistance": law.rolling_resistance,
                 "parameters": INTERFACE_LAWS[law.law].numbers(law),
             }
         )

@@ -109,3 +109,9 @@ def test_a_stage_cannot_change_the_restitution(setting):
             interfaces={"default": default},
             stages=[stage],
         )
+
+
+@pytest.mark.parametrize("value", [-0.1, 1, "2 m"])
+def test_a_wrong_rolling_resistance_is_refused(value):
+    with pytest.raises(CaseError, match="rolling_resistance"):
+        jointed_case({"interfaces.default": {"friction_angle": 30, "rolling_resistance": value}})
