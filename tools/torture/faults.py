@@ -95,7 +95,8 @@ class Trial:
         """What is wrong with how a run ended in which a call failed, or nothing."""
         if how == "kill":
             return "" if status == -9 else f"was not killed, but ended with {status}: {said}"
-        told = status == 1 and "Traceback" not in said and said.count("\n") <= 2
+        whole = status == 0 and said.startswith("no report.html: ")  # --resume writes it again
+        told = (status == 1 or whole) and "Traceback" not in said and said.count("\n") <= 2
         return "" if told else f"ended with {status} and said: {said}"
 
     def _run_again(self) -> tuple[int, str]:

@@ -192,7 +192,7 @@ class MassScaling(Part):
     )
     most: Annotated[float, Quantity("1", above=0, at_most=1)] | None = Field(
         None,
-        description="Most mass to add, as a share of all; without step, the longest step that it buys "
+        description="Most mass to add, as a share of all that is not held; without step, the longest step that it buys "
         "[1]",
     )
 

@@ -108,13 +108,15 @@ def _is_reported(folder: Path) -> bool:
 
 
 def write_report(folder: Path, *, silent: bool) -> None:
-    """Write report.html; the results are whole without it, so a missing extra is only said."""
+    """Write report.html; the results are whole without it, so that it is missing is only said."""
     from cdem.output import report
 
     try:
         report.report(folder)
-    except (CdemError, ImportError) as error:
-        if not silent:
+    except CdemError as error:
+        print(f"no report.html: {error}", file=sys.stderr)
+    except ImportError as error:
+        if not silent:  # who has no extra for pictures knows
             print(f"no report.html: {error}", file=sys.stderr)
 
 

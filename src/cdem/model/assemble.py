@@ -99,7 +99,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
 def _scale_masses(t: Topology, p: Properties, out: Assembly) -> None:
     """Add what the case allows, and note what a little mass would buy."""
     scaling = Scaling(t, p, out)
-    out.limits = (scaling.limit(0.0), scaling.limit(OFFER))
+    out.limits, out.free_mass = (scaling.limit(0.0), scaling.limit(OFFER)), scaling.free_mass
     if p.mass_scaling is None:
         return
     out.added_mass = scaling.wanted(p.mass_scaling, p.safety)

@@ -196,10 +196,10 @@ class Audit:
                 "their rotational inertia is too large"
             )
         if self.step["added_mass"]:
-            total = sum(m.sum() for m in b.assembly.element_mass.values())
+            share = self.step["added_mass"] / b.assembly.free_mass
             out.append(
                 f"mass scaling adds {self.step['added_mass']:.3g} kg "
-                f"({100 * self.step['added_mass'] / total:.2g} % of the mass)"
+                f"({100 * share:.2g} % of the mass that is not held)"
             )
         return out
 

@@ -89,7 +89,7 @@ class Assembly:
 
     `added_mass` is that of mass scaling by node, `least_mass` a diagonal that is no more than the mass
     matrix of each block, `limits` the stable step without it and with 0.1 %
-    of mass added [s].
+    of mass added [s], `free_mass` that of the nodes that are not held [kg].
     """
 
     arrays: dict[str, NDArray] = field(default_factory=dict)
@@ -100,6 +100,7 @@ class Assembly:
     added_mass: Floats = field(default_factory=lambda: np.zeros(0))
     least_mass: Floats = field(default_factory=lambda: np.zeros(0))
     limits: tuple[float, float] = (0.0, 0.0)
+    free_mass: float = 0.0
     lumped_blocks: int = 0
     pair_faces: dict[str, Ints] = field(default_factory=dict)
 

@@ -17,13 +17,16 @@ from cdem.model.flat_arrays import Assembly, Floats, Properties
 from cdem.model.masses import one_element_blocks
 
 OFFER = 0.001
-"""Share of the mass of which the audit says what it would buy."""
+"""Share of the mass that is not held, of which the audit says what it would buy."""
 ROUNDS = 60
 """Halvings of the range in which the step lies that a share of the mass buys."""
 
 
 class Scaling:
     """What mass each node needs for a step, bonds intact.
+
+    Attributes:
+        free_mass: Of the nodes that are not held in all directions [kg].
 
     Args:
         t: Blocks, elements, faces and pairs.
@@ -37,6 +40,7 @@ class Scaling:
         dense = arrays["node.mass_row_first"] >= 0
         lumped = ~dense | (p.lumped_while_bonded & _bonded_blocks(t, out)[t.node_block])
         held = p.supported.all(axis=1)  # cannot become unstable
+        self.free_mass = float(self._mass[~held].sum())
         springs = 2 * (bond_stiffness(t, out) + contact_stiffness(t, p, out))
         load = arrays["node.lumped_frequency_squared"] * self._mass + springs
         self._load = np.where(held, 0.0, load)
@@ -60,7 +64,7 @@ class Scaling:
         return np.where(self._alone, (factor - 1) * self._mass, np.maximum(needs, 0.0))
 
     def limit(self, share: float) -> float:
-        """The longest stable step [s] for which no more than a share of the mass is added."""
+        """The longest stable step [s] for which no more than a share of what is not held is added."""
         largest = np.where(
             self._alone, self._factor_square, np.minimum(self._square, self._load / self._least)
         ).max(initial=0.0)
@@ -69,7 +73,7 @@ class Scaling:
         low, high = 2 / np.sqrt(largest), 200 / np.sqrt(largest)
         for _ in range(ROUNDS if share > 0 else 0):
             middle = 0.5 * (low + high)
-            fits = self.added(middle).sum() <= share * self._mass.sum()
+            fits = self.added(middle).sum() <= share * self.free_mass
             low, high = (middle, high) if fits else (low, middle)
         return float(same_everywhere(np.array(low)))
 

@@ -18,8 +18,11 @@ Floats = NDArray[np.float64]
 
 BOND = Stiffness(10.0, relative=True)
 """Of joints: they add a tenth of the compliance of the elements beside them."""
-CONTACT = Stiffness(1.0, relative=True)
-"""Where nothing is known: friction and limit loads do not depend on it, and steps are long."""
+CONTACT = 1.0
+"""Of contacts in E / h, at least, where nothing is known: friction and limit loads do not depend on
+it, and steps are long."""
+DEEPEST = Overlap(overlap=0.01, impact=0.02)
+"""Where 1 E / h would let blocks overlap by more, as soft rock does, contacts are stiffer."""
 SOFTEST, STIFFEST = 0.03, 10.0
 """Bounds of a stiffness from an allowed overlap, in E / h."""
 
@@ -74,8 +77,10 @@ def _of_contacts(
     known = law.stiffness_n != AUTO or law.stiffness_s != AUTO
     if given == AUTO and (known or case.cdem == 1):
         return *_of_bonds(law), False
-    both = CONTACT if given == AUTO else given
-    return both, both, True
+    if given == AUTO:
+        factor = max(CONTACT, overlap_factor(case, law, DEEPEST, names, height))
+        given = Stiffness(factor, relative=True)
+    return given, given, True
 
 
 def overlap_factor(

@@ -6,7 +6,8 @@ import json
 
 import pytest
 
-from cdem import Case
+from cdem import Case, CdemError
+from cdem.cli.run_commands import write_report as WRITE_REPORT  # noqa: N812
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
@@ -59,3 +60,14 @@ def test_warnings_go_to_stderr_and_the_log_and_strict_refuses_before_it_writes(
     assert "0.35 deg is unusual" in err
     assert "--strict does not allow" in err
     assert (cube_folder / "cube.results/summary.json").exists()  # --overwrite removed nothing
+
+
+def test_a_report_that_cannot_be_written_is_said_even_by_a_quiet_run(monkeypatch, tmp_path, capsys):
+    def fails(folder):
+        raise CdemError(f"{folder}/report.html: cannot be written (Input/output error)")
+
+    monkeypatch.setattr("cdem.output.report.report", fails)
+    WRITE_REPORT(tmp_path, silent=True)  # `no_report` has taken its place
+    assert capsys.readouterr().err == (
+        f"no report.html: {tmp_path}/report.html: cannot be written (Input/output error)\n"
+    )
