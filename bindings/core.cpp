@@ -247,7 +247,7 @@ void bind_diagnostics(nb::class_<Core>& core) {
       .def("step_limit", [](const Core& c) {
         const StepLimit l = step_limit(c.model, c.state);
         return std::make_tuple(l.dt, l.node, l.element_frequency_squared,
-                               l.contact_frequency_squared);
+                               l.contact_frequency_squared, l.bond_part);
       });
 }
 

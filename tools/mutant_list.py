@@ -35,6 +35,22 @@ PYTHON = [
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
+        "scaled bonds",
+        "mass scaling that does not count bonds",
+        "src/cdem/model/mass_scaling.py",
+        "springs = 2 * (bond_stiffness(t, out) + contact_stiffness(t, p, out))",
+        "springs = 2 * contact_stiffness(t, p, out)",
+        "tests/unit/model/test_mass_scaling.py",
+    ),
+    Mutant(
+        "scaled again",
+        "mass scaling that follows what a stage changes",
+        "src/cdem/model/build.py",
+        "        built.assembly.added_mass,\n",
+        "        None,\n",
+        "tests/unit/model/test_mass_scaling.py",
+    ),
+    Mutant(
         "q",
         "irregular tets taken for regular ones",
         "src/cdem/model/compensation.py",
@@ -336,6 +352,14 @@ CORE = [
         "tests/core/nodes/test_time_step.cpp",
     ),
     Mutant(
+        "held nodes",
+        "held nodes bound the step of blocks with added mass",
+        "core/nodes/time_step.cpp",
+        "    if (is_held(supports, j)) continue;\n",
+        "",
+        "tests/core/nodes/test_time_step.cpp",
+    ),
+    Mutant(
         "sleep",
         "a fixed node that carries a load sleeps",
         "core/nodes/sleep.cpp",
@@ -610,6 +634,14 @@ CORE = [
         "return s.dt != s.dt_last ? s.nodes.step_change.data() : nullptr;",
         "return s.dt < 0 ? s.nodes.step_change.data() : nullptr;",
         "tests/validation/test_impact_energy.py",
+    ),
+    Mutant(
+        "strong dashpots",
+        "strong contact dashpots shorten the step as one does, and stacks gain energy",
+        "core/nodes/time_step.cpp",
+        "if (xi <= sure_contact_damping) return 1;",
+        "if (xi >= 0) return 1;",
+        "tests/core/nodes/test_time_step.cpp",
     ),
     Mutant(
         "series",

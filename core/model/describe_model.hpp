@@ -56,6 +56,12 @@ void describe_nodes(Model& m, Visit&& given) {
          .meaning = "largest eigenvalue of the inverse mass matrix",
          .rows = "nodes"},
         m.inverse_mass_bound);
+  given({.name = "node.least_mass",
+         .unit = "kg",
+         .meaning = "diagonal below the mass matrix, of models with added mass",
+         .rows = "nodes",
+         .optional = true},
+        m.least_mass);
 }
 
 /// Mass matrices of small blocks, and corner rows: part of `describe_model`.

@@ -43,6 +43,7 @@ struct Model {
   Column<Index> mass_row_first, mass_axis_stride, block_first, block_count;
   Column<Real> mass_inverse, mass_matrix;
   Column<Real> inverse_mass_bound;        // largest eigenvalue of the inverse mass matrix  [1/kg]
+  Column<Real> least_mass;                // diagonal below the mass matrix  [kg]; empty: not known
   Column<Real> frequency_squared;         // bound from the node's elements, squared  [1/s2]
   Column<Real> lumped_frequency_squared;  // the same with lumped masses
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/model/phase_timer.hpp"
 #include "core/nodes/masses.hpp"
@@ -12,9 +13,36 @@ namespace cdem {
 
 namespace {
 
+/// What a dashpot of ratio xi at the highest frequency leaves of the stable step.
+Real damped(Real xi) { return std::sqrt(1 + xi * xi) - xi; }
+
+/// What strong contact dashpots leave of that.
+Real strongly_damped(Real xi) {
+  if (xi <= sure_contact_damping) return 1;
+  return sure_contact_damping * damped(sure_contact_damping) / (xi * damped(xi));
+}
+
 /// Stiffness of bonds and contacts, those that may begin included, on a node  [N/m].
 Real stiffness_at(const State& s, Index i) {
   return std::max(s.nodes.force[std::size_t(i) * 4 + 3], s.node_potential[i]) + s.node_bonds[i];
+}
+
+bool is_held(const SupportColumns& supports, Index node) {
+  return supports.given(node, 0) && supports.given(node, 1) && supports.given(node, 2);
+}
+
+/// Bound from the nodes of a block with a mass matrix one by one: K <= diag(S + 2 k), M >=
+/// diag(least); infinite where no such diagonal is known  [1/s2].
+Real bound_by_nodes(const Model& m, const State& s, Range block) {
+  if (m.least_mass.size() == 0) return std::numeric_limits<Real>::infinity();
+  const SupportColumns supports = support_columns(m, s);
+  Real largest = 0;
+  for (Index j = block.first; j < block.last; ++j) {
+    if (is_held(supports, j)) continue;
+    const Real elements = m.mass[j] * m.lumped_frequency_squared[j];
+    largest = std::max(largest, (elements + 2 * stiffness_at(s, j)) / m.least_mass[j]);
+  }
+  return largest;
 }
 
 /// Node with the highest frequency; `held` counts those that are held or driven in all directions.
@@ -29,23 +57,34 @@ Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLi
     const Index last = dense ? first + m.block_count[i] : i + 1;
     if (dense && i != first) continue;
     Real element_frequency_squared = 0;
+    Index stiffest = i;  // of the nodes of a block with a mass matrix
     bool free = held;
     for (Index j = first; j < last; ++j) {
-      for (Index axis = 0; axis < 3; ++axis) free = free || !supports.given(j, axis);
-      stiffness = std::max(stiffness, stiffness_at(s, j));
+      free = free || !is_held(supports, j);
+      if (const Real here = stiffness_at(s, j); here > stiffness) {
+        stiffness = here;
+        stiffest = j;
+      }
       element_frequency_squared =
           std::max(element_frequency_squared,
                    mass.is_lumped(j) ? m.lumped_frequency_squared[j] : m.frequency_squared[j]);
     }
     if (!free) continue;
     // Gershgorin: a spring between two points adds at most twice its stiffness to a row
-    const Real contact_frequency_squared =
+    Real contact_frequency_squared =
         2 * stiffness * (mass.is_lumped(i) ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
+    if (dense) {
+      const Real sum = element_frequency_squared + contact_frequency_squared;
+      const Real less = std::min(sum, bound_by_nodes(m, s, {first, last}));
+      element_frequency_squared *= less / sum;
+      contact_frequency_squared *= less / sum;
+    }
     if (element_frequency_squared + contact_frequency_squared > largest) {
       largest = element_frequency_squared + contact_frequency_squared;
-      limit.node = i;
+      limit.node = stiffest;
       limit.element_frequency_squared = element_frequency_squared;
       limit.contact_frequency_squared = contact_frequency_squared;
+      limit.bond_part = stiffness > 0 ? s.node_bonds[stiffest] / stiffness : 0;
     }
   }
   return largest;
@@ -62,8 +101,8 @@ StepLimit step_limit(const Model& m, const State& s) {
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real xi =
       m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);
-  limit.dt =
-      2 / std::sqrt(largest) * (std::sqrt(1 + xi * xi) - xi) / std::sqrt(1 + m.damping.local);
+  limit.dt = 2 / std::sqrt(largest) * damped(xi) / std::sqrt(1 + m.damping.local) *
+             strongly_damped(m.contact_damping);
   return limit;
 }
 

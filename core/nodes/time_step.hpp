@@ -14,6 +14,7 @@ struct StepLimit {
   Index node = -1;                     // where it is reached
   Real element_frequency_squared = 0;  // squared frequency of its elements there  [1/s2]
   Real contact_frequency_squared = 0;  // and of its bonds and contacts  [1/s2]
+  Real bond_part = 0;                  // of these, what bonds have
 };
 
 /// The stable step is renewed every so many steps, after every rebuild of the pair list, and after
@@ -35,6 +36,11 @@ inline constexpr Real flight_growth = 0.5;
 /// Step of adaptive relaxation, as a part of the stable one: its masses are made for it, from
 /// bounds that hold.
 inline constexpr Real relax_safety = 0.9;
+
+/// Contact damping up to this ratio shortens the step as one dashpot at the highest frequency does.
+/// A node has many dashpots, and with a full mass matrix a cube's corner has an eighth of its mass:
+/// above it the step goes with one over the ratio, else a stack of cubes gains energy (at 0.25).
+inline constexpr Real sure_contact_damping = 0.2;
 
 StepLimit step_limit(const Model& model, const State& state);
 

@@ -202,6 +202,7 @@ def test_other_formulations_and_static_stages_let_blocks_go(way):
 
 
 SLIDE = """\
+cdem: 1
 title: A weak body breaks up on a slope that ends
 model:
   blocks:

@@ -103,3 +103,24 @@ def test_ledger_of_a_throw_into_a_corner_closes_at_the_default_step():
     velocity, worst = mean_velocity_after(sim, 0.04)
     assert worst < 1e-2
     assert np.all(velocity > 0)
+
+
+@pytest.mark.parametrize("version", [1, 2])
+@pytest.mark.parametrize("ratio", [0.3, 1.0])
+def test_strong_dashpots_make_no_energy_in_a_stack(version, ratio):
+    """Five cubes on a bed: a node has many dashpots, and with exact masses little inertia."""
+    bed = {"group": "bed", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]}
+    cubes = [
+        {"group": "stack", "box": {"size": [1, 1, 1]}, "translate": [0, 0, k]} for k in range(5)
+    ]
+    sim = simulate(
+        [bed, *cubes],
+        {"bed": {"fix": ["x", "y", "z"]}, "stack": {}},
+        cdem=version,
+        interfaces={"default": {"friction_angle": 30}},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=[{"name": "stand", "mode": "dynamic", "duration": 1, "damping": {"contact": ratio}}],
+    )
+    for _ in range(40):
+        sim.step(10)
+        assert abs(sim.energies["error"]) < 1e-4

@@ -47,6 +47,7 @@ def thrown_cube(folder, rotation=None, seed=None, first_nodes=False):
     damping = {"contact": 0.2, "stiffness": 0.1}  # local damping depends on the axes
     case = cdem.Case.from_dict(
         {
+            "cdem": 1,
             "model": {"mesh": str(folder / "mesh.msh"), "split": {"body": "elements"}},
             "materials": {
                 "rock": {"density": 2500, "young_modulus": "20 GPa", "poisson_ratio": 0.25}

@@ -139,3 +139,36 @@ def test_step_of_a_body_without_contact_is_that_of_its_elements():
     at_once = fly(2000)
     assert at_once["dt"] == pytest.approx(alone / 2, rel=1e-12)
     assert at_once == fly(*[100] * 20)
+
+
+@pytest.mark.parametrize("model", ["shaken", "jointed"])
+def test_step_of_scaled_masses_is_stable(tmp_path, model):
+    """0.98 of the stable step with 1 % of mass added, of bonded tets and of blocks of a few tets."""
+    joints = [{"name": "j", "dip": 30, "dip_direction": 70, "spacing": 0.4}]
+    parts = {
+        "shaken": (
+            [],
+            {"default": {}},
+            {**irregular_tets(tmp_path / "a.vtk", [3, 3, 3], [3, 3, 3]),
+             "split": {"default": "elements"}},
+        ),
+        "jointed": (
+            [{"group": "a", "box": {"size": [1, 1, 2]}}], {"a": {}}, {"joints": joints},
+        ),
+    }  # fmt: skip
+    blocks, groups, model = parts[model]
+
+    def simulation(**time):
+        scaling = {"mass_scaling": {"most": 0.01}}
+        return simulate(
+            blocks, groups, interfaces={"default": BOND}, model=model, cdem=2, time=scaling | time
+        )
+
+    free = simulate(blocks, groups, interfaces={"default": BOND}, model=model, cdem=2)
+    limit = simulation().core.step_limit()[0]
+    assert limit > 1.1 * free.core.step_limit()[0]
+    sim = simulation(step=0.98 * limit)
+    velocity = sim.fields["velocity"]
+    velocity += np.random.default_rng(1).normal(size=velocity.shape) * 1e-9
+    sim.step(1500)
+    assert np.abs(sim.fields["velocity"]).max() < 1e-6

@@ -38,14 +38,15 @@ struct UpdateEdgeForces {
     const T free =
         select(old.begins, starting_stress_free_gap(gap, pair.gap_rate, T(faces.dt), zero, zero),
                lifted_stress_free_gap(old.stress_free_gap, gap));
-    const ContactMotion<T> motion{.gap = unloading.gap(gap - free, old.force),
-                                  .stress_free_gap = free,
-                                  .gap_rate = pair.gap_rate,
-                                  .slip1 = pair.slip1,
-                                  .slip2 = pair.slip2,
-                                  .dashpot = laws.dashpot(spring, pair.inverse_mass),
-                                  .may_rise = zero,
-                                  .dt = faces.dt};
+    const ContactMotion<T> motion{
+        .gap = unloading.gap(gap - free, old.force),
+        .stress_free_gap = free,
+        .gap_rate = pair.gap_rate,
+        .slip1 = pair.slip1,
+        .slip2 = pair.slip2,
+        .dashpot = unloading.dashpot(laws.dashpot(spring, pair.inverse_mass)),
+        .may_rise = zero,
+        .dt = faces.dt};
     const auto place = indices_of([](Index c) { return c; }, item);
     const JointAnswer<T> joint =
         respond_with_history(laws.interfaces, interface, unloading.input(spring, motion, old.force),

@@ -42,14 +42,15 @@ struct UpdateSpringForces {
                                         max_of(old.stress_free_gap, zero)),
                lifted_stress_free_gap(old.stress_free_gap, gap));
     unloading.begin(target.changes, free - (gap - pair.gap_rate * dt), old.force);
-    const ContactMotion<T> motion{.gap = unloading.gap(gap - free, old.force),
-                                  .stress_free_gap = free,
-                                  .gap_rate = pair.gap_rate,
-                                  .slip1 = pair.slip1,
-                                  .slip2 = pair.slip2,
-                                  .dashpot = laws.dashpot(spring, pair.inverse_mass),
-                                  .may_rise = T(1.0),
-                                  .dt = faces.dt};
+    const ContactMotion<T> motion{
+        .gap = unloading.gap(gap - free, old.force),
+        .stress_free_gap = free,
+        .gap_rate = pair.gap_rate,
+        .slip1 = pair.slip1,
+        .slip2 = pair.slip2,
+        .dashpot = unloading.dashpot(laws.dashpot(spring, pair.inverse_mass)),
+        .may_rise = T(1.0),
+        .dt = faces.dt};
     const JointAnswer<T> joint =
         respond_with_history(laws.interfaces, interface, unloading.input(spring, motion, old.force),
                              history, slot, history, slot);

@@ -66,6 +66,7 @@ struct ElasticUnloading {
                                 const JointAnswer<T>& joint) const {
     return contact_force(spring, motion, before, joint);
   }
+  CDEM_HD T dashpot(const T& c) const { return c; }
   /// Largest stiffness  [N/m].
   CDEM_HD T stiffness(const ContactSpring<T>& spring) const {
     return max_of(spring.n(), spring.s());
@@ -97,6 +98,8 @@ struct HystereticUnloading {
     const T q = hysteretic_penetration(returned_n, -gap, before.approach, before.penetration);
     return select((returned_n < T(1.0)) & (gap < zero), -q, gap);
   }
+  /// What a contact loses is asked for already where it has a restitution.
+  CDEM_HD T dashpot(const T& c) const { return select(returned_n < T(1.0), T(0.0), c); }
   /// The approach that is kept for the next step.
   CDEM_HD T approach(const T& gap, const ContactForce<T>& f) const { return f.rise - gap; }
 

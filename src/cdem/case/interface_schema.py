@@ -63,8 +63,8 @@ class Interface(Part):
         Discriminator(lambda v: "overlap" if isinstance(v, dict | Overlap) else "value"),
     ] = Field(
         AUTO,
-        description="Normal and shear stiffness of contacts: auto (1 E/h; with cdem: 1 that of bonds), "
-        "a number [Pa/m], '0.3 E/h', or an allowed overlap",
+        description="Normal and shear stiffness of contacts: auto (that of bonds where it is given, "
+        "else 1 E/h; with cdem: 1 that of bonds), a number [Pa/m], '0.3 E/h', or an allowed overlap",
     )
     restitution: Annotated[
         Annotated[Coefficient, Tag("value")] | Annotated[Restitution, Tag("each")],

@@ -59,7 +59,7 @@ class Group(Part):
 
 
 class Damping(Part):
-    """What takes energy out; all are zero unless given, but local in a static stage."""
+    """What takes energy out."""
 
     local: Annotated[float, Quantity("1", at_least=0, below=1)] | None = Field(
         None,
@@ -74,11 +74,12 @@ class Damping(Part):
         description="Stiffness-proportional (Rayleigh), as a fraction of critical at the highest "
         "frequency that the time step resolves [1]",
     )
-    contact: Annotated[float, Quantity("1", at_least=0)] = Field(
-        0.0,
-        description="Dashpot at each contact, as a fraction of critical of the two nodes that touch "
-        "[1]; how much speed an impact keeps then depends on mass, points and shape: for a given "
-        "coefficient use restitution of the interface",
+    contact: Annotated[float, Quantity("1", at_least=0)] | None = Field(
+        None,
+        description="Dashpot at each contact without restitution, as a fraction of critical of the two "
+        "nodes that touch [1]; how much speed an impact keeps then depends on mass, points and shape: "
+        "for a given coefficient use restitution of the interface. Default 0.1 in a dynamic stage; 0 in "
+        "a static one and with cdem: 1",
     )
 
 
@@ -107,8 +108,9 @@ class Stage(Part):
     damping: Damping = Field(Damping(), description="Damping")
     relax: Literal["local", "kinetic", "adaptive"] | None = Field(
         None,
-        description="Static only: the way to rest: local damping (default), kinetic (stop at peaks of "
-        "the kinetic energy), or adaptive (critical damping and scaled masses: the fewest steps)",
+        description="Static only: the way to rest: adaptive (critical damping and scaled masses: the "
+        "fewest steps; default), kinetic (stop at peaks of the kinetic energy), or local damping "
+        "(default with cdem: 1)",
     )
     set: dict[str, Any] = Field(
         {}, description="Values that change when the stage begins: {path in the case: value}"
@@ -125,10 +127,17 @@ class Stage(Part):
         # Not by assignment: that would start this check again.
         if self.mode == "static":
             self.__dict__["tolerance"] = self.tolerance or 1e-5
-            self.__dict__["relax"] = self.relax or "local"
+        return self
+
+    def complete(self, version: int) -> None:
+        """Fill in what the case has left out, as this version of the case format has it."""
+        if self.mode == "static":
+            self.__dict__["relax"] = self.relax or ("local" if version == 1 else "adaptive")
         if self.damping.local is None:
             self.damping.__dict__["local"] = 0.8 if self.relax == "local" else 0.0
-        return self
+        if self.damping.contact is None:
+            steady = self.mode == "dynamic" and version > 1
+            self.damping.__dict__["contact"] = 0.1 if steady else 0.0
 
 
 class Contact(Part):
@@ -176,9 +185,22 @@ class Elements(Part):
 
 
 class MassScaling(Part):
-    """Mass added to the elements that would force a smaller step."""
+    """Mass added where small elements, bonds and contacts would force a smaller step."""
 
-    step: Annotated[float, Quantity("s", above=0)] = Field(description="Step to reach [s]")
+    step: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None, description="Step to reach without damping [s]"
+    )
+    most: Annotated[float, Quantity("1", above=0, at_most=1)] | None = Field(
+        None,
+        description="Most mass to add, as a share of all; without step, the longest step that it buys "
+        "[1]",
+    )
+
+    @model_validator(mode="after")
+    def _asks_for_something(self) -> MassScaling:
+        if self.step is None and self.most is None:
+            raise ValueError("give a step to reach, or the most mass to add, e.g. most: 0.001")
+        return self
 
 
 class Time(Part):
@@ -190,7 +212,7 @@ class Time(Part):
     safety: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.8, description="Share of the stability limit that an automatic step uses [1]"
     )
-    mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst elements")
+    mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst nodes")
     energy_error: Annotated[float, Quantity("1", above=0)] | Literal["any"] = Field(
         0.05,
         description="Closing error of the energy balance, as a share of its largest term, at which a "
@@ -245,7 +267,7 @@ class CaseParts(Part):
     """All parts of a case."""
 
     cdem: Literal[1, 2] = Field(
-        1, description="Version of the case format: defaults differ between versions"
+        2, description="Version of the case format: defaults differ between versions"
     )
     title: Line = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
@@ -260,6 +282,12 @@ class CaseParts(Part):
     time: Time = Field(Time(), description="The time step")
     output: Output = Field(Output(), description="What is written")
     histories: list[HistoryPoint] = Field([], description="Quantities followed over time")
+
+    @model_validator(mode="after")
+    def _complete(self) -> CaseParts:
+        for stage in self.stages:
+            stage.complete(self.cdem)
+        return self
 
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:

@@ -12,7 +12,8 @@ from cdem.mesh.arrays import in_pieces, lengths, same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
-from cdem.model.masses import node_masses
+from cdem.model.mass_scaling import OFFER, Scaling
+from cdem.model.masses import Geometry, node_masses
 
 Stride = Callable[[int], int]
 """The core's function from item count to table stride."""
@@ -43,7 +44,22 @@ def assemble(topology: Topology, properties: Properties, padded_stride: Stride) 
     _faces(topology, properties, out)
     _pairs(topology, properties, padded_stride, out)
     _corners(topology, out)
+    if properties.added_mass is None:
+        _scale_masses(topology, properties, out)
     return out
+
+
+def _element_tables(t: Topology, p: Properties, shape: str) -> tuple[Geometry, Floats]:
+    """Geometry and mass matrices of the elements of a shape."""
+    corners, group = t.node_position[t.element_nodes[shape]], t.element_group[shape]
+    gradient, volume = element_shapes.reference_gradients(shape, corners)
+    hourglass = np.zeros((len(corners), 0))
+    if shape == "hex8" and p.one_point:
+        gradient, volume, hourglass = element_shapes.one_point(
+            corners, gradient, volume, p.stiffening[group] * p.young_modulus[group]
+        )
+    matrices = element_shapes.mass_matrices(shape, corners, p.density[group])
+    return (gradient, volume, hourglass), matrices
 
 
 def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
@@ -55,16 +71,9 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
         connectivity = t.element_nodes[shape]
         count = len(connectivity)
         stride = padded_stride(count)
-        corners = t.node_position[connectivity]
         group = t.element_group[shape]
-        gradient, volume = element_shapes.reference_gradients(shape, corners)
-        matrices = element_shapes.mass_matrices(shape, corners, p.density[group])
-        hourglass = np.zeros((count, 0))
-        if shape == "hex8" and p.one_point:
-            gradient, volume, hourglass = element_shapes.one_point(
-                corners, gradient, volume, p.stiffening[group] * p.young_modulus[group]
-            )
-        geometry[shape] = (gradient, volume, hourglass)
+        geometry[shape], matrices = _element_tables(t, p, shape)
+        gradient, volume, hourglass = geometry[shape]
         mass[shape] = matrices
         np.add.at(gravity_mass, connectivity, matrices.sum(axis=2))
         points = volume.shape[1]
@@ -83,7 +92,20 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
     out.arrays["node.gravity_mass"] = gravity_mass
     out.arrays["node.block"] = t.node_block
     out.arrays["node.place"] = t.node_place
-    node_masses(t, p, mass, geometry, out)
+    out.added_mass = np.zeros(len(t.node_position)) if p.added_mass is None else p.added_mass
+    node_masses(t, p, mass, geometry, out.added_mass, out)
+
+
+def _scale_masses(t: Topology, p: Properties, out: Assembly) -> None:
+    """Add what the case allows, and note what a little mass would buy."""
+    scaling = Scaling(t, p, out)
+    out.limits = (scaling.limit(0.0), scaling.limit(OFFER))
+    if p.mass_scaling is None:
+        return
+    out.added_mass = scaling.wanted(p.mass_scaling, p.safety)
+    tables = {shape: _element_tables(t, p, shape) for shape in element_shapes.NODES}
+    geometry = {shape: of for shape, (of, _) in tables.items()}
+    node_masses(t, p, {shape: m for shape, (_, m) in tables.items()}, geometry, out.added_mass, out)
 
 
 def _faces(t: Topology, p: Properties, out: Assembly) -> None:

@@ -16,13 +16,10 @@ from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
+from cdem.model.ruling_step import remedy, ruling_step
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
-
-
-CONTACTS = "interface or contact stiffness"
-"""What decides the time step, if elements do not."""
 
 
 class Audit:
@@ -97,22 +94,20 @@ class Audit:
 
     def _step(self) -> dict[str, Any]:
         b = self._build
-        limit, node, element2, contact2 = b.core.step_limit()
-        t = b.topology
-        group = b.group_names[t.block_group[t.node_block[node]]]
+        ruling = ruling_step(b)
         dt = float(b.core.scalars()["dt"])
         if not dt > 0:
             raise CaseError(
-                f"the stable time step is {limit:.3g} s, for group {group}: nothing could move; look at "
-                "its density, Young's modulus and damping, and at the stiffness of its interfaces"
+                f"the stable time step is {ruling.limit:.3g} s, for group {ruling.group}: nothing "
+                "could move; look at its density, Young's modulus and damping, and at the stiffness of "
+                "its interfaces"
             )
-        return {
+        return asdict(ruling) | {
             "dt": dt,
-            "limit": limit,
-            "node": int(node),
-            "group": group,
-            "rules": "element" if element2 > contact2 else CONTACTS,
-            "added_mass": b.assembly.added_mass,
+            "rules": ruling.rules,
+            "words": ruling.words(),
+            "remedy": remedy(b, ruling, dt),
+            "added_mass": float(b.assembly.added_mass.sum()),
         }
 
     def _slivers(self) -> int:
@@ -200,11 +195,11 @@ class Audit:
                 f"{b.assembly.lumped_blocks} large blocks one element thick keep lumped masses: "
                 "their rotational inertia is too large"
             )
-        if b.assembly.added_mass:
+        if self.step["added_mass"]:
             total = sum(m.sum() for m in b.assembly.element_mass.values())
             out.append(
-                f"mass scaling adds {b.assembly.added_mass:.3g} kg "
-                f"({100 * b.assembly.added_mass / total:.2g} % of the mass)"
+                f"mass scaling adds {self.step['added_mass']:.3g} kg "
+                f"({100 * self.step['added_mass'] / total:.2g} % of the mass)"
             )
         return out
 
@@ -273,8 +268,8 @@ class Audit:
         s = self.step
         lines += [
             "",
-            f"  time step {s['dt']:.4g} s ({s['rules']} of group {s['group']} decides; stable below "
-            f"{s['limit']:.4g} s)",
+            f"  time step {s['dt']:.4g} s, stable below {s['limit']:.4g} s; {s['words']} rule it",
+            *([f"    {s['remedy']}"] if s["remedy"] else []),
             f"  memory of model and state {self.memory / 1e6:,.0f} MB",
         ]
         if estimate:
@@ -302,7 +297,7 @@ class Audit:
                 f"{row['height']:.3g} m of rock, {100 * row['overlap_at_speed']:.2g} % at "
                 f"{row['speed']:.3g} m/s"
             )
-            if row["restitution"] < 1 and self.step["rules"] == CONTACTS:
+            if row["restitution"] < 1 and self.step["rules"] == "contact":
                 lines[-1] += (
                     f"; restitution {row['restitution']:g} makes them "
                     f"{row['restitution'] ** -2:.3g} times as stiff in unloading, which shortens the step"

@@ -131,7 +131,7 @@ def build(case: Case) -> Build:
     made_up = compensate(
         case, topology, names, compensated_groups(case, topology, names, laws, interface_of, bonds)
     )
-    parts = _assemble(case, topology, names, laws, interface_of, bonds, made_up, curves)
+    parts = _assemble(case, topology, names, laws, interface_of, bonds, made_up, curves, None)
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
@@ -172,10 +172,15 @@ def _assemble(
     bonds: NDArray[np.bool_],
     made_up: dict[str, Compensation],
     curves: Curves,
+    added_mass: Floats | None,
 ) -> Assembly:
-    """Arrays of the core, with supports and loads as the case has them now."""
+    """Arrays of the core, with supports and loads as the case has them now.
+
+    What mass scaling adds is as given, or follows from the case.
+    """
+    entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]
-    scaling = case.time.mass_scaling
+    stiffening, bond_stiffness = _made_up(names, made_up)
     supports = supports_of(case, topology, names, curves)
     held = supports["component"][np.maximum(supports["row"], 0)].astype(bool)
     properties = Properties(
@@ -188,11 +193,16 @@ def _assemble(
         bonded=bonds,
         stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
         automatic=np.array([is_automatic(law) for law in laws], bool),
-        stiffening=np.array([made_up[n].stiffening if n in made_up else 1.0 for n in names]),
-        bond_stiffness=np.array([made_up[n].stiffness if n in made_up else 0.0 for n in names]),
+        stiffening=stiffening,
+        bond_stiffness=bond_stiffness,
+        contact_stiffness=np.array([_unloading_row(e) for e in entries]).reshape(-1, 4),
+        in_series=np.array([e["in_series"] for e in entries], bool),
         exact_mass=case.moved_masses != "lumped",
+        lumped_while_bonded=case.moved_masses == "lumped-while-bonded",
         supported=held & (supports["row"] >= 0)[:, None],
-        target_step=0.0 if scaling is None else scaling.step,
+        mass_scaling=case.time.mass_scaling,
+        safety=case.time.safety,
+        added_mass=added_mass,
         one_point=case.elements.hexahedra == "one-point",
     )
     parts = assemble(topology, properties, native.padded_stride)
@@ -200,6 +210,21 @@ def _assemble(
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
     return parts
+
+
+def _made_up(names: list[str], made_up: dict[str, Compensation]) -> tuple[Floats, Floats]:
+    """By group, how much stiffer its elements are than the whole, and its bonds [Pa/m] or 0."""
+    found = [made_up.get(name) for name in names]
+    return (
+        np.array([1.0 if c is None else c.stiffening for c in found]),
+        np.array([0.0 if c is None else c.stiffness for c in found]),
+    )
+
+
+def _unloading_row(entry: dict[str, Any]) -> list[float]:
+    """(value, factor) of k_n / e_n^2, then of k_s / e_t^2: the stiffness of contacts that unload."""
+    sides = zip(("stiffness_n", "stiffness_s"), entry["restitution"], strict=True)
+    return [k / e**2 for key, e in sides for k in entry[key]]
 
 
 def _law_row(material: Material) -> list[float]:
@@ -231,6 +256,7 @@ def change(built: Build) -> dict[str, NDArray]:
         built.bonded,
         built.compensation,
         built.curves,
+        built.assembly.added_mass,
     )
     kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s")
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}

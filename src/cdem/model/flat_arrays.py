@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.schema import MassScaling
 from cdem.mesh.arrays import first_of_each
 from cdem.mesh.element_shapes import lame_constants
 
@@ -32,9 +33,16 @@ class Properties:
         stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
             (groups,).
         bond_stiffness: Of bonds that are made up for [Pa/m], else 0, shape (groups,).
+        contact_stiffness: (value, factor) of k_n and k_s of contacts that unload by interface,
+            shape (interfaces, 4).
+        in_series: Whether E / h of contacts is that of both sides in series, shape (interfaces,).
         exact_mass: Whether blocks have their exact inertia, at least once they have no bonds.
+        lumped_while_bonded: Whether they have it only then.
         supported: Components of nodes that are held or moved, shape (nodes, 3).
-        target_step: Time step for which elements are made heavier where needed, or 0 [s].
+        mass_scaling: What mass to add, if any.
+        safety: Share of the stable step that is used.
+        added_mass: What mass scaling has added to each node at the start, once that is known [kg],
+            shape (nodes,).
         one_point: Whether hexahedra have one Gauss point and hourglass springs.
     """
 
@@ -49,9 +57,14 @@ class Properties:
     automatic: NDArray[np.bool_]
     stiffening: Floats
     bond_stiffness: Floats
+    contact_stiffness: Floats
+    in_series: NDArray[np.bool_]
     exact_mass: bool
+    lumped_while_bonded: bool
     supported: NDArray[np.bool_]
-    target_step: float = 0.0
+    mass_scaling: MassScaling | None = None
+    safety: float = 1.0
+    added_mass: Floats | None = None
     one_point: bool = False
 
     @property
@@ -72,14 +85,21 @@ class Properties:
 
 @dataclass
 class Assembly:
-    """Flat arrays of the model by name, counts, and what the audit wants to know."""
+    """Flat arrays of the model by name, counts, and what the audit wants to know.
+
+    `added_mass` is that of mass scaling by node, `least_mass` a diagonal that is no more than the mass
+    matrix of each block, `limits` the stable step without it and with 0.1 %
+    of mass added [s].
+    """
 
     arrays: dict[str, NDArray] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     element_mass: dict[str, Floats] = field(default_factory=dict)
     element_volume: dict[str, Floats] = field(default_factory=dict)
     element_frequency: dict[str, Floats] = field(default_factory=dict)
-    added_mass: float = 0.0
+    added_mass: Floats = field(default_factory=lambda: np.zeros(0))
+    least_mass: Floats = field(default_factory=lambda: np.zeros(0))
+    limits: tuple[float, float] = (0.0, 0.0)
     lumped_blocks: int = 0
     pair_faces: dict[str, Ints] = field(default_factory=dict)
 

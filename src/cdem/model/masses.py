@@ -25,9 +25,19 @@ def node_masses(
     p: Properties,
     matrices: dict[str, Floats],
     geometry: dict[str, Geometry],
+    added: Floats,
     out: Assembly,
 ) -> None:
-    """Masses of the nodes, and the squared frequency that bounds the time step."""
+    """Masses of the nodes, and the squared frequency that bounds the time step.
+
+    Args:
+        t: Blocks and elements.
+        p: What the case says about them.
+        matrices: Mass matrices of the elements by shape [kg].
+        geometry: Of the elements by shape.
+        added: To the mass of each node by mass scaling [kg], shape (nodes,).
+        out: Gets the arrays of the nodes.
+    """
     first = t.block_first_node
     size = np.diff(first)
     block_nodes = size[t.node_block]
@@ -37,18 +47,17 @@ def node_masses(
     dense_block &= ~held  # a block that cannot move needs no inverse
 
     while True:
-        scaled, lumped, stiffness, frequency2 = _scaled_masses(
-            t, p, matrices, geometry, dense_block, out
-        )
+        lumped, stiffness, frequency2 = _lumped_masses(t, p, matrices, geometry, dense_block, out)
         mass = lumped.copy()
         if not p.exact_mass:
             break
-        without = _correct_lumps(t, scaled, lumped, mass, dense_block | held, out)
+        without = _correct_lumps(t, matrices, lumped, mass, dense_block | held, out)
         if len(without) == 0:
             break
         dense_block[without] = True  # a full matrix has other frequencies: once more
     # u K u <= sum_e w_e^2 u_e M_e u_e: with lumped masses that is a sum over the nodes, and no
     # frequency of the mesh exceeds the largest sum_e w_e^2 m_e / m of a node
+    mass += added
     lumped_frequency2 = stiffness / mass
     out.arrays["node.mass"] = mass
     out.arrays["node.frequency_squared"] = np.where(
@@ -57,19 +66,27 @@ def node_masses(
     out.arrays["node.lumped_frequency_squared"] = lumped_frequency2
     out.arrays["node.block_first"] = first[t.node_block].astype(np.int32)
     out.arrays["node.block_count"] = block_nodes.astype(np.int32)
-    _dense_blocks(t, p, scaled, stiffness, dense_block, out)
+    _dense_blocks(t, p, matrices, added, stiffness, dense_block, out)
+    out.least_mass = _least_masses(t, matrices, added, out)
+    out.arrays["node.least_mass"] = out.least_mass if added.any() else np.zeros(0)
 
 
-def _scaled_masses(
+def one_element_blocks(t: Topology) -> NDArray[np.bool_]:
+    """Whether a block is a single element, shape (blocks,)."""
+    blocks = np.concatenate([t.element_block[shape] for shape in element_shapes.NODES])
+    return np.bincount(blocks, minlength=len(t.block_group)) == 1
+
+
+def _lumped_masses(
     t: Topology,
     p: Properties,
     matrices: dict[str, Floats],
     geometry: dict[str, Geometry],
     dense_block: NDArray[np.bool_],
     out: Assembly,
-) -> tuple[dict[str, Floats], Floats, Floats, Floats]:
-    """Mass matrices after mass scaling; for each node its lumped mass, the sum of w_e^2 m_e over its
-    elements, with the frequencies of lumped masses, and their largest w_e^2.
+) -> tuple[Floats, Floats, Floats]:
+    """For each node its lumped mass, the sum of w_e^2 m_e over its elements, with the frequencies of
+    lumped masses, and their largest w_e^2.
 
     The last counts elements of blocks with a full mass matrix with that, all others with lumped
     masses.
@@ -77,12 +94,10 @@ def _scaled_masses(
     lumped = np.zeros(len(t.node_position))
     stiffness = np.zeros(len(t.node_position))
     frequency2 = np.zeros(len(t.node_position))
-    scaled = {}
-    out.element_frequency, out.added_mass = {}, 0.0
+    out.element_frequency = {}
     for shape in element_shapes.NODES:
         connectivity, m = t.element_nodes[shape], matrices[shape]
         if len(m) == 0:
-            scaled[shape] = m
             out.element_frequency[shape] = np.zeros(0)
             continue
         group = t.element_group[shape]
@@ -108,24 +123,20 @@ def _scaled_masses(
                     hourglass[dense],
                 )
             )
-        heavier = np.maximum(1.0, square * (p.target_step / 2) ** 2)
-        out.added_mass += float(((heavier - 1) * out.element_mass[shape]).sum())
-        scaled[shape] = m * heavier[:, None, None]
-        square /= heavier
         out.element_frequency[shape] = np.sqrt(square)
         np.maximum.at(frequency2, connectivity, square[:, None])
         np.add.at(stiffness, connectivity, lumped_square[:, None] * row_sums)
-        np.add.at(lumped, connectivity, row_sums * heavier[:, None])
-    return scaled, lumped, stiffness, frequency2
+        np.add.at(lumped, connectivity, row_sums)
+    return lumped, stiffness, frequency2
 
 
 def _second_moments(
-    t: Topology, scaled: dict[str, Floats], blocks: NDArray[np.bool_]
+    t: Topology, masses: dict[str, Floats], blocks: NDArray[np.bool_]
 ) -> tuple[Floats, Floats]:
     """Exact centre (sum m x) and second moments (sum m x x^T) of blocks about their first node."""
     origin = t.node_position[t.block_first_node[:-1]]
     second = np.zeros((len(blocks), 3, 3))
-    for shape, m in scaled.items():
+    for shape, m in masses.items():
         some = blocks[t.element_block[shape]]
         if not some.any():
             continue
@@ -137,7 +148,7 @@ def _second_moments(
 
 def _correct_lumps(
     t: Topology,
-    scaled: dict[str, Floats],
+    masses: dict[str, Floats],
     lumped: Floats,
     mass: Floats,
     skip: NDArray[np.bool_],
@@ -154,7 +165,7 @@ def _correct_lumps(
     out.lumped_blocks = 0
     if len(todo) == 0:
         return np.array(without, np.intp)
-    origin, second = _second_moments(t, scaled, ~skip)
+    origin, second = _second_moments(t, masses, ~skip)
     upper = np.triu_indices(3)
     for b in todo:
         nodes = slice(t.block_first_node[b], t.block_first_node[b + 1])
@@ -178,6 +189,32 @@ def _correct_lumps(
         else:
             out.lumped_blocks += 1
     return np.array(without, np.intp)
+
+
+def _least_masses(t: Topology, matrices: dict[str, Floats], added: Floats, out: Assembly) -> Floats:
+    """Diagonal that is no more than the mass matrix of each block, D <= M [kg], shape (nodes,).
+
+    Of an element with row sums m it is lambda diag(m), lambda the least eigenvalue of
+    diag(m)^-1/2 M diag(m)^-1/2: 1/5 for a tet, 1/27 for a box. Of lumped masses it is these.
+    """
+    dense = out.arrays["node.mass_row_first"] >= 0
+    least = np.zeros(len(dense))
+    for shape, m in matrices.items():
+        nodes = t.element_nodes[shape]
+        if len(m) == 0:
+            continue
+        rows = m.sum(axis=2)
+        part = np.full(len(m), 0.2)
+        if shape != "tet4":
+            some = dense[nodes[:, 0]]
+            root = np.sqrt(rows[some])
+            scaled = m[some] / root[:, :, None] / root[:, None]
+            part[some] = same_everywhere(1 / np.linalg.eigvalsh(scaled)[:, 0]) ** -1.0
+        least += np.bincount(nodes.ravel(), (part[:, None] * rows).ravel(), len(least))
+    mass = out.arrays["node.mass"]
+    grown = least * mass / (mass - added)  # blocks of one element keep the shape of their matrix
+    least = np.where(one_element_blocks(t)[t.node_block], grown, least + added)
+    return np.where(dense, least, mass)
 
 
 class _MatrixTable:
@@ -210,7 +247,8 @@ class _MatrixTable:
 def _dense_blocks(
     t: Topology,
     p: Properties,
-    scaled: dict[str, Floats],
+    masses: dict[str, Floats],
+    added: Floats,
     stiffness: Floats,
     dense_block: NDArray[np.bool_],
     out: Assembly,
@@ -221,6 +259,7 @@ def _dense_blocks(
     bound = 1 / mass
     held = np.zeros(len(size), bool)
     held[t.node_block[p.supported.any(axis=1)]] = True
+    of_one = one_element_blocks(t)
     table = _MatrixTable(len(mass))
     for n in np.unique(size[dense_block]).tolist():
         free = np.flatnonzero(dense_block & ~held & (size == n))
@@ -228,13 +267,19 @@ def _dense_blocks(
         if n == 4 and len(free):  # tets: all have the same over their mass
             nodes = first[free][:, None] + np.arange(n)
             bound[nodes] = 5 / mass[nodes]
+            frequency2[nodes] *= (mass - added)[nodes] / mass[nodes]
             table.keep(nodes, (5 * np.eye(4) - 1)[None], ((1 + np.eye(4)) / 5)[None])
             free = free[:0]
         for blocks in (free, bound_to):
             if len(blocks) == 0:
                 continue
             nodes = first[blocks][:, None] + np.arange(n)
-            m = _block_matrices(t, scaled, blocks, n)
+            m = _block_matrices(t, masses, blocks, n)
+            # single elements keep the shape of their matrix, and so their inertia
+            one = of_one[blocks][:, None, None]
+            heavier = 1 + added[nodes[:, 0]] / (mass - added)[nodes[:, 0]]
+            m = np.where(one, heavier[:, None, None] * m, m + added[nodes][:, :, None] * np.eye(n))
+            frequency2[nodes] /= np.where(one[:, 0], heavier[:, None], 1.0)
             bound[nodes] = same_everywhere(1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
             # K <= diag(stiffness) as well, which the worst element alone often exceeds
             root = np.sqrt(stiffness[nodes])
@@ -254,11 +299,11 @@ def _dense_blocks(
     out.arrays["mass.matrix"] = np.concatenate(table.matrix)
 
 
-def _block_matrices(t: Topology, scaled: dict[str, Floats], blocks: NDArray, n: int) -> Floats:
+def _block_matrices(t: Topology, masses: dict[str, Floats], blocks: NDArray, n: int) -> Floats:
     place = np.full(len(t.block_first_node) - 1, -1)
     place[blocks] = np.arange(len(blocks))
     m = np.zeros((len(blocks), n, n))
-    for shape, matrices in scaled.items():
+    for shape, matrices in masses.items():
         where = place[t.element_block[shape]]
         some = where >= 0
         if not some.any():

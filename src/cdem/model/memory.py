@@ -25,7 +25,7 @@ BUILT = {"tet4": 1000, "pyramid5": 2000, "wedge6": 1500, "hex8": 2500}
 """Bytes an element once it is built, without its faces."""
 BONDED = {3: 1250, 4: 2090}
 """Bytes a bonded pair, by vertices of its faces."""
-EXPOSED = {3: 5100, 4: 4200}
+EXPOSED = {3: 7200, 4: 4200}
 """Bytes an exposed face that touches another, by vertices: its lists and contacts."""
 # Fitted to the peaks of 15 meshes of 27,000 to 132,000 elements (25 Nov 2026): within 15 %, but for
 # connected plates of tets one element thick, which take up to twice as much.

@@ -71,7 +71,8 @@ def _of_contacts(
     if isinstance(given, Overlap):
         both = Stiffness(overlap_factor(case, law, given, names, height), relative=True)
         return both, both, True
-    if given == AUTO and case.cdem == 1:
+    known = law.stiffness_n != AUTO or law.stiffness_s != AUTO
+    if given == AUTO and (known or case.cdem == 1):
         return *_of_bonds(law), False
     both = CONTACT if given == AUTO else given
     return both, both, True

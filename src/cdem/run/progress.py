@@ -22,6 +22,7 @@ class Progress:
         end_time: Time at which the stage ends [s], or None for a static stage.
         step: Steps done.
         dt: Time step [s].
+        rules: What rules it and where, or nothing where masses are made for it.
         unbalance_ratio: Out-of-balance over applied forces.
         energy_error: Closing error of the energy ledger.
         broken: Broken semi-springs.
@@ -36,6 +37,7 @@ class Progress:
     end_time: float | None
     step: int
     dt: float
+    rules: str
     unbalance_ratio: float
     energy_error: float
     broken: int
@@ -98,8 +100,9 @@ def describe(p: Progress) -> str:
     end = "" if p.end_time is None else f" of {p.end_time:.4g}"
     left = "" if p.time_left is None else f", {clock(p.time_left)} left"
     note = f", {p.note}" if p.note else ""
+    rules = f" by {p.rules}" if p.rules else ""
     return (
-        f"{p.stage}: t {p.time:.4g}{end} s, step {p.step:,}, dt {p.dt:.3g} s, "
+        f"{p.stage}: t {p.time:.4g}{end} s, step {p.step:,}, dt {p.dt:.3g} s{rules}, "
         f"unbalance {p.unbalance_ratio:.2g}, energy error {p.energy_error:.1e}, "
         f"broken {p.broken:,}, {p.steps_per_second:,.0f} steps/s{left}{note}"
     )

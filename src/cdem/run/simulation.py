@@ -17,6 +17,7 @@ from cdem.case.case import Case
 from cdem.errors import CdemError, DiskError, UnstableError
 from cdem.model.audit import Audit
 from cdem.model.overlaps import adopt_overlaps
+from cdem.model.ruling_step import ruling_step
 from cdem.run import restored, stages
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
@@ -296,6 +297,11 @@ class Simulation(RunState):
                 )
         return UnstableError(f"step {self.step_count}, t = {self.time:.6g} s: {why}{kept}")
 
+    def _rules(self) -> str:
+        """What rules the step, where the program chooses it and masses are not made for it."""
+        made = self.case.time.step != "auto" or len(self.core.fields()["node.relax_mass"])
+        return "" if made else ruling_step(self.build).words()
+
     def _progress(self, stage: StageState, speed: float, note: str) -> Progress:
         end = stage.end_time
         fraction = left = None
@@ -311,6 +317,7 @@ class Simulation(RunState):
             end_time=end,
             step=self.step_count,
             dt=float(self.core.scalars()["dt"]),
+            rules=self._rules(),
             unbalance_ratio=self.core.unbalance_ratio(),
             energy_error=self.energies["error"],
             broken=sum(self.broken.values()),

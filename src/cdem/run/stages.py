@@ -28,6 +28,7 @@ def _local(stage: Stage) -> float:
 def damping_of(stage: Stage) -> tuple[float, float, float, float]:
     """Local, mass, stiffness and contact damping of a stage."""
     d = stage.damping
+    assert d.contact is not None
     return (_local(stage), d.mass, d.stiffness, d.contact)
 
 

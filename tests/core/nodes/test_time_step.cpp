@@ -73,6 +73,45 @@ TEST_CASE("lumped masses bound the step of a block with bonds, exact ones that o
   CHECK(relative_error(step_limit(m, tet.state).dt, std::sqrt(5.0) * exact) < 1e-14);
 }
 
+TEST_CASE("strong contact damping shortens the step with one over its ratio") {
+  Floating floating;
+  const auto with = [&](Real ratio) {
+    floating.model.contact_damping = ratio;
+    return step_limit(floating.model, floating.state).dt;
+  };
+  CHECK(relative_error(with(0.2) / with(0.0), std::sqrt(1.04) - 0.2) < 1e-14);
+  CHECK(relative_error(with(0.4), with(0.2) / 2) < 1e-14);
+  CHECK(relative_error(with(2.0), with(0.2) / 10) < 1e-14);
+}
+
+TEST_CASE("with a diagonal below the mass matrix, nodes of a block count one by one") {
+  Scene tet;
+  Random random(1);
+  tet.add_tet(random, {0, 0, 0}, 1);
+  tet.build();
+  Model& m = tet.model;
+  m.support[2] = 0;
+  m.support_component.assign(std::array<Flag, 3>{1, 1, 1}.data(), 3);
+  m.support_curve.assign(std::array<Index, 3>{0, 0, 0}.data(), 3);
+  m.support_velocity.assign(std::array<Real, 3>{0, 0, 0}.data(), 3);
+  tet.start();
+  for (Index i = 0; i < 4; ++i) {
+    m.lumped_frequency_squared[i] = 1e6;
+    m.frequency_squared[i] = 5e6;
+    m.inverse_mass_bound[i] = 5 / m.mass[i];
+  }
+  tet.state.node_bonds[1] = 1e9;
+  tet.state.node_bonds[2] = 1e12;  // held: it moves nothing
+  m.least_mass.resize(4);
+  for (Index i = 0; i < 4; ++i) m.least_mass[i] = 0.2 * m.mass[i];
+  m.least_mass[1] = 40 * m.mass[1];
+  const Real light = 5e6, heavy = (m.mass[1] * 1e6 + 2e9) / m.least_mass[1];
+  const StepLimit limit = step_limit(m, tet.state);
+  CHECK(relative_error(limit.dt, 2 / std::sqrt(std::max(light, heavy))) < 1e-14);
+  CHECK(relative_error(limit.element_frequency_squared + limit.contact_frequency_squared,
+                       std::max(light, heavy)) < 1e-14);
+}
+
 TEST_CASE("damping shortens the step") {
   Floating floating;
   const Real free = step_limit(floating.model, floating.state).dt;

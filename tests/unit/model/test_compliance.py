@@ -14,6 +14,7 @@ YOUNG = 1e9
 def beam(length, cells, split, shape="hex8", load=(0.0, 0.0, 0.0), poisson=0.0) -> Simulation:
     """A bar of 1 m x 1 m along x, clamped at x = 0, with a traction at its end."""
     case = Case(
+        cdem=1,  # nothing makes up for the bonds
         model={
             "blocks": [
                 {"group": "bar", "box": {"size": [length, 1, 1], "divisions": cells, "shape": shape}}

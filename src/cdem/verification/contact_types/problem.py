@@ -65,7 +65,7 @@ def run(study):
                     within=2e-8)  # fmt: skip
     simulation = study.simulate(*LOWER["vertex"], *UPPER["vertex"], "loads.gravity=[0, 0, 0]",
                                 "model.blocks.1.translate=[0.01, 0.004, 0.001]", "time.safety=0.2",
-                                "stages.0.damping={}", "interfaces.default.friction_angle=0",
+                                "stages.0.damping={contact: 0}", "interfaces.default.friction_angle=0",
                                 "groups.upper.velocity=[0, 0, -0.5]")  # fmt: skip
     simulation.step(20)
     before = simulation.energies["kinetic"]

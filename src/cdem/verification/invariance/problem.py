@@ -55,7 +55,7 @@ def only(duration, contact=0.1):
 def resting(lower, upper):
     """One of the six contact types: it goes down by micrometres, so the last digits count more."""
     [types] = problems(["contact_types"])
-    settings = [*types.module.LOWER[lower], *types.module.UPPER[upper], *only(0.02, 1)]
+    settings = [*types.module.LOWER[lower], *types.module.UPPER[upper], *only(0.02, 0.5)]
     return Scene("../contact_types/case.yaml", settings, frame=2e-8, noise=1e-6, step=5e-4)
 
 
@@ -65,7 +65,7 @@ def scenes():
     less = ["interfaces.a.friction_angle=5", "interfaces.b.friction_angle=7"]
     bars = [f"model.blocks.{i}.box={{size: [20, 0.5, 0.5], divisions: [40, 1, 1]}}" for i in (0, 1)]
     stiff = ["materials.rock.young_modulus=10 GPa", "interfaces.default.friction_angle=45",
-             *only(0.003)]  # fmt: skip
+             "cdem=1", *only(0.003)]  # fmt: skip
     # held along no axis alone; nu = 0 keeps the bars straight
     pulse = [*bars, "model.blocks.0.translate=[-20, 0, 0]", "groups.left.fix=[]",
              "groups.right.fix=[]", "loads.velocities.0.components=[x, y, z]",
