@@ -7,7 +7,7 @@ import json
 import pytest
 
 from cdem import Case, CdemError
-from cdem.cli.run_commands import write_report as WRITE_REPORT  # noqa: N812
+from cdem.cli.run_commands import write_report as WRITE_REPORT
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
