@@ -75,9 +75,11 @@ Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLi
         2 * stiffness * (mass.is_lumped(i) ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
     if (dense) {
       const Real sum = element_frequency_squared + contact_frequency_squared;
-      const Real less = std::min(sum, bound_by_nodes(m, s, {first, last}));
-      element_frequency_squared *= less / sum;
-      contact_frequency_squared *= less / sum;
+      const Real less = bound_by_nodes(m, s, {first, last});
+      if (less < sum) {
+        element_frequency_squared *= less / sum;
+        contact_frequency_squared *= less / sum;
+      }
     }
     if (element_frequency_squared + contact_frequency_squared > largest) {
       largest = element_frequency_squared + contact_frequency_squared;

@@ -30,7 +30,7 @@ def upper_part(**joint):
                 "name": "run",
                 "mode": "dynamic",
                 "duration": 1.0,
-                "damping": {"contact": 0.3, "stiffness": 0.3},
+                "damping": {"contact": 0.2, "stiffness": 0.3},
             }
         ],
     )

@@ -38,7 +38,10 @@ class Scaling:
         arrays = out.arrays
         self._mass = arrays["node.mass"]
         dense = arrays["node.mass_row_first"] >= 0
-        lumped = ~dense | (p.lumped_while_bonded & _bonded_blocks(t, out)[t.node_block])
+        alone = one_element_blocks(t)
+        # rock of single elements stays bonded for the most part; larger blocks come loose as a whole
+        loose = ~(p.lumped_while_bonded & alone & _bonded_blocks(t, out))
+        lumped = ~dense | ~loose[t.node_block]
         held = p.supported.all(axis=1)  # cannot become unstable
         self.free_mass = float(self._mass[~held].sum())
         springs = 2 * (bond_stiffness(t, out) + contact_stiffness(t, p, out))
@@ -53,7 +56,7 @@ class Scaling:
         by_node = _most_of_block(self._load / self._least, t)
         self._square = np.where(lumped, np.inf, by_matrix)
         # single elements keep the shape of their matrix: all their nodes grow by one factor
-        self._alone = dense & one_element_blocks(t)[t.node_block]
+        self._alone = dense & alone[t.node_block]
         self._factor_square = np.minimum(by_node, np.where(lumped, np.inf, by_matrix))
 
     def added(self, limit: float) -> Floats:

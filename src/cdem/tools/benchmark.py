@@ -1,10 +1,12 @@
-"""``cdem benchmark``: how fast the kernels are here, and what part of the machine's limits that is."""
+"""``cdem benchmark``: what a simulated second costs here, how fast the kernels are, and what part of
+the machine's limits that is."""
 
 from __future__ import annotations
 
 import os
 import platform
 import statistics
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -18,6 +20,9 @@ from cdem._native import core as native
 from cdem._native import name as native_name
 from cdem._version import __version__
 from cdem.case.case import Case
+from cdem.mesh.primitives import box
+from cdem.model.compensation import bonded_tets
+from cdem.model.homogenize import means
 from cdem.run.simulation import Simulation
 
 REPEATS = 5
@@ -35,6 +40,14 @@ RUBBLE = 4
 """Cells in the width of the bar that is broken to rubble: 3,072 tets."""
 RUBBLE_STEPS = 100
 """Steps of a timed run of rubble: its lists last about 25, and making them takes half the time."""
+SHAKEN = 4
+"""Cells in the width of the irregular bar: 3,072 tets whose corners are moved by up to a quarter."""
+CUBE = 6
+"""Cells along a cube that is pulled for its Young's modulus."""
+COLUMNS = 20
+"""Cubes in a row of the wall."""
+WALL = 26
+"""Rows of cubes in the wall of which a second is measured."""
 MIXED = 15
 """Cells in the width of the bar of all shapes: 101,250 elements."""
 PHASES = ("refresh", "search", "contact", "element", "node")
@@ -102,6 +115,7 @@ def _counts(threads: int) -> list[int]:
 def run(sizes: list[str], threads: int) -> Iterator[Row]:
     """Measure everything, row by row, with 1, 2, 4 ... and all threads."""
     counts = _counts(threads)
+    yield from seconds()
     for size in sizes:
         for count in counts:
             yield tets_shared(SIZES[size], count)
@@ -118,6 +132,108 @@ def run(sizes: list[str], threads: int) -> Iterator[Row]:
     for hexahedra in ("full", "one-point"):
         yield hexes(threads, hexahedra)
     yield mixed(MIXED, threads)
+
+
+def seconds() -> Iterator[Row]:
+    """CPU seconds of one thread that a simulated second takes at the defaults of either version of the
+    case format, and at what accuracy."""
+    little = {"time": {"mass_scaling": {"most": 0.001}}}
+    overlap = {"contact_stiffness": {"overlap": 1e-3}}
+    for version in (1, 2):
+        regular = _bar(SIZES["1e4"], "tet4", **_breakable("1 GPa"))
+        yield _cost("P2 regular tets", version, regular, error=True)
+    with tempfile.TemporaryDirectory() as place:
+        for version, more in ((1, {}), (2, {}), (2, little)):
+            yield _cost("P2 irregular tets", version, _irregular(Path(place)) | more, error=True)
+    for version, law in ((1, {}), (2, {}), (2, overlap)):
+        case = _wall(WALL)
+        case["interfaces"]["default"] |= law
+        yield _cost("P4 wall" + (", overlap 1e-3" if law else ""), version, case)
+    for speed in (2, 21):
+        for version in (1, 2):
+            yield _cost(f"P3 rubble, {speed} m/s", version, _rubble(RUBBLE, speed / 21), 0.005)
+
+
+def _cost(
+    name: str, version: int, case: dict[str, Any], settle: float = 0.0, *, error: bool = False
+) -> Row:
+    """CPU seconds per simulated second, the step, and the error of Young's modulus of the rock."""
+    case = case | {"cdem": version}
+    sim, _ = _start(case, 1)
+    if settle:
+        sim.run_until(settle)
+    steps = RUBBLE_STEPS if settle else _steps_for(lambda n: sim.step(n))
+    costs = []
+    for _ in range(REPEATS):
+        began, at = time.process_time(), sim.time
+        sim.step(steps)
+        costs.append((time.process_time() - began) / (sim.time - at))
+    scaled = ", 0.1 % of mass" if "mass_scaling" in case.get("time", {}) else ""
+    row = Row(f"{name}, cdem: {version}{scaled}", f"{sim.audit.counts['elements']:,}",
+              "CPU s/simulated s", statistics.median(costs), min(costs), max(costs), 1)  # fmt: skip
+    row.more["step [us]"] = 1e6 * float(sim.core.scalars()["dt"])
+    if error:
+        row.more["error of E [%]"] = 100 * _modulus_error(
+            version, irregular="mesh" in case["model"]
+        )
+    return row
+
+
+def _shaken(folder: Path, size: list[int]) -> str:
+    """A mesh file of a box of tets whose inner corners are moved by up to a quarter of a cell."""
+    import meshio
+
+    whole = box("bar", [float(n) for n in size], size, shape="tet4")
+    points, inner = whole.points, np.ones(whole.points.shape, bool)
+    inner &= (points > 1e-9) & (points < np.array(size) - 1e-9)
+    points = points + inner * np.random.default_rng(1).uniform(-0.25, 0.25, points.shape)
+    path = folder / f"{size[0]}.vtk"
+    meshio.write_points_cells(path, points, [("tetra", whole.cells["tet4"])])
+    return str(path)
+
+
+def _irregular(folder: Path) -> dict[str, Any]:
+    """The bonded bar of a shaken mesh."""
+    case = _bar(SHAKEN, "tet4", **_breakable("1 GPa"))
+    mesh = _shaken(folder, [8 * SHAKEN, SHAKEN, SHAKEN])
+    case["model"] = {"mesh": mesh, "split": {"default": "elements"}}
+    case["groups"] = {"default": case["groups"]["bar"]}
+    case["loads"]["supports"][0]["surface"]["group"] = "default"
+    return case
+
+
+def _modulus_error(version: int, *, irregular: bool) -> float:
+    """Error of Young's modulus of a cube of bonded tets that is pulled along x, the mean of its inner
+    tets and their faces."""
+    size, group = [CUBE] * 3, "default" if irregular else "bar"
+    with tempfile.TemporaryDirectory() as place:
+        model: dict[str, Any] = {"split": {group: "elements"}}
+        if irregular:
+            model["mesh"] = _shaken(Path(place), size)
+        else:
+            model["blocks"] = [
+                {"group": group, "box": {"size": size, "divisions": size, "shape": "tet4"}}
+            ]
+        case = {
+            "cdem": version,
+            "model": model,
+            "materials": {"rock": ROCK},
+            "groups": {group: {"material": "rock"}},
+            "interfaces": {"default": {"friction_angle": 30, **_breakable("1 GPa")["interface"]}},
+            "loads": {"tractions": [
+                {"surface": {"group": group, "normal": [n, 0, 0]}, "traction": [n * 1e5, 0, 0]}
+                for n in (-1, 1)
+            ]},
+            "stages": [{"name": "pull", "mode": "static", "relax": "adaptive"}],
+        }  # fmt: skip
+        sim = Simulation(Case.from_dict(case), threads=1)
+        sim.run()
+    t, made = sim.build.topology, sim.build.compensation.get(group)
+    tets = bonded_tets(t, np.arange(len(t.pair_faces)), np.arange(len(t.element_nodes["tet4"])))
+    u = sim.fields["displacement"][t.element_nodes["tet4"]].reshape(-1, 12, 1)
+    stiffening = 1.0 if made is None else made.stiffening
+    strain, stress = means(tets, u, stiffening * 10e9, stiffening * 0.25, tets.inner(2))
+    return float((stress[0, 0] - 0.25 * (stress[1, 0] + stress[2, 0])) / strain[0, 0] / 10e9 - 1)
 
 
 def _bar(m: int, shape: str, **more: Any) -> dict[str, Any]:
@@ -192,13 +308,16 @@ def _bonded(name: str, strength: str, m: int, threads: int) -> tuple[Row, Simula
     return row, sim
 
 
-def rubble(m: int, threads: int) -> Iterator[Row]:
-    """P3: the same with every bond cut, while it slides and tumbles on a plate; S: its search."""
+def _rubble(m: int, speed: float = 1.0) -> dict[str, Any]:
+    """The bonded bar with every bond cut, above a plate; it slides and tumbles at 21 m/s (rms)."""
     case = _bar(
         m,
         "tet4",
         model={"split": {"bar": "elements"}},
-        group={"velocity": [2, 0, -1], "angular_velocity": [0.5, 1, 2]},
+        group={
+            "velocity": [2 * speed, 0, -speed],
+            "angular_velocity": [0.5 * speed, speed, 2 * speed],
+        },
         interface={"cohesion": "10 Pa", "tensile_strength": "10 Pa"},  # all break at once
     )
     case["model"]["blocks"].append(
@@ -207,6 +326,12 @@ def rubble(m: int, threads: int) -> Iterator[Row]:
     case["groups"]["plate"] = {"material": "rock", "fix": ["x", "y", "z"]}
     case["loads"] = {"gravity": [0, 0, -9.81]}
     case["stages"][0]["damping"] = {"contact": 0.2, "stiffness": 0.1}
+    return case
+
+
+def rubble(m: int, threads: int) -> Iterator[Row]:
+    """P3: the same with every bond cut, while it slides and tumbles on a plate; S: its search."""
+    case = _rubble(m)
     sim, start = _start(case, threads)
     tets = sim.audit.groups["bar"]["elements"]
     bonds = 3 * sim.audit.counts["bonded_pairs"]
@@ -240,18 +365,17 @@ def _search(row: Row, refreshes: int, steps: int, sim: Simulation) -> Row:
     return s
 
 
-def wall(rows: int, threads: int) -> Row:
-    """P4: running-bond wall of cubes of one element, at rest under gravity."""
-    columns = 20
+def _wall(rows: int) -> dict[str, Any]:
+    """A running-bond wall of cubes of one element on a floor."""
     blocks: list[dict[str, Any]] = [
         {"group": "cubes", "box": {"size": [1, 1, 1]}, "translate": [i + 0.5 * (j % 2), 0, j]}
         for j in range(rows)
-        for i in range(columns)
+        for i in range(COLUMNS)
     ]
     blocks.append(
-        {"group": "floor", "box": {"size": [columns + 4, 3, 1]}, "translate": [-2, -1, -1]}
+        {"group": "floor", "box": {"size": [COLUMNS + 4, 3, 1]}, "translate": [-2, -1, -1]}
     )
-    case = {
+    return {
         "model": {"blocks": blocks},
         "materials": {"rock": ROCK},
         "groups": {"cubes": {"material": "rock"},
@@ -261,9 +385,14 @@ def wall(rows: int, threads: int) -> Row:
         "stages": [{"name": "rest", "mode": "dynamic", "duration": 1e3,
                     "damping": {"contact": 0.2, "stiffness": 0.1}}],
     }  # fmt: skip
+
+
+def wall(rows: int, threads: int) -> Row:
+    """P4: running-bond wall of cubes of one element, at rest under gravity."""
+    case = _wall(rows)
     sim, start = _start(case, threads)
     sim.step(200)
-    cubes = rows * columns
+    cubes = rows * COLUMNS
     row = _time("P4 wall of cubes at rest", f"{cubes:,}", "cubes/s", sim, cubes)
     row.more["springs/s"] = row.rate / cubes * sim.audit.counts["semi_springs"]
     row.more["wall time per simulated s"] = cubes / row.rate / float(sim.core.scalars()["dt"])

@@ -25,3 +25,31 @@ def test_benchmark_rows_say_what_was_measured(monkeypatch):
     limits = benchmark.machine(2)
     assert limits["bandwidth, 2 threads"] > 1e8
     assert limits["multiply-adds, 1 threads"] > 1e8
+
+
+def test_a_simulated_second_has_its_cost_and_its_accuracy(monkeypatch):
+    from cdem.tools import benchmark
+
+    monkeypatch.setattr(benchmark, "SECONDS", 1e-4)
+    monkeypatch.setattr(benchmark, "SIZES", {"1e4": 1})
+    for name, value in {
+        "SHAKEN": 1,
+        "WALL": 2,
+        "RUBBLE": 1,
+        "RUBBLE_STEPS": 10,
+        "REPEATS": 1,
+    }.items():
+        monkeypatch.setattr(benchmark, name, value)
+    rows = {row.name: row for row in benchmark.seconds()}
+    assert len(rows) == 12
+    for row in rows.values():
+        assert row.rate > 0
+    steps = [rows[f"P4 wall, cdem: {version}"].more["step [us]"] for version in (1, 2)]
+    assert steps[1] > 2 * steps[0]
+    # of a cube of 6 x 6 x 6 cells; bonds of 10 E/h make it 1 + 6 / (3 * 10) times as soft
+    errors = [
+        rows[f"P2 regular tets, cdem: {version}"].more["error of E [%]"] for version in (1, 2)
+    ]
+    assert errors[0] == pytest.approx(100 * (1 / 1.2 - 1), abs=0.1)
+    assert abs(errors[1]) < 1e-3
+    assert abs(rows["P2 irregular tets, cdem: 2, 0.1 % of mass"].more["error of E [%]"]) < 0.3
