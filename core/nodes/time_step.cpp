@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/model/phase_timer.hpp"
 #include "core/nodes/masses.hpp"
@@ -31,10 +30,10 @@ bool is_held(const SupportColumns& supports, Index node) {
   return supports.given(node, 0) && supports.given(node, 1) && supports.given(node, 2);
 }
 
-/// Bound from the nodes of a block with a mass matrix one by one: K <= diag(S + 2 k), M >=
-/// diag(least); infinite where no such diagonal is known  [1/s2].
-Real bound_by_nodes(const Model& m, const State& s, Range block) {
-  if (m.least_mass.size() == 0) return std::numeric_limits<Real>::infinity();
+/// What part of a bound of the squared frequency of a block with a mass matrix its nodes leave, one
+/// by one: K <= diag(S + 2 k), M >= diag(least). All of it where no such diagonal is known.
+Real part_of_bound(const Model& m, const State& s, Range block, Real bound) {
+  if (m.least_mass.size() == 0) return 1;
   const SupportColumns supports = support_columns(m, s);
   Real largest = 0;
   for (Index j = block.first; j < block.last; ++j) {
@@ -42,7 +41,7 @@ Real bound_by_nodes(const Model& m, const State& s, Range block) {
     const Real elements = m.mass[j] * m.lumped_frequency_squared[j];
     largest = std::max(largest, (elements + 2 * stiffness_at(s, j)) / m.least_mass[j]);
   }
-  return largest;
+  return largest < bound ? largest / bound : 1;
 }
 
 /// Node with the highest frequency; `held` counts those that are held or driven in all directions.
@@ -73,14 +72,11 @@ Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLi
     // Gershgorin: a spring between two points adds at most twice its stiffness to a row
     Real contact_frequency_squared =
         2 * stiffness * (mass.is_lumped(i) ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
-    if (dense) {
-      const Real sum = element_frequency_squared + contact_frequency_squared;
-      const Real less = bound_by_nodes(m, s, {first, last});
-      if (less < sum) {
-        element_frequency_squared *= less / sum;
-        contact_frequency_squared *= less / sum;
-      }
-    }
+    const Real part = dense ? part_of_bound(m, s, {first, last},
+                                            element_frequency_squared + contact_frequency_squared)
+                            : 1;
+    element_frequency_squared *= part;
+    contact_frequency_squared *= part;
     if (element_frequency_squared + contact_frequency_squared > largest) {
       largest = element_frequency_squared + contact_frequency_squared;
       limit.node = stiffest;
