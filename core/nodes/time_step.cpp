@@ -18,7 +18,9 @@ Real damped(Real xi) { return std::sqrt(1 + xi * xi) - xi; }
 /// What strong contact dashpots leave of that.
 Real strongly_damped(Real xi) {
   if (xi <= sure_contact_damping) return 1;
-  return sure_contact_damping * damped(sure_contact_damping) / (xi * damped(xi));
+  // one over damped(xi), which is rounded to zero where xi is large
+  const Real undamped = std::hypot(1, xi) + xi;
+  return sure_contact_damping * damped(sure_contact_damping) * undamped / xi;
 }
 
 /// Stiffness of bonds and contacts, those that may begin included, on a node  [N/m].
