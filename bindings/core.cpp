@@ -216,6 +216,12 @@ void bind_run(nb::class_<Core>& core) {
       .def("take_out", &take_out_nodes, "leaves"_a)
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
+      .def("move_exact_masses",
+           [](Core& c) {  // as if no block had bonds any more
+             c.model.lumped_while_bonded = false;
+             list_lumped(c.model, c.state);
+             renew_step(c.model, c.state);
+           })
       .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
 }
 

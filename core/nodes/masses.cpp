@@ -54,7 +54,10 @@ void change_mass(Model& m, State& s, bool lumped) {
 }
 
 void list_lumped(const Model& m, State& s) {
-  if (!m.lumped_while_bonded) return;
+  if (!m.lumped_while_bonded) {
+    if (s.nodes.lumped.size() > 0) book_change(m, s, [&] { s.nodes.lumped.resize(0); });
+    return;
+  }
   std::vector<Flag> bonded(m.node_count), lumped(m.node_count);  // the first by block's first node
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
     for (Index i = 0; i < p.count; ++i)

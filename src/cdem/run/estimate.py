@@ -115,6 +115,7 @@ def estimate(sim: RunState) -> Estimate:
             wall = stage.duration / length * step
             if index == len(sim.case.stages) - 1 and _bonded(sim):
                 _take_strength(sim)
+                sim.core.move_exact_masses()
                 step_broken, length = _measure(sim)
                 broken = stage.duration / length * step_broken
         found.append(StageEstimate(stage.name, stage.mode, step, wall, broken))
