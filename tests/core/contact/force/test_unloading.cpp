@@ -116,7 +116,7 @@ TEST_CASE("energies close along any path of a hysteretic contact that stays pres
       contact.lead(contact.gap + random.between(-1, 1) * 0.2 * contact.last.penetration *
                                      contact.unloading.returned_n,
                    random.between(-1e-4, 1e-4), random.between(-1e-4, 1e-4));
-      if (!contact.dashpot) CHECK(contact.braked >= before);
+      if (!contact.dashpot) CHECK(contact.braked >= before * (1 - 1e-14));  // but for rounding
       REQUIRE(contact.last.penetration > 0);
     }
     const Real lost = contact.friction + contact.braked;
