@@ -142,7 +142,7 @@ def test_a_stage_that_changes_bonds_keeps_the_masses(tmp_path):
     stages = [
         {"name": "a", "mode": "dynamic", "duration": 1e-5},
         {"name": "b", "mode": "dynamic", "duration": 1e-5,
-         "set": {"interfaces.default.stiffness_n": "5 E/h"}},
+         "set": {"interfaces.default.stiffness_n": "20 E/h"}},
     ]  # fmt: skip
     sim = cdem.Simulation(
         shaken(tmp_path, stages=stages, time={"mass_scaling": {"most": 0.001}}), threads=1
