@@ -114,6 +114,8 @@ class Stiffness:
             return AUTO
         if isinstance(value, str) and (match := re.fullmatch(r"\s*(\S+)\s+E\s*/\s*h\s*", value)):
             return cls(Quantity("1", above=0).read(match[1]), relative=True)  # type: ignore[arg-type]
+        if isinstance(value, str) and not re.match(r"\s*[-+.\d]", value):
+            raise ValueError(f"must be auto, a number [Pa/m], '3 GPa/m' or '1 E/h', got {value!r}")
         return cls(Quantity("Pa/m", above=0).read(value), relative=False)  # type: ignore[arg-type]
 
     def as_pair(self) -> tuple[float, float]:

@@ -43,6 +43,11 @@ def test_a_pair_without_default_needs_a_friction_angle(write):
             "name: base, dilation_angle: 5,",
             "pairs.0: dilation_angle needs dilation_slip",
         ),
+        (
+            "stiffness_n: auto,",
+            "stiffness_n: soft,",
+            "must be auto, a number [Pa/m], '3 GPa/m' or '1 E/h', got 'soft'",
+        ),
     ],
 )
 def test_mistakes_are_answered(complaint, old, new, message):
