@@ -38,7 +38,6 @@ output: {every: 20}
 """
 SHAKE = {"group": "floor", "velocity": [3, 0.3, 0]}
 """Of this speed at most, once forth and back in a second: the block slides most of the time."""
-TRIM = ctypes.CDLL(None).malloc_trim
 STEPS = {"small": 10_000_000, "landslide": 100_000}
 ENERGY = 0.01
 """Largest closing error allowed, of the largest term."""
@@ -48,9 +47,18 @@ GROWTH = 0.02
 """Largest growth allowed of the memory of the process over the second half of a run."""
 
 
+def give_back() -> None:
+    """Give back what HDF5 keeps for later use, and what lies free in the heap."""
+    libraries = {line.split()[-1] for line in Path("/proc/self/maps").read_text().splitlines()}
+    for path in libraries:
+        if Path(path).name.startswith("libhdf5-"):
+            ctypes.CDLL(path).H5garbage_collect()
+    ctypes.CDLL(None).malloc_trim(0)
+
+
 def memory() -> float:
-    """Memory of this process [MB], once what lies free in its heap is given back."""
-    TRIM(0)
+    """Memory of this process [MB], without what it does not use."""
+    give_back()
     lines = Path("/proc/self/status").read_text().splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1e3
 

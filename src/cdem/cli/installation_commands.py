@@ -23,7 +23,7 @@ def verify(
         ),
     ] = None,
     full: Annotated[
-        bool, typer.Option("--full", help="All problems, in all variants; takes hours.")
+        bool, typer.Option("--full", help="All problems, in all variants; a quarter of an hour.")
     ] = False,
     report: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the manual: .html, or .md (table).")

@@ -106,6 +106,8 @@ class _Series:
                 frame.datasets[name] = (np.shape(values), np.asarray(values).dtype)
             root["FieldData/TimeValue"] = [time]
             self._name_groups(root)
+        if self._frames and self._frames[-1].datasets == frame.datasets:
+            frame.datasets = self._frames[-1].datasets  # kept once
         self._frames.append(frame)
         if len(self._frames) - self._listed >= len(self._frames) / LISTED_AT_ONCE:
             self._write_list()

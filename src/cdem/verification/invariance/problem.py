@@ -70,13 +70,13 @@ def scenes():
     pulse = [*bars, "model.blocks.0.translate=[-20, 0, 0]", "groups.left.fix=[]",
              "groups.right.fix=[]", "loads.velocities.0.components=[x, y, z]",
              "loads.velocities.0.box={min: [-20.01, -1, -1], max: [-19.99, 1, 1]}",
-             "stages.0.duration=0.02"]  # fmt: skip
+             "stages.0.duration=0.02", "elements.mass=exact"]  # fmt: skip
     arch, slope_of_columns, dominoes = problems(["arch", "goodman_bray", "dominoes"])
     thin, columns = arch.module.settings(0.45), slope_of_columns.module.settings()
-    row = dominoes.module.settings(0.02, hinged=True)
     tip = resting("vertex", "vertex")
     # given steps: how early an automatic one is cut depends on the boxes of the search, which have
     # axes, and bounces multiply the difference
+    row = [*dominoes.module.settings(0.02, hinged=True), "time.step=1 us"]
     tip.settings += ["time.step=10 us", "model.blocks.1.translate=[0.01, 0.004, 0.001]",
                      "groups.upper.velocity=[0, 0, -0.5]"]  # fmt: skip
     return {
