@@ -9,6 +9,7 @@
 #include "bindings/laws.hpp"
 #include "core/base/device.hpp"
 #include "core/base/machine_limits.hpp"
+#include "core/bonds/initial_tractions.hpp"
 #include "core/contact/pair_list/deep_overlaps.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
@@ -68,6 +69,7 @@ void set_options(Core& core, const nb::dict& o) {
   m.bond_indentation_triangle = real("bond_indentation_triangle");
   m.bond_indentation_quad = real("bond_indentation_quad");
   m.semi_edges = nb::cast<bool>(o["semi_edges"]);
+  m.initial_stress = nb::cast<bool>(o["initial_stress"]);
   m.lumped_while_bonded = nb::cast<bool>(o["lumped_while_bonded"]);
   m.check_search = nb::cast<bool>(o["check_search"]);
   m.rebuild_interval = nb::cast<Index>(o["rebuild_interval"]);
@@ -180,6 +182,24 @@ nb::dict stress(nb::handle_t<Core> self) {
   return tables;
 }
 
+/// Position and both faces of every bond point.
+auto bond_place_lists(Core& c) {
+  std::vector<Real> position;
+  std::vector<Index> faces;
+  for (const BondPlace& place : bond_places(c.model, c.state)) {
+    for (const Real x : {place.position.x, place.position.y, place.position.z})
+      position.push_back(x);
+    faces.insert(faces.end(), place.faces, place.faces + 2);
+  }
+  return std::make_tuple(position, faces);
+}
+
+/// Stress of every bond point, and whether an interface has strength.
+auto set_tractions(Core& c, Array<Real> stress, Array<Flag> bonded) {
+  const CutTractions cut = set_initial_tractions(c.model, c.state, stress.data(), bonded.data());
+  return std::make_tuple(cut.count, cut.most, cut.face);
+}
+
 /// What is handed over and set before a run.
 void bind_setup(nb::class_<Core>& core) {
   core.def("take_counts", &take_counts, "counts"_a)
@@ -193,6 +213,8 @@ void bind_setup(nb::class_<Core>& core) {
       .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
+      .def("bond_places", &bond_place_lists)
+      .def("set_initial_tractions", &set_tractions, "stress"_a, "bonded"_a)
       .def("restore", &restore)
       .def("prepare",
            [](Core& c) {

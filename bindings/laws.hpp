@@ -87,7 +87,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
   constexpr std::size_t width = InterfaceTable::row;
   m.interfaces.resize(interfaces.size());
   m.interface_parameters.resize(width * interfaces.size());
-  m.rules.lifted = 0;
+  m.rules.lifted = m.initial_lift;
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const auto entry = nb::cast<nb::dict>(interfaces[i]);
     const auto stiffness = [&](const char* name) {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+
 import meshio
 import numpy as np
 
@@ -68,3 +70,12 @@ def mean_velocity(sim, group):
     nodes, fields = sim.build.nodes_of(group), sim.fields
     mass = fields["mass"][nodes]
     return mass @ fields["velocity"][nodes] / mass.sum()
+
+
+def digest(sim):
+    """Hash of everything that a checkpoint keeps."""
+    whole = hashlib.sha256()
+    for name, values in sorted(sim.core.fields().items()):
+        whole.update(name.encode())
+        whole.update(np.ascontiguousarray(values).tobytes())
+    return whole.hexdigest()

@@ -27,6 +27,22 @@ FAILURE = "tests/validation/test_failure.py::"
 
 PYTHON = [
     Mutant(
+        "overburden",
+        "faces that look down do not end the rock above",
+        "src/cdem/model/overburden.py",
+        "return x[some], (np.sign(area) * of)[some]",
+        "return x[some], of[some]",
+        "tests/unit/model/test_overburden.py",
+    ),
+    Mutant(
+        "azimuth",
+        "the two horizontal stresses change places",
+        "src/cdem/model/initial_stress.py",
+        "entry.k0[0] * np.outer(first, first)",
+        "entry.k0[0] * np.outer(second, second)",
+        "tests/unit/model/test_initial_stress.py",
+    ),
+    Mutant(
         "made up",
         "elements make up for bonds in E but not in Poisson's ratio",
         "src/cdem/model/flat_arrays.py",
@@ -655,8 +671,8 @@ CORE = [
         "softer",
         "a softer contact is pressed by more than its depth",
         "core/bonds/transfer_to_contact.cpp",
-        "spring.penetration = -std::min(1.0, bond_n / kn) * dot(frame_a.n, jump);",
-        "spring.penetration = -bond_n / kn * dot(frame_a.n, jump);",
+        "const Real deeper = m.initial_stress ? bond_n / kn : std::min(1.0, bond_n / kn);",
+        "const Real deeper = bond_n / kn;",
         "tests/core/bonds/test_transfer_to_contact.cpp",
     ),
     Mutant(
@@ -666,6 +682,38 @@ CORE = [
         "s.taken_out += before - stored_energy(m, s);",
         "",
         "tests/core/run/test_take_out.cpp",
+    ),
+    Mutant(
+        "initial shear",
+        "a joint begins with its normal traction alone",
+        "core/bonds/initial_tractions.cpp",
+        "ps.rest[point.place + point.row] = borne.y / k.s;",
+        "",
+        "tests/core/bonds/test_initial_tractions.cpp",
+    ),
+    Mutant(
+        "initial place",
+        "initial tractions are those of the vertices, not of a linear stress",
+        "core/bonds/initial_tractions.cpp",
+        "move_inside<count>(place_of_stress, mean);",
+        "move_inside<count>(bonds.indentation, mean);",
+        "tests/core/bonds/test_initial_tractions.cpp",
+    ),
+    Mutant(
+        "initial limit",
+        "joints begin with more shear than friction bears",
+        "core/bonds/initial_tractions.cpp",
+        "const Vec3<Real> borne{joint.elastic, joint.shear1, joint.shear2};",
+        "const Vec3<Real> borne = wanted;",
+        "tests/core/bonds/test_initial_tractions.cpp",
+    ),
+    Mutant(
+        "initial release",
+        "a joint that begins loaded loses its traction when it is released",
+        "core/bonds/transfer_to_contact.cpp",
+        "const Vec3<Real> jump = pairs.past_rest(One{i}, k, p.points, frame_a, apart);",
+        "const Vec3<Real> jump = apart;",
+        "tests/validation/test_initial_stress.py",
     ),
     Mutant(
         "taken out friction",

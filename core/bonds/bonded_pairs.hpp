@@ -34,7 +34,9 @@ struct PairColumns {
   InFlags status;       // [pair] PairStatus
   InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
   InterfaceTable interfaces;
-  InOutTable bond, slip1, slip2;            // [point][pair]
+  InOutTable bond, slip1, slip2;  // [point][pair]
+  InTable rest;  // [axis * points + point][pair] jump at which the spring is free, along n, t1 and
+                 // t2 of the pair: that of the initial stress; empty: all zero  [m]
   InOutTable history;                       // [variable * points + point][pair] of the laws
   InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
   InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
@@ -59,6 +61,14 @@ struct PairColumns {
   CDEM_HD void store_history(I p, Index k, Index points, const M& live, const T* state) const {
     for (Index v = 0; v < InterfaceLaws::most_state; ++v)
       history.set(v * points + k, p, select(live, state[v], history.at(v * points + k, p)));
+  }
+  /// The part of a jump that strains the spring of point k.
+  template <class I, class T>
+  CDEM_HD Vec3<T> past_rest(I p, Index k, Index points, const Frame<T>& f,
+                            const Vec3<T>& jump) const {
+    if (!rest.data) return jump;
+    return jump - rest.at(k, p) * f.n - rest.at(points + k, p) * f.t1 -
+           rest.at(2 * points + k, p) * f.t2;
   }
   /// Spring of a point with this area  [m2].
   template <class I>
@@ -97,9 +107,8 @@ struct ConformingBonds {
     using T = Number<I>;
     const auto live = pairs.are_live(p);
     if (!any_of(live)) return;
-    Vec3<T> mean[count], jump[count], force[count];
-    gather_jumps(p, mean, jump);
-    const Frame<T> frame = pair_frame<count>(mean);
+    Vec3<T> jump[count], force[count];
+    const Frame<T> frame = gather_jumps(p, jump);
     if (any_of(live & !all_bear(p, frame, jump, force))) {
       update_history(p, live, frame, jump, force);
     } else if (sampled) {
@@ -119,16 +128,25 @@ struct ConformingBonds {
     for (Index k = count; k < 2 * count; ++k) nodes.fetch(pair_nodes.at(k, p));
   }
 
-  /// Mean positions of mated vertices, and the jumps at the bond points.
+  /// Mean positions of mated vertices, and the jumps there.
   template <class I, class T>
-  CDEM_HD void gather_jumps(I p, Vec3<T>* mean, Vec3<T>* jump) const {
+  CDEM_HD void gather_vertices(I p, Vec3<T>* mean, Vec3<T>* jump) const {
     for (Index k = 0; k < count; ++k) {
       const Vec3<T> xa = nodes.position(pair_nodes.at(k, p));
       const Vec3<T> xb = nodes.position(pair_nodes.at(count + k, p));
       mean[k] = T(0.5) * (xa + xb);
       jump[k] = xb - xa;
     }
+  }
+  /// Frame of the pair, and the jumps at the bond points that strain their springs.
+  template <class I, class T>
+  CDEM_HD Frame<T> gather_jumps(I p, Vec3<T>* jump) const {
+    Vec3<T> mean[count];
+    gather_vertices(p, mean, jump);
     move_inside<count>(indentation, jump);
+    const Frame<T> frame = pair_frame<count>(mean);
+    for (Index k = 0; k < count; ++k) jump[k] = pairs.past_rest(p, k, count, frame, jump[k]);
+    return frame;
   }
   template <class I>
   CDEM_HD BondSpring<Number<I>> spring(I p) const {
@@ -235,7 +253,7 @@ struct OverlapBonds {
     Real widest = 0, intact = 0, stored = 0, fracture = 0, friction = 0, tension = 0, shear = 0;
     for (Index c = point_first[p.i]; c < point_first[p.i + 1]; ++c) {
       const One point{c};
-      const Vec3<Real> jump = jump_at(a, b, c);
+      const Vec3<Real> jump = jump_at(a, b, frame, c);
       const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
       BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
                           pairs.slip2.at(0, point)};
@@ -266,10 +284,11 @@ struct OverlapBonds {
     pairs.broken_shear.set(0, p, pairs.broken_shear.at(0, p) + shear);
   }
 
-  /// Jump of displacement at a bond point  [m].
-  CDEM_HD Vec3<Real> jump_at(Index a, Index b, Index c) const {
-    return at(b, weights_b, c) - at(a, weights_a, c);
+  /// Jump of displacement at a bond point that strains its spring  [m].
+  CDEM_HD Vec3<Real> jump_at(Index a, Index b, const Frame<Real>& frame, Index c) const {
+    return pairs.past_rest(One{c}, 0, 1, frame, at(b, weights_b, c) - at(a, weights_a, c));
   }
+  CDEM_HD Vec3<Real> position(Index a, Index c) const { return at(a, weights_a, c); }
   CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
     const Frame<Real> f = faces.shape(a).frame();
     const Vec3<Real> n = unit(f.n - faces.shape(b).normal());

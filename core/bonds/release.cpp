@@ -81,15 +81,15 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
   for (Index i = 0; i < p.count; ++i) {
     const auto place = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
     if (!holds_in_part(ps, i, count, place)) continue;
-    Vec3<Real> mean[count], jump[count];
-    bonds.gather_jumps(One{i}, mean, jump);
+    Vec3<Real> jump[count];
+    const Frame<Real> frame = bonds.gather_jumps(One{i}, jump);
     broken.clear();
     for (Index k = 0; k < count; ++k) {
       if (ps.bond[place(k)] > 0) continue;
       broken.push_back({place(k), jump[k], bonds.spring(One{i}), {}});
       bonds.pairs.load_history(One{i}, k, count, broken.back().history);
     }
-    open_if_hinge(m, s, p, ps, i, pair_frame<count>(mean), broken);
+    open_if_hinge(m, s, p, ps, i, frame, broken);
   }
 }
 
@@ -102,16 +102,17 @@ void open_overlap_hinges(const Model& m, State& s) {
     const Index first = p.point_first[i], count = p.point_first[i + 1] - first;
     if (!holds_in_part(ps, i, count, [&](Index k) { return std::size_t(first + k); })) continue;
     const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
+    const Frame<Real> frame = bonds.frame_of(a, b);
     broken.clear();
     for (Index c = first; c < first + count; ++c) {
       if (ps.bond[c] > 0) continue;
       broken.push_back({std::size_t(c),
-                        bonds.jump_at(a, b, c),
+                        bonds.jump_at(a, b, frame, c),
                         bonds.pairs.spring(One{i}, p.point_area[c]),
                         {}});
       bonds.pairs.load_history(One{c}, 0, 1, broken.back().history);
     }
-    open_if_hinge(m, s, p, ps, i, bonds.frame_of(a, b), broken);
+    open_if_hinge(m, s, p, ps, i, frame, broken);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/bonds/views.hpp"
 #include "core/contact/force/views.hpp"
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/views.hpp"
@@ -16,8 +17,9 @@ Real pair_length(const Model& m, const PairSet& p, Index i) {
   return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
 }
 
-Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
+Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& ps, Index i) {
   const FaceColumns faces = face_columns(m, s);
+  const PairColumns pairs = pair_columns(m, p, ps);
   const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
   const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
   const Frame<Real> frame_a = faces.shape_before(a).frame(),
@@ -28,16 +30,18 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairS
   for (Index k = 0; k < p.points; ++k) {
     const Index node_a = p.nodes[std::size_t(k) * p.stride + i];
     const Index node_b = p.nodes[std::size_t(p.points + k) * p.stride + i];
-    const Vec3<Real> jump = faces.position_before(node_b) - faces.position_before(node_a);
+    const Vec3<Real> apart = faces.position_before(node_b) - faces.position_before(node_a);
+    const Vec3<Real> jump = pairs.past_rest(One{i}, k, p.points, frame_a, apart);
     if (dot(frame_a.n, jump) >= 0) continue;  // open: nothing to carry over
-    if (norm(jump) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
+    if (norm(apart) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
     const std::size_t point = std::size_t(k) * p.point_stride + i;
     // half of it on either side
     const Real area = 0.5 * p.area[i] / p.points, bond_n = area * p.stiffness[i],
                bond_s = area * p.stiffness[std::size_t(p.stride) + i];
     const Real kn = area * contact.stiffness_n(side_a, side_b),
                ks = area * contact.stiffness_s(side_a, side_b);
-    const Real part = std::min(1.0, kn / bond_n);  // of the force: no deeper than the faces are
+    // of the force: no deeper than the faces are, but under initial stress they need not be deep
+    const Real part = m.initial_stress ? 1 : std::min(1.0, kn / bond_n);
     const Vec3<Real> slip = ps.slip1[point] * frame_a.t1 + ps.slip2[point] * frame_a.t2;
     const Vec3<Real> along = jump - dot(frame_a.n, jump) * frame_a.n;
     const Vec3<Real> on_b = -part * bond_s * (along - slip);
@@ -50,8 +54,9 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, const PairS
         ContactState spring = ContactState::at(s.springs.state.data(), slot);
         spring.shear1 = dot(force, frame.t1);
         spring.shear2 = dot(force, frame.t2);
-        spring.penetration = -std::min(1.0, bond_n / kn) * dot(frame_a.n, jump);
-        spring.stress_free_gap = spring.penetration + dot(frame_a.n, jump);
+        const Real deeper = m.initial_stress ? bond_n / kn : std::min(1.0, bond_n / kn);
+        spring.penetration = -deeper * dot(frame_a.n, jump);
+        spring.stress_free_gap = spring.penetration + dot(frame_a.n, apart);
         spring.approach = spring.penetration;
         spring.force_n = kn * spring.penetration;
         spring.energy_n = contact.returned_n * 0.5 * kn * spring.penetration * spring.penetration;
@@ -146,7 +151,7 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
                         target = faces.shape_before(s.search.exposed_face[y]);
   const Frame<Real> frame = target.frame();
   const auto add = [&](Successor c) {
-    if (c.depth > 0) found.push_back(c);
+    if (c.depth > 0 || m.initial_stress) found.push_back(c);
   };
   for (Index k = 0; k < mother.count(); ++k) {
     const Index slot = 4 * x + k;
@@ -185,9 +190,9 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
 }
 
 /// Returns the energy that the contact holds  [J].
-Real give(State& s, const Successor& c, Real part, const Vec3<Real>& shear) {
+Real give(State& s, const Successor& c, Real penetration, const Vec3<Real>& shear) {
   ContactState state{};
-  state.penetration = part * c.depth;
+  state.penetration = penetration;
   state.approach = state.penetration;
   state.stress_free_gap = state.penetration - c.depth;
   state.force_n = c.kn * state.penetration;
@@ -236,13 +241,14 @@ void transfer_released_bonds(const Model& m, State& s, Queue q) {
     const Vec3<Real> on_b = force_on_second(s, p, i);
     const Real carried = dot(on_b, n);
     const Vec3<Real> shear = on_b - carried * n;
-    Real pressed = 0;
-    for (const Successor& c : contacts) pressed += c.kn * c.depth;
+    Real pressed = 0, stiffness = 0;
+    for (const Successor& c : contacts) pressed += c.kn * c.depth, stiffness += c.kn;
     const Real part = std::min(1.0, carried / pressed);
     if (carried > 0)
       for (const Successor& c : contacts) {
-        const Real share = part * c.kn * c.depth / carried;
-        s.overlaps.stored[i] -= give(s, c, part, (c.on_b ? share : -share) * shear);
+        const Real penetration = m.initial_stress ? carried / stiffness : part * c.depth;
+        const Real share = c.kn * penetration / carried;
+        s.overlaps.stored[i] -= give(s, c, penetration, (c.on_b ? share : -share) * shear);
       }
     s.overlaps.friction[i] += s.overlaps.stored[i];
     s.overlaps.stored[i] = 0;

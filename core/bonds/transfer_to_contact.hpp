@@ -12,11 +12,12 @@ Real pair_length(const Model& model, const PairSet& pairs, Index pair);
 
 /// Give the springs of a conforming pair the force that its bond points carried, half to either
 /// side, so that the change of bookkeeping is no jolt; of a contact that is softer than the bond
-/// only what it can hold at the present depth. A point whose vertices have parted, as those of a
+/// only what it can hold at the present depth, or all under initial stress: the stress-free gap
+/// rises for that. A point whose vertices have parted, as those of a
 /// hinge do before its last point breaks, carries nothing. Returns the energy that the springs hold
 /// [J].
-Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs,
-                         const PairState& bonds, Index pair);
+Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs, PairState& bonds,
+                         Index pair);
 
 /// Give the vertices and sides of both faces of a pair what the laws of its bond points remember:
 /// each vertex that of its point, or the mean of the points by their weights on it; each side the

@@ -44,21 +44,20 @@ struct PointStrains {
   }
 };
 
-/// Elastic part of the strains: all of them where no law flows.
+/// Elastic part of the strains: all of them where there is no inelastic strain.
 template <class Shape, class T>
 struct ElasticStrains {
   bool differ = false;
-  Sym3<T> part[any_law_flows ? Shape::points : 1];
+  Sym3<T> part[Shape::points];
 
   template <class Rotation>
   CDEM_HD const Sym3<T>& of(const PointStrains<Shape, Rotation, T>& p, Index q) const {
-    if constexpr (any_law_flows)
-      if (differ) return part[q];
-    return p.strain[q];
+    return differ ? part[q] : p.strain[q];
   }
 };
 
-/// Inelastic strain and state of the laws at the Gauss points; empty where no material flows.
+/// Inelastic strain and state of the laws at the Gauss points; empty where no material flows and
+/// the rock begins without stress: initial stress S0 is the inelastic strain -C^-1 : S0.
 ///
 /// Where the dilatation is the element's mean, so is its elastic part: the pressure is averaged
 /// with the operator that averages the dilatation, and the force stays the derivative of the
@@ -73,12 +72,10 @@ struct PointFlow {
   CDEM_HD ElasticStrains<Shape, T> elastic_part(const ElementColumns<Shape>& c, I e,
                                                 const PointStrains<Shape, Rotation, T>& p) const {
     ElasticStrains<Shape, T> strains;
-    if constexpr (any_law_flows) {
-      if (!history.data) return strains;
-      strains.differ = true;
-      for (Index q = 0; q < Shape::points; ++q) strains.part[q] = p.strain[q] - inelastic(e, q);
-      use_mean_dilatation<Shape>(c, e, strains.part);
-    }
+    if (!history.data) return strains;
+    strains.differ = true;
+    for (Index q = 0; q < Shape::points; ++q) strains.part[q] = p.strain[q] - inelastic(e, q);
+    use_mean_dilatation<Shape>(c, e, strains.part);
     return strains;
   }
 

@@ -21,7 +21,7 @@ ElementColumns<Shape> element_columns(const Model& m, const State& s, const Elem
           .hourglass = {e.hourglass.data(), e.stride}};
 }
 
-/// Inelastic strains of a set; empty where none of its materials flows.
+/// Inelastic strains of a set; empty where it has none.
 template <class Shape>
 PointFlow<Shape> point_flow(const State& s, const ElementSet& e, ElementState& es) {
   return {.history = {es.history.size() > 0 ? es.history.data() : nullptr, e.stride},

@@ -24,8 +24,8 @@ inline constexpr bool any_law_flows = [] {
   return any;
 }();
 
-/// Numbers that an inelastic law has at each Gauss point: Ei xx yy zz xy yz zx, and its state.
-inline constexpr Index point_history = any_law_flows ? 6 + BlockLaws::most_state : 0;
+/// Numbers at each Gauss point with inelastic strain: Ei xx yy zz xy yz zx, and the law's state.
+inline constexpr Index point_history = 6 + BlockLaws::most_state;
 
 /// The law of this type with the parameters of a material, or of one a lane.
 template <template <class> class Law, class Ids>

@@ -302,6 +302,14 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_point("bond", "1", "1 while intact, 0 once broken", p.bond);
   of_point("slip1", "m", "plastic slip along the first axis of the pair", p.slip1);
   of_point("slip2", "m", "plastic slip along the second axis of the pair", p.slip2);
+  stored({.name = name + "rest",
+          .unit = "m",
+          .meaning = "jump at which a spring is free, along the axes of the pair",
+          .rows = conforms(set) ? rows : "overlap_points",
+          .numbers = 3 * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         p.rest);
   stored({.name = name + "history",
           .unit = "of the law",
           .meaning = "what the law remembers at the bond points",

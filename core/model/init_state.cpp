@@ -25,10 +25,9 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
   es.damping_work.resize(row);
   const bool keeps_stress =
       m.formulation == Formulation::incremental || m.formulation == Formulation::paper_incremental;
-  if (any_law_flows && has_flowing_element(m, e)) {
-    es.history.resize(std::size_t(point_history * e.points) * row);
-    es.plastic_work.resize(row);
-  }
+  const bool flows = has_flowing_element(m, e);
+  if (flows || m.initial_stress) es.history.resize(std::size_t(point_history * e.points) * row);
+  if (flows) es.plastic_work.resize(row);
   if (keeps_stress) es.point_stress.resize(6 * std::size_t(e.points) * row);
 }
 
@@ -61,6 +60,7 @@ void size(const Model& m, const PairSet& p, PairState& s) {
   s.bond.resize(points, 1.0);
   s.slip1.resize(points);
   s.slip2.resize(points);
+  if (m.initial_stress) s.rest.resize(3 * points);
   init_histories(m, p, s);
 }
 

@@ -41,8 +41,8 @@ struct ElementState {
   Column<Real> stress;        // mean, for output: [6][element]
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
-  Column<Real> history;       // [point * point_history][element], see PointFlow
-  Column<Real> plastic_work;  // empty like history where no material of the set flows
+  Column<Real> history;       // [point * point_history][element], see PointFlow; may be empty
+  Column<Real> plastic_work;  // empty where no material of the set flows
   Column<Index> awake;        // blocks of elements, see nodes/sleep.hpp
   FusedBlocks fused;
 };
@@ -56,6 +56,7 @@ struct HistoryColumns {
 struct PairState {
   Column<Flag> status;  // PairStatus
   Column<Real> bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
+  Column<Real> rest;  // [axis * points + point][pair], see PairColumns; empty: all zero
   Column<Real> stored, fracture, friction;
   Column<Real> history;  // [variable * points + point][pair], of the pair's law
   Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp

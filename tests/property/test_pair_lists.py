@@ -33,7 +33,7 @@ def tumbling(shapes, seed):
             "velocity": [-side * rng.uniform(4, 8), rng.normal(0, 1), -3],
             "angular_velocity": list(rng.normal(0, 3, 3)),
         }
-    stage = {"name": "tumble", "mode": "dynamic", "duration": 10, "damping": {"contact": 0.2}}
+    stage = {"name": "tumble", "mode": "dynamic", "duration": 10, "damping": {"contact": 0.1}}
     return simulate(
         blocks,
         groups,

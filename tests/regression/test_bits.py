@@ -1,13 +1,12 @@
 """The same case gives the same bits: threads, instruction sets, split runs, restarts, sleeping."""
 
-import hashlib
 import os
 import subprocess
 import sys
 
 import numpy as np
 import pytest
-from scenes import case
+from scenes import case, digest
 
 import cdem
 from cdem import _native
@@ -44,15 +43,6 @@ def breaking_cube(**more):
         output={"every": 0.002},
         **more,
     )
-
-
-def digest(sim):
-    """Hash of everything that a checkpoint keeps."""
-    whole = hashlib.sha256()
-    for name, values in sorted(sim.core.fields().items()):
-        whole.update(name.encode())
-        whole.update(np.ascontiguousarray(values).tobytes())
-    return whole.hexdigest()
 
 
 def run_here(threads):

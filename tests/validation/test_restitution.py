@@ -6,11 +6,9 @@ elements: 0.04 to 0.06 for blocks of one element at the default stiffness of con
 0.1 to 0.2 for 2 x 2 x 2 of them. With 0.03 E/h it is below 0.006.
 """
 
-import hashlib
-
 import numpy as np
 import pytest
-from scenes import case, mean_velocity, simulate, turn
+from scenes import case, digest, mean_velocity, simulate, turn
 
 import cdem
 
@@ -218,14 +216,6 @@ def tumble(threads, **more):
         threads=threads,
         **more,
     )
-
-
-def digest(sim):
-    """Hash of everything that a checkpoint keeps."""
-    whole = hashlib.sha256()
-    for _, values in sorted(sim.core.fields().items()):
-        whole.update(np.ascontiguousarray(values).tobytes())
-    return whole.hexdigest()
 
 
 def test_threads_and_a_stop_give_identical_results(tmp_path):

@@ -4,12 +4,10 @@ About the point where it touches, a sphere has the inertia 7/5 m R^2, and the co
 brakes it: a = 5/7 mu_r g. The spheres here have facets, which brake a little by themselves.
 """
 
-import hashlib
-
 import meshio
 import numpy as np
 import pytest
-from scenes import case, mean_velocity, momentum, simulate, turn
+from scenes import case, digest, mean_velocity, momentum, simulate, turn
 
 import cdem
 
@@ -223,14 +221,6 @@ def heap(threads, **more):
         threads=threads,
         **more,
     )
-
-
-def digest(sim):
-    """Hash of everything that a checkpoint keeps."""
-    whole = hashlib.sha256()
-    for _, values in sorted(sim.core.fields().items()):
-        whole.update(np.ascontiguousarray(values).tobytes())
-    return whole.hexdigest()
 
 
 def test_threads_and_a_stop_give_identical_results(tmp_path):

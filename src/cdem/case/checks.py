@@ -31,6 +31,7 @@ def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
 
 def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _materials(case)
+    yield from _initial_stress(case)
     yield from _groups(case)
     yield from _joints(case)
     yield from _unique_names(case)
@@ -68,6 +69,11 @@ def _materials(case: CaseParts) -> Iterator[Problem]:
             )
 
 
+def _initial_stress(case: CaseParts) -> Iterator[Problem]:
+    if case.initial_stress and case.elements.formulation != "corotational":
+        yield ("elements", "formulation"), "must be corotational with initial_stress"
+
+
 def _groups(case: CaseParts) -> Iterator[Problem]:
     for keys, name in _group_names(case):
         if name not in case.groups:
@@ -95,9 +101,7 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
     for i, joint in enumerate(case.model.joints):
         if joint.group is not None:
             yield ("model", "joints", i, "group"), joint.group
-    for i, pair in enumerate(case.interfaces.pairs):
-        for k, name in enumerate(pair.between or []):
-            yield ("interfaces", "pairs", i, "between", k), name
+    yield from _listed_names(case)
     for kind in ("tractions", "velocities", "supports"):
         for i, load in enumerate(getattr(case.loads, kind)):
             if getattr(load, "group", None) is not None:
@@ -108,6 +112,16 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
     for i, history in enumerate(case.histories):
         if history.group is not None:
             yield ("histories", i, "group"), history.group
+
+
+def _listed_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Every place of a list of names of groups."""
+    for i, pair in enumerate(case.interfaces.pairs):
+        for k, name in enumerate(pair.between or []):
+            yield ("interfaces", "pairs", i, "between", k), name
+    for i, stress in enumerate(case.initial_stress):
+        for k, name in enumerate(stress.groups or []):
+            yield ("initial_stress", i, "groups", k), name
 
 
 def _unique_names(case: CaseParts) -> Iterator[Problem]:

@@ -11,6 +11,7 @@ from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
 from cdem.case.output_fields import CHOICE
+from cdem.case.stress_schema import InitialStress
 from cdem.case.types import (
     FileName,
     Length3,
@@ -276,6 +277,7 @@ class CaseParts(Part):
     groups: dict[Name, Group] = Field(description="Groups by name; every body is in one")
     interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
     loads: Loads = Field(Loads(), description="What acts from outside")
+    initial_stress: list[InitialStress] = Field([], description="Stress at the start")
     stages: list[Stage] = Field(min_length=1, description="Parts of the run, in order")
     contact: Contact = Field(Contact(), description="How contacts are found")
     elements: Elements = Field(Elements(), description="Element formulation")

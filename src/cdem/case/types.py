@@ -159,6 +159,12 @@ Direction3 = Annotated[list[Annotated[float, Quantity("1")]], Three, Listed]
 Velocity3 = Annotated[list[Annotated[float, Quantity("m/s")]], Three, Listed]
 Spin3 = Annotated[list[Annotated[float, Quantity("rad/s")]], Three, Listed]
 Acceleration3 = Annotated[list[Annotated[float, Quantity("m/s2")]], Three, Listed]
+Stress6 = Annotated[
+    list[Annotated[float, Quantity("Pa")]], Field(min_length=6, max_length=6), Listed
+]
+StressGradient6 = Annotated[
+    list[Annotated[float, Quantity("Pa/m")]], Field(min_length=6, max_length=6), Listed
+]
 Stress3 = Annotated[list[Annotated[float, Quantity("Pa")]], Three, Listed]
 Divisions3 = Annotated[list[Annotated[int, Field(ge=1, le=100_000)]], Three, Listed]
 Angle = Annotated[float, Quantity("deg")]

@@ -182,6 +182,12 @@ def _jacobians(shape: str, corners: Array) -> tuple[Array, Array, Array]:
     return matrix_product(slopes.transpose(0, 2, 1), corners[:, None]), slopes, weights
 
 
+def gauss_positions(shape: str, corners: Array) -> Array:
+    """Gauss points of `reference_gradients` [m], shape (elements, points, 3)."""
+    values, _ = _FUNCTIONS[shape](_stiffness_rule(shape)[0])
+    return matrix_product(values, corners)
+
+
 def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
     """Consistent mass matrix of each element [kg], shape (elements, nodes, nodes).
 

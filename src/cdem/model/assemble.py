@@ -161,7 +161,7 @@ def _radius(t: Topology, p: Properties, out: Assembly) -> Floats:
 
 def _pairs(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) -> None:
     a, b = t.pair_faces.T
-    bonded = p.bonded[t.face_kind[a], t.face_kind[b]] if len(a) else np.zeros(0, bool)
+    bonded = p.paired[t.face_kind[a], t.face_kind[b]] if len(a) else np.zeros(0, bool)
     corners = (t.face_nodes >= 0).sum(axis=1)
     exposed = np.ones(len(corners), np.int8)
     exposed[t.pair_faces[bonded].ravel()] = 0

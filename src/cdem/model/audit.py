@@ -177,6 +177,11 @@ class Audit:
                 f"of group {group}); the overlap counts as free of stress. Mend the mesh if it "
                 "should not be there"
             )
+        for i in b.initial.pulled if b.initial else []:
+            out.append(
+                f"{b.case.where(f'initial_stress.{i}')}: initial_stress.{i} pulls the rock in all "
+                "directions wherever it holds; tension is positive, write pressure with a minus sign"
+            )
         if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
             out.append(
                 f"time.step {self.step['dt']:.4g} s is above the stable {self.step['limit']:.4g} s; "
@@ -226,6 +231,7 @@ class Audit:
             "interfaces": self.interfaces,
             "compensation": self.compensation,
             "contacts": self.contacts,
+            "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
             "memory_bytes": self.memory,
             "warnings": self.warnings,
@@ -251,7 +257,11 @@ class Audit:
         spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))
         lines += ["", f"  extent x, y, z [m]: {spans}"]
         if self.interfaces:
-            lines += ["", "  bonded interfaces"]
+            stressed = self._build.initial is not None
+            lines += [
+                "",
+                "  bonded interfaces" + (", and joints without strength" if stressed else ""),
+            ]
         for row in self.interfaces:
             adds = "made up for by the elements"
             if not set(row["between"]) <= self.compensation.keys():
@@ -265,6 +275,7 @@ class Audit:
                 f"{row['stiffness_n'][1]:.3g} Pa/m, {adds}"
             )
         lines += self._stiffness_text()
+        lines += self._initial_text()
         s = self.step
         lines += [
             "",
@@ -276,6 +287,23 @@ class Audit:
             lines.append(estimate.rstrip())
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+    def _initial_text(self) -> list[str]:
+        """The stress that the rock begins with."""
+        initial = self._build.initial
+        if initial is None:
+            return []
+        spans = (
+            f"{a:.3g} .. {b:.3g}" for a, b in zip(initial.lowest, initial.highest, strict=True)
+        )
+        lines = ["", f"  initial stress xx, yy, zz [Pa], tension positive: {', '.join(spans)}"]
+        if initial.cut:
+            place = ", ".join(f"{x:.4g}" for x in initial.cut_at or [])
+            lines.append(
+                f"    {initial.cut:,} points of joints and bonds cannot bear it and begin with what their "
+                f"strength allows: up to {initial.most_cut:.3g} Pa less (near {place})"
+            )
+        return lines
 
     def _stiffness_text(self) -> list[str]:
         """What makes up for bonds, and how far contacts overlap."""

@@ -26,6 +26,7 @@ from cdem.model.compensation import Compensation, compensate, compensated_groups
 from cdem.model.curves import Curves, constant
 from cdem.model.domain import check_domain
 from cdem.model.flat_arrays import Assembly, Properties
+from cdem.model.initial_stress import InitialState, set_initial_stress
 from cdem.model.interfaces import (
     bonded_pairs,
     check_interfaces,
@@ -64,6 +65,9 @@ class Build:
         compensation: By group, what makes up for the compliance of bonds between its elements.
         bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
             at the start, shape (kinds, kinds).
+        paired: Whether such faces that touch are pairs: those that were bonded, and all under
+            initial stress.
+        initial: Under what stress the rock begins; None: under none.
     """
 
     case: Case
@@ -75,6 +79,8 @@ class Build:
     start_position: Floats
     compensation: dict[str, Compensation]
     bonded: NDArray[np.bool_]
+    paired: NDArray[np.bool_]
+    initial: InitialState | None
 
     @property
     def arrays(self) -> dict[str, NDArray]:
@@ -122,7 +128,9 @@ def build(case: Case) -> Build:
     with case.blame("model"):
         check_memory(pieces_of_mesh(case, merged))
         check_extent(merged)
-        topology = build_topology(merged, case.model.split, sets, bonds)
+        # under initial stress what only touches is paired, too, and can begin with its traction
+        paired = bonds | (bool(case.initial_stress) & (interface_of >= 0))
+        topology = build_topology(merged, case.model.split, sets, paired)
     check_domain(case, topology, names)
     check_interfaces(case, topology, names, interface_of)
     snap_mates(topology)
@@ -131,7 +139,7 @@ def build(case: Case) -> Build:
     made_up = compensate(
         case, topology, names, compensated_groups(case, topology, names, laws, interface_of, bonds)
     )
-    parts = _assemble(case, topology, names, laws, interface_of, bonds, made_up, curves, None)
+    parts = _assemble(case, topology, names, laws, interface_of, paired, made_up, curves, None)
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
@@ -140,20 +148,36 @@ def build(case: Case) -> Build:
     core.set_interfaces(interface_entries(case, laws, names, topology.node_position))
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(topology.node_position)
+    under = set_initial_stress(case, topology, names, laws, core)
     built = Build(
-        case, merged, topology, parts, core, curves, topology.node_position, made_up, bonds
+        case,
+        merged,
+        topology,
+        parts,
+        core,
+        curves,
+        topology.node_position,
+        made_up,
+        bonds,
+        paired,
+        under,
     )
-    motion = core.fields()["node.motion"].reshape(-1, 8)
-    set_velocities(case, topology, names, built.arrays["node.mass"], motion)
-    lost = start_on_supports(built.arrays, curves, motion)
+    _set_motion(built)
+    return built
+
+
+def _set_motion(built: Build) -> None:
+    """Give groups the velocities that they begin with, and driven nodes those of their supports."""
+    motion = built.core.fields()["node.motion"].reshape(-1, 8)
+    set_velocities(built.case, built.topology, built.group_names, built.arrays["node.mass"], motion)
+    lost = start_on_supports(built.arrays, built.curves, motion)
     groups = built.node_groups()
     for group in np.unique(groups[lost]):
         count, of = (lost & (groups == group)).sum(), (groups == group).sum()
-        merged.notes.append(
-            f"group {names[group]}: {count:,} of its {of:,} nodes are supported; they begin with "
+        built.mesh.notes.append(
+            f"group {built.group_names[group]}: {count:,} of its {of:,} nodes are supported; they begin with "
             "the velocity of their support, not with that of the group"
         )
-    return built
 
 
 def _share(topology: Topology, arrays: dict[str, NDArray]) -> None:
@@ -169,7 +193,7 @@ def _assemble(
     names: list[str],
     laws: list[Interface],
     interface_of: NDArray[np.int32],
-    bonds: NDArray[np.bool_],
+    paired: NDArray[np.bool_],
     made_up: dict[str, Compensation],
     curves: Curves,
     added_mass: Floats | None,
@@ -190,7 +214,7 @@ def _assemble(
         law=np.array([list(BLOCK_LAWS).index(m.law) for m in materials], np.int32),
         law_parameters=np.array([_law_row(m) for m in materials]),
         interface_of=np.maximum(interface_of, 0),
-        bonded=bonds,
+        paired=paired,
         stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
         automatic=np.array([is_automatic(law) for law in laws], bool),
         stiffening=stiffening,
@@ -253,7 +277,7 @@ def change(built: Build) -> dict[str, NDArray]:
         names,
         laws,
         interface_of,
-        built.bonded,
+        built.paired,
         built.compensation,
         built.curves,
         built.assembly.added_mass,

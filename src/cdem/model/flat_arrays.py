@@ -27,7 +27,8 @@ class Properties:
         law_parameters: Its parameters, shape (groups, most parameters of a law).
         interface_of: Index of the interface between two kinds of faces (see
             `Topology.face_kind`), shape (kinds, kinds).
-        bonded: Whether that interface starts bonded (has cohesion or tension), the same shape.
+        paired: Whether faces of it that touch at the start are pairs: if it has strength, or under
+            initial stress, the same shape.
         stiffness: (value, factor) of k_n and k_s of bonds by interface, shape (interfaces, 4).
         automatic: Whether the case leaves them to the program, shape (interfaces,).
         stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
@@ -52,7 +53,7 @@ class Properties:
     law: Ints
     law_parameters: Floats
     interface_of: Ints
-    bonded: NDArray[np.bool_]
+    paired: NDArray[np.bool_]
     stiffness: Floats
     automatic: NDArray[np.bool_]
     stiffening: Floats

@@ -33,6 +33,7 @@ def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:
         "bond_indentation_triangle": triangle,
         "bond_indentation_quad": quad,
         "semi_edges": contact.edges,
+        "initial_stress": bool(case.initial_stress),
         "lumped_while_bonded": case.moved_masses == "lumped-while-bonded",
         "check_search": contact.check,
         "rebuild_interval": 0 if contact.refresh == "displacement" else int(contact.refresh),

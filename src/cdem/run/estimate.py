@@ -23,6 +23,8 @@ LEAST_STEPS = 40
 """Steps of a measurement at least: a rebuild of the pair lists should be among them."""
 PIECE = (20, 0.02)
 """Between two looks at the clock there are so many steps, or as many as take so long [s]."""
+BALANCED = 1e-3
+"""Rock that begins under stress is in equilibrium if its unbalanced force is below this."""
 DRAWING = 340_000_000
 """Memory of matplotlib, pyvista and VTK when they draw report.html [bytes], measured in five runs."""
 
@@ -62,10 +64,13 @@ class Estimate:
         stages: In their order.
         peak_memory: Largest memory of a run: building the model, its contacts with all bonds
             broken, drawing the report [bytes].
+        unbalance: Unbalanced force of the first step over the loads, of rock that begins under
+            stress.
     """
 
     stages: list[StageEstimate]
     peak_memory: int
+    unbalance: float | None = None
 
     @property
     def wall_time(self) -> float | None:
@@ -78,12 +83,20 @@ class Estimate:
         return {
             "wall_time_estimate": self.wall_time,
             "peak_memory_bytes": self.peak_memory,
+            "start_unbalance": self.unbalance,
             "stage_estimates": [asdict(s) | {"expected": s.expected} for s in self.stages],
         }
 
     def text(self) -> str:
         """Lines for the report."""
         lines = [f"  peak memory {self.peak_memory / 1e6:,.0f} MB, report.html included"]
+        if self.unbalance is not None:
+            lines.append(f"  unbalanced force at the start {self.unbalance:.2g} of the loads")
+            if self.unbalance > BALANCED:
+                lines.append(
+                    "    the initial stress is not in equilibrium with gravity and supports: begin with "
+                    "a static stage, and look at initial_stress (sign, gradient, surface) if it moves much"
+                )
         for s in self.stages:
             step = f"  stage {s.name}: {1e3 * s.step_seconds:.3g} ms a step"
             if s.wall_time is None:
@@ -105,10 +118,13 @@ def estimate(sim: RunState) -> Estimate:
     Args:
         sim: A simulation that has not begun.
     """
-    found = []
+    found, unbalance = [], None
     for index, stage in enumerate(sim.case.stages):
         sim.stage_index = index
         stages.begin(sim)
+        if index == 0 and sim.build.initial is not None:
+            sim.core.run(1)
+            unbalance = float(sim.core.unbalance_ratio())
         step, length = _measure(sim)
         wall = broken = None
         if stage.duration is not None:
@@ -119,7 +135,7 @@ def estimate(sim: RunState) -> Estimate:
                 step_broken, length = _measure(sim)
                 broken = stage.duration / length * step_broken
         found.append(StageEstimate(stage.name, stage.mode, step, wall, broken))
-    return Estimate(found, peak_memory())
+    return Estimate(found, peak_memory(), unbalance)
 
 
 def _bonded(sim: RunState) -> bool:

@@ -79,9 +79,9 @@ TEST_CASE("strong contact damping shortens the step with one over its ratio") {
     floating.model.contact_damping = ratio;
     return step_limit(floating.model, floating.state).dt;
   };
-  CHECK(relative_error(with(0.2) / with(0.0), std::sqrt(1.04) - 0.2) < 1e-14);
-  CHECK(relative_error(with(0.4), with(0.2) / 2) < 1e-14);
-  CHECK(relative_error(with(2.0), with(0.2) / 10) < 1e-14);
+  CHECK(relative_error(with(0.1) / with(0.0), std::sqrt(1.01) - 0.1) < 1e-14);
+  CHECK(relative_error(with(0.2), with(0.1) / 2) < 1e-14);
+  CHECK(relative_error(with(2.0), with(0.1) / 20) < 1e-14);
 }
 
 TEST_CASE("with a diagonal below the mass matrix, nodes of a block count one by one") {

@@ -25,7 +25,7 @@ struct Pile {
     scene.build();
     scene.model.gravity = {0, 0, -10};
     scene.model.check_search = true;
-    scene.model.contact_damping = 0.2;
+    scene.model.contact_damping = 0.1;
     scene.model.stiffness_damping = 0.1;
     scene.set_interface({{"friction_angle", 0.6}});
     for (const Index box : {low, high}) scene.set_motion(box, {1, 0, -0.1});

@@ -59,6 +59,8 @@ def run(study):
     for name, (below, above) in MESHES.items() if study.full else [("1:1", MESHES["1:1"])]:
         divisions = [f"model.blocks.{i}.box.divisions=[{n}, {n}, 1]"
                      for i, n in enumerate((below, above))]  # fmt: skip
+        if below > 3 * above:  # the column's own face is touched, and yields; README.md
+            divisions.append("interfaces.default.contact_stiffness=10 E/h")
         study.check(f"tilt, meshes {name}", unit="deg", theory=exact, ours=limit(*divisions),
                     paper=14.01 if name == "1:1" else None, within=0.003, absolute=True)  # fmt: skip
     if study.full:

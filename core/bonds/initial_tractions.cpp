@@ -1,0 +1,130 @@
+// initial_tractions.cpp - see initial_tractions.hpp.
+#include "core/bonds/initial_tractions.hpp"
+
+#include <algorithm>
+
+#include "core/bonds/views.hpp"
+#include "core/model/force_sets.hpp"
+
+namespace cdem {
+
+namespace {
+
+/// A bond point, with the frame and the spring of its pair.
+struct Point {
+  BondPlace at;
+  Frame<Real> frame;
+  BondSpring<Real> spring;
+  Index interface;
+  std::size_t place, row;  // in the point tables, and the numbers from axis to axis of `rest`
+};
+
+template <Index count, class Visit>
+void visit_points(PairKind<ConformingBonds<count>>, const Model& m, State& s, const PairSet& p,
+                  PairState& ps, Visit&& visit) {
+  const ConformingBonds<count> bonds{
+      .nodes = {s.nodes.motion.data()},
+      .pair_nodes = {p.nodes.data(), p.stride},
+      .pairs = pair_columns(m, p, ps),
+      .indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad,
+      .dt = 0,
+      .sampled = false,
+      .corner_force = {}};
+  // (1 - a) (1 - b) = 1/4 and 1/3: the mass matrix of the face is that of the points at a and b
+  const Real place_of_stress = 1 - 1.0 / (count == 3 ? 4 : 3) / (1 - bonds.indentation);
+  for (Index i = 0; i < p.count; ++i) {
+    Vec3<Real> mean[count], jump[count];
+    bonds.gather_vertices(One{i}, mean, jump);
+    const Frame<Real> frame = pair_frame<count>(mean);
+    move_inside<count>(place_of_stress, mean);
+    for (Index k = 0; k < count; ++k)
+      visit(Point{.at = {mean[k], {p.faces[2 * i], p.faces[2 * i + 1]}},
+                  .frame = frame,
+                  .spring = bonds.spring(One{i}),
+                  .interface = p.interface[i],
+                  .place = std::size_t(k) * p.point_stride + i,
+                  .row = std::size_t(count) * p.point_stride});
+  }
+}
+
+template <class Visit>
+void visit_points(PairKind<OverlapBonds>, const Model& m, State& s, const PairSet& p, PairState&,
+                  Visit&& visit) {
+  const OverlapBonds bonds = overlap_bonds(m, s);
+  for (Index i = 0; i < p.count; ++i) {
+    const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
+    for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
+      visit(Point{.at = {bonds.position(a, c), {a, b}},
+                  .frame = bonds.frame_of(a, b),
+                  .spring = bonds.pairs.spring(One{i}, p.point_area[c]),
+                  .interface = p.interface[i],
+                  .place = std::size_t(c),
+                  .row = std::size_t(p.point_stride)});
+  }
+}
+
+/// What the law says of a bond point that is strained by minus its rest.
+JointAnswer<Real> answer_at(const Model& m, const Point& point, const Vec3<Real>& rest, Real bond) {
+  Real state[InterfaceLaws::most_state + 1] = {};
+  InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+    if (m.interfaces[point.interface].law == number)
+      for (std::size_t k = 0; k < Law<Real>::state.size(); ++k)
+        state[k] = bond > 0 ? Law<Real>::state[k].intact : Law<Real>::state[k].loose;
+  });
+  const Vec3<Real> jump =
+      -rest.x * point.frame.n - rest.y * point.frame.t1 - rest.z * point.frame.t2;
+  return respond(interface_table(m), point.interface,
+                 point.spring.input(point.frame, jump, bond, 0.0, 0.0), state);
+}
+
+}  // namespace
+
+std::vector<BondPlace> bond_places(const Model& m, State& s) {
+  std::vector<BondPlace> places;
+  for_each_pair_set(m, s, [&](auto kind, const PairSet& p, PairState& ps) {
+    visit_points(kind, m, s, p, ps, [&](const Point& point) { places.push_back(point.at); });
+  });
+  return places;
+}
+
+CutTractions set_initial_tractions(Model& m, State& s, const Real* stress, const Flag* bonded) {
+  CutTractions cut;
+  Real lift = 0;
+  const auto load = [&](PairState& ps, const Point& point) {
+    const JointStiffness<Real>& k = point.spring.stiffness;
+    const Frame<Real>& f = point.frame;
+    const Sym3<Real> of_rock{.xx = stress[0],
+                             .yy = stress[1],
+                             .zz = stress[2],
+                             .xy = stress[3],
+                             .yz = stress[4],
+                             .zx = stress[5]};
+    stress += 6;
+    const Vec3<Real> t = full(of_rock) * f.n;
+    const Vec3<Real> wanted{-dot(t, f.n), -dot(t, f.t1), -dot(t, f.t2)};
+    const Real bond = bonded[point.interface] ? 1 : 0;
+    const JointAnswer<Real> joint =
+        answer_at(m, point, {wanted.x / k.n, wanted.y / k.s, wanted.z / k.s}, bond);
+    const Vec3<Real> borne{joint.elastic, joint.shear1, joint.shear2};
+    const Real lost = norm(wanted - borne);
+    if (lost > 1e-9 * norm(wanted)) {
+      ++cut.count;
+      if (lost > cut.most) cut.most = lost, cut.face = point.at.faces[0];
+    }
+    ps.rest[point.place] = borne.x / k.n;
+    ps.rest[point.place + point.row] = borne.y / k.s;
+    ps.rest[point.place + 2 * point.row] = borne.z / k.s;
+    ps.bond[point.place] = joint.bond;
+    const Interface& contact = m.interfaces[point.interface];
+    lift = std::max(lift, borne.x / contact.stiffness_n(m.face_stiffness[point.at.faces[0]],
+                                                        m.face_stiffness[point.at.faces[1]]));
+  };
+  for_each_pair_set(m, s, [&](auto kind, const PairSet& p, PairState& ps) {
+    visit_points(kind, m, s, p, ps, [&](const Point& point) { load(ps, point); });
+  });
+  m.initial_lift = 2 * lift;
+  m.rules.lifted = std::max(m.rules.lifted, m.initial_lift);
+  return cut;
+}
+
+}  // namespace cdem

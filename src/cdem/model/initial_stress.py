@@ -1,0 +1,192 @@
+"""Stress of the rock at the start: of elements, as strain that is taken off; of bonds and joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem._native import core as native
+from cdem.case.case import Case
+from cdem.case.interface_schema import Interface
+from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.stress_schema import InitialStress, PrincipalStress
+from cdem.errors import CaseError
+from cdem.mesh import element_shapes
+from cdem.mesh.topology import Topology
+from cdem.model.overburden import weight_above
+
+Floats = NDArray[np.float64]
+
+PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+"""Rows and columns of xx yy zz xy yz zx."""
+
+
+@dataclass(frozen=True)
+class InitialState:
+    """What the rock begins with.
+
+    Attributes:
+        lowest: Lowest xx, yy, zz of an element [Pa]: the largest pressures.
+        highest: Highest xx, yy, zz [Pa].
+        cut: Bond points whose traction their joint could not bear.
+        most_cut: Largest traction that was cut [Pa].
+        cut_at: Where that is [m], or None.
+        pulled: Numbers of the entries that pull the rock in all directions wherever they hold.
+    """
+
+    lowest: list[float]
+    highest: list[float]
+    cut: int
+    most_cut: float
+    cut_at: list[float] | None
+    pulled: list[int]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON."""
+        return {
+            "lowest_normal_stress": self.lowest,
+            "highest_normal_stress": self.highest,
+            "cut_bond_points": self.cut,
+            "largest_cut_traction": self.most_cut,
+        }
+
+
+def set_initial_stress(
+    case: Case, t: Topology, names: list[str], laws: list[Interface], core: Any
+) -> InitialState | None:
+    """Put the rock of a started core under the stress that its case asks for.
+
+    Returns:
+        What it begins with; None where the case asks for none.
+
+    Raises:
+        CaseError: An entry does not fit the model.
+    """
+    if not case.initial_stress:
+        return None
+    field = _Field(case, t, names)
+    lowest, highest = _set_elements(t, field, core)
+    position, faces = core.bond_places()
+    points, faces = np.reshape(position, (-1, 3)), np.reshape(faces, (-1, 2)).astype(np.intp)
+    sides = [field.at(points, t.face_group[faces[:, side]]) for side in (0, 1)]
+    bonded = np.array([INTERFACE_LAWS[law.law].bonds(law) for law in laws], np.int8)
+    cut, most, face = core.set_initial_tractions(0.5 * (sides[0] + sides[1]), bonded)
+    nodes = t.face_nodes[face] if face >= 0 else None
+    at = None if nodes is None else t.node_position[nodes[nodes >= 0]].mean(axis=0).tolist()
+    return InitialState(lowest, highest, cut, most, at, field.pulled())
+
+
+def _set_elements(t: Topology, field: _Field, core: Any) -> tuple[list[float], list[float]]:
+    """Write inelastic strains -C^-1 : S0; returns lowest and highest normal stresses."""
+    arrays, state = core.model(), core.fields()
+    lame, shear = arrays["material.lambda"], arrays["material.mu"]
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for shape in element_shapes.NODES:
+        group = t.element_group[shape]
+        if not len(group):
+            continue
+        corners = t.node_position[t.element_nodes[shape]]
+        places = element_shapes.gauss_positions(shape, corners)
+        if len(arrays[f"{shape}.hourglass"]):  # one point, in the middle
+            volume = element_shapes.volumes(shape, corners)
+            places = (np.einsum("ep,epx->ex", volume, places) / volume.sum(axis=1)[:, None])[
+                :, None
+            ]
+        count = places.shape[1]
+        stress = field.at(places.reshape(-1, 3), np.repeat(group, count))
+        low = np.minimum(low, stress[:, :3].min(axis=0))
+        high = np.maximum(high, stress[:, :3].max(axis=0))
+        first, mu = np.repeat(lame[group], count), np.repeat(shear[group], count)
+        strain = stress / (2 * mu)[:, None]
+        strain[:, :3] -= (first / (2 * mu * (3 * first + 2 * mu)) * stress[:, :3].sum(axis=1))[
+            :, None
+        ]
+        rows = state[f"{shape}.history"].reshape(count, native.point_history, -1)
+        rows[:, :6, : len(group)] = -strain.reshape(len(group), count, 6).transpose(1, 2, 0)
+    return low.tolist(), high.tolist()
+
+
+class _Field:
+    """The stress that a case asks for.
+
+    Args:
+        case: With entries of `initial_stress`.
+        t: Blocks and faces.
+        names: Of the groups.
+    """
+
+    def __init__(self, case: Case, t: Topology, names: list[str]) -> None:
+        self._case, self._t, self._names = case, t, names
+        self._pulls: dict[int, bool] = {}
+        for i, entry in enumerate(case.initial_stress):
+            if entry.vertical:
+                self._check_gravity(i)
+
+    def at(self, points: Floats, group: NDArray[np.integer]) -> Floats:
+        """Stress xx yy zz xy yz zx of points of these groups [Pa], shape (points, 6)."""
+        found = np.zeros((len(points), 6))
+        for i, entry in enumerate(self._case.initial_stress):
+            some = np.ones(len(points), bool)
+            if entry.groups is not None:
+                some &= np.isin(group, [self._names.index(name) for name in entry.groups])
+            if entry.box is not None:
+                low, high = np.array(entry.box.min), np.array(entry.box.max)
+                some &= ((points >= low) & (points <= high)).all(axis=1)
+            if some.any():
+                found[some] = self._of(entry, points[some], group[some])
+                pulls = bool((found[some, :3] > 0).all())
+                self._pulls[i] = self._pulls.get(i, True) and pulls
+        return found
+
+    def pulled(self) -> list[int]:
+        """Entries that pull the rock in all directions wherever they hold."""
+        return [i for i, pulls in self._pulls.items() if pulls]
+
+    def _of(self, entry: InitialStress, points: Floats, group: NDArray[np.integer]) -> Floats:
+        if entry.vertical:
+            return self._overburden(entry, points, group)
+        middle = entry.stress or _of_principal(entry.principal)
+        slope = np.array([entry.gradient.x, entry.gradient.y, entry.gradient.z])
+        away = points - np.array(entry.origin)
+        change = sum(away[:, axis, None] * slope[axis] for axis in range(3))
+        return np.asarray(middle, float) + change
+
+    def _overburden(
+        self, entry: InitialStress, points: Floats, group: NDArray[np.integer]
+    ) -> Floats:
+        density = np.array(
+            [self._case.materials[self._case.groups[name].material].density for name in self._names]
+        )
+        mass, top = weight_above(self._t, density, points)
+        if entry.surface != "top":
+            ends = np.where(np.isfinite(top), np.maximum(top, points[:, 2]), points[:, 2])
+            mass += density[group] * np.maximum(0.0, entry.surface - ends)
+        pressure = mass * -self._case.loads.gravity[2]
+        trend = np.radians(entry.azimuth)
+        first = np.array([np.sin(trend), np.cos(trend), 0.0])
+        second = np.array([-first[1], first[0], 0.0])
+        ratio = (
+            entry.k0[0] * np.outer(first, first)
+            + entry.k0[-1] * np.outer(second, second)
+            + np.diag([0.0, 0.0, 1.0])
+        )
+        return -pressure[:, None] * np.array([ratio[i, j] for i, j in PLACES])
+
+    def _check_gravity(self, entry: int) -> None:
+        g = self._case.loads.gravity
+        if g[0] or g[1] or not g[2] < 0:
+            raise CaseError(
+                f"{self._case.where(f'initial_stress.{entry}.vertical')}: overburden needs gravity along -z, "
+                f"got {list(g)}; give stress with a gradient"
+            )
+
+
+def _of_principal(principal: PrincipalStress | None) -> list[float]:
+    assert principal is not None  # the schema wants one of three
+    u, _, v = np.linalg.svd(principal.directions())
+    d = u @ v  # the nearest that are at right angles
+    tensor = np.einsum("k,ki,kj->ij", principal.values, d, d)
+    return [float(tensor[i, j]) for i, j in PLACES]
