@@ -20,6 +20,7 @@
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
+#include "core/run/excavate.hpp"
 #include "core/run/run.hpp"
 #include "core/run/take_out.hpp"
 
@@ -148,11 +149,13 @@ void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
   c.model.contact_damping = contact;
 }
 
-/// Take whole bodies out, given by a flag for each node.
-void take_out_nodes(Core& c, Array<Flag> leaves) {
+/// Take whole blocks out, given by a flag for each node; those that are dug out let go of what they
+/// bore when they are told to.
+template <auto leave>
+void take_nodes(Core& c, Array<Flag> leaves) {
   if (leaves.ndim() != 1 || leaves.shape(0) != std::size_t(c.model.node_count))
     throw nb::value_error("one flag for each node");
-  take_out(c.model, c.state, leaves.data());
+  leave(c.model, c.state, leaves.data());
 }
 
 auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
@@ -235,7 +238,11 @@ void bind_setup(nb::class_<Core>& core) {
 void bind_run(nb::class_<Core>& core) {
   core.def("run", &run_core, "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0,
            "check_interval"_a = 20, "relaxation"_a = "none")
-      .def("take_out", &take_out_nodes, "leaves"_a)
+      .def("take_out", &take_nodes<take_out>, "leaves"_a)
+      .def("excavate", &take_nodes<excavate>, "leaves"_a)
+      .def(
+          "let_go", [](Core& c, Real part, Real end) { let_go(c.state, part, end); }, "part"_a,
+          "end_time"_a)
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
       .def("move_exact_masses",

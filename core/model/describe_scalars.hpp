@@ -72,6 +72,13 @@ void describe_scalars(State& s, Visit&& visit) {
                    .meaning = "least skin of a node, in parts of the smallest L of its faces"},
         s.search.outer.least_skin);
   describe_ledger(s, visit);
+  const auto relief = [&](const char* name, const char* unit, const char* meaning, Real& number) {
+    visit(ScalarInfo{.name = name, .unit = unit, .meaning = meaning}, number);
+  };
+  relief("relief_begin", "s", "time at which what was dug out begins to let go", s.relief.begin);
+  relief("relief_end", "s", "time at which it has let go", s.relief.end);
+  relief("relief_from", "1", "part of its forces that is left at the former", s.relief.from);
+  relief("relief_to", "1", "part that is left at the latter", s.relief.to);
   visit(ScalarInfo{.name = "kinetic_peak",
                    .unit = "J",
                    .meaning = "peak of the kinetic energy since all motion was last stopped"},

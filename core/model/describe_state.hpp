@@ -62,11 +62,23 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes",
           .refers_to = {"nodes"}},
          n.body);
+}
+
+/// What was taken out, and the forces that it left: part of `describe_state`.
+template <class Stored>
+void describe_taken_out(NodeState& n, Stored&& stored) {
   stored({.name = "node.out",
           .meaning = "1: of a block that was taken out",
           .rows = "nodes",
           .optional = true},
          n.out);
+  stored({.name = "node.relief",
+          .unit = "N",
+          .meaning = "force of what was dug out, x y z, of which a part may be left",
+          .rows = "nodes",
+          .numbers = 4,
+          .optional = true},
+         n.relief);
 }
 
 /// What the last sampled step left for the energy ledger: part of `describe_state`.
@@ -335,6 +347,7 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
 template <class Stored, class Rebuilt>
 void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt) {
   describe_motion(s.nodes, stored);
+  describe_taken_out(s.nodes, stored);
   describe_samples(s.nodes, stored);
   describe_node_forces(s.nodes, rebuilt);
   describe_node_lists(s, rebuilt);

@@ -23,6 +23,7 @@ struct NodeState {
   Column<Flag> sleeps, listed;      // see nodes/sleep.hpp
   Column<Flag> lumped;              // 1: its block has bonds, see list_lumped; empty: none has
   Column<Flag> out;                 // 1: taken out, see run/take_out.hpp; empty: none is
+  Column<Real> relief;              // rows of 4, see run/excavate.hpp; empty: none
   Column<Flag> fused;     // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
   Column<Index> general;  // awake blocks of nodes but those of which all are fused
   bool damped = false;    // in the last step, else damping_force does not count
@@ -148,6 +149,18 @@ struct SearchState {
 /// What the wall time of steps is counted by.
 enum class Phase { rebuild, search, contact, element, node };
 
+/// How what was dug out ceases to bear: the part of its forces that is left, over time.
+struct Relief {
+  Real begin = 0, end = 0;  // [s]
+  Real from = 1, to = 1;    // part that is left at these times
+  Real part = 1;            // in this step
+
+  Real at(Real time) const {
+    if (!(time < end)) return to;
+    return time > begin ? from + (to - from) * (time - begin) / (end - begin) : from;
+  }
+};
+
 struct State {
   Real seconds[5] = {};  // wall time so far by Phase; no part of the results
   Real time = 0;
@@ -164,6 +177,7 @@ struct State {
   Real relax_damping = 0;  // mass damping that adaptive relaxation has found  [1/s]
   Index missed = 0;        // contacts that an all-pairs search found and ours did not
   bool ledger_started = false;
+  Relief relief;
   NodeState nodes;
   ElementState tet4, pyramid5, wedge6, hex8;
   PairState triangles, quads, overlaps;

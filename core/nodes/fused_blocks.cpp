@@ -27,12 +27,18 @@ struct Elements {
   Range bond_rows(Index node) const {
     return {s.nodes.corner_first[node] + 1, s.nodes.corner_first[node + 1]};
   }
+  /// Does any load but gravity act on nodes from `first` to before `last`?
+  bool is_loaded(Index first, Index last) const {
+    bool any = m.load_first[first] < m.load_first[last];
+    for (std::size_t k = 4 * std::size_t(first); k < 4 * std::size_t(last); ++k)
+      any |= s.nodes.relief.size() > 0 && s.nodes.relief[k] != 0;
+    return any;
+  }
   bool is_lumped(Index i) const { return mass.row(first_node(i)) < 0; }
   bool is_fused(Index i) const {
     const Index first = first_node(i), last = first + corners, row = mass.row(first);
     if (m.block_first[first] != first || m.block_count[first] != corners ||
-        m.load_first[first] < m.load_first[last] ||
-        s.search.contact_first[first] < s.search.contact_first[last])
+        is_loaded(first, last) || s.search.contact_first[first] < s.search.contact_first[last])
       return false;
     for (Index k = 0; k < corners; ++k) {
       const Index node = first + k;

@@ -46,7 +46,9 @@ inline LoadColumns load_columns(const Model& m, const State& s) {
           .load_first = m.load_first.data(),
           .load_curve = m.load_curve.data(),
           .load_force = m.load_force.data(),
-          .curve_value = s.load_factor.data()};
+          .curve_value = s.load_factor.data(),
+          .relief = s.nodes.relief.size() > 0 ? s.nodes.relief.data() : nullptr,
+          .relief_part = s.relief.part};
 }
 
 inline CornerLists corner_lists(const State& s) {

@@ -48,11 +48,11 @@ Index slack_material(Model& m) {
   return count;
 }
 
-/// Is an item of a set out? Bodies leave as a whole, so one node tells.
+/// Is an item of a set out, or a side of a pair?
 template <class Set>
 bool is_out(const Model& m, const State& s, const Set& set, Index item) {
   bool out = false;
-  for_each_node(m, set, item, [&](Index node) { out = s.nodes.out[node] != 0; });
+  for_each_node(m, set, item, [&](Index node) { out |= s.nodes.out[node] != 0; });
   return out;
 }
 
@@ -71,13 +71,16 @@ void stop_node(NodeState& n, std::size_t i) {
   n.unbalance[i] = 0;
 }
 
-void relieve(const ElementSet& e, ElementState& es, Index i) {
+void relieve(State&, const ElementSet& e, ElementState& es, Index i) {
   es.energy[i] = 0;
   for (std::size_t k = 0; k < es.point_stress.size() / e.stride; ++k)
     es.point_stress[k * e.stride + i] = 0;
 }
 
-void relieve(const PairSet&, PairState& ps, Index i) {
+/// The faces of a pair can be touched then; those that are out are hidden afterwards.
+void relieve(State& s, const PairSet& p, PairState& ps, Index i) {
+  if (is_live(PairStatus(ps.status[i])))
+    for (const Index side : {0, 1}) expose(s, p.faces[2 * i + side]);
   ps.status[i] = Flag(PairStatus::released);
   ps.stored[i] = 0;
   ps.jump[i] = 0;
@@ -112,9 +115,10 @@ void take_out(Model& m, State& s, const Flag* leaves) {
   }
   for_each_set(m, s, [&](auto, const auto& set, auto& state) {
     for (Index i = 0; i < set.count; ++i)
-      if (is_out(m, s, set, i)) relieve(set, state, i);
+      if (is_out(m, s, set, i)) relieve(s, set, state, i);
   });
   hide_faces(m, s);
+  sort_exposed(s);
   s.taken_out += before - stored_energy(m, s);
   hold_taken_out(m, s);
   list_pairs_of_exposed(m, s, {.everything_awake = true}, true);

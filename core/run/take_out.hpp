@@ -6,9 +6,10 @@
 
 namespace cdem {
 
-/// Between two runs, take whole bodies out, given by a flag for each node. Their nodes stay where
+/// Between two runs, take whole blocks out, given by a flag for each node. Their nodes stay where
 /// they are, their elements and bonds carry nothing, their faces cannot be touched, and their
-/// contacts end. The energy that is stored in them is booked as taken out.
+/// contacts end. Faces that were bonded to them can be touched from then on. The energy that is
+/// stored in them is booked as taken out.
 void take_out(Model& model, State& state, const Flag* leaves);
 
 /// Hold what has been taken out, after Python has handed over arrays of the model.

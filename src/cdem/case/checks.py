@@ -33,6 +33,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _materials(case)
     yield from _initial_stress(case)
     yield from _groups(case)
+    yield from _excavation(case)
     yield from _joints(case)
     yield from _unique_names(case)
 
@@ -80,6 +81,33 @@ def _groups(case: CaseParts) -> Iterator[Problem]:
             yield keys, _no("group", name, case.groups)
 
 
+def _excavation(case: CaseParts) -> Iterator[Problem]:
+    dug: dict[str, str] = {}
+    let_go = 1.0
+    for i, stage in enumerate(case.stages):
+        if stage.remove:
+            let_go = 0.0
+        for k, name in enumerate(stage.remove):
+            if name in dug:
+                yield ("stages", i, "remove", k), f"{name} was dug out in the stage {dug[name]!r}"
+            dug[name] = stage.name
+        if stage.remove and i == 0:
+            yield (
+                ("stages", 0, "remove"),
+                "nothing bears before the first stage: begin with one that comes to rest, or leave "
+                "the group out of the model",
+            )
+        if stage.release is not None and not dug:
+            yield ("stages", i, "release"), "nothing has been dug out (remove)"
+        elif stage.release is not None and stage.release.to < let_go:
+            yield (
+                ("stages", i, "release", "to"),
+                f"must be at least {let_go:g}, which an earlier stage has let go",
+            )
+        if stage.remove or stage.release:
+            let_go = stage.release.to if stage.release else 1.0
+
+
 def _joints(case: CaseParts) -> Iterator[Problem]:
     names = [joint.name for joint in case.model.joints]
     for i, pair in enumerate(case.interfaces.pairs):
@@ -122,6 +150,9 @@ def _listed_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]
     for i, stress in enumerate(case.initial_stress):
         for k, name in enumerate(stress.groups or []):
             yield ("initial_stress", i, "groups", k), name
+    for i, stage in enumerate(case.stages):
+        for k, name in enumerate(stage.remove):
+            yield ("stages", i, "remove", k), name
 
 
 def _unique_names(case: CaseParts) -> Iterator[Problem]:

@@ -84,6 +84,20 @@ class Damping(Part):
     )
 
 
+class Release(Part):
+    """How what was dug out lets go of the forces that it bore."""
+
+    parts: int = Field(
+        1, ge=1, le=10_000, description="Static only: in so many equal parts, each to rest"
+    )
+    over: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None, description="Dynamic only: evenly over this time; at once by default [s]"
+    )
+    to: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
+        1.0, description="Part that is let go by the end; the rest is held until a later stage [1]"
+    )
+
+
 class Stage(Part):
     """A part of the run with its own rules."""
 
@@ -113,6 +127,14 @@ class Stage(Part):
         "fewest steps; default), kinetic (stop at peaks of the kinetic energy), or local damping "
         "(default with cdem: 1)",
     )
+    remove: list[Name] = Field(
+        [], description="Groups that are dug out when the stage begins, and are no part of it"
+    )
+    release: Release | None = Field(
+        None,
+        description="How forces of what was dug out, in this stage or before, are let go; by default "
+        "at once in the stage with remove, and no more in others",
+    )
     set: dict[str, Any] = Field(
         {}, description="Values that change when the stage begins: {path in the case: value}"
     )
@@ -123,6 +145,10 @@ class Stage(Part):
         for field in wrong:
             if getattr(self, field) is not None:
                 raise ValueError(f"{field} has no meaning in a {self.mode} stage; remove it")
+        if self.release is not None and self.mode == "static" and self.release.over is not None:
+            raise ValueError("release.over has no meaning in a static stage; write parts")
+        if self.release is not None and self.mode == "dynamic" and self.release.parts > 1:
+            raise ValueError("release.parts has no meaning in a dynamic stage; write over")
         if self.mode == "dynamic" and self.duration is None:
             raise ValueError("a dynamic stage needs a duration, e.g. duration: 2.0")
         # Not by assignment: that would start this check again.

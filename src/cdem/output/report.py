@@ -56,8 +56,9 @@ def info(folder: Path) -> str:
         )
     for name, lost in s.get("taken_out", {}).items():
         share = lost["mass"] / s["groups"][name]["mass"]
+        what = "dug out" if lost.get("dug_out") else "left the domain"
         lines.append(
-            f"  left the domain: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
+            f"  {what}: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
             f"({100 * share:.3g} % of its mass)"
         )
     lines += [f"  warning: {text}" for text in s.get("departures", [])]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cdem.case.schema import Stage
+from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
 from cdem.model.build import change
 from cdem.model.interfaces import bonded_pairs, interfaces_of
@@ -78,6 +78,8 @@ def begin(sim: RunState) -> StageState:
     """Start the next stage of a simulation."""
     index = sim.stage_index
     stage = sim.case.stages[index]
+    if stage.remove:
+        excavate(sim, stage.remove)
     sim.core.change_mass(is_lumped(stage))
     apply_settings(sim, index)
     if sim.step_count:
@@ -86,14 +88,40 @@ def begin(sim: RunState) -> StageState:
         sim.reference = sim.fields["position"].copy()
     end = None if stage.duration is None else sim.time + stage.duration
     every = sim.case.output.every or (stage.duration or 1.0) / FRAMES
-    return StageState(
+    begun = StageState(
         name=stage.name,
         mode=stage.mode,
         start_time=sim.time,
         start_step=sim.step_count,
         end_time=end,
         row_every=every / ROWS_PER_FRAME,
+        held=float(sim.core.scalars()["relief_to"]),
     )
+    release = stage.release or (Release() if stage.remove else None)
+    if release is not None and stage.mode == "dynamic":
+        sim.core.let_go(1 - release.to, sim.time + (release.over or 0.0))
+    elif release is not None:
+        release_part(sim, begun)
+    return begun
+
+
+def excavate(sim: RunState, names: list[str]) -> None:
+    """Dig groups out; the forces that they bore are kept until they are let go."""
+    t = sim.build.topology
+    leave = np.isin(t.block_group, [sim.build.group_names.index(name) for name in names])
+    sim.core.excavate(leave[t.node_block].astype(np.int8))
+
+
+def release_part(sim: RunState, stage: StageState) -> bool:
+    """Let go of the next part of what was dug out in a static stage; whether there was one."""
+    rules = sim.case.stages[sim.stage_index]
+    release = rules.release or (Release() if rules.remove else None)
+    if stage.mode != "static" or release is None or stage.parts >= release.parts:
+        return False
+    stage.parts += 1
+    share = stage.parts / release.parts
+    sim.core.let_go(stage.held + share * (1 - release.to - stage.held), sim.time)
+    return True
 
 
 def change_end(sim: RunState, *, longer: bool) -> None:
@@ -120,12 +148,14 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
         steps = min(steps, rules.max_steps - done)
     if stage.mode == "static":
         steps = min(steps, STATIC_RECORD_STEPS - done % STATIC_RECORD_STEPS)
-        return sim.core.run(
+        report = sim.core.run(
             steps,
             end_time=until,
             unbalance_limit=rules.tolerance,
             relaxation="none" if rules.relax == "local" else rules.relax,
         )
+        goes_on = report[0] == "converged" and release_part(sim, stage)
+        return ("steps_done", *report[1:]) if goes_on else report
     assert stage.end_time is not None
     return sim.core.run(steps, end_time=min(stage.next_row, stage.end_time, until))
 

@@ -40,6 +40,8 @@ class StageState:
         least_unbalance: Smallest unbalance ratio of a static stage so far, or None.
         least_step: Step at which it was reached.
         quiet: Rest of a dynamic stage that ends with it: see `Quiet`.
+        parts: Of a static stage with `release`: how many have been let go.
+        held: Part of the forces of what was dug out that was left when the stage began [1].
     """
 
     name: str
@@ -54,6 +56,8 @@ class StageState:
     least_unbalance: float | None = None
     least_step: int = 0
     quiet: Quiet = field(default_factory=Quiet)
+    parts: int = 0
+    held: float = 0.0
 
     def note(self, step: int, unbalance: float) -> str:
         """What a user should know about a static stage that does not come to rest, or nothing."""
@@ -252,7 +256,7 @@ class RunState:
 
     @property
     def out(self) -> NDArray[np.bool_]:
-        """Whether each block has left the domain, and is no part of the computation any more."""
+        """Whether each block was dug out or has left the domain: it is no part of the computation."""
         first, flags = self.build.topology.block_first_node[:-1], self.core.fields()["node.out"]
         return flags[first] != 0 if len(flags) else np.zeros(len(first), bool)
 
@@ -310,8 +314,18 @@ class RunState:
         lost = {}
         for index, name in enumerate(self.build.group_names):
             if (these := out & (t.block_group == index)).any():
-                lost[name] = {"blocks": int(these.sum()), "mass": float(mass[these].sum())}
+                lost[name] = {
+                    "blocks": int(these.sum()),
+                    "mass": float(mass[these].sum()),
+                    "dug_out": name in self.dug_out,
+                }
         return lost
+
+    @property
+    def dug_out(self) -> list[str]:
+        """Groups that stages so far have removed."""
+        begun = self.stage_index + (self.stage is not None)
+        return [name for stage in self.case.stages[:begun] for name in stage.remove]
 
     @property
     def energies(self) -> dict[str, float]:

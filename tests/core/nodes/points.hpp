@@ -69,8 +69,14 @@ struct Points {
     return {support.data(), component.data(), support_curve.data(), given.data(), curve.data()};
   }
   LoadColumns loads() const {
-    return {gravity,           mass.data(),       load_first.data(),
-            load_curve.data(), load_force.data(), curve.data()};
+    return {.gravity = gravity,
+            .gravity_mass = mass.data(),
+            .load_first = load_first.data(),
+            .load_curve = load_curve.data(),
+            .load_force = load_force.data(),
+            .curve_value = curve.data(),
+            .relief = nullptr,
+            .relief_part = 1};
   }
   MassColumns mass_columns() const {
     return {.lumped = false,

@@ -87,11 +87,11 @@ def load(study, kind, cells, hexahedra):
 
 
 def polar_stress(simulation):
-    """Radius and angle of the middle of every element, and its mean stress rr, tt, rt [Pa]."""
+    """Radius and angle of the middle of every hexahedron, and its mean stress rr, tt, rt [Pa]."""
     nodes = simulation.build.topology.element_nodes["hex8"]
     x, y, _ = simulation.build.start_position[nodes].mean(axis=1).T
     angle = np.arctan2(y, x)
-    xx, yy, _, xy, _, _ = stress_of(simulation).T
+    xx, yy, _, xy, _, _ = stress_of(simulation)[-len(nodes) :].T  # they come last
     c, s = np.cos(angle), np.sin(angle)
     return np.hypot(x, y), angle, np.array([
         xx * c * c + yy * s * s + 2 * xy * c * s, xx * s * s + yy * c * c - 2 * xy * c * s,
