@@ -55,7 +55,7 @@ def only(duration, contact=0.1):
 def resting(lower, upper):
     """One of the six contact types: it goes down by micrometres, so the last digits count more."""
     [types] = problems(["contact_types"])
-    settings = [*types.module.LOWER[lower], *types.module.UPPER[upper], *only(0.02, 0.5)]
+    settings = [*types.module.LOWER[lower], *types.module.UPPER[upper], *only(0.02, 0.25)]
     return Scene("../contact_types/case.yaml", settings, frame=2e-8, noise=1e-6, step=5e-4)
 
 
