@@ -115,37 +115,57 @@ struct PointFlow {
   CDEM_HD ElasticStrains<Shape, T> move_on(const ElementColumns<Shape>& c, I e,
                                            const PointStrains<Shape, Rotation, T>& p) const {
     ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
-    flow_points(c, e, p, strains);
+    Sym3<T> increment[Shape::points];
+    const auto flows = flow_points(c, e, strains, increment, [&](Index q, const T* state) {
+      for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
+    });
+    if (any_of(flows)) book<Rotation>(c, e, strains, increment);
+    return strains;
+  }
+
+  /// What the laws would make of the elastic strains now: nothing is kept.
+  template <class I, class Rotation, class T = Number<I>>
+  CDEM_HD ElasticStrains<Shape, T> after_flow(const ElementColumns<Shape>& c, I e,
+                                              const PointStrains<Shape, Rotation, T>& p) const {
+    ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
+    Sym3<T> increment[Shape::points];
+    if (history.data) flow_points(c, e, strains, increment, [](Index, const T*) {});
     return strains;
   }
 
  private:
-  template <class I, class Rotation, class T>
-  CDEM_HD void flow_points(const ElementColumns<Shape>& c, I e,
-                           const PointStrains<Shape, Rotation, T>&,
-                           ElasticStrains<Shape, T>& strains) const {
+  /// Take what flows from the elastic strains; returns where any does.
+  template <class I, class T, class Keep>
+  CDEM_HD Truth<T> flow_points(const ElementColumns<Shape>& c, I e,
+                               ElasticStrains<Shape, T>& strains, Sym3<T>* increment,
+                               const Keep& keep) const {
     const auto material = c.element_material.at(0, e);
     const ElasticConstants<T> elastic = c.materials.elastic(material);
-    Sym3<T> increment[Shape::points];
     Truth<T> any = T(0.0) > T(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       T state[BlockLaws::most_state + 1];
       for (Index k = 0; k < BlockLaws::most_state; ++k) state[k] = history.at(row(q, 6 + k), e);
       increment[q] = flow(c.materials, material, elastic.stress(strains.part[q]), state);
-      for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
+      keep(q, static_cast<const T*>(state));
       any = any | (contract(increment[q], increment[q]) > T(0.0));
     }
-    if (!any_of(any)) return;
-    // where the nodes were one step ago
-    Arms<Shape, T> arms = position_arms<Shape>(c, e);
-    const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
-    for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
-    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, arms));
+    if (!any_of(any)) return any;
     Sym3<T> less[Shape::points];
     for (Index q = 0; q < Shape::points; ++q) less[q] = strains.part[q] - increment[q];
     use_mean_dilatation<Shape>(c, e, less);
     for (Index q = 0; q < Shape::points; ++q)  // the other lanes keep their bits
       strains.part[q] = select(any, less[q], strains.part[q]);
+    return any;
+  }
+  template <class Rotation, class I, class T>
+  CDEM_HD void book(const ElementColumns<Shape>& c, I e, const ElasticStrains<Shape, T>& strains,
+                    const Sym3<T>* increment) const {
+    const ElasticConstants<T> elastic = c.elastic(e);
+    // where the nodes were one step ago
+    Arms<Shape, T> arms = position_arms<Shape>(c, e);
+    const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
+    for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
+    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, arms));
     T spent(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> both = elastic.stress(was.part[q] + strains.part[q]);
@@ -248,7 +268,8 @@ struct CorotationalForce {
   }
 };
 
-/// Mean stress and stored energy of an element, for output and the energy ledger.
+/// Mean stress and stored energy of an element, for output and the energy ledger. The stress is
+/// that which the next step will compute, the energy that of what has flowed so far.
 template <class Shape, class Rotation>
 struct CorotationalReport {
   ElementColumns<Shape> columns;
@@ -261,17 +282,18 @@ struct CorotationalReport {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
     const PointStrains<Shape, Rotation, T> p(columns, e);
-    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p);
+    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p),
+                                   shown = flow.after_flow(columns, e, p);
     const T zero(0.0);
     Sym3<T> mean{zero, zero, zero, zero, zero, zero};
     T volume(0.0), stored(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const T w = columns.point_volume.at(q, e);
-      const Sym3<T> strain = strains.of(p, q), s = elastic.stress(strain);
+      const Sym3<T> strain = strains.of(p, q), s = elastic.stress(shown.of(p, q));
       const Mat3<T>& r = p.rotation[q];
       mean = mean + w * symmetric(r * full(s) * transpose(r));
       volume += w;
-      stored += T(0.5) * w * contract(s, strain);
+      stored += T(0.5) * w * contract(elastic.stress(strain), strain);
     }
     if constexpr (Shape::hourglass) {
       const Hourglass<T> modes(columns, e, position_arms<Shape>(columns, e));

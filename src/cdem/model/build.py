@@ -259,4 +259,5 @@ def change(built: Build) -> dict[str, NDArray]:
         built.assembly.added_mass,
     )
     kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s")
+    kept += ("material.parameters",)
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}
