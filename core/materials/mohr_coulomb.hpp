@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/materials/law.hpp"
 #include "core/materials/principal_planes.hpp"
 
 namespace cdem {
@@ -84,7 +85,8 @@ struct MohrCoulomb {
         T(round_off) * (max_of(abs_of(p.value.x), abs_of(p.value.z)) + planes.strength);
     const auto yields = may_yield & (planes.outside(p.value) > tolerance);
     if (!any_of(yields)) return still;
-    const PrincipalFlow<T> flows = planes.bring_back(elastic, p.value, tolerance);
+    const PrincipalFlow<T> flows =
+        planes.bring_back(elastic.lambda, elastic.mu, p.value, tolerance);
     state[0] += select(yields, flows.shear, none);
     state[1] += select(yields, flows.tension, none);
     Mat3<T> strain{{none, none, none}, {none, none, none}, {none, none, none}};

@@ -2,7 +2,7 @@
 // has in principal stress.
 #pragma once
 
-#include "core/materials/law.hpp"
+#include "core/base/math.hpp"
 
 namespace cdem {
 
@@ -34,11 +34,11 @@ struct PrincipalPlanes {
   /// Flow that brings a stress back. The active planes are the first of ten sets whose multipliers
   /// are not negative and which leaves no plane outside; within the tolerance, or else the best.
   /// All ten are computed, the later ones first.
-  CDEM_HD PrincipalFlow<T> bring_back(const ElasticConstants<T>& elastic, const Vec3<T>& trial,
+  CDEM_HD PrincipalFlow<T> bring_back(const T& lambda, const T& mu, const Vec3<T>& trial,
                                       const T& tolerance) const {
     Choice choice{.fault = T(1e300), .multiplier = {}};
     for (T& one : choice.multiplier) one = T(0.0);
-    const Return back{*this, elastic.lambda / elastic.mu, trial, tolerance};
+    const Return back{*this, lambda / mu, trial, tolerance};
     back.template attempt<s13, s23, t1>(choice);
     back.template attempt<s13, t1, t2>(choice);
     back.template attempt<s13, s12, t1>(choice);
@@ -49,7 +49,7 @@ struct PrincipalPlanes {
     back.template attempt<s13, s12>(choice);
     back.template attempt<s13, s23>(choice);
     back.template attempt<s13>(choice);
-    return flow_of(choice, T(1.0) / elastic.mu);
+    return flow_of(choice, T(1.0) / mu);
   }
 
  private:

@@ -43,7 +43,8 @@ def run(study):
                 simulation, path = drive(study, side, kind, box)
                 exact = theory(simulation.case.materials["rock"], side, kind)
                 study.check(f"{shape}: axial stress, {kind}, sides at {side / 1e6:g} MPa", unit="Pa",
-                            theory=exact, ours=-stress_of(simulation)[:, 2].mean(), within=1e-6)  # fmt: skip
+                            theory=exact, ours=-stress_of(simulation)[:, 2].mean(),
+                            within=1e-6 if shape == "hex8" else 1e-4)  # fmt: skip
                 study.check(f"{shape}: energy error, {kind}, sides at {side / 1e6:g} MPa", theory=0,
                             ours=simulation.energies["error"], absolute=True, within=1e-4)  # fmt: skip
                 if shape == "hex8":
