@@ -287,8 +287,8 @@ PYTHON = [
         "rock stays strong",
         "a factor of safety does not reach the core's materials",
         "src/cdem/model/build.py",
-        '    kept += ("material.parameters",)\n',
-        "",
+        '            "material.parameters")  # fmt: skip\n',
+        "            )\n",
         "tests/validation/test_mohr_coulomb.py::test_factor_of_safety_of_a_loaded_column",
     ),
     Mutant(
