@@ -28,6 +28,7 @@ template <class Shape, class Rotation, class T>
 struct PointStrains {
   Mat3<T> rotation[Shape::points];
   Sym3<T> strain[Shape::points];
+  T own_dilatation[Shape::points];  // trace of the strain before the element's mean took its place
 
   template <class I>
   CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e)
@@ -39,25 +40,56 @@ struct PointStrains {
       const Mat3<T> f = gradient_of<Shape>(c, e, q, arms);
       rotation[q] = Rotation::of(f);
       strain[q] = symmetric(transpose(rotation[q]) * f - identity<T>());
+      own_dilatation[q] = trace(strain[q]);
     }
     use_mean_dilatation<Shape>(c, e, strain);
   }
 };
 
-/// Elastic part of the strains: all of them where there is no inelastic strain.
+/// Elastic part of the strains.
 template <class Shape, class T>
 struct ElasticStrains {
-  bool differ = false;
   Sym3<T> part[Shape::points];
 
   template <class Rotation>
+  CDEM_HD const Sym3<T>& of(const PointStrains<Shape, Rotation, T>&, Index q) const {
+    return part[q];
+  }
+  /// First Piola-Kirchhoff stress. After flow the axes of S are not those of U, so R S alone would
+  /// turn the element and would not do the work S : dU: P = R (S + A), A antisymmetric with
+  /// (S + A) U symmetric.
+  template <class Rotation>
+  CDEM_HD Mat3<T> piola(const PointStrains<Shape, Rotation, T>& p, Index q,
+                        const Sym3<T>& stress) const {
+    const Sym3<T> stretch = with_trace(p.strain[q], p.own_dilatation[q]);
+    return p.rotation[q] * (full(stress) + balancing(stress, full(stretch) + identity<T>()));
+  }
+};
+/// The same where it is all of them.
+struct AllElastic {
+  template <class Shape, class Rotation, class T>
   CDEM_HD const Sym3<T>& of(const PointStrains<Shape, Rotation, T>& p, Index q) const {
-    return differ ? part[q] : p.strain[q];
+    return p.strain[q];
+  }
+  template <class Shape, class Rotation, class T>
+  CDEM_HD Mat3<T> piola(const PointStrains<Shape, Rotation, T>& p, Index q,
+                        const Sym3<T>& stress) const {
+    return p.rotation[q] * full(stress);
   }
 };
 
-/// Inelastic strain and state of the laws at the Gauss points; empty where no material flows and
-/// the rock begins without stress: initial stress S0 is the inelastic strain -C^-1 : S0.
+/// Elements of which no material flows and that begin without stress. Their kernels have no code
+/// for it: it would cost them 4 to 11 %.
+struct NoFlow {
+  template <class Shape, class I, class Rotation, class T>
+  CDEM_HD AllElastic move_on(const ElementColumns<Shape>&, I,
+                             const PointStrains<Shape, Rotation, T>&) const {
+    return {};
+  }
+};
+
+/// Inelastic strain and state of the laws at the Gauss points. Initial stress S0 is the inelastic
+/// strain -C^-1 : S0.
 ///
 /// Where the dilatation is the element's mean, so is its elastic part: the pressure is averaged
 /// with the operator that averages the dilatation, and the force stays the derivative of the
@@ -72,10 +104,9 @@ struct PointFlow {
   CDEM_HD ElasticStrains<Shape, T> elastic_part(const ElementColumns<Shape>& c, I e,
                                                 const PointStrains<Shape, Rotation, T>& p) const {
     ElasticStrains<Shape, T> strains;
-    if (!history.data) return strains;
-    strains.differ = true;
-    for (Index q = 0; q < Shape::points; ++q) strains.part[q] = p.strain[q] - inelastic(e, q);
-    use_mean_dilatation<Shape>(c, e, strains.part);
+    for (Index q = 0; q < Shape::points; ++q)
+      strains.part[q] = history.data ? p.strain[q] - inelastic(e, q) : p.strain[q];
+    if (history.data) use_mean_dilatation<Shape>(c, e, strains.part);
     return strains;
   }
 
@@ -85,35 +116,57 @@ struct PointFlow {
   CDEM_HD ElasticStrains<Shape, T> move_on(const ElementColumns<Shape>& c, I e,
                                            const PointStrains<Shape, Rotation, T>& p) const {
     ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
-    if constexpr (any_law_flows)
-      if (strains.differ) flow_points(c, e, p, strains);
+    Sym3<T> increment[Shape::points];
+    const auto flows = flow_points(c, e, strains, increment, [&](Index q, const T* state) {
+      for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
+    });
+    if (any_of(flows)) book<Rotation>(c, e, strains, increment);
+    return strains;
+  }
+
+  /// What the laws would make of the elastic strains now: nothing is kept.
+  template <class I, class Rotation, class T = Number<I>>
+  CDEM_HD ElasticStrains<Shape, T> after_flow(const ElementColumns<Shape>& c, I e,
+                                              const PointStrains<Shape, Rotation, T>& p) const {
+    ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
+    Sym3<T> increment[Shape::points];
+    if (history.data) flow_points(c, e, strains, increment, [](Index, const T*) {});
     return strains;
   }
 
  private:
-  template <class I, class Rotation, class T>
-  CDEM_HD void flow_points(const ElementColumns<Shape>& c, I e,
-                           const PointStrains<Shape, Rotation, T>&,
-                           ElasticStrains<Shape, T>& strains) const {
+  /// Take what flows from the elastic strains; returns where any does.
+  template <class I, class T, class Keep>
+  CDEM_HD Truth<T> flow_points(const ElementColumns<Shape>& c, I e,
+                               ElasticStrains<Shape, T>& strains, Sym3<T>* increment,
+                               const Keep& keep) const {
     const auto material = c.element_material.at(0, e);
     const ElasticConstants<T> elastic = c.materials.elastic(material);
-    Sym3<T> increment[Shape::points];
     Truth<T> any = T(0.0) > T(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       T state[BlockLaws::most_state + 1];
       for (Index k = 0; k < BlockLaws::most_state; ++k) state[k] = history.at(row(q, 6 + k), e);
       increment[q] = flow(c.materials, material, elastic.stress(strains.part[q]), state);
-      for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
+      keep(q, static_cast<const T*>(state));
       any = any | (contract(increment[q], increment[q]) > T(0.0));
     }
-    if (!any_of(any)) return;
+    if (!any_of(any)) return any;
+    Sym3<T> less[Shape::points];
+    for (Index q = 0; q < Shape::points; ++q) less[q] = strains.part[q] - increment[q];
+    use_mean_dilatation<Shape>(c, e, less);
+    for (Index q = 0; q < Shape::points; ++q)  // the other lanes keep their bits
+      strains.part[q] = select(any, less[q], strains.part[q]);
+    return any;
+  }
+  template <class Rotation, class I, class T>
+  CDEM_HD void book(const ElementColumns<Shape>& c, I e, const ElasticStrains<Shape, T>& strains,
+                    const Sym3<T>* increment) const {
+    const ElasticConstants<T> elastic = c.elastic(e);
     // where the nodes were one step ago
     Arms<Shape, T> arms = position_arms<Shape>(c, e);
     const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
     for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
     const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, arms));
-    for (Index q = 0; q < Shape::points; ++q) strains.part[q] = strains.part[q] - increment[q];
-    use_mean_dilatation<Shape>(c, e, strains.part);
     T spent(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> both = elastic.stress(was.part[q] + strains.part[q]);
@@ -148,14 +201,14 @@ struct PointFlow {
 /// no derivative of an energy: it differs by terms of the size of the strain.)
 ///
 /// `damping_time` adds the stress of a Rayleigh dashpot, S(damping_time * rate of E) [s].
-template <class Shape, class Rotation>
+template <class Shape, class Rotation, class Flow = NoFlow>
 struct CorotationalForce {
   ElementColumns<Shape> columns;
   Real damping_time;        // [s]
   Real dt;                  // [s]
   InOutTable damping_work;  // [1][element]  [J], taken out by the dashpot so far
-  PointFlow<Shape> flow;
-  OutForces corner_force;  // [N]
+  Flow flow;                // NoFlow, or PointFlow<Shape>
+  OutForces corner_force;   // [N]
 
   static constexpr Fetching fetching{4, 4096};
   /// Not of hexahedra: with their 170 columns of gradients it costs more than it gains.
@@ -175,11 +228,11 @@ struct CorotationalForce {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
     const PointStrains<Shape, Rotation, T> p(columns, e);
-    const ElasticStrains<Shape, T> strains = flow.move_on(columns, e, p);
+    const auto strains = flow.move_on(columns, e, p);
     CornerForces<Shape, T> force;
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> stress = elastic.stress(strains.of(p, q));
-      force.add(columns, e, q, columns.point_volume.at(q, e) * (p.rotation[q] * full(stress)));
+      force.add(columns, e, q, columns.point_volume.at(q, e) * strains.piola(p, q, stress));
     }
     if constexpr (Shape::hourglass)
       Hourglass<T>(columns, e, position_arms<Shape>(columns, e)).add(columns, e, T(1.0), force);
@@ -216,30 +269,32 @@ struct CorotationalForce {
   }
 };
 
-/// Mean stress and stored energy of an element, for output and the energy ledger.
+/// Mean stress and stored energy of an element, for output and the energy ledger. The stress is
+/// that which the next step will compute, the energy that of what has flowed so far.
 template <class Shape, class Rotation>
 struct CorotationalReport {
   ElementColumns<Shape> columns;
-  InOutTable stress;  // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
-  InOutTable energy;  // [1][element]  [J]
-  PointFlow<Shape> flow;
+  InOutTable stress;      // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
+  InOutTable energy;      // [1][element]  [J]
+  PointFlow<Shape> flow;  // without history where no material flows
 
   template <class I>
   CDEM_HD void operator()(I e) const {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
     const PointStrains<Shape, Rotation, T> p(columns, e);
-    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p);
+    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p),
+                                   shown = flow.after_flow(columns, e, p);
     const T zero(0.0);
     Sym3<T> mean{zero, zero, zero, zero, zero, zero};
     T volume(0.0), stored(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const T w = columns.point_volume.at(q, e);
-      const Sym3<T> strain = strains.of(p, q), s = elastic.stress(strain);
+      const Sym3<T> strain = strains.of(p, q), s = elastic.stress(shown.of(p, q));
       const Mat3<T>& r = p.rotation[q];
       mean = mean + w * symmetric(r * full(s) * transpose(r));
       volume += w;
-      stored += T(0.5) * w * contract(s, strain);
+      stored += T(0.5) * w * contract(elastic.stress(strain), strain);
     }
     if constexpr (Shape::hourglass) {
       const Hourglass<T> modes(columns, e, position_arms<Shape>(columns, e));

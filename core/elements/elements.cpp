@@ -20,16 +20,15 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const OutForces out{s.corner_force.data() + std::size_t(e.corner_first) * 4};
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
-  const PointFlow<Shape> flow = point_flow<Shape>(s, e, es);
   const Real damping_time = m.stiffness_damping * s.dt;
-  const auto total = [&]<class Rotation>() {
+  const auto total = [&]<class Rotation, class Flow>(const Flow& flow) {
     for_each_lane(q, e.count, some,
-                  CorotationalForce<Shape, Rotation>{.columns = columns,
-                                                     .damping_time = damping_time,
-                                                     .dt = s.dt,
-                                                     .damping_work = work,
-                                                     .flow = flow,
-                                                     .corner_force = out});
+                  CorotationalForce<Shape, Rotation, Flow>{.columns = columns,
+                                                           .damping_time = damping_time,
+                                                           .dt = s.dt,
+                                                           .damping_work = work,
+                                                           .flow = flow,
+                                                           .corner_force = out});
   };
   const auto incremental = [&]<class Turning>() {
     for_each_lane(q, e.count, some,
@@ -41,9 +40,10 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   };
   switch (m.formulation) {
     case Formulation::corotational:
-      return total.template operator()<FollowRotation>();
-    case Formulation::paper_total:
-      return total.template operator()<IgnoreRotation>();
+      return with_flow<Shape>(
+          s, e, es, [&](const auto& flow) { total.template operator()<FollowRotation>(flow); });
+    case Formulation::paper_total:  // a case with a law that flows does not have it
+      return total.template operator()<IgnoreRotation>(NoFlow{});
     case Formulation::incremental:
       return incremental.template operator()<TurnByHalves>();
     case Formulation::paper_incremental:

@@ -29,4 +29,13 @@ PointFlow<Shape> point_flow(const State& s, const ElementSet& e, ElementState& e
           .dt = s.dt_last};
 }
 
+/// Call act(flow) with the inelastic strains of a set, or with NoFlow.
+template <class Shape, class Act>
+void with_flow(const State& s, const ElementSet& e, ElementState& es, const Act& act) {
+  if (es.history.size() > 0)
+    act(point_flow<Shape>(s, e, es));
+  else
+    act(NoFlow{});
+}
+
 }  // namespace cdem

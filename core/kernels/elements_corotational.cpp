@@ -12,6 +12,17 @@ template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Wedge6
 template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Hex8, FollowRotation>&);
 template void for_each_lane(Queue, Index, Blocks,
                             const CorotationalForce<Hex8OnePoint, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalForce<Tet4, FollowRotation, PointFlow<Tet4>>&);
+template void for_each_lane(
+    Queue, Index, Blocks, const CorotationalForce<Pyramid5, FollowRotation, PointFlow<Pyramid5>>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalForce<Wedge6, FollowRotation, PointFlow<Wedge6>>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalForce<Hex8, FollowRotation, PointFlow<Hex8>>&);
+template void for_each_lane(
+    Queue, Index, Blocks,
+    const CorotationalForce<Hex8OnePoint, FollowRotation, PointFlow<Hex8OnePoint>>&);
 template void for_each_lane(Queue, Index, const CorotationalReport<Tet4, FollowRotation>&);
 template void for_each_lane(Queue, Index, const CorotationalReport<Pyramid5, FollowRotation>&);
 template void for_each_lane(Queue, Index, const CorotationalReport<Wedge6, FollowRotation>&);

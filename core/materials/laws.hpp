@@ -3,6 +3,7 @@
 
 #include "core/materials/elastic.hpp"
 #include "core/materials/material_table.hpp"
+#include "core/materials/mohr_coulomb.hpp"
 #include "core/records/law_list.hpp"
 #if defined(CDEM_OWN_BLOCK_LAW)  // a law that is built beside those of the list, for a test
 #include CDEM_OWN_BLOCK_HEADER
@@ -12,9 +13,9 @@ namespace cdem {
 
 /// Every block law; a new one is one header and its name here.
 #if defined(CDEM_OWN_BLOCK_LAW)
-using BlockLaws = LawList<Elastic, CDEM_OWN_BLOCK_LAW>;
+using BlockLaws = LawList<Elastic, MohrCoulomb, CDEM_OWN_BLOCK_LAW>;
 #else
-using BlockLaws = LawList<Elastic>;
+using BlockLaws = LawList<Elastic, MohrCoulomb>;
 #endif
 
 /// Does any law of the list flow?

@@ -32,11 +32,11 @@ inline constexpr bool has_fused_kernel = Shape::nodes % 4 == 0;
 /// Force and motion of single-element blocks without load, support, contact or damping: no other
 /// block reads or writes their nodes in this pass, so nothing is stored in between. The
 /// arithmetic is that of SumNodeForces and MoveNodes, with lumped masses or with the full matrix.
-template <class Shape, bool lumped>
+template <class Shape, bool lumped, class Flow = NoFlow>
 struct AdvanceFused {
   static_assert(has_fused_kernel<Shape>);
   static constexpr Index count = Shape::nodes;
-  CorotationalForce<Shape, FollowRotation> element;
+  CorotationalForce<Shape, FollowRotation, Flow> element;
   FusedRows rows;
   InForces bond_force;
   LoadColumns loads;

@@ -28,37 +28,40 @@ Real* step_change_if_any(State& s) {
   return s.dt != s.dt_last ? s.nodes.step_change.data() : nullptr;
 }
 
-template <class Shape, bool lumped>
+template <class Shape, bool lumped, class Flow>
 void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
-                   ElementState& es) {
+                   ElementState& es, const Flow& flow) {
   const FusedBlocks& fused = es.fused;
   const Column<Index>& blocks = lumped ? fused.lumped : fused.blocks;
-  const CorotationalForce<Shape, FollowRotation> element{
+  const CorotationalForce<Shape, FollowRotation, Flow> element{
       .columns = element_columns<Shape>(m, s, e),
       .damping_time = m.stiffness_damping * s.dt,
       .dt = s.dt,
       .damping_work = {es.damping_work.data(), e.stride},
-      .flow = point_flow<Shape>(s, e, es),
+      .flow = flow,
       .corner_force = {}};
-  for_each_lane(q, e.count, awake(plan, blocks),
-                AdvanceFused<Shape, lumped>{.element = element,
-                                            .rows = {fused.row_first.data(), fused.row.data()},
-                                            .bond_force = {s.corner_force.data()},
-                                            .loads = load_columns(m, s),
-                                            .mass = mass_columns(m, s),
-                                            .dt_before = s.dt_last,
-                                            .dt = s.dt,
-                                            .motion = s.nodes.motion.data(),
-                                            .work_external = s.nodes.work_external.data(),
-                                            .step_change = step_change_if_any(s)});
+  for_each_lane(
+      q, e.count, awake(plan, blocks),
+      AdvanceFused<Shape, lumped, Flow>{.element = element,
+                                        .rows = {fused.row_first.data(), fused.row.data()},
+                                        .bond_force = {s.corner_force.data()},
+                                        .loads = load_columns(m, s),
+                                        .mass = mass_columns(m, s),
+                                        .dt_before = s.dt_last,
+                                        .dt = s.dt,
+                                        .motion = s.nodes.motion.data(),
+                                        .work_external = s.nodes.work_external.data(),
+                                        .step_change = step_change_if_any(s)});
 }
 
 void advance_fused_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
                          if constexpr (has_fused_kernel<Shape>) {
-                           advance_fused<Shape, false>(m, s, q, plan, e, es);
-                           advance_fused<Shape, true>(m, s, q, plan, e, es);
+                           with_flow<Shape>(s, e, es, [&](const auto& flow) {
+                             advance_fused<Shape, false>(m, s, q, plan, e, es, flow);
+                             advance_fused<Shape, true>(m, s, q, plan, e, es, flow);
+                           });
                          }
                        });
 }

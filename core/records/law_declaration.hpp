@@ -24,6 +24,9 @@ enum class Form {
 /// The default of a parameter that a case must give.
 inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
 
+/// The default of a strength that has no limit where a case leaves it out.
+inline constexpr double unlimited = std::numeric_limits<double>::infinity();
+
 /// One parameter of a law.
 struct Parameter {
   const char* name;

@@ -23,7 +23,8 @@ class Parameter:
         meaning: What it is.
         at_least: Lowest value allowed [unit].
         below: Limit that it must stay below [unit], or None.
-        default: Value where the case is silent, or None if it must be given.
+        default: Value where the case is silent, infinity for a strength without a limit, or None if
+            it must be given.
         is_tangent: Whether it is an angle whose tangent the core takes.
         is_strength: Whether a factor of safety divides it (of an angle, the tangent).
         bonds: Whether a value above zero bonds faces that touch at the start.
@@ -48,6 +49,8 @@ class Parameter:
     def field(self, required: bool) -> tuple[Any, Any]:
         """Type and field of a pydantic model; not required: it may be left out and is then None."""
         text = f"{self.meaning} [{self.unit}]"
+        if self.default == math.inf:  # no number of a case
+            return self.annotation | None, Field(None, description=text)
         if self.default is not None:
             return self.annotation, Field(self.default, description=text)
         if required:
@@ -84,7 +87,8 @@ class Law:
 
     def numbers(self, part: Part) -> dict[str, float]:
         """Parameters of a part of a case as the core takes them: SI, of angles the tangent."""
-        values = {p.name: float(getattr(part, p.name)) for p in self.parameters}
+        given = {p.name: getattr(part, p.name) for p in self.parameters}
+        values = {name: math.inf if v is None else float(v) for name, v in given.items()}
         for p in self.parameters:
             if p.is_tangent:
                 values[p.name] = math.tan(math.radians(values[p.name]))
@@ -98,7 +102,7 @@ class Law:
         """Strengths of a part of a case, divided by a factor of safety."""
         reduced = {}
         for p in self.parameters:
-            if not p.is_strength:
+            if not p.is_strength or getattr(part, p.name) is None:
                 continue
             value = float(getattr(part, p.name))
             if p.is_tangent:

@@ -282,5 +282,6 @@ def change(built: Build) -> dict[str, NDArray]:
         built.curves,
         built.assembly.added_mass,
     )
-    kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s")
+    kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
+            "material.parameters")  # fmt: skip
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}

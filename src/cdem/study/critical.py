@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,8 +10,8 @@ import numpy as np
 
 from cdem.case.case import Case
 from cdem.case.checks import SETTABLE
-from cdem.case.interface_schema import Interface
-from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
+from cdem.case.types import Part
 from cdem.errors import CaseError, UnstableError
 from cdem.run import stages
 from cdem.run.simulation import CHECK_INTERVAL, Simulation
@@ -94,12 +94,12 @@ def parameter(path: str) -> Apply:
 
 
 def strength_reduction() -> Apply:
-    """Divide the strengths of all interfaces by the varied factor; of an angle, the tangent.
+    """Divide all strengths of interfaces and materials by the varied factor; of an angle, the tangent.
 
     Which parameters are strengths says the law. They are those that hold in the last stage, its own
     settings included.
     """
-    whole: dict[str, Interface] = {}
+    whole: dict[str, tuple[Law, Part]] = {}
 
     def apply(case: Case, factor: float) -> None:
         if factor <= 0:
@@ -107,19 +107,24 @@ def strength_reduction() -> Apply:
                 f"a factor that strengths are divided by must be above 0, got {factor:g}"
             )
         if not whole:  # the first trial: nothing is reduced yet
-            laws = {"default": case.interfaces.default} | {
-                f"pairs.{i}": law for i, law in enumerate(case.interfaces.pairs)
-            }
-            whole.update(
-                (f"interfaces.{place}", law.model_copy())
-                for place, law in laws.items()
-                if law is not None
-            )
-        for path, law in whole.items():
-            for name, strength in INTERFACE_LAWS[law.law].reduced(law, factor).items():
+            whole.update(_parts_with_strengths(case))
+        for path, (law, part) in whole.items():
+            for name, strength in law.reduced(part, factor).items():
                 case.set(f"{path}.{name}", strength)
 
     return apply
+
+
+def _parts_with_strengths(case: Case) -> Iterator[tuple[str, tuple[Law, Part]]]:
+    """Path in the case, law and a copy of every interface and material."""
+    interfaces = {"default": case.interfaces.default} | {
+        f"pairs.{i}": pair for i, pair in enumerate(case.interfaces.pairs)
+    }
+    for place, interface in interfaces.items():
+        if interface is not None:
+            yield f"interfaces.{place}", (INTERFACE_LAWS[interface.law], interface.model_copy())
+    for name, material in case.materials.items():
+        yield f"materials.{name}", (BLOCK_LAWS[material.law], material.model_copy())
 
 
 def check_last_stage(case: Case) -> None:

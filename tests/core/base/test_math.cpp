@@ -105,6 +105,59 @@ TEST_CASE("polar_rotation turns with the body") {
   }
 }
 
+TEST_CASE("principal axes make the tensor again, sorted, also where values are nearly equal") {
+  Random random(11);
+  Real worst = 0, worst_axes = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Real gap = k % 3 == 0 ? 0 : k % 3 == 1 ? std::pow(10, random.between(-16, -3)) : 1;
+    const Vec value{1, 1 - gap * random.between(0, 1), 1 - gap * random.between(0, 1)};
+    const Mat r = random.rotation();
+    Mat tensor{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    add_outer(tensor, value.x * r.r0, r.r0);
+    add_outer(tensor, value.y * r.r1, r.r1);
+    add_outer(tensor, value.z * r.r2, r.r2);
+    const PrincipalAxes<Real> found = principal_axes(symmetric(tensor));
+    CHECK(found.value.x >= found.value.y);
+    CHECK(found.value.y >= found.value.z);
+    const Real most = std::max({value.x, value.y, value.z});
+    worst = std::max(worst, std::abs(found.value.x - most));
+    Mat again{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    add_outer(again, found.value.x * found.axis[0], found.axis[0]);
+    add_outer(again, found.value.y * found.axis[1], found.axis[1]);
+    add_outer(again, found.value.z * found.axis[2], found.axis[2]);
+    worst = std::max(worst, distance(again, tensor));
+    const Mat axes{found.axis[0], found.axis[1], found.axis[2]};
+    worst_axes = std::max(worst_axes, distance(axes * transpose(axes), identity<Real>()));
+  }
+  CHECK(worst < 1e-14);
+  CHECK(worst_axes < 1e-14);
+}
+
+TEST_CASE("principal axes of tensors that need no turn") {
+  const auto diagonal = principal_axes(Sym3<Real>{-3, 5, 1, 0, 0, 0});
+  CHECK(distance(diagonal.value, Vec{5, 1, -3}) == 0);
+  CHECK(distance(diagonal.axis[0], Vec{0, 1, 0}) == 0);
+  const auto none = principal_axes(Sym3<Real>{0, 0, 0, 0, 0, 0});
+  CHECK(distance(none.value, Vec{0, 0, 0}) == 0);
+  const auto sheared = principal_axes(Sym3<Real>{0, 0, 0, 0, 2, 0});
+  CHECK(distance(sheared.value, Vec{2, 0, -2}) < 1e-15);
+}
+
+TEST_CASE("principal axes of a lane are those of its numbers") {
+  Random random(12);
+  check_lanes<6, 12>(
+      [](const auto* in, auto* out) {
+        const auto p = principal_axes(
+            Sym3<std::remove_cvref_t<decltype(*in)>>{in[0], in[1], in[2], in[3], in[4], in[5]});
+        put(out, p.value);
+        for (int k = 0; k < 3; ++k) put(out + 3 + 3 * k, p.axis[k]);
+      },
+      [&](Real* in) {
+        for (int k = 0; k < 6; ++k)
+          in[k] = k > 2 && random.below(3) == 0 ? 0 : random.between(-1, 1);
+      });
+}
+
 TEST_CASE("matrices of packs are those of their numbers") {
   Random random(7);
   check_lanes<9, 12>(

@@ -61,6 +61,43 @@ Real energy_density(const Rock& rock, const Sym3<Real>& strain) {
   return 0.5 * rock.lambda * trace(strain) * trace(strain) + rock.mu * contract(strain, strain);
 }
 
+/// The same of rocks that flow, some of them: materials 0 elastic, 1 Mohr-Coulomb.
+template <class Shape>
+struct Flowing : Loaded<Shape> {
+  Flowing(Index count, Random& random) : Loaded<Shape>(count, random) {
+    for (Index e = 0; e < count; e += 2) this->material[e] = 1;
+  }
+  static constexpr Real strength = 1e7;  // of rock of about 1e10 Pa
+  const Real lambda[2] = {6e9, 6e9}, mu[2] = {4e9, 4e9};
+  const Index law[2] = {0, 1};
+  std::vector<Real> parameters = [] {
+    std::vector<Real> rows(2 * BlockLaws::most_parameters);
+    const Real row[] = {strength, 0.6, 0.2, 0.5 * strength};
+    std::copy(std::begin(row), std::end(row), rows.begin() + BlockLaws::most_parameters);
+    return rows;
+  }();
+  std::vector<Real> history = std::vector<Real>(point_history * Shape::points * this->stride);
+  std::vector<Real> work = std::vector<Real>(this->stride);
+
+  CorotationalForce<Shape, FollowRotation, PointFlow<Shape>> flow_kernel() {
+    auto columns = this->columns();
+    columns.materials = {lambda, mu, law, parameters.data()};
+    return {columns,  0,
+            this->dt, {this->damping_work.data(), this->stride},
+            flow(),   {this->corner_force.data()}};
+  }
+  PointFlow<Shape> flow() {
+    return {{history.data(), this->stride}, {work.data(), this->stride}, this->dt};
+  }
+  Real energy_of(Index e) {
+    auto kernel = this->report_kernel();
+    kernel.columns.materials = {lambda, mu, law, parameters.data()};
+    kernel.flow = flow();
+    kernel(One{e});
+    return this->energy[e];
+  }
+};
+
 }  // namespace
 
 TEST_CASE_TEMPLATE("rigid motion gives no force, stress or energy", Shape, ALL_SHAPES) {
@@ -222,6 +259,81 @@ TEST_CASE_TEMPLATE("the dashpot feels the spin of a strained body by strain squa
   for (std::size_t k = 0; k < elastic.size(); ++k)
     worst = std::max(worst, std::abs(elements.corner_force[k] - elastic[k]));
   CHECK(worst < 5 * strain * strain * spin_size * stiff);
+}
+
+TEST_CASE_TEMPLATE("flow one by one and in lanes: the same bits, also of elastic rock between",
+                   Shape, ALL_SHAPES) {
+  Random random(11);
+  Flowing<Shape> elements(3 * lanes + 1, random);
+  elements.deform(random, 0.01);
+  const auto rest = elements.history;
+  for_each_lane({}, elements.count, Blocks{}, elements.flow_kernel());
+  const auto force = elements.corner_force, history = elements.history, work = elements.work;
+  elements.history = rest;
+  std::fill(elements.work.begin(), elements.work.end(), 0);
+  int flowed = 0;
+  for (Index e = 0; e < elements.count; ++e) {
+    elements.flow_kernel()(One{e});
+    flowed += elements.work[e] != 0;
+    if (elements.material[e] == 0) CHECK(elements.work[e] == 0);
+  }
+  CHECK(flowed > lanes);
+  CHECK(elements.corner_force == force);
+  CHECK(elements.history == history);
+  CHECK(elements.work == work);
+}
+
+TEST_CASE_TEMPLATE("forces of an element that flowed sum to no force and no moment", Shape,
+                   ALL_SHAPES) {
+  Random random(13);
+  Flowing<Shape> elements(3 * lanes, random);
+  Real worst_f = 0, worst_m = 0;
+  for (int k = 0; k < 3; ++k) {  // so that stress and strain have other axes
+    elements.deform(random, 0.02);
+    for_each_lane({}, elements.count, Blocks{}, elements.flow_kernel());
+  }
+  for (Index e = 0; e < elements.count; ++e) {
+    Vec sum{0, 0, 0}, moment{0, 0, 0};
+    for (Index k = 0; k < Shape::nodes; ++k) {
+      sum = sum + elements.force(e, k);
+      moment = moment + cross(elements.position(e, k), elements.force(e, k));
+    }
+    worst_f = std::max(worst_f, norm(sum));
+    worst_m = std::max(worst_m, norm(moment));
+  }
+  CHECK(worst_f < 1e-16 * stiff);
+  CHECK(worst_m < 1e-14 * stiff);
+}
+
+TEST_CASE_TEMPLATE("what the mean force of each step supplies is stored or plastic work", Shape,
+                   ALL_SHAPES) {
+  // what central differences make of the work; the error falls with the square of the step
+  const auto error_of = [](Index steps) {
+    Random random(12);
+    Flowing<Shape> elements(1, random);
+    elements.dt = 1.0 / steps;
+    std::vector<Vec> way;
+    const Mat stretch{{0.01, 0.01, 0}, {0, 0, 0.01}, {0.01, 0, 0}};
+    for (Index k = 0; k < Shape::nodes; ++k)
+      way.push_back(stretch * elements.rest(0, k) + random.vector(0.003));
+    Real supplied = 0, force_before = 0;
+    for (Index step = 1; step <= steps; ++step) {
+      for (Index k = 0; k < Shape::nodes; ++k) {
+        elements.place(0, k, elements.rest(0, k) + elements.dt * step * way[k]);
+        elements.move(0, k, way[k]);
+      }
+      elements.flow_kernel()(One{0});
+      Real force = 0;
+      for (Index k = 0; k < Shape::nodes; ++k) force -= dot(elements.force(0, k), way[k]);
+      supplied += 0.5 * elements.dt * (force_before + force);
+      force_before = force;
+    }
+    const Real stored = elements.energy_of(0);
+    CHECK(elements.work[0] > 0.1 * stored);
+    return (stored + elements.work[0] - supplied) / supplied;
+  };
+  CHECK(std::abs(error_of(40)) < 1e-5);
+  CHECK(relative_error(error_of(20), 4 * error_of(40)) < 0.1);
 }
 
 TEST_CASE("bending of a hexahedron of eight points does not lock in incompressible rock") {

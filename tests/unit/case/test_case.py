@@ -171,9 +171,9 @@ def test_blame_names_the_place(write):
 
 def test_schema_knows_units_and_refuses_unknown_keys():
     schema = Case.schema()
-    modulus = schema["$defs"]["Material"]["properties"]["young_modulus"]
+    modulus = schema["$defs"]["MaterialElastic"]["properties"]["young_modulus"]
     assert modulus["unit"] == "Pa"
-    assert schema["$defs"]["Material"]["additionalProperties"] is False
+    assert schema["$defs"]["MaterialElastic"]["additionalProperties"] is False
     assert "pore_pressure" not in str(schema)
 
     def undescribed(name, part):

@@ -20,7 +20,8 @@ def interface(**values):
 
 
 def test_the_core_has_the_laws_of_the_documents():
-    assert list(INTERFACE_LAWS) == ["brittle"] and list(BLOCK_LAWS) == ["elastic"]
+    assert list(INTERFACE_LAWS) == ["brittle"]
+    assert list(BLOCK_LAWS) == ["elastic", "mohr-coulomb"]
     assert [p.name for p in INTERFACE_LAWS["brittle"].parameters] == [
         "friction_angle", "cohesion", "tensile_strength", "dilation_angle", "dilation_slip"
     ]  # fmt: skip
@@ -48,6 +49,54 @@ def test_a_factor_of_safety_divides_strengths_and_the_tangent_of_friction():
     assert set(reduced) == {"friction_angle", "cohesion", "tensile_strength"}
     assert reduced["friction_angle"] == pytest.approx(math.degrees(math.atan(0.5)), rel=1e-15)
     assert reduced["cohesion"] == 1.5e3
+
+
+def rock(**values):
+    """The material of a case, Mohr-Coulomb unless told otherwise."""
+    elastic = {"density": 2700, "young_modulus": 1e9, "poisson_ratio": 0.25}
+    return Case(
+        model={"blocks": [{"group": "rock", "box": {"size": [1, 1, 1]}}]},
+        materials={"m": elastic | {"law": "mohr-coulomb"} | values},
+        groups={"rock": {"material": "m"}},
+        interfaces={"default": {"friction_angle": 30}},
+        stages=[{"name": "fall", "mode": "dynamic", "duration": 1}],
+    ).materials["m"]
+
+
+def test_a_strength_that_is_left_out_has_no_limit_and_stays_so():
+    law, material = BLOCK_LAWS["mohr-coulomb"], rock(cohesion="1 MPa", friction_angle=30)
+    assert material.tensile_strength is None and material.dilation_angle == 0
+    assert law.numbers(material)["tensile_strength"] == math.inf
+    assert "tensile_strength" not in law.reduced(material, 2)
+    material.tensile_strength = None  # as a resolved case says it
+    given = rock(cohesion="1 MPa", friction_angle=30, tensile_strength="0.3 MPa")
+    assert law.numbers(given)["tensile_strength"] == 3e5
+    assert law.reduced(given, 2)["tensile_strength"] == 1.5e5
+
+
+def test_a_factor_of_safety_keeps_dilation_below_friction():
+    material = rock(cohesion=1e6, friction_angle=30, dilation_angle=30)
+    reduced = BLOCK_LAWS["mohr-coulomb"].reduced(material, 1.7)
+    assert reduced["dilation_angle"] == reduced["friction_angle"] < 30
+
+
+@pytest.mark.parametrize(
+    "values, told",
+    [
+        ({"cohesion": 1e6}, "friction_angle"),
+        ({"cohesion": -1, "friction_angle": 30}, "cohesion"),
+        ({"cohesion": 1, "friction_angle": 90}, r"friction_angle: must lie in \[0, 90\)"),
+        (
+            {"cohesion": 1, "friction_angle": 20, "dilation_angle": 21},
+            "dilation_angle must not be larger than friction_angle, 20 deg",
+        ),
+        ({"cohesion": 0, "friction_angle": 0}, "must not both be 0"),
+        ({"law": "elastic", "cohesion": 1}, "cohesion"),
+    ],
+)
+def test_parameters_of_rock_that_cannot_be_are_refused(values, told):
+    with pytest.raises(CaseError, match=told):
+        rock(**values)
 
 
 def test_strengths_in_words():

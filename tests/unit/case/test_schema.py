@@ -17,7 +17,11 @@ import pytest
             "slope.yaml:10:59: materials.granite.poisson_ratio: must lie in [0, 0.5) [1], got 0.7",
         ),
         ("0.25", "0.5", "must lie in [0, 0.5)"),
-        ("law: elastic", "law: elastc", "must be elastic, got 'elastc'; did you mean elastic?"),
+        (
+            "law: elastic",
+            "law: elastc",
+            "must be elastic or mohr-coulomb, got 'elastc'; did you mean elastic?",
+        ),
         ("fix: [x, y, z]", "fix: [x, w]", "groups.bed.fix.1: must be x, y or z, got 'w'"),
         (
             "fix: [x, y, z]",
