@@ -62,6 +62,7 @@ nb::list declarations() {
       d["at_least"] = p.at_least;
       d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
       d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
+      d["like"] = p.like ? nb::cast(p.like) : nb::none();
       d["is_tangent"] = p.form == Form::tangent;
       d["is_strength"] = p.is_strength;
       d["bonds"] = p.bonds;
@@ -84,7 +85,7 @@ nb::list declarations() {
 /// tangential, and their rolling resistance.
 inline void set_interfaces(Core& core, const nb::list& interfaces) {
   Model& m = core.model;
-  constexpr std::size_t width = InterfaceTable::row;
+  constexpr std::size_t width = parameter_row;
   m.interfaces.resize(interfaces.size());
   m.interface_parameters.resize(width * interfaces.size());
   m.rules.lifted = m.initial_lift;

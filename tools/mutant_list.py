@@ -460,8 +460,8 @@ CORE = [
         "bond_slip",
         "a broken bond point forgets its slip",
         "core/bonds/bond_point.hpp",
-        "h.slip1 = select(intact, h.slip1, along1 + shear1 * spring.stiffness.compliance_s);",
-        "h.slip1 = select(intact, h.slip1, zero * along1);",
+        "h.slip1 = select(rests, h.slip1, along1 + shear1 * spring.stiffness.compliance_s);",
+        "h.slip1 = select(rests, h.slip1, zero * along1);",
         "tests/core/bonds/test_bond_point.cpp",
     ),
     Mutant(
@@ -568,6 +568,22 @@ CORE = [
         "return -elastic > bond * (tensile_strength",
         "return -elastic > bond * (T(1e30) + tensile_strength",
         FAILURE + "test_tensile_failure_at_the_tensile_strength",
+    ),
+    Mutant(
+        "residual",
+        "a broken joint of the residual law keeps its peak cohesion",
+        "core/interfaces/residual.hpp",
+        "now.cohesion = select(holds, bonded.cohesion, cohesion_left);",
+        "now.cohesion = bonded.cohesion;",
+        "tests/core/interfaces/test_residual.cpp",
+    ),
+    Mutant(
+        "kept pairs",
+        "pairs with residual cohesion are released like those without",
+        "core/bonds/release.cpp",
+        "return !pressed ||",
+        "return pressed ||",
+        "tests/validation/test_interface_laws.py::test_residual_strength_after_the_peak",
     ),
     Mutant(
         "edge_cone",
