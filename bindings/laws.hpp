@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bindings/arrays.hpp"
@@ -42,6 +43,18 @@ std::string contradiction(const std::string& law, const nb::dict& values) {
     if (text) why = text;
   });
   return why;
+}
+
+/// How fast the strength of an interface law falls, normal and in shear  [Pa/m].
+inline std::pair<Real, Real> steepest_fall(const std::string& law, const nb::dict& values) {
+  std::pair<Real, Real> fall{0, 0};
+  with_law<InterfaceLaws>(law, [&]<template <class> class Law, Index>() {
+    if constexpr (requires { &Law<Real>::steepest_fall; }) {
+      const auto [n, s] = Law<Real>::steepest_fall(parameters_of<Law<Real>>(values).data());
+      fall = {n, s};
+    }
+  });
+  return fall;
 }
 
 /// What the laws of a list say of themselves.

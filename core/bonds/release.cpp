@@ -27,10 +27,10 @@ constexpr Real slide_part = 0.3;
 Real residual_cohesion(const Model& m, Index interface) {
   Real left = 0;
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-    if constexpr (requires { &Law<Real>::residual_cohesion; })
+    if constexpr (requires { &Law<Real>::broken_cohesion; })
       if (m.interfaces[interface].law == number)
-        left = Law<Real>::residual_cohesion(m.interface_parameters.data() +
-                                            std::size_t(interface) * parameter_row);
+        left = Law<Real>::broken_cohesion(m.interface_parameters.data() +
+                                          std::size_t(interface) * parameter_row);
   });
   return left;
 }

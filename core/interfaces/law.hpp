@@ -13,7 +13,10 @@
 //   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr;
 //                                                      {name} stands for a value of the case
 //   static Real rise_most(const Real*);                how far the stress-free gap may rise  [m]
-//   static Real residual_cohesion(const Real*);        of broken bonds  [Pa]; may be left out
+//   static Real broken_cohesion(const Real*);          of broken bonds  [Pa]; may be left out
+//   static std::array<Real, 2> steepest_fall(const Real*);
+//                                                      how fast strength falls, normal and in
+//                                                      shear  [Pa/m]; may be left out
 //
 // It speaks of tractions [Pa] and separations [m], never of forces and areas: bond points,
 // semi-springs and semi-edges call the same law and bring their areas.

@@ -3,6 +3,8 @@
 
 #include "core/interfaces/brittle.hpp"
 #include "core/interfaces/residual.hpp"
+#include "core/interfaces/slip_weakening.hpp"
+#include "core/interfaces/softening.hpp"
 #include "core/interfaces/table.hpp"
 #include "core/records/law_list.hpp"
 #if defined(CDEM_OWN_INTERFACE_LAW)  // a law that is built beside those of the list, for a test
@@ -13,9 +15,9 @@ namespace cdem {
 
 /// Every interface law; a new one is one header and its name here.
 #if defined(CDEM_OWN_INTERFACE_LAW)
-using InterfaceLaws = LawList<Brittle, Residual, CDEM_OWN_INTERFACE_LAW>;
+using InterfaceLaws = LawList<Brittle, Residual, SlipWeakening, Softening, CDEM_OWN_INTERFACE_LAW>;
 #else
-using InterfaceLaws = LawList<Brittle, Residual>;
+using InterfaceLaws = LawList<Brittle, Residual, SlipWeakening, Softening>;
 #endif
 /// The first of them alone. Models without another are many: their kernels ask for no other law.
 using BrittleAlone = LawList<Brittle>;

@@ -13,25 +13,16 @@ namespace cdem {
 ///   bonded   |t_s| <= t_n tan(phi)   + c,    -t_n <= T
 ///   broken   |t_s| <= t_n tan(phi_r) + c_r   where the faces are pressed
 ///
-/// c_r is a strength in pascals, so it acts at bond points only: see `residual_cohesion` below.
+/// c_r is a strength in pascals, so it acts at bond points only: see docs/theory/interfaces.md.
 template <class T>
 struct Residual {
   static constexpr LawText text{
       .name = "residual",
       .meaning = "Brittle; friction and cohesion fall at once to residual values"};
   static constexpr std::array parameters{
-      Brittle<T>::parameters[0],
-      Brittle<T>::parameters[1],
-      Brittle<T>::parameters[2],
-      Brittle<T>::parameters[3],
-      Brittle<T>::parameters[4],
-      optional_residual_friction_angle,
-      Parameter{.name = "residual_cohesion",
-                .symbol = "c_r",
-                .unit = "Pa",
-                .meaning = "Cohesion of a broken bond while its faces are pressed",
-                .otherwise = 0,
-                .is_strength = true}};
+      Brittle<T>::parameters[0], Brittle<T>::parameters[1], Brittle<T>::parameters[2],
+      Brittle<T>::parameters[3], Brittle<T>::parameters[4], optional_residual_friction_angle,
+      residual_cohesion};
   static constexpr std::array<StateVariable, 0> state{};
 
   Brittle<T> bonded;
@@ -54,7 +45,7 @@ struct Residual {
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
   /// What broken bonds keep while they are pressed  [Pa].
-  static Real residual_cohesion(const Real* parameter) { return parameter[6]; }
+  static Real broken_cohesion(const Real* parameter) { return parameter[6]; }
 
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T* state) const {
     return bonded.bears(in, state);

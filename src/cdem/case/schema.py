@@ -259,7 +259,10 @@ class Output(Part):
     every: Annotated[float, Quantity("s", above=0)] | None = Field(
         None, description="Time between frames [s]; by default a fiftieth of each dynamic stage"
     )
-    fields: list[FieldName] = Field(CHOICE, description="Fields of a frame")
+    fields: list[FieldName] = Field(
+        CHOICE,
+        description="Fields of a frame; the state of a law only where the case has the law",
+    )
     checkpoint_every: Annotated[float, Quantity("s", above=0)] = Field(
         300.0, description="Wall time between checkpoints [s]"
     )

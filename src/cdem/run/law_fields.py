@@ -6,9 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
-from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
+from cdem.case.case import Case
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, STATES, Law
 from cdem.model.interfaces import interfaces_of
 from cdem.run.state import RunState
+
+
+def wanted_fields(case: Case) -> list[str]:
+    """The output fields of a case, without the states of laws that it does not have."""
+    i = case.interfaces
+    used = [BLOCK_LAWS[material.law] for material in case.materials.values()]
+    used += [INTERFACE_LAWS[one.law] for one in (i.default, *i.pairs) if one is not None]
+    states = {variable.name for law in used for variable in law.state}
+    return [name for name in case.output.fields if name not in STATES or name in states]
 
 
 def state_of(sim: RunState, name: str) -> NDArray[np.float64]:
@@ -62,6 +72,8 @@ def _bonds(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]
     b, fields, width = sim.build, sim.core.fields(), native.interface_law_state
     used, _ = interfaces_of(sim.case, b.group_names)
     numbers = np.array([list(INTERFACE_LAWS).index(one.law) for one in used])
+    if law not in numbers:
+        return []
     found = []
     for kind in ("triangles", "quads", "overlaps"):
         pairs = b.assembly.counts[f"{kind}.count"]

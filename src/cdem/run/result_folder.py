@@ -29,6 +29,7 @@ from cdem.run.folder_lock import FolderLock
 from cdem.run.frame_files import FrameFiles, SurfaceFiles
 from cdem.run.histories import tracks
 from cdem.run.history_file import HistoryFile
+from cdem.run.law_fields import wanted_fields
 from cdem.run.state import Attributes, RunState
 from cdem.run.written_files import LOCK, MARKER, check_replaceable, remove_written
 from cdem.whole_files import disk_error, write_json, write_text
@@ -176,7 +177,7 @@ class Results:
             self._record_frame(sim, self._volume, self._surface)
 
     def _record_frame(self, sim: RunState, volume: FrameFiles, surface: SurfaceFiles) -> None:
-        wanted = sim.case.output.fields
+        wanted = wanted_fields(sim.case)
         kept = _kept_in_frames(sim)
         shown = [f for f in CARRIED if f.surface == "always" or f.name in wanted]
         values = values_of(sim, [f for f in OUTPUT_FIELDS if f in kept or f in shown])
@@ -256,7 +257,7 @@ class Results:
 
 def _kept_in_frames(sim: RunState) -> list[OutputField]:
     """Fields that change and that each frame of the volume has."""
-    wanted, bounded = sim.case.output.fields, sim.case.model.domain is not None
+    wanted, bounded = wanted_fields(sim.case), sim.case.model.domain is not None
     return [
         f
         for f in OUTPUT_FIELDS

@@ -21,7 +21,7 @@ def interface(**values):
 
 
 def test_the_core_has_the_laws_of_the_documents():
-    assert list(INTERFACE_LAWS) == ["brittle", "residual"]
+    assert list(INTERFACE_LAWS) == ["brittle", "residual", "slip-weakening", "softening"]
     assert list(BLOCK_LAWS) == ["elastic"]
     assert [p.name for p in INTERFACE_LAWS["brittle"].parameters] == [
         "friction_angle", "cohesion", "tensile_strength", "dilation_angle", "dilation_slip"
@@ -101,7 +101,7 @@ def test_a_parameter_that_is_like_another_follows_it():
         ({"dilation_angle": 35, "dilation_slip": 1, "residual_friction_angle": 30},
          "dilation_angle must not be larger than residual_friction_angle, 30"),
         ({"residual_cohesion": "3 MPa"}, "residual_cohesion must not be larger than cohesion, 2e+06"),
-        ({"law": "brittle", "residual_cohesion": 0}, "unknown key; it belongs to law: residual"),
+        ({"law": "brittle", "residual_cohesion": 0}, "unknown key; it belongs to law: residual or softening"),
     ],
 )  # fmt: skip
 def test_residual_values_that_do_not_fit(wrong, told):

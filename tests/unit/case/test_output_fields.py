@@ -14,13 +14,17 @@ ROOT = Path(__file__).parents[3]
 def test_the_case_offers_the_fields_of_frames():
     output = Case.schema()["$defs"]["Output"]["properties"]["fields"]
     assert output["items"]["enum"] == output["default"] == CHOICE
-    assert CHOICE == ["displacement", "velocity", "stress", "damage", "piece"]
+    assert CHOICE == [
+        "displacement", "velocity", "stress", "damage", "piece", "joint_slip", "joint_damage",
+        "joint_opening"
+    ]  # fmt: skip
 
 
 def test_pictures_show_what_the_surface_holds():
     assert {name for name, field in DRAWN.items() if field.surface == "never"} == set()
     assert list(DRAWN) == [
-        "displacement", "velocity", "damage", "group", "block", "piece", "joint"
+        "displacement", "velocity", "damage", "group", "block", "piece", "joint", "joint_slip",
+        "joint_damage", "joint_opening"
     ]  # fmt: skip
 
 
