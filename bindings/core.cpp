@@ -1,5 +1,6 @@
 // core.cpp - names and shapes for Python, and nothing else.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -297,6 +298,7 @@ NB_MODULE(CDEM_MODULE, module) {
              "What the interface laws say of themselves.");
   module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
   module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
+  module.def("interface_steepest_fall", &steepest_fall, "law"_a, "parameters"_a);
   module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
   module.attr("block_law_parameters") = BlockLaws::most_parameters;
   module.attr("interface_law_state") = InterfaceLaws::most_state;

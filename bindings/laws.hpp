@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bindings/arrays.hpp"
@@ -44,6 +45,18 @@ std::string contradiction(const std::string& law, const nb::dict& values) {
   return why;
 }
 
+/// How fast the strength of an interface law falls, normal and in shear  [Pa/m].
+inline std::pair<Real, Real> steepest_fall(const std::string& law, const nb::dict& values) {
+  std::pair<Real, Real> fall{0, 0};
+  with_law<InterfaceLaws>(law, [&]<template <class> class Law, Index>() {
+    if constexpr (requires { &Law<Real>::steepest_fall; }) {
+      const auto [n, s] = Law<Real>::steepest_fall(parameters_of<Law<Real>>(values).data());
+      fall = {n, s};
+    }
+  });
+  return fall;
+}
+
 /// What the laws of a list say of themselves.
 template <class Laws>
 nb::list declarations() {
@@ -62,6 +75,7 @@ nb::list declarations() {
       d["at_least"] = p.at_least;
       d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
       d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
+      d["like"] = p.like ? nb::cast(p.like) : nb::none();
       d["is_tangent"] = p.form == Form::tangent;
       d["is_strength"] = p.is_strength;
       d["bonds"] = p.bonds;
@@ -84,7 +98,7 @@ nb::list declarations() {
 /// tangential, and their rolling resistance.
 inline void set_interfaces(Core& core, const nb::list& interfaces) {
   Model& m = core.model;
-  constexpr std::size_t width = InterfaceTable::row;
+  constexpr std::size_t width = parameter_row;
   m.interfaces.resize(interfaces.size());
   m.interface_parameters.resize(width * interfaces.size());
   m.rules.lifted = m.initial_lift;

@@ -27,6 +27,7 @@ def law_rows(key: str, law: Law) -> list[str]:
     for p in law.parameters:
         upper = "" if p.below is None else f", below {p.below:g}"
         default = "required" if p.default is None else f"{p.default:g}".replace("inf", "no limit")
+        default = default if p.like is None else f"`{p.like}`"
         limits = f"at least {p.at_least:g}{upper}"
         rows.append(f"| `{p.name}` | {p.unit} | {limits} | {default} | {p.meaning} |")
     rows += [f"| state `{v.name}` | {v.unit} | | | {v.meaning} |" for v in law.state]

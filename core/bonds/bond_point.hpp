@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/contact/geometry/face.hpp"
-#include "core/interfaces/laws.hpp"
+#include "core/interfaces/law.hpp"
 
 namespace cdem {
 
@@ -25,12 +25,13 @@ struct BondSpring {
             .damping = zero,
             .bond = bond,
             .risen = zero,
-            .may_rise = zero};
+            .may_rise = zero,
+            .has_area = T(1.0)};
   }
 };
 
-/// History of one bond point that every law has. While it is intact there is none: the slip stays
-/// zero.
+/// History of one bond point that every law has. While it is intact the slip stays zero, unless the
+/// law has state.
 template <class T>
 struct BondHistory {
   T bond;          // 1 while intact, then 0
@@ -46,33 +47,30 @@ struct BondForce {
   T tension, shear;      // 1 when the bond broke in this step, by that cause
 };
 
-/// Does an intact bond point bear this jump? Then `on_b` is the force that bond_force gives,
-/// without the history that an intact point does not have.
-template <class T, class Ids>
-CDEM_HD inline auto bears(const InterfaceTable& table, const Ids& interface,
-                          const BondSpring<T>& spring, const Frame<T>& frame, const Vec3<T>& jump,
-                          Vec3<T>& on_b) {
+/// Does an intact bond point bear this jump? Then `on_b` is the force that bond_force gives, and
+/// the history stays as it is. `Laws` are JointLaws, here and below.
+template <class Laws, class T>
+CDEM_HD inline auto bears(const Laws& laws, const BondSpring<T>& spring, const Frame<T>& frame,
+                          const Vec3<T>& jump, const T* state, Vec3<T>& on_b) {
   const T zero(0.0), one(1.0);
-  const Borne<T> joint = bears(table, interface, spring.input(frame, jump, one, zero, zero));
+  const Borne<T> joint = laws.bears(spring.input(frame, jump, one, zero, zero), state);
   on_b = spring.area * (joint.normal * frame.n + joint.shear1 * frame.t1 + joint.shear2 * frame.t2);
   return joint.holds;
 }
 
 /// Elastic energy of a bond point that bears this jump  [J].
-template <class T, class Ids>
-CDEM_HD inline T intact_energy(const InterfaceTable& table, const Ids& interface,
-                               const BondSpring<T>& spring, const Frame<T>& frame,
-                               const Vec3<T>& jump) {
+template <class Laws, class T>
+CDEM_HD inline T intact_energy(const Laws& laws, const BondSpring<T>& spring, const Frame<T>& frame,
+                               const Vec3<T>& jump, const T* state) {
   const T zero(0.0), one(1.0);
-  return spring.area * bears(table, interface, spring.input(frame, jump, one, zero, zero)).stored;
+  return spring.area * laws.bears(spring.input(frame, jump, one, zero, zero), state).stored;
 }
 
 /// Tractions of one step ago, without asking for limits again, which a stage may have changed: a
 /// law without state was elastic, and the slip of a broken point makes the elastic law give the
 /// limited traction.
-template <class T, class Ids>
-CDEM_HD inline JointAnswer<T> before_step(const InterfaceTable& table, const Ids& interface,
-                                          const JointInput<T>& in, T* state) {
+template <class Laws, class T>
+CDEM_HD inline JointAnswer<T> before_step(const Laws& laws, const JointInput<T>& in, T* state) {
   const T zero(0.0), half(0.5);
   const JointStiffness<T>& k = in.stiffness;
   JointAnswer<T> was{};
@@ -86,8 +84,8 @@ CDEM_HD inline JointAnswer<T> before_step(const InterfaceTable& table, const Ids
   was.shear2 = select(open, zero, was.shear2);
   was.stored_n = half * k.compliance_n * was.normal * was.normal;
   was.stored_s = half * k.compliance_s * (was.shear1 * was.shear1 + was.shear2 * was.shear2);
-  if constexpr (InterfaceLaws::most_state > 0)
-    was = select(remembers(table, interface) & !broken, respond(table, interface, in, state), was);
+  if constexpr (Laws::most_state > 0)
+    was = select(laws.remember() & !broken, laws.respond(in, state), was);
   return was;
 }
 
@@ -98,22 +96,23 @@ CDEM_HD inline JointAnswer<T> before_step(const InterfaceTable& table, const Ids
 /// to the search goes on as a frictional contact at the same place; in an open hinge (`searched`),
 /// whose faces the search has already, it carries nothing.
 /// `jump_old` is the jump one step ago; it serves only the energy ledger: what is lost is
-/// U_old - U_new + work done on the spring by the mean force. `state` is what the law remembers.
-template <class T, class Ids, class M>
-CDEM_HD inline BondForce<T> bond_force(const InterfaceTable& table, const Ids& interface,
-                                       const BondSpring<T>& spring, const Frame<T>& frame,
-                                       const Vec3<T>& jump, const Vec3<T>& jump_old,
-                                       const M& searched, BondHistory<T>& h, T* state) {
+/// U_old - U_new + work done on the spring by the mean force. While a bond holds its law says what
+/// it loses. `state` is what the law remembers.
+template <class Laws, class T, class M>
+CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& spring,
+                                       const Frame<T>& frame, const Vec3<T>& jump,
+                                       const Vec3<T>& jump_old, const M& searched,
+                                       BondHistory<T>& h, T* state) {
   const T zero(0.0), one(1.0), half(0.5);
   const auto input_at = [&](const Vec3<T>& x) {
     return spring.input(frame, x, h.bond, h.slip1, h.slip2);
   };
-  constexpr Index size = InterfaceLaws::most_state;
+  constexpr Index size = Laws::most_state;
   T state_old[size + 1];
   for (Index k = 0; k < size; ++k) state_old[k] = state[k];
 
   const T before = h.bond;
-  const JointAnswer<T> now = respond(table, interface, input_at(jump), state);
+  const JointAnswer<T> now = laws.respond(input_at(jump), state);
   const auto intact = now.bond > half;
   const auto carries = intact | !searched;
   const T normal = select(carries, now.normal, zero);
@@ -127,22 +126,25 @@ CDEM_HD inline BondForce<T> bond_force(const InterfaceTable& table, const Ids& i
   out.shear = select(broke, one, zero) - out.tension;
   out.stored = spring.area * (stored_n + stored_s);
   out.fracture = spring.area * now.fracture;
-  out.friction = zero;
+  out.friction = spring.area * now.friction;
   if (any_of(!intact)) {
-    const JointAnswer<T> was = before_step(table, interface, input_at(jump_old), state_old);
+    const JointAnswer<T> was = before_step(laws, input_at(jump_old), state_old);
     const Vec3<T> moved = jump - jump_old;
     const T work_n = (was.normal + normal) * dot(frame.n, moved);
     const T work_s =
         (was.shear1 + shear1) * dot(frame.t1, moved) + (was.shear2 + shear2) * dot(frame.t2, moved);
     const T lost_n = was.stored_n - stored_n - half * work_n;
     const T lost_s = was.stored_s - stored_s - half * work_s;
-    out.fracture = select(broke, spring.area * (lost_n + lost_s), out.fracture);
-    out.friction = select((!broke) & (!intact) & carries, spring.area * lost_s, zero);
+    out.fracture = select(broke, spring.area * (lost_n + lost_s) - out.friction, out.fracture);
+    out.friction =
+        select(broke | intact, out.friction, select(carries, spring.area * lost_s, zero));
   }
   // the slip that makes the elastic law give the limited force
+  auto rests = intact;
+  if constexpr (Laws::most_state > 0) rests = rests & !laws.remember();
   const T along1 = dot(frame.t1, jump), along2 = dot(frame.t2, jump);
-  h.slip1 = select(intact, h.slip1, along1 + shear1 * spring.stiffness.compliance_s);
-  h.slip2 = select(intact, h.slip2, along2 + shear2 * spring.stiffness.compliance_s);
+  h.slip1 = select(rests, h.slip1, along1 + shear1 * spring.stiffness.compliance_s);
+  h.slip2 = select(rests, h.slip2, along2 + shear2 * spring.stiffness.compliance_s);
   h.bond = now.bond;
   out.on_b = spring.area * (normal * frame.n + shear1 * frame.t1 + shear2 * frame.t2);
   return out;

@@ -3,6 +3,7 @@
 
 #include "core/bonds/bond_point.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
+#include "core/interfaces/laws.hpp"
 #include "core/records/pair_status.hpp"
 
 namespace cdem {
@@ -53,13 +54,16 @@ struct PairColumns {
     return status.equal(Flag(PairStatus::hinge), p);
   }
   /// What the law of a pair remembers of point k of `points`; the point's number is its row.
-  template <class I, class T>
+  template <class Laws, class I, class T>
   CDEM_HD void load_history(I p, Index k, Index points, T* state) const {
-    for (Index v = 0; v < InterfaceLaws::most_state; ++v) state[v] = history.at(v * points + k, p);
+    const bool any = interfaces.remembers;
+    for (Index v = 0; v < Laws::most_state; ++v)
+      state[v] = any ? history.at(v * points + k, p) : T(0.0);
   }
-  template <class I, class M, class T>
+  template <class Laws, class I, class M, class T>
   CDEM_HD void store_history(I p, Index k, Index points, const M& live, const T* state) const {
-    for (Index v = 0; v < InterfaceLaws::most_state; ++v)
+    if (!interfaces.remembers) return;
+    for (Index v = 0; v < Laws::most_state; ++v)
       history.set(v * points + k, p, select(live, state[v], history.at(v * points + k, p)));
   }
   /// The part of a jump that strains the spring of point k.
@@ -104,22 +108,10 @@ struct ConformingBonds {
 
   template <class I>
   CDEM_HD void operator()(I p) const {
-    using T = Number<I>;
-    const auto live = pairs.are_live(p);
-    if (!any_of(live)) return;
-    Vec3<T> jump[count], force[count];
-    const Frame<T> frame = gather_jumps(p, jump);
-    if (any_of(live & !all_bear(p, frame, jump, force))) {
-      update_history(p, live, frame, jump, force);
-    } else if (sampled) {
-      const auto interface = pairs.interface.at(0, p);
-      const BondSpring<T> own = spring(p);
-      T stored(0.0);
-      for (Index k = 0; k < count; ++k)
-        stored += intact_energy(pairs.interfaces, interface, own, frame, jump[k]);
-      pairs.stored.set(0, p, select(live, stored, T(0.0)));
-    }
-    write_forces(p, live, force);
+    if (pairs.interfaces.is_brittle())
+      update<BrittleAlone>(p);
+    else
+      update<InterfaceLaws>(p);
   }
 
   static constexpr Fetching fetching{2, 1024};
@@ -154,22 +146,47 @@ struct ConformingBonds {
   }
 
  private:
+  template <class Laws, class I>
+  CDEM_HD void update(I p) const {
+    using T = Number<I>;
+    const auto live = pairs.are_live(p);
+    if (!any_of(live)) return;
+    Vec3<T> jump[count], force[count];
+    const Frame<T> frame = gather_jumps(p, jump);
+    if (any_of(live & !all_bear<Laws>(p, frame, jump, force))) {
+      update_history<Laws>(p, live, frame, jump, force);
+    } else if (sampled) {
+      const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+      const BondSpring<T> own = spring(p);
+      T stored(0.0);
+      for (Index k = 0; k < count; ++k) {
+        T state[Laws::most_state + 1];
+        pairs.load_history<Laws>(p, k, count, state);
+        stored += intact_energy(laws, own, frame, jump[k], state);
+      }
+      pairs.stored.set(0, p, select(live, stored, T(0.0)));
+    }
+    write_forces(p, live, force);
+  }
   /// The common case: all points of the pair were intact and stay so.
-  template <class I, class T>
+  template <class Laws, class I, class T>
   CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, Vec3<T>* force) const {
-    const auto interface = pairs.interface.at(0, p);
+    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
     const BondSpring<T> own = spring(p);
     auto all = pairs.bond.at(0, p) > T(0.5);
     for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
-    for (Index k = 0; k < count; ++k)
-      all = all & bears(pairs.interfaces, interface, own, frame, jump[k], force[k]);
+    for (Index k = 0; k < count; ++k) {
+      T state[Laws::most_state + 1];
+      pairs.load_history<Laws>(p, k, count, state);
+      all = all & bears(laws, own, frame, jump[k], state, force[k]);
+    }
     return all;
   }
-  template <class I, class M, class T>
+  template <class Laws, class I, class M, class T>
   CDEM_HD void update_history(I p, const M& live, const Frame<T>& frame, const Vec3<T>* jump,
                               Vec3<T>* force) const {
     const T zero(0.0);
-    const auto interface = pairs.interface.at(0, p);
+    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
     const BondSpring<T> own = spring(p);
     const auto open = pairs.are_hinges(p);
     Vec3<T> rate[count];
@@ -184,12 +201,12 @@ struct ConformingBonds {
     for (Index k = 0; k < count; ++k) {
       const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
       BondHistory<T> h = old;
-      T state[InterfaceLaws::most_state + 1];
-      pairs.load_history(p, k, count, state);
-      const BondForce<T> f = bond_force(pairs.interfaces, interface, own, frame, jump[k],
-                                        jump[k] - T(dt) * rate[k], open, h, state);
+      T state[Laws::most_state + 1];
+      pairs.load_history<Laws>(p, k, count, state);
+      const BondForce<T> f =
+          bond_force(laws, own, frame, jump[k], jump[k] - T(dt) * rate[k], open, h, state);
       // a released pair beside live ones in a lane keeps its history as it was
-      pairs.store_history(p, k, count, live, state);
+      pairs.store_history<Laws>(p, k, count, live, state);
       pairs.bond.set(k, p, select(live, h.bond, old.bond));
       pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
       pairs.slip2.set(k, p, select(live, h.slip2, old.slip2));
@@ -244,7 +261,29 @@ struct OverlapBonds {
   OutForces corner_force;    // [pair][8]: four vertices of either face
 
   CDEM_HD void operator()(One p) const {
+    if (pairs.interfaces.is_brittle())
+      update<BrittleAlone>(p);
+    else
+      update<InterfaceLaws>(p);
+  }
+
+  /// Jump of displacement at a bond point that strains its spring  [m].
+  CDEM_HD Vec3<Real> jump_at(Index a, Index b, const Frame<Real>& frame, Index c) const {
+    return pairs.past_rest(One{c}, 0, 1, frame, at(b, weights_b, c) - at(a, weights_a, c));
+  }
+  CDEM_HD Vec3<Real> position(Index a, Index c) const { return at(a, weights_a, c); }
+  CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
+    const Frame<Real> f = faces.shape(a).frame();
+    const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
+    const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
+    return {n, t1, cross(n, t1)};
+  }
+
+ private:
+  template <class Laws>
+  CDEM_HD void update(One p) const {
     if (!pairs.are_live(p)) return;
+    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
     const Index a = pair_faces[2 * p.i], b = pair_faces[2 * p.i + 1];
     const Vec3<Real> none{0.0, 0.0, 0.0};
     Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};
@@ -257,12 +296,11 @@ struct OverlapBonds {
       const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
       BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
                           pairs.slip2.at(0, point)};
-      Real state[InterfaceLaws::most_state + 1];
-      pairs.load_history(point, 0, 1, state);
-      const BondForce<Real> f =
-          bond_force(pairs.interfaces, pairs.interface.at(0, p), pairs.spring(p, point_area[c]),
-                     frame, jump, jump - faces.dt * rate, open, h, state);
-      pairs.store_history(point, 0, 1, true, state);
+      Real state[Laws::most_state + 1];
+      pairs.load_history<Laws>(point, 0, 1, state);
+      const BondForce<Real> f = bond_force(laws, pairs.spring(p, point_area[c]), frame, jump,
+                                           jump - faces.dt * rate, open, h, state);
+      pairs.store_history<Laws>(point, 0, 1, true, state);
       pairs.bond.set(0, point, h.bond);
       pairs.slip1.set(0, point, h.slip1);
       pairs.slip2.set(0, point, h.slip2);
@@ -284,19 +322,6 @@ struct OverlapBonds {
     pairs.broken_shear.set(0, p, pairs.broken_shear.at(0, p) + shear);
   }
 
-  /// Jump of displacement at a bond point that strains its spring  [m].
-  CDEM_HD Vec3<Real> jump_at(Index a, Index b, const Frame<Real>& frame, Index c) const {
-    return pairs.past_rest(One{c}, 0, 1, frame, at(b, weights_b, c) - at(a, weights_a, c));
-  }
-  CDEM_HD Vec3<Real> position(Index a, Index c) const { return at(a, weights_a, c); }
-  CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
-    const Frame<Real> f = faces.shape(a).frame();
-    const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
-    const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
-    return {n, t1, cross(n, t1)};
-  }
-
- private:
   CDEM_HD Vec3<Real> at(Index face, const Real* weights, Index c) const {
     Vec3<Real> sum{0.0, 0.0, 0.0};
     for (Index k = 0; k < faces.vertex_count(face); ++k)

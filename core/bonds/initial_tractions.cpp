@@ -73,8 +73,9 @@ JointAnswer<Real> answer_at(const Model& m, const Point& point, const Vec3<Real>
   });
   const Vec3<Real> jump =
       -rest.x * point.frame.n - rest.y * point.frame.t1 - rest.z * point.frame.t2;
-  return respond(interface_table(m), point.interface,
-                 point.spring.input(point.frame, jump, bond, 0.0, 0.0), state);
+  const InterfaceTable table = interface_table(m);
+  return joint_laws<InterfaceLaws>(table, point.interface)
+      .respond(point.spring.input(point.frame, jump, bond, 0.0, 0.0), state);
 }
 
 }  // namespace

@@ -19,11 +19,35 @@ PairStatus status_of(const PairState& s, Index pair) { return PairStatus(s.statu
 /// each other by this part of the indentation; by the whole indentation, at once.
 constexpr Real release_part = 0.1;
 
+/// Contacts have no cohesion: a pair whose broken bonds have some left is not released while it is
+/// pressed, until it has slid by this part of its length.
+constexpr Real slide_part = 0.3;
+
+/// Cohesion that broken bonds of an interface have left  [Pa].
+Real residual_cohesion(const Model& m, Index interface) {
+  Real left = 0;
+  InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+    if constexpr (requires { &Law<Real>::broken_cohesion; })
+      if (m.interfaces[interface].law == number)
+        left = Law<Real>::broken_cohesion(m.interface_parameters.data() +
+                                          std::size_t(interface) * parameter_row);
+  });
+  return left;
+}
+
+/// Has a broken pair moved by more than this part of its length, and does nothing keep it?
+bool lets_go(const Model& m, const PairSet& p, const PairState& s, Index i, Real part) {
+  if (!(s.jump[i] > part * pair_length(m, p, i))) return false;
+  const bool pressed = s.stored[i] > 0;
+  return !pressed || !(residual_cohesion(m, p.interface[i]) > 0) ||
+         s.jump[i] > slide_part * pair_length(m, p, i);
+}
+
 bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
   bool due = false;
 #pragma omp parallel for schedule(static) reduction(|| : due) if (p.count >= worth_threads)
   for (Index i = 0; i < p.count; ++i)
-    due = due || (s.jump[i] > 0 && s.jump[i] > m.rules.indentation * pair_length(m, p, i));
+    due = due || (s.jump[i] > 0 && lets_go(m, p, s, i, m.rules.indentation));
   return due;
 }
 
@@ -54,10 +78,12 @@ void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, In
   Real widest = 0;
   for (const BrokenPoint& point : broken) widest = std::max(widest, norm(point.jump));
   if (!(widest > hinge_part * pair_length(m, p, i))) return;
+  const InterfaceTable table = interface_table(m);
   for (BrokenPoint& point : broken) {
     const JointInput<Real> in =
         point.spring.input(frame, point.jump, 0.0, ps.slip1[point.place], ps.slip2[point.place]);
-    const JointAnswer<Real> joint = respond(interface_table(m), p.interface[i], in, point.history);
+    const JointAnswer<Real> joint =
+        joint_laws<InterfaceLaws>(table, p.interface[i]).respond(in, point.history);
     const Real held = point.spring.area * (joint.stored_n + joint.stored_s);
     ps.friction[i] += held;
     ps.stored[i] -= held;
@@ -87,7 +113,7 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
     for (Index k = 0; k < count; ++k) {
       if (ps.bond[place(k)] > 0) continue;
       broken.push_back({place(k), jump[k], bonds.spring(One{i}), {}});
-      bonds.pairs.load_history(One{i}, k, count, broken.back().history);
+      bonds.pairs.template load_history<InterfaceLaws>(One{i}, k, count, broken.back().history);
     }
     open_if_hinge(m, s, p, ps, i, frame, broken);
   }
@@ -110,7 +136,7 @@ void open_overlap_hinges(const Model& m, State& s) {
                         bonds.jump_at(a, b, frame, c),
                         bonds.pairs.spring(One{i}, p.point_area[c]),
                         {}});
-      bonds.pairs.load_history(One{c}, 0, 1, broken.back().history);
+      bonds.pairs.load_history<InterfaceLaws>(One{c}, 0, 1, broken.back().history);
     }
     open_if_hinge(m, s, p, ps, i, frame, broken);
   }
@@ -121,7 +147,7 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
   bool any = false;
   for (Index i = 0; i < p.count; ++i) {
     if (!is_live(status_of(ps, i))) continue;
-    if (!(ps.jump[i] > release_part * m.rules.indentation * pair_length(m, p, i))) continue;
+    if (!lets_go(m, p, ps, i, release_part * m.rules.indentation)) continue;
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
     give_history(m, s, p, ps, i);

@@ -94,11 +94,11 @@ void for_points_at(const Model& m, const PairSet& p, Index i, Index side, Index 
 }  // namespace
 
 void give_history(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
-  constexpr Index width = HistoryRows::width;
-  if constexpr (width == 0) return;
-  const Index law = m.interfaces[p.interface[i]].law;
   HistoryColumns &vertices = s.springs.history, &sides = s.edges.side_history;
-  const auto row = [](HistoryColumns& h, Index place) {
+  const Index width = vertices.width;
+  if (width == 0) return;
+  const Index law = m.interfaces[p.interface[i]].law;
+  const auto row = [width](HistoryColumns& h, Index place) {
     return h.rows.data() + std::size_t(place) * width;
   };
   for (Index side = 0; side < 2; ++side) {

@@ -85,7 +85,7 @@ struct Brittle {
   }
   static Real rise_most(const Real* parameter) { return parameter[3] * parameter[4]; }
 
-  CDEM_HD Borne<T> bears(const JointInput<T>& in) const {
+  CDEM_HD Borne<T> bears(const JointInput<T>& in, const T*) const {
     const T one(1.0), half(0.5);
     const JointStiffness<T>& k = in.stiffness;
     const T normal = -k.n * in.opening;

@@ -6,7 +6,7 @@
 namespace cdem {
 
 /// Histories of vertices or sides of exposed faces, a row each: it belongs to the wall, so it stays
-/// when a contact ends or meets another face. Empty where no law has state.
+/// when a contact ends or meets another face. Empty where no law of the model has state.
 struct HistoryRows {
   static constexpr Index width = InterfaceLaws::most_state;
   Real* rows;  // [row][width]
@@ -43,27 +43,29 @@ struct HistoryRows {
 
 /// The law of each lane's contact answers, with the history of row `from`; that of row `to` is
 /// written.
-template <class T, class Ids>
+template <class Laws, class T, class Ids>
 CDEM_HD inline JointAnswer<T> respond_with_history(const InterfaceTable& table,
                                                    const Ids& interface, const JointInput<T>& in,
                                                    const HistoryRows& before, const Ids& from,
                                                    const HistoryRows& after, const Ids& to) {
-  if constexpr (HistoryRows::width == 0) {
-    return respond(table, interface, in, static_cast<T*>(nullptr));
-  } else {
-    T state[HistoryRows::width];
-    for (T& number : state) number = T(0.0);
-    InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-      T own[HistoryRows::width];
-      before.load<Law, number>(from, own);
-      const auto mine = table.has_law<number>(interface);
-      for (Index k = 0; k < Index(Law<T>::state.size()); ++k)
-        state[k] = select(mine, own[k], state[k]);
-    });
-    const JointAnswer<T> answer = respond(table, interface, in, state);
-    after.store(to, table.law_of(interface), state);
-    return answer;
+  T state[Laws::most_state + 1];
+  for (T& number : state) number = T(0.0);
+  if constexpr (Laws::most_state > 0) {
+    if (table.remembers)
+      Laws::for_each([&]<template <class> class Law, Index number>() {
+        if (!table.has(number)) return;
+        T own[Laws::most_state];
+        before.load<Law, number>(from, own);
+        const auto mine = table.has_law<number>(interface);
+        for (Index k = 0; k < Index(Law<T>::state.size()); ++k)
+          state[k] = select(mine, own[k], state[k]);
+      });
   }
+  const JointAnswer<T> answer = joint_laws<Laws>(table, interface).respond(in, state);
+  if constexpr (Laws::most_state > 0) {
+    if (table.remembers) after.store(to, table.law_of(interface), state);
+  }
+  return answer;
 }
 
 }  // namespace cdem

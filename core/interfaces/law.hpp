@@ -7,11 +7,16 @@
 //   static constexpr std::array<StateVariable, n> state;
 //   static Law read(number);                           number(k) is parameter k
 //   JointAnswer<T> respond(const JointInput<T>&, T* state) const;
-//   Borne<T> bears(const JointInput<T>&) const;        quick answer for an intact joint; only of
-//                                                      laws without state
+//   Borne<T> bears(const JointInput<T>&, const T* state) const;
+//                                                      quick answer for an intact joint; may be
+//                                                      left out
 //   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr;
 //                                                      {name} stands for a value of the case
 //   static Real rise_most(const Real*);                how far the stress-free gap may rise  [m]
+//   static Real broken_cohesion(const Real*);          of broken bonds  [Pa]; may be left out
+//   static std::array<Real, 2> steepest_fall(const Real*);
+//                                                      how fast strength falls, normal and in
+//                                                      shear  [Pa/m]; may be left out
 //
 // It speaks of tractions [Pa] and separations [m], never of forces and areas: bond points,
 // semi-springs and semi-edges call the same law and bring their areas.
@@ -44,6 +49,7 @@ struct JointInput {
   T bond;      // 1 while bonded, then 0
   T risen;     // how far the stress-free gap lies above zero  [m]
   T may_rise;  // 1 where it can rise further: at semi-springs
+  T has_area;  // 1 where the area is that of the joint, so that a cohesion counts: at bond points
 };
 
 /// Tractions on the mother, or on the second face of a bond, after the law.
@@ -57,6 +63,7 @@ struct JointAnswer {
   T fracture;            // energy that the law spends on fracture while the bond holds  [J/m2]
   T bond;                // 1 while it still holds
   Truth<T> opens;        // the normal traction reached its limit
+  T friction = T(0.0);   // energy that it spends on friction while the bond holds  [J/m2]
 };
 
 /// The same of an intact joint that holds; nothing but the tractions counts where it does not.
@@ -79,7 +86,8 @@ CDEM_HD inline JointAnswer<T> select(const M& mask, const JointAnswer<T>& yes,
           .rise = select(mask, yes.rise, no.rise),
           .fracture = select(mask, yes.fracture, no.fracture),
           .bond = select(mask, yes.bond, no.bond),
-          .opens = Truth<T>((mask & yes.opens) | ((!mask) & no.opens))};
+          .opens = Truth<T>((mask & yes.opens) | ((!mask) & no.opens)),
+          .friction = select(mask, yes.friction, no.friction)};
 }
 
 }  // namespace cdem

@@ -1,7 +1,6 @@
 // describe_contacts.hpp - the arrays of contacts, and the forces of exposed faces.
 #pragma once
 
-#include "core/interfaces/laws.hpp"
 #include "core/model/column_info.hpp"
 #include "core/model/state.hpp"
 
@@ -14,12 +13,12 @@ void describe_history(const std::string& set, HistoryColumns& history, Stored&& 
           .unit = "of the law",
           .meaning = "what the law remembers at a vertex or side",
           .rows = "slots",
-          .numbers = InterfaceLaws::most_state},
+          .numbers = history.width},
          history.rows);
   stored({.name = set + ".history_law",
           .meaning = "number of the law whose history it is, or -1",
           .rows = "slots",
-          .numbers = InterfaceLaws::most_state > 0 ? 1 : 0},
+          .numbers = history.width > 0 ? 1 : 0},
          history.law);
 }
 
@@ -162,13 +161,13 @@ void describe_contact_history(HistoryColumns& history, Rebuilt&& rebuilt) {
            .unit = "of the law",
            .meaning = "what the law of a contact wrote",
            .rows = "edge_contacts",
-           .numbers = InterfaceLaws::most_state},
+           .numbers = history.width},
           history.rows);
   rebuilt("update_contact_forces",
           {.name = "edge.contact_history_law",
            .meaning = "number of that law",
            .rows = "edge_contacts",
-           .numbers = InterfaceLaws::most_state > 0 ? 1 : 0},
+           .numbers = history.width > 0 ? 1 : 0},
           history.law);
 }
 

@@ -326,7 +326,7 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
           .unit = "of the law",
           .meaning = "what the law remembers at the bond points",
           .rows = conforms(set) ? rows : "overlap_points",
-          .numbers = InterfaceLaws::most_state * set.points,
+          .numbers = p.history.size() > 0 ? InterfaceLaws::most_state * set.points : 0,
           .layout = Layout::columns},
          p.history);
   of_pair("broken_tension", "1", "springs broken in tension", p.broken_tension);

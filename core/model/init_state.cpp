@@ -1,9 +1,9 @@
 // init_state.cpp - see init_state.hpp.
 #include "core/model/init_state.hpp"
 
-#include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/model/interface_table.hpp"
 
 namespace cdem {
 
@@ -34,6 +34,7 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
 /// History of the bond points as their laws say of an intact bond.
 void init_histories(const Model& m, const PairSet& p, PairState& s) {
   const std::size_t points = std::size_t(p.points) * p.point_stride;
+  if (!interface_table(m).remembers) return;
   s.history.resize(InterfaceLaws::most_state * points);
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
     const auto begin = [&](Index i, std::size_t point) {
@@ -77,6 +78,9 @@ void init_state(const Model& m, State& s, const Real* position) {
     column->resize(count);
   n.bonded_node.resize(count);
   n.body.resize(count);
+  for (HistoryColumns* history :
+       {&s.springs.history, &s.edges.side_history, &s.edges.contact_history})
+    history->width = interface_table(m).remembers ? InterfaceLaws::most_state : 0;
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);

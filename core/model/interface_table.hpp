@@ -7,7 +7,7 @@
 namespace cdem {
 
 inline InterfaceTable interface_table(const Model& m) {
-  return {.interfaces = m.interfaces.data(), .parameters = m.interface_parameters.data()};
+  return table_of(m.interfaces.data(), m.interfaces.size(), m.interface_parameters.data());
 }
 
 }  // namespace cdem

@@ -64,7 +64,7 @@ struct Model {
   Index class_count = 0;
   Column<Index> interface_of;
   Column<Interface> interfaces;
-  Column<Real> interface_parameters;  // [interface][InterfaceTable::row]
+  Column<Real> interface_parameters;  // [interface][parameter_row]
 
   // corner rows of each node; ~row where it takes the opposite of what stands there
   Index corner_rows = 0;

@@ -50,6 +50,7 @@ struct ElementState {
 
 /// What walls of contacts remember for the laws of their interfaces, see interfaces/history.hpp.
 struct HistoryColumns {
+  Index width = 0;  // numbers of a row; 0 where no law of the model has state
   Column<Real> rows;
   Column<Index> law;
 };

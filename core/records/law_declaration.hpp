@@ -36,6 +36,7 @@ struct Parameter {
   double at_least = 0;  // range in the unit of the case
   double below = std::numeric_limits<double>::infinity();
   double otherwise = required;  // where the case is silent
+  const char* like = nullptr;   // then it is that of another parameter
   Form form = Form::number;
   bool is_strength = false;  // divided by a factor of safety (of an angle, the tangent is)
   bool bonds = false;        // above zero, it bonds faces that touch at the start

@@ -83,7 +83,8 @@ CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
           .damping = select(motion.gap < zero, damping, zero),
           .bond = zero,
           .risen = motion.stress_free_gap,
-          .may_rise = motion.may_rise};
+          .may_rise = motion.may_rise,
+          .has_area = zero};
 }
 
 /// Force of a contact from the answer of its law, Eq. 13-14.

@@ -4,7 +4,7 @@
 #include "core/contact/force/contact_spring.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
 #include "core/contact/geometry/face_interfaces.hpp"
-#include "core/interfaces/laws.hpp"
+#include "core/interfaces/table.hpp"
 
 namespace cdem {
 

@@ -23,7 +23,16 @@ struct UpdateEdgeForces {
   HistoryRows contact_history;  // [contact], see MergeSideHistories
 
   template <class I>
-  CDEM_HD void operator()(I item) const {
+  CDEM_HD void operator()(const I& item) const {
+    if (laws.interfaces.is_brittle())
+      update<BrittleAlone>(item);
+    else
+      update<InterfaceLaws>(item);
+  }
+
+ private:
+  template <class Laws, class I>
+  CDEM_HD void update(const I& item) const {
     using T = Number<I>;
     const T zero(0.0);
     const auto contact = contact_of(item);
@@ -48,9 +57,9 @@ struct UpdateEdgeForces {
         .may_rise = zero,
         .dt = faces.dt};
     const auto place = indices_of([](Index c) { return c; }, item);
-    const JointAnswer<T> joint =
-        respond_with_history(laws.interfaces, interface, unloading.input(spring, motion, old.force),
-                             side_history, contact.mother_side, contact_history, place);
+    const JointAnswer<T> joint = respond_with_history<Laws>(
+        laws.interfaces, interface, unloading.input(spring, motion, old.force), side_history,
+        contact.mother_side, contact_history, place);
     const ContactForce<T> f = unloading.force(spring, motion, gap - free, old.force, joint);
     const T state[8] = {f.force_n, f.penetration, f.shear1,   f.shear2,
                         free,      f.energy_n,    f.energy_s, unloading.approach(gap - free, f)};
@@ -58,7 +67,6 @@ struct UpdateEdgeForces {
     write_reaction(item, contact, pair, unloading.stiffness(spring), f);
   }
 
- private:
   /// What a contact is between.
   template <class Ids>
   struct Contact {

@@ -40,8 +40,9 @@ void update_spring_forces(const Model& m, State& s, Queue q) {
 template <template <class> class Unloading>
 void update_edge_forces(const Model& m, State& s, Queue q) {
   const Index contacts = Index(s.edges.contact.size() / 4);
-  s.edges.contact_history.rows.resize(HistoryRows::width * std::size_t(contacts));
-  s.edges.contact_history.law.resize(HistoryRows::width > 0 ? contacts : 0);
+  const Index width = s.edges.side_history.width;
+  s.edges.contact_history.rows.resize(width * std::size_t(contacts));
+  s.edges.contact_history.law.resize(width > 0 ? contacts : 0);
   const HistoryRows sides = history_rows(s.edges.side_history),
                     own = history_rows(s.edges.contact_history);
   for_each_lane(q, contacts,
@@ -53,7 +54,7 @@ void update_edge_forces(const Model& m, State& s, Queue q) {
                                             .edges = edge_columns(s),
                                             .side_history = sides,
                                             .contact_history = own});
-  if (HistoryRows::width > 0)
+  if (width > 0)
     for_each_item(q, Index(s.search.exposed_face.size()),
                   MergeSideHistories{edge_columns(s), sides, own});
 }

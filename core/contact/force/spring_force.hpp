@@ -25,6 +25,15 @@ struct UpdateSpringForces {
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
+    if (laws.interfaces.is_brittle())
+      update<BrittleAlone>(item);
+    else
+      update<InterfaceLaws>(item);
+  }
+
+ private:
+  template <class Laws, class I>
+  CDEM_HD void update(const I& item) const {
     using T = Number<I>;
     const T zero(0.0);
     const auto& slot = item.id;
@@ -51,9 +60,9 @@ struct UpdateSpringForces {
         .dashpot = unloading.dashpot(laws.dashpot(spring, pair.inverse_mass)),
         .may_rise = T(1.0),
         .dt = faces.dt};
-    const JointAnswer<T> joint =
-        respond_with_history(laws.interfaces, interface, unloading.input(spring, motion, old.force),
-                             history, slot, history, slot);
+    const JointAnswer<T> joint = respond_with_history<Laws>(
+        laws.interfaces, interface, unloading.input(spring, motion, old.force), history, slot,
+        history, slot);
     const ContactForce<T> f = unloading.force(spring, motion, gap - free, old.force, joint);
     const T state[8] = {
         f.force_n,     f.penetration, f.shear1,   f.shear2,
@@ -63,7 +72,6 @@ struct UpdateSpringForces {
     write_reaction(slot, pair, unloading.stiffness(spring), f);
   }
 
- private:
   /// The target of a semi-spring, and whether it is new.
   template <class I>
   struct Target {

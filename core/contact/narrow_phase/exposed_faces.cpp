@@ -29,9 +29,9 @@ void visit_faces(State& s, Visit&& visit) {
   visit(s.edges.friction, 1, Real(0));
   visit(s.edges.dashpot, 1, Real(0));
   visit(s.edges.lost, 1, Flag(0));
-  if constexpr (HistoryRows::width > 0)
-    for (HistoryColumns* history : {&c.history, &s.edges.side_history}) {
-      visit(history->rows, 4 * HistoryRows::width, Real(0));
+  for (HistoryColumns* history : {&c.history, &s.edges.side_history})
+    if (history->width > 0) {
+      visit(history->rows, 4 * history->width, Real(0));
       visit(history->law, 4, Index(-1));
     }
   visit(s.face_geometry, 8, Real(0));

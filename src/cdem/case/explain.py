@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
 from cdem.case.source import Keys, Source
 from cdem.errors import CaseError
 from cdem.units import describe
@@ -47,6 +48,12 @@ def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] |
         if key == "[key]":
             continue
         kind = _unwrap(kind)
+        if isinstance(kind, _Choice):
+            picked = kind.pick(key)
+            if picked is not None:
+                kind = picked
+                continue
+            kind = kind.with_field(str(key))
         if isinstance(kind, type) and issubclass(kind, BaseModel):
             model = kind
             keys = (*keys, key)
@@ -55,8 +62,6 @@ def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] |
         elif typing.get_origin(kind) in (dict, list, tuple):
             model, keys = None, (*keys, key)
             kind = next((a for a in reversed(typing.get_args(kind)) if a is not Ellipsis), None)
-        elif isinstance(kind, _Choice):
-            kind = kind.pick(key)
         else:
             break
     return keys, model
@@ -74,6 +79,11 @@ class _Choice:
             if tag in tags:
                 return kind
         return None
+
+    def with_field(self, name: str) -> Any:
+        """The first model that has a field; a path in a case has no tags."""
+        models = (_unwrap(kind) for kind in self.kinds)
+        return next((m for m in models if name in getattr(m, "model_fields", {})), None)
 
 
 def _unwrap(kind: Any) -> Any:
@@ -140,6 +150,11 @@ def _list_wanted(keys: Keys, model: type[BaseModel] | None) -> str:
 
 
 def unknown_key(key: str, known: Iterable[str]) -> str:
+    """Say that a key is unknown, and what may be meant: that of another law, or one like it."""
+    kind = BLOCK_LAWS if "density" in known else INTERFACE_LAWS
+    laws = [law.name for law in kind.values() if key in {p.name for p in law.parameters}]
+    if laws and "law" in known:
+        return f"unknown key; it belongs to law: {' or '.join(laws)}"
     close = difflib.get_close_matches(key, known, n=1)
     if close:
         return f"unknown key; did you mean {close[0]}?"

@@ -23,8 +23,8 @@ class Parameter:
         meaning: What it is.
         at_least: Lowest value allowed [unit].
         below: Limit that it must stay below [unit], or None.
-        default: Value where the case is silent, infinity for a strength without a limit, or None if
-            it must be given.
+        default: Value where the case is silent, infinity for a strength without a limit, or None.
+        like: Parameter whose value it has where the case is silent, or None.
         is_tangent: Whether it is an angle whose tangent the core takes.
         is_strength: Whether a factor of safety divides it (of an angle, the tangent).
         bonds: Whether a value above zero bonds faces that touch at the start.
@@ -37,6 +37,7 @@ class Parameter:
     at_least: float
     below: float | None
     default: float | None
+    like: str | None
     is_tangent: bool
     is_strength: bool
     bonds: bool
@@ -53,7 +54,7 @@ class Parameter:
             return self.annotation | None, Field(None, description=text)
         if self.default is not None:
             return self.annotation, Field(self.default, description=text)
-        if required:
+        if required and self.like is None:
             return self.annotation, Field(description=text)
         return self.annotation, Field(None, validate_default=False, description=text)
 
@@ -85,10 +86,16 @@ class Law:
     parameters: tuple[Parameter, ...]
     state: tuple[StateVariable, ...]
 
-    def numbers(self, part: Part) -> dict[str, float]:
-        """Parameters of a part of a case as the core takes them: SI, of angles the tangent."""
+    def values(self, part: Part) -> dict[str, float]:
+        """Parameters of a part of a case, those that it leaves out included."""
         given = {p.name: getattr(part, p.name) for p in self.parameters}
-        values = {name: math.inf if v is None else float(v) for name, v in given.items()}
+        of_like = {p.name: given[p.like] for p in self.parameters if p.like}
+        values = {name: of_like.get(name) if v is None else v for name, v in given.items()}
+        return {name: math.inf if v is None else float(v) for name, v in values.items()}
+
+    def numbers(self, part: Part) -> dict[str, float]:
+        """The same as the core takes them: SI, of angles the tangent."""
+        values = self.values(part)
         for p in self.parameters:
             if p.is_tangent:
                 values[p.name] = math.tan(math.radians(values[p.name]))
@@ -102,7 +109,7 @@ class Law:
         """Strengths of a part of a case, divided by a factor of safety."""
         reduced = {}
         for p in self.parameters:
-            if not p.is_strength or getattr(part, p.name) is None:
+            if not p.is_strength or getattr(part, p.name) is None:  # unlimited, or like another
                 continue
             value = float(getattr(part, p.name))
             if p.is_tangent:
@@ -113,7 +120,9 @@ class Law:
 
     def summary(self, part: Part) -> str:
         """The strengths of an interface in a line of text."""
-        strengths = [p for p in self.parameters if p.is_strength]
+        strengths = [
+            p for p in self.parameters if p.is_strength and getattr(part, p.name) is not None
+        ]
         text = ", ".join(f"{getattr(part, p.name):g} {p.unit}" for p in strengths if not p.bonds)
         if self.bonds(part):
             bonds = [p for p in strengths if p.bonds]
@@ -149,14 +158,14 @@ def interface_contradiction(part: Part) -> str:
     """Why the parameters of an interface do not fit each other, or nothing."""
     law = INTERFACE_LAWS[part.__dict__["law"]]
     why = native.interface_contradiction(law.name, law.numbers(part))
-    return why.format(**part.__dict__)
+    return why.format(**law.values(part))
 
 
 def block_contradiction(part: Part) -> str:
     """Why the parameters of a material do not fit each other, or nothing."""
     law = BLOCK_LAWS[part.__dict__["law"]]
     why = native.block_contradiction(law.name, law.numbers(part))
-    return why.format(**part.__dict__)
+    return why.format(**law.values(part))
 
 
 def models(base: type[Part], laws: dict[str, Law], required: bool = True) -> list[type[Part]]:

@@ -35,6 +35,7 @@ from cdem.model.interfaces import (
 from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of
+from cdem.model.snap_back import check_fall
 from cdem.model.stiffness import bond_row, interface_entries
 from cdem.model.supports import supports_of
 
@@ -230,6 +231,7 @@ def _assemble(
         one_point=case.elements.hexahedra == "one-point",
     )
     parts = assemble(topology, properties, native.padded_stride)
+    check_fall(case, topology, laws, parts)
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)

@@ -72,6 +72,8 @@ def _bonds(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]
     b, fields, width = sim.build, sim.core.fields(), native.interface_law_state
     used, _ = interfaces_of(sim.case, b.group_names)
     numbers = np.array([list(INTERFACE_LAWS).index(one.law) for one in used])
+    if law not in numbers:
+        return []
     found = []
     for kind in ("triangles", "quads", "overlaps"):
         pairs = b.assembly.counts[f"{kind}.count"]

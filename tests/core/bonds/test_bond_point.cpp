@@ -10,6 +10,8 @@ constexpr Real area = 0.25, kn = 2e9, ks = 1e9;
 constexpr Real cohesion = 3e5, tension = 1e5, tan_phi = 0.5;
 const Joints rock{
     {{"cohesion", cohesion}, {"tensile_strength", tension}, {"friction_angle", tan_phi}}};
+const InterfaceTable table = rock.table();
+const auto laws = joint_laws<InterfaceLaws>(table, Index(0));
 const BondSpring<Real> spring{.area = area, .stiffness = JointStiffness<Real>::of(kn, ks)};
 
 /// A bond point that is led along a path of jumps, and its ledger.
@@ -25,7 +27,7 @@ struct Point {
   void lead_to(const Vec& to) {
     Real state[InterfaceLaws::most_state + 1] = {};
     const Vec force = last.on_b;
-    last = bond_force(rock.table(), Index(0), spring, frame, to, jump, searched, history, state);
+    last = bond_force(laws, spring, frame, to, jump, searched, history, state);
     work -= 0.5 * dot(force + last.on_b, to - jump);
     fracture += last.fracture;
     friction += last.friction;
@@ -166,8 +168,8 @@ TEST_CASE("bears gives the bits of bond_force for what is intact and stays so") 
     point.frame = {r.r0, r.r1, r.r2};
     const Vec jump = random.vector(2e-4);
     Vec on_b;
-    const bool holds = bears(rock.table(), Index(0), spring, point.frame, jump, on_b);
-    const Real stored = intact_energy(rock.table(), Index(0), spring, point.frame, jump);
+    const bool holds = bears(laws, spring, point.frame, jump, static_cast<Real*>(nullptr), on_b);
+    const Real stored = intact_energy(laws, spring, point.frame, jump, static_cast<Real*>(nullptr));
     point.lead_to(jump);
     CHECK(holds == (point.history.bond == 1));
     if (!holds) continue;
@@ -181,7 +183,6 @@ TEST_CASE("bears gives the bits of bond_force for what is intact and stays so") 
 
 TEST_CASE("points of a lane are those of its numbers") {
   Random random(3);
-  const InterfaceTable table = rock.table();
   check_lanes<19, 12>(
       [&](const auto* in, auto* out) {
         using T = std::remove_cvref_t<decltype(*in)>;
@@ -192,11 +193,11 @@ TEST_CASE("points of a lane are those of its numbers") {
         const auto searched = in[18] > T(0.5);
         BondForce<T> f;
         if constexpr (std::is_same_v<T, Pack>)
-          f = bond_force(table, IndexPack{}, own, frame, vector_at(in + 9), vector_at(in + 12),
-                         searched, h, state);
+          f = bond_force(joint_laws<InterfaceLaws>(table, IndexPack{}), own, frame,
+                         vector_at(in + 9), vector_at(in + 12), searched, h, state);
         else
-          f = bond_force(table, Index(0), own, frame, vector_at(in + 9), vector_at(in + 12),
-                         searched, h, state);
+          f = bond_force(laws, own, frame, vector_at(in + 9), vector_at(in + 12), searched, h,
+                         state);
         put(out, f.on_b);
         out[3] = f.stored, out[4] = f.fracture, out[5] = f.friction;
         out[6] = f.tension, out[7] = f.shear;

@@ -18,7 +18,7 @@ using Named = std::initializer_list<std::pair<const char*, Real>>;
 /// tangent.
 inline std::vector<Real> brittle_parameters(const Named& named) {
   constexpr auto& all = Brittle<Real>::parameters;
-  std::vector<Real> numbers(InterfaceTable::row);
+  std::vector<Real> numbers(parameter_row);
   for (const auto& [name, value] : named) {
     std::size_t k = 0;
     while (k < all.size() && std::string_view(all[k].name) != name) ++k;
@@ -44,8 +44,10 @@ struct Joints {
       for (const Real number : brittle_parameters(named)) parameters.push_back(number);
     }
   }
-  InterfaceTable table() const { return {interfaces.data(), parameters.data()}; }
-  Brittle<Real> law(Index interface) const { return table().law<Brittle>(interface); }
+  InterfaceTable table() const {
+    return table_of(interfaces.data(), interfaces.size(), parameters.data());
+  }
+  Brittle<Real> law(Index interface) const { return law_at<Brittle>(table(), interface); }
 };
 
 }  // namespace cdem::test

@@ -23,7 +23,8 @@ JointInput<Real> at(Real normal, Real shear1, Real shear2 = 0, Real bond = 1) {
           .damping = 0,
           .bond = bond,
           .risen = 0,
-          .may_rise = 0};
+          .may_rise = 0,
+          .has_area = 1};
 }
 
 JointAnswer<Real> respond(const JointInput<Real>& in, const Brittle<Real>& law = rock) {
@@ -115,7 +116,7 @@ TEST_CASE("bears gives the bits of an intact joint that holds, and tells where i
     const JointInput<Real> in =
         at(random.between(-1.5e5, 3e5), random.between(-3e5, 3e5), random.between(-3e5, 3e5));
     const JointAnswer<Real> a = respond(in);
-    const Borne<Real> b = rock.bears(in);
+    const Borne<Real> b = rock.bears(in, nullptr);
     CHECK(b.holds == (a.bond == 1));
     if (!b.holds) continue;
     ++held;
@@ -189,9 +190,10 @@ TEST_CASE("the law answers for a lane what it answers for each joint") {
                                   .damping = in[5],
                                   .bond = in[6],
                                   .risen = in[7],
-                                  .may_rise = in[8]};
+                                  .may_rise = in[8],
+                                  .has_area = T(1.0)};
         const JointAnswer<T> a = law.respond(joint, nullptr);
-        const Borne<T> b = law.bears(joint);
+        const Borne<T> b = law.bears(joint, nullptr);
         out[0] = a.elastic, out[1] = a.normal, out[2] = a.shear1, out[3] = a.shear2;
         out[4] = a.stored_n, out[5] = a.stored_s, out[6] = a.rise, out[7] = a.bond;
         out[8] = select(a.opens, T(1.0), T(0.0));

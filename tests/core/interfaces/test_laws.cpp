@@ -17,8 +17,11 @@ JointInput<Real> any_joint(Random& random) {
           .damping = random.between(-1e5, 1e5),
           .bond = Real(random.below(2)),
           .risen = 0,
-          .may_rise = Real(random.below(2))};
+          .may_rise = Real(random.below(2)),
+          .has_area = Real(random.below(2))};
 }
+
+constexpr Real* none = nullptr;  // no state
 
 const Joints joints{{{"friction_angle", 0.2}},
                     {{"friction_angle", 0.7}, {"cohesion", 1e5}},
@@ -32,13 +35,15 @@ TEST_CASE("a joint is answered with the parameters of its interface") {
   for (int k = 0; k < 100; ++k) {
     const Index interface = random.below(3);
     const JointInput<Real> in = any_joint(random);
-    const JointAnswer<Real> a = respond(table, interface, in, static_cast<Real*>(nullptr));
+    const JointAnswer<Real> a =
+        joint_laws<InterfaceLaws>(table, interface).respond(in, static_cast<Real*>(nullptr));
     const JointAnswer<Real> own = joints.law(interface).respond(in, nullptr);
     CHECK(same_bits(a.normal, own.normal));
     CHECK(same_bits(a.shear1, own.shear1));
     CHECK(same_bits(a.rise, own.rise));
     CHECK(a.bond == own.bond);
-    CHECK(bears(table, interface, in).holds == joints.law(interface).bears(in).holds);
+    CHECK(joint_laws<InterfaceLaws>(table, interface).bears(in, none).holds ==
+          joints.law(interface).bears(in, none).holds);
   }
 }
 
@@ -63,16 +68,20 @@ TEST_CASE("lanes of different interfaces are answered like each of them") {
                               .damping = pack(&In::damping),
                               .bond = pack(&In::bond),
                               .risen = pack(&In::risen),
-                              .may_rise = pack(&In::may_rise)};
-    const JointAnswer<Pack> a = respond(table, interface, in, static_cast<Pack*>(nullptr));
-    const Borne<Pack> b = bears(table, interface, in);
+                              .may_rise = pack(&In::may_rise),
+                              .has_area = pack(&In::has_area)};
+    const JointAnswer<Pack> a =
+        joint_laws<InterfaceLaws>(table, interface).respond(in, static_cast<Pack*>(nullptr));
+    const Borne<Pack> b =
+        joint_laws<InterfaceLaws>(table, interface).bears(in, static_cast<Pack*>(nullptr));
     for (Index j = 0; j < lanes; ++j) {
-      const JointAnswer<Real> own =
-          respond(table, interface.id[j], one[j], static_cast<Real*>(nullptr));
+      const JointAnswer<Real> own = joint_laws<InterfaceLaws>(table, interface.id[j])
+                                        .respond(one[j], static_cast<Real*>(nullptr));
       CHECK(same_bits(a.normal.n[j], own.normal));
       CHECK(same_bits(a.shear2.n[j], own.shear2));
       CHECK(same_bits(a.rise.n[j], own.rise));
-      CHECK(holds(b.holds, j) == bears(table, interface.id[j], one[j]).holds);
+      CHECK(holds(b.holds, j) ==
+            joint_laws<InterfaceLaws>(table, interface.id[j]).bears(one[j], none).holds);
     }
   }
 }

@@ -1,6 +1,7 @@
 """Laws as the core declares them."""
 
 import math
+import re
 
 import pytest
 
@@ -20,7 +21,7 @@ def interface(**values):
 
 
 def test_the_core_has_the_laws_of_the_documents():
-    assert list(INTERFACE_LAWS) == ["brittle"]
+    assert list(INTERFACE_LAWS) == ["brittle", "residual", "slip-weakening", "softening"]
     assert list(BLOCK_LAWS) == ["elastic", "mohr-coulomb"]
     assert [p.name for p in INTERFACE_LAWS["brittle"].parameters] == [
         "friction_angle", "cohesion", "tensile_strength", "dilation_angle", "dilation_slip"
@@ -126,3 +127,58 @@ def test_a_stage_cannot_change_the_law():
                 }
             ],
         )
+
+
+RESIDUAL = {"law": "residual", "friction_angle": 40, "cohesion": "2 MPa"}
+
+
+def test_a_parameter_that_is_like_another_follows_it():
+    law, of = INTERFACE_LAWS["residual"], interface(**RESIDUAL)
+    assert of.residual_friction_angle is None
+    assert law.numbers(of)["residual_friction_angle"] == math.tan(math.radians(40))
+    assert "residual_friction_angle" not in law.reduced(of, 2)
+    given = interface(**RESIDUAL, residual_friction_angle=30)
+    assert law.values(given)["residual_friction_angle"] == 30
+    assert law.summary(given) == "40 deg, 30 deg, 0 Pa, bonded c 2e+06 T 0 Pa"
+
+
+@pytest.mark.parametrize(
+    "wrong, told",
+    [
+        ({"residual_friction_angle": 41}, "must not be larger than friction_angle, 40"),
+        ({"dilation_angle": 35, "dilation_slip": 1, "residual_friction_angle": 30},
+         "dilation_angle must not be larger than residual_friction_angle, 30"),
+        ({"residual_cohesion": "3 MPa"}, "residual_cohesion must not be larger than cohesion, 2e+06"),
+        ({"law": "brittle", "residual_cohesion": 0}, "unknown key; it belongs to law: residual or softening"),
+    ],
+)  # fmt: skip
+def test_residual_values_that_do_not_fit(wrong, told):
+    with pytest.raises(CaseError, match=re.escape(told)):
+        interface(**RESIDUAL | wrong)
+
+
+def test_a_pair_takes_from_the_default_what_its_own_law_has():
+    case = Case.from_dict(
+        {
+            "cdem": 1,
+            "model": {"blocks": [{"group": g, "box": {"size": [1, 1, 1]}} for g in ("a", "b")]},
+            "materials": {"m": {"density": 2700, "young_modulus": 1e9, "poisson_ratio": 0.25}},
+            "groups": {g: {"material": "m"} for g in ("a", "b")},
+            "interfaces": {
+                "default": RESIDUAL | {"residual_friction_angle": 25},
+                "pairs": [
+                    {"between": ["a", "a"], "law": "brittle", "friction_angle": 35},
+                    {"between": ["b", "b"], "cohesion": 0},
+                ],
+            },
+            "stages": [{"name": "fall", "mode": "dynamic", "duration": 1}],
+        }
+    )
+    brittle, residual = case.interfaces.pairs
+    assert (brittle.law, brittle.cohesion) == ("brittle", 2e6)
+    assert not hasattr(brittle, "residual_friction_angle")
+    assert (residual.law, residual.cohesion, residual.residual_friction_angle) == (
+        "residual",
+        0,
+        25,
+    )

@@ -1,0 +1,67 @@
+"""Bonds that would lose strength faster than they unload are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem._native import core as native
+from cdem.case.case import Case
+from cdem.case.interface_schema import Interface
+from cdem.case.laws import INTERFACE_LAWS
+from cdem.errors import ModelError
+from cdem.mesh.topology import Topology
+from cdem.model.flat_arrays import Assembly
+from cdem.model.stiffness import bond_row
+
+KINDS = ("triangles", "quads", "overlaps")
+
+
+def check_fall(case: Case, t: Topology, laws: list[Interface], parts: Assembly) -> None:
+    """Refuse bonds of a law whose strength falls over so little that they would snap back.
+
+    A law loses strength by A [Pa/m] with opening and by B with slip at most, and a bond unloads by
+    k_n and k_s: A / k_n + B / k_s must be below 1, in any mix of modes. Where stiffness follows from
+    the elements, smaller ones help.
+
+    Raises:
+        ModelError: It is not; with the worst place and what it would take.
+    """
+    for number, law in enumerate(laws):
+        own = INTERFACE_LAWS[law.law]
+        normal, shear = native.interface_steepest_fall(own.name, own.numbers(law))
+        if not normal and not shear:
+            continue
+        for kind in KINDS:
+            faces = parts.pair_faces[kind].reshape(-1, 2)
+            k = parts.arrays[f"{kind}.stiffness"].reshape(2, -1)[:, : len(faces)]
+            has = parts.arrays[f"{kind}.interface"][: len(faces)] == number
+            ratio = np.where(has, normal / k[0] + shear / k[1], 0.0)
+            worst = int(ratio.argmax()) if len(ratio) else -1
+            if worst >= 0 and ratio[worst] >= 1:
+                raise ModelError(_why(case, t, law, number, faces[worst], ratio[worst], parts))
+
+
+def _why(
+    case: Case,
+    t: Topology,
+    law: Interface,
+    number: int,
+    faces: NDArray[np.integer],
+    ratio: float,
+    parts: Assembly,
+) -> str:
+    pairs = len(case.interfaces.pairs)
+    path = f"interfaces.pairs.{number}" if number < pairs else "interfaces.default"
+    nodes = t.face_nodes[faces[0]]
+    x, y, z = t.node_position[nodes[nodes >= 0]].mean(axis=0)
+    row = bond_row(law)
+    if row[0] > 0 and row[2] > 0:
+        remedy = f"bonds {1.01 * ratio:.3g} times as stiff"
+    else:
+        height = parts.arrays["face.height"][faces].min()
+        remedy = f"elements of {height / (1.01 * ratio):.3g} m at most (here {height:.3g} m)"
+    return (
+        f"{case.where(path)}: {path}: bonds at ({x:.4g}, {y:.4g}, {z:.4g}) would lose strength faster "
+        f"than they unload, by a factor of {ratio:.3g}; it takes {remedy}, or more fracture energy"
+    )

@@ -1,0 +1,177 @@
+"""Interface laws: direct shear of bonds, and of contacts of all six kinds."""
+
+import numpy as np
+import pytest
+from scenes import simulate
+
+STIFFNESS = {"stiffness_n": "1e11 Pa/m", "stiffness_s": "1e11 Pa/m"}
+CUBES = [
+    {"group": "bed", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -1]},
+    {"group": "block", "box": {"size": [1, 1, 1]}},
+]
+
+
+class Shear:
+    """A cube on another, pressed within 1 ms, then led along x and z by histories of its speed."""
+
+    def __init__(self, law, pressure, along, up=(), step="10 us"):
+        """Histories: rows of time [s] and speed [m/s], a straight line between; pressure [Pa]."""
+        down = 2 * pressure / 1e11 / 1e-3
+        press = [[0, 0], [0.5e-3, -down], [1e-3, 0]]
+        drives = [(["x", "y"], [1, 0, 0], along), (["z"], [0, 0, 1], [*press, *up])]
+        self.sim = simulate(
+            CUBES,
+            {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+            interfaces={"default": STIFFNESS | law},
+            time={"step": step},
+            loads={
+                "velocities": [
+                    {"group": "block", "components": axes, "velocity": unit, "history": history}
+                    for axes, unit, history in drives
+                ]
+            },
+        )
+
+    def tractions(self):
+        """Shear and normal traction on the joint of 1 m2 [Pa], compression positive."""
+        state = self.sim.core.fields()
+        bed = self.sim.build.nodes_of("bed")
+        force = state["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+        return abs(force[0]), abs(force[2])
+
+
+RESIDUAL = {
+    "law": "residual",
+    "friction_angle": 40,
+    "cohesion": "3 MPa",
+    "tensile_strength": "1 MPa",
+    "residual_friction_angle": 30,
+    "residual_cohesion": "1 MPa",
+}
+
+
+def test_residual_strength_after_the_peak():
+    """tau = c + sigma tan(phi), then c_r + sigma tan(phi_r).
+
+    The pair stays bonded beyond the slip at which others are released, 0.1 % of 0.7 m, until it is
+    lifted.
+    """
+    sigma = 2e6
+    slide = [[1e-3, 0], [1.1e-3, 0.1], [0.03, 0.1], [0.0301, 0]]
+    lift = [[0.03, 0], [0.0325, 0.4], [0.035, 0]]
+    shear = Shear(RESIDUAL, sigma, slide, lift)
+    sim = shear.sim
+    sim.run_until(1e-3)
+    peak, seen = 3e6 + sigma * np.tan(np.radians(40)), 0.0
+    while sum(sim.broken.values()) == 0 and sim.time < 2e-3:
+        seen = shear.tractions()[0]
+        sim.step(1)
+    assert seen == pytest.approx(peak, rel=0.03)  # it grows by 2 % in a step
+    sim.run_until(0.0299)
+    left = sigma * np.tan(np.radians(30))
+    assert shear.tractions() == pytest.approx((1e6 + left, sigma), rel=1e-9)
+    assert sim.core.fields()["quads.status"][0] == 1
+    assert abs(sim.energies["error"]) < 1e-4
+    sim.run_until(0.036)
+    assert sim.core.fields()["quads.status"][0] == 0
+
+
+EDGE, VERTEX = 0.5**0.5, 3**0.5
+LOWER = {  # the topmost face, edge (along y) or vertex of a cube of 1 m at the origin
+    "face": {"translate": [-0.5, -0.5, -1]},
+    "edge": {"rotate": {"axis": [0, 1, 0], "angle": 45}, "translate": [-EDGE, -0.5, -EDGE]},
+    "vertex": {"rotate": {"axis": [1, -1, 0], "angle": 54.735610317245346},
+               "translate": [0, 0, -VERTEX]},
+}  # fmt: skip
+UPPER = {  # the lowest face, edge (along x) or vertex of a cube of 0.3 m, 20 um inside that
+    "face": {"translate": [-0.15, -0.15, -2e-5]},
+    "edge": {"rotate": {"axis": [1, 0, 0], "angle": 45}, "translate": [-0.15, 0, -2e-5]},
+    "vertex": {"rotate": {"axis": [1, -1, 0], "angle": 54.735610317245346},
+               "translate": [0, 0, -2e-5]},
+}  # fmt: skip
+KINDS = [
+    ("face", "face"),
+    ("face", "edge"),
+    ("face", "vertex"),
+    ("edge", "edge"),
+    ("edge", "vertex"),
+    ("vertex", "vertex"),
+]
+FALL = {"friction_angle": 40, "residual_friction_angle": 30, "slip_distance": "1 mm"}
+BONDED = {"cohesion": "6 MPa", "tensile_strength": "3 MPa"}
+LAWS = {
+    "brittle": ({"friction_angle": 40}, lambda slip: np.full_like(slip, np.tan(np.radians(40)))),
+    "residual": (
+        {"law": "residual", "friction_angle": 40, "residual_friction_angle": 30} | BONDED,
+        lambda slip: np.full_like(slip, np.tan(np.radians(30))),
+    ),
+    "slip-weakening": ({"law": "slip-weakening"} | FALL, None),
+    "softening": (
+        {"law": "softening", "fracture_energy_1": 1e4, "fracture_energy_2": 1e4} | FALL | BONDED,
+        None,
+    ),
+}
+
+
+def falling(slip):
+    """tan(phi) of FALL after so much slip."""
+    peak, left = np.tan(np.radians([40, 30]))
+    return left + (peak - left) * np.maximum(1 - slip / 1e-3, 0)
+
+
+@pytest.mark.parametrize("lower, upper", KINDS)
+@pytest.mark.parametrize("law", LAWS)
+def test_a_law_is_the_same_at_all_kinds_of_contacts(law, lower, upper):
+    """Shear over normal force of every contact that slides is tan(phi) of the slip of its wall.
+
+    A driven cube comes down 20 um onto a free one and is drawn over it by 1.5 mm. What a contact
+    slips is what the cube is moved, less the stretch of its spring, so both laws of falling friction
+    must give the same. Tolerance: 1e-3; edges share the slip of their side.
+    """
+    given, tangent = LAWS[law]
+    remembers, tangent = tangent is None, tangent or falling
+    cubes = [
+        {"group": "low", "box": {"size": [1, 1, 1]}} | LOWER[lower],
+        {"group": "high", "box": {"size": [0.3, 0.3, 0.3]}} | UPPER[upper],
+    ]
+    cubes[1]["translate"] = (np.array(cubes[1]["translate"]) + [0, 0, 4e-5]).tolist()
+    if upper == lower == "vertex":
+        cubes[1]["translate"] = [0.01, 0.004, -0.01218]  # edges beside the tips meet
+    sim = simulate(
+        cubes,
+        {"low": {}, "high": {}},
+        rock={"density": 8000},
+        interfaces={"default": given | {"stiffness_n": "1e9 Pa/m", "stiffness_s": "1e9 Pa/m"}},
+        time={"step": "5 us"},
+        loads={
+            "velocities": [
+                {"group": "high", "components": ["z"], "velocity": [0, 0, -0.04],
+                 "history": [[0, 0], [1e-3, 1], [2e-3, 0]]},
+                {"group": "high", "components": ["x", "y"], "velocity": [0.08, 0.3, 0],
+                 "history": [[2e-3, 0], [3e-3, 1]]},
+            ]
+        },
+    )  # fmt: skip
+    seen = []
+    for _ in range(130):
+        sim.step(10)
+        state = sim.core.fields()
+        for kind, wall in (
+            ("spring", np.flatnonzero(state["spring.target"] >= 0)),
+            ("edge", state["edge.contact"].reshape(-1, 4)[:, 0]),
+        ):
+            rows = state[f"{kind}.state"].reshape(-1, 8)
+            rows = rows[wall] if kind == "spring" else rows
+            slip = np.zeros(len(rows))
+            if remembers and len(rows):
+                width = len(state[f"{kind}.history"]) // len(state[f"{kind}.history_law"])
+                place = {"slip-weakening": 0, "softening": 2}[law]
+                slip = state[f"{kind}.history"].reshape(-1, width)[wall, place]
+            normal, shear = rows[:, 0], np.hypot(rows[:, 2], rows[:, 3])
+            limit = tangent(slip) * normal
+            assert (shear <= limit * (1 + 1e-3)).all()
+            seen += list(slip[(normal > 0) & (shear > limit * (1 - 1e-3))])
+    assert len(seen) > 100
+    if remembers:
+        moved = np.hypot(*sim.fields["displacement"][sim.build.nodes_of("high")].mean(axis=0)[:2])
+        assert 1e-3 < max(seen) < 1.01 * moved
