@@ -607,7 +607,7 @@ CORE = [
         "core/interfaces/history.hpp",
         "state[k] = select(mine, own[k], state[k]);",
         "state[k] = select(mine, T(0.0) * own[k], state[k]);",
-        "tests/validation/test_interface_laws.py",
+        "tests/validation/test_interface_laws.py::test_a_law_is_the_same_at_all_kinds_of_contacts",
     ),
     Mutant(
         "mixed mode",
@@ -623,7 +623,8 @@ CORE = [
         "core/bonds/bond_point.hpp",
         "rests = rests & !laws.remember();",
         "rests = rests & (zero < one);",
-        "tests/validation/test_interface_laws.py",
+        "tests/validation/test_interface_laws.py::test_a_softening_bond_keeps_its_slip_and_"
+        "spends_its_fracture_energy",
     ),
     Mutant(
         "snap back",

@@ -126,7 +126,8 @@ CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& sp
   out.shear = select(broke, one, zero) - out.tension;
   out.stored = spring.area * (stored_n + stored_s);
   out.fracture = spring.area * now.fracture;
-  out.friction = spring.area * now.friction;
+  out.friction = zero;
+  if constexpr (Laws::most_state > 0) out.friction = spring.area * now.friction;
   if (any_of(!intact)) {
     const JointAnswer<T> was = before_step(laws, input_at(jump_old), state_old);
     const Vec3<T> moved = jump - jump_old;
@@ -136,8 +137,7 @@ CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& sp
     const T lost_n = was.stored_n - stored_n - half * work_n;
     const T lost_s = was.stored_s - stored_s - half * work_s;
     out.fracture = select(broke, spring.area * (lost_n + lost_s) - out.friction, out.fracture);
-    out.friction =
-        select(broke | intact, out.friction, select(carries, spring.area * lost_s, zero));
+    out.friction = select((!broke) & (!intact) & carries, spring.area * lost_s, out.friction);
   }
   // the slip that makes the elastic law give the limited force
   auto rests = intact;

@@ -92,7 +92,8 @@ struct PairColumns {
   }
 };
 
-/// Bonds of conforming pairs: `count` vertices on either side coincide at the start.
+/// Bonds of conforming pairs: `count` vertices on either side coincide at the start. Run by
+/// WithLaws.
 ///
 /// Point k sits at constant weights (1 - a) delta_kj + a / count on both faces and carries
 /// area / count. The six half springs of two triangles (Fig. 14) are three whole ones: the same.
@@ -106,12 +107,27 @@ struct ConformingBonds {
   bool sampled;            // does anything ask for the energy of intact pairs?
   OutForces corner_force;  // [pair][count]: on the mates; on the first face's vertices the opposite
 
-  template <class I>
-  CDEM_HD void operator()(I p) const {
-    if (pairs.interfaces.is_brittle())
-      update<BrittleAlone>(p);
-    else
-      update<InterfaceLaws>(p);
+  template <class Laws, class I>
+  CDEM_HD void update(I p) const {
+    using T = Number<I>;
+    const auto live = pairs.are_live(p);
+    if (!any_of(live)) return;
+    Vec3<T> jump[count], force[count];
+    const Frame<T> frame = gather_jumps(p, jump);
+    if (any_of(live & !all_bear<Laws>(p, frame, jump, force))) {
+      update_history<Laws>(p, live, frame, jump, force);
+    } else if (sampled) {
+      const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+      const BondSpring<T> own = spring(p);
+      T stored(0.0);
+      for (Index k = 0; k < count; ++k) {
+        T state[Laws::most_state + 1];
+        pairs.load_history<Laws>(p, k, count, state);
+        stored += intact_energy(laws, own, frame, jump[k], state);
+      }
+      pairs.stored.set(0, p, select(live, stored, T(0.0)));
+    }
+    write_forces(p, live, force);
   }
 
   static constexpr Fetching fetching{2, 1024};
@@ -146,28 +162,6 @@ struct ConformingBonds {
   }
 
  private:
-  template <class Laws, class I>
-  CDEM_HD void update(I p) const {
-    using T = Number<I>;
-    const auto live = pairs.are_live(p);
-    if (!any_of(live)) return;
-    Vec3<T> jump[count], force[count];
-    const Frame<T> frame = gather_jumps(p, jump);
-    if (any_of(live & !all_bear<Laws>(p, frame, jump, force))) {
-      update_history<Laws>(p, live, frame, jump, force);
-    } else if (sampled) {
-      const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
-      const BondSpring<T> own = spring(p);
-      T stored(0.0);
-      for (Index k = 0; k < count; ++k) {
-        T state[Laws::most_state + 1];
-        pairs.load_history<Laws>(p, k, count, state);
-        stored += intact_energy(laws, own, frame, jump[k], state);
-      }
-      pairs.stored.set(0, p, select(live, stored, T(0.0)));
-    }
-    write_forces(p, live, force);
-  }
   /// The common case: all points of the pair were intact and stay so.
   template <class Laws, class I, class T>
   CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, Vec3<T>* force) const {
@@ -249,7 +243,8 @@ struct ConformingBonds {
   }
 };
 
-/// Bonds of touching faces that do not conform: one point per vertex of their overlap polygon.
+/// Bonds of touching faces that do not conform: one point per vertex of their overlap polygon. Run
+/// by WithLaws.
 struct OverlapBonds {
   FaceColumns faces;
   const Index* pair_faces;   // [pair][2]
@@ -260,26 +255,6 @@ struct OverlapBonds {
   PairColumns pairs;         // bond, slip1, slip2, history are [.][point] here
   OutForces corner_force;    // [pair][8]: four vertices of either face
 
-  CDEM_HD void operator()(One p) const {
-    if (pairs.interfaces.is_brittle())
-      update<BrittleAlone>(p);
-    else
-      update<InterfaceLaws>(p);
-  }
-
-  /// Jump of displacement at a bond point that strains its spring  [m].
-  CDEM_HD Vec3<Real> jump_at(Index a, Index b, const Frame<Real>& frame, Index c) const {
-    return pairs.past_rest(One{c}, 0, 1, frame, at(b, weights_b, c) - at(a, weights_a, c));
-  }
-  CDEM_HD Vec3<Real> position(Index a, Index c) const { return at(a, weights_a, c); }
-  CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
-    const Frame<Real> f = faces.shape(a).frame();
-    const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
-    const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
-    return {n, t1, cross(n, t1)};
-  }
-
- private:
   template <class Laws>
   CDEM_HD void update(One p) const {
     if (!pairs.are_live(p)) return;
@@ -322,6 +297,19 @@ struct OverlapBonds {
     pairs.broken_shear.set(0, p, pairs.broken_shear.at(0, p) + shear);
   }
 
+  /// Jump of displacement at a bond point that strains its spring  [m].
+  CDEM_HD Vec3<Real> jump_at(Index a, Index b, const Frame<Real>& frame, Index c) const {
+    return pairs.past_rest(One{c}, 0, 1, frame, at(b, weights_b, c) - at(a, weights_a, c));
+  }
+  CDEM_HD Vec3<Real> position(Index a, Index c) const { return at(a, weights_a, c); }
+  CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
+    const Frame<Real> f = faces.shape(a).frame();
+    const Vec3<Real> n = unit(f.n - faces.shape(b).normal());
+    const Vec3<Real> t1 = unit(f.t1 - dot(n, f.t1) * n);
+    return {n, t1, cross(n, t1)};
+  }
+
+ private:
   CDEM_HD Vec3<Real> at(Index face, const Real* weights, Index c) const {
     Vec3<Real> sum{0.0, 0.0, 0.0};
     for (Index k = 0; k < faces.vertex_count(face); ++k)

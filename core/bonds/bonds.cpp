@@ -22,19 +22,21 @@ template <Index count>
 void update_bonds(PairKind<ConformingBonds<count>>, const Model& m, State& s, Queue q,
                   const StepPlan& plan, const PairSet& p, PairState& ps) {
   const Real indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad;
-  for_each_lane(q, p.count, awake(plan, ps.awake),
-                ConformingBonds<count>{.nodes = {s.nodes.motion.data()},
-                                       .pair_nodes = {p.nodes.data(), p.stride},
-                                       .pairs = pair_columns(m, p, ps),
-                                       .indentation = indentation,
-                                       .dt = s.dt_last,
-                                       .sampled = wants_energy(plan),
-                                       .corner_force = corner_forces(s, p)});
+  with_laws(interface_table(m),
+            ConformingBonds<count>{.nodes = {s.nodes.motion.data()},
+                                   .pair_nodes = {p.nodes.data(), p.stride},
+                                   .pairs = pair_columns(m, p, ps),
+                                   .indentation = indentation,
+                                   .dt = s.dt_last,
+                                   .sampled = wants_energy(plan),
+                                   .corner_force = corner_forces(s, p)},
+            [&](const auto& kernel) { for_each_lane(q, p.count, awake(plan, ps.awake), kernel); });
 }
 
 void update_bonds(PairKind<OverlapBonds>, const Model& m, State& s, Queue q, const StepPlan& plan,
                   const PairSet& p, PairState& ps) {
-  for_each_item(q, p.count, awake(plan, ps.awake), overlap_bonds(m, s));
+  with_laws(interface_table(m), overlap_bonds(m, s),
+            [&](const auto& kernel) { for_each_item(q, p.count, awake(plan, ps.awake), kernel); });
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ struct JointAnswer {
   T fracture;            // energy that the law spends on fracture while the bond holds  [J/m2]
   T bond;                // 1 while it still holds
   Truth<T> opens;        // the normal traction reached its limit
-  T friction = T(0.0);   // energy that it spends on friction while the bond holds  [J/m2]
+  T friction = T(0.0);   // the same on friction; of laws with state  [J/m2]
 };
 
 /// The same of an intact joint that holds; nothing but the tractions counts where it does not.

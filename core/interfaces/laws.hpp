@@ -110,6 +110,23 @@ struct JointLaws {
   }
 };
 
+/// A kernel that asks laws, limited to some of them: its `update<Laws>`.
+template <class Kernel, class Laws>
+struct WithLaws : Kernel {
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    Kernel::template update<Laws>(item);
+  }
+};
+/// Call launch(kernel) with the kernel for the laws that a model has.
+template <class Kernel, class Launch>
+void with_laws(const InterfaceTable& table, const Kernel& kernel, const Launch& launch) {
+  if (table.is_brittle())
+    launch(WithLaws<Kernel, BrittleAlone>{kernel});
+  else
+    launch(WithLaws<Kernel, InterfaceLaws>{kernel});
+}
+
 template <class Laws, class Ids>
 CDEM_HD inline JointLaws<Laws, Ids> joint_laws(const InterfaceTable& table, const Ids& interface) {
   return {table, interface};

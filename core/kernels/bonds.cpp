@@ -4,8 +4,15 @@
 
 namespace cdem {
 
-template void for_each_lane(Queue, Index, Blocks, const ConformingBonds<3>&);
-template void for_each_lane(Queue, Index, Blocks, const ConformingBonds<4>&);
-template void for_each_item(Queue, Index, Blocks, const OverlapBonds&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const WithLaws<ConformingBonds<3>, BrittleAlone>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const WithLaws<ConformingBonds<4>, BrittleAlone>&);
+template void for_each_item(Queue, Index, Blocks, const WithLaws<OverlapBonds, BrittleAlone>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const WithLaws<ConformingBonds<3>, InterfaceLaws>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const WithLaws<ConformingBonds<4>, InterfaceLaws>&);
+template void for_each_item(Queue, Index, Blocks, const WithLaws<OverlapBonds, InterfaceLaws>&);
 
 }  // namespace cdem

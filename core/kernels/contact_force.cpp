@@ -10,10 +10,22 @@
 namespace cdem {
 
 template void for_each_item(Queue, Index, const ChangeTargets&);
-template void for_each_selected(Queue, Index, const UpdateSpringForces<ElasticUnloading>&);
-template void for_each_selected(Queue, Index, const UpdateSpringForces<HystereticUnloading>&);
-template void for_each_lane(Queue, Index, const UpdateEdgeForces<ElasticUnloading>&);
-template void for_each_lane(Queue, Index, const UpdateEdgeForces<HystereticUnloading>&);
+template void for_each_selected(
+    Queue, Index, const WithLaws<UpdateSpringForces<ElasticUnloading>, BrittleAlone>&);
+template void for_each_selected(
+    Queue, Index, const WithLaws<UpdateSpringForces<HystereticUnloading>, BrittleAlone>&);
+template void for_each_lane(Queue, Index,
+                            const WithLaws<UpdateEdgeForces<ElasticUnloading>, BrittleAlone>&);
+template void for_each_lane(Queue, Index,
+                            const WithLaws<UpdateEdgeForces<HystereticUnloading>, BrittleAlone>&);
+template void for_each_selected(
+    Queue, Index, const WithLaws<UpdateSpringForces<ElasticUnloading>, InterfaceLaws>&);
+template void for_each_selected(
+    Queue, Index, const WithLaws<UpdateSpringForces<HystereticUnloading>, InterfaceLaws>&);
+template void for_each_lane(Queue, Index,
+                            const WithLaws<UpdateEdgeForces<ElasticUnloading>, InterfaceLaws>&);
+template void for_each_lane(Queue, Index,
+                            const WithLaws<UpdateEdgeForces<HystereticUnloading>, InterfaceLaws>&);
 template void for_each_item(Queue, Index, const MergeSideHistories&);
 template void for_each_item(Queue, Index, const CountContactsByTarget&);
 template void for_each_item(Queue, Index, const ListContactsByTarget&);

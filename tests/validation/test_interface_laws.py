@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from scenes import simulate
 
+from cdem.run.law_fields import state_of
+
 STIFFNESS = {"stiffness_n": "1e11 Pa/m", "stiffness_s": "1e11 Pa/m"}
 CUBES = [
     {"group": "bed", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -1]},
@@ -74,6 +76,38 @@ def test_residual_strength_after_the_peak():
     assert abs(sim.energies["error"]) < 1e-4
     sim.run_until(0.036)
     assert sim.core.fields()["quads.status"][0] == 0
+
+
+def test_a_softening_bond_keeps_its_slip_and_spends_its_fracture_energy():
+    """Sheared, tau = c (1 - s / s_u), s_u = 2 G2 / c; turned back, it unloads by k_s; in the end G2 is lost.
+
+    Tolerance: round-off but for the energy, of which a step of 0.5 um in 300 um takes 1e-5.
+    """
+    law = {
+        "law": "softening",
+        "friction_angle": 0,
+        "cohesion": "6 MPa",
+        "tensile_strength": "3 MPa",
+        "fracture_energy_1": 300,
+        "fracture_energy_2": 900,
+    }
+    speeds = [(1e-3, 0), (1.1e-3, 0.05), (4e-3, 0.05), (4.1e-3, 0), (5e-3, 0), (5.2e-3, -0.1),
+              (5.4e-3, 0), (6e-3, 0), (6.1e-3, 0.05), (20e-3, 0.05)]  # fmt: skip
+    shear = Shear(law, 0, speeds)
+    sim = shear.sim
+    sim.run_until(4.9e-3)
+    slip = state_of(sim, "joint_slip").max()
+    held, start = shear.tractions()[0], sim.fields["displacement"][:, 0].max()
+    assert slip > 5e-5
+    assert held == pytest.approx(6e6 * (1 - slip / (2 * 900 / 6e6)), rel=1e-9)
+    sim.run_until(5.9e-3)
+    back = start - sim.fields["displacement"][:, 0].max()
+    assert back == pytest.approx(2e-5, rel=1e-6)
+    assert shear.tractions()[0] == pytest.approx(held - 1e11 * back, rel=1e-9)
+    sim.run_until(19e-3)
+    assert sim.broken["shear"] == 4
+    assert sim.energies["fracture"] == pytest.approx(900, rel=1e-4)
+    assert abs(sim.energies["error"]) < 1e-4
 
 
 EDGE, VERTEX = 0.5**0.5, 3**0.5

@@ -10,7 +10,7 @@
 
 namespace cdem {
 
-/// Force of every semi-edge contact.
+/// Force of every semi-edge contact. Run by WithLaws.
 template <template <class> class Unloading>
 struct UpdateEdgeForces {
   FaceColumns faces;
@@ -22,15 +22,6 @@ struct UpdateEdgeForces {
   HistoryRows side_history;     // [4 * exposed face + side]
   HistoryRows contact_history;  // [contact], see MergeSideHistories
 
-  template <class I>
-  CDEM_HD void operator()(const I& item) const {
-    if (laws.interfaces.is_brittle())
-      update<BrittleAlone>(item);
-    else
-      update<InterfaceLaws>(item);
-  }
-
- private:
   template <class Laws, class I>
   CDEM_HD void update(const I& item) const {
     using T = Number<I>;
@@ -67,6 +58,7 @@ struct UpdateEdgeForces {
     write_reaction(item, contact, pair, unloading.stiffness(spring), f);
   }
 
+ private:
   /// What a contact is between.
   template <class Ids>
   struct Contact {

@@ -28,13 +28,14 @@ void update_spring_forces(const Model& m, State& s, Queue q) {
                               .rules = m.rules,
                               .laws = laws,
                               .springs = springs});
-  for_each_selected(q, count,
-                    UpdateSpringForces<Unloading>{.faces = faces,
-                                                  .geometry = geometry,
-                                                  .rules = m.rules,
-                                                  .laws = laws,
-                                                  .springs = springs,
-                                                  .history = history_rows(s.springs.history)});
+  with_laws(laws.interfaces,
+            UpdateSpringForces<Unloading>{.faces = faces,
+                                          .geometry = geometry,
+                                          .rules = m.rules,
+                                          .laws = laws,
+                                          .springs = springs,
+                                          .history = history_rows(s.springs.history)},
+            [&](const auto& kernel) { for_each_selected(q, count, kernel); });
 }
 
 template <template <class> class Unloading>
@@ -45,15 +46,16 @@ void update_edge_forces(const Model& m, State& s, Queue q) {
   s.edges.contact_history.law.resize(width > 0 ? contacts : 0);
   const HistoryRows sides = history_rows(s.edges.side_history),
                     own = history_rows(s.edges.contact_history);
-  for_each_lane(q, contacts,
-                UpdateEdgeForces<Unloading>{.faces = face_columns(m, s),
-                                            .geometry = face_geometry(s),
-                                            .exposed_face = s.search.exposed_face.data(),
-                                            .laws = contact_laws(m, s),
-                                            .state_before = s.edges.old_state.data(),
-                                            .edges = edge_columns(s),
-                                            .side_history = sides,
-                                            .contact_history = own});
+  with_laws(interface_table(m),
+            UpdateEdgeForces<Unloading>{.faces = face_columns(m, s),
+                                        .geometry = face_geometry(s),
+                                        .exposed_face = s.search.exposed_face.data(),
+                                        .laws = contact_laws(m, s),
+                                        .state_before = s.edges.old_state.data(),
+                                        .edges = edge_columns(s),
+                                        .side_history = sides,
+                                        .contact_history = own},
+            [&](const auto& kernel) { for_each_lane(q, contacts, kernel); });
   if (width > 0)
     for_each_item(q, Index(s.search.exposed_face.size()),
                   MergeSideHistories{edge_columns(s), sides, own});

@@ -10,7 +10,7 @@
 
 namespace cdem {
 
-/// Force of every semi-spring in contact; slot = 4 * exposed face + vertex.
+/// Force of every semi-spring in contact; slot = 4 * exposed face + vertex. Run by WithLaws.
 template <template <class> class Unloading>
 struct UpdateSpringForces {
   FaceColumns faces;
@@ -23,15 +23,6 @@ struct UpdateSpringForces {
   CDEM_HD Range items(Index m) const { return {4 * m, 4 * m + 4}; }
   CDEM_HD bool selects(Index, Index slot) const { return springs.target[slot] >= 0; }
 
-  template <class I>
-  CDEM_HD void operator()(const I& item) const {
-    if (laws.interfaces.is_brittle())
-      update<BrittleAlone>(item);
-    else
-      update<InterfaceLaws>(item);
-  }
-
- private:
   template <class Laws, class I>
   CDEM_HD void update(const I& item) const {
     using T = Number<I>;
@@ -72,6 +63,7 @@ struct UpdateSpringForces {
     write_reaction(slot, pair, unloading.stiffness(spring), f);
   }
 
+ private:
   /// The target of a semi-spring, and whether it is new.
   template <class I>
   struct Target {

@@ -38,14 +38,14 @@ struct Pairs : Scene {
   }
   const PairSet& set() const { return count == 4 ? model.quads : model.triangles; }
   PairState& pairs() { return count == 4 ? state.quads : state.triangles; }
-  ConformingBonds<count> kernel() {
-    return {.nodes = {state.nodes.motion.data()},
-            .pair_nodes = {set().nodes.data(), set().stride},
-            .pairs = pair_columns(model, set(), pairs()),
-            .indentation = indentation,
-            .dt = 1e-3,
-            .sampled = true,
-            .corner_force = {state.corner_force.data() + std::size_t(set().corner_first) * 4}};
+  WithLaws<ConformingBonds<count>, BrittleAlone> kernel() {
+    return {{.nodes = {state.nodes.motion.data()},
+             .pair_nodes = {set().nodes.data(), set().stride},
+             .pairs = pair_columns(model, set(), pairs()),
+             .indentation = indentation,
+             .dt = 1e-3,
+             .sampled = true,
+             .corner_force = {state.corner_force.data() + std::size_t(set().corner_first) * 4}}};
   }
   Vec force(Index pair, Index k) const {
     return vector_at(state.corner_force.data() + 4 * (set().corner_first + pair * count + k));
