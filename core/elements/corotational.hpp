@@ -50,6 +50,7 @@ struct PointStrains {
 template <class Shape, class T>
 struct ElasticStrains {
   Sym3<T> part[Shape::points];
+  Truth<T> differs[Shape::points];  // is there inelastic strain?
 
   template <class Rotation>
   CDEM_HD const Sym3<T>& of(const PointStrains<Shape, Rotation, T>&, Index q) const {
@@ -61,8 +62,13 @@ struct ElasticStrains {
   template <class Rotation>
   CDEM_HD Mat3<T> piola(const PointStrains<Shape, Rotation, T>& p, Index q,
                         const Sym3<T>& stress) const {
+    const Mat3<T> plain = full(stress);
+    if (!any_of(differs[q])) return p.rotation[q] * plain;
     const Sym3<T> stretch = with_trace(p.strain[q], p.own_dilatation[q]);
-    return p.rotation[q] * (full(stress) + balancing(stress, full(stretch) + identity<T>()));
+    const Mat3<T> all = plain + balancing(stress, full(stretch) + identity<T>());
+    return p.rotation[q] * Mat3<T>{select(differs[q], all.r0, plain.r0),
+                                   select(differs[q], all.r1, plain.r1),
+                                   select(differs[q], all.r2, plain.r2)};
   }
 };
 /// The same where it is all of them.
@@ -104,8 +110,14 @@ struct PointFlow {
   CDEM_HD ElasticStrains<Shape, T> elastic_part(const ElementColumns<Shape>& c, I e,
                                                 const PointStrains<Shape, Rotation, T>& p) const {
     ElasticStrains<Shape, T> strains;
-    for (Index q = 0; q < Shape::points; ++q)
-      strains.part[q] = history.data ? p.strain[q] - inelastic(e, q) : p.strain[q];
+    for (Index q = 0; q < Shape::points; ++q) {
+      strains.part[q] = p.strain[q];
+      strains.differs[q] = T(0.0) > T(0.0);
+      if (!history.data) continue;
+      const Sym3<T> inelastic = inelastic_at(e, q);
+      strains.part[q] = p.strain[q] - inelastic;
+      strains.differs[q] = contract(inelastic, inelastic) > T(0.0);
+    }
     if (history.data) use_mean_dilatation<Shape>(c, e, strains.part);
     return strains;
   }
@@ -147,8 +159,10 @@ struct PointFlow {
       T state[BlockLaws::most_state + 1];
       for (Index k = 0; k < BlockLaws::most_state; ++k) state[k] = history.at(row(q, 6 + k), e);
       increment[q] = flow(c.materials, material, elastic.stress(strains.part[q]), state);
-      keep(q, static_cast<const T*>(state));
-      any = any | (contract(increment[q], increment[q]) > T(0.0));
+      const auto flows = contract(increment[q], increment[q]) > T(0.0);
+      if (any_of(flows)) keep(q, static_cast<const T*>(state));
+      strains.differs[q] = strains.differs[q] | flows;
+      any = any | flows;
     }
     if (!any_of(any)) return any;
     Sym3<T> less[Shape::points];
@@ -171,13 +185,14 @@ struct PointFlow {
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> both = elastic.stress(was.part[q] + strains.part[q]);
       spent += T(0.5) * c.point_volume.at(q, e) * contract(both, increment[q]);
-      set_inelastic(e, q, inelastic(e, q) + increment[q]);
+      set_inelastic(e, q, inelastic_at(e, q) + increment[q]);
     }
-    work.set(0, e, work.at(0, e) + spent);
+    // where a step is so long that it makes energy, the closing error must tell
+    work.set(0, e, work.at(0, e) + max_of(spent, T(0.0)));
   }
   CDEM_HD static Index row(Index q, Index number) { return q * point_history + number; }
   template <class I>
-  CDEM_HD Sym3<Number<I>> inelastic(I e, Index q) const {
+  CDEM_HD Sym3<Number<I>> inelastic_at(I e, Index q) const {
     return {history.at(row(q, 0), e), history.at(row(q, 1), e), history.at(row(q, 2), e),
             history.at(row(q, 3), e), history.at(row(q, 4), e), history.at(row(q, 5), e)};
   }

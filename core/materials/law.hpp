@@ -14,7 +14,8 @@
 //
 //   static Law read(number);                           number(k) is parameter k
 //   Sym3<T> flow(const ElasticConstants<T>&, const Sym3<T>& trial, T* state) const;
-//                                                      increment of Ei, from the trial stress
+//                                                      increment of Ei, from the trial stress; the
+//                                                      state may change only where it is not zero
 //
 // It must not be stiffer than C: the time step is found for that.
 #pragma once
