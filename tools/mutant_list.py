@@ -856,8 +856,8 @@ CORE = [
         "moment of flow",
         "elements that flowed turn themselves",
         "core/elements/corotational.hpp",
-        "plain + balancing(stress, full(stretch) + identity<T>())",
-        "plain",
+        "(full(stress) + balancing(stress, full(stretch) + identity<T>()))",
+        "full(stress)",
         "tests/core/elements/test_corotational.cpp",
     ),
     Mutant(

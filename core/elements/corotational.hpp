@@ -50,7 +50,6 @@ struct PointStrains {
 template <class Shape, class T>
 struct ElasticStrains {
   Sym3<T> part[Shape::points];
-  Truth<T> differs[Shape::points];  // is there inelastic strain?
 
   template <class Rotation>
   CDEM_HD const Sym3<T>& of(const PointStrains<Shape, Rotation, T>&, Index q) const {
@@ -62,13 +61,8 @@ struct ElasticStrains {
   template <class Rotation>
   CDEM_HD Mat3<T> piola(const PointStrains<Shape, Rotation, T>& p, Index q,
                         const Sym3<T>& stress) const {
-    const Mat3<T> plain = full(stress);
-    if (!any_of(differs[q])) return p.rotation[q] * plain;
     const Sym3<T> stretch = with_trace(p.strain[q], p.own_dilatation[q]);
-    const Mat3<T> all = plain + balancing(stress, full(stretch) + identity<T>());
-    return p.rotation[q] * Mat3<T>{select(differs[q], all.r0, plain.r0),
-                                   select(differs[q], all.r1, plain.r1),
-                                   select(differs[q], all.r2, plain.r2)};
+    return p.rotation[q] * (full(stress) + balancing(stress, full(stretch) + identity<T>()));
   }
 };
 /// The same where it is all of them.
@@ -110,14 +104,8 @@ struct PointFlow {
   CDEM_HD ElasticStrains<Shape, T> elastic_part(const ElementColumns<Shape>& c, I e,
                                                 const PointStrains<Shape, Rotation, T>& p) const {
     ElasticStrains<Shape, T> strains;
-    for (Index q = 0; q < Shape::points; ++q) {
-      strains.part[q] = p.strain[q];
-      strains.differs[q] = T(0.0) > T(0.0);
-      if (!history.data) continue;
-      const Sym3<T> inelastic = inelastic_at(e, q);
-      strains.part[q] = p.strain[q] - inelastic;
-      strains.differs[q] = contract(inelastic, inelastic) > T(0.0);
-    }
+    for (Index q = 0; q < Shape::points; ++q)
+      strains.part[q] = history.data ? p.strain[q] - inelastic_at(e, q) : p.strain[q];
     if (history.data) use_mean_dilatation<Shape>(c, e, strains.part);
     return strains;
   }
@@ -161,7 +149,6 @@ struct PointFlow {
       increment[q] = flow(c.materials, material, elastic.stress(strains.part[q]), state);
       const auto flows = contract(increment[q], increment[q]) > T(0.0);
       if (any_of(flows)) keep(q, static_cast<const T*>(state));
-      strains.differs[q] = strains.differs[q] | flows;
       any = any | flows;
     }
     if (!any_of(any)) return any;
