@@ -876,6 +876,14 @@ CORE = [
         "turn < 9",
         "tests/core/base/test_math.cpp",
     ),
+    Mutant(
+        "plastic gain",
+        "energy that a long step makes is hidden in the plastic work",
+        "core/elements/corotational.hpp",
+        "max_of(spent, T(0.0))",
+        "spent",
+        "tests/core/elements/test_corotational.cpp",
+    ),
 ]
 """Faults in the core: those in headers that many files include come last."""
 
