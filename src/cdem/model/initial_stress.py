@@ -71,9 +71,12 @@ def set_initial_stress(
     lowest, highest = _set_elements(t, field, core)
     position, faces = core.bond_places()
     points, faces = np.reshape(position, (-1, 3)), np.reshape(faces, (-1, 2)).astype(np.intp)
-    sides = [field.at(points, t.face_group[faces[:, side]]) for side in (0, 1)]
+    group = t.face_group[faces]
+    stress = field.at(points, group[:, 0])
+    differ = np.flatnonzero(group[:, 0] != group[:, 1])  # the mean of both sides
+    stress[differ] = 0.5 * (stress[differ] + field.at(points[differ], group[differ, 1]))
     bonded = np.array([INTERFACE_LAWS[law.law].bonds(law) for law in laws], np.int8)
-    cut, most, face = core.set_initial_tractions(0.5 * (sides[0] + sides[1]), bonded)
+    cut, most, face = core.set_initial_tractions(stress, bonded)
     nodes = t.face_nodes[face] if face >= 0 else None
     at = None if nodes is None else t.node_position[nodes[nodes >= 0]].mean(axis=0).tolist()
     return InitialState(lowest, highest, cut, most, at, field.pulled())
@@ -124,6 +127,7 @@ class _Field:
         for i, entry in enumerate(case.initial_stress):
             if entry.vertical:
                 self._check_gravity(i)
+                self._check_surface(i, entry)
 
     def at(self, points: Floats, group: NDArray[np.integer]) -> Floats:
         """Stress xx yy zz xy yz zx of points of these groups [Pa], shape (points, 6)."""
@@ -181,6 +185,14 @@ class _Field:
             raise CaseError(
                 f"{self._case.where(f'initial_stress.{entry}.vertical')}: overburden needs gravity along -z, "
                 f"got {list(g)}; give stress with a gradient"
+            )
+
+    def _check_surface(self, number: int, entry: InitialStress) -> None:
+        top = self._t.node_position[:, 2].max()
+        if entry.surface != "top" and entry.surface < top:
+            raise CaseError(
+                f"{self._case.where(f'initial_stress.{number}.surface')}: {entry.surface:g} m lies below the top "
+                f"of the model, {top:g} m; leave it out where the model ends at the ground"
             )
 
 

@@ -97,12 +97,17 @@ def begin(sim: RunState) -> StageState:
         row_every=every / ROWS_PER_FRAME,
         held=float(sim.core.scalars()["relief_to"]),
     )
-    release = stage.release or (Release() if stage.remove else None)
+    release = _release_of(stage)
     if release is not None and stage.mode == "dynamic":
         sim.core.let_go(1 - release.to, sim.time + (release.over or 0.0))
     elif release is not None:
         release_part(sim, begun)
     return begun
+
+
+def _release_of(stage: Stage) -> Release | None:
+    """How a stage lets go of what was dug out: what it digs out itself, at once by default."""
+    return stage.release or (Release() if stage.remove else None)
 
 
 def excavate(sim: RunState, names: list[str]) -> None:
@@ -115,7 +120,7 @@ def excavate(sim: RunState, names: list[str]) -> None:
 def release_part(sim: RunState, stage: StageState) -> bool:
     """Let go of the next part of what was dug out in a static stage; whether there was one."""
     rules = sim.case.stages[sim.stage_index]
-    release = rules.release or (Release() if rules.remove else None)
+    release = _release_of(rules)
     if stage.mode != "static" or release is None or stage.parts >= release.parts:
         return False
     stage.parts += 1

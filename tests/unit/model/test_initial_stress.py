@@ -122,6 +122,7 @@ def test_pull_in_all_directions_is_doubted():
             "two of them are 10 deg off",
         ),
         ({"stress": [0] * 6, "groups": ["lover"]}, "no group 'lover'"),
+        ({"vertical": "overburden", "surface": 3}, "3 m lies below the top of the model, 4 m"),
     ],
 )
 def test_mistakes(entry, text):
