@@ -5,6 +5,9 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include <utility>
+#include <vector>
+
 #include "core/model/describe.hpp"
 #include "core/model/describe_scalars.hpp"
 #include "core/model/force_sets.hpp"
@@ -33,6 +36,15 @@ inline nb::object view(Column<ExposedRow>& column, nb::handle owner) {
   const std::size_t shape[1] = {column.size() * sizeof(ExposedRow)};
   auto* bytes = reinterpret_cast<std::uint8_t*>(column.data());
   return nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(bytes, 1, shape, owner));
+}
+
+/// Numbers that Python owns from here on.
+template <class T>
+nb::object array_of(std::vector<T>&& numbers) {
+  auto* kept = new std::vector<T>(std::move(numbers));
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  const std::size_t shape[1] = {kept->size()};
+  return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), 1, shape, owner));
 }
 
 template <class T>

@@ -187,7 +187,7 @@ nb::dict stress(nb::handle_t<Core> self) {
 }
 
 /// Position and both faces of every bond point.
-auto bond_place_lists(Core& c) {
+auto bond_place_arrays(Core& c) {
   std::vector<Real> position;
   std::vector<Index> faces;
   for (const BondPlace& place : bond_places(c.model, c.state)) {
@@ -195,7 +195,7 @@ auto bond_place_lists(Core& c) {
       position.push_back(x);
     faces.insert(faces.end(), place.faces, place.faces + 2);
   }
-  return std::make_tuple(position, faces);
+  return std::make_tuple(array_of(std::move(position)), array_of(std::move(faces)));
 }
 
 /// Stress of every bond point, and whether an interface has strength.
@@ -217,7 +217,7 @@ void bind_setup(nb::class_<Core>& core) {
       .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
-      .def("bond_places", &bond_place_lists)
+      .def("bond_places", &bond_place_arrays)
       .def("set_initial_tractions", &set_tractions, "stress"_a, "bonded"_a)
       .def("restore", &restore)
       .def("prepare",

@@ -50,4 +50,31 @@ struct Joints {
   Brittle<Real> law(Index interface) const { return law_at<Brittle>(table(), interface); }
 };
 
+/// A joint at this place that does not rise, with its area and without a dashpot.
+inline JointInput<Real> joint_at(Real opening, Real shear1, Real kn, Real ks, Real bond) {
+  return {.opening = opening,
+          .shear1 = shear1,
+          .shear2 = 0,
+          .stiffness = JointStiffness<Real>::of(kn, ks),
+          .damping = 0,
+          .bond = bond,
+          .risen = 0,
+          .may_rise = 0,
+          .has_area = 1};
+}
+
+/// The same from eight numbers or packs, as `check_lanes` gives them.
+template <class T>
+JointInput<T> joint_of(const T* in, Real kn, Real ks) {
+  return {.opening = in[0],
+          .shear1 = in[1],
+          .shear2 = in[2],
+          .stiffness = JointStiffness<T>::of(T(kn), T(ks)),
+          .damping = in[3],
+          .bond = in[4],
+          .risen = in[5],
+          .may_rise = in[6],
+          .has_area = in[7]};
+}
+
 }  // namespace cdem::test

@@ -73,15 +73,7 @@ TEST_CASE("lanes of the residual law are those of its numbers") {
       [&](const auto* in, auto* out) {
         using T = std::remove_cvref_t<decltype(*in)>;
         const auto law = Residual<T>::read([](Index k) { return T(row[k]); });
-        const JointInput<T> joint{.opening = in[0],
-                                  .shear1 = in[1],
-                                  .shear2 = in[2],
-                                  .stiffness = JointStiffness<T>::of(T(kn), T(ks)),
-                                  .damping = in[3],
-                                  .bond = in[4],
-                                  .risen = in[5],
-                                  .may_rise = in[6],
-                                  .has_area = in[7]};
+        const JointInput<T> joint = joint_of(in, kn, ks);
         const JointAnswer<T> a = law.respond(joint, nullptr);
         out[0] = a.normal, out[1] = a.shear1, out[2] = a.shear2, out[3] = a.bond, out[4] = a.rise;
       },

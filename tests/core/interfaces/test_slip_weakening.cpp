@@ -23,15 +23,7 @@ struct Joint {
   Real normal, stiffness = ks, bond = 0, at = 0, slipped = 0, state = 0, work = 0, shear = 0;
 
   void lead_to(Real x) {
-    const JointInput<Real> in{.opening = -normal / kn,
-                              .shear1 = x - slipped,
-                              .shear2 = 0,
-                              .stiffness = JointStiffness<Real>::of(kn, stiffness),
-                              .damping = 0,
-                              .bond = bond,
-                              .risen = 0,
-                              .may_rise = 0,
-                              .has_area = 1};
+    const JointInput<Real> in = joint_at(-normal / kn, x - slipped, kn, stiffness, bond);
     const JointAnswer<Real> a = law.respond(in, &state);
     work += 0.5 * (shear - a.shear1) * (x - at);
     shear = -a.shear1, at = x, bond = a.bond;
@@ -106,15 +98,7 @@ TEST_CASE("lanes of the slip-weakening law are those of its numbers") {
   check_lanes<9, 6>(
       [&](const auto* in, auto* out) {
         using T = std::remove_cvref_t<decltype(*in)>;
-        const JointInput<T> joint{.opening = in[0],
-                                  .shear1 = in[1],
-                                  .shear2 = in[2],
-                                  .stiffness = JointStiffness<T>::of(T(kn), T(ks)),
-                                  .damping = in[3],
-                                  .bond = in[4],
-                                  .risen = in[5],
-                                  .may_rise = in[6],
-                                  .has_area = in[7]};
+        const JointInput<T> joint = joint_of(in, kn, ks);
         T state = in[8];
         const JointAnswer<T> a = law_of<T>(cohesion, tension).respond(joint, &state);
         out[0] = a.normal, out[1] = a.shear1, out[2] = a.shear2, out[3] = a.bond, out[4] = a.rise;

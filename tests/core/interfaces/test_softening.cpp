@@ -29,15 +29,7 @@ struct Joint {
   JointAnswer<Real> last{};
 
   void lead_to(Real n, Real s) {
-    const JointInput<Real> in{.opening = n,
-                              .shear1 = s - slipped,
-                              .shear2 = 0,
-                              .stiffness = JointStiffness<Real>::of(kn, ks),
-                              .damping = 0,
-                              .bond = bond,
-                              .risen = 0,
-                              .may_rise = 0,
-                              .has_area = 1};
+    const JointInput<Real> in = joint_at(n, s - slipped, kn, ks, bond);
     const JointAnswer<Real> a = law.respond(in, state);
     work_n -= 0.5 * (last.normal + a.normal) * (n - opening);
     work_s -= 0.5 * (last.shear1 + a.shear1) * (s - shear);
