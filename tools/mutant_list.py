@@ -35,6 +35,14 @@ PYTHON = [
         "tests/unit/model/test_overburden.py",
     ),
     Mutant(
+        "parts",
+        "all that was dug out bore is let go in the first part",
+        "src/cdem/run/stages.py",
+        "stage.held + share * (1 - release.to - stage.held)",
+        "stage.held + (1 - release.to - stage.held)",
+        "tests/validation/test_excavation.py",
+    ),
+    Mutant(
         "azimuth",
         "the two horizontal stresses change places",
         "src/cdem/model/initial_stress.py",

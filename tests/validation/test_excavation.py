@@ -158,6 +158,7 @@ def test_threads_and_a_stop_in_between_give_identical_results(tmp_path):
     broken = run(output=tmp_path / "broken")
     assert broken.run(should_stop=lambda: next(asked)) == "stopped"
     assert 0 < broken.stage.parts < 6
+    assert broken.core.scalars()["relief_to"] == pytest.approx(1 - broken.stage.parts / 6)
     resumed = run(output=tmp_path / "broken", resume=True)
     resumed.run()
     assert digest(resumed) == digest(whole)
