@@ -62,8 +62,16 @@ PYTHON = [
         "scaled bonds",
         "mass scaling that does not count bonds",
         "src/cdem/model/mass_scaling.py",
-        "springs = 2 * (bond_stiffness(t, out) + contact_stiffness(t, p, out))",
-        "springs = 2 * contact_stiffness(t, p, out)",
+        "bonds = bond_stiffness(t, out)\n",
+        "bonds = 0\n",
+        "tests/unit/model/test_mass_scaling.py",
+    ),
+    Mutant(
+        "scaled rubble",
+        "mass scaling that does not count bonds that may break",
+        "src/cdem/model/mass_scaling.py",
+        "breaking[faces[breaks].ravel()] = True",
+        "breaking[faces[breaks].ravel()] = False",
         "tests/unit/model/test_mass_scaling.py",
     ),
     Mutant(

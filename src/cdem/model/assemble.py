@@ -99,7 +99,9 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
 def _scale_masses(t: Topology, p: Properties, out: Assembly) -> None:
     """Add what the case allows, and note what a little mass would buy."""
     scaling = Scaling(t, p, out)
-    out.limits, out.free_mass = (scaling.limit(0.0), scaling.limit(OFFER)), scaling.free_mass
+    bought = scaling.added(scaling.limit(OFFER)) if scaling.free_mass > 0 else 0 * out.added_mass
+    out.limits = (scaling.limit_at_the_start(0 * bought), scaling.limit_at_the_start(bought))
+    out.free_mass = scaling.free_mass
     if p.mass_scaling is None:
         return
     out.added_mass = scaling.wanted(p.mass_scaling, p.safety)

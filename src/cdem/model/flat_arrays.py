@@ -29,6 +29,7 @@ class Properties:
             `Topology.face_kind`), shape (kinds, kinds).
         paired: Whether faces of it that touch at the start are pairs: if it has strength, or under
             initial stress, the same shape.
+        breaks: Whether bonds of it may break, see `that_may_break`, shape (interfaces,).
         stiffness: (value, factor) of k_n and k_s of bonds by interface, shape (interfaces, 4).
         automatic: Whether the case leaves them to the program, shape (interfaces,).
         stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
@@ -54,6 +55,7 @@ class Properties:
     law_parameters: Floats
     interface_of: Ints
     paired: NDArray[np.bool_]
+    breaks: NDArray[np.bool_]
     stiffness: Floats
     automatic: NDArray[np.bool_]
     stiffening: Floats

@@ -11,6 +11,9 @@ from cdem.case.laws import INTERFACE_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.topology import Topology, group_touching
 
+UNBREAKABLE = 1e8
+"""Strength [Pa] that no rock has: cohesion up to 50 MPa, tensile strength up to 25 MPa."""
+
 
 def interfaces_of(case: Case, names: list[str]) -> tuple[list[Interface], NDArray[np.int32]]:
     """Interface laws in use, and the index for each pair of kinds of faces (-1: none was given).
@@ -67,6 +70,31 @@ def check_interfaces(
             f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} may come to touch but "
             f"have no interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
         )
+
+
+def that_may_break(case: Case) -> NDArray[np.bool_]:
+    """Which interfaces, in the order of `interfaces_of`, have a strength that rock may have in any stage.
+
+    Strengths of `UNBREAKABLE` or more keep bonds whole whatever happens.
+    """
+    trial = case.model_copy(deep=True)
+
+    def weak() -> NDArray[np.bool_]:
+        laws = [*trial.interfaces.pairs, trial.interfaces.default]
+        found = [_least_strength(law) for law in laws if law is not None]
+        return np.array(found, float) < UNBREAKABLE
+
+    breaks = weak()
+    for stage in trial.stages:
+        for path, value in stage.set.items():
+            trial.set(path, value)
+        breaks = breaks | weak()
+    return breaks
+
+
+def _least_strength(law: Interface) -> float:
+    strengths = [p.name for p in INTERFACE_LAWS[law.law].parameters if p.bonds]
+    return min((float(getattr(law, name)) for name in strengths), default=0.0)
 
 
 def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.bool_]:

@@ -7,6 +7,8 @@ below it counts, M >= diag(least).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,7 +25,7 @@ ROUNDS = 60
 
 
 class Scaling:
-    """What mass each node needs for a step, bonds intact.
+    """What mass each node needs for a step: with bonds intact, and with those broken that may break.
 
     Attributes:
         free_mass: Of the nodes that are not held in all directions [kg].
@@ -35,16 +37,76 @@ class Scaling:
     """
 
     def __init__(self, t: Topology, p: Properties, out: Assembly) -> None:
+        held = p.supported.all(axis=1)
+        self.free_mass = float(out.arrays["node.mass"][~held].sum())
+        exposed = out.arrays["face.initially_exposed"].astype(bool)
+        bonds = bond_stiffness(t, out)
+        self._states = [_Needs(t, p, out, bonds + contact_stiffness(t, p, out, exposed), True)]
+        breaking = _breaking_faces(t, p, out)
+        if breaking.any():
+            springs = bond_stiffness(t, out, p.breaks) + contact_stiffness(
+                t, p, out, exposed | breaking, any_mate=True
+            )
+            self._states.append(_Needs(t, p, out, springs, False))
+
+    def added(self, limit: float) -> Floats:
+        """Mass to add for a stable step [s] to each node [kg], shape (nodes,)."""
+        return np.maximum.reduce([state.added(limit) for state in self._states])
+
+    def limit(self, share: float) -> float:
+        """The longest stable step [s] for which no more than a share of what is not held is added."""
+        largest = max(state.largest for state in self._states)
+        return _longest(largest, lambda t: self.added(t).sum() <= share * self.free_mass)
+
+    def limit_at_the_start(self, added: Floats) -> float:
+        """The longest stable step [s] with bonds intact and this mass added, shape (nodes,)."""
+        intact = self._states[0]
+        return _longest(intact.largest, lambda t: (intact.added(t) <= added).all())
+
+    def wanted(self, asked: MassScaling, safety: float) -> Floats:
+        """What a case asks for, when this share of the stable step is used: as `added`."""
+        limit = np.inf if asked.step is None else asked.step / safety
+        if asked.most is not None:
+            limit = min(limit, self.limit(asked.most))
+        return self.added(limit)
+
+
+def _longest(largest: float, fits: Callable[[float], bool]) -> float:
+    """The longest stable step [s] that fits, from that of the largest squared frequency on."""
+    if not largest > 0:
+        return np.inf
+    low, high = 2 / np.sqrt(largest), 200 / np.sqrt(largest)
+    for _ in range(ROUNDS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return float(same_everywhere(np.array(low)))
+
+
+class _Needs:
+    """What mass each node needs in one state of the bonds.
+
+    Attributes:
+        largest: Squared frequency that bounds the step without more mass [1/s2].
+
+    Args:
+        t, p, out: As for `Scaling`.
+        stiffness: Of bonds and contacts at each node [N/m], shape (nodes,).
+        bonded: Whether blocks that are lumped while they have bonds are.
+    """
+
+    def __init__(
+        self, t: Topology, p: Properties, out: Assembly, stiffness: Floats, bonded: bool
+    ) -> None:
         arrays = out.arrays
         self._mass = arrays["node.mass"]
         dense = arrays["node.mass_row_first"] >= 0
         alone = one_element_blocks(t)
-        # rock of single elements stays bonded for the most part; larger blocks come loose as a whole
-        loose = ~(p.lumped_while_bonded & alone & _bonded_blocks(t, out))
-        lumped = ~dense | ~loose[t.node_block]
+        as_bonded = np.zeros(len(alone), bool)
+        if bonded and p.lumped_while_bonded:  # larger blocks come loose as a whole
+            as_bonded = alone & _bonded_blocks(t, out)
+        lumped = ~dense | as_bonded[t.node_block]
         held = p.supported.all(axis=1)  # cannot become unstable
-        self.free_mass = float(self._mass[~held].sum())
-        springs = 2 * (bond_stiffness(t, out) + contact_stiffness(t, p, out))
+        springs = 2 * stiffness
         load = arrays["node.lumped_frequency_squared"] * self._mass + springs
         self._load = np.where(held, 0.0, load)
         self._least = np.where(lumped, self._mass, out.least_mass)
@@ -58,49 +120,32 @@ class Scaling:
         # single elements keep the shape of their matrix: all their nodes grow by one factor
         self._alone = dense & alone[t.node_block]
         self._factor_square = np.minimum(by_node, np.where(lumped, np.inf, by_matrix))
+        one_by_one = np.minimum(self._square, self._load / self._least)
+        self.largest = np.where(self._alone, self._factor_square, one_by_one).max(initial=0.0)
 
     def added(self, limit: float) -> Floats:
-        """Mass to add for a stable step [s] to each node [kg], shape (nodes,)."""
+        """As `Scaling.added`."""
         quarter = limit**2 / 4
         needs = np.where(self._square * quarter > 1, quarter * self._load - self._least, 0.0)
         factor = np.maximum(1.0, quarter * self._factor_square)
         return np.where(self._alone, (factor - 1) * self._mass, np.maximum(needs, 0.0))
 
-    def limit(self, share: float) -> float:
-        """The longest stable step [s] for which no more than a share of what is not held is added."""
-        largest = np.where(
-            self._alone, self._factor_square, np.minimum(self._square, self._load / self._least)
-        ).max(initial=0.0)
-        if not largest > 0:
-            return np.inf
-        low, high = 2 / np.sqrt(largest), 200 / np.sqrt(largest)
-        for _ in range(ROUNDS if share > 0 else 0):
-            middle = 0.5 * (low + high)
-            fits = self.added(middle).sum() <= share * self.free_mass
-            low, high = (middle, high) if fits else (low, middle)
-        return float(same_everywhere(np.array(low)))
 
-    def wanted(self, asked: MassScaling, safety: float) -> Floats:
-        """What a case asks for, when this share of the stable step is used: as `added`."""
-        limit = np.inf if asked.step is None else asked.step / safety
-        if asked.most is not None:
-            limit = min(limit, self.limit(asked.most))
-        return self.added(limit)
-
-
-def bond_stiffness(t: Topology, out: Assembly) -> Floats:
-    """Stiffness of all bonds at each node [N/m], shape (nodes,)."""
+def bond_stiffness(t: Topology, out: Assembly, broken: NDArray[np.bool_] | None = None) -> Floats:
+    """Stiffness of bonds at each node [N/m], shape (nodes,), but of those of broken interfaces."""
     nodes = len(t.node_position)
     total = np.zeros(nodes)
     for kind, n in (("triangles", 3), ("quads", 4)):
         count = out.counts[f"{kind}.count"]
         largest = out.arrays[f"{kind}.stiffness"].reshape(2, -1)[:, :count].max(axis=0, initial=0.0)
         ends = out.arrays[f"{kind}.nodes"].reshape(2 * n, -1)[:, :count]
-        share = np.tile(largest * out.arrays[f"{kind}.area"][:count] / n, 2 * n)
+        holds = _holds(out, kind, count, broken)
+        share = np.tile(holds * largest * out.arrays[f"{kind}.area"][:count] / n, 2 * n)
         total += np.bincount(ends.ravel(), share, nodes)
     count = out.counts["overlaps.count"]
     largest = out.arrays["overlaps.stiffness"].reshape(2, -1)[:, :count].max(axis=0, initial=0.0)
     points = np.diff(t.overlap_first)
+    largest = _holds(out, "overlaps", count, broken) * largest
     per_point = np.repeat(largest, points) * t.overlap_area
     owner = np.repeat(np.arange(count), points)
     for side, weights in enumerate((t.overlap_weights_a, t.overlap_weights_b)):
@@ -110,15 +155,39 @@ def bond_stiffness(t: Topology, out: Assembly) -> Floats:
     return total
 
 
-def contact_stiffness(t: Topology, p: Properties, out: Assembly) -> Floats:
-    """Stiffness that contacts of the faces without bonds may have at each node [N/m], (nodes,).
+def _holds(
+    out: Assembly, kind: str, count: int, broken: NDArray[np.bool_] | None
+) -> NDArray[np.bool_]:
+    """Which pairs of a kind hold while bonds of some interfaces are broken, shape (count,)."""
+    interface = out.arrays[f"{kind}.interface"][:count]
+    return np.ones(count, bool) if broken is None else ~broken[interface]
+
+
+def _breaking_faces(t: Topology, p: Properties, out: Assembly) -> NDArray[np.bool_]:
+    """Faces of bonds that may break, shape (faces,)."""
+    breaking = np.zeros(len(t.face_nodes), bool)
+    for kind, faces in out.pair_faces.items():
+        breaks = p.breaks[out.arrays[f"{kind}.interface"][: len(faces)]]
+        breaking[faces[breaks].ravel()] = True
+    return breaking
+
+
+def contact_stiffness(
+    t: Topology,
+    p: Properties,
+    out: Assembly,
+    exposed: NDArray[np.bool_],
+    *,
+    any_mate: bool = False,
+) -> Floats:
+    """Stiffness that contacts of exposed faces may have at each node [N/m], shape (nodes,).
 
     Of faces that lie on each other at the start their own contact counts; of all others one with a
-    face of the same kind, area and stiffness.
+    face of the same kind, area and stiffness. In rubble a face may meet any other (`any_mate`): where
+    both sides are in series one that is rigid counts.
     """
     if len(p.contact_stiffness) == 0:
         return np.zeros(len(t.node_position))
-    exposed = out.arrays["face.initially_exposed"].astype(bool)
     corners = (t.face_nodes >= 0).sum(axis=1)
     own, area = out.arrays["face.stiffness"], out.arrays["face.area"] / corners
     most = np.zeros(len(own))
@@ -126,7 +195,7 @@ def contact_stiffness(t: Topology, p: Properties, out: Assembly) -> Floats:
     def count(a: NDArray, b: NDArray) -> None:
         interface = p.interface_of[t.face_kind[a], t.face_kind[b]]
         law = p.contact_stiffness[interface]
-        in_series = 2 * own[a] * own[b] / (own[a] + own[b])
+        in_series = 2 * own[a] * (1 if any_mate else own[b] / (own[a] + own[b]))
         both = np.where(p.in_series[interface], in_series, np.maximum(own[a], own[b]))
         rows = [np.where(law[:, i] > 0, law[:, i], law[:, i + 1] * both) for i in (0, 2)]
         spring = np.maximum(*rows) * np.minimum(area[a], area[b])
@@ -136,9 +205,10 @@ def contact_stiffness(t: Topology, p: Properties, out: Assembly) -> Floats:
     faces = np.flatnonzero(exposed)
     mates = t.pair_faces.reshape(-1, 2)
     mates = mates[exposed[mates].all(axis=1)]
-    lonely = np.setdiff1d(faces, mates)
+    lonely = faces if any_mate else np.setdiff1d(faces, mates)
     count(lonely, lonely)
-    count(*mates.T)
+    if not any_mate:
+        count(*mates.T)
     ends = t.face_nodes[faces]
     used = ends >= 0
     # semi-springs of either side, as much again for semi-edges

@@ -9,14 +9,16 @@ from scenes import case, irregular_tets
 import cdem
 from cdem.errors import CaseError
 from cdem.model import mass_scaling
+from cdem.model.interfaces import that_may_break
 from cdem.model.masses import one_element_blocks
 
 STRONG = {"friction_angle": 30, "cohesion": 1e12, "tensile_strength": 1e12}
+WEAK = {"friction_angle": 30, "cohesion": 10, "tensile_strength": 10}
 HEX = {"size": [2, 2, 2], "divisions": [2, 2, 2]}
 JOINTS = [{"name": "flat", "dip": 30, "dip_direction": 90, "spacing": 0.7, "origin": [0, 0, 0.1]}]
 
 
-def shaken(path, **more):
+def shaken(path, *, interface=STRONG, **more):
     """Bonded tets whose corners are shaken, in a cube of 4 cells; nothing damps."""
     model = {
         **irregular_tets(path / "m.vtk", [4, 4, 4], [4, 4, 4]),
@@ -27,7 +29,7 @@ def shaken(path, **more):
         [],
         {"default": {}},
         model=model,
-        interfaces={"default": STRONG},
+        interfaces={"default": interface},
         **{"stages": stages} | more,
     )
 
@@ -118,6 +120,44 @@ def test_blocks_of_a_few_elements_reach_the_step_too():
     dt = 1.5 * float(free.core.scalars()["dt"])
     sim = cdem.Simulation(jointed(time={"mass_scaling": {"step": dt}}), threads=1)
     assert float(sim.core.scalars()["dt"]) >= dt * (1 - 1e-9)
+
+
+def test_the_step_asked_for_holds_in_rubble(tmp_path):
+    """All bonds break at once: every face then has contacts, and every tet its exact inertia."""
+    free = cdem.Simulation(shaken(tmp_path, cdem=2), threads=1)
+    dt = 2.5 * float(free.core.scalars()["dt"])
+    sim, intact = (
+        cdem.Simulation(
+            shaken(tmp_path, cdem=2, interface=interface, time={"mass_scaling": {"step": dt}}),
+            threads=1,
+        )
+        for interface in (WEAK, STRONG)
+    )
+    assert sim.build.assembly.added_mass.sum() > 1.5 * intact.build.assembly.added_mass.sum()
+    velocity = sim.fields["velocity"]
+    velocity += np.random.default_rng(1).uniform(-0.5, 0.5, velocity.shape)
+    steps = []
+    while sum(sim.broken.values()) < 0.95 * 3 * sim.audit.counts["bonded_pairs"]:
+        sim.step(20)
+        steps.append(float(sim.core.scalars()["dt"]))
+        assert len(steps) < 100
+    sim.step(20)
+    assert float(sim.core.scalars()["dt"]) >= dt * (1 - 1e-9)
+    assert min(steps) >= dt * (1 - 1e-9)
+
+
+def test_bonds_break_that_any_stage_weakens():
+    def breaks(**stage):
+        interfaces = {"default": STRONG, "pairs": [{"between": ["rock", "rock"], **STRONG}]}
+        stages = [{"name": "a", "mode": "dynamic", "duration": 1, **stage}]
+        made = jointed()
+        made.interfaces = interfaces
+        made.stages = stages
+        return that_may_break(made).tolist()
+
+    assert breaks() == [False, False]
+    assert breaks(set={"interfaces.default.cohesion": "1 MPa"}) == [False, True]
+    assert breaks(set={"interfaces.pairs.0.tensile_strength": "99 MPa"}) == [True, False]
 
 
 def test_no_more_mass_is_added_than_was_allowed(tmp_path):
