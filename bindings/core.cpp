@@ -24,6 +24,7 @@
 #include "core/run/excavate.hpp"
 #include "core/run/run.hpp"
 #include "core/run/take_out.hpp"
+#include "core/water/water.hpp"
 
 using namespace nb::literals;
 
@@ -47,6 +48,15 @@ void take_counts(Core& core, const nb::dict& c) {
     set.points = kind.points;
     set.corner_first = number((name + ".corner_first").c_str());
   });
+  const auto wet = [&](WetFaces& w, const std::string& name, Index vertices) {
+    w.count = number(("wet_" + name + ".count").c_str());
+    w.stride = padded_stride(w.count);
+    w.vertices = vertices;
+  };
+  wet(m.water.triangles, "triangles", 3);
+  wet(m.water.quads, "quads", 4);
+  m.water.quads.row_first = 3 * m.water.triangles.count;
+  m.water.pore_row_first = m.water.quads.row_first + 4 * m.water.quads.count;
   for_each_pair_set(m, core.state, [&](const auto& kind, PairSet& p, const PairState&) {
     const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
     p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
@@ -218,6 +228,7 @@ void bind_setup(nb::class_<Core>& core) {
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
       .def("bond_places", &bond_place_arrays)
+      .def("find_water", [](Core& c) { change_water(c.model, c.state); })
       .def("set_initial_tractions", &set_tractions, "stress"_a, "bonded"_a)
       .def("restore", &restore)
       .def("prepare",

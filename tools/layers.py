@@ -19,6 +19,7 @@ FOLDERS = [
     "contact/geometry",
     "elements",
     "nodes",
+    "water",
     "contact/narrow_phase",
     "contact/force",
     "bonds",

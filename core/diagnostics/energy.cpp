@@ -47,7 +47,9 @@ Energies sum_terms(const Model& m, const State& s) {
   Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];
   e.terms[energy_term("kinetic")] = sample(0);
   e.terms[energy_term("step_change")] = column_sum(s.nodes.step_change) - sample(3);
-  e.terms[energy_term("external")] = column_sum(s.nodes.work_external) - sample(1);
+  e.terms[energy_term("water")] = column_sum(s.nodes.work_water);  // a load like the others
+  e.terms[energy_term("external")] =
+      column_sum(s.nodes.work_external) - sample(1) - e.terms[energy_term("water")];
   e.terms[energy_term("damping")] = column_sum(s.nodes.work_damping) - sample(2) +
                                     s.stopped_energy + column_sum(s.springs.dashpot) +
                                     column_sum(s.edges.dashpot) + s.taken_out_dashpot;

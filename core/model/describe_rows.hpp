@@ -45,6 +45,16 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));
   visit(RowKind{"loads", "forces on nodes"}, last(m.load_first));
   visit(RowKind{"supports", "nodes of which a component is given"}, total(m.support_component) / 3);
+  visit(RowKind{"wet_triangles", "triangles that water may press on"}, m.water.triangles.count);
+  visit(RowKind{"wet_quads", "quadrilaterals that water may press on"}, m.water.quads.count);
+  visit(RowKind{"wet_triangles.pairs", "faces that lie on wet triangles at the start"},
+        last(m.water.triangles.pair_first));
+  visit(RowKind{"wet_quads.pairs", "faces that lie on wet quadrilaterals at the start"},
+        last(m.water.quads.pair_first));
+  visit(RowKind{"water_fields", "pressure fields; the last one is dry"}, total(m.water.fields) / 8);
+  visit(RowKind{"water_rows", "forces of water on faces and in elements"},
+        m.water.pore_row_first + (m.water.biot.size() > 0 ? element_row_count(m, s) : 0));
+  visit(RowKind{"node_water", "rows of water that a node sums"}, last(m.water.node_first));
   visit(RowKind{"curves", "histories of loads and supports"}, Index(m.curve_time.size()));
 }
 

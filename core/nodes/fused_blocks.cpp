@@ -30,6 +30,7 @@ struct Elements {
   /// Does any load but gravity act on nodes from `first` to before `last`?
   bool is_loaded(Index first, Index last) const {
     bool any = m.load_first[first] < m.load_first[last];
+    any |= m.water.node_first.size() > 0 && m.water.node_first[first] < m.water.node_first[last];
     for (std::size_t k = 4 * std::size_t(first); k < 4 * std::size_t(last); ++k)
       any |= s.nodes.relief.size() > 0 && s.nodes.relief[k] != 0;
     return any;

@@ -48,7 +48,8 @@ inline LoadColumns load_columns(const Model& m, const State& s) {
           .load_force = m.load_force.data(),
           .curve_value = s.load_factor.data(),
           .relief = s.nodes.relief.size() > 0 ? s.nodes.relief.data() : nullptr,
-          .relief_part = s.relief.part};
+          .relief_part = s.relief.part,
+          .water = s.nodes.water.size() > 0 ? s.nodes.water.data() : nullptr};
 }
 
 inline CornerLists corner_lists(const State& s) {

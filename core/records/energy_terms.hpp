@@ -43,6 +43,7 @@ inline constexpr EnergyTerm energy_terms[] = {
     {.name = "external",
      .kind = EnergyKind::supplied,
      .meaning = "work of loads, gravity and supports"},
+    {.name = "water", .kind = EnergyKind::supplied, .meaning = "work of water pressure"},
 };
 inline constexpr std::size_t energy_term_count = std::size(energy_terms);
 

@@ -4,6 +4,7 @@
 #include "core/contact/geometry/views.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/run/take_out.hpp"
+#include "core/water/water.hpp"
 
 namespace cdem {
 
@@ -110,6 +111,10 @@ void excavate(Model& m, State& s, const Flag* leaves) {
   }
   s.relief = {};
   take_out(m, s, leaves);
+  if (s.step == 0) return;
+  const Column<Real> change = change_water(m, s);
+  for (std::size_t k = 0; k < change.size(); ++k)
+    if (!leaves[k / 4]) s.nodes.relief[k] -= change[k];
 }
 
 void let_go(State& s, Real part, Real end_time) {

@@ -15,7 +15,12 @@ from cdem.case.schema import CaseParts
 from cdem.errors import CaseError
 
 Problem = tuple[tuple[str | int, ...], str]  # path, what is wrong
-SETTABLE = ("interfaces.", "loads.", "groups.")  # another mesh or material is another model
+SETTABLE = (
+    "interfaces.",
+    "loads.",
+    "groups.",
+    "water.",
+)  # another mesh or material is another model
 AT_START = ("material", "velocity", "angular_velocity")  # of a group
 
 
@@ -32,10 +37,29 @@ def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
 def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _materials(case)
     yield from _initial_stress(case)
+    yield from _water(case)
     yield from _groups(case)
     yield from _excavation(case)
     yield from _joints(case)
     yield from _unique_names(case)
+
+
+def _water(case: CaseParts) -> Iterator[Problem]:
+    for name, material in case.materials.items():
+        if (material.saturated_density or material.density) < material.density:
+            yield ("materials", name, "saturated_density"), "must be at least density"
+    if case.water is None:
+        for i, history in enumerate(case.histories):
+            if "water_force" in history.quantities:
+                yield ("histories", i, "quantities"), "water_force needs water in the case"
+        return
+    named = [pair.name for pair in case.interfaces.pairs if pair.name is not None]
+    for i, field in enumerate(case.water.fields):
+        if field.interface is not None and field.interface not in named:
+            yield ("water", "fields", i, "interface"), _no("interface", field.interface, named)
+    gx, gy, gz = case.loads.gravity
+    if gx or gy or not gz < 0:
+        yield ("loads", "gravity"), f"must point along -z where there is water, got {[gx, gy, gz]}"
 
 
 def _mesh_file(case: CaseParts, folder: Path) -> Iterator[Problem]:
@@ -150,6 +174,9 @@ def _listed_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]
     for i, stress in enumerate(case.initial_stress):
         for k, name in enumerate(stress.groups or []):
             yield ("initial_stress", i, "groups", k), name
+    for i, field in enumerate(case.water.fields if case.water else []):
+        for k, name in enumerate(field.groups or []):
+            yield ("water", "fields", i, "groups", k), name
     for i, stage in enumerate(case.stages):
         for k, name in enumerate(stage.remove):
             yield ("stages", i, "remove", k), name
@@ -161,6 +188,7 @@ def _unique_names(case: CaseParts) -> Iterator[Problem]:
         ("histories",): case.histories,
         ("interfaces", "pairs"): case.interfaces.pairs,
         ("model", "joints"): case.model.joints,
+        ("water", "fields"): case.water.fields if case.water else [],
     }
     for keys, entries in named.items():
         seen: set[str] = set()

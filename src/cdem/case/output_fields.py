@@ -57,6 +57,14 @@ OUTPUT_FIELDS = [
         frames="chosen", surface="never", colors=None,
     ),
     OutputField(
+        "effective_stress", "Mean stress less the part that water in the pores bears (biot)", "Pa",
+        "elements", frames="chosen", surface="never", colors=None,
+    ),
+    OutputField(
+        "pore_pressure", "Pressure of the water in the ground, mean of the element", "Pa",
+        "elements", frames="chosen", surface="chosen", colors="amount",
+    ),
+    OutputField(
         "damage", "Broken part of an element's bonded faces", "1", "elements",
         frames="chosen", surface="always", colors="whole range",
     ),
@@ -94,6 +102,8 @@ OUTPUT_FIELDS += [
 ]  # fmt: skip
 """In the order in which they are listed everywhere."""
 
+OF_WATER = ("effective_stress", "pore_pressure")
+"""Fields that only cases with water have."""
 CARRIED = [f for f in OUTPUT_FIELDS if f.surface != "never" and f.on != "faces"]
 """Fields of nodes and elements that the surface carries over to its points and faces."""
 CHOICE = [f.name for f in OUTPUT_FIELDS if f.frames == "chosen"]

@@ -22,6 +22,7 @@ from cdem.case.types import (
     Spin3,
     Velocity3,
 )
+from cdem.case.water_schema import Water
 
 MOST_STEPS = 2_000_000_000
 """So many steps can be counted."""
@@ -36,6 +37,14 @@ class Material(Part):
     )
     poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(
         description="Poisson's ratio [1]"
+    )
+    biot: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
+        0.0,
+        description="Biot's coefficient: which part of the pressure of water in the pores takes from "
+        "the stress; 0: water presses in joints and on faces only [1]",
+    )
+    saturated_density: Annotated[float, Quantity("kg/m3", above=0)] | None = Field(
+        None, description="Density that weighs below the water table; by default density [kg/m3]"
     )
     if TYPE_CHECKING:
         law: str
@@ -277,9 +286,9 @@ class HistoryPoint(Part):
     )
     group: Name | None = Field(None, description="Follow this group")
     point: Length3 | None = Field(None, description="Follow the node nearest to this point [m]")
-    quantities: list[Literal["centroid", "displacement", "velocity", "energy", "force"]] = Field(
-        min_length=1, description="What to follow"
-    )
+    quantities: list[
+        Literal["centroid", "displacement", "velocity", "energy", "force", "water_force"]
+    ] = Field(min_length=1, description="What to follow")
 
     @model_validator(mode="after")
     def _one_place(self) -> HistoryPoint:
@@ -307,6 +316,7 @@ class CaseParts(Part):
     interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
     loads: Loads = Field(Loads(), description="What acts from outside")
     initial_stress: list[InitialStress] = Field([], description="Stress at the start")
+    water: Water | None = Field(None, description="Water in joints, pores and the open")
     stages: list[Stage] = Field(min_length=1, description="Parts of the run, in order")
     contact: Contact = Field(Contact(), description="How contacts are found")
     elements: Elements = Field(Elements(), description="Element formulation")

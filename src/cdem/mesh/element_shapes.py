@@ -188,6 +188,13 @@ def gauss_positions(shape: str, corners: Array) -> Array:
     return matrix_product(values, corners)
 
 
+def point_values(shape: str, *, one: bool = False) -> Array:
+    """Shape functions at the Gauss points, or at one in the middle [1], shape (points, nodes)."""
+    points, weights = _stiffness_rule(shape)
+    values, _ = _FUNCTIONS[shape](points)
+    return np.average(values, axis=0, weights=weights)[None] if one else values
+
+
 def mass_matrices(shape: str, corners: Array, density: Array) -> Array:
     """Consistent mass matrix of each element [kg], shape (elements, nodes, nodes).
 

@@ -17,6 +17,7 @@ from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
 from cdem.model.ruling_step import remedy, ruling_step
+from cdem.model.wetted import idle_water, water_text, wetted
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
@@ -55,6 +56,7 @@ class Audit:
         self.interfaces = bonded_interfaces(build)
         self.contacts = contact_interfaces(build)
         self.compensation = self._compensation()
+        self.water = wetted(build)
         self.step = self._step()
         self.warnings = self._warnings()
 
@@ -161,6 +163,7 @@ class Audit:
         out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
         out += idle_bonds(b)
         out += uneven_tiles(b)
+        out += idle_water(b, self.water)
         if any(s.mode == "static" for s in b.case.stages):
             for name, count in self._unheld_blocks().items():
                 blocks = "1 block has" if count == 1 else f"{count:,} blocks have"
@@ -231,6 +234,7 @@ class Audit:
             "interfaces": self.interfaces,
             "compensation": self.compensation,
             "contacts": self.contacts,
+            "water": self.water,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
             "memory_bytes": self.memory,
@@ -276,6 +280,7 @@ class Audit:
             )
         lines += self._stiffness_text()
         lines += self._initial_text()
+        lines += water_text(self.water)
         s = self.step
         lines += [
             "",

@@ -39,6 +39,7 @@ from cdem.model.options import options_of
 from cdem.model.snap_back import check_fall
 from cdem.model.stiffness import bond_row, interface_entries
 from cdem.model.supports import supports_of
+from cdem.model.water import water_of
 
 Floats = NDArray[np.float64]
 
@@ -151,6 +152,7 @@ def build(case: Case) -> Build:
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(topology.node_position)
     under = set_initial_stress(case, topology, names, laws, core)
+    core.find_water()
     built = Build(
         case,
         merged,
@@ -237,6 +239,7 @@ def _assemble(
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
+    water_of(case, topology, names, laws, interface_of, curves, native.padded_stride, parts)
     return parts
 
 
@@ -286,6 +289,6 @@ def change(built: Build) -> dict[str, NDArray]:
         built.curves,
         built.assembly.added_mass,
     )
-    kept = ("support.", "load.", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
+    kept = ("support.", "load.", "water.", "wet_", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
             "material.parameters")  # fmt: skip
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}

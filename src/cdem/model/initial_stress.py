@@ -12,11 +12,14 @@ from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
 from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.schema import Material
 from cdem.case.stress_schema import InitialStress, PrincipalStress
 from cdem.errors import CaseError
 from cdem.mesh import element_shapes
 from cdem.mesh.topology import Topology
+from cdem.model.curves import constant
 from cdem.model.overburden import weight_above
+from cdem.model.water import WaterTables
 
 Floats = NDArray[np.float64]
 
@@ -75,6 +78,10 @@ def set_initial_stress(
     stress = field.at(points, group[:, 0])
     differ = np.flatnonzero(group[:, 0] != group[:, 1])  # the mean of both sides
     stress[differ] = 0.5 * (stress[differ] + field.at(points[differ], group[differ, 1]))
+    if field.water is not None:  # joints bear what is left of the whole stress of the rock
+        joint = field.water.in_wet_joints(core.model(), points, faces[:, 0])
+        pores = 0.5 * sum(field.in_pores(points, group[:, side]) for side in (0, 1))
+        stress[:, :3] += (joint - pores)[:, None]
     bonded = np.array([INTERFACE_LAWS[law.law].bonds(law) for law in laws], np.int8)
     cut, most, face = core.set_initial_tractions(stress, bonded)
     nodes = t.face_nodes[face] if face >= 0 else None
@@ -123,6 +130,7 @@ class _Field:
 
     def __init__(self, case: Case, t: Topology, names: list[str]) -> None:
         self._case, self._t, self._names = case, t, names
+        self.water = None if case.water is None else WaterTables(case, t, names, constant())
         self._pulls: dict[int, bool] = {}
         for i, entry in enumerate(case.initial_stress):
             if entry.vertical:
@@ -145,6 +153,17 @@ class _Field:
                 self._pulls[i] = self._pulls.get(i, True) and pulls
         return found
 
+    def in_pores(self, points: Floats, group: NDArray[np.integer]) -> Floats:
+        """Pressure that water in the pores takes from the stress [Pa], shape (points,)."""
+        if self.water is None:
+            return np.zeros(len(points))
+        biot = np.array([m.biot for m in self._materials])
+        return biot[group] * self.water.pressure(self.water.in_pores(points, group), points)
+
+    @property
+    def _materials(self) -> list[Material]:
+        return [self._case.materials[self._case.groups[name].material] for name in self._names]
+
     def pulled(self) -> list[int]:
         """Entries that pull the rock in all directions wherever they hold."""
         return [i for i, pulls in self._pulls.items() if pulls]
@@ -161,14 +180,14 @@ class _Field:
     def _overburden(
         self, entry: InitialStress, points: Floats, group: NDArray[np.integer]
     ) -> Floats:
-        density = np.array(
-            [self._case.materials[self._case.groups[name].material].density for name in self._names]
-        )
+        density = np.array([m.density for m in self._materials])
         mass, top = weight_above(self._t, density, points)
         if entry.surface != "top":
             ends = np.where(np.isfinite(top), np.maximum(top, points[:, 2]), points[:, 2])
             mass += density[group] * np.maximum(0.0, entry.surface - ends)
-        pressure = mass * -self._case.loads.gravity[2]
+        if self.water is not None:
+            mass += self._water_above(points, group, top)
+        pressure = mass * -self._case.loads.gravity[2] - self.in_pores(points, group)
         trend = np.radians(entry.azimuth)
         first = np.array([np.sin(trend), np.cos(trend), 0.0])
         second = np.array([-first[1], first[0], 0.0])
@@ -178,6 +197,22 @@ class _Field:
             + np.diag([0.0, 0.0, 1.0])
         )
         return -pressure[:, None] * np.array([ratio[i, j] for i, j in PLACES])
+
+    def _water_above(self, points: Floats, group: NDArray[np.integer], top: Floats) -> Floats:
+        """Mass of water over the ground, and of that which saturates the rock above [kg/m2].
+
+        The rock between a point and the water table counts as that of the point.
+        """
+        assert self.water is not None
+        unit = self.water.unit
+        deep = self.water.pressure(self.water.in_pores(points, group), points) / unit
+        more = np.array([(m.saturated_density or m.density) - m.density for m in self._materials])
+        covered = np.isfinite(top)
+        ground = np.where(covered, top, points[:, 2])
+        over = np.stack([points[:, 0], points[:, 1], ground], axis=1)
+        open_water = self.water.near(np.full(len(points), self.water.reservoir, np.int32), over)
+        depth = self.water.pressure(open_water, over) / unit
+        return more[group] * np.minimum(deep, ground - points[:, 2]) + depth * self.water.density
 
     def _check_gravity(self, entry: int) -> None:
         g = self._case.loads.gravity

@@ -56,12 +56,12 @@ class Scaling:
     def limit(self, share: float) -> float:
         """The longest stable step [s] for which no more than a share of what is not held is added."""
         largest = max(state.largest for state in self._states)
-        return _longest(largest, lambda t: self.added(t).sum() <= share * self.free_mass)
+        return _longest(largest, lambda t: bool(self.added(t).sum() <= share * self.free_mass))
 
     def limit_at_the_start(self, added: Floats) -> float:
         """The longest stable step [s] with bonds intact and this mass added, shape (nodes,)."""
         intact = self._states[0]
-        return _longest(intact.largest, lambda t: (intact.added(t) <= added).all())
+        return _longest(intact.largest, lambda t: bool((intact.added(t) <= added).all()))
 
     def wanted(self, asked: MassScaling, safety: float) -> Floats:
         """What a case asks for, when this share of the stable step is used: as `added`."""

@@ -147,6 +147,31 @@ def pieces_of(sim: RunState) -> NDArray[np.int32]:
 @output_field("stress")
 def stress_of(sim: RunState) -> NDArray[np.float64]:
     """Mean stress of each element [Pa], xx yy zz xy yz zx, shapes one after the other."""
+    stress = effective_stress_of(sim)
+    if sim.case.water is not None:
+        names, case = sim.build.group_names, sim.case
+        biot = np.array([case.materials[case.groups[name].material].biot for name in names])
+        stress[:, :3] -= (biot[group_of(sim)] * pore_pressure_of(sim))[:, None]
+    return stress
+
+
+@output_field("pore_pressure")
+def pore_pressure_of(sim: RunState) -> NDArray[np.float64]:
+    """Pressure of the water in the ground [Pa], mean of the nodes of each element, as `stress_of`."""
+    if sim.case.water is None:
+        return np.zeros(len(group_of(sim)))
+    arrays, at = sim.build.arrays, sim.motion[:, :3]
+    rows = sim.core.rebuilt()["water.fields_now"].reshape(-1, 8)[arrays["water.node_field"]]
+    pressure = rows[:, 5] * (
+        rows[:, 0] + (rows[:, 1:4] * at).sum(axis=1) + rows[:, 4] * arrays["water.node_kept"]
+    )
+    elements = sim.build.topology.element_nodes.values()
+    return np.concatenate([np.maximum(pressure, 0.0)[nodes].mean(axis=1) for nodes in elements])
+
+
+@output_field("effective_stress")
+def effective_stress_of(sim: RunState) -> NDArray[np.float64]:
+    """Mean stress that the law of each element gives [Pa], as `stress_of`."""
     tables = sim.core.stress()
     counts = sim.build.assembly.counts
     rows = [tables[shape].reshape(6, -1)[:, : counts[f"{shape}.count"]].T for shape in tables]

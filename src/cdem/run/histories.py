@@ -12,7 +12,9 @@ from cdem.run.state import RunState
 
 def tracks(sim: RunState) -> list[tuple[str, Any]]:
     """Column name and value of everything that the case's histories follow."""
-    units = {"centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N"}
+    units = {
+        "centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N", "water_force": "N",
+    }  # fmt: skip
     out: list[tuple[str, Any]] = []
     position = sim.build.start_position
     for entry in sim.case.histories:
@@ -36,6 +38,8 @@ def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.
     fields = sim.fields
     if quantity == "force":  # of supports, which is what a user measures at a loading plate
         return fields["reaction"][nodes].sum(axis=0)
+    if quantity == "water_force":
+        return sim.core.fields()["node.water"].reshape(-1, 4)[nodes, :3].sum(axis=0)
     name = "position" if quantity == "centroid" else quantity
     mass = fields["mass"][nodes]
     return (mass[:, None] * fields[name][nodes]).sum(axis=0) / mass.sum()

@@ -8,17 +8,22 @@ from numpy.typing import NDArray
 from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, STATES, Law
+from cdem.case.output_fields import OF_WATER
 from cdem.model.interfaces import interfaces_of
 from cdem.run.state import RunState
 
 
 def wanted_fields(case: Case) -> list[str]:
-    """The output fields of a case, without the states of laws that it does not have."""
+    """The output fields of a case, without the states of laws and the water that it does not have."""
     i = case.interfaces
     used = [BLOCK_LAWS[material.law] for material in case.materials.values()]
     used += [INTERFACE_LAWS[one.law] for one in (i.default, *i.pairs) if one is not None]
     states = {variable.name for law in used for variable in law.state}
-    return [name for name in case.output.fields if name not in STATES or name in states]
+    return [
+        name
+        for name in case.output.fields
+        if (name not in STATES or name in states) and (name not in OF_WATER or case.water)
+    ]
 
 
 def state_of(sim: RunState, name: str) -> NDArray[np.float64]:

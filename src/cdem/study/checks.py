@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from cdem.case.formula import Formula, is_formula, unknown
 from cdem.case.source import Keys
-from cdem.study.formula import Formula, is_formula, unknown
 from cdem.study.schema import (
     COLUMNS,
     CRITICAL_RESULTS,

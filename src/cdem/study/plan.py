@@ -11,12 +11,12 @@ from typing import Any
 
 from cdem._version import __version__
 from cdem.case.case import Case
+from cdem.case.formula import Formula, is_formula
 from cdem.case.input_file import is_file
 from cdem.case.reader import load_case_data, put
 from cdem.case.source import Source
 from cdem.errors import CaseError
 from cdem.study import sampling
-from cdem.study.formula import Formula, is_formula
 from cdem.study.run import Run
 from cdem.study.study import Study
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.study.formula import Formula, is_formula, unknown
+from cdem.case.formula import Formula, is_formula, unknown
 from cdem.study.run import Run
 from cdem.study.study import Study
 from cdem.whole_files import replaced, write_text

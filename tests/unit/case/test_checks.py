@@ -72,7 +72,7 @@ def test_a_similar_mesh_file_is_suggested(write, tmp_path):
         (
             "interfaces.base.cohesion: 0",
             "time.safety: 0.5",
-            "stages.1.set.time.safety: a stage can change interfaces.*, loads.*, groups.* only",
+            "stages.1.set.time.safety: a stage can change interfaces.*, loads.*, groups.*, water.* only",
         ),
         (
             "interfaces.base.cohesion: 0",

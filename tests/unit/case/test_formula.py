@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from cdem.study.formula import Formula
+from cdem.case.formula import Formula
 
 
 def test_formula():

@@ -1,4 +1,4 @@
-"""Formulas in a study: arithmetic with named numbers; angles are in degrees, as in a case."""
+"""Formulas in a case or a study: arithmetic with named numbers; angles are in degrees, as in a case."""
 
 from __future__ import annotations
 

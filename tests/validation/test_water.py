@@ -1,0 +1,308 @@
+"""Water: buoyancy, pressure in joints, pores, level over time, excavation; against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scenes import case, digest
+
+import cdem
+
+G = 9.81
+UNIT = 1000 * G
+ROCK = {"density": 2600, "young_modulus": 1e10, "poisson_ratio": 0.25}
+STATIC = [{"name": "rest", "mode": "static", "tolerance": 1e-9, "relax": "adaptive"}]
+
+
+def wet(blocks, groups=None, *, water, rock=None, **more):
+    """A case under gravity with water; the group bed is held."""
+    names = {block["group"]: {} for block in blocks}
+    if "bed" in names:
+        names["bed"] = {"fix": ["x", "y", "z"]}
+    groups = {name: of | (groups or {}).get(name, {}) for name, of in names.items()}
+    return case(
+        blocks, groups, cdem=2, water=water, materials={"rock": ROCK | (rock or {})},
+        loads={"gravity": [0, 0, -G], **more.pop("loads", {})},
+        **{"stages": STATIC} | more,
+    )  # fmt: skip
+
+
+def start(*args, **kwargs):
+    return cdem.Simulation(wet(*args, **kwargs), threads=1)
+
+
+def water_on(sim, group=None):
+    """Sum of the forces of water on a group [N]."""
+    force = sim.core.fields()["node.water"].reshape(-1, 4)[:, :3]
+    return force[sim.build.nodes_of(group)].sum(axis=0) if group else force.sum(axis=0)
+
+
+def box(group, low=(0, 0, 0), size=(1, 1, 1), divisions=(1, 1, 1), shape="hex8", **more):
+    return {
+        "group": group,
+        "box": {"size": list(size), "divisions": list(divisions), "shape": shape},
+        "translate": list(low),
+        **more,
+    }
+
+
+TURN = {"rotate": {"axis": [1, 2, 3], "angle": 40}}
+
+
+@pytest.mark.parametrize("shape", ["hex8", "wedge6", "pyramid5", "tet4"])
+@pytest.mark.parametrize("biot", [0, 1])
+@pytest.mark.parametrize("more", [{}, TURN], ids=["upright", "turned"])
+def test_buoyancy_is_exact(shape, biot, more):
+    """rho_w g V upward, with blocks impermeable or full of pores."""
+    block = box("block", size=[1, 1.5, 2], divisions=[2, 2, 2], shape=shape, **more)
+    sim = start([block], water={"reservoir": {"level": 10}}, rock={"biot": biot})
+    np.testing.assert_allclose(water_on(sim), [0, 0, UNIT * 3], atol=1e-9 * UNIT)
+
+
+@pytest.mark.parametrize("shape", ["hex8", "tet4"])
+def test_a_sunken_block_presses_less_on_its_bed(shape):
+    """25,506 N dry, 15,696 N under water; the water in the joint below counts."""
+    blocks = [box("bed", [0, 0, -1], shape=shape), box("block", shape=shape)]
+    for level, force in ((-5, 2600 * G), (10, 1600 * G)):
+        sim = start(blocks, water={"reservoir": {"level": level}})
+        sim.run()
+        bed = sim.build.nodes_of("bed")
+        carried = sim.fields["reaction"][bed, 2].sum() - 2600 * G  # its own weight
+        carried += water_on(sim, "bed")[2]
+        assert carried == pytest.approx(force, rel=2e-5)  # the block is squeezed a little
+
+
+def test_a_floating_block_bobs():
+    """T = 2 pi sqrt(m / (rho_w g A)); energy stays."""
+    block = box("block", [0, 0, -0.4])
+    stages = [{"name": "bob", "mode": "dynamic", "duration": 3}]
+    sim = start([block], water={"reservoir": {"level": 0}}, stages=stages,
+                rock={"density": 500, "young_modulus": 1e8})  # fmt: skip
+    period = 2 * np.pi * np.sqrt(500 / UNIT)
+    for half in range(1, 5):
+        sim.run_until(half * period / 2)
+        height = sim.fields["position"][:, 2].mean()
+        assert height == pytest.approx(0.1 * (-1) ** half, abs=3e-3)
+    assert abs(sim.energies["error"]) < 1e-7
+    weight = 500 * G * (height - 0.1)
+    assert sim.energies["external"] == pytest.approx(-weight, rel=0.02, abs=1)
+
+
+def test_a_dam_face_feels_the_triangle_of_pressure():
+    """rho_w g h^2 / 2 a metre, whether the water ends at a vertex or inside a face."""
+    blocks = [box("dam", size=[1, 2, 3], divisions=[1, 1, 3], shape=s) for s in ("hex8", "tet4")]
+    near = {"min": [-0.1, -9, -9], "max": [0.1, 9, 9]}
+    for block, tolerance in zip(blocks, (2e-3, 1e-12), strict=True):
+        for level in (2.0, 2.4, 2.9):
+            sim = start([block], water={"reservoir": {"level": level, "box": near}})
+            assert water_on(sim)[0] == pytest.approx(UNIT * level**2, rel=tolerance)
+
+
+def test_pressure_in_a_joint_lifts_what_lies_on_it():
+    """A formula on one interface; the wall below feels the opposite."""
+    blocks = [
+        box("bed", [0, 0, -1], [4, 1, 1], [4, 1, 1]),
+        box("dam", [0, 0, 0], [4, 1, 2], [4, 1, 2]),
+    ]
+    interfaces = {
+        "default": {"friction_angle": 30},
+        "pairs": [{"name": "base", "between": ["bed", "dam"], "friction_angle": 30}],
+    }
+    water = {"fields": [{"interface": "base", "formula": "1000 * max(0, 4 - x)"}]}
+    sim = start(blocks, water=water, interfaces=interfaces)
+    assert water_on(sim, "dam")[2] == pytest.approx(8000, rel=1e-12)
+    assert water_on(sim, "bed")[2] == pytest.approx(-8000, rel=1e-12)
+    assert sim.audit.as_dict()["water"]["wet_area"] == pytest.approx(8)
+
+
+@pytest.mark.parametrize(("wet", "biot", "force"), [
+    ("auto", 0, 0), ("auto", 1, 1), ("always", 0, 1), ("broken", 1, 0), ("never", 0, 0),
+])  # fmt: skip
+def test_when_water_enters_a_bonded_joint(wet, biot, force):
+    blocks = [box("bed", [0, 0, -1]), box("top")]
+    strong = {"default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}}
+    water = {"fields": [{"level": 1, "wet": wet}]}
+    sim = start(blocks, water=water, interfaces=strong, rock={"biot": biot})
+    assert water_on(sim, "top")[2] == pytest.approx(force * UNIT, abs=1e-6)
+    if wet == "broken":  # pulled off
+        weak = {"interfaces.default.cohesion": 10, "interfaces.default.tensile_strength": 10}
+        stages = [{"name": "a", "mode": "dynamic", "duration": 1e-3, "set": weak}]
+        sim = start(blocks, water=water, interfaces=strong, rock={"biot": biot}, stages=stages,
+                    groups={"top": {"velocity": [0, 0, 0.1]}})  # fmt: skip
+        sim.step(20)
+        assert water_on(sim, "top")[2] == pytest.approx(UNIT, rel=1e-3)
+
+
+def test_a_joint_that_opens_wide_loses_its_water():
+    """Up to the aperture the joint's pressure holds, beyond it what stands in the open: nothing."""
+    blocks = [box("bed", [0, 0, -1]), box("top")]
+    water = {"fields": [{"formula": "1000", "aperture": "1 mm"}]}
+    sim = start(blocks, water=water, loads={"gravity": [0, 0, -1e-3]},
+                stages=[{"name": "up", "mode": "dynamic", "duration": 1}],
+                groups={"top": {"velocity": [0, 0, 0.1]}})  # fmt: skip
+    sim.run_until(0.005)
+    assert water_on(sim, "top")[2] == pytest.approx(1000, rel=1e-6)
+    sim.run_until(0.02)
+    assert water_on(sim, "top")[2] == 0
+
+
+def test_level_plane_table_raster_and_ru(tmp_path):
+    """The pressure in pores of one element by each kind of entry."""
+    block = box("rock", [0, 0, 0], [2, 2, 2], [1, 1, 1])
+    (tmp_path / "t.csv").write_text(
+        "x,y,z,pressure\n"
+        + "\n".join(
+            f"{x},{y},{z},{1000 * (10 - z)}" for x in (-5, 5) for y in (-5, 5) for z in (-5, 5)
+        )
+    )
+    (tmp_path / "t.asc").write_text(
+        "ncols 3\nnrows 3\nxllcorner -3\nyllcorner -3\ncellsize 3\n" + "7 7 7\n" * 3
+    )
+    plane = {"point": [0, 0, 5], "dip": 45, "dip_direction": 90}
+    kinds = [
+        ({"level": 6}, UNIT * 5),
+        ({"level": 6, "lift": 1}, UNIT * 6),
+        ({"level": [[0, 6], [1, 9]]}, UNIT * 5),
+        ({"level": 6, "history": [[0, 0.5], [1, 1]]}, UNIT * 2.5),
+        ({"plane": plane}, UNIT * 3),  # falls by 1 m to the middle
+        ({"plane": plane, "seepage": "parallel"}, UNIT * 3 / 2),
+        ({"surface": str(tmp_path / "t.asc")}, UNIT * 6),
+        ({"surface": str(tmp_path / "t.asc"), "lift": -2}, UNIT * 4),
+        ({"table": str(tmp_path / "t.csv")}, 9000),
+        ({"formula": "500 * z + x"}, 501),
+        ({"ru": 0.5}, 0.5 * 2600 * G),
+    ]
+    for entry, pressure in kinds:
+        sim = start([block], water={"fields": [entry]}, rock={"biot": 1})
+        from cdem.run.fields import pore_pressure_of
+
+        assert pore_pressure_of(sim)[0] == pytest.approx(pressure, rel=1e-9), entry
+
+
+def test_water_in_pores_takes_from_the_stress():
+    """A column at rest: the whole stress is the weight, the law bears it less biot p."""
+    from cdem.run.fields import effective_stress_of, pore_pressure_of, stress_of
+
+    column = box("rock", size=[1, 1, 8], divisions=[1, 1, 8])
+    held = [{"surface": {"group": "rock", "normal": n}, "fix": [a]}
+            for n, a in (([-1, 0, 0], "x"), ([1, 0, 0], "x"), ([0, -1, 0], "y"), ([0, 1, 0], "y"),
+                         ([0, 0, -1], "z"))]  # fmt: skip
+    sim = start([column], water={"fields": [{"level": 8}]}, loads={"supports": held},
+                rock={"biot": 0.8, "saturated_density": 2700})  # fmt: skip
+    sim.run()
+    depth = 8 - (np.arange(8) + 0.5)
+    whole, law, pores = stress_of(sim), effective_stress_of(sim), pore_pressure_of(sim)
+    np.testing.assert_allclose(pores, UNIT * depth, rtol=5e-4)  # it settles
+    np.testing.assert_allclose(whole[:, 2], -2700 * G * depth, rtol=1e-4)
+    np.testing.assert_allclose(law[:, 2], whole[:, 2] + 0.8 * pores, rtol=1e-12)
+
+
+@pytest.mark.parametrize("biot", [0, 0.7])
+@pytest.mark.parametrize("shape", ["hex8", "tet4"])
+def test_rock_under_water_begins_at_rest(biot, shape):
+    """Overburden under a lake: weight of water and of saturated rock, joints less what presses in them."""
+    blocks = [box("rock", [0, 0, k], [2, 2, 1], [2, 2, 2], shape) for k in range(3)]
+    held = [{"surface": {"group": "rock", "normal": n}, "fix": [a]}
+            for n, a in (([-1, 0, 0], "x"), ([1, 0, 0], "x"), ([0, -1, 0], "y"), ([0, 1, 0], "y"),
+                         ([0, 0, -1], "z"))]  # fmt: skip
+    sim = start(
+        blocks, water={"reservoir": {"level": 5}}, loads={"supports": held},
+        rock={"biot": biot, "saturated_density": 2700},
+        initial_stress=[{"vertical": "overburden", "k0": 0.6}],
+        stages=[{"name": "rest", "mode": "static", "tolerance": 1e-9}],
+    )  # fmt: skip
+    sim.step(1)
+    assert sim.core.unbalance_ratio() < 1e-9
+
+
+def test_water_that_falls_and_rises_gives_back_its_work():
+    """An elastic block on rollers, slowly drowned and drained."""
+    block = box("rock", size=[1, 1, 2], divisions=[1, 1, 2])
+    held = [{"surface": {"group": "rock", "normal": [0, 0, -1]}, "fix": ["x", "y", "z"]}]
+    level = [[0, 0], [0.2, 2], [0.4, 0]]
+    sim = start([block], water={"reservoir": {"level": level}}, loads={"supports": held},
+                rock={"young_modulus": 1e7},
+                stages=[{"name": "tide", "mode": "dynamic", "duration": 0.4, "damping": {"mass": 30}}])  # fmt: skip
+    sim.run()
+    assert abs(sim.energies["error"]) < 1e-6
+
+
+def test_what_is_dug_out_under_water_leaves_the_rest_as_it_was():
+    """The force of water on the wall goes with the block, and is let go with what it bore."""
+    blocks = [box("bed", [0, 0, -1]), box("low"), box("high", [0, 0, 1])]
+    stages = [
+        *STATIC,
+        {
+            "name": "dig",
+            "mode": "static",
+            "remove": ["high"],
+            "release": {"to": 0},
+            "tolerance": 1e-9,
+        },
+        {"name": "let go", "mode": "static", "release": {}, "tolerance": 1e-9},
+    ]
+    sim = start(blocks, water={"fields": [{"level": 2}]}, stages=stages)
+    sim.run_stage("rest")
+    before = sim.fields["position"].copy()
+    nodes = sim.build.nodes_of("low")
+    sim.run_stage("dig")
+    settled = np.abs(before - sim.build.start_position)[nodes].max()
+    assert np.abs(sim.fields["position"] - before)[nodes].max() < 1e-4 * settled
+    sim.run_stage("let go")
+    assert sim.core.unbalance_ratio() < 1e-9
+
+
+def test_a_stage_raises_the_water():
+    stages = [*STATIC, STATIC[0] | {"name": "rain", "set": {"water.fields.0.lift": 1}}]
+    sim = start(
+        [box("bed", [0, 0, -1]), box("top")], water={"fields": [{"level": 1}]}, stages=stages
+    )
+    sim.run_stage("rest")
+    before = water_on(sim, "top")[2]
+    sim.run_stage("rain")
+    assert before == pytest.approx(UNIT, rel=1e-5)
+    assert water_on(sim, "top")[2] == pytest.approx(2 * UNIT, rel=1e-5)
+
+
+def test_threads_and_resume_change_no_bit(tmp_path):
+    joints = [{"name": "j", "dip": 30, "dip_direction": 70, "spacing": 0.6}]
+    blocks = [box("bed", [-1, -1, -1], [5, 5, 1]), box("rock", [0, 0, 0], [3, 3, 3])]
+    made = wet(
+        blocks, water={"reservoir": {"level": [[0, 1], [0.05, 3]]}}, rock={"young_modulus": 1e8},
+        model={"joints": [j | {"group": "rock"} for j in joints]},
+        stages=[{"name": "a", "mode": "dynamic", "duration": 0.05}],
+    )  # fmt: skip
+    whole = cdem.Simulation(made, threads=1)
+    whole.run()
+    two = cdem.Simulation(made, threads=2)
+    two.run()
+    assert digest(whole) == digest(two)
+    first = cdem.Simulation(made, threads=1, output=tmp_path / "r")
+    first.run_until(0.02)
+    first.checkpoint()
+    first.close()
+    again = cdem.Simulation(made, threads=2, output=tmp_path / "r", resume=True)
+    again.run()
+    assert digest(again) == digest(whole)
+
+
+@pytest.mark.parametrize(("water", "says"), [
+    ({}, "give fields, a reservoir, or both"),
+    ({"fields": [{"level": 1, "ru": 0.1}]}, "level"),
+    ({"fields": [{"formula": "w * 2"}]}, "there is no w"),
+    ({"fields": [{"interface": "crack", "level": 1}]}, "no interface 'crack'"),
+    ({"fields": [{"groups": ["rok"], "level": 1}]}, "did you mean rock"),
+    ({"fields": [{"level": 1, "seepage": "parallel"}]}, "seepage: parallel goes with plane"),
+    ({"fields": [{"ru": 0.1, "lift": 1}]}, "lift goes with"),
+    ({"reservoir": {"level": [[1, 0], [0, 1]]}}, "times must increase"),
+    ({"fields": [{"table": "none.csv"}]}, "none.csv"),
+    ({"fields": [{"formula": "1 / (x - x)"}]}, "formula has no value"),
+])  # fmt: skip
+def test_mistakes_are_told(water, says):
+    with pytest.raises(cdem.errors.CdemError, match=says):
+        start([box("rock")], water=water, rock={"biot": 1})
+
+
+def test_water_that_acts_nowhere_is_told():
+    sim = start([box("rock")], water={"fields": [{"level": 1, "wet": "never"}]})
+    assert any("water presses nowhere" in warning for warning in sim.audit.warnings)
