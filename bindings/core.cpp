@@ -82,6 +82,7 @@ void set_options(Core& core, const nb::dict& o) {
   m.bond_indentation_quad = real("bond_indentation_quad");
   m.semi_edges = nb::cast<bool>(o["semi_edges"]);
   m.initial_stress = nb::cast<bool>(o["initial_stress"]);
+  m.loose_pairs = nb::cast<bool>(o["loose_pairs"]);
   m.lumped_while_bonded = nb::cast<bool>(o["lumped_while_bonded"]);
   m.check_search = nb::cast<bool>(o["check_search"]);
   m.rebuild_interval = nb::cast<Index>(o["rebuild_interval"]);

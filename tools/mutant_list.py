@@ -336,6 +336,38 @@ PYTHON = [
 
 CORE = [
     Mutant(
+        "clipped",
+        "water that presses on all of a face of which a part is dry",
+        "core/water/pressure.hpp",
+        "const T whole = T(1.0 / 24) * (sum + p[k]) + below[k];",
+        "const T whole = T(1.0 / 24) * (sum + p[k]);",
+        "tests/core/water/test_pressure.cpp",
+    ),
+    Mutant(
+        "drained",
+        "a joint that keeps its water however wide it opens",
+        "core/water/wet_faces.cpp",
+        "return away < aperture && ",
+        "return ",
+        "tests/validation/test_water.py",
+    ),
+    Mutant(
+        "pores",
+        "pores that ignore how the element has turned",
+        "core/water/pressure.hpp",
+        "columns.point_volume.at(q, e)) * cofactor(f));",
+        "columns.point_volume.at(q, e)) * identity<T>());",
+        "tests/validation/test_water.py",
+    ),
+    Mutant(
+        "dry dig",
+        "water on a wall that is dug out, lost at once",
+        "core/run/excavate.cpp",
+        "if (!leaves[k / 4]) s.nodes.relief[k] -= change[k];",
+        "if (!leaves[k / 4]) s.nodes.relief[k] -= 0 * change[k];",
+        "tests/validation/test_water.py",
+    ),
+    Mutant(
         "rolling",
         "rolling resistance acts on the mother alone",
         "core/contact/force/rolling.hpp",

@@ -61,7 +61,7 @@ void size(const Model& m, const PairSet& p, PairState& s) {
   s.bond.resize(points, 1.0);
   s.slip1.resize(points);
   s.slip2.resize(points);
-  if (m.initial_stress) s.rest.resize(3 * points);
+  if (m.loose_pairs) s.rest.resize(3 * points);
   init_histories(m, p, s);
 }
 

@@ -116,6 +116,7 @@ struct Model {
   Index rebuild_interval = 0;  // 0: by displacement; else the paper's every so many steps
   NodeDamping damping{0, 0};
   bool initial_stress = false;       // does the rock begin under stress?
+  bool loose_pairs = false;          // do joints without strength begin as pairs, broken?
   Real initial_lift = 0;             // of rules.lifted, for initial tractions  [m]
   bool lumped = false;               // lumped masses for all: quicker to rest, wrong inertia
   bool lumped_while_bonded = false;  // lumped masses for blocks with bonds, see list_lumped

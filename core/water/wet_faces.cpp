@@ -19,13 +19,13 @@ class Vertices {
 
   void find(Index f, Index* field, Index stride) const {
     const Index face = w_.face[f];
-    const bool out = is_out(face), whole = !out && is_whole(f);
+    const bool out = is_out(face), bonded = !out && is_bonded(f);
     for (Index k = 0; k < w_.vertices; ++k) {
       Index& of_vertex = field[std::size_t(k) * stride + f];
       if (out)
         of_vertex = dry_;
-      else if (whole)
-        of_vertex = w_.bonded[f] || is_broken(f) ? w_.joint[f] : dry_;
+      else if (bonded)
+        of_vertex = w_.bonded[f] ? w_.joint[f] : dry_;
       else
         of_vertex = is_closed(f, k) ? w_.joint[f] : w_.open[f];
     }
@@ -52,16 +52,10 @@ class Vertices {
     }
     return false;
   }
-  /// Is a pair of the face not released yet?
-  bool is_whole(Index f) const {
+  /// Does a bond point of a pair of the face hold?
+  bool is_bonded(Index f) const {
     return any_pair(f, [](const PairSet&, const PairState& ps, Index i) {
-      return is_live(PairStatus(ps.status[i]));
-    });
-  }
-  /// Have all points of a pair of the face broken?
-  bool is_broken(Index f) const {
-    return any_pair(f, [](const PairSet&, const PairState& ps, Index i) {
-      return ps.jump_at_break[i] >= 0 || !is_live(PairStatus(ps.status[i]));
+      return is_live(PairStatus(ps.status[i])) && !(ps.jump_at_break[i] >= 0);
     });
   }
   bool is_closed(Index f, Index k) const {

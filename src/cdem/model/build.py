@@ -35,7 +35,7 @@ from cdem.model.interfaces import (
 )
 from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
-from cdem.model.options import options_of
+from cdem.model.options import options_of, pairs_loose_joints
 from cdem.model.snap_back import check_fall
 from cdem.model.stiffness import bond_row, interface_entries
 from cdem.model.supports import supports_of
@@ -68,8 +68,8 @@ class Build:
         compensation: By group, what makes up for the compliance of bonds between its elements.
         bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
             at the start, shape (kinds, kinds).
-        paired: Whether such faces that touch are pairs: those that were bonded, and all under
-            initial stress.
+        paired: Whether such faces that touch are pairs: those that were bonded, and all where
+            `pairs_loose_joints`.
         initial: Under what stress the rock begins; None: under none.
     """
 
@@ -131,8 +131,7 @@ def build(case: Case) -> Build:
     with case.blame("model"):
         check_memory(pieces_of_mesh(case, merged))
         check_extent(merged)
-        # under initial stress what only touches is paired, too, and can begin with its traction
-        paired = bonds | (bool(case.initial_stress) & (interface_of >= 0))
+        paired = bonds | (pairs_loose_joints(case) & (interface_of >= 0))
         topology = build_topology(merged, case.model.split, sets, paired)
     check_domain(case, topology, names)
     check_interfaces(case, topology, names, interface_of)

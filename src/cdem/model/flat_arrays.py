@@ -27,8 +27,8 @@ class Properties:
         law_parameters: Its parameters, shape (groups, most parameters of a law).
         interface_of: Index of the interface between two kinds of faces (see
             `Topology.face_kind`), shape (kinds, kinds).
-        paired: Whether faces of it that touch at the start are pairs: if it has strength, or under
-            initial stress, the same shape.
+        paired: Whether faces of it that touch at the start are pairs: if it has strength, or where
+            `pairs_loose_joints`, the same shape.
         breaks: Whether bonds of it may break, see `that_may_break`, shape (interfaces,).
         stiffness: (value, factor) of k_n and k_s of bonds by interface, shape (interfaces, 4).
         automatic: Whether the case leaves them to the program, shape (interfaces,).

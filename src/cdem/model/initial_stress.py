@@ -18,6 +18,7 @@ from cdem.errors import CaseError
 from cdem.mesh import element_shapes
 from cdem.mesh.topology import Topology
 from cdem.model.curves import constant
+from cdem.model.options import pairs_loose_joints
 from cdem.model.overburden import weight_above
 from cdem.model.water import WaterTables
 
@@ -62,18 +63,24 @@ def set_initial_stress(
 ) -> InitialState | None:
     """Put the rock of a started core under the stress that its case asks for.
 
+    Joints without strength that are pairs begin broken, also where it asks for none.
+
     Returns:
         What it begins with; None where the case asks for none.
 
     Raises:
         CaseError: An entry does not fit the model.
     """
+    if not pairs_loose_joints(case):
+        return None
+    bonded = np.array([INTERFACE_LAWS[law.law].bonds(law) for law in laws], np.int8)
+    position, faces = core.bond_places()
+    points, faces = np.reshape(position, (-1, 3)), np.reshape(faces, (-1, 2)).astype(np.intp)
     if not case.initial_stress:
+        core.set_initial_tractions(np.zeros((len(points), 6)), bonded)
         return None
     field = _Field(case, t, names)
     lowest, highest = _set_elements(t, field, core)
-    position, faces = core.bond_places()
-    points, faces = np.reshape(position, (-1, 3)), np.reshape(faces, (-1, 2)).astype(np.intp)
     group = t.face_group[faces]
     stress = field.at(points, group[:, 0])
     differ = np.flatnonzero(group[:, 0] != group[:, 1])  # the mean of both sides
@@ -82,7 +89,6 @@ def set_initial_stress(
         joint = field.water.in_wet_joints(core.model(), points, faces[:, 0])
         pores = 0.5 * sum(field.in_pores(points, group[:, side]) for side in (0, 1))
         stress[:, :3] += (joint - pores)[:, None]
-    bonded = np.array([INTERFACE_LAWS[law.law].bonds(law) for law in laws], np.int8)
     cut, most, face = core.set_initial_tractions(stress, bonded)
     nodes = t.face_nodes[face] if face >= 0 else None
     at = None if nodes is None else t.node_position[nodes[nodes >= 0]].mean(axis=0).tolist()

@@ -15,6 +15,12 @@ BOND_INDENTATION = {"vertex": (0.0, 0.0), "quadrature": (0.5, 1 - 1 / np.sqrt(3)
 integrate a linear stress exactly (method of the theory page on bonds)."""
 
 
+def pairs_loose_joints(case: Case) -> bool:
+    """Whether joints without strength begin as pairs that are broken: so they have the traction of
+    initial stress, and water knows all of their faces."""
+    return bool(case.initial_stress) or case.water is not None
+
+
 def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:
     """What the core is told by name, for a model of these materials."""
     contact = case.contact
@@ -34,6 +40,7 @@ def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:
         "bond_indentation_quad": quad,
         "semi_edges": contact.edges,
         "initial_stress": bool(case.initial_stress),
+        "loose_pairs": pairs_loose_joints(case),
         "lumped_while_bonded": case.moved_masses == "lumped-while-bonded",
         "check_search": contact.check,
         "rebuild_interval": 0 if contact.refresh == "displacement" else int(contact.refresh),

@@ -18,7 +18,7 @@ struct Stressed : Scene {
     box = add_box({0, 0, 1}, {1, 1, 1});
     build();
     set_interface(law);
-    model.initial_stress = true;
+    model.initial_stress = model.loose_pairs = true;
     model.bond_indentation_quad = indentation;
     state.quads.rest.resize(3 * std::size_t(model.quads.points) * model.quads.point_stride);
   }
