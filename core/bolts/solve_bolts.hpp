@@ -115,10 +115,19 @@ struct SolveBolt {
     }
   }
 
+  /// Direction of the bolt in the two blocks beside the bar that leads across a joint, which itself
+  /// leans where the joint has shifted.
+  CDEM_HD Vec3<Real> axis(Index bar, Index bolt) const {
+    const bool before = bar > first[bolt], after = bar + 2 < first[bolt + 1];
+    if (!before && !after) return direction(bar);
+    const Vec3<Real> none{0, 0, 0};
+    return unit((before ? direction(bar - 1) : none) + (after ? direction(bar + 1) : none));
+  }
+
   /// Dowel: resists the shift of the two sides of a joint across the bolt.
   CDEM_HD void shear(Index c, Index bolt, bool placed) const {
     const Index bar = dowels.bar[c], side = node_count + 2 * c;
-    const Vec3<Real> t = direction(bar);
+    const Vec3<Real> t = axis(bar, bolt);
     const auto across = [&](const Vec3<Real>& v) { return v - dot(v, t) * t; };
     const Vec3<Real> jump = across(point(side + 1) - point(side));
     Real *free_row = dowels.free_jump + std::size_t(c) * 4,
