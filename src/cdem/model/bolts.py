@@ -95,6 +95,16 @@ class BoltModel:
         """First node of each bolt, and their number."""
         return self.arrays["bolts.first"]
 
+    def joined_blocks(self) -> NDArray[np.int32]:
+        """Pairs of blocks that a bolt of the start joins, shape (pairs, 2)."""
+        pairs = [
+            [side.block for side in crossing.sides]
+            for bolt, waits in zip(self.bolts, self.arrays["bolts.waits"], strict=True)
+            for crossing in bolt.crossings
+            if not waits
+        ]
+        return np.array(pairs, np.int32).reshape(-1, 2)
+
     def numbers(self, name: str) -> list[int]:
         """Bolts of an entry of the case, or one bolt by its own name."""
         return [i for i, b in enumerate(self.bolts) if name in (b.name, b.entry.name)]
@@ -313,3 +323,23 @@ def _located(t: Topology, points: list[tuple[Pass, Floats]]) -> tuple[NDArray[np
         hosts[k, : len(nodes)] = nodes
         weights[k, : len(nodes)] = shares
     return hosts, weights
+
+
+def bolt_counts(model: BoltModel) -> dict[str, dict[str, Any]]:
+    """What the audit says of bolts, by type."""
+    out: dict[str, dict[str, Any]] = {}
+    stiffness = model.arrays["bolts.stiffness"]
+    for bolt, first in zip(model.bolts, model.first, strict=False):
+        of = out.setdefault(
+            bolt.entry.type,
+            {"bolts": 0, "length": 0.0, "nodes": 0, "crossings": 0, "shortest": np.inf, "stiffness": 0.0},
+        )  # fmt: skip
+        parts = np.linalg.norm(np.diff(bolt.places, axis=0), axis=1)
+        of["bolts"] += 1
+        of["length"] += bolt.length
+        of["nodes"] += len(bolt.places)
+        of["crossings"] += len(bolt.crossings)
+        of["shortest"] = min(of["shortest"], float(parts.min(initial=np.inf)))
+        most = stiffness[first : first + len(bolt.places)].max(initial=0.0)
+        of["stiffness"] = max(of["stiffness"], float(most))
+    return out
