@@ -39,7 +39,8 @@ class Dowel(Part):
         "ground that bend about the joint, k the Young's modulus of the softer rock",
     )
     strength: Force | None = Field(
-        None, description="Force at which it shears off plastically [N]; default half the yield force"
+        None,
+        description="Force at which it shears off plastically [N]; default half the yield force",
     )
 
 
@@ -131,7 +132,9 @@ class Rings(Part):
     @model_validator(mode="after")
     def _has_an_axis(self) -> Rings:
         if np.ptp(self.axis, axis=0).max() == 0:
-            raise ValueError("axis: its two points are the same; give the ends of the tunnel's axis")
+            raise ValueError(
+                "axis: its two points are the same; give the ends of the tunnel's axis"
+            )
         if not self.angles[0] <= self.angles[1] <= self.angles[0] + 360:
             raise ValueError("angles must be [first, last] with last within a turn after first")
         return self

@@ -43,7 +43,9 @@ class Polyline:
     @property
     def starts(self) -> Floats:
         """Length along the bolt at each point [m]."""
-        return np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
+        return np.concatenate(
+            [[0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))]
+        )
 
     @property
     def length(self) -> float:

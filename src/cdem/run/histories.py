@@ -38,9 +38,7 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
     return out
 
 
-def _of_bolts(
-    sim: RunState, name: str, bolt: str, quantities: list[str]
-) -> list[tuple[str, Any]]:
+def _of_bolts(sim: RunState, name: str, bolt: str, quantities: list[str]) -> list[tuple[str, Any]]:
     """Of a bolt, or of all bolts of an entry, what is largest in size."""
     bolts = sim.build.bolts
     first = bolts.first

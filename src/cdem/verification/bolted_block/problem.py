@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cdem.study.critical import find_critical, strength_reduction
 from cdem.study.criterion import Criterion
+from cdem.study.critical import find_critical, strength_reduction
 
 WEIGHT, DIP, FRICTION = 100e3, 35.0, 30.0  # [N] [deg] [deg]
 
