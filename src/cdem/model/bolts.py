@@ -76,6 +76,15 @@ class Bolt:
         self.grouted.append(grouted)
 
 
+def _no_arrays() -> dict[str, NDArray]:
+    """Arrays of the core where there are no bolts."""
+    starts = {f"bolts.{key}": np.zeros(1, np.int32) for key in ("first", "crossing_first")}
+    types: dict[str, type] = {"waits": np.int8, "crossing_bar": np.int32, "hosts": np.int32}
+    reals = ("weights", "properties", "dowel", "grout", "end", "stiffness")
+    types |= dict.fromkeys(reals, float)
+    return starts | {f"bolts.{key}": np.zeros(0, kind) for key, kind in types.items()}
+
+
 @dataclass
 class BoltModel:
     """All bolts of a model, and the arrays of the core.
@@ -87,13 +96,21 @@ class BoltModel:
     """
 
     bolts: list[Bolt] = field(default_factory=list)
-    arrays: dict[str, NDArray] = field(default_factory=dict)
+    arrays: dict[str, NDArray] = field(default_factory=_no_arrays)
     owner: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
 
     @property
     def first(self) -> NDArray[np.int32]:
         """First node of each bolt, and their number."""
         return self.arrays["bolts.first"]
+
+    def node_stiffness(self, nodes: int) -> Floats:
+        """What bolts put on each node of the rock at most, installed or not [N/m], shape (nodes,)."""
+        total = np.zeros(nodes)
+        used = self.owner >= 0
+        shares = np.repeat(self.arrays["bolts.stiffness"], HOSTS) * np.abs(self.arrays["bolts.weights"])
+        np.add.at(total, self.owner[used], shares[used])
+        return total
 
     def joined_blocks(self) -> NDArray[np.int32]:
         """Pairs of blocks that a bolt of the start joins, shape (pairs, 2)."""
@@ -120,6 +137,8 @@ def bolts_of(case: Case, t: Topology, names: list[str]) -> BoltModel:
     Raises:
         CaseError: A bolt is not in the rock.
     """
+    if not case.bolts:
+        return BoltModel()
     bolts = [
         _cut(case, t, line, case.bolt_types[case.bolts[line.entry].type])
         for line in polylines(case, t, names)
