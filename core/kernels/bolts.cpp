@@ -4,6 +4,15 @@
 
 namespace cdem {
 
+#if defined(__CUDACC__)
 template void for_each_item(Queue, Index, const SolveBolt&);
+#else
+/// A bolt is as much work as its nodes are: a few are worth threads.
+template <>
+void for_each_item(Queue, Index count, const SolveBolt& kernel) {
+#pragma omp parallel for schedule(static) if (kernel.node_count >= worth_threads)
+  for (Index i = 0; i < count; ++i) kernel(One{i});
+}
+#endif
 
 }  // namespace cdem

@@ -60,6 +60,19 @@ def test_the_ledger_closes_and_the_parts_are_at_work():
     assert np.abs(state["bolts.dowel_force"]).max() > 1e3
 
 
+def test_bolts_shorten_the_step():
+    """And the assembly, whose limit mass scaling starts from, knows it as well as the core."""
+    stiff = {"stiffness": 1e12}
+    line = {"points": [[4.7, 0.6, 0.7], [0.5, 0.9, 1.1]], "plate": stiff}
+    kind = BAR | {"area": 1.0, "yield_force": 1e6}
+    soft, hard = (
+        cubes(kind=k, bolts=[b]) for k, b in ((BAR, line | {"plate": True}), (kind, line))
+    )
+    soft, hard = ((s.core.step_limit()[0], s.build.assembly.limits[0]) for s in (soft, hard))
+    assert hard[0] < 0.9 * soft[0]
+    assert hard[0] / soft[0] == pytest.approx(hard[1] / soft[1], rel=0.2)
+
+
 def test_bolts_put_no_net_force_on_the_rock():
     sim = cubes()
     sim.run()

@@ -108,7 +108,9 @@ class BoltModel:
         """What bolts put on each node of the rock at most, installed or not [N/m], shape (nodes,)."""
         total = np.zeros(nodes)
         used = self.owner >= 0
-        shares = np.repeat(self.arrays["bolts.stiffness"], HOSTS) * np.abs(self.arrays["bolts.weights"])
+        shares = np.repeat(self.arrays["bolts.stiffness"], HOSTS) * np.abs(
+            self.arrays["bolts.weights"]
+        )
         np.add.at(total, self.owner[used], shares[used])
         return total
 
@@ -290,7 +292,7 @@ def _arrays(case: Case, t: Topology, bolts: list[Bolt], young: Floats) -> BoltMo
     rows["stiffness"].append(side_stiffness)
     hosts, weights = _located(t, points + sides)
     begins = case.stages[0].name
-    arrays = {
+    arrays: dict[str, NDArray] = {
         "first": np.array(first, np.int32),
         "crossing_first": np.array(crossing_first, np.int32),
         "waits": np.array([b.entry.install not in (None, begins) for b in bolts], np.int8),
@@ -299,7 +301,9 @@ def _arrays(case: Case, t: Topology, bolts: list[Bolt], young: Floats) -> BoltMo
         "weights": weights.ravel(),
         "properties": np.array(rows["properties"], float),
         "dowel": np.array(rows["dowel"], float),
-    } | {key: np.concatenate(rows[key] or [[]]).ravel() for key in ("grout", "end", "stiffness")}
+    }
+    for key in ("grout", "end", "stiffness"):
+        arrays[key] = np.concatenate(rows[key]).ravel()
     return BoltModel(bolts, {f"bolts.{key}": value for key, value in arrays.items()}, hosts.ravel())
 
 

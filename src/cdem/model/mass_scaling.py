@@ -40,9 +40,10 @@ class Scaling:
         held = p.supported.all(axis=1)
         self.free_mass = float(out.arrays["node.mass"][~held].sum())
         exposed = out.arrays["face.initially_exposed"].astype(bool)
+        bonds = bond_stiffness(t, out)
         bolts = p.bolts.node_stiffness(len(t.node_position))
-        bonds = bond_stiffness(t, out) + bolts
-        self._states = [_Needs(t, p, out, bonds + contact_stiffness(t, p, out, exposed), True)]
+        springs = bonds + bolts + contact_stiffness(t, p, out, exposed)
+        self._states = [_Needs(t, p, out, springs, True)]
         breaking = _breaking_faces(t, p, out)
         if breaking.any():
             springs = bond_stiffness(t, out, p.breaks) + contact_stiffness(

@@ -44,7 +44,13 @@ def snapshot(sim: RunState) -> Surface:
     faces = np.column_stack([counts, vertices])
     ends, lines, _, _ = bolt_lines(sim)
     return Surface(
-        sim.time, places, faces[faces >= 0], point_data, cell_data, sim.build.group_names, ends[lines]
+        sim.time,
+        places,
+        faces[faces >= 0],
+        point_data,
+        cell_data,
+        sim.build.group_names,
+        ends[lines],
     )
 
 

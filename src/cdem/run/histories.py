@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,9 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
     return out
 
 
-def _of_bolts(sim: RunState, name: str, bolt: str, quantities: list[str]) -> list[tuple[str, Any]]:
+def _of_bolts(
+    sim: RunState, name: str, bolt: str, quantities: Sequence[str]
+) -> list[tuple[str, Any]]:
     """Of a bolt, or of all bolts of an entry, what is largest in size."""
     bolts = sim.build.bolts
     first = bolts.first

@@ -122,7 +122,7 @@ def test_nothing_holds_a_bolt_without_grout_plate_and_anchor():
 
 
 def test_steel_that_would_tear_before_it_yields():
-    with pytest.raises(CaseError, match="below the strain 0.002 at which the steel yields"):
+    with pytest.raises(CaseError, match=r"below the strain 0\.002 at which the steel yields"):
         model(ACROSS, kind=BAR | {"rupture_strain": 0.001})
 
 

@@ -39,10 +39,10 @@ def run(study):
                 within=2e-3)  # fmt: skip
     for angle in (0, 15, 30):
         study.check(f"factor of safety, bolt at {angle} deg", theory=theory(40e3, angle),
-                    ours=factor(study, bolt(angle)), within=4e-3)  # fmt: skip
+                    ours=factor(study, bolt(angle)), within=5e-3)  # fmt: skip
     study.check("factor of safety, bolt not tensioned", theory=theory(40e3, 30),
                 ours=factor(study, bolt(30), "bolts.0.pretension=0", far=5e-3), within=1e-2)  # fmt: skip
     if study.full:
         wanted = "bolt_types.bar.yield_force=67.104 kN", "bolts.0.pretension=67.104 kN"
         study.check("factor of safety with 67.104 kN", theory=1.5, ours=factor(study, *wanted),
-                    within=4e-3)  # fmt: skip
+                    within=5e-3)  # fmt: skip
