@@ -134,7 +134,6 @@ def _excavation(case: CaseParts) -> Iterator[Problem]:
 
 
 def _bolts(case: CaseParts) -> Iterator[Problem]:
-    stages = [stage.name for stage in case.stages]
     for i, bolts in enumerate(case.bolts):
         if bolts.type not in case.bolt_types:
             yield ("bolts", i, "type"), _no("bolt type", bolts.type, case.bolt_types)
@@ -144,24 +143,35 @@ def _bolts(case: CaseParts) -> Iterator[Problem]:
                 f"nothing holds them at both ends: give {bolts.type} grout, or the bolts a plate and "
                 "an anchor",
             )
-        for key in ("install", "remove"):
-            if getattr(bolts, key) is not None and getattr(bolts, key) not in stages:
-                yield ("bolts", i, key), _no("stage", getattr(bolts, key), stages)
-        first, last = bolts.install or stages[0], bolts.remove
-        if last in stages and first in stages and stages.index(last) <= stages.index(first):
-            yield ("bolts", i, "remove"), f"must be a stage after {first!r}, which installs them"
-        lengths = [kind.length for kind in (bolts.pattern, bolts.rings) if kind is not None]
-        if lengths and bolts.free_length >= lengths[0] and not bolts.anchor:
+        kind = bolts.pattern or bolts.rings
+        if kind is not None and bolts.free_length >= kind.length and not bolts.anchor:
             yield (
                 ("bolts", i, "free_length"),
-                f"must be below the length {lengths[0]:g}, or the toe needs an anchor",
+                f"must be below the length {kind.length:g}, or the toe needs an anchor",
             )
+    yield from _stages_of_bolts(case)
+    yield from _histories_of_bolts(case)
+
+
+def _stages_of_bolts(case: CaseParts) -> Iterator[Problem]:
+    stages = [stage.name for stage in case.stages]
+    for i, bolts in enumerate(case.bolts):
+        wrong = [k for k in ("install", "remove") if getattr(bolts, k) not in (None, *stages)]
+        for key in wrong:
+            yield ("bolts", i, key), _no("stage", getattr(bolts, key), stages)
+        first = bolts.install or stages[0]
+        if not wrong and bolts.remove and stages.index(bolts.remove) <= stages.index(first):
+            yield ("bolts", i, "remove"), f"must be a stage after {first!r}, which installs them"
+
+
+def _histories_of_bolts(case: CaseParts) -> Iterator[Problem]:
     names = [bolts.name for bolts in case.bolts]
     for i, history in enumerate(case.histories):
-        if history.bolt is not None:
-            name, _, number = history.bolt.rpartition(".")
-            if history.bolt not in names and not (name in names and number.isdigit()):
-                yield ("histories", i, "bolt"), _no("bolt", history.bolt, names)
+        if history.bolt is None or history.bolt in names:
+            continue
+        name, _, number = history.bolt.rpartition(".")
+        if name not in names or not number.isdigit():
+            yield ("histories", i, "bolt"), _no("bolt", history.bolt, names)
 
 
 def _joints(case: CaseParts) -> Iterator[Problem]:
@@ -196,6 +206,10 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
     for i, history in enumerate(case.histories):
         if history.group is not None:
             yield ("histories", i, "group"), history.group
+    yield from _groups_of_bolts(case)
+
+
+def _groups_of_bolts(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]:
     for i, bolts in enumerate(case.bolts):
         if bolts.rings is not None and bolts.rings.inside is not None:
             yield ("bolts", i, "rings", "inside"), bolts.rings.inside
