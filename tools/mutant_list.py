@@ -92,10 +92,10 @@ PYTHON = [
     ),
     Mutant(
         "path",
-        "a path takes the element that ends first",
+        "a bolt along a joint changes sides",
         "src/cdem/mesh/paths.py",
         "best = max(stays,",
-        "best = min(here,",
+        "best = max(here,",
         "tests/unit/mesh/test_paths.py",
     ),
     Mutant(

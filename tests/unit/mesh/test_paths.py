@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cdem
-from cdem.mesh.paths import passes, walk, weights_in
+from cdem.mesh.paths import Pass, passes, walk, weights_in
 
 
 def topology(shape, divisions=(3, 2, 2)):
@@ -64,3 +64,9 @@ def test_a_path_that_leaves_ends_there_and_one_that_misses_has_no_parts():
     path = list(walk(passes(t, np.array([1.0, 1.1, 1.2]), np.array([5.0, 1.1, 1.2])), 4.0, 1e-9))
     assert path[-1].last == pytest.approx(2)
     assert not passes(t, np.array([0.0, 5, 5]), np.array([3.0, 5, 5]))
+
+
+def test_a_path_along_a_joint_stays_in_its_block():
+    alone, other = Pass(0, 1, "hex8", 5, 1, 0), Pass(1, 2, "hex8", 1, 0, 0)
+    same = Pass(1, 2, "hex8", 6, 1, 0)
+    assert [p.block for p in walk([alone, other, same], 2.0, 1e-9)] == [1, 1]
