@@ -669,8 +669,8 @@ CORE = [
         "dowel",
         "a dowel bears twice its strength",
         "core/bolts/solve_bolts.hpp",
-        "if (size > limit) {",
-        "if (size > 2 * limit) {",
+        "force = (limit / size) * force;",
+        "force = (2 * limit / size) * force;",
         "tests/core/bolts/test_solve_bolts.cpp",
     ),
     Mutant(
