@@ -21,6 +21,7 @@
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
+#include "core/run/change_bolts.hpp"
 #include "core/run/excavate.hpp"
 #include "core/run/run.hpp"
 #include "core/run/take_out.hpp"
@@ -170,6 +171,14 @@ void take_nodes(Core& c, Array<Flag> leaves) {
   leave(c.model, c.state, leaves.data());
 }
 
+/// Install or remove bolts, given by a flag for each.
+template <auto change>
+void take_bolts(Core& c, Array<Flag> which) {
+  if (which.ndim() != 1 || which.shape(0) != std::size_t(c.model.bolts.count))
+    throw nb::value_error("one flag for each bolt");
+  change(c.model, c.state, which.data());
+}
+
 auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
               std::int64_t check_interval, const std::string& way) {
   const Goal goal{.steps = steps,
@@ -253,6 +262,8 @@ void bind_run(nb::class_<Core>& core) {
            "check_interval"_a = 20, "relaxation"_a = "none")
       .def("take_out", &take_nodes<take_out>, "leaves"_a)
       .def("excavate", &take_nodes<excavate>, "leaves"_a)
+      .def("install_bolts", &take_bolts<install_bolts>, "which"_a)
+      .def("remove_bolts", &take_bolts<remove_bolts>, "which"_a)
       .def(
           "let_go", [](Core& c, Real part, Real end) { let_go(c.state, part, end); }, "part"_a,
           "end_time"_a)

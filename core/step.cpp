@@ -1,6 +1,7 @@
 // step.cpp - the method on one page. Each call is one folder, and one page of the theory manual.
 #include "core/step.hpp"
 
+#include "core/bolts/bolts.hpp"
 #include "core/bonds/bonds.hpp"
 #include "core/contact/contact.hpp"
 #include "core/elements/elements.hpp"
@@ -14,6 +15,7 @@ void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   set_loads_and_supports(m, s);                               // nodes/curves
   update_face_geometry(m, s, q);                              // contact/geometry
   update_bond_forces(m, s, q, plan);                          // bonds/                Eq. 13-14
+  update_bolt_forces(m, s, q);                                // bolts/
   if (has_contact_pairs(s)) {
     prune_pair_list_if_due(m, s, q);   // contact/pair_list
     find_target_faces(m, s, q);        // contact/narrow_phase  Eq. 6-9

@@ -23,6 +23,7 @@ FOLDERS = [
     "contact/narrow_phase",
     "contact/force",
     "bonds",
+    "bolts",
     "contact/broad_phase",
     "contact/pair_list",
     "contact",

@@ -35,6 +35,10 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
           last(e.fused.row_first));
   });
   visit(RowKind{"overlap_points", "bond points of overlaps"}, last(m.overlaps.point_first));
+  visit(RowKind{"bolt_nodes", "nodes of bolts; bars lead to the next"}, bolt_node_count(m.bolts));
+  visit(RowKind{"bolt_crossings", "joints that bolts cross"}, total(m.bolts.crossing_bar));
+  visit(RowKind{"bolt_points", "nodes of bolts, then two sides of each crossing"},
+        bolt_point_count(m.bolts));
   visit(RowKind{"corner_rows", "forces of a set on a node; the last one adds nothing"},
         m.corner_rows + 1);
   visit(RowKind{"faces", "exterior faces of all blocks"}, m.face_count);

@@ -1,4 +1,5 @@
-// force_sets.hpp - the sets of elements and of bonded pairs, each once, and what loops ask of them.
+// force_sets.hpp - the sets of elements, bonded pairs and bolts, each once, and what loops ask of
+// them.
 //
 // Whatever puts forces on nodes through corner rows is a set. All loops over sets come from here:
 // a new set is named here, with overloads of what is asked of it below, and has its kernels.
@@ -9,6 +10,7 @@
 
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
+#include "core/records/bolt_states.hpp"
 #include "core/records/energy_terms.hpp"
 
 namespace cdem {
@@ -34,6 +36,12 @@ struct ElementKind {
 /// a pair has.
 template <class Bonds>
 struct PairKind {
+  const char* name;
+  Index points, corners;
+};
+
+/// Bolts: their name, and how many nodes of the rock a point lies between.
+struct BoltKind {
   const char* name;
   Index points, corners;
 };
@@ -66,7 +74,14 @@ template <class M, class S, class Visit>
 void for_each_set(M& m, S& s, Visit&& visit) {
   for_each_element_set(m, s, visit);
   for_each_pair_set(m, s, visit);
+  visit(BoltKind{.name = "bolts", .points = 0, .corners = 8}, m.bolts, s.bolts);
 }
+
+/// Nodes, and points, of all bolts.
+inline Index bolt_node_count(const BoltSet& b) {
+  return b.first.size() > 0 ? b.first[b.first.size() - 1] : 0;
+}
+inline Index bolt_point_count(const BoltSet& b) { return Index(b.stiffness.size()); }
 
 /// Do the faces of the pairs share their vertices? Else they overlap.
 inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
@@ -77,11 +92,32 @@ inline bool is_active(const PairState& s, Index pair) {
   return is_live(PairStatus(s.status[pair]));
 }
 
-/// Corner rows of an item.
-template <class Set>
-Range corner_rows(const Set& set, Index item) {
+/// A bolt does while it is installed.
+inline bool is_active(const BoltState& s, Index bolt) {
+  const BoltPhase phase = BoltPhase(s.phase[bolt]);
+  return phase == BoltPhase::placed || phase == BoltPhase::acting;
+}
+
+/// Call visit(point) for the points of a bolt.
+template <class Visit>
+void for_each_point(const BoltSet& b, Index bolt, Visit&& visit) {
+  for (Index n = b.first[bolt]; n < b.first[bolt + 1]; ++n) visit(n);
+  const Index nodes = bolt_node_count(b);
+  for (Index c = 2 * b.crossing_first[bolt]; c < 2 * b.crossing_first[bolt + 1]; ++c)
+    visit(nodes + c);
+}
+
+/// Call visit(row) for the corner rows of an item.
+template <class Set, class Visit>
+void for_each_corner_row(const Set& set, Index item, Visit&& visit) {
   const Index first = set.corner_first + item * set.corners;
-  return {first, first + set.corners};
+  for (Index row = first; row < first + set.corners; ++row) visit(row);
+}
+template <class Visit>
+void for_each_corner_row(const BoltSet& b, Index bolt, Visit&& visit) {
+  for_each_point(b, bolt, [&](Index p) {
+    for (Index k = 0; k < b.corners; ++k) visit(b.corner_first + p * b.corners + k);
+  });
 }
 
 /// Corner rows of all elements together; those of pairs follow.
@@ -109,6 +145,14 @@ void for_each_node(const Model& m, const PairSet& p, Index pair, Visit&& visit) 
   }
 }
 
+template <class Visit>
+void for_each_node(const Model&, const BoltSet& b, Index bolt, Visit&& visit) {
+  for_each_point(b, bolt, [&](Index p) {
+    for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
+      if (b.hosts[k] >= 0) visit(b.hosts[k]);
+  });
+}
+
 /// Call visit(node, stiffness [N/m]) for what an item stiffens its nodes by at most: from it comes
 /// the bound of their frequencies. That of elements is in the model already.
 template <class Visit>
@@ -130,6 +174,14 @@ void for_each_stiffness(const Model& m, const PairSet& p, Index pair, Visit&& vi
     }
 }
 
+template <class Visit>
+void for_each_stiffness(const Model&, const BoltSet& b, Index bolt, Visit&& visit) {
+  for_each_point(b, bolt, [&](Index p) {
+    for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
+      if (b.hosts[k] >= 0) visit(b.hosts[k], b.stiffness[p] * std::abs(b.weights[k]));
+  });
+}
+
 /// Call visit(term, column) for the columns that the terms of the energy ledger sum, see
 /// energy_term.
 template <class Visit>
@@ -143,6 +195,12 @@ void for_each_energy(const PairState& s, Visit&& visit) {
   visit(energy_term("contact"), s.stored);
   visit(energy_term("friction"), s.friction);
   visit(energy_term("fracture"), s.fracture);
+}
+template <class Visit>
+void for_each_energy(const BoltState& s, Visit&& visit) {
+  visit(energy_term("bolts"), s.stored);
+  visit(energy_term("bolt_loss"), s.lost);
+  visit(energy_term("external"), s.jacked);
 }
 
 }  // namespace cdem

@@ -61,6 +61,24 @@ struct Water {
   Column<Index> node_first, row;  // rows that a node sums
 };
 
+/// Bolts: chains of nodes, each located in an element of the rock. Points are the nodes of all
+/// bolts, then two for each crossing of a joint: in the block that the bolt leaves and in the next
+/// one.
+struct BoltSet {
+  Index count = 0, stride = 0;
+  Index corners = 0, points = 0;        // nodes that a point lies between; not used
+  Index corner_first = 0;               // first of its rows among the corner forces
+  Column<Index> first, crossing_first;  // nodes and crossings of a bolt
+  Column<Real> properties;              // rows of BoltProperties
+  Column<Flag> waits;                   // 1: not installed at the start
+  Column<Real> grout, end;              // [node][2] stiffness [N/m], limit [N]
+  Column<Index> crossing_bar;           // [crossing] bar that leads across
+  Column<Real> dowel;                   // [crossing][2] stiffness [N/m], limit [N]
+  Column<Index> hosts;                  // [point][8] nodes of the rock, or -1
+  Column<Real> weights;                 // [point][8]
+  Column<Real> stiffness;               // [point] that it puts on the rock at most  [N/m]
+};
+
 struct Model {
   // nodes
   Index node_count = 0;
@@ -91,6 +109,8 @@ struct Model {
   Column<Index> interface_of;
   Column<Interface> interfaces;
   Column<Real> interface_parameters;  // [interface][parameter_row]
+
+  BoltSet bolts;
 
   // corner rows of each node; ~row where it takes the opposite of what stands there
   Index corner_rows = 0;

@@ -65,6 +65,21 @@ struct PairState {
   Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp
 };
 
+struct BoltState {
+  Column<Flag> phase;                              // BoltPhase  [bolt]
+  Column<Real> slip;                               // of the bolt along its axis  [node]
+  Column<Real> grout_free, end_free;               // slip without force  [node]
+  Column<Real> grout_force, end_force;             // [node]
+  Column<Real> length, bar_free, axial_force;      // of the bar to the next node  [node]
+  Column<Flag> grout_state, end_state, bar_state;  // SliderState  [node]
+  Column<Flag> bar_broken;                         // BarState  [node]
+  Column<Flag> grout_lost;                         // 1: its rock was dug out  [node]
+  Column<Real> dowel_free, dowel_force;            // rows of 4  [crossing]
+  Column<Real> stored, lost, jacked;               // [bolt]
+  Column<Real> scratch;                            // rows of 8, see BoltNodeColumns  [node]
+  Column<Index> awake;                             // blocks of bolts; all are computed
+};
+
 struct SpringState {
   Column<Index> target, target_before;
   Column<Real> state, reaction;  // rows of 8
@@ -191,6 +206,7 @@ struct State {
   NodeState nodes;
   ElementState tet4, pyramid5, wedge6, hex8;
   PairState triangles, quads, overlaps;
+  BoltState bolts;
   Column<Index> released_overlaps;  // their contacts are still to be found in this step
   SpringState springs;
   EdgeState edges;

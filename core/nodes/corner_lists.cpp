@@ -12,9 +12,7 @@ void list_corners(const Model& m, State& s) {
   std::vector<Flag> released(m.corner_rows);
   for_each_set(m, s, [&](auto, const auto& set, const auto& state) {
     for (Index i = 0; i < set.count; ++i) {
-      const Range rows = corner_rows(set, i);
-      if (!is_active(state, i))
-        std::fill(released.begin() + rows.first, released.begin() + rows.last, Flag(1));
+      if (!is_active(state, i)) for_each_corner_row(set, i, [&](Index row) { released[row] = 1; });
     }
   });
   Column<Index>&first = s.nodes.corner_first, &corner = s.nodes.corner;

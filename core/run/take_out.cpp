@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/bolts/bolts.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
 #include "core/diagnostics/energy.hpp"
@@ -86,6 +87,11 @@ void relieve(State& s, const PairSet& p, PairState& ps, Index i) {
   ps.stored[i] = 0;
   ps.jump[i] = 0;
   ps.jump_at_break[i] = -1;
+}
+
+/// The rest of a bolt goes on to hold the rock that stays.
+void relieve(State& s, const BoltSet& b, BoltState& bs, Index bolt) {
+  cut_bolt(b, s.nodes.out.data(), bs, bolt);
 }
 
 /// Hide the faces of blocks that are out; what their contacts have lost stays in the ledger.

@@ -1,4 +1,4 @@
-"""Thirteen small scenes whose results are pinned, and the hash of a result.
+"""Fourteen small scenes whose results are pinned, and the hash of a result.
 
 `python tests/regression/golden_scenes.py` prints every scene's hash and time; with `--write` it
 renews golden.json. A renewed golden.json needs a line in CHANGELOG.md that says why, and names it
@@ -326,6 +326,40 @@ def driven(threads):
         300,
         threads,
     )
+
+
+@scene
+def bolted(threads):
+    """A cube of bonded tets breaks while bolts hold it together: they slip, yield and are sheared."""
+    bar = {"area": 5e-4, "young_modulus": 2e11, "yield_force": 6e3, "dowel": True,
+           "grout": {"stiffness": 1e8, "strength": 3e3}}  # fmt: skip
+    lines = [[[0.1, 0.2, 1.95], [1.8, 1.7, 0.1]], [[1.9, 0.9, 1.4], [0.3, 1.1, 0.6]]]
+    bolts = [
+        {"name": f"b{k}", "type": "bar", "points": points, "plate": True, "pretension": 2e3 * k}
+        for k, points in enumerate(lines)
+    ]
+    pull = {"surface": {"group": "rock", "normal": [0, 0, 1]}, "traction": [0, 0, 4e5]}
+    floor = {"surface": {"group": "rock", "normal": [0, 0, -1]}, "fix": ["x", "y", "z"]}
+    sim = finish(
+        case(
+            [box("rock", [2, 2, 2], divisions=[3, 3, 3], shape="tet4")],
+            {"rock": {}},
+            interfaces={
+                "default": {"friction_angle": 30, "cohesion": 2e5, "tensile_strength": 1e5}
+            },
+            rock={"young_modulus": "20 GPa"},
+            loads=WEIGHT | {"supports": [floor], "tractions": [pull]},
+            model={"split": {"rock": "elements"}},
+            bolt_types={"bar": bar},
+            bolts=bolts,
+        ),
+        400,
+        threads,
+    )
+    state = sim.core.fields()
+    assert state["bolts.grout_state"].any() and state["bolts.bar_state"].any()
+    assert sum(sim.broken.values()) > 10
+    return sim
 
 
 def digest(sim: cdem.Simulation | list[cdem.Simulation]) -> str:

@@ -40,6 +40,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _water(case)
     yield from _groups(case)
     yield from _excavation(case)
+    yield from _bolts(case)
     yield from _joints(case)
     yield from _unique_names(case)
 
@@ -132,6 +133,47 @@ def _excavation(case: CaseParts) -> Iterator[Problem]:
             let_go = stage.release.to if stage.release else 1.0
 
 
+def _bolts(case: CaseParts) -> Iterator[Problem]:
+    for i, bolts in enumerate(case.bolts):
+        if bolts.type not in case.bolt_types:
+            yield ("bolts", i, "type"), _no("bolt type", bolts.type, case.bolt_types)
+        elif case.bolt_types[bolts.type].grout is None and not (bolts.plate and bolts.anchor):
+            yield (
+                ("bolts", i),
+                f"nothing holds them at both ends: give {bolts.type} grout, or the bolts a plate and "
+                "an anchor",
+            )
+        kind = bolts.pattern or bolts.rings
+        if kind is not None and bolts.free_length >= kind.length and not bolts.anchor:
+            yield (
+                ("bolts", i, "free_length"),
+                f"must be below the length {kind.length:g}, or the toe needs an anchor",
+            )
+    yield from _stages_of_bolts(case)
+    yield from _histories_of_bolts(case)
+
+
+def _stages_of_bolts(case: CaseParts) -> Iterator[Problem]:
+    stages = [stage.name for stage in case.stages]
+    for i, bolts in enumerate(case.bolts):
+        wrong = [k for k in ("install", "remove") if getattr(bolts, k) not in (None, *stages)]
+        for key in wrong:
+            yield ("bolts", i, key), _no("stage", getattr(bolts, key), stages)
+        first = bolts.install or stages[0]
+        if not wrong and bolts.remove and stages.index(bolts.remove) <= stages.index(first):
+            yield ("bolts", i, "remove"), f"must be a stage after {first!r}, which installs them"
+
+
+def _histories_of_bolts(case: CaseParts) -> Iterator[Problem]:
+    names = [bolts.name for bolts in case.bolts]
+    for i, history in enumerate(case.histories):
+        if history.bolt is None or history.bolt in names:
+            continue
+        name, _, number = history.bolt.rpartition(".")
+        if name not in names or not number.isdigit():
+            yield ("histories", i, "bolt"), _no("bolt", history.bolt, names)
+
+
 def _joints(case: CaseParts) -> Iterator[Problem]:
     names = [joint.name for joint in case.model.joints]
     for i, pair in enumerate(case.interfaces.pairs):
@@ -164,6 +206,15 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
     for i, history in enumerate(case.histories):
         if history.group is not None:
             yield ("histories", i, "group"), history.group
+    yield from _groups_of_bolts(case)
+
+
+def _groups_of_bolts(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    for i, bolts in enumerate(case.bolts):
+        if bolts.rings is not None and bolts.rings.inside is not None:
+            yield ("bolts", i, "rings", "inside"), bolts.rings.inside
+        if bolts.pattern is not None and not isinstance(bolts.pattern.surface, str):
+            yield ("bolts", i, "pattern", "surface", "group"), bolts.pattern.surface.group
 
 
 def _listed_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]:
@@ -186,6 +237,7 @@ def _unique_names(case: CaseParts) -> Iterator[Problem]:
     named: dict[tuple[str, ...], Sequence[Any]] = {
         ("stages",): case.stages,
         ("histories",): case.histories,
+        ("bolts",): case.bolts,
         ("interfaces", "pairs"): case.interfaces.pairs,
         ("model", "joints"): case.model.joints,
         ("water", "fields"): case.water.fields if case.water else [],

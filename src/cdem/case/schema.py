@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from cdem.case.bodies_schema import Model, exactly_one
+from cdem.case.bolts_schema import Bolts, BoltType
 from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
@@ -279,20 +280,31 @@ class Output(Part):
 
 
 class HistoryPoint(Part):
-    """Quantities followed over time, for a group or at a node."""
+    """Quantities followed over time, for a group, at a node, or of a bolt."""
 
     name: FileName = Field(
         description="Name, unique in the case; begins the columns, and names a picture"
     )
     group: Name | None = Field(None, description="Follow this group")
     point: Length3 | None = Field(None, description="Follow the node nearest to this point [m]")
+    bolt: Name | None = Field(
+        None, description="Follow a bolt, or all of a pattern: the largest of them"
+    )
     quantities: list[
-        Literal["centroid", "displacement", "velocity", "energy", "force", "water_force"]
-    ] = Field(min_length=1, description="What to follow")
+        Literal[
+            "centroid", "displacement", "velocity", "energy", "force", "water_force",
+            "axial_force", "slip", "plate_force",
+        ]
+    ] = Field(min_length=1, description="What to follow; the last three of a bolt")  # fmt: skip
 
     @model_validator(mode="after")
     def _one_place(self) -> HistoryPoint:
-        exactly_one(self, ("group", "point"))
+        exactly_one(self, ("group", "point", "bolt"))
+        of_bolts = ("axial_force", "slip", "plate_force")
+        for quantity in self.quantities:
+            if (quantity in of_bolts) != (self.bolt is not None):
+                place = "a bolt" if quantity in of_bolts else "a group or a point"
+                raise ValueError(f"{quantity} needs {place}")
         for quantity in ("centroid", "energy"):
             if self.point is not None and quantity in self.quantities:
                 raise ValueError(f"{quantity} needs a group, not a point")
@@ -317,6 +329,8 @@ class CaseParts(Part):
     loads: Loads = Field(Loads(), description="What acts from outside")
     initial_stress: list[InitialStress] = Field([], description="Stress at the start")
     water: Water | None = Field(None, description="Water in joints, pores and the open")
+    bolts: list[Bolts] = Field([], description="Bolts and cables")
+    bolt_types: dict[Name, BoltType] = Field({}, description="What bolts are made of, by name")
     stages: list[Stage] = Field(min_length=1, description="Parts of the run, in order")
     contact: Contact = Field(Contact(), description="How contacts are found")
     elements: Elements = Field(Elements(), description="Element formulation")

@@ -25,7 +25,7 @@ def new(
     if template is None:
         for name in names:
             title = (home / f"{name}.yaml").read_text().splitlines()[0].lstrip("# ")
-            print(f"{name:<12}{title}")
+            print(f"{name:<14}{title}")
         return
     if template not in names:
         close = difflib.get_close_matches(template, names, n=1)

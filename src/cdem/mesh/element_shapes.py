@@ -82,6 +82,11 @@ _FUNCTIONS = {
 }
 
 
+def shape_functions(shape: str, points: Array) -> tuple[Array, Array]:
+    """Shape functions at points of the reference element, (points, nodes), and their slopes."""
+    return _FUNCTIONS[shape](points)
+
+
 def _line(count: int) -> tuple[Array, Array]:
     return np.polynomial.legendre.leggauss(count)
 

@@ -43,7 +43,13 @@ def assemble(topology: Topology, properties: Properties, padded_stride: Stride) 
     _elements(topology, properties, padded_stride, out)
     _faces(topology, properties, out)
     _pairs(topology, properties, padded_stride, out)
-    _corners(topology, out)
+    out.arrays |= properties.bolts.arrays
+    out.counts |= {
+        "bolts.count": len(properties.bolts.bolts),
+        "bolts.corner_first": out.counts["corner_rows"],
+    }
+    out.counts["corner_rows"] += len(properties.bolts.owner)
+    _corners(topology, properties.bolts.owner, out)
     if properties.added_mass is None:
         _scale_masses(topology, properties, out)
     return out
@@ -231,7 +237,7 @@ def _pair_set(
     out.arrays[f"{kind}.stiffness"] = table(np.array(rows), stride)
 
 
-def _corners(t: Topology, out: Assembly) -> None:
+def _corners(t: Topology, bolt_hosts: Ints, out: Assembly) -> None:
     owner, row = [], []
     for shape in element_shapes.NODES:
         nodes = t.element_nodes[shape].ravel()
@@ -247,6 +253,8 @@ def _corners(t: Topology, out: Assembly) -> None:
     used = nodes >= 0
     owner.append(nodes[used])
     row.append(out.counts["overlaps.corner_first"] + np.flatnonzero(used))
+    owner.append(bolt_hosts[bolt_hosts >= 0])
+    row.append(out.counts["bolts.corner_first"] + np.flatnonzero(bolt_hosts >= 0))
     first, listed = ragged(
         np.concatenate(owner).astype(np.int64), np.concatenate(row).astype(np.int32),
         len(t.node_position),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
+from cdem.model.bolts import bolt_counts
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
@@ -57,6 +58,7 @@ class Audit:
         self.contacts = contact_interfaces(build)
         self.compensation = self._compensation()
         self.water = wetted(build)
+        self.bolts = bolt_counts(build.bolts)
         self.step = self._step()
         self.warnings = self._warnings()
 
@@ -138,7 +140,7 @@ class Audit:
             *a.pair_faces.values(),
             exposed[_pairs_of(sources, core["outer.faces_acting_on"])],
         ]
-        joined = t.face_block[np.concatenate(pairs)]
+        joined = np.concatenate([t.face_block[np.concatenate(pairs)], b.bolts.joined_blocks()])
         held = np.zeros(len(t.block_group), bool)
         held[t.node_block[b.arrays["support.row"][: len(t.node_block)] >= 0]] = True
         while True:  # as many rounds as blocks lie one behind another
@@ -235,6 +237,7 @@ class Audit:
             "compensation": self.compensation,
             "contacts": self.contacts,
             "water": self.water,
+            "bolts": self.bolts,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
             "memory_bytes": self.memory,
@@ -281,6 +284,7 @@ class Audit:
         lines += self._stiffness_text()
         lines += self._initial_text()
         lines += water_text(self.water)
+        lines += self._bolts_text()
         s = self.step
         lines += [
             "",
@@ -307,6 +311,18 @@ class Audit:
             lines.append(
                 f"    {initial.cut:,} points of joints and bonds cannot bear it and begin with what their "
                 f"strength allows: up to {initial.most_cut:.3g} Pa less (near {place})"
+            )
+        return lines
+
+    def _bolts_text(self) -> list[str]:
+        """Bolts by type."""
+        lines = ["", "  bolts"] if self.bolts else []
+        for name, of in self.bolts.items():
+            count = "1 bolt" if of["bolts"] == 1 else f"{of['bolts']:,} bolts"
+            lines.append(
+                f"    {name}: {count}, {of['length']:.6g} m, {of['nodes']:,} nodes, parts of "
+                f"{of['shortest']:.3g} m or more, {of['crossings']:,} crossings of joints; up to "
+                f"{of['stiffness']:.3g} N/m on the rock"
             )
         return lines
 

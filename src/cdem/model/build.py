@@ -22,6 +22,7 @@ from cdem.mesh.mesh import Mesh
 from cdem.mesh.topology import Topology
 from cdem.model.assemble import assemble
 from cdem.model.bodies import check_groups, read_model
+from cdem.model.bolts import BoltModel, bolts_of
 from cdem.model.compensation import Compensation, compensate, compensated_groups, is_automatic
 from cdem.model.curves import Curves, constant
 from cdem.model.domain import check_domain
@@ -71,6 +72,7 @@ class Build:
         paired: Whether such faces that touch are pairs: those that were bonded, and all where
             `pairs_loose_joints`.
         initial: Under what stress the rock begins; None: under none.
+        bolts: Bolts in the rock, and which stage installs and removes them.
     """
 
     case: Case
@@ -84,6 +86,7 @@ class Build:
     bonded: NDArray[np.bool_]
     paired: NDArray[np.bool_]
     initial: InitialState | None
+    bolts: BoltModel
 
     @property
     def arrays(self) -> dict[str, NDArray]:
@@ -141,7 +144,10 @@ def build(case: Case) -> Build:
     made_up = compensate(
         case, topology, names, compensated_groups(case, topology, names, laws, interface_of, bonds)
     )
-    parts = _assemble(case, topology, names, laws, interface_of, paired, made_up, curves, None)
+    bolts = bolts_of(case, topology, names)
+    parts = _assemble(
+        case, topology, names, laws, interface_of, paired, made_up, curves, None, bolts
+    )
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
@@ -164,6 +170,7 @@ def build(case: Case) -> Build:
         bonds,
         paired,
         under,
+        bolts,
     )
     _set_motion(built)
     return built
@@ -200,6 +207,7 @@ def _assemble(
     made_up: dict[str, Compensation],
     curves: Curves,
     added_mass: Floats | None,
+    bolts: BoltModel,
 ) -> Assembly:
     """Arrays of the core, with supports and loads as the case has them now.
 
@@ -232,6 +240,7 @@ def _assemble(
         safety=case.time.safety,
         added_mass=added_mass,
         one_point=case.elements.hexahedra == "one-point",
+        bolts=bolts,
     )
     parts = assemble(topology, properties, native.padded_stride)
     check_fall(case, topology, laws, parts)
@@ -287,6 +296,7 @@ def change(built: Build) -> dict[str, NDArray]:
         built.compensation,
         built.curves,
         built.assembly.added_mass,
+        built.bolts,
     )
     kept = ("support.", "load.", "water.", "wet_", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
             "material.parameters")  # fmt: skip

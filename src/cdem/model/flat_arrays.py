@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cdem.case.schema import MassScaling
 from cdem.mesh.arrays import first_of_each
 from cdem.mesh.element_shapes import lame_constants
+from cdem.model.bolts import BoltModel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -46,6 +47,7 @@ class Properties:
         added_mass: What mass scaling has added to each node at the start, once that is known [kg],
             shape (nodes,).
         one_point: Whether hexahedra have one Gauss point and hourglass springs.
+        bolts: Bolts in the rock.
     """
 
     density: Floats
@@ -69,6 +71,7 @@ class Properties:
     safety: float = 1.0
     added_mass: Floats | None = None
     one_point: bool = False
+    bolts: BoltModel = field(default_factory=BoltModel)
 
     @property
     def lame(self) -> Floats:

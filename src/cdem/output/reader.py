@@ -6,7 +6,7 @@ import csv
 import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +66,7 @@ class Surface:
         point_data: By name.
         cell_data: By name.
         group_names: By the numbers of the field "group"; empty where the file does not tell.
+        bolts: Ends of the bars of bolts, shape (bars, 2, 3) [m].
     """
 
     time: float
@@ -74,6 +75,7 @@ class Surface:
     point_data: dict[str, NDArray]
     cell_data: dict[str, NDArray]
     group_names: list[str]
+    bolts: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2, 3)))
 
 
 class _Frames:
@@ -91,13 +93,13 @@ class _Frames:
                 f"{folder}: holds no frames; was output.frames switched off, or has the run only begun?"
             )
         self.times = np.array(
-            [self._read(k, ["FieldData/TimeValue"])[0][0] for k in range(len(self))]
+            [self.read(k, ["FieldData/TimeValue"])[0][0] for k in range(len(self))]
         )
 
     def __len__(self) -> int:
         return len(self._paths)
 
-    def _read(self, frame: int, names: Sequence[str]) -> list[NDArray]:
+    def read(self, frame: int, names: Sequence[str]) -> list[NDArray]:
         """Datasets of a frame."""
         with self._root(frame) as root:
             return [root[name][()] for name in names]
@@ -126,6 +128,15 @@ class SurfaceSeries(_Frames):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(Path(folder) / "surface")
+        bolts = Path(folder) / "bolts"
+        self._bolts = _Frames(bolts) if frame_numbers(bolts) else None
+
+    def _bars(self, frame: int) -> NDArray[np.float64]:
+        """Ends of the bars of bolts [m], shape (bars, 2, 3)."""
+        if self._bolts is None:
+            return np.zeros((0, 2, 3))
+        points, ends = self._bolts.read(frame, ["Points", "Connectivity"])
+        return points[ends].reshape(-1, 2, 3)
 
     def __getitem__(self, frame: int) -> Surface:
         frame = range(len(self))[frame]
@@ -138,6 +149,7 @@ class SurfaceSeries(_Frames):
                 {name: data[()] for name, data in root["PointData"].items()},
                 {name: data[()] for name, data in root["CellData"].items()},
                 _group_names(root),
+                self._bars(frame),
             )
 
 
@@ -165,11 +177,11 @@ class FrameSeries(_Frames):
 
     def points(self, frame: int) -> NDArray[np.float64]:
         """Positions of the nodes [m], shape (nodes, 3)."""
-        return self._read(frame, ["Points"])[0]
+        return self.read(frame, ["Points"])[0]
 
     def field(self, kind: str, name: str, frame: int) -> NDArray:
         """A field on the nodes ("PointData") or elements ("CellData") of a frame."""
-        return self._read(frame, [f"{kind}/{name}"])[0]
+        return self.read(frame, [f"{kind}/{name}"])[0]
 
 
 def _group_names(root: Any) -> list[str]:

@@ -29,18 +29,28 @@ GOLDEN = 0.6180339887
 """Its multiples, modulo 1, lie far from one another."""
 ROW = 28
 """Height of a row of the legend [pixels]."""
+THROUGH = 0.6
+"""Opacity of rock with bolts, which are seen through it."""
 OPENGL_HINT = "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install libosmesa6 libgl1 libxrender1"
 
 
 def snapshot(sim: RunState) -> Surface:
     """The surface of a simulation as it is now."""
+    from cdem.run.bolt_fields import bolt_lines
     from cdem.run.fields import surface_of, values_of
 
     places, vertices, point_data, cell_data = surface_of(sim, values_of(sim, CARRIED))
     counts = (vertices >= 0).sum(axis=1)
     faces = np.column_stack([counts, vertices])
+    ends, lines, _, _ = bolt_lines(sim)
     return Surface(
-        sim.time, places, faces[faces >= 0], point_data, cell_data, sim.build.group_names
+        sim.time,
+        places,
+        faces[faces >= 0],
+        point_data,
+        cell_data,
+        sim.build.group_names,
+        ends[lines],
     )
 
 
@@ -242,6 +252,7 @@ class _Scene:
         plotter.add_mesh(
             mesh,
             scalars=name,
+            opacity=THROUGH if len(surface.bolts) else 1.0,
             **look,
             show_edges=mesh.n_cells < 20000,
             edge_color="#444444",
@@ -251,6 +262,9 @@ class _Scene:
             # labels that leave room for the title in the middle
             scalar_bar_args={"color": "black", "vertical": False, "fmt": "%.3g", "n_labels": 4},
         )
+        if len(surface.bolts):
+            bars = surface.bolts.reshape(-1, 3)
+            plotter.add_lines(bars, color="#202020", width=4)
         plotter.add_text(title or f"t = {surface.time:.4g} s", font_size=12, color="black")
         plotter.camera_position = self.camera
         box = np.ravel([self.low_corner, self.high_corner], order="F")

@@ -22,7 +22,9 @@ from cdem.mesh.element_shapes import NODES
 from cdem.whole_files import ASIDE, replaced
 
 VTK_TYPES = {"tet4": 10, "pyramid5": 14, "wedge6": 13, "hex8": 12}
-VTK_TRIANGLE, VTK_QUAD = 5, 9
+VTK_LINE, VTK_TRIANGLE, VTK_QUAD = 3, 5, 9
+POLYGONS = np.array([0, 0, VTK_LINE, VTK_TRIANGLE, VTK_QUAD], np.uint8)
+"""Type of a cell by its corners."""
 COUNTS = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
 KINDS = ("PointData", "CellData")
 ELEMENTS = "elements.h5"
@@ -257,7 +259,7 @@ class FrameFiles(_Series):
 
 
 class SurfaceFiles(_Series):
-    """The outer and broken faces over time: triangles and quadrilaterals that come and go.
+    """The outer and broken faces over time: triangles and quadrilaterals that come and go; or lines.
 
     Args:
         path: The .vtkhdf file.
@@ -283,7 +285,8 @@ class SurfaceFiles(_Series):
             number: From 0.
             time: [s].
             points: [m], shape (points, 3).
-            polygons: Point ids, shape (faces, 3) or (faces, 4) with -1 last in a triangle.
+            polygons: Point ids, shape (faces, 3) or (faces, 4) with -1 last in a triangle; of lines
+                (lines, 2).
             point_data: Fields on points.
             cell_data: Fields on faces.
         """
@@ -291,7 +294,7 @@ class SurfaceFiles(_Series):
         connectivity = polygons[polygons >= 0].astype(np.int64)
         own = {
             "Points": points,
-            "Types": np.where(corners == 3, VTK_TRIANGLE, VTK_QUAD).astype(np.uint8),
+            "Types": POLYGONS[corners],
             "Connectivity": connectivity,
             "Offsets": np.concatenate([[0], np.cumsum(corners)]),
         } | _fields(point_data, cell_data)

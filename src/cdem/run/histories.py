@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.errors import CaseError
 from cdem.run.state import RunState
 
 
@@ -18,6 +20,9 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
     out: list[tuple[str, Any]] = []
     position = sim.build.start_position
     for entry in sim.case.histories:
+        if entry.bolt is not None:
+            out += _of_bolts(sim, entry.name, entry.bolt, entry.quantities)
+            continue
         if entry.group is not None:
             nodes = sim.build.nodes_of(entry.group)
         else:
@@ -32,6 +37,34 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
                 name = f"{entry.name}.{quantity}_{'xyz'[axis]} [{units[quantity]}]"
                 out.append((name, lambda q=quantity, n=nodes, a=axis: _value(sim, q, n)[a]))
     return out
+
+
+def _of_bolts(
+    sim: RunState, name: str, bolt: str, quantities: Sequence[str]
+) -> list[tuple[str, Any]]:
+    """Of a bolt, or of all bolts of an entry, what is largest in size."""
+    bolts = sim.build.bolts
+    first = bolts.first
+    numbers = bolts.numbers(bolt)
+    if not numbers:
+        raise CaseError(f"{sim.case.where('histories')}: histories: {name}: no bolt {bolt!r}")
+    nodes = np.concatenate([np.arange(first[i], first[i + 1]) for i in numbers])
+    heads = first[numbers]
+    columns = {
+        "axial_force": ("bolts.axial_force", nodes, "N"),
+        "slip": ("bolts.slip", nodes, "m"),
+        "plate_force": ("bolts.end_force", heads, "N"),
+    }
+
+    def largest(column: str, rows: NDArray[np.intp]) -> float:
+        values = sim.core.fields()[column][rows]
+        return float(values[np.abs(values).argmax()])
+
+    return [
+        (f"{name}.{q} [{unit}]", lambda c=column, r=rows: largest(c, r))
+        for q in quantities
+        for column, rows, unit in [columns[q]]
+    ]
 
 
 def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:

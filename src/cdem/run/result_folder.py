@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS, OutputField
 from cdem.errors import CdemError
+from cdem.run.bolt_fields import bolt_lines
 from cdem.run.checkpoint import (
     CHECKPOINT,
     CHECKPOINT_BEFORE,
@@ -89,6 +90,7 @@ class Results:
         self._history: HistoryFile
         self._volume: FrameFiles | None = None
         self._surface: SurfaceFiles | None = None
+        self._bolts: SurfaceFiles | None = None
         self._checkpoint: os.stat_result | None = None
 
     # ------------------------------------------------------------------ opening
@@ -147,11 +149,17 @@ class Results:
         cells, names = sim.build.topology.element_nodes, sim.build.group_names
         self._volume = FrameFiles(self.folder / "frames.vtkhdf", cells, static, names, frames)
         self._surface = SurfaceFiles(self.folder / "surface.vtkhdf", names, frames)
-        for series in (self._volume, self._surface):
+        if sim.build.bolts.bolts:
+            self._bolts = SurfaceFiles(self.folder / "bolts.vtkhdf", names, frames)
+        for series in self._series():
             if series.lost:
                 self.notes.append(
                     f"{series.path.name}: frames {_ranges(series.lost)} are lost (damaged or missing)"
                 )
+
+    def _series(self) -> list[FrameFiles | SurfaceFiles]:
+        """The series of frames that are written."""
+        return [s for s in (self._volume, self._surface, self._bolts) if s is not None]
 
     # ------------------------------------------------------------------ writing
 
@@ -187,14 +195,15 @@ class Results:
         volume.append(self.frames, sim.time, sim.motion[:, :3], nodes, elements)
         polygons = surface_of(sim, {f.name: values[f.name] for f in shown})
         surface.append(self.frames, sim.time, *polygons)
+        if self._bolts is not None:
+            self._bolts.append(self.frames, sim.time, *bolt_lines(sim))
         self.frames += 1
 
     def checkpoint(self, sim: RunState) -> None:
         """Write the checkpoint, once all that it counts on is on the disk."""
         self._history.sync()
-        for series in (self._volume, self._surface):
-            if series is not None:
-                series.sync()
+        for series in self._series():
+            series.sync()
         arrays = dict(sim.core.fields())
         arrays["simulation.reference"] = sim.reference
         attributes = sim.attributes(self._history.rows, self.frames)

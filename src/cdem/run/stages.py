@@ -80,6 +80,7 @@ def begin(sim: RunState) -> StageState:
     stage = sim.case.stages[index]
     if stage.remove:
         excavate(sim, stage.remove)
+    change_bolts(sim, stage.name)
     sim.core.change_mass(is_lumped(stage))
     apply_settings(sim, index)
     if sim.step_count:
@@ -115,6 +116,16 @@ def excavate(sim: RunState, names: list[str]) -> None:
     t = sim.build.topology
     leave = np.isin(t.block_group, [sim.build.group_names.index(name) for name in names])
     sim.core.excavate(leave[t.node_block].astype(np.int8))
+
+
+def change_bolts(sim: RunState, stage: str) -> None:
+    """Remove and install the bolts of a stage; those of the first are there already."""
+    bolts = sim.build.bolts
+    leave, come = bolts.flags(stage, "remove"), bolts.flags(stage, "install")
+    if leave.any():
+        sim.core.remove_bolts(leave)
+    if come.any() and sim.stage_index > 0:
+        sim.core.install_bolts(come)
 
 
 def release_part(sim: RunState, stage: StageState) -> bool:

@@ -18,12 +18,14 @@ FOLDERS = {
     "vtu": ["frame-*.vtu"],  # cdem export
     "frames": ["frame-*.vtkhdf", "elements.h5"],
     "surface": ["frame-*.vtkhdf"],
+    "bolts": ["frame-*.vtkhdf"],
 }
 """Folders inside a result folder, and patterns of the names of their files."""
 WRITTEN = {
     # cdem run
     MARKER, LOCK, "case.yaml", "run.log", "summary.json", "checkpoint.h5", "checkpoint-before.h5",
-    "histories.csv", "frames.vtkhdf", "surface.vtkhdf", "report.html",
+    "histories.csv", "frames.vtkhdf", "surface.vtkhdf", "bolts.vtkhdf",
+    "report.html",
     # cdem plot, render, export
     "energies.png", "unbalance.png", "history-*.png", "frames.pvd",
     *(f"{field.name}-{part}.png" for field in OUTPUT_FIELDS for part in ("[0-9]" * 4, "overview")),

@@ -30,13 +30,12 @@ TEST_CASE("every set is visited once, and all corner rows belong to one item") {
   for_each_set(mixed.model, mixed.state, [&](const auto& kind, const auto& set, const auto& state) {
     CHECK(names.insert(kind.name).second);
     for (Index i = 0; i < set.count; ++i) {
-      const Range rows = corner_rows(set, i);
-      for (Index row = rows.first; row < rows.last; ++row) ++owners[row];
+      for_each_corner_row(set, i, [&](Index row) { ++owners[row]; });
       active += is_active(state, i);
     }
   });
   CHECK(names == std::set<std::string>{"tet4", "pyramid5", "wedge6", "hex8", "triangles", "quads",
-                                       "overlaps"});
+                                       "overlaps", "bolts"});
   CHECK(owners == std::vector<Index>(owners.size(), 1));
   CHECK(active == 2 + 2 + 1 + 1);
   CHECK(element_row_count(mixed.model, mixed.state) == 2 * 8 + 2 * 4);

@@ -23,7 +23,16 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     status, out, _ = run_cli("new")
     assert status == 0
     names = [line.split()[0] for line in out.splitlines()]
-    assert names == ["dam", "incline", "landslide", "safety", "slope", "tunnel", "wall"]
+    assert names == [
+        "dam",
+        "incline",
+        "landslide",
+        "safety",
+        "slope",
+        "tunnel",
+        "tunnel_bolts",
+        "wall",
+    ]
     for name in names:
         assert run_cli("new", name, "cases")[0] == 0
         case = Case.load(cube_folder / "cases" / f"{name}.yaml")
@@ -37,7 +46,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
 
 
 @pytest.mark.parametrize(
-    "name", ["incline", "wall", "slope", "safety", "landslide", "tunnel", "dam"]
+    "name", ["incline", "wall", "slope", "safety", "landslide", "tunnel", "tunnel_bolts", "dam"]
 )
 def test_templates_check(run_cli, name):
     run_cli("new", name)

@@ -1,0 +1,126 @@
+"""Straight paths through the elements of a mesh: which they pass, from where to where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh import element_shapes
+from cdem.mesh.topology import Topology
+
+Floats = NDArray[np.float64]
+
+NEWTON_STEPS = 30
+
+
+@dataclass(frozen=True)
+class Pass:
+    """A part of a path in one element.
+
+    Attributes:
+        first: Where it begins along the path [m].
+        last: Where it ends [m].
+        shape: Of the element.
+        element: Its number among those of the shape.
+        block: The block that it is of.
+        group: The group of the block.
+    """
+
+    first: float
+    last: float
+    shape: str
+    element: int
+    block: int
+    group: int
+
+
+def passes(t: Topology, start: Floats, end: Floats, from_: float = 0.0) -> list[Pass]:
+    """Elements that a straight path meets, in no order; faces are taken as planes.
+
+    Args:
+        t: Blocks and elements.
+        start: Where it begins [m].
+        end: Where it ends [m].
+        from_: Length of the path before `start`, which the results count from [m].
+    """
+    length = float(np.linalg.norm(end - start))
+    way = (end - start) / length
+    found = []
+    for shape, faces in element_shapes.FACES.items():
+        nodes = t.element_nodes[shape]
+        if not len(nodes):
+            continue
+        near = _near(t.node_position[nodes], start, end)
+        corners = t.node_position[nodes[near]]
+        low, high = np.zeros(len(near)), np.full(len(near), length)
+        for face in faces:
+            x = corners[:, face]
+            normal = np.cross(x[:, 2] - x[:, 0], x[:, -1] - x[:, 1])
+            outside = np.einsum("ex,ex->e", normal, start - x.mean(axis=1))
+            rate = normal @ way
+            with np.errstate(divide="ignore", invalid="ignore"):
+                at = -outside / rate
+            leaves, enters = rate > 0, rate < 0
+            high = np.where(leaves, np.minimum(high, at), high)
+            low = np.where(enters, np.maximum(low, at), low)
+            size = np.linalg.norm(normal, axis=1)
+            high = np.where((rate == 0) & (outside > 1e-9 * size * length), -1.0, high)
+        for k in np.flatnonzero(high > low):
+            e = int(near[k])
+            block = int(t.element_block[shape][e])
+            group = int(t.element_group[shape][e])
+            found.append(Pass(from_ + low[k], from_ + high[k], shape, e, block, group))
+    return found
+
+
+def _near(corners: Floats, start: Floats, end: Floats) -> NDArray[np.intp]:
+    """Elements whose box meets that of the path."""
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    slack = 1e-6 * np.linalg.norm(end - start)
+    meets = (corners.min(axis=1) <= high + slack) & (corners.max(axis=1) >= low - slack)
+    return np.flatnonzero(meets.all(axis=1))
+
+
+def walk(found: list[Pass], length: float, slack: float) -> Iterator[Pass]:
+    """Order the parts of a path so that each begins where the one before ends, or after a gap.
+
+    Where several elements share a part, the path stays in its block, and in the element that takes it
+    farthest.
+    """
+    at, block = 0.0, -1
+    left = sorted(found, key=lambda p: (p.first, p.shape, p.element))
+    while at < length - slack:
+        here = [p for p in left if p.first <= at + slack and p.last > at + slack]
+        if not here:
+            later = [p.first for p in left if p.first > at]
+            if not later:
+                return
+            at = min(later)
+            continue
+        stays = [p for p in here if p.block == block] or here
+        best = max(stays, key=lambda p: (p.last, -p.element))
+        yield Pass(at, min(best.last, length), best.shape, best.element, best.block, best.group)
+        at, block = best.last, best.block
+
+
+def weights_in(t: Topology, shape: str, element: int, place: Floats) -> tuple[Floats, Floats]:
+    """Nodes of an element, and the weights with which they make up a place in it [m]."""
+    nodes = t.element_nodes[shape][element]
+    corners = t.node_position[nodes]
+    local = np.full(3, 0.25) if shape in ("tet4", "pyramid5") else np.full(3, 0.0)
+    if shape == "wedge6":
+        local = np.array([1 / 3, 1 / 3, 0.0])
+    values = np.zeros(len(nodes))
+    for _ in range(NEWTON_STEPS):
+        values, slopes = (a[0] for a in element_shapes.shape_functions(shape, local[None]))
+        off = place - values @ corners
+        change = np.linalg.solve(corners.T @ slopes, off)
+        local = local + change
+        if shape == "pyramid5":
+            local[2] = min(local[2], 1 - 1e-9)
+        if np.abs(change).max() < 1e-14:
+            break
+    return nodes, values

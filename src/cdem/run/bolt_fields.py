@@ -1,0 +1,46 @@
+"""Bolts as lines, for frames and pictures: where they are now, and what they bear."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.model.bolts import HOSTS
+from cdem.run.state import RunState
+
+Lines = tuple[NDArray[np.float64], NDArray[np.int32], dict[str, NDArray], dict[str, NDArray]]
+
+ACTS = (1, 2)
+"""Phases of a bolt that is installed."""
+
+
+def bolt_lines(sim: RunState) -> Lines:
+    """Places of the nodes of installed bolts [m], the bars between them, fields on both.
+
+    Fields of nodes: `slip` towards the toe [m], `grout_force` on the rock [N], `grout_state`
+    (0 holds, 1 and 2 slips). Fields of bars: `axial_force`, tension positive [N], `bar_state`
+    (0 elastic, 1 and 2 yields in tension and compression, 3 ruptured, 4 cut), `bolt`.
+    """
+    state, arrays = sim.core.fields(), sim.build.arrays
+    first = arrays["bolts.first"]
+    bolt = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    hosts = arrays["bolts.hosts"].reshape(-1, HOSTS)[: len(bolt)]
+    weights = arrays["bolts.weights"].reshape(-1, HOSTS)[: len(bolt)]
+    places = np.einsum("ph,phx->px", weights, sim.motion[:, :3][np.maximum(hosts, 0)])
+    shown = np.isin(state["bolts.phase"], ACTS)[bolt]
+    number = np.cumsum(shown) - 1
+    bars = np.flatnonzero(shown[:-1] & (bolt[:-1] == bolt[1:])) if len(bolt) else bolt
+    lines = np.stack([number[bars], number[bars + 1]], axis=1).astype(np.int32)
+    broken = state["bolts.bar_broken"][bars]
+    bar_state = np.where(broken > 0, broken + 2, state["bolts.bar_state"][bars])
+    points = {
+        "slip": state["bolts.slip"][shown],
+        "grout_force": state["bolts.grout_force"][shown],
+        "grout_state": state["bolts.grout_state"][shown].astype(np.int32),
+    }
+    cells = {
+        "axial_force": state["bolts.axial_force"][bars],
+        "bar_state": bar_state.astype(np.int32),
+        "bolt": bolt[bars].astype(np.int32),
+    }
+    return places[shown], lines, points, cells
