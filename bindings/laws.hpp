@@ -11,6 +11,7 @@
 #include "bindings/arrays.hpp"
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
+#include "core/model/init_state.hpp"
 
 namespace cdem {
 
@@ -101,7 +102,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
   constexpr std::size_t width = parameter_row;
   m.interfaces.resize(interfaces.size());
   m.interface_parameters.resize(width * interfaces.size());
-  m.rules.lifted = m.initial_lift;
+  Real lift = 0;
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const auto entry = nb::cast<nb::dict>(interfaces[i]);
     const auto stiffness = [&](const char* name) {
@@ -120,9 +121,11 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
       interface.law = number;
       const auto row = parameters_of<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
       std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
-      m.rules.lifted = std::max(m.rules.lifted, 2 * Law<Real>::rise_most(row.data()));
+      lift = std::max(lift, 2 * Law<Real>::rise_most(row.data()));
     });
   }
+  m.rules.lifted = m.initial_lift + lift;
+  make_room_for_rises(m, core.state);
 }
 
 }  // namespace cdem

@@ -38,7 +38,8 @@ struct PairColumns {
   InOutTable bond, slip1, slip2;  // [point][pair]
   InTable rest;  // [axis * points + point][pair] jump at which the spring is free, along n, t1 and
                  // t2 of the pair: that of the initial stress; empty: all zero  [m]
-  InOutTable history;                       // [variable * points + point][pair] of the laws
+  InOutTable rise;     // [point][pair] of that jump along n, by dilation; empty: all zero  [m]
+  InOutTable history;  // [variable * points + point][pair] of the laws
   InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
   InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
   InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
@@ -70,9 +71,34 @@ struct PairColumns {
   template <class I, class T>
   CDEM_HD Vec3<T> past_rest(I p, Index k, Index points, const Frame<T>& f,
                             const Vec3<T>& jump) const {
-    if (!rest.data) return jump;
-    return jump - rest.at(k, p) * f.n - rest.at(points + k, p) * f.t1 -
-           rest.at(2 * points + k, p) * f.t2;
+    Vec3<T> past = jump;
+    if (rest.data)
+      past = jump - rest.at(k, p) * f.n - rest.at(points + k, p) * f.t1 -
+             rest.at(2 * points + k, p) * f.t2;
+    return rise.data ? past - rise.at(k, p) * f.n : past;
+  }
+  /// The gap at which the spring of point k is free of stress, in the normal direction  [m].
+  template <class I>
+  CDEM_HD Number<I> lift(I p, Index k) const {
+    using T = Number<I>;
+    return (rest.data ? rest.at(k, p) : T(0.0)) + (rise.data ? rise.at(k, p) : T(0.0));
+  }
+  /// The history of point k that every law has.
+  template <class I>
+  CDEM_HD BondHistory<Number<I>> history_of(I p, Index k) const {
+    using T = Number<I>;
+    return {.bond = bond.at(k, p),
+            .slip1 = slip1.at(k, p),
+            .slip2 = slip2.at(k, p),
+            .rise = rise.data ? rise.at(k, p) : T(0.0)};
+  }
+  template <class I, class M>
+  CDEM_HD void set_history(I p, Index k, const M& live, const BondHistory<Number<I>>& old,
+                           const BondHistory<Number<I>>& h) const {
+    bond.set(k, p, select(live, h.bond, old.bond));
+    slip1.set(k, p, select(live, h.slip1, old.slip1));
+    slip2.set(k, p, select(live, h.slip2, old.slip2));
+    if (rise.data) rise.set(k, p, select(live, h.rise, old.rise));
   }
   /// Spring of a point with this area  [m2].
   template <class I>
@@ -193,7 +219,7 @@ struct ConformingBonds {
                        .shear = zero};
     T widest(0.0), intact(0.0);
     for (Index k = 0; k < count; ++k) {
-      const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
+      const BondHistory<T> old = pairs.history_of(p, k);
       BondHistory<T> h = old;
       T state[Laws::most_state + 1];
       pairs.load_history<Laws>(p, k, count, state);
@@ -201,9 +227,7 @@ struct ConformingBonds {
           bond_force(laws, own, frame, jump[k], jump[k] - T(dt) * rate[k], open, h, state);
       // a released pair beside live ones in a lane keeps its history as it was
       pairs.store_history<Laws>(p, k, count, live, state);
-      pairs.bond.set(k, p, select(live, h.bond, old.bond));
-      pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
-      pairs.slip2.set(k, p, select(live, h.slip2, old.slip2));
+      pairs.set_history(p, k, live, old, h);
       force[k] = f.on_b;
       widest = max_of(widest, dot(jump[k], jump[k]));
       intact += h.bond;
@@ -269,16 +293,14 @@ struct OverlapBonds {
       const One point{c};
       const Vec3<Real> jump = jump_at(a, b, frame, c);
       const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
-      BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
-                          pairs.slip2.at(0, point)};
+      const BondHistory<Real> old = pairs.history_of(point, 0);
+      BondHistory<Real> h = old;
       Real state[Laws::most_state + 1];
       pairs.load_history<Laws>(point, 0, 1, state);
       const BondForce<Real> f = bond_force(laws, pairs.spring(p, point_area[c]), frame, jump,
                                            jump - faces.dt * rate, open, h, state);
       pairs.store_history<Laws>(point, 0, 1, true, state);
-      pairs.bond.set(0, point, h.bond);
-      pairs.slip1.set(0, point, h.slip1);
-      pairs.slip2.set(0, point, h.slip2);
+      pairs.set_history(point, 0, true, old, h);
       for (Index k = 0; k < 4; ++k) {
         force[k] = force[k] - weights_a[4 * c + k] * f.on_b;
         force[4 + k] = force[4 + k] + weights_b[4 * c + k] * f.on_b;

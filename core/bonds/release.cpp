@@ -81,7 +81,7 @@ void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, In
   const InterfaceTable table = interface_table(m);
   for (BrokenPoint& point : broken) {
     const JointInput<Real> in =
-        point.spring.input(frame, point.jump, 0.0, ps.slip1[point.place], ps.slip2[point.place]);
+        point.spring.input(frame, point.jump, {0.0, ps.slip1[point.place], ps.slip2[point.place]});
     const JointAnswer<Real> joint =
         joint_laws<InterfaceLaws>(table, p.interface[i]).respond(in, point.history);
     const Real held = point.spring.area * (joint.stored_n + joint.stored_s);

@@ -21,6 +21,7 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           .slip1 = point(s.slip1),
           .slip2 = point(s.slip2),
           .rest = {s.rest.size() > 0 ? s.rest.data() : nullptr, p.point_stride},
+          .rise = {s.rise.size() > 0 ? s.rise.data() : nullptr, p.point_stride},
           .history = point(s.history),
           .broken_tension = inout(s.broken_tension),
           .broken_shear = inout(s.broken_shear),

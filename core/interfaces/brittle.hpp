@@ -109,7 +109,7 @@ struct Brittle {
     const T try1 = -k.s * in.shear1, try2 = -k.s * in.shear2;
     const T squared = try1 * try1 + try2 * try2;
     T limit = shear_limit(normal, in.bond);
-    const T tangent = in.may_rise * min_of(tan_dilation, tan_friction);
+    const T tangent = min_of(tan_dilation, tan_friction);
     const auto lifts = (tangent > none) & (normal > none) & slips(squared, limit);
     T rise = none;
     if (any_of(lifts)) {

@@ -48,7 +48,6 @@ struct JointInput {
   T damping;   // normal traction of the contact's dashpot, compression > 0  [Pa]
   T bond;      // 1 while bonded, then 0
   T risen;     // how far the stress-free gap lies above zero  [m]
-  T may_rise;  // 1 where it can rise further: at semi-springs
   T has_area;  // 1 where the area is that of the joint, so that a cohesion counts: at bond points
 };
 
