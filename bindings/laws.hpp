@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bindings/arrays.hpp"
+#include "core/interfaces/draws.hpp"
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
 #include "core/model/init_state.hpp"
@@ -56,6 +57,14 @@ inline std::pair<Real, Real> steepest_fall(const std::string& law, const nb::dic
     }
   });
   return fall;
+}
+
+/// Factors on the strength of pairs, from rows of two faces.
+inline nb::object weibull_factors(Array<Index> faces, std::uint64_t seed, Real shape, Real mean) {
+  std::vector<Real> factors;
+  for (std::size_t i = 0; i + 1 < faces.size(); i += 2)
+    factors.push_back(weibull_factor(seed, faces.data()[i], faces.data()[i + 1], shape, mean));
+  return array_of(std::move(factors));
 }
 
 /// What the laws of a list say of themselves.

@@ -16,6 +16,12 @@ struct BondHistory {
   T rise = T(0.0);  // by dilation  [m]
 };
 
+/// How fast a joint slips, along the tangents of its frame  [m/s].
+template <class T>
+struct SlipRate {
+  T along1, along2;
+};
+
 /// Spring of one bond point: its share of the true overlap area, so that strength does not depend
 /// on which side is meshed finer, and the interface's stiffness.
 template <class T>
@@ -24,8 +30,8 @@ struct BondSpring {
   JointStiffness<T> stiffness;
 
   /// What the law is asked for a jump of displacement x_b - x_a, past what the point has risen.
-  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump,
-                              const BondHistory<T>& h) const {
+  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump, const BondHistory<T>& h,
+                              const SlipRate<T>& rate) const {
     return {.opening = dot(frame.n, jump),
             .shear1 = dot(frame.t1, jump) - h.slip1,
             .shear2 = dot(frame.t2, jump) - h.slip2,
@@ -33,7 +39,14 @@ struct BondSpring {
             .damping = T(0.0),
             .bond = h.bond,
             .risen = h.rise,
+            .rate1 = rate.along1,
+            .rate2 = rate.along2,
             .has_area = T(1.0)};
+  }
+  /// The same at rest.
+  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump,
+                              const BondHistory<T>& h) const {
+    return input(frame, jump, h, {T(0.0), T(0.0)});
   }
   /// The same of an intact point.
   CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump) const {
@@ -102,10 +115,12 @@ CDEM_HD inline JointAnswer<T> before_step(const Laws& laws, const JointInput<T>&
 template <class Laws, class T, class M>
 CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& spring,
                                        const Frame<T>& frame, const Vec3<T>& jump,
-                                       const Vec3<T>& jump_old, const M& searched,
+                                       const Vec3<T>& jump_old, Real dt, const M& searched,
                                        BondHistory<T>& h, T* state) {
   const T zero(0.0), one(1.0), half(0.5);
-  const auto input_at = [&](const Vec3<T>& x) { return spring.input(frame, x, h); };
+  const Vec3<T> way = jump - jump_old;
+  const SlipRate<T> rate{dot(frame.t1, way) / T(dt), dot(frame.t2, way) / T(dt)};
+  const auto input_at = [&](const Vec3<T>& x) { return spring.input(frame, x, h, rate); };
   constexpr Index size = Laws::most_state;
   T state_old[size + 1];
   for (Index k = 0; k < size; ++k) state_old[k] = state[k];
@@ -129,10 +144,9 @@ CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& sp
   if constexpr (Laws::most_state > 0) out.friction = spring.area * now.friction;
   if (any_of(!intact)) {
     const JointAnswer<T> was = before_step(laws, input_at(jump_old), state_old);
-    const Vec3<T> moved = jump - jump_old;
-    const T work_n = (was.normal + normal) * dot(frame.n, moved);
+    const T work_n = (was.normal + normal) * dot(frame.n, way);
     const T work_s =
-        (was.shear1 + shear1) * dot(frame.t1, moved) + (was.shear2 + shear2) * dot(frame.t2, moved);
+        (was.shear1 + shear1) * dot(frame.t1, way) + (was.shear2 + shear2) * dot(frame.t2, way);
     const T lost_n = was.stored_n - stored_n - half * work_n;
     const T lost_s = was.stored_s - stored_s - half * work_s;
     out.fracture = select(broke, spring.area * (lost_n + lost_s) - out.friction, out.fracture);

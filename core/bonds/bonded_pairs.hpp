@@ -34,6 +34,7 @@ struct PairColumns {
   InTable area;         // [1][pair] true overlap area  [m2]
   InFlags status;       // [pair] PairStatus
   InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
+  InTable strength;     // [1][pair] factor on the strength; empty: all 1
   InterfaceTable interfaces;
   InOutTable bond, slip1, slip2;  // [point][pair]
   InTable rest;  // [axis * points + point][pair] jump at which the spring is free, along n, t1 and
@@ -53,6 +54,13 @@ struct PairColumns {
   template <class I>
   CDEM_HD auto are_hinges(I p) const {
     return status.equal(Flag(PairStatus::hinge), p);
+  }
+  /// The law of a pair.
+  template <class Laws, class I>
+  CDEM_HD auto laws(I p) const {
+    auto of = joint_laws<Laws>(interfaces, interface.at(0, p));
+    if (strength.data) of.scatter = {true, strength.at(0, p)};
+    return of;
   }
   /// What the law of a pair remembers of point k of `points`; the point's number is its row.
   template <class Laws, class I, class T>
@@ -143,7 +151,7 @@ struct ConformingBonds {
     if (any_of(live & !all_bear<Laws>(p, frame, jump, force))) {
       update_history<Laws>(p, live, frame, jump, force);
     } else if (sampled) {
-      const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+      const auto laws = pairs.template laws<Laws>(p);
       const BondSpring<T> own = spring(p);
       T stored(0.0);
       for (Index k = 0; k < count; ++k) {
@@ -191,7 +199,7 @@ struct ConformingBonds {
   /// The common case: all points of the pair were intact and stay so.
   template <class Laws, class I, class T>
   CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, Vec3<T>* force) const {
-    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+    const auto laws = pairs.template laws<Laws>(p);
     const BondSpring<T> own = spring(p);
     auto all = pairs.bond.at(0, p) > T(0.5);
     for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
@@ -206,7 +214,7 @@ struct ConformingBonds {
   CDEM_HD void update_history(I p, const M& live, const Frame<T>& frame, const Vec3<T>* jump,
                               Vec3<T>* force) const {
     const T zero(0.0);
-    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+    const auto laws = pairs.template laws<Laws>(p);
     const BondSpring<T> own = spring(p);
     const auto open = pairs.are_hinges(p);
     Vec3<T> rate[count];
@@ -224,7 +232,7 @@ struct ConformingBonds {
       T state[Laws::most_state + 1];
       pairs.load_history<Laws>(p, k, count, state);
       const BondForce<T> f =
-          bond_force(laws, own, frame, jump[k], jump[k] - T(dt) * rate[k], open, h, state);
+          bond_force(laws, own, frame, jump[k], jump[k] - T(dt) * rate[k], dt, open, h, state);
       // a released pair beside live ones in a lane keeps its history as it was
       pairs.store_history<Laws>(p, k, count, live, state);
       pairs.set_history(p, k, live, old, h);
@@ -282,7 +290,7 @@ struct OverlapBonds {
   template <class Laws>
   CDEM_HD void update(One p) const {
     if (!pairs.are_live(p)) return;
-    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+    const auto laws = pairs.template laws<Laws>(p);
     const Index a = pair_faces[2 * p.i], b = pair_faces[2 * p.i + 1];
     const Vec3<Real> none{0.0, 0.0, 0.0};
     Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};
@@ -298,7 +306,7 @@ struct OverlapBonds {
       Real state[Laws::most_state + 1];
       pairs.load_history<Laws>(point, 0, 1, state);
       const BondForce<Real> f = bond_force(laws, pairs.spring(p, point_area[c]), frame, jump,
-                                           jump - faces.dt * rate, open, h, state);
+                                           jump - faces.dt * rate, faces.dt, open, h, state);
       pairs.store_history<Laws>(point, 0, 1, true, state);
       pairs.set_history(point, 0, true, old, h);
       for (Index k = 0; k < 4; ++k) {

@@ -16,6 +16,7 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           .area = in(p.area),
           .status = {s.status.data()},
           .stiffness = in(p.stiffness),
+          .strength = {p.strength.size() > 0 ? p.strength.data() : nullptr, p.stride},
           .interfaces = interface_table(m),
           .bond = point(s.bond),
           .slip1 = point(s.slip1),

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from scenes import simulate
+from scenes import case, digest, simulate
 
+import cdem
 from cdem.run.law_fields import state_of
 
 STIFFNESS = {"stiffness_n": "1e11 Pa/m", "stiffness_s": "1e11 Pa/m"}
@@ -140,6 +141,19 @@ LAWS = {
         lambda slip: np.full_like(slip, np.tan(np.radians(30))),
     ),
     "slip-weakening": ({"law": "slip-weakening"} | FALL, None),
+    "velocity-weakening": (  # fast for its velocity
+        {
+            "law": "velocity-weakening",
+            "friction_angle": 40,
+            "dynamic_friction_angle": 30,
+            "velocity": 1e-7,
+        },
+        lambda slip: np.full_like(slip, np.tan(np.radians(30))),
+    ),
+    "voellmy": (  # so large a turbulence coefficient that speed hardly matters
+        {"law": "voellmy", "friction_angle": 40, "turbulence": 1e9, "flow_density": 2000},
+        lambda slip: np.full_like(slip, np.tan(np.radians(40))),
+    ),
     "softening": (
         {"law": "softening", "fracture_energy_1": 1e4, "fracture_energy_2": 1e4} | FALL | BONDED,
         None,
@@ -283,3 +297,40 @@ def test_bond_points_dilate_and_hand_over_what_they_have_risen(law):
     assert contacts["force_n"].sum() == pytest.approx(sigma, rel=1e-9)
     assert np.hypot(*contacts["force"][:, :2].T).sum() == pytest.approx(tau, rel=1e-9)
     assert abs(sim.energies["error"]) < 1e-3
+
+
+def test_each_pair_of_a_heterogeneous_interface_has_its_own_strength():
+    """Sheared under pressure, pairs break at w c + sigma tan(phi); threads change no bit."""
+    factors = {}
+
+    def sheared(threads):
+        stones = [
+            {"group": "low", "box": {"size": [4, 3, 1], "divisions": [4, 3, 1]}},
+            {"group": "high", "box": {"size": [4, 3, 1], "divisions": [4, 3, 1]},
+             "translate": [0, 0, 1]},
+        ]  # fmt: skip
+        law = {"friction_angle": 0, "cohesion": "1 MPa", "tensile_strength": "1 MPa"}
+        sim = cdem.Simulation(
+            case(
+                stones,
+                {"low": {"fix": ["x", "y", "z"]}, "high": {}},
+                interfaces={
+                    "default": STIFFNESS | law | {"heterogeneity": {"weibull": 3, "seed": 2}}
+                },
+                time={"step": "1 us"},
+                loads={"velocities": [{"group": "high", "velocity": [0.01, 0, 0]}]},
+            ),
+            threads=threads,
+        )
+        pairs = sim.build.assembly.counts["quads.count"]
+        factors[threads] = sim.build.arrays["quads.strength"][:pairs].copy()
+        sim.step(800)
+        return sim, sim.core.fields()["quads.bond"].reshape(4, -1)[0, :pairs].copy()
+
+    sim, bond = sheared(1)
+    stress = 1e11 * 0.01 * (sim.step_count - 0.5) * 1e-6
+    assert (bond > 0).any() and (bond == 0).any()
+    assert (bond > 0).tolist() == (factors[1] * 1e6 > stress).tolist()
+    other, _ = sheared(3)
+    assert digest(other) == digest(sim)
+    assert f"strength times {factors[1].min():.3g} .. {factors[1].max():.3g}" in sim.audit.text()

@@ -82,6 +82,8 @@ CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
           .damping = select(motion.gap < zero, damping, zero),
           .bond = zero,
           .risen = motion.stress_free_gap,
+          .rate1 = motion.slip1 / T(motion.dt),
+          .rate2 = motion.slip2 / T(motion.dt),
           .has_area = zero};
 }
 

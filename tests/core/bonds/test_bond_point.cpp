@@ -6,7 +6,7 @@ namespace cdem::test {
 
 namespace {
 
-constexpr Real area = 0.25, kn = 2e9, ks = 1e9;
+constexpr Real area = 0.25, kn = 2e9, ks = 1e9, dt = 1e-5;
 constexpr Real cohesion = 3e5, tension = 1e5, tan_phi = 0.5;
 const Joints rock{
     {{"cohesion", cohesion}, {"tensile_strength", tension}, {"friction_angle", tan_phi}}};
@@ -30,7 +30,7 @@ struct Point {
     const Vec force = last.on_b;
     const Vec lift = history.rise * frame.n;
     last = bond_force(joint_laws<InterfaceLaws>(interfaces, Index(0)), spring, frame, to - lift,
-                      jump - lift, searched, history, state);
+                      jump - lift, dt, searched, history, state);
     work -= 0.5 * dot(force + last.on_b, to - jump);
     fracture += last.fracture;
     friction += last.friction;
@@ -222,9 +222,9 @@ TEST_CASE("points of a lane are those of its numbers") {
         BondForce<T> f;
         if constexpr (std::is_same_v<T, Pack>)
           f = bond_force(joint_laws<InterfaceLaws>(table, IndexPack{}), own, frame,
-                         vector_at(in + 9), vector_at(in + 12), searched, h, state);
+                         vector_at(in + 9), vector_at(in + 12), dt, searched, h, state);
         else
-          f = bond_force(laws, own, frame, vector_at(in + 9), vector_at(in + 12), searched, h,
+          f = bond_force(laws, own, frame, vector_at(in + 9), vector_at(in + 12), dt, searched, h,
                          state);
         put(out, f.on_b);
         out[3] = f.stored, out[4] = f.fracture, out[5] = f.friction;

@@ -140,6 +140,17 @@ TEST_CASE("the stress-free gap of a lifted contact follows it to zero; asperitie
   CHECK(lifted_stress_free_gap(2e-5, -5e-5) == 2e-5);
 }
 
+TEST_CASE("a law is asked with the speed of the step's slip") {
+  const ContactMotion<Real> motion{.gap = -1e-4,
+                                   .stress_free_gap = 0,
+                                   .gap_rate = 0,
+                                   .slip1 = 3e-5,
+                                   .slip2 = -4e-5,
+                                   .dashpot = 0,
+                                   .dt = dt};
+  CHECK(relative_error(contact_input(spring, motion, {}).slip_rate(), 5e-5 / dt) < 1e-14);
+}
+
 TEST_CASE("contacts of a lane are those of their numbers") {
   Random random(2);
   check_lanes<13, 9>(
