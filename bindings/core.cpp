@@ -317,6 +317,7 @@ NB_MODULE(CDEM_MODULE, module) {
   using namespace cdem;
   module.attr("lanes") = lanes;
   module.def("padded_stride", &padded_stride, "count"_a);
+  module.def("weibull_factors", &weibull_factors, "faces"_a, "seed"_a, "shape"_a, "mean"_a);
   module.def("interface_laws", &declarations<InterfaceLaws>,
              "What the interface laws say of themselves.");
   module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "bindings/arrays.hpp"
+#include "core/interfaces/draws.hpp"
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
+#include "core/model/init_state.hpp"
 
 namespace cdem {
 
@@ -57,6 +59,14 @@ inline std::pair<Real, Real> steepest_fall(const std::string& law, const nb::dic
   return fall;
 }
 
+/// Factors on the strength of pairs, from rows of two faces.
+inline nb::object weibull_factors(Array<Index> faces, std::uint64_t seed, Real shape, Real mean) {
+  std::vector<Real> factors;
+  for (std::size_t i = 0; i + 1 < faces.size(); i += 2)
+    factors.push_back(weibull_factor(seed, faces.data()[i], faces.data()[i + 1], shape, mean));
+  return array_of(std::move(factors));
+}
+
 /// What the laws of a list say of themselves.
 template <class Laws>
 nb::list declarations() {
@@ -101,7 +111,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
   constexpr std::size_t width = parameter_row;
   m.interfaces.resize(interfaces.size());
   m.interface_parameters.resize(width * interfaces.size());
-  m.rules.lifted = m.initial_lift;
+  Real lift = 0;
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const auto entry = nb::cast<nb::dict>(interfaces[i]);
     const auto stiffness = [&](const char* name) {
@@ -120,9 +130,11 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
       interface.law = number;
       const auto row = parameters_of<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
       std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
-      m.rules.lifted = std::max(m.rules.lifted, 2 * Law<Real>::rise_most(row.data()));
+      lift = std::max(lift, 2 * Law<Real>::rise_most(row.data()));
     });
   }
+  m.rules.lifted = m.initial_lift + lift;
+  make_room_for_rises(m, core.state);
 }
 
 }  // namespace cdem

@@ -43,6 +43,10 @@ CDEM_HD inline Real sqrt_of(Real a) { return std::sqrt(a); }
 CDEM_HD inline unsigned lane_bits(bool mask) { return mask; }
 CDEM_HD inline bool any_of(bool mask) { return mask; }
 
+/// The bits of a number as an integer, and back.
+CDEM_HD inline std::int64_t bits_of(Real a) { return __builtin_bit_cast(std::int64_t, a); }
+CDEM_HD inline Real number_of(std::int64_t bits) { return __builtin_bit_cast(Real, bits); }
+
 /// Item of a kernel that selects what it runs for: an item of a row.
 struct Selected {
   Index row, id;
@@ -111,6 +115,8 @@ inline unsigned lane_bits(Mask mask) {
 #endif
 }
 inline bool any_of(Mask mask) { return lane_bits(mask) != 0; }
+inline Mask::Bits bits_of(Pack a) { return (Mask::Bits)a.n; }
+inline Pack number_of(Mask::Bits bits) { return {(Pack::Numbers)bits}; }
 
 /// A pack of what `number` gives for each lane.
 template <class Of, Index... lane>

@@ -7,6 +7,21 @@
 
 namespace cdem {
 
+/// History of one bond point that every law has. While it is intact the slip stays zero, unless the
+/// law has state.
+template <class T>
+struct BondHistory {
+  T bond;           // 1 while intact, then 0
+  T slip1, slip2;   // plastic slip in the pair's frame  [m]
+  T rise = T(0.0);  // by dilation  [m]
+};
+
+/// How fast a joint slips, along the tangents of its frame  [m/s].
+template <class T>
+struct SlipRate {
+  T along1, along2;
+};
+
 /// Spring of one bond point: its share of the true overlap area, so that strength does not depend
 /// on which side is meshed finer, and the interface's stiffness.
 template <class T>
@@ -14,28 +29,29 @@ struct BondSpring {
   T area;  // [m2]
   JointStiffness<T> stiffness;
 
-  /// What the law is asked for a jump of displacement x_b - x_a.
-  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump, const T& bond,
-                              const T& slip1, const T& slip2) const {
-    const T zero(0.0);
+  /// What the law is asked for a jump of displacement x_b - x_a, past what the point has risen.
+  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump, const BondHistory<T>& h,
+                              const SlipRate<T>& rate) const {
     return {.opening = dot(frame.n, jump),
-            .shear1 = dot(frame.t1, jump) - slip1,
-            .shear2 = dot(frame.t2, jump) - slip2,
+            .shear1 = dot(frame.t1, jump) - h.slip1,
+            .shear2 = dot(frame.t2, jump) - h.slip2,
             .stiffness = stiffness,
-            .damping = zero,
-            .bond = bond,
-            .risen = zero,
-            .may_rise = zero,
+            .damping = T(0.0),
+            .bond = h.bond,
+            .risen = h.rise,
+            .rate1 = rate.along1,
+            .rate2 = rate.along2,
             .has_area = T(1.0)};
   }
-};
-
-/// History of one bond point that every law has. While it is intact the slip stays zero, unless the
-/// law has state.
-template <class T>
-struct BondHistory {
-  T bond;          // 1 while intact, then 0
-  T slip1, slip2;  // plastic slip in the pair's frame  [m]
+  /// The same at rest.
+  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump,
+                              const BondHistory<T>& h) const {
+    return input(frame, jump, h, {T(0.0), T(0.0)});
+  }
+  /// The same of an intact point.
+  CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump) const {
+    return input(frame, jump, {.bond = T(1.0), .slip1 = T(0.0), .slip2 = T(0.0)});
+  }
 };
 
 /// What one bond point does in a step.
@@ -52,8 +68,7 @@ struct BondForce {
 template <class Laws, class T>
 CDEM_HD inline auto bears(const Laws& laws, const BondSpring<T>& spring, const Frame<T>& frame,
                           const Vec3<T>& jump, const T* state, Vec3<T>& on_b) {
-  const T zero(0.0), one(1.0);
-  const Borne<T> joint = laws.bears(spring.input(frame, jump, one, zero, zero), state);
+  const Borne<T> joint = laws.bears(spring.input(frame, jump), state);
   on_b = spring.area * (joint.normal * frame.n + joint.shear1 * frame.t1 + joint.shear2 * frame.t2);
   return joint.holds;
 }
@@ -62,8 +77,7 @@ CDEM_HD inline auto bears(const Laws& laws, const BondSpring<T>& spring, const F
 template <class Laws, class T>
 CDEM_HD inline T intact_energy(const Laws& laws, const BondSpring<T>& spring, const Frame<T>& frame,
                                const Vec3<T>& jump, const T* state) {
-  const T zero(0.0), one(1.0);
-  return spring.area * laws.bears(spring.input(frame, jump, one, zero, zero), state).stored;
+  return spring.area * laws.bears(spring.input(frame, jump), state).stored;
 }
 
 /// Tractions of one step ago, without asking for limits again, which a stage may have changed: a
@@ -95,18 +109,18 @@ CDEM_HD inline JointAnswer<T> before_step(const Laws& laws, const JointInput<T>&
 /// drift and needs no history until it slips. A point that broke but whose pair is not yet released
 /// to the search goes on as a frictional contact at the same place; in an open hinge (`searched`),
 /// whose faces the search has already, it carries nothing.
-/// `jump_old` is the jump one step ago; it serves only the energy ledger: what is lost is
-/// U_old - U_new + work done on the spring by the mean force. While a bond holds its law says what
-/// it loses. `state` is what the law remembers.
+/// `jump` is that past what the point has risen. `jump_old`, the same one step ago, serves only the
+/// energy ledger: what is lost is U_old - U_new + work done on the spring by the mean force. While
+/// a bond holds its law says what it loses. `state` is what the law remembers.
 template <class Laws, class T, class M>
 CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& spring,
                                        const Frame<T>& frame, const Vec3<T>& jump,
-                                       const Vec3<T>& jump_old, const M& searched,
+                                       const Vec3<T>& jump_old, Real dt, const M& searched,
                                        BondHistory<T>& h, T* state) {
   const T zero(0.0), one(1.0), half(0.5);
-  const auto input_at = [&](const Vec3<T>& x) {
-    return spring.input(frame, x, h.bond, h.slip1, h.slip2);
-  };
+  const Vec3<T> way = jump - jump_old;
+  const SlipRate<T> rate{dot(frame.t1, way) / T(dt), dot(frame.t2, way) / T(dt)};
+  const auto input_at = [&](const Vec3<T>& x) { return spring.input(frame, x, h, rate); };
   constexpr Index size = Laws::most_state;
   T state_old[size + 1];
   for (Index k = 0; k < size; ++k) state_old[k] = state[k];
@@ -130,14 +144,20 @@ CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& sp
   if constexpr (Laws::most_state > 0) out.friction = spring.area * now.friction;
   if (any_of(!intact)) {
     const JointAnswer<T> was = before_step(laws, input_at(jump_old), state_old);
-    const Vec3<T> moved = jump - jump_old;
-    const T work_n = (was.normal + normal) * dot(frame.n, moved);
+    const T work_n = (was.normal + normal) * dot(frame.n, way);
     const T work_s =
-        (was.shear1 + shear1) * dot(frame.t1, moved) + (was.shear2 + shear2) * dot(frame.t2, moved);
+        (was.shear1 + shear1) * dot(frame.t1, way) + (was.shear2 + shear2) * dot(frame.t2, way);
     const T lost_n = was.stored_n - stored_n - half * work_n;
     const T lost_s = was.stored_s - stored_s - half * work_s;
     out.fracture = select(broke, spring.area * (lost_n + lost_s) - out.friction, out.fracture);
     out.friction = select((!broke) & (!intact) & carries, spring.area * lost_s, out.friction);
+    // friction pays for what dilation lifts, see contact_force
+    const auto rises = now.rise > zero;
+    if (any_of(rises)) {
+      const T lift = half * spring.area * (was.normal + normal) * now.rise;
+      out.friction -= select(rises & (!broke) & carries, lift, zero);
+      h.rise += select(carries, now.rise, zero);
+    }
   }
   // the slip that makes the elastic law give the limited force
   auto rests = intact;

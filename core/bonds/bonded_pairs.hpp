@@ -34,11 +34,13 @@ struct PairColumns {
   InTable area;         // [1][pair] true overlap area  [m2]
   InFlags status;       // [pair] PairStatus
   InTable stiffness;    // [2][pair] k_n, k_s  [Pa/m]
+  InTable strength;     // [1][pair] factor on the strength; empty: all 1
   InterfaceTable interfaces;
   InOutTable bond, slip1, slip2;  // [point][pair]
   InTable rest;  // [axis * points + point][pair] jump at which the spring is free, along n, t1 and
                  // t2 of the pair: that of the initial stress; empty: all zero  [m]
-  InOutTable history;                       // [variable * points + point][pair] of the laws
+  InOutTable rise;     // [point][pair] of that jump along n, by dilation; empty: all zero  [m]
+  InOutTable history;  // [variable * points + point][pair] of the laws
   InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
   InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
   InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
@@ -52,6 +54,13 @@ struct PairColumns {
   template <class I>
   CDEM_HD auto are_hinges(I p) const {
     return status.equal(Flag(PairStatus::hinge), p);
+  }
+  /// The law of a pair.
+  template <class Laws, class I>
+  CDEM_HD auto laws(I p) const {
+    auto of = joint_laws<Laws>(interfaces, interface.at(0, p));
+    if (strength.data) of.scatter = {true, strength.at(0, p)};
+    return of;
   }
   /// What the law of a pair remembers of point k of `points`; the point's number is its row.
   template <class Laws, class I, class T>
@@ -70,9 +79,34 @@ struct PairColumns {
   template <class I, class T>
   CDEM_HD Vec3<T> past_rest(I p, Index k, Index points, const Frame<T>& f,
                             const Vec3<T>& jump) const {
-    if (!rest.data) return jump;
-    return jump - rest.at(k, p) * f.n - rest.at(points + k, p) * f.t1 -
-           rest.at(2 * points + k, p) * f.t2;
+    Vec3<T> past = jump;
+    if (rest.data)
+      past = jump - rest.at(k, p) * f.n - rest.at(points + k, p) * f.t1 -
+             rest.at(2 * points + k, p) * f.t2;
+    return rise.data ? past - rise.at(k, p) * f.n : past;
+  }
+  /// The gap at which the spring of point k is free of stress, in the normal direction  [m].
+  template <class I>
+  CDEM_HD Number<I> lift(I p, Index k) const {
+    using T = Number<I>;
+    return (rest.data ? rest.at(k, p) : T(0.0)) + (rise.data ? rise.at(k, p) : T(0.0));
+  }
+  /// The history of point k that every law has.
+  template <class I>
+  CDEM_HD BondHistory<Number<I>> history_of(I p, Index k) const {
+    using T = Number<I>;
+    return {.bond = bond.at(k, p),
+            .slip1 = slip1.at(k, p),
+            .slip2 = slip2.at(k, p),
+            .rise = rise.data ? rise.at(k, p) : T(0.0)};
+  }
+  template <class I, class M>
+  CDEM_HD void set_history(I p, Index k, const M& live, const BondHistory<Number<I>>& old,
+                           const BondHistory<Number<I>>& h) const {
+    bond.set(k, p, select(live, h.bond, old.bond));
+    slip1.set(k, p, select(live, h.slip1, old.slip1));
+    slip2.set(k, p, select(live, h.slip2, old.slip2));
+    if (rise.data) rise.set(k, p, select(live, h.rise, old.rise));
   }
   /// Spring of a point with this area  [m2].
   template <class I>
@@ -117,7 +151,7 @@ struct ConformingBonds {
     if (any_of(live & !all_bear<Laws>(p, frame, jump, force))) {
       update_history<Laws>(p, live, frame, jump, force);
     } else if (sampled) {
-      const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+      const auto laws = pairs.template laws<Laws>(p);
       const BondSpring<T> own = spring(p);
       T stored(0.0);
       for (Index k = 0; k < count; ++k) {
@@ -165,7 +199,7 @@ struct ConformingBonds {
   /// The common case: all points of the pair were intact and stay so.
   template <class Laws, class I, class T>
   CDEM_HD auto all_bear(I p, const Frame<T>& frame, const Vec3<T>* jump, Vec3<T>* force) const {
-    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+    const auto laws = pairs.template laws<Laws>(p);
     const BondSpring<T> own = spring(p);
     auto all = pairs.bond.at(0, p) > T(0.5);
     for (Index k = 1; k < count; ++k) all = all & (pairs.bond.at(k, p) > T(0.5));
@@ -180,7 +214,7 @@ struct ConformingBonds {
   CDEM_HD void update_history(I p, const M& live, const Frame<T>& frame, const Vec3<T>* jump,
                               Vec3<T>* force) const {
     const T zero(0.0);
-    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+    const auto laws = pairs.template laws<Laws>(p);
     const BondSpring<T> own = spring(p);
     const auto open = pairs.are_hinges(p);
     Vec3<T> rate[count];
@@ -193,17 +227,15 @@ struct ConformingBonds {
                        .shear = zero};
     T widest(0.0), intact(0.0);
     for (Index k = 0; k < count; ++k) {
-      const BondHistory<T> old{pairs.bond.at(k, p), pairs.slip1.at(k, p), pairs.slip2.at(k, p)};
+      const BondHistory<T> old = pairs.history_of(p, k);
       BondHistory<T> h = old;
       T state[Laws::most_state + 1];
       pairs.load_history<Laws>(p, k, count, state);
       const BondForce<T> f =
-          bond_force(laws, own, frame, jump[k], jump[k] - T(dt) * rate[k], open, h, state);
+          bond_force(laws, own, frame, jump[k], jump[k] - T(dt) * rate[k], dt, open, h, state);
       // a released pair beside live ones in a lane keeps its history as it was
       pairs.store_history<Laws>(p, k, count, live, state);
-      pairs.bond.set(k, p, select(live, h.bond, old.bond));
-      pairs.slip1.set(k, p, select(live, h.slip1, old.slip1));
-      pairs.slip2.set(k, p, select(live, h.slip2, old.slip2));
+      pairs.set_history(p, k, live, old, h);
       force[k] = f.on_b;
       widest = max_of(widest, dot(jump[k], jump[k]));
       intact += h.bond;
@@ -258,7 +290,7 @@ struct OverlapBonds {
   template <class Laws>
   CDEM_HD void update(One p) const {
     if (!pairs.are_live(p)) return;
-    const auto laws = joint_laws<Laws>(pairs.interfaces, pairs.interface.at(0, p));
+    const auto laws = pairs.template laws<Laws>(p);
     const Index a = pair_faces[2 * p.i], b = pair_faces[2 * p.i + 1];
     const Vec3<Real> none{0.0, 0.0, 0.0};
     Vec3<Real> force[8] = {none, none, none, none, none, none, none, none};
@@ -269,16 +301,14 @@ struct OverlapBonds {
       const One point{c};
       const Vec3<Real> jump = jump_at(a, b, frame, c);
       const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
-      BondHistory<Real> h{pairs.bond.at(0, point), pairs.slip1.at(0, point),
-                          pairs.slip2.at(0, point)};
+      const BondHistory<Real> old = pairs.history_of(point, 0);
+      BondHistory<Real> h = old;
       Real state[Laws::most_state + 1];
       pairs.load_history<Laws>(point, 0, 1, state);
       const BondForce<Real> f = bond_force(laws, pairs.spring(p, point_area[c]), frame, jump,
-                                           jump - faces.dt * rate, open, h, state);
+                                           jump - faces.dt * rate, faces.dt, open, h, state);
       pairs.store_history<Laws>(point, 0, 1, true, state);
-      pairs.bond.set(0, point, h.bond);
-      pairs.slip1.set(0, point, h.slip1);
-      pairs.slip2.set(0, point, h.slip2);
+      pairs.set_history(point, 0, true, old, h);
       for (Index k = 0; k < 4; ++k) {
         force[k] = force[k] - weights_a[4 * c + k] * f.on_b;
         force[4 + k] = force[4 + k] + weights_b[4 * c + k] * f.on_b;

@@ -78,12 +78,11 @@ void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, In
   Real widest = 0;
   for (const BrokenPoint& point : broken) widest = std::max(widest, norm(point.jump));
   if (!(widest > hinge_part * pair_length(m, p, i))) return;
-  const InterfaceTable table = interface_table(m);
+  const PairColumns pairs = pair_columns(m, p, ps);
   for (BrokenPoint& point : broken) {
     const JointInput<Real> in =
-        point.spring.input(frame, point.jump, 0.0, ps.slip1[point.place], ps.slip2[point.place]);
-    const JointAnswer<Real> joint =
-        joint_laws<InterfaceLaws>(table, p.interface[i]).respond(in, point.history);
+        point.spring.input(frame, point.jump, {0.0, ps.slip1[point.place], ps.slip2[point.place]});
+    const JointAnswer<Real> joint = pairs.laws<InterfaceLaws>(One{i}).respond(in, point.history);
     const Real held = point.spring.area * (joint.stored_n + joint.stored_s);
     ps.friction[i] += held;
     ps.stored[i] -= held;

@@ -9,6 +9,8 @@
 #include "core/contact/force/views.hpp"
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/views.hpp"
+#include "core/contact/narrow_phase/edge_contacts.hpp"
+#include "core/contact/narrow_phase/edge_pair.hpp"
 #include "core/model/phase_timer.hpp"
 
 namespace cdem {
@@ -17,58 +19,124 @@ Real pair_length(const Model& m, const PairSet& p, Index i) {
   return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
 }
 
-Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& ps, Index i) {
+namespace {
+
+/// A bond point of a conforming pair that is released while it is pressed, on half of its area:
+/// the other half is for the face across.
+struct ReleasedPoint {
+  Index node[2];           // of either face
+  Vec3<Real> apart;        // of those, one step ago  [m]
+  Real depth, kn, ks;      // of its spring  [m], [N/m]
+  Vec3<Real> strain;       // of its shear spring  [m]
+  bool lifted;             // its spring is free of stress at a gap
+  Index vertex[2];         // of either face, if that goes on as a contact, else -1
+  Real share[2] = {1, 1};  // of what the point carried, in halves
+};
+
+/// The vertex of a face at a node, or -1.
+Index vertex_at(const FaceColumns& faces, Index face, Index node) {
+  for (Index v = 0; v < faces.vertex_count(face); ++v)
+    if (faces.vertex(face, v) == node) return v;
+  return -1;
+}
+
+/// Is the indented point of a vertex of face `mother` beside face `target`?
+bool is_over(const Model& m, const FaceColumns& faces, Index mother, Index vertex, Index target) {
+  const FaceShape<Real> from = faces.shape(mother), to = faces.shape(target);
+  const Vec3<Real> v = from.x[vertex], p = v + m.rules.indentation * (from.center() - v);
+  return to.inside(p, to.normal(),
+                   m.rules.tolerance * std::min(m.face_length[mother], m.face_length[target]));
+}
+
+/// Those of a pair as they were one step ago.
+std::vector<ReleasedPoint> released_points(const Model& m, State& s, const PairSet& p,
+                                           PairState& ps, Index i) {
   const FaceColumns faces = face_columns(m, s);
   const PairColumns pairs = pair_columns(m, p, ps);
-  const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
-  const Index place_a = s.search.face_exposed[a], place_b = s.search.face_exposed[b];
-  const Frame<Real> frame_a = faces.shape_before(a).frame(),
-                    frame_b = faces.shape_before(b).frame();
-  const Interface& contact = m.interfaces[p.interface[i]];
-  const Real side_a = m.face_stiffness[a], side_b = m.face_stiffness[b];
-  Real handed = 0;
+  const Index face[2] = {p.faces[2 * i], p.faces[2 * i + 1]};
+  const Frame<Real> frame = faces.shape_before(face[0]).frame();
+  const Real area = 0.5 * p.area[i] / p.points;
+  std::vector<ReleasedPoint> found;
   for (Index k = 0; k < p.points; ++k) {
-    const Index node_a = p.nodes[std::size_t(k) * p.stride + i];
-    const Index node_b = p.nodes[std::size_t(p.points + k) * p.stride + i];
-    const Vec3<Real> apart = faces.position_before(node_b) - faces.position_before(node_a);
-    const Vec3<Real> jump = pairs.past_rest(One{i}, k, p.points, frame_a, apart);
-    if (dot(frame_a.n, jump) >= 0) continue;  // open: nothing to carry over
-    if (norm(apart) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
-    const std::size_t point = std::size_t(k) * p.point_stride + i;
-    // half of it on either side
-    const Real area = 0.5 * p.area[i] / p.points, bond_n = area * p.stiffness[i],
-               bond_s = area * p.stiffness[std::size_t(p.stride) + i];
-    const Real kn = area * contact.stiffness_n(side_a, side_b),
-               ks = area * contact.stiffness_s(side_a, side_b);
-    // of the force: no deeper than the faces are, but under initial stress they need not be deep
-    const Real part = m.initial_stress ? 1 : std::min(1.0, kn / bond_n);
-    const Vec3<Real> slip = ps.slip1[point] * frame_a.t1 + ps.slip2[point] * frame_a.t2;
-    const Vec3<Real> along = jump - dot(frame_a.n, jump) * frame_a.n;
-    const Vec3<Real> on_b = -part * bond_s * (along - slip);
-    const auto give = [&](Index place, Index face, Index node, Index target,
-                          const Frame<Real>& frame, const Vec3<Real>& force) {
-      for (Index v = 0; v < faces.vertex_count(face); ++v) {
-        if (faces.vertex(face, v) != node) continue;
-        const Index slot = 4 * place + v;
-        s.springs.target[slot] = s.springs.target_before[slot] = target;
-        ContactState spring = ContactState::at(s.springs.state.data(), slot);
-        spring.shear1 = dot(force, frame.t1);
-        spring.shear2 = dot(force, frame.t2);
-        const Real deeper = m.initial_stress ? bond_n / kn : std::min(1.0, bond_n / kn);
-        spring.penetration = -deeper * dot(frame_a.n, jump);
-        spring.stress_free_gap = spring.penetration + dot(frame_a.n, apart);
-        spring.approach = spring.penetration;
-        spring.force_n = kn * spring.penetration;
-        spring.energy_n = contact.returned_n * 0.5 * kn * spring.penetration * spring.penetration;
-        spring.energy_s = contact.returned_s * 0.5 / ks *
-                          (spring.shear1 * spring.shear1 + spring.shear2 * spring.shear2);
-        spring.store(s.springs.state.data(), slot);
-        handed += spring.energy_n + spring.energy_s;
-      }
-    };
-    give(place_a, a, node_a, place_b, frame_b, -on_b);
-    give(place_b, b, node_b, place_a, frame_a, on_b);
+    ReleasedPoint point{};
+    for (Index side : {0, 1})
+      point.node[side] = p.nodes[std::size_t(side * p.points + k) * p.stride + i];
+    point.apart = faces.position_before(point.node[1]) - faces.position_before(point.node[0]);
+    const Vec3<Real> jump = pairs.past_rest(One{i}, k, p.points, frame, point.apart);
+    if (dot(frame.n, jump) >= 0) continue;  // open: nothing to carry over
+    if (norm(point.apart) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
+    const std::size_t row = std::size_t(k) * p.point_stride + i;
+    const Vec3<Real> slip = ps.slip1[row] * frame.t1 + ps.slip2[row] * frame.t2;
+    const Vec3<Real> along = jump - dot(frame.n, jump) * frame.n;
+    point.depth = -dot(frame.n, jump);
+    point.kn = area * p.stiffness[i];
+    point.ks = area * p.stiffness[std::size_t(p.stride) + i];
+    point.strain = along - slip;
+    point.lifted = pairs.lift(One{i}, k) > 0;
+    for (Index side : {0, 1}) {
+      const Index v = vertex_at(faces, face[side], point.node[side]);
+      const bool stays = !point.lifted || is_over(m, faces, face[side], v, face[1 - side]);
+      point.vertex[side] = stays ? v : -1;
+    }
+    found.push_back(point);
   }
+  return found;
+}
+
+/// Of a lifted point, what a vertex leaves that has slid off its face goes to the other one; where
+/// both have, to the other points.
+void share_out(std::vector<ReleasedPoint>& points) {
+  Real all = 0, borne = 0;
+  for (ReleasedPoint& point : points) {
+    const Index staying = (point.vertex[0] >= 0) + (point.vertex[1] >= 0);
+    for (Real& share : point.share) share = staying == 1 ? 2 : 1;
+    all += point.kn * point.depth;
+    if (staying > 0) borne += point.kn * point.depth;
+  }
+  if (!(borne > 0) || borne == all) return;
+  for (ReleasedPoint& point : points)
+    for (Real& share : point.share) share *= all / borne;
+}
+
+}  // namespace
+
+Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& ps, Index i) {
+  std::vector<ReleasedPoint> points = released_points(m, s, p, ps, i);
+  share_out(points);
+  const FaceColumns faces = face_columns(m, s);
+  const Index face[2] = {p.faces[2 * i], p.faces[2 * i + 1]};
+  const Index place[2] = {s.search.face_exposed[face[0]], s.search.face_exposed[face[1]]};
+  const Frame<Real> frame[2] = {faces.shape_before(face[0]).frame(),
+                                faces.shape_before(face[1]).frame()};
+  const Interface& contact = m.interfaces[p.interface[i]];
+  const Real side_a = m.face_stiffness[face[0]], side_b = m.face_stiffness[face[1]];
+  const Real area = 0.5 * p.area[i] / p.points;
+  const Real kn = area * contact.stiffness_n(side_a, side_b),
+             ks = area * contact.stiffness_s(side_a, side_b);
+  Real handed = 0;
+  for (const ReleasedPoint& point : points)
+    for (Index side : {0, 1}) {
+      if (point.vertex[side] < 0) continue;
+      // of the force: no deeper than the faces are, but lifted ones need not be deep
+      const Real part = point.share[side] * (point.lifted ? 1 : std::min(1.0, kn / point.kn));
+      const Real deeper =
+          point.share[side] * (point.lifted ? point.kn / kn : std::min(1.0, point.kn / kn));
+      const Vec3<Real> force = (side == 0 ? part : -part) * point.ks * point.strain;
+      const Index slot = 4 * place[side] + point.vertex[side];
+      s.springs.target[slot] = s.springs.target_before[slot] = place[1 - side];
+      ContactState spring = ContactState::at(s.springs.state.data(), slot);
+      spring.shear1 = dot(force, frame[1 - side].t1);
+      spring.shear2 = dot(force, frame[1 - side].t2);
+      spring.penetration = deeper * point.depth;
+      spring.stress_free_gap = spring.penetration + dot(frame[0].n, point.apart);
+      spring.approach = spring.penetration;
+      spring.force_n = kn * spring.penetration;
+      spring.energy_n = contact.returned_n * 0.5 * kn * spring.penetration * spring.penetration;
+      spring.energy_s = contact.returned_s * 0.5 / ks *
+                        (spring.shear1 * spring.shear1 + spring.shear2 * spring.shear2);
+      spring.store(s.springs.state.data(), slot);
+      handed += spring.energy_n + spring.energy_s;
+    }
   return handed;
 }
 
@@ -137,6 +205,16 @@ struct Successor {
   Real returned_n, returned_s;
 };
 
+/// A contact without force that the search keeps where it finds it, up to the highest gap.
+ContactState awaited_state(const Model& m) {
+  ContactState state = ContactState::none();
+  state.stress_free_gap = 0.5 * m.rules.lifted;
+  return state;
+}
+bool is_awaited(const ContactState& state) {
+  return state.penetration < 0 && state.stress_free_gap > 0;
+}
+
 /// Contacts of exposed face x with y that begin now.
 void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
                     std::vector<Successor>& found) {
@@ -150,12 +228,13 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
   const FaceShape<Real> mother = faces.shape_before(s.search.exposed_face[x]),
                         target = faces.shape_before(s.search.exposed_face[y]);
   const Frame<Real> frame = target.frame();
-  const auto add = [&](Successor c) {
-    if (c.depth > 0 || m.initial_stress) found.push_back(c);
+  const auto add = [&](Successor c, bool awaited) {
+    if (c.depth > 0 || awaited) found.push_back(c);
   };
   for (Index k = 0; k < mother.count(); ++k) {
     const Index slot = 4 * x + k;
-    if (s.springs.target[slot] != y || s.springs.target_before[slot] >= 0) continue;
+    const bool awaited = is_awaited(ContactState::at(s.springs.state.data(), slot));
+    if (s.springs.target[slot] != y || (s.springs.target_before[slot] >= 0 && !awaited)) continue;
     const Vec3<Real> acting = mother.x[k] + m.rules.action * (mother.center() - mother.x[k]);
     add({.place = slot,
          .is_edge = false,
@@ -165,11 +244,14 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
          .kn = 0.5 * spring.n(),
          .ks = 0.5 * spring.s(),
          .returned_n = returned_n,
-         .returned_s = returned_s});
+         .returned_s = returned_s},
+        awaited);
   }
   for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
     const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
-    if (contact.face != y || contact.before >= 0) continue;
+    const bool awaited = contact.before >= 0 &&
+                         is_awaited(ContactState::at(s.edges.old_state.data(), contact.before));
+    if (contact.face != y || (contact.before >= 0 && !awaited)) continue;
     const Index k = contact.mother % 4, next = k + 1 == mother.count() ? 0 : k + 1;
     const Vec3<Real> along_m = mother.x[next] - mother.x[k];
     const Vec3<Real> start = faces.position_before(faces.edge_nodes[2 * contact.edge]);
@@ -185,7 +267,8 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
          .kn = spring.n(),
          .ks = spring.s(),
          .returned_n = returned_n,
-         .returned_s = returned_s});
+         .returned_s = returned_s},
+        awaited);
   }
 }
 
@@ -203,9 +286,11 @@ Real give(State& s, const Successor& c, Real penetration, const Vec3<Real>& shea
       c.returned_s * 0.5 / c.ks * (state.shear1 * state.shear1 + state.shear2 * state.shear2);
   if (c.is_edge) {
     EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c.place);
-    contact.before = Index(s.edges.old_state.size() / 8);
-    contact.store(s.edges.contact.data(), c.place);
-    s.edges.old_state.resize(s.edges.old_state.size() + 8);
+    if (contact.before < 0) {
+      contact.before = Index(s.edges.old_state.size() / 8);
+      contact.store(s.edges.contact.data(), c.place);
+      s.edges.old_state.resize(s.edges.old_state.size() + 8);
+    }
     state.store(s.edges.old_state.data(), contact.before);
   } else {
     s.springs.target_before[c.place] = s.springs.target[c.place];
@@ -223,7 +308,80 @@ Vec3<Real> force_on_second(const State& s, const PairSet& p, Index i) {
   return sum;
 }
 
+/// What the bonds of an overlap did to its second face one step ago, along the mean normal of both
+/// faces, compression > 0, and across  [N].
+struct Carried {
+  Real normal;
+  Vec3<Real> shear;
+
+  Carried(const Model& m, State& s, const PairSet& p, Index i) {
+    const FaceColumns faces = face_columns(m, s);
+    const Vec3<Real> n = unit(faces.shape_before(p.faces[2 * i]).normal() -
+                              faces.shape_before(p.faces[2 * i + 1]).normal());
+    const Vec3<Real> on_b = force_on_second(s, p, i);
+    normal = dot(on_b, n);
+    shear = on_b - normal * n;
+  }
+};
+
+/// Is a spring of a released overlap that was pressed free of stress at a gap?
+bool is_lifted(const Model& m, State& s, Index i) {
+  const PairSet& p = m.overlaps;
+  const PairColumns pairs = pair_columns(m, p, s.overlaps);
+  bool lifted = false;
+  for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
+    lifted = lifted || pairs.lift(One{c}, 0) > 0;
+  return lifted && Carried(m, s, p, i).normal > 0;
+}
+
+/// Vertices of exposed face x over y.
+void await_springs(const Model& m, State& s, Index x, Index y) {
+  const FaceColumns faces = face_columns(m, s);
+  const Index mother = s.search.exposed_face[x], target = s.search.exposed_face[y];
+  for (Index k = 0; k < faces.vertex_count(mother); ++k) {
+    const Index slot = 4 * x + k;
+    if (s.springs.target[slot] >= 0 || !is_over(m, faces, mother, k, target)) continue;
+    s.springs.target[slot] = s.springs.target_before[slot] = y;
+    awaited_state(m).store(s.springs.state.data(), slot);
+  }
+}
+
+/// Sides of exposed face x that cross those of y.
+void await_edges(const Model& m, State& s, Index x, Index y, std::vector<EdgeContact>& found) {
+  const FaceColumns faces = face_columns(m, s);
+  const Index mother = s.search.exposed_face[x], target = s.search.exposed_face[y];
+  const FaceShape<Real> from = faces.shape(mother), to = faces.shape(target);
+  const auto along = [](const FaceShape<Real>& f, Index k) {
+    return f.x[k + 1 == f.count() ? 0 : k + 1] - f.x[k];
+  };
+  for (Index k = 0; k < from.count(); ++k)
+    for (Index j = 0; j < to.count(); ++j) {
+      const Vec3<Real> a = along(from, k), b = along(to, j), c = cross(a, b);
+      if (!(dot(c, c) > parallel_edges * parallel_edges * dot(a, a) * dot(b, b))) continue;
+      const Crossing<Real> at = cross_edges(from.x[k], a, to.x[j], b, unit(c));
+      if (at.s < 0 || at.s > 1 || at.t < 0 || at.t > 1) continue;
+      found.push_back(
+          {.mother = 4 * x + k, .face = y, .edge = faces.face_edges[4 * target + j], .before = -1});
+    }
+}
+
 }  // namespace
+
+void await_contacts(const Model& m, State& s) {
+  std::vector<EdgeContact> edges;
+  for (std::size_t r = 0; r < s.released_overlaps.size(); ++r) {
+    const Index i = s.released_overlaps[r];
+    if (!is_lifted(m, s, i)) continue;
+    const Index x = s.search.face_exposed[m.overlaps.faces[2 * i]],
+                y = s.search.face_exposed[m.overlaps.faces[2 * i + 1]];
+    await_springs(m, s, x, y);
+    await_springs(m, s, y, x);
+    if (!m.semi_edges) continue;
+    await_edges(m, s, x, y, edges);
+    await_edges(m, s, y, x, edges);
+  }
+  add_edges(s, edges, awaited_state(m));
+}
 
 void transfer_released_bonds(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::search);
@@ -236,19 +394,16 @@ void transfer_released_bonds(const Model& m, State& s, Queue q) {
     std::vector<Successor> contacts;
     add_successors(m, s, s.search.face_exposed[a], s.search.face_exposed[b], false, contacts);
     add_successors(m, s, s.search.face_exposed[b], s.search.face_exposed[a], true, contacts);
-    const FaceColumns faces = face_columns(m, s);
-    const Vec3<Real> n = unit(faces.shape_before(a).normal() - faces.shape_before(b).normal());
-    const Vec3<Real> on_b = force_on_second(s, p, i);
-    const Real carried = dot(on_b, n);
-    const Vec3<Real> shear = on_b - carried * n;
+    const Carried carried(m, s, p, i);
     Real pressed = 0, stiffness = 0;
-    for (const Successor& c : contacts) pressed += c.kn * c.depth, stiffness += c.kn;
-    const Real part = std::min(1.0, carried / pressed);
-    if (carried > 0)
+    for (const Successor& c : contacts) pressed += c.kn * std::max(c.depth, 0.0), stiffness += c.kn;
+    const Real part = pressed > 0 ? std::min(1.0, carried.normal / pressed) : 0;
+    const Real lift = is_lifted(m, s, i) ? (carried.normal - part * pressed) / stiffness : 0;
+    if (carried.normal > 0)
       for (const Successor& c : contacts) {
-        const Real penetration = m.initial_stress ? carried / stiffness : part * c.depth;
-        const Real share = c.kn * penetration / carried;
-        s.overlaps.stored[i] -= give(s, c, penetration, (c.on_b ? share : -share) * shear);
+        const Real penetration = part * std::max(c.depth, 0.0) + lift;
+        const Real share = c.kn * penetration / carried.normal;
+        s.overlaps.stored[i] -= give(s, c, penetration, (c.on_b ? share : -share) * carried.shear);
       }
     s.overlaps.friction[i] += s.overlaps.stored[i];
     s.overlaps.stored[i] = 0;

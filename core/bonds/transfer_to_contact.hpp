@@ -12,8 +12,10 @@ Real pair_length(const Model& model, const PairSet& pairs, Index pair);
 
 /// Give the springs of a conforming pair the force that its bond points carried, half to either
 /// side, so that the change of bookkeeping is no jolt; of a contact that is softer than the bond
-/// only what it can hold at the present depth, or all under initial stress: the stress-free gap
-/// rises for that. A point whose vertices have parted, as those of a
+/// only what it can hold at the present depth. A point whose spring is free of stress at a gap,
+/// because it began loaded or has dilated, gives all that it carried: the contacts are lifted for
+/// that. Where a vertex has slid off the face across, the other vertex takes both halves. A point
+/// whose vertices have parted, as those of a
 /// hinge do before its last point breaks, carries nothing. Returns the energy that the springs hold
 /// [J].
 Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs, PairState& bonds,
@@ -25,9 +27,14 @@ Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs,
 void give_history(const Model& model, State& state, const PairSet& pairs, const PairState& bonds,
                   Index pair);
 
+/// Of overlaps that were released in this step with springs that are free of stress at a gap: let
+/// the search find contacts at such a gap, too, with vertices and edges alike.
+void await_contacts(const Model& model, State& state);
+
 /// The same as transfer_to_contact for overlaps that were released in this step, once the search
 /// has found what touches. Their contacts are not where their bond points were: what the pair
-/// carried is shared by the depths of the contacts, and none is pressed harder than its depth says.
+/// carried is shared by the depths of the contacts, and none is pressed harder than its depth says;
+/// but lifted ones are, alike, until they bear all that the pair carried.
 void transfer_released_bonds(const Model& model, State& state, Queue queue);
 
 }  // namespace cdem

@@ -42,14 +42,16 @@ struct Brittle {
                 .meaning = "Cohesion of the intact bond",
                 .otherwise = 0,
                 .is_strength = true,
-                .bonds = true},
+                .bonds = true,
+                .scatter = 1},
       Parameter{.name = "tensile_strength",
                 .symbol = "T",
                 .unit = "Pa",
                 .meaning = "Tensile strength of the intact bond",
                 .otherwise = 0,
                 .is_strength = true,
-                .bonds = true},
+                .bonds = true,
+                .scatter = 1},
       Parameter{.name = "dilation_angle",
                 .symbol = "psi",
                 .unit = "deg",
@@ -99,6 +101,11 @@ struct Brittle {
   }
 
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T*) const {
+    return respond_within(in, [](const T& limit) { return limit; });
+  }
+  /// The same with the limit of shear that `limit_of` makes of this one.
+  template <class Limit>
+  CDEM_HD JointAnswer<T> respond_within(const JointInput<T>& in, const Limit& limit_of) const {
     const T none(0.0), half(0.5), all(1.0);
     const JointStiffness<T>& k = in.stiffness;
     T elastic = -k.n * in.opening;
@@ -108,8 +115,8 @@ struct Brittle {
     normal = select(parts, none, normal);
     const T try1 = -k.s * in.shear1, try2 = -k.s * in.shear2;
     const T squared = try1 * try1 + try2 * try2;
-    T limit = shear_limit(normal, in.bond);
-    const T tangent = in.may_rise * min_of(tan_dilation, tan_friction);
+    T limit = limit_of(shear_limit(normal, in.bond));
+    const T tangent = min_of(tan_dilation, tan_friction);
     const auto lifts = (tangent > none) & (normal > none) & slips(squared, limit);
     T rise = none;
     if (any_of(lifts)) {
@@ -118,7 +125,7 @@ struct Brittle {
       rise = select(lifts, min_of(tangent * (sqrt_of(squared) - limit) / stiffer, room), none);
       normal += k.n * rise;
       elastic += k.n * rise;
-      limit = shear_limit(normal, in.bond);
+      limit = limit_of(shear_limit(normal, in.bond));
     }
     const auto slides = slips(squared, limit);
     const auto lets_go = slides & (normal < none);

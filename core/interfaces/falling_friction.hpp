@@ -27,7 +27,8 @@ inline constexpr Parameter residual_cohesion{
     .unit = "Pa",
     .meaning = "Cohesion of a broken bond while its faces are pressed",
     .otherwise = 0,
-    .is_strength = true};
+    .is_strength = true,
+    .scatter = 1};
 
 inline constexpr StateVariable joint_slip{
     .name = "joint_slip", .unit = "m", .meaning = "How far the joint has slipped"};

@@ -6,6 +6,8 @@
 #include "core/interfaces/slip_weakening.hpp"
 #include "core/interfaces/softening.hpp"
 #include "core/interfaces/table.hpp"
+#include "core/interfaces/velocity_weakening.hpp"
+#include "core/interfaces/voellmy.hpp"
 #include "core/records/law_list.hpp"
 #if defined(CDEM_OWN_INTERFACE_LAW)  // a law that is built beside those of the list, for a test
 #include CDEM_OWN_INTERFACE_HEADER
@@ -15,9 +17,11 @@ namespace cdem {
 
 /// Every interface law; a new one is one header and its name here.
 #if defined(CDEM_OWN_INTERFACE_LAW)
-using InterfaceLaws = LawList<Brittle, Residual, SlipWeakening, Softening, CDEM_OWN_INTERFACE_LAW>;
+using InterfaceLaws = LawList<Brittle, Residual, SlipWeakening, Softening, VelocityWeakening,
+                              Voellmy, CDEM_OWN_INTERFACE_LAW>;
 #else
-using InterfaceLaws = LawList<Brittle, Residual, SlipWeakening, Softening>;
+using InterfaceLaws =
+    LawList<Brittle, Residual, SlipWeakening, Softening, VelocityWeakening, Voellmy>;
 #endif
 /// The first of them alone. Models without another are many: their kernels ask for no other law.
 using BrittleAlone = LawList<Brittle>;
@@ -35,9 +39,27 @@ inline InterfaceTable table_of(const Interface* interfaces, std::size_t count,
   return table;
 }
 
+/// By what a pair's strength differs from that of its interface.
+template <class T>
+struct Scatter {
+  bool any = false;
+  T factor = T(1.0);
+
+  /// Give the parameters of a law their powers of the factor.
+  template <template <class> class Law, std::size_t k = 0>
+  CDEM_HD void scale(T* number) const {
+    if constexpr (k < Law<T>::parameters.size()) {
+      constexpr int power = Law<T>::parameters[k].scatter;
+      for (int times = 0; times < power; ++times) number[k] = factor * number[k];
+      scale<Law, k + 1>(number);
+    }
+  }
+};
+
 /// A law with the parameters of an interface, or of one a lane.
 template <template <class> class Law, class Ids>
-CDEM_HD inline auto law_at(const InterfaceTable& table, const Ids& interface) {
+CDEM_HD inline auto law_at(const InterfaceTable& table, const Ids& interface,
+                           const Scatter<Number<Ids>>& scatter = {}) {
   using T = Number<Ids>;
   const auto place = indices_of([](Index i) { return i * parameter_row; }, interface);
   T number[parameter_row];
@@ -45,6 +67,7 @@ CDEM_HD inline auto law_at(const InterfaceTable& table, const Ids& interface) {
     const Four<T> four = fours_at(table.parameters + k, place);
     number[k] = four.x, number[k + 1] = four.y, number[k + 2] = four.z, number[k + 3] = four.w;
   }
+  if (scatter.any) scatter.template scale<Law>(number);
   return Law<T>::read([&](Index k) { return number[k]; });
 }
 
@@ -55,11 +78,12 @@ struct JointLaws {
   static constexpr Index most_state = Laws::most_state;
   const InterfaceTable& table;
   Ids interface;
+  Scatter<T> scatter{};
 
   /// The answer; `state` are the numbers that the law remembers.
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T* state) const {
     if constexpr (Laws::count == 1) {
-      return law_at<Laws::template Only>(table, interface).respond(in, state);
+      return law_at<Laws::template Only>(table, interface, scatter).respond(in, state);
     } else {
       JointAnswer<T> answer{};
       Laws::for_each([&]<template <class> class Law, Index number>() {
@@ -69,7 +93,7 @@ struct JointLaws {
         constexpr Index size = Index(Law<T>::state.size());
         T own[size + 1];
         for (Index k = 0; k < size; ++k) own[k] = state[k];
-        answer = select(mine, law_at<Law>(table, interface).respond(in, own), answer);
+        answer = select(mine, law_at<Law>(table, interface, scatter).respond(in, own), answer);
         for (Index k = 0; k < size; ++k) state[k] = select(mine, own[k], state[k]);
       });
       return answer;
@@ -78,7 +102,7 @@ struct JointLaws {
   /// Quick answer for joints that are intact and stay so.
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T* state) const {
     if constexpr (Laws::count == 1) {
-      return law_at<Laws::template Only>(table, interface).bears(in, state);
+      return law_at<Laws::template Only>(table, interface, scatter).bears(in, state);
     } else {
       const T zero(0.0);
       Borne<T> answer{
@@ -88,7 +112,7 @@ struct JointLaws {
           if (!table.has(number)) return;
           const auto mine = table.has_law<number>(interface);
           if (!any_of(mine)) return;
-          const Borne<T> own = law_at<Law>(table, interface).bears(in, state);
+          const Borne<T> own = law_at<Law>(table, interface, scatter).bears(in, state);
           answer = {.normal = select(mine, own.normal, answer.normal),
                     .shear1 = select(mine, own.shear1, answer.shear1),
                     .shear2 = select(mine, own.shear2, answer.shear2),

@@ -42,11 +42,13 @@ struct Softening {
       Parameter{.name = "fracture_energy_1",
                 .symbol = "G1",
                 .unit = "J/m2",
-                .meaning = "Fracture energy in opening"},
+                .meaning = "Fracture energy in opening",
+                .scatter = 2},
       Parameter{.name = "fracture_energy_2",
                 .symbol = "G2",
                 .unit = "J/m2",
-                .meaning = "Fracture energy in shear, friction apart"}};
+                .meaning = "Fracture energy in shear, friction apart",
+                .scatter = 2}};
   static constexpr std::array state{
       StateVariable{.name = "joint_damage",
                     .unit = "1",

@@ -306,6 +306,12 @@ void describe_set(const char* rows, PairSet& p, Visit&& given) {
          .numbers = 2,
          .layout = Layout::columns},
         p.stiffness);
+  given({.name = set + "strength",
+         .meaning = "factor on cohesion and tensile strength",
+         .rows = rows,
+         .layout = Layout::columns,
+         .optional = true},
+        p.strength);
   describe_points(set, rows, p, given);
 }
 

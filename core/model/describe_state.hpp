@@ -354,13 +354,14 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
            numbers);
   };
   const auto of_point = [&](const char* column, const char* unit, const char* meaning,
-                            Column<Real>& numbers) {
+                            Column<Real>& numbers, Index axes = 1) {
     stored({.name = name + column,
             .unit = unit,
             .meaning = meaning,
             .rows = conforms(set) ? rows : "overlap_points",
-            .numbers = set.points,
-            .layout = Layout::columns},
+            .numbers = axes * set.points,
+            .layout = Layout::columns,
+            .optional = &numbers == &p.rest || &numbers == &p.rise},
            numbers);
   };
   stored({.name = name + "status",
@@ -371,14 +372,8 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_point("bond", "1", "1 while intact, 0 once broken", p.bond);
   of_point("slip1", "m", "plastic slip along the first axis of the pair", p.slip1);
   of_point("slip2", "m", "plastic slip along the second axis of the pair", p.slip2);
-  stored({.name = name + "rest",
-          .unit = "m",
-          .meaning = "jump at which a spring is free, along the axes of the pair",
-          .rows = conforms(set) ? rows : "overlap_points",
-          .numbers = 3 * set.points,
-          .layout = Layout::columns,
-          .optional = true},
-         p.rest);
+  of_point("rest", "m", "jump at which a spring is free, along the axes of the pair", p.rest, 3);
+  of_point("rise", "m", "of that jump across the pair, by dilation", p.rise);
   stored({.name = name + "history",
           .unit = "of the law",
           .meaning = "what the law remembers at the bond points",

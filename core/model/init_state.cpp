@@ -84,6 +84,12 @@ void size(const Model&, const BoltSet& b, BoltState& s) {
 
 }  // namespace
 
+void make_room_for_rises(const Model& m, State& s) {
+  if (!(m.rules.lifted > m.initial_lift)) return;  // no interface dilates
+  for (PairState* pairs : {&s.triangles, &s.quads, &s.overlaps})
+    pairs->rise.resize(pairs->bond.size());
+}
+
 void init_state(const Model& m, State& s, const Real* position) {
   const std::size_t count = m.node_count;
   NodeState& n = s.nodes;
@@ -99,6 +105,7 @@ void init_state(const Model& m, State& s, const Real* position) {
        {&s.springs.history, &s.edges.side_history, &s.edges.contact_history})
     history->width = interface_table(m).remembers ? InterfaceLaws::most_state : 0;
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
+  make_room_for_rises(m, s);
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
   // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero

@@ -9,4 +9,7 @@ namespace cdem {
 /// Size every array of a new state and place the nodes; `position` has a row of 3 per node.
 void init_state(const Model& model, State& state, const Real* position);
 
+/// Bond points that may rise by dilation have a place for that, also where a stage says so.
+void make_room_for_rises(const Model& model, State& state);
+
 }  // namespace cdem

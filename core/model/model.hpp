@@ -32,6 +32,7 @@ struct PairSet {
   Column<Index> nodes;                  // conforming: [2 * vertices][pair]
   Column<Index> interface;              // [pair]
   Column<Real> area, stiffness;
+  Column<Real> strength;      // factor on the strength of a pair; empty: all 1
   Column<Index> point_first;  // overlaps: [pair + 1]
   Column<Real> weights_a, weights_b, point_area;
 };

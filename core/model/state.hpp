@@ -60,6 +60,7 @@ struct PairState {
   Column<Flag> status;  // PairStatus
   Column<Real> bond, slip1, slip2, broken_tension, broken_shear, jump, jump_at_break;
   Column<Real> rest;  // [axis * points + point][pair], see PairColumns; empty: all zero
+  Column<Real> rise;  // [point][pair] the same
   Column<Real> stored, fracture, friction;
   Column<Real> history;  // [variable * points + point][pair], of the pair's law
   Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp

@@ -40,6 +40,7 @@ struct Parameter {
   Form form = Form::number;
   bool is_strength = false;  // divided by a factor of safety (of an angle, the tangent is)
   bool bonds = false;        // above zero, it bonds faces that touch at the start
+  int scatter = 0;           // power of the factor of a pair's strength that it has, see draws.hpp
 };
 
 /// One number that a law remembers. It may only grow: where several contacts share a history, the

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from scenes import simulate
+from scenes import case, digest, simulate
 
+import cdem
 from cdem.run.law_fields import state_of
 
 STIFFNESS = {"stiffness_n": "1e11 Pa/m", "stiffness_s": "1e11 Pa/m"}
@@ -140,6 +141,19 @@ LAWS = {
         lambda slip: np.full_like(slip, np.tan(np.radians(30))),
     ),
     "slip-weakening": ({"law": "slip-weakening"} | FALL, None),
+    "velocity-weakening": (  # fast for its velocity
+        {
+            "law": "velocity-weakening",
+            "friction_angle": 40,
+            "dynamic_friction_angle": 30,
+            "velocity": 1e-7,
+        },
+        lambda slip: np.full_like(slip, np.tan(np.radians(30))),
+    ),
+    "voellmy": (  # so large a turbulence coefficient that speed hardly matters
+        {"law": "voellmy", "friction_angle": 40, "turbulence": 1e9, "flow_density": 2000},
+        lambda slip: np.full_like(slip, np.tan(np.radians(40))),
+    ),
     "softening": (
         {"law": "softening", "fracture_energy_1": 1e4, "fracture_energy_2": 1e4} | FALL | BONDED,
         None,
@@ -153,17 +167,8 @@ def falling(slip):
     return left + (peak - left) * np.maximum(1 - slip / 1e-3, 0)
 
 
-@pytest.mark.parametrize("lower, upper", KINDS)
-@pytest.mark.parametrize("law", LAWS)
-def test_a_law_is_the_same_at_all_kinds_of_contacts(law, lower, upper):
-    """Shear over normal force of every contact that slides is tan(phi) of the slip of its wall.
-
-    A driven cube comes down 20 um onto a free one and is drawn over it by 1.5 mm. What a contact
-    slips is what the cube is moved, less the stretch of its spring, so both laws of falling friction
-    must give the same. Tolerance: 1e-3; edges share the slip of their side.
-    """
-    given, tangent = LAWS[law]
-    remembers, tangent = tangent is None, tangent or falling
+def drawn_over(law, lower, upper):
+    """A driven cube that comes down 20 um onto a free one and is drawn over it, step by step."""
     cubes = [
         {"group": "low", "box": {"size": [1, 1, 1]}} | LOWER[lower],
         {"group": "high", "box": {"size": [0.3, 0.3, 0.3]}} | UPPER[upper],
@@ -175,7 +180,7 @@ def test_a_law_is_the_same_at_all_kinds_of_contacts(law, lower, upper):
         cubes,
         {"low": {}, "high": {}},
         rock={"density": 8000},
-        interfaces={"default": given | {"stiffness_n": "1e9 Pa/m", "stiffness_s": "1e9 Pa/m"}},
+        interfaces={"default": law | {"stiffness_n": "1e9 Pa/m", "stiffness_s": "1e9 Pa/m"}},
         time={"step": "5 us"},
         loads={
             "velocities": [
@@ -186,26 +191,146 @@ def test_a_law_is_the_same_at_all_kinds_of_contacts(law, lower, upper):
             ]
         },
     )  # fmt: skip
-    seen = []
     for _ in range(130):
         sim.step(10)
-        state = sim.core.fields()
-        for kind, wall in (
-            ("spring", np.flatnonzero(state["spring.target"] >= 0)),
-            ("edge", state["edge.contact"].reshape(-1, 4)[:, 0]),
-        ):
-            rows = state[f"{kind}.state"].reshape(-1, 8)
-            rows = rows[wall] if kind == "spring" else rows
-            slip = np.zeros(len(rows))
-            if remembers and len(rows):
-                width = len(state[f"{kind}.history"]) // len(state[f"{kind}.history_law"])
-                place = {"slip-weakening": 0, "softening": 2}[law]
-                slip = state[f"{kind}.history"].reshape(-1, width)[wall, place]
-            normal, shear = rows[:, 0], np.hypot(rows[:, 2], rows[:, 3])
-            limit = tangent(slip) * normal
-            assert (shear <= limit * (1 + 1e-3)).all()
-            seen += list(slip[(normal > 0) & (shear > limit * (1 - 1e-3))])
+        yield sim
+
+
+def contacts_of(sim, law):
+    """Rows of the state of all contacts, and what their walls have slipped by a law that keeps it [m]."""
+    state = sim.core.fields()
+    rows, slips = [], []
+    for kind, wall in (
+        ("spring", np.flatnonzero(state["spring.target"] >= 0)),
+        ("edge", state["edge.contact"].reshape(-1, 4)[:, 0]),
+    ):
+        of_kind = state[f"{kind}.state"].reshape(-1, 8)
+        rows.append(of_kind[wall] if kind == "spring" else of_kind)
+        slips.append(np.zeros(len(wall)))
+        if law in REMEMBERED and len(wall):
+            width = len(state[f"{kind}.history"]) // len(state[f"{kind}.history_law"])
+            slips[-1] = state[f"{kind}.history"].reshape(-1, width)[wall, REMEMBERED[law]]
+    return np.concatenate(rows), np.concatenate(slips)
+
+
+REMEMBERED = {"slip-weakening": 0, "softening": 2}  # place of the slip in the history
+
+
+@pytest.mark.parametrize("lower, upper", KINDS)
+@pytest.mark.parametrize("law", LAWS)
+def test_a_law_is_the_same_at_all_kinds_of_contacts(law, lower, upper):
+    """Shear over normal force of every contact that slides is tan(phi) of the slip of its wall.
+
+    The cube is drawn by 1.5 mm. What a contact slips is what the cube is moved, less the stretch of
+    its spring, so both laws of falling friction must give the same. Tolerance: 1e-3; edges share the
+    slip of their side.
+    """
+    given, tangent = LAWS[law]
+    tangent = tangent or falling
+    seen = []
+    for sim in drawn_over(given, lower, upper):
+        rows, slip = contacts_of(sim, law)
+        normal, shear = rows[:, 0], np.hypot(rows[:, 2], rows[:, 3])
+        limit = tangent(slip) * normal
+        assert (shear <= limit * (1 + 1e-3)).all()
+        seen += list(slip[(normal > 0) & (shear > limit * (1 - 1e-3))])
     assert len(seen) > 100
-    if remembers:
+    if law in REMEMBERED:
         moved = np.hypot(*sim.fields["displacement"][sim.build.nodes_of("high")].mean(axis=0)[:2])
         assert 1e-3 < max(seen) < 1.01 * moved
+
+
+@pytest.mark.parametrize("lower, upper", KINDS)
+@pytest.mark.parametrize("law", LAWS)
+def test_a_law_dilates_the_same_at_all_kinds_of_contacts(law, lower, upper):
+    """Every contact that slides rises by tan(psi) of its slip, until that is the dilation slip.
+
+    Of laws that keep the slip the rise is that of it, to 1e-3; of the others that of what the cube
+    is moved, less the stretch of the spring that slides and what the free cube goes along.
+    """
+    height = 5e-4 * np.tan(np.radians(10))
+    given = LAWS[law][0] | {"dilation_angle": 10, "dilation_slip": 5e-4}
+    half, most, error = False, 0.0, 0.0
+    for sim in drawn_over(given, lower, upper):
+        rows, slip = contacts_of(sim, law)
+        risen = rows[rows[:, 0] > 0, 4]
+        error = max(error, abs(sim.energies["error"]))
+        assert (risen <= height * (1 + 1e-12)).all()
+        if len(risen):
+            most = max(most, risen.max())
+        if law in REMEMBERED and len(risen):
+            expected = np.minimum(slip[rows[:, 0] > 0] * np.tan(np.radians(10)), height)
+            assert risen == pytest.approx(expected, abs=RISE_ERROR)
+        half = half or ((risen > 0.3 * height) & (risen < 0.7 * height)).any()
+    assert half
+    assert most == pytest.approx(height, rel=1e-9)
+    assert error < 1e-3
+
+
+RISE_ERROR = 1e-6  # [m]
+
+
+@pytest.mark.parametrize("law", ["brittle", "residual", "slip-weakening"])
+def test_bond_points_dilate_and_hand_over_what_they_have_risen(law):
+    """sigma = sigma_0 + k_n tan(psi) s_psi under a fixed lid, before the release and after it.
+
+    The fall of tau while it slides is that of the law. Both cubes are rigid.
+    """
+    laws = {"brittle": {}, "residual": {"law": "residual", "residual_friction_angle": 30},
+            "slip-weakening": {"law": "slip-weakening", "residual_friction_angle": 30,
+                               "slip_distance": "0.1 mm"}}  # fmt: skip
+    given = {"friction_angle": 40, "cohesion": "3 MPa", "tensile_strength": "1 MPa",
+             "dilation_angle": 10, "dilation_slip": "0.1 mm"} | laws[law]  # fmt: skip
+    slide = [[1e-3, 0], [1.5e-3, 0.5], [0.02, 0.5]]
+    shear = Shear(given, 2e6, slide, step="2 us")
+    sim = shear.sim
+    sigma = 2e6 + 1e11 * np.tan(np.radians(10)) * 1e-4
+    tau = sigma * np.tan(np.radians(40 if law == "brittle" else 30))
+    sim.run_until(2.1e-3)
+    assert sim.core.fields()["quads.status"][0] == 1
+    assert shear.tractions() == pytest.approx((tau, sigma), rel=1e-9)
+    assert abs(sim.energies["error"]) < 1e-3
+    while sim.core.fields()["quads.status"][0]:
+        sim.step(1)
+    sim.step(1)
+    contacts = sim.contacts
+    assert contacts["force_n"].sum() == pytest.approx(sigma, rel=1e-9)
+    assert np.hypot(*contacts["force"][:, :2].T).sum() == pytest.approx(tau, rel=1e-9)
+    assert abs(sim.energies["error"]) < 1e-3
+
+
+def test_each_pair_of_a_heterogeneous_interface_has_its_own_strength():
+    """Sheared under pressure, pairs break at w c + sigma tan(phi); threads change no bit."""
+    factors = {}
+
+    def sheared(threads):
+        stones = [
+            {"group": "low", "box": {"size": [4, 3, 1], "divisions": [4, 3, 1]}},
+            {"group": "high", "box": {"size": [4, 3, 1], "divisions": [4, 3, 1]},
+             "translate": [0, 0, 1]},
+        ]  # fmt: skip
+        law = {"friction_angle": 0, "cohesion": "1 MPa", "tensile_strength": "1 MPa"}
+        sim = cdem.Simulation(
+            case(
+                stones,
+                {"low": {"fix": ["x", "y", "z"]}, "high": {}},
+                interfaces={
+                    "default": STIFFNESS | law | {"heterogeneity": {"weibull": 3, "seed": 2}}
+                },
+                time={"step": "1 us"},
+                loads={"velocities": [{"group": "high", "velocity": [0.01, 0, 0]}]},
+            ),
+            threads=threads,
+        )
+        pairs = sim.build.assembly.counts["quads.count"]
+        factors[threads] = sim.build.arrays["quads.strength"][:pairs].copy()
+        sim.step(800)
+        return sim, sim.core.fields()["quads.bond"].reshape(4, -1)[0, :pairs].copy()
+
+    sim, bond = sheared(1)
+    stress = 1e11 * 0.01 * (sim.step_count - 0.5) * 1e-6
+    assert (bond > 0).any() and (bond == 0).any()
+    assert (bond > 0).tolist() == (factors[1] * 1e6 > stress).tolist()
+    other, _ = sheared(3)
+    assert digest(other) == digest(sim)
+    assert f"strength times {factors[1].min():.3g} .. {factors[1].max():.3g}" in sim.audit.text()

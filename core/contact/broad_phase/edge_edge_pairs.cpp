@@ -125,7 +125,7 @@ struct TwoLines {
     const ExposedFace &x = *p.face, &y = *q.face;
     const ExposedSide &on_p = *p.side, &on_q = *q.side;
     const Real swing = rotations / sine;  // of the normal
-    const Real room = swing * std::max(p.indented.shift, q.indented.shift);
+    const Real room = swing * std::max(p.indented.shift, q.indented.shift) + rules.lifted;
     const auto beyond = [&](Real sine_of_cone, const MovingEdge& of, Real rotation_face) {
       return sine_of_cone < -(rules.cone + swing + of.rotation + rotation_face);
     };

@@ -44,7 +44,6 @@ struct ContactMotion {
   T gap_rate;         // [m/s]
   T slip1, slip2;     // of the step  [m]
   T dashpot;          // [N s/m]
-  T may_rise;         // 1 where dilation may lift the stress-free gap, else 0
   Real dt;            // [s]
 };
 
@@ -83,7 +82,8 @@ CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
           .damping = select(motion.gap < zero, damping, zero),
           .bond = zero,
           .risen = motion.stress_free_gap,
-          .may_rise = motion.may_rise,
+          .rate1 = motion.slip1 / T(motion.dt),
+          .rate2 = motion.slip2 / T(motion.dt),
           .has_area = zero};
 }
 

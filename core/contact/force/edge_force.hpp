@@ -45,15 +45,15 @@ struct UpdateEdgeForces {
         .slip1 = pair.slip1,
         .slip2 = pair.slip2,
         .dashpot = unloading.dashpot(laws.dashpot(spring, pair.inverse_mass)),
-        .may_rise = zero,
         .dt = faces.dt};
     const auto place = indices_of([](Index c) { return c; }, item);
     const JointAnswer<T> joint = respond_with_history<Laws>(
         laws.interfaces, interface, unloading.input(spring, motion, old.force), side_history,
         contact.mother_side, contact_history, place);
     const ContactForce<T> f = unloading.force(spring, motion, gap - free, old.force, joint);
-    const T state[8] = {f.force_n, f.penetration, f.shear1,   f.shear2,
-                        free,      f.energy_n,    f.energy_s, unloading.approach(gap - free, f)};
+    const T state[8] = {
+        f.force_n,     f.penetration, f.shear1,   f.shear2,
+        free + f.rise, f.energy_n,    f.energy_s, unloading.approach(gap - free, f)};
     set_rows(edges.state, item, state);
     write_reaction(item, contact, pair, unloading.stiffness(spring), f);
   }

@@ -49,7 +49,6 @@ struct UpdateSpringForces {
         .slip1 = pair.slip1,
         .slip2 = pair.slip2,
         .dashpot = unloading.dashpot(laws.dashpot(spring, pair.inverse_mass)),
-        .may_rise = T(1.0),
         .dt = faces.dt};
     const JointAnswer<T> joint = respond_with_history<Laws>(
         laws.interfaces, interface, unloading.input(spring, motion, old.force), history, slot,

@@ -57,6 +57,44 @@ bool make_room_for_edges(State& s) {
   return true;
 }
 
+void add_edges(State& s, const std::vector<EdgeContact>& contacts, const ContactState& as) {
+  if (contacts.empty()) return;
+  const std::size_t count = s.search.exposed_face.size();
+  EdgeState& e = s.edges;
+  std::vector<EdgeContact> list;
+  std::vector<ContactState> state;
+  std::vector<Real> reaction;
+  std::vector<Index> first{0};
+  for (std::size_t x = 0; x < count; ++x) {
+    for (Index c = e.first[x]; c < e.first[x + 1]; ++c) {
+      list.push_back(EdgeContact::at(e.contact.data(), c));
+      state.push_back(ContactState::at(e.state.data(), c));
+      for (Index k = 0; k < 8; ++k) reaction.push_back(e.reaction[8 * std::size_t(c) + k]);
+    }
+    for (const EdgeContact& one : contacts) {
+      if (one.mother / 4 != Index(x)) continue;
+      const bool has = std::any_of(list.begin() + first[x], list.end(), [&](const EdgeContact& c) {
+        return c.mother == one.mother && c.edge == one.edge;
+      });
+      if (has) continue;
+      list.push_back(one);
+      state.push_back(as);
+      reaction.resize(reaction.size() + 8);
+    }
+    first.push_back(Index(list.size()));
+  }
+  e.first.resize(count + 1);
+  std::copy(first.begin(), first.end(), e.first.data());
+  e.contact.resize(4 * list.size());
+  e.state.resize(8 * list.size());
+  e.reaction.resize(8 * list.size());
+  std::copy(reaction.begin(), reaction.end(), e.reaction.data());
+  for (std::size_t c = 0; c < list.size(); ++c) {
+    list[c].store(e.contact.data(), c);
+    state[c].store(e.state.data(), c);
+  }
+}
+
 void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Index>& to) {
   begin_edges(s);
   EdgeState& e = s.edges;

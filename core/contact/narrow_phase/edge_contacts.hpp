@@ -14,6 +14,9 @@ void begin_edges(State& state);
 /// on a face than it had places for: there are more places now, search again.
 bool make_room_for_edges(State& state);
 
+/// Add contacts to the list in this state; those that it has already stay as they are.
+void add_edges(State& state, const std::vector<EdgeContact>& contacts, const ContactState& as);
+
 /// Bring the list into a new order of the exposed faces: place x was from[x], y becomes to[y];
 /// where that is -1 the contacts end.
 void sort_edges(State& state, const std::vector<Index>& from, const std::vector<Index>& to);

@@ -102,6 +102,7 @@ struct FilterEdgePairs {
     const T c2 = dot(c, c), apart = dot(x[1] - x[0], c);
     // of a gap, times |c| twice: below it ResolveTargetEdges decides on which side it is
     const T round_off = T(1e-12) * c2 * (abs_of(d[0].x) + abs_of(d[0].y) + abs_of(d[0].z));
+    const T room = round_off + T(2.0 * rules.lifted) * c2;  // the normals differ by 2 at most
     const T slack(1.000001 * crossing_slack(rules.indentation)), none(0.0);
     Vec3<T> normal[2][2];
     T along[2][2];  // c
@@ -124,7 +125,7 @@ struct FilterEdgePairs {
     unsigned open[EdgeWays::count];  // lane by lane, as bits
     for (Index i = 0; i < 2; ++i)
       for (Index j = 0; j < 2; ++j) {
-        const auto wrong = parallel | (apart * (along[1][j] - along[0][i]) < -round_off) |
+        const auto wrong = parallel | (apart * (along[1][j] - along[0][i]) < -room) |
                            !(dot(normal[0][i], normal[1][j]) < T(-rules.opposing));
         open[EdgeWays::way(false, i, j)] = lane_bits(!(wrong | far[0][i]));
         open[EdgeWays::way(true, i, j)] = lane_bits(!(wrong | far[1][j]));

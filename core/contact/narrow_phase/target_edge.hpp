@@ -136,9 +136,11 @@ struct ResolveTargetEdges {
     const Vec3<T> p0 = xm + alpha * (of_m.center - xm);
     const auto goes_on = numbers_of([](Index before) { return before >= 0; }, pair.before) > zero;
     const T slack = select(goes_on, T(crossing_slack(rules.indentation)), zero);
+    const T lifted = highest_gap(pair.before);
     const T length = min_of(abs_of(of_m.length), abs_of(of_t.length));
     Truth<T> may = (dot(nm, nt) < T(-rules.opposing)) & are_sharp<T>(pair) &
-                   !far_apart(xm, dm, p0, xt, dt, nt - nm, slack) & !together(pair, at, length);
+                   !far_apart(xm, dm, p0, xt, dt, nt - nm, slack, lifted) &
+                   !together(pair, at, length);
     if (!any_of(may)) return Outcome{may, may};
     may = may & is_right(pair, dot(nm, nt), nm);
 
@@ -148,7 +150,7 @@ struct ResolveTargetEdges {
       return !((place < -slack) | (place > one + slack));
     };
     const Crossing<T> edges = cross_edges(xm, dm, xt, dt, n);
-    may = may & crosses(inner.s) & crosses(inner.t) & !(edges.gap > zero) &
+    may = may & crosses(inner.s) & crosses(inner.t) & !(edges.gap > lifted) &
           cones_hold(pair, nm, nt, dm, dt, n);
     const Vec3<T> rate = velocity_at(at.m0, at.m1, edges.s) - velocity_at(at.t0, at.t1, edges.t);
     const T approach = T(rules.approach_steps * faces.dt) * abs_of(dot(n, rate));
@@ -210,18 +212,28 @@ struct ResolveTargetEdges {
     }
     return found;
   }
+  /// A contact that has dilated acts at a distance, and is kept to twice the height to which it has
+  /// risen  [m].
+  template <class Ids, class T = Number<Ids>>
+  CDEM_HD T highest_gap(const Ids& before) const {
+    if (!(rules.lifted > 0)) return T(0.0);
+    const auto risen = [&](Index b) {
+      return b < 0 ? 0.0 : 2 * max_of(ContactState::at(held.state, b).stress_free_gap, 0.0);
+    };
+    return numbers_of(risen, before);
+  }
   /// Most pairs are parallel, pass each other at a distance or have not met yet: the common
   /// perpendicular tells it without a root or a division, before all else. `p0` is where the
-  /// indented side starts, `out` leads from the mother face to the target's.
+  /// indented side starts, `out` leads from the mother face to the target's and is 2 long at most.
   template <class T>
   CDEM_HD Truth<T> far_apart(const Vec3<T>& xm, const Vec3<T>& dm, const Vec3<T>& p0,
                              const Vec3<T>& xt, const Vec3<T>& dt, const Vec3<T>& out,
-                             const T& slack) const {
+                             const T& slack, const T& lifted) const {
     constexpr Real parallel = parallel_edges;
     const Vec3<T> c = cross(dm, dt);
     const T c2 = dot(c, c);
     return (c2 < T(parallel * parallel) * dot(dm, dm) * dot(dt, dt)) |
-           (dot(xt - xm, c) * dot(c, out) < T(0.0)) |
+           (dot(xt - xm, c) * dot(c, out) < T(-2.0) * lifted * c2) |
            crosses_beyond(p0, dm, xt, dt, c, c2, rules, slack);
   }
   template <class Ids, class T>

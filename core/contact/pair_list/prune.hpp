@@ -221,8 +221,8 @@ struct MarkNearEdges {
     const T motion = room.at(5, p) + max_of(look_up(skin, a0), look_up(skin, a1)) +
                      max_of(look_up(skin, b0), look_up(skin, b1));
     const T approach = T(rules.approach_steps) * max_of(T(dt) * rate, T(2.0) * motion);
-    const T depth = room.at(0, p) + approach + motion, shift = room.at(1, p);
-    const T behind = motion + T(round_off) * depth;
+    const T depth = room.at(0, p) + approach + motion + T(rules.lifted), shift = room.at(1, p);
+    const T behind = motion + T(round_off) * depth + T(rules.lifted);
     const T parted = max_of(room.at(4, p) - motion, T(0.0));
     const auto far = (gap2 > depth * depth * c2) |
                      ((room.at(2, p) * gap < T(0.0)) & (gap2 > behind * behind * c2)) |

@@ -3,6 +3,7 @@
 
 #include "core/bonds/bonded_surface.hpp"
 #include "core/bonds/release.hpp"
+#include "core/bonds/transfer_to_contact.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
 #include "core/contact/force/stiffness_bound.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
@@ -36,6 +37,7 @@ void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {
   }
   const bool released = release_bonds(m, s) || first;
   sort_exposed(s);
+  await_contacts(m, s);
   list_pairs_of_exposed(m, s, plan, released);
 }
 

@@ -297,7 +297,7 @@ def stage_settings(
     problems: list[Problem] = []
     doubtful: list[Problem] = []
     known = list(known)
-    restitution = trial.interfaces.restitution()
+    fixed_values = trial.interfaces.fixed()
     for i, stage in enumerate(trial.stages):
         for path, value in stage.set.items():
             keys = ("stages", i, "set", path)
@@ -313,10 +313,12 @@ def stage_settings(
             except CaseError as error:
                 what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
                 problems.append((keys, what.partition(": ")[2]))
-        if trial.interfaces.restitution() != restitution:
-            fixed = "'restitution' of an interface holds from the start and cannot change"
-            problems.append((("stages", i, "set"), fixed))
-            restitution = trial.interfaces.restitution()
+        now = trial.interfaces.fixed()
+        for key in now:
+            if now[key] != fixed_values[key]:
+                fixed = f"{key!r} of an interface holds from the start and cannot change"
+                problems.append((("stages", i, "set"), fixed))
+        fixed_values = now
         problems += [
             (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
             for keys, what in _names(trial)

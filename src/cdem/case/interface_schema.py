@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -45,6 +46,23 @@ class Restitution(Part):
     )
 
 
+class Heterogeneity(Part):
+    """How the strength of bonds differs from pair to pair of faces."""
+
+    weibull: Annotated[float, Quantity("1", at_least=1)] = Field(
+        description="Shape m of Weibull's distribution, of mean 1: cohesion and tensile strength of "
+        "each pair are multiplied by a draw of it, fracture energies by its square [1]"
+    )
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = Field(
+        0, description="Of the draws: they depend on it and on the two faces, on nothing else"
+    )
+
+    @property
+    def mean(self) -> float:
+        """Of the distribution with scale 1."""
+        return math.gamma(1 + 1 / self.weibull)
+
+
 class Interface(Part):
     """What every interface has; the parameters of its law come with the model of the law."""
 
@@ -82,6 +100,18 @@ class Interface(Part):
         description="mu_r: contacts of vertices with faces resist rolling with couples up to "
         "mu_r R F_n, R the radius of a sphere of the block's volume [1]",
     )
+
+    heterogeneity: Heterogeneity | None = Field(
+        None,
+        description="Strength of bonds that differs from pair to pair: {weibull: 5, seed: 1}",
+    )
+
+    def idle_heterogeneity(self) -> str:
+        """Why a heterogeneity that the case gives changes nothing, or nothing."""
+        given = self.heterogeneity if "heterogeneity" in self.model_fields_set else None
+        if given is None or INTERFACE_LAWS[self.law].bonds(self):
+            return ""
+        return "heterogeneity is of bonds; it needs cohesion or tensile_strength above 0"
 
     def coefficients(self) -> tuple[float, float]:
         """Normal and tangential coefficient of restitution [1]."""
@@ -158,7 +188,7 @@ class Interfaces(Part):
                     )
         named = {} if self.default is None else {"default": self.default}
         for place, law in (named | {f"pairs.{i}": p for i, p in enumerate(self.pairs)}).items():
-            if why := interface_contradiction(law):
+            if why := interface_contradiction(law) or law.idle_heterogeneity():
                 raise ValueError(f"{place}: {why}")
         return self
 
@@ -170,10 +200,13 @@ class Interfaces(Part):
                     # Not by assignment: the field must keep counting as left out.
                     pair.__dict__[field] = getattr(self.default, field)
 
-    def restitution(self) -> list[tuple[float, float]]:
-        """Coefficients of all interfaces [1], the default's last."""
-        last = [] if self.default is None else [self.default]
-        return [law.coefficients() for law in [*self.pairs, *last]]
+    def fixed(self) -> dict[str, list[Any]]:
+        """What holds from the start, of all interfaces, the default's last."""
+        laws = [*self.pairs, *([] if self.default is None else [self.default])]
+        return {
+            "restitution": [law.coefficients() for law in laws],
+            "heterogeneity": [law.heterogeneity for law in laws],
+        }
 
     def between(self, group_a: str, group_b: str) -> Interface | None:
         """Return the interface of two groups, or None when the case says nothing about them."""

@@ -235,6 +235,19 @@ def _pair_set(
     in_series = 2 * own[:, 0] * own[:, 1] / np.maximum(own.sum(axis=1), 1e-300)
     rows = [np.where(both, in_series, row) for row in rows]
     out.arrays[f"{kind}.stiffness"] = table(np.array(rows), stride)
+    out.arrays[f"{kind}.strength"] = _strength(faces, interface, p, stride)
+
+
+def _strength(faces: Ints, interface: Ints, p: Properties, stride: int) -> Floats:
+    """Factors on the strength of pairs; empty where no interface is heterogeneous."""
+    if not any(p.strength_factors):
+        return np.zeros(0)
+    factor = np.ones(len(faces))
+    for index, factors in enumerate(p.strength_factors):
+        own = interface == index
+        if factors is not None and own.any():
+            factor[own] = factors(faces[own])
+    return table(factor[None], stride)
 
 
 def _corners(t: Topology, bolt_hosts: Ints, out: Assembly) -> None:

@@ -276,10 +276,12 @@ class Audit:
                     f"adds {row['compliance_percent']:.3g} % compliance in tension and bending, "
                     f"{row['shear_compliance_percent']:.3g} % in shear"
                 )
+            weakest, strongest = row["strength_factors"]
+            varies = f", strength times {weakest:.3g} .. {strongest:.3g}" if weakest < 1 else ""
             lines.append(
                 f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
                 f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
-                f"{row['stiffness_n'][1]:.3g} Pa/m, {adds}"
+                f"{row['stiffness_n'][1]:.3g} Pa/m, {adds}{varies}"
             )
         lines += self._stiffness_text()
         lines += self._initial_text()

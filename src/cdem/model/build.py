@@ -32,6 +32,7 @@ from cdem.model.interfaces import (
     bonded_pairs,
     check_interfaces,
     interfaces_of,
+    strength_factors_of,
     that_may_break,
 )
 from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
@@ -226,6 +227,7 @@ def _assemble(
         law_parameters=np.array([_law_row(m) for m in materials]),
         interface_of=np.maximum(interface_of, 0),
         paired=paired,
+        strength_factors=[strength_factors_of(law) for law in laws],
         breaks=that_may_break(case),
         stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
         automatic=np.array([is_automatic(law) for law in laws], bool),

@@ -50,12 +50,14 @@ def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
             some = where == number
             k, i, j = number // groups**2, number // groups % groups, number % groups
             key = (build.group_names[i], build.group_names[j], sets[k])
-            empty = {"pairs": 0, "area": 0.0, "soft": np.zeros(6), "k": [], "e": []}
+            empty = {"pairs": 0, "area": 0.0, "soft": np.zeros(6), "k": [], "w": [], "e": []}
             row = rows.setdefault(key, empty)
             row["pairs"] += int(some.sum())
             row["area"] += float(area[some].sum())
             row["soft"] += soft[some].sum(axis=0)
             row["k"] += [float(normal[some].min()), float(normal[some].max())]
+            strength = build.arrays[f"{kind}.strength"]
+            row["w"] += strength[: len(faces)][some].tolist() if strength.size else [1.0]
             row["e"].append(t.face_element[faces[some]].ravel())
     return [_row(key, row, volume) for key, row in rows.items()]
 
@@ -68,6 +70,7 @@ def _row(key: tuple, row: dict[str, Any], volume: Floats) -> dict[str, Any]:
         "bonded_pairs": row["pairs"],
         "area": row["area"],
         "stiffness_n": [min(row["k"]), max(row["k"])],
+        "strength_factors": [min(row["w"]), max(row["w"])],
         "compliance_percent": float(percent[:3].max()),
         "compliance_along_xyz": percent[:3].tolist(),
         "shear_compliance_percent": float(percent[3:].max()),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -31,6 +32,8 @@ class Properties:
         paired: Whether faces of it that touch at the start are pairs: if it has strength, or where
             `pairs_loose_joints`, the same shape.
         breaks: Whether bonds of it may break, see `that_may_break`, shape (interfaces,).
+        strength_factors: From faces of pairs, shape (pairs, 2), to factors on their strength, by
+            interface; None: all are 1.
         stiffness: (value, factor) of k_n and k_s of bonds by interface, shape (interfaces, 4).
         automatic: Whether the case leaves them to the program, shape (interfaces,).
         stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
@@ -57,6 +60,7 @@ class Properties:
     law_parameters: Floats
     interface_of: Ints
     paired: NDArray[np.bool_]
+    strength_factors: Sequence[Callable[[Ints], Floats] | None]
     breaks: NDArray[np.bool_]
     stiffness: Floats
     automatic: NDArray[np.bool_]

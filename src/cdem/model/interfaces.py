@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.topology import Topology, group_touching
+from cdem.model.flat_arrays import Floats
 
 UNBREAKABLE = 1e8
 """Strength [Pa] that no rock has: cohesion up to 50 MPa, tensile strength up to 25 MPa."""
@@ -95,6 +99,19 @@ def that_may_break(case: Case) -> NDArray[np.bool_]:
 def _least_strength(law: Interface) -> float:
     strengths = [p.name for p in INTERFACE_LAWS[law.law].parameters if p.bonds]
     return min((float(getattr(law, name)) for name in strengths), default=0.0)
+
+
+def strength_factors_of(law: Interface) -> Callable[[NDArray[np.int32]], Floats] | None:
+    """From faces of pairs, shape (pairs, 2), to factors on their strength; None: all are 1."""
+    given = law.heterogeneity
+    if given is None:
+        return None
+
+    def factors(faces: NDArray[np.int32]) -> Floats:
+        flat = np.ascontiguousarray(faces, np.int32).ravel()
+        return native.weibull_factors(flat, given.seed, given.weibull, given.mean)
+
+    return factors
 
 
 def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.bool_]:

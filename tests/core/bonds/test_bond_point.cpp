@@ -6,7 +6,7 @@ namespace cdem::test {
 
 namespace {
 
-constexpr Real area = 0.25, kn = 2e9, ks = 1e9;
+constexpr Real area = 0.25, kn = 2e9, ks = 1e9, dt = 1e-5;
 constexpr Real cohesion = 3e5, tension = 1e5, tan_phi = 0.5;
 const Joints rock{
     {{"cohesion", cohesion}, {"tensile_strength", tension}, {"friction_angle", tan_phi}}};
@@ -18,6 +18,7 @@ const BondSpring<Real> spring{.area = area, .stiffness = JointStiffness<Real>::o
 struct Point {
   Frame<Real> frame{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
   bool searched = false;
+  InterfaceTable interfaces = table;
   BondHistory<Real> history{1, 0, 0};
   Vec jump{0, 0, 0};
   BondForce<Real> last{};
@@ -27,7 +28,9 @@ struct Point {
   void lead_to(const Vec& to) {
     Real state[InterfaceLaws::most_state + 1] = {};
     const Vec force = last.on_b;
-    last = bond_force(laws, spring, frame, to, jump, searched, history, state);
+    const Vec lift = history.rise * frame.n;
+    last = bond_force(joint_laws<InterfaceLaws>(interfaces, Index(0)), spring, frame, to - lift,
+                      jump - lift, dt, searched, history, state);
     work -= 0.5 * dot(force + last.on_b, to - jump);
     fracture += last.fracture;
     friction += last.friction;
@@ -81,6 +84,31 @@ TEST_CASE("it breaks in shear at c and goes on with friction") {
   const Real x = point.jump.x;
   point.walk_to({x - 2.01 * tan_phi * pressed / ks, 0, -pressed / kn});
   CHECK(relative_error(point.last.on_b.x, area * tan_phi * pressed) < 1e-12);
+}
+
+TEST_CASE("a broken point that slips rises by tan(psi) of that, to its height; friction pays") {
+  const Real tan_psi = 0.2, most = 1e-3, pressed = 3e-4;
+  const Joints rough{
+      {{"friction_angle", 0.6}, {"dilation_angle", tan_psi}, {"dilation_slip", most}}};
+  Point point;
+  point.interfaces = rough.table();
+  point.history.bond = 0;
+  point.walk_to({0, 0, -pressed});
+  for (int k = 1; k <= 100; ++k) {
+    point.lead_to({k * 3e-5, 0, -pressed});
+    const Real rise = point.history.rise;
+    CHECK(relative_error(point.last.on_b.z, area * kn * (pressed + rise)) < 1e-13);
+    if (rise < tan_psi * most)
+      CHECK(std::abs(rise - tan_psi * point.history.slip1) < 1e-16);
+    else
+      CHECK(relative_error(rise, tan_psi * most) < 1e-14);
+  }
+  CHECK(point.history.slip1 > most);
+  CHECK(relative_error(point.work, point.last.stored + point.friction) < 1e-13);
+  point.searched = true;
+  point.history.rise = 0;
+  point.lead_to({0, 0, -pressed});
+  CHECK(point.history.rise == 0);  // it carries nothing
 }
 
 TEST_CASE("a cycle of slip loses friction times way") {
@@ -194,9 +222,9 @@ TEST_CASE("points of a lane are those of its numbers") {
         BondForce<T> f;
         if constexpr (std::is_same_v<T, Pack>)
           f = bond_force(joint_laws<InterfaceLaws>(table, IndexPack{}), own, frame,
-                         vector_at(in + 9), vector_at(in + 12), searched, h, state);
+                         vector_at(in + 9), vector_at(in + 12), dt, searched, h, state);
         else
-          f = bond_force(laws, own, frame, vector_at(in + 9), vector_at(in + 12), searched, h,
+          f = bond_force(laws, own, frame, vector_at(in + 9), vector_at(in + 12), dt, searched, h,
                          state);
         put(out, f.on_b);
         out[3] = f.stored, out[4] = f.fracture, out[5] = f.friction;

@@ -108,6 +108,42 @@ TEST_CASE("what has slipped already carries no shear") {
   CHECK(relative_error(slid.transfer(), 0.5 * k * 9e-8) < 1e-12);
 }
 
+TEST_CASE("a pair that has risen hands over all that it carried, at the gap where it did") {
+  const Real rise = 3e-4, gap = 1e-4;
+  for (const Real part : {0.1, 1.0, 10.0}) {
+    Slid slid({2e-4, 0, gap});
+    const PairSet& p = slid.model.quads;
+    slid.state.quads.rise.resize(slid.state.quads.bond.size(), rise);
+    const Real k = p.stiffness[0], corner = k * p.area[0] / 8;
+    Interface& contact = slid.model.interfaces[p.interface[0]];
+    contact.stiffness_n_value = contact.stiffness_s_value = part * k;
+    slid.transfer();
+    CHECK(slid.held() == 8);
+    for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
+      if (slid.state.springs.target[slot] < 0) continue;
+      const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
+      CHECK(relative_error(s.force_n, corner * (rise - gap)) < 5e-12);
+      CHECK(relative_error(s.stress_free_gap, gap + (rise - gap) / part) < 5e-12);
+      CHECK(relative_error(std::hypot(s.shear1, s.shear2), corner * 2e-4) < 5e-12);
+    }
+  }
+}
+
+TEST_CASE("what a vertex leaves that has slid off goes to its mate, or to the other points") {
+  const Real rise = 3e-4;
+  for (const Vec& slip : {Vec{8e-3, 0, 0}, Vec{6e-3, 6e-3, 0}}) {
+    Slid slid(slip);
+    const PairSet& p = slid.model.quads;
+    slid.state.quads.rise.resize(slid.state.quads.bond.size(), rise);
+    slid.transfer();
+    CHECK(slid.held() == (slip.y > 0 ? 2 : 4));
+    Real normal = 0;
+    for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot)
+      normal += ContactState::at(slid.state.springs.state.data(), slot).force_n;
+    CHECK(relative_error(normal, p.stiffness[0] * p.area[0] * rise) < 5e-12);
+  }
+}
+
 TEST_CASE("an open pair hands nothing over, nor one whose vertices have parted") {
   CHECK(Slid({0, 0, 1e-4}).transfer() == 0);
   Slid parted({0.5, 0, -1e-4});

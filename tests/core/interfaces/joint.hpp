@@ -59,7 +59,6 @@ inline JointInput<Real> joint_at(Real opening, Real shear1, Real kn, Real ks, Re
           .damping = 0,
           .bond = bond,
           .risen = 0,
-          .may_rise = 0,
           .has_area = 1};
 }
 
@@ -73,7 +72,6 @@ JointInput<T> joint_of(const T* in, Real kn, Real ks) {
           .damping = in[3],
           .bond = in[4],
           .risen = in[5],
-          .may_rise = in[6],
           .has_area = in[7]};
 }
 

@@ -17,7 +17,6 @@ JointInput<Real> any_joint(Random& random) {
           .damping = random.between(-1e5, 1e5),
           .bond = Real(random.below(2)),
           .risen = 0,
-          .may_rise = Real(random.below(2)),
           .has_area = Real(random.below(2))};
 }
 
@@ -68,7 +67,6 @@ TEST_CASE("lanes of different interfaces are answered like each of them") {
                               .damping = pack(&In::damping),
                               .bond = pack(&In::bond),
                               .risen = pack(&In::risen),
-                              .may_rise = pack(&In::may_rise),
                               .has_area = pack(&In::has_area)};
     const JointAnswer<Pack> a =
         joint_laws<InterfaceLaws>(table, interface).respond(in, static_cast<Pack*>(nullptr));

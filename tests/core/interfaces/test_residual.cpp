@@ -22,7 +22,6 @@ JointAnswer<Real> respond(Real normal, Real shear, Real bond, Real has_area = 1)
                             .damping = 0,
                             .bond = bond,
                             .risen = 0,
-                            .may_rise = 0,
                             .has_area = has_area};
   return rock.respond(in, nullptr);
 }

@@ -137,7 +137,6 @@ TEST_CASE("a contact has friction that falls with the slip, and no cohesion") {
                       .damping = 0,
                       .bond = 0,
                       .risen = 0,
-                      .may_rise = 0,
                       .has_area = 0};
   CHECK(relative_error(-law.respond(in, state).shear1, 1e6 * 0.6) < 1e-3);
   CHECK(state[2] > 5e-4);
@@ -157,7 +156,6 @@ TEST_CASE("bears gives the bits of an untouched bond, and does not answer for ot
                               .damping = 0,
                               .bond = 1,
                               .risen = 0,
-                              .may_rise = 0,
                               .has_area = 1};
     const Borne<Real> b = law.bears(in, state);
     const JointAnswer<Real> a = law.respond(in, state);
@@ -203,7 +201,6 @@ TEST_CASE("lanes of the softening law are those of its numbers") {
                                   .damping = T(0.0),
                                   .bond = in[3],
                                   .risen = T(0.0),
-                                  .may_rise = in[4],
                                   .has_area = in[5]};
         T state[3] = {in[6], in[7], in[8]};
         const JointAnswer<T> a = law_of<T>(rock).respond(joint, state);

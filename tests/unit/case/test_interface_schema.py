@@ -45,6 +45,16 @@ def test_a_pair_without_default_needs_a_friction_angle(write):
         ),
         (
             "stiffness_n: auto,",
+            "stiffness_n: auto, heterogeneity: {weibull: 5},",
+            "default: heterogeneity is of bonds; it needs cohesion or tensile_strength above 0",
+        ),
+        (
+            'name: base, cohesion: "10 kPa",',
+            'name: base, cohesion: "10 kPa", heterogeneity: {weibull: 0.5},',
+            "weibull: must be at least 1",
+        ),
+        (
+            "stiffness_n: auto,",
             "stiffness_n: soft,",
             "must be auto, a number [Pa/m], '3 GPa/m' or '1 E/h', got 'soft'",
         ),
@@ -87,7 +97,7 @@ def test_a_pair_takes_the_restitution_of_the_default():
     case = jointed_case(
         {"model.joints": SETS, "interfaces.pairs": pairs, "interfaces.default": default}
     )
-    assert case.interfaces.restitution() == [(0.4, 1), (0.9, 1), (0.4, 1)]
+    assert case.interfaces.fixed()["restitution"] == [(0.4, 1), (0.9, 1), (0.4, 1)]
 
 
 @pytest.mark.parametrize("value", [0.05, 1.01, -0.5, {"normal": 0.01}, {"shear": 0.5}, "high"])
@@ -113,6 +123,18 @@ def test_a_stage_cannot_change_the_restitution(setting):
             {"a": {}},
             interfaces={"default": default},
             stages=[stage],
+        )
+
+
+def test_a_stage_cannot_change_how_strength_varies():
+    setting = {"interfaces.default.heterogeneity": {"weibull": 5, "seed": 2}}
+    default = {"friction_angle": 30, "cohesion": 1, "heterogeneity": {"weibull": 5}}
+    with pytest.raises(CaseError, match="'heterogeneity' of an interface holds from the start"):
+        scenes.case(
+            [{"group": "a", "box": {"size": [1, 1, 1]}}],
+            {"a": {}},
+            interfaces={"default": default},
+            stages=[{"name": "late", "mode": "dynamic", "duration": 1, "set": setting}],
         )
 
 

@@ -21,7 +21,9 @@ def interface(**values):
 
 
 def test_the_core_has_the_laws_of_the_documents():
-    assert list(INTERFACE_LAWS) == ["brittle", "residual", "slip-weakening", "softening"]
+    assert list(INTERFACE_LAWS) == [
+        "brittle", "residual", "slip-weakening", "softening", "velocity-weakening", "voellmy"
+    ]  # fmt: skip
     assert list(BLOCK_LAWS) == ["elastic", "mohr-coulomb"]
     assert [p.name for p in INTERFACE_LAWS["brittle"].parameters] == [
         "friction_angle", "cohesion", "tensile_strength", "dilation_angle", "dilation_slip"
@@ -33,6 +35,25 @@ def test_the_core_takes_tangents_of_angles():
     numbers = INTERFACE_LAWS["brittle"].numbers(law)
     assert numbers["friction_angle"] == math.tan(math.radians(30))
     assert numbers["cohesion"] == 1000 and numbers["tensile_strength"] == 0
+
+
+@pytest.mark.parametrize(
+    "law, message",
+    [
+        ({"law": "velocity-weakening", "dynamic_friction_angle": 20, "velocity": 0},
+         "default: velocity must be above 0"),
+        ({"law": "velocity-weakening", "dynamic_friction_angle": 31, "velocity": 1},
+         "dynamic_friction_angle must not be larger than friction_angle, 30"),
+        ({"law": "velocity-weakening", "dynamic_friction_angle": 20, "velocity": 1,
+          "dilation_angle": 21, "dilation_slip": 1},
+         "dilation_angle must not be larger than dynamic_friction_angle, 20"),
+        ({"law": "voellmy", "turbulence": 0, "flow_density": 1}, "turbulence must be above 0"),
+        ({"law": "voellmy", "turbulence": 500, "flow_density": 0}, "flow_density must be above 0"),
+    ],
+)  # fmt: skip
+def test_laws_with_speed_say_what_does_not_fit(law, message):
+    with pytest.raises(CaseError, match=message):
+        interface(friction_angle=30, **law)
 
 
 @pytest.mark.parametrize(

@@ -44,6 +44,25 @@ TEST_CASE("faces get their part of the list by how many contacts they have") {
   CHECK(s.edges.state.size() == 8 * 5);
 }
 
+TEST_CASE("contacts are added to their faces in the state given; those there stay as they are") {
+  State s;
+  fill(s);
+  ContactState held{};
+  held.force_n = 3;
+  held.store(s.edges.state.data(), 1);
+  s.edges.reaction.resize(16);
+  ContactState awaited = ContactState::none();
+  awaited.stress_free_gap = 1e-3;
+  add_edges(s, {{9, 0, 4, -1}, {5, 0, 7, -1}, {2, 1, 4, -1}}, awaited);
+  const Index first[] = {0, 1, 3, 4};
+  for (Index x = 0; x < 4; ++x) CHECK(s.edges.first[x] == first[x]);
+  CHECK(EdgeContact::at(s.edges.contact.data(), 0).mother == 2);
+  CHECK(EdgeContact::at(s.edges.contact.data(), 3).mother == 9);
+  CHECK(ContactState::at(s.edges.state.data(), 2).force_n == 3);
+  CHECK(ContactState::at(s.edges.state.data(), 3).stress_free_gap == 1e-3);
+  CHECK(s.edges.reaction.size() == 8 * 4);
+}
+
 TEST_CASE("more contacts on a face than places call for another search, too many for an end") {
   State s;
   fill(s);

@@ -82,6 +82,19 @@ TEST_CASE("contacts go on from step to step, each with its own history") {
   }
 }
 
+TEST_CASE(
+    "ridges that have dilated are kept at a gap, to twice the height to which they have risen") {
+  for (const Real gap : {1e-3, 5e-3}) {
+    Ridges ridges(-0.001);
+    ridges.model.rules.lifted = 0.01;
+    for (std::size_t c = 0; c < 4; ++c) ridges.state.edges.state[8 * c + 4] = 2e-3;
+    for (Index i = 6; i < 12; ++i)
+      put(ridges.motion(i), ridges.position(i) + Vec{0, 0, 1e-3 + gap});
+    ridges.step(1);
+    CHECK(ridges.found().size() == (gap < 2 * 2e-3 ? 4 : 0));
+  }
+}
+
 TEST_CASE("sides are tested in lanes as one by one") {
   const Ridges ridges(-0.001);
   State& s = const_cast<State&>(ridges.state);
