@@ -45,6 +45,21 @@ std::string contradiction(const std::string& law, const nb::dict& values) {
   return why;
 }
 
+/// The row of numbers that kernels read of a block law, from its parameters as the core takes them.
+inline std::vector<Real> block_law_numbers(const std::string& law, const nb::dict& values) {
+  std::vector<Real> row(law_numbers);
+  with_law<BlockLaws>(law, [&]<template <class> class Law, Index>() {
+    const auto parameters = parameters_of<Law<Real>>(values);
+    if constexpr (requires { &Law<Real>::prepare; }) {
+      const auto numbers = Law<Real>::prepare(parameters.data());
+      std::copy(numbers.begin(), numbers.end(), row.begin());
+    } else {
+      std::copy(parameters.begin(), parameters.end(), row.begin());
+    }
+  });
+  return row;
+}
+
 /// How fast the strength of an interface law falls, normal and in shear  [Pa/m].
 inline std::pair<Real, Real> steepest_fall(const std::string& law, const nb::dict& values) {
   std::pair<Real, Real> fall{0, 0};
@@ -74,10 +89,14 @@ nb::list declarations() {
       d["unit"] = p.unit, d["meaning"] = p.meaning;
       d["at_least"] = p.at_least;
       d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
+      d["at_most"] = std::isfinite(p.at_most) ? nb::cast(p.at_most) : nb::none();
       d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
       d["like"] = p.like ? nb::cast(p.like) : nb::none();
       d["is_tangent"] = p.form == Form::tangent;
+      d["is_half_tangent"] = p.form == Form::half_tangent;
       d["is_strength"] = p.is_strength;
+      d["is_factor"] = p.is_factor;
+      d["choices"] = p.choices ? p.choices : "";
       d["bonds"] = p.bonds;
       parameters.append(d);
     }

@@ -88,6 +88,10 @@ struct NoFlow {
   }
 };
 
+/// What stands in the field `yielded` for number k of a law's state where it grows now; where it
+/// ever has, four times that: 1, 2, 16, 32.
+CDEM_HD constexpr Real yield_bit(Index k) { return Real((k % 2 + 1) << (4 * (k / 2))); }
+
 /// Inelastic strain and state of the laws at the Gauss points. Initial stress S0 is the inelastic
 /// strain -C^-1 : S0.
 ///
@@ -124,17 +128,41 @@ struct PointFlow {
     return strains;
   }
 
-  /// What the laws would make of the elastic strains now: nothing is kept.
+  /// What the laws would make of the elastic strains now: nothing is kept. `yielded` gets what
+  /// flows now and what ever has, see `yield_bits`.
   template <class I, class Rotation, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> after_flow(const ElementColumns<Shape>& c, I e,
-                                              const PointStrains<Shape, Rotation, T>& p) const {
+                                              const PointStrains<Shape, Rotation, T>& p,
+                                              T& yielded) const {
     ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
+    const T none(0.0), one(1.0);
+    T now[BlockLaws::most_state + 1], ever[BlockLaws::most_state + 1];
+    for (Index k = 0; k < BlockLaws::most_state; ++k) {
+      now[k] = ever[k] = none;
+      for (Index q = 0; q < Shape::points; ++q)
+        ever[k] = select(history.at(row(q, 6 + k), e) > none, one, ever[k]);
+    }
     Sym3<T> increment[Shape::points];
-    if (history.data) flow_points(c, e, strains, increment, [](Index, const T*) {});
+    flow_points(c, e, strains, increment, [&](Index q, const T* state) {
+      for (Index k = 0; k < BlockLaws::most_state; ++k)
+        now[k] = select(state[k] > history.at(row(q, 6 + k), e), one, now[k]);
+    });
+    yielded = none;
+    for (Index k = 0; k < BlockLaws::most_state; ++k)
+      yielded += T(yield_bit(k)) * (now[k] + T(4.0) * ever[k]);
     return strains;
   }
 
  private:
+  /// The state of a point, row by row.
+  template <class I>
+  struct StateRows {
+    const PointFlow& flow;
+    Index point;
+    I e;
+
+    CDEM_HD Number<I> at(Index k) const { return flow.history.at(row(point, 6 + k), e); }
+  };
   /// Take what flows from the elastic strains; returns where any does.
   template <class I, class T, class Keep>
   CDEM_HD Truth<T> flow_points(const ElementColumns<Shape>& c, I e,
@@ -142,18 +170,26 @@ struct PointFlow {
                                const Keep& keep) const {
     const auto material = c.element_material.at(0, e);
     const ElasticConstants<T> elastic = c.materials.elastic(material);
+    const T law = c.materials.laws(material);
     Truth<T> any = T(0.0) > T(0.0);
+    bool flowed[Shape::points];
     for (Index q = 0; q < Shape::points; ++q) {
-      T state[BlockLaws::most_state + 1];
-      for (Index k = 0; k < BlockLaws::most_state; ++k) state[k] = history.at(row(q, 6 + k), e);
-      increment[q] = flow(c.materials, material, elastic.stress(strains.part[q]), state);
-      const auto flows = contract(increment[q], increment[q]) > T(0.0);
-      if (any_of(flows)) keep(q, static_cast<const T*>(state));
+      const PointIncrement<T> now = flow(
+          c.materials, material, law, elastic.stress(strains.part[q]), StateRows<I>{*this, q, e});
+      flowed[q] = now.any;
+      if (!now.any) continue;
+      increment[q] = now.strain;
+      const auto flows = contract(now.strain, now.strain) > T(0.0);
+      if (any_of(flows)) keep(q, static_cast<const T*>(now.state));
       any = any | flows;
     }
     if (!any_of(any)) return any;
+    const T none(0.0);
     Sym3<T> less[Shape::points];
-    for (Index q = 0; q < Shape::points; ++q) less[q] = strains.part[q] - increment[q];
+    for (Index q = 0; q < Shape::points; ++q) {
+      if (!flowed[q]) increment[q] = {none, none, none, none, none, none};
+      less[q] = strains.part[q] - increment[q];
+    }
     use_mean_dilatation<Shape>(c, e, less);
     for (Index q = 0; q < Shape::points; ++q)  // the other lanes keep their bits
       strains.part[q] = select(any, less[q], strains.part[q]);
@@ -278,6 +314,7 @@ struct CorotationalReport {
   ElementColumns<Shape> columns;
   InOutTable stress;      // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
   InOutTable energy;      // [1][element]  [J]
+  InOutTable yielded;     // [1][element], see yield_bit; without data where no material flows
   PointFlow<Shape> flow;  // without history where no material flows
 
   template <class I>
@@ -285,8 +322,13 @@ struct CorotationalReport {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
     const PointStrains<Shape, Rotation, T> p(columns, e);
-    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p),
-                                   shown = flow.after_flow(columns, e, p);
+    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p);
+    ElasticStrains<Shape, T> shown = strains;
+    if (yielded.data) {
+      T bits;
+      shown = flow.after_flow(columns, e, p, bits);
+      yielded.set(0, e, bits);
+    }
     const T zero(0.0);
     Sym3<T> mean{zero, zero, zero, zero, zero, zero};
     T volume(0.0), stored(0.0);

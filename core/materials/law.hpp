@@ -12,10 +12,13 @@
 //
 // and where it is inelastic
 //
-//   static Law read(number);                           number(k) is parameter k
+//   static std::array<Real, m> prepare(const Real*);   numbers that kernels read, from the
+//                                                      parameters; without it, those
+//   static Law read(number);                           number(k) is number k of them
 //   Sym3<T> flow(const ElasticConstants<T>&, const Sym3<T>& trial, T* state) const;
 //                                                      increment of Ei, from the trial stress; the
 //                                                      state may change only where it is not zero
+//   Truth<T> surely_elastic(const Sym3<T>& trial) const;   if you like: a quick answer for most
 //
 // It must not be stiffer than C: the time step is found for that.
 #pragma once

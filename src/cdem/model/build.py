@@ -254,9 +254,8 @@ def _unloading_row(entry: dict[str, Any]) -> list[float]:
 
 
 def _law_row(material: Material) -> list[float]:
-    """Parameters of a material's law, filled up to the most that any law has."""
-    numbers = list(BLOCK_LAWS[material.law].numbers(material).values())
-    return numbers + [0.0] * (native.block_law_parameters - len(numbers))
+    """Numbers of a material's law, filled up to the most that any law has."""
+    return native.block_law_numbers(material.law, BLOCK_LAWS[material.law].numbers(material))
 
 
 def change(built: Build) -> dict[str, NDArray]:

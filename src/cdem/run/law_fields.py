@@ -8,8 +8,12 @@ from numpy.typing import NDArray
 from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, STATES, Law
+from cdem.case.output_fields import YIELDED
 from cdem.model.interfaces import interfaces_of
 from cdem.run.state import RunState
+
+NOW = 0x33
+"""The bits of `yielded` that say what flows now."""
 
 
 def wanted_fields(case: Case) -> list[str]:
@@ -18,7 +22,33 @@ def wanted_fields(case: Case) -> list[str]:
     used = [BLOCK_LAWS[material.law] for material in case.materials.values()]
     used += [INTERFACE_LAWS[one.law] for one in (i.default, *i.pairs) if one is not None]
     states = {variable.name for law in used for variable in law.state}
-    return [name for name in case.output.fields if name not in STATES or name in states]
+    if any(BLOCK_LAWS[material.law].flows for material in case.materials.values()):
+        states.add(YIELDED.name)
+    of_laws = STATES.keys() | {YIELDED.name}
+    return [name for name in case.output.fields if name not in of_laws or name in states]
+
+
+def yielded_of(sim: RunState) -> NDArray[np.int32]:
+    """What flows in each element now and what ever has (`YIELDED`), shapes one after the other."""
+    tables = sim.core.yielded()
+    counts = {shape: len(nodes) for shape, nodes in sim.build.topology.element_nodes.items()}
+    rows = [tables[shape][:count] if tables[shape].size else np.zeros(count)
+            for shape, count in counts.items()]  # fmt: skip
+    return np.concatenate(rows).astype(np.int32)
+
+
+def yielded_counts(sim: RunState) -> dict[str, dict[str, int]]:
+    """How many elements flow now and how many ever have, of each group whose material can."""
+    case, names = sim.case, sim.build.group_names
+    flow = [n for n in names if BLOCK_LAWS[case.materials[case.groups[n].material].law].flows]
+    if not flow:
+        return {}
+    group, bits = np.concatenate(list(sim.build.topology.element_group.values())), yielded_of(sim)
+    counts = {}
+    for name in flow:
+        own = bits[group == names.index(name)]
+        counts[name] = {"now": int(((own & NOW) > 0).sum()), "ever": int((own > 0).sum())}
+    return counts
 
 
 def state_of(sim: RunState, name: str) -> NDArray[np.float64]:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from cdem.model.ruling_step import ruling_step
 from cdem.run import restored, stages
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
+from cdem.run.law_fields import yielded_counts
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
 from cdem.run.state import Attributes, RunState, StageState
@@ -196,6 +198,10 @@ class Simulation(RunState):
         """Run towards the next event of a stage, at most `steps` steps; returns the outcome."""
         self.check_case()
         return self._guard(partial(stages.advance, self, stage, steps, until))
+
+    def summary(self, status: str) -> dict[str, Any]:
+        """What summary.json says."""
+        return super().summary(status) | {"yielded": yielded_counts(self)}
 
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing and ending no stage."""

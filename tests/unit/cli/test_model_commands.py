@@ -23,7 +23,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     status, out, _ = run_cli("new")
     assert status == 0
     names = [line.split()[0] for line in out.splitlines()]
-    assert names == ["incline", "landslide", "safety", "slope", "tunnel", "wall"]
+    assert names == ["foliated", "incline", "landslide", "safety", "slope", "tunnel", "wall"]
     for name in names:
         assert run_cli("new", name, "cases")[0] == 0
         case = Case.load(cube_folder / "cases" / f"{name}.yaml")
@@ -36,7 +36,9 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     assert "did you mean incline?" in run_cli("new", "inclin")[2]
 
 
-@pytest.mark.parametrize("name", ["incline", "wall", "slope", "safety", "landslide", "tunnel"])
+@pytest.mark.parametrize(
+    "name", ["incline", "wall", "slope", "safety", "landslide", "tunnel", "foliated"]
+)
 def test_templates_check(run_cli, name):
     run_cli("new", name)
     status, out, err = run_cli("check", f"{name}.yaml")

@@ -1,0 +1,138 @@
+"""Rock with a weak plane, cones and rock masses: energies, turning, bits, what has yielded."""
+
+import json
+
+import numpy as np
+import pytest
+from scenes import case, digest, momentum, simulate, turn
+
+import cdem
+from cdem.run.law_fields import state_of, yielded_counts, yielded_of
+
+ELASTIC = {"young_modulus": "1 GPa"}
+WEAK = {
+    "law": "ubiquitous-joint", "cohesion": "1 MPa", "friction_angle": 30, "joint_dip": 50,
+    "joint_dip_direction": 60, "joint_cohesion": "0.2 MPa", "joint_friction_angle": 20,
+    "joint_dilation_angle": 5,
+}  # fmt: skip
+CONE = {"law": "drucker-prager", "cohesion": "1 MPa", "friction_angle": 30, "dilation_angle": 10}
+MASS = {"law": "hoek-brown", "uniaxial_strength": "20 MPa", "gsi": 70, "mi": 10}
+LAWS = [WEAK, CONE, MASS]
+FLOOR = {"surface": {"group": "rock", "normal": [0, 0, -1]}, "fix": ["z"]}
+
+
+def box(shape="hex8", divisions=(2, 2, 2)):
+    """A cube in the group rock."""
+    return [{"group": "rock", "box": {"size": [1, 1, 1], "divisions": divisions, "shape": shape}}]
+
+
+def name_of(law):
+    return law["law"]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=name_of)
+@pytest.mark.parametrize("shape", ["hex8", "tet4"])
+def test_energy_closes_while_rock_flows(law, shape):
+    """A block that hits a held one at 8 m/s yields: the ledger closes, most of it is plastic."""
+    sim = simulate(box(shape), {"rock": {"velocity": [0, 0, -8]}}, rock=ELASTIC | law,
+                   loads={"supports": [FLOOR]})  # fmt: skip
+    sim.step(600)
+    e = sim.energies
+    assert e["plastic"] > 0.5 * e["start"]
+    assert abs(e["error"]) < 2e-4
+
+
+@pytest.mark.parametrize("law", LAWS, ids=name_of)
+def test_flow_keeps_linear_and_angular_momentum(law):
+    sim = simulate(box(), {"rock": {}}, rock=ELASTIC | law)
+    x = sim.fields["position"] - [0.5, 0.5, 0.5]
+    sim.fields["velocity"][:] = (
+        np.cross([3.0, 5.0, -4.0], x) + x @ np.diag([-8.0, 3.0, 5.0]) + x[:, [1, 2, 0]] * [4, -6, 2]
+    )
+    p, spin = momentum(sim)
+    sim.step(1000)
+    assert sim.energies["plastic"] > 0.05 * sim.energies["start"]
+    p_now, spin_now = momentum(sim)
+    assert np.abs(p_now - p).max() < 1e-14 * np.abs(spin).max()
+    assert np.abs(spin_now - spin).max() < 1e-13 * np.abs(spin).max()
+
+
+def test_the_weak_plane_turns_with_the_rock():
+    """The same cube, plane and pull, turned by 1 rad about y: the same slip.
+
+    The plane dips by 20 deg towards +x; the turn takes x to z, so it steepens to 20 deg + 1 rad.
+    """
+    slips = []
+    degrees = np.degrees(1)
+    for angle in (0, degrees):
+        r = turn([0, 1, 0], angle)
+        blocks = box("hex8", (1, 1, 1))
+        sim = simulate(blocks, {"rock": {}}, rock=ELASTIC | WEAK
+                       | {"joint_dip": 20, "joint_dip_direction": 90})  # fmt: skip
+        x = sim.fields["position"]
+        middle = x.mean(axis=0)
+        own = x - middle
+        sim.fields["position"][:] = own @ r.T + middle
+        sim.fields["velocity"][:] = (own @ np.array([[0, 0, 8.0], [0, 0, 3], [2, 0, -6]]).T) @ r.T
+        sim.step(300)
+        slips.append(state_of(sim, "joint_plastic_shear")[0])
+    assert slips[0] > 1e-3
+    assert slips[1] == pytest.approx(slips[0], rel=1e-9)
+
+
+def mixed():
+    """All laws side by side, in one run of elements."""
+    blocks = [
+        {"group": g, "box": {"size": [1, 1, 1], "divisions": [2, 3, 2], "shape": "tet4"},
+         "translate": [1.5 * i, 0, 0]} for i, g in enumerate(("weak", "cone", "mass", "hard"))
+    ]  # fmt: skip
+    laws = {"weak": WEAK, "cone": CONE, "mass": MASS, "hard": {}}
+    data = case(
+        blocks,
+        {g: {"velocity": [5, 0, -30], "material": g} for g in laws},
+        loads={"supports": [FLOOR | {"surface": {"group": g, "normal": [0, 0, -1]}} for g in laws]},
+        stages=[{"name": "hit", "mode": "dynamic", "duration": 0.02}],
+        materials={g: {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.25} | law
+                   for g, law in laws.items()},
+    )  # fmt: skip
+    return data
+
+
+def test_results_are_the_same_bits_on_any_number_of_threads_and_after_resuming(tmp_path):
+    whole = cdem.Simulation(mixed(), threads=1, output=tmp_path / "one")
+    whole.run()
+    assert all(share["ever"] for share in yielded_counts(whole).values())
+    two = cdem.Simulation(mixed(), threads=2, output=tmp_path / "two")
+    two.run_until(0.007)
+    two.checkpoint()
+    two.close()
+    again = cdem.Simulation(mixed(), threads=1, output=tmp_path / "two", resume=True)
+    again.run()
+    assert digest(again) == digest(whole)
+
+
+def test_yielded_tells_now_from_ever():
+    """A cube pressed beyond its strength flows in shear now; let go, only what was is left."""
+    top = {"surface": {"group": "rock", "normal": [0, 0, 1]}, "components": ["z"],
+           "velocity": [0, 0, -0.5], "history": [[0, 1], [0.02, 1], [0.021, -1], [1, -1]]}  # fmt: skip
+    rock = ELASTIC | {"law": "mohr-coulomb", "cohesion": "1 MPa", "friction_angle": 30}
+    sim = simulate(box("hex8", (1, 1, 1)), {"rock": {}}, rock=rock,
+                   loads={"supports": [FLOOR], "velocities": [top]},
+                   stages=[{"name": "press", "mode": "dynamic", "duration": 1,
+                            "damping": {"stiffness": 0.5}}])  # fmt: skip
+    sim.step(1)
+    assert yielded_of(sim)[0] == 0
+    sim.run_until(0.02)
+    assert yielded_of(sim)[0] == 1 + 4
+    assert yielded_counts(sim) == {"rock": {"now": 1, "ever": 1}}
+    sim.run_until(0.0225)
+    assert yielded_of(sim)[0] == 4
+    assert yielded_counts(sim) == {"rock": {"now": 0, "ever": 1}}
+    assert json.loads(json.dumps(sim.summary("stopped")))["yielded"]["rock"]["ever"] == 1
+
+
+def test_a_strength_factor_goes_with_a_factor_of_safety():
+    from cdem.case.laws import BLOCK_LAWS
+
+    rock = case(box(), {"rock": {}}, rock=MASS | {"strength_factor": 1.5}).materials["rock"]
+    assert BLOCK_LAWS["hoek-brown"].reduced(rock, 2) == {"strength_factor": 3}
