@@ -15,16 +15,16 @@ def test_the_case_offers_the_fields_of_frames():
     output = Case.schema()["$defs"]["Output"]["properties"]["fields"]
     assert output["items"]["enum"] == output["default"] == CHOICE
     assert CHOICE == [
-        "displacement", "velocity", "stress", "damage", "piece", "plastic_shear",
-        "plastic_tension", "joint_slip", "joint_damage", "joint_opening"
+        "displacement", "velocity", "stress", "damage", "piece", "yielded", "plastic_shear",
+        "plastic_tension", "joint_plastic_shear", "joint_plastic_tension", "joint_slip", "joint_damage", "joint_opening"
     ]  # fmt: skip
 
 
 def test_pictures_show_what_the_surface_holds():
     assert {name for name, field in DRAWN.items() if field.surface == "never"} == set()
     assert list(DRAWN) == [
-        "displacement", "velocity", "damage", "group", "block", "piece", "joint", "plastic_shear",
-        "plastic_tension", "joint_slip", "joint_damage", "joint_opening"
+        "displacement", "velocity", "damage", "group", "block", "piece", "joint", "yielded",
+        "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension", "joint_slip", "joint_damage", "joint_opening"
     ]  # fmt: skip
 
 

@@ -41,8 +41,10 @@ def run(study):
     for inside in (0.0, 2.5e6):
         for cells in (24, 48):
             within = 0.02 * 48 / cells
-            rim, stress = theory(study.case().materials["rock"], inside)
-            simulation = load(study, cells, (inside, float(stress(OUTER)[0])))
+            simulation = load(
+                study, cells, lambda rock, p=inside: (p, float(theory(rock, p)[1](OUTER)[0]))
+            )
+            rim, stress = theory(simulation.case.materials["rock"], inside)
             r, _, polar = polar_stress(simulation)
             exact = np.array(stress(r))
             name = f"{cells} cells, {inside / 1e6:g} MPa inside"
