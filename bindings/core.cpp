@@ -313,7 +313,8 @@ NB_MODULE(CDEM_MODULE, module) {
   module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
   module.def("interface_steepest_fall", &steepest_fall, "law"_a, "parameters"_a);
   module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
-  module.def("block_law_numbers", &block_law_numbers, "law"_a, "parameters"_a);
+  module.def("material_numbers", &material_numbers, "law"_a, "parameters"_a, "softening"_a);
+  module.attr("fall_pieces") = fall_pieces;
   module.attr("interface_law_state") = InterfaceLaws::most_state;
   module.attr("point_history") = point_history;
   module.def("device_name", &device_name);

@@ -2,6 +2,7 @@
 // baseline.
 #pragma once
 
+#include "core/base/powers.hpp"
 #include "core/elements/shapes.hpp"
 #include "core/materials/laws.hpp"
 
@@ -88,6 +89,25 @@ struct NoFlow {
   }
 };
 
+/// What a law asks for of a point: its state, row by row, and the size of its element.
+template <class I>
+struct StateRows {
+  InOutTable history;
+  Index first;  // row of the state
+  InTable point_volume;
+  Index points, per_cell;
+  I e;
+
+  CDEM_HD Number<I> at(Index k) const { return history.at(first + k, e); }
+  /// Side of a cube of the volume of as many elements as make a cell  [m].
+  CDEM_HD Number<I> size() const {
+    using T = Number<I>;
+    T volume(0.0);
+    for (Index q = 0; q < points; ++q) volume += point_volume.at(q, e);
+    return pow_of(T(Real(per_cell)) * volume, T(1.0 / 3.0));
+  }
+};
+
 /// What stands in the field `yielded` for number k of a law's state where it grows now; where it
 /// ever has, four times that: 1, 2, 16, 32.
 CDEM_HD constexpr Real yield_bit(Index k) { return Real((k % 2 + 1) << (4 * (k / 2))); }
@@ -154,15 +174,6 @@ struct PointFlow {
   }
 
  private:
-  /// The state of a point, row by row.
-  template <class I>
-  struct StateRows {
-    const PointFlow& flow;
-    Index point;
-    I e;
-
-    CDEM_HD Number<I> at(Index k) const { return flow.history.at(row(point, 6 + k), e); }
-  };
   /// Take what flows from the elastic strains; returns where any does.
   template <class I, class T, class Keep>
   CDEM_HD Truth<T> flow_points(const ElementColumns<Shape>& c, I e,
@@ -174,8 +185,9 @@ struct PointFlow {
     Truth<T> any = T(0.0) > T(0.0);
     bool flowed[Shape::points];
     for (Index q = 0; q < Shape::points; ++q) {
-      const PointIncrement<T> now = flow(
-          c.materials, material, law, elastic.stress(strains.part[q]), StateRows<I>{*this, q, e});
+      const PointIncrement<T> now =
+          flow(c.materials, material, law, elastic.stress(strains.part[q]),
+               StateRows<I>{history, row(q, 6), c.point_volume, Shape::points, Shape::per_cell, e});
       flowed[q] = now.any;
       if (!now.any) continue;
       increment[q] = now.strain;

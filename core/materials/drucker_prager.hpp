@@ -35,6 +35,7 @@ struct DruckerPrager {
                 .otherwise = 0,
                 .choices = "outer inner plane-strain"}};
   static constexpr std::array state{plastic_state[0], plastic_state[1]};
+  static constexpr auto softening = frictional_softening;
   static constexpr bool inelastic = true;
   static const char* contradiction(const Real* parameter) {
     return frictional_contradiction(parameter);

@@ -42,6 +42,10 @@ inline constexpr std::array plastic_state{
                   .unit = "1",
                   .meaning = "Plastic strain of the tension cut-off, summed over the increments"}};
 
+/// Those of them that may soften.
+inline constexpr std::array frictional_softening{"cohesion", "friction_angle", "dilation_angle",
+                                                 "tensile_strength"};
+
 /// Why the first three parameters do not fit each other, or nullptr.
 inline const char* frictional_contradiction(const Real* parameter) {
   if (parameter[2] > parameter[1])

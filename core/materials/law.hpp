@@ -10,6 +10,10 @@
 //   static constexpr bool inelastic;                   does it ever flow?
 //   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr
 //
+//   static constexpr std::array<const char*, n> softening;   if you like: the names of the first
+//                                                      numbers that it reads, which may fall,
+//                                                      see softening.hpp
+//
 // and where it is inelastic
 //
 //   static std::array<Real, m> prepare(const Real*);   numbers that kernels read, from the

@@ -8,6 +8,7 @@
 #include "core/materials/hoek_brown.hpp"
 #include "core/materials/material_table.hpp"
 #include "core/materials/mohr_coulomb.hpp"
+#include "core/materials/softening.hpp"
 #include "core/materials/ubiquitous_joint.hpp"
 #include "core/records/law_list.hpp"
 #if defined(CDEM_OWN_BLOCK_LAW)  // a law that is built beside those of the list, for a test
@@ -52,16 +53,42 @@ inline constexpr Index law_numbers = [] {
   return most;
 }();
 
+/// Numbers of a material: those of its law, then how they soften.
+inline constexpr Index material_row = law_numbers + softening_numbers;
+
 /// Numbers at each Gauss point with inelastic strain: Ei xx yy zz xy yz zx, and the law's state.
 inline constexpr Index point_history = 6 + BlockLaws::most_state;
 
-/// The law of this type with the parameters of a material, or of one a lane.
-template <template <class> class Law, class Ids>
-CDEM_HD inline auto law_of(const MaterialTable& table, const Ids& material) {
-  return Law<Number<Ids>>::read([&](Index k) {
-    const auto number = [&](Index i) { return table.parameters[std::size_t(i) * law_numbers + k]; };
-    return numbers_of(number, material);
-  });
+/// How many of a law's numbers may fall.
+template <template <class> class Law>
+constexpr Index numbers_that_fall() {
+  if constexpr (requires { Law<Real>::softening; })
+    return Index(Law<Real>::softening.size());
+  else
+    return 0;
+}
+
+/// The law of this type with the parameters of a material, or of one a lane, as strong as it is in
+/// the state of the rows.
+template <template <class> class Law, class Ids, class Rows>
+CDEM_HD inline auto law_of(const MaterialTable& table, const Ids& material, const Rows& rows) {
+  using T = Number<Ids>;
+  const auto number = [&](Index k) {
+    const auto own = [&](Index i) { return table.parameters[std::size_t(i) * material_row + k]; };
+    return numbers_of(own, material);
+  };
+  constexpr Index falls = numbers_that_fall<Law>();
+  if constexpr (falls > 0) {
+    const auto piece = [&](Index k) { return number(law_numbers + k); };
+    if (any_of(piece(0) > T(0.5))) {
+      const T size = rows.size();
+      return Law<T>::read([&](Index k) {
+        return k < falls ? after_slip(number(k), k, size * rows.at(falls_with(k)), piece)
+                         : number(k);
+      });
+    }
+  }
+  return Law<T>::read(number);
 }
 
 /// What flows at a point in a step.
@@ -73,12 +100,13 @@ struct PointIncrement {
 };
 
 /// What one law makes of a trial stress, for the lanes that have it; `rows` has the state that the
-/// point is in. One copy for all kernels: they would else take minutes to build.
+/// point is in and the size of its element. One copy for all kernels: they would else take minutes
+/// to build.
 template <template <class> class Law, class T, class Ids, class Rows>
 CDEM_OUT_OF_LINE inline void flow_by(const MaterialTable& table, const Ids& material,
                                      const Truth<T>& mine, const Sym3<T>& trial, const Rows& rows,
                                      PointIncrement<T>& out) {
-  const auto law = law_of<Law>(table, material);
+  const auto law = law_of<Law>(table, material, rows);
   if constexpr (requires { law.surely_elastic(trial); })
     if (!any_of(mine & !law.surely_elastic(trial))) return;
   const T none(0.0);

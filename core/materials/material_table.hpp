@@ -10,7 +10,7 @@ namespace cdem {
 struct MaterialTable {
   const Real *lambda, *mu;  // [Pa]
   const Index* law;         // number in BlockLaws
-  const Real* parameters;   // [material][law_numbers]
+  const Real* parameters;   // [material][material_row]
 
   template <class Ids>
   CDEM_HD auto elastic(const Ids& material) const {

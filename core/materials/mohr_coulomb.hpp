@@ -29,6 +29,7 @@ struct MohrCoulomb {
                 .otherwise = unlimited,
                 .is_strength = true}};
   static constexpr std::array state{plastic_state[0], plastic_state[1]};
+  static constexpr auto softening = frictional_softening;
   static constexpr bool inelastic = true;
   static const char* contradiction(const Real* parameter) {
     return frictional_contradiction(parameter);

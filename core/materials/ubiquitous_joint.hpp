@@ -70,6 +70,10 @@ struct JointedRock {
       StateVariable{.name = "joint_plastic_tension",
                     .unit = "1",
                     .meaning = "Strain that has flowed across the weak plane in tension, summed"}};
+  static constexpr std::array softening{Rock<T>::softening[0],  Rock<T>::softening[1],
+                                        Rock<T>::softening[2],  Rock<T>::softening[3],
+                                        "joint_cohesion",       "joint_friction_angle",
+                                        "joint_dilation_angle", "joint_tensile_strength"};
   static constexpr bool inelastic = true;
   static const char* contradiction(const Real* parameter) {
     if (const char* why = Rock<T>::contradiction(parameter)) return why;
@@ -82,7 +86,6 @@ struct JointedRock {
   static std::array<Real, 11> prepare(const Real* parameter) {
     std::array<Real, 11> row{};
     for (Index k = 0; k < 4; ++k) row[k] = parameter[k], row[4 + k] = parameter[6 + k];
-    if (row[5] > 0) row[7] = min_of(row[7], row[4] / row[5]);
     const auto [sin_dip, cos_dip] = sine_and_cosine(parameter[4]);
     const auto [sin_direction, cos_direction] = sine_and_cosine(parameter[5]);
     row[8] = sin_dip * sin_direction, row[9] = sin_dip * cos_direction, row[10] = cos_dip;
@@ -99,7 +102,7 @@ struct JointedRock {
             .cohesion = number(4),
             .tan_friction = number(5),
             .tan_dilation = number(6),
-            .tensile_strength = number(7),
+            .tensile_strength = min_of(number(7), number(4) / max_of(number(5), T(no_apex))),
             .normal = {number(8), number(9), number(10)}};
   }
   CDEM_HD Truth<T> surely_elastic(const Sym3<T>& stress) const {
@@ -122,6 +125,8 @@ struct JointedRock {
 
  private:
   static constexpr int turns = 3;
+  /// tan(phi_j) below which the apex is out of reach.
+  static constexpr Real no_apex = 1e-6;
 
   struct SineAndCosine {
     Real sine, cosine;

@@ -44,7 +44,7 @@ Index slack_material(Model& m) {
   m.material_lambda.push(0);
   m.material_mu.push(0);
   m.material_law.push(0);
-  m.material_parameters.resize(m.material_parameters.size() + law_numbers);
+  m.material_parameters.resize(m.material_parameters.size() + material_row);
   return count;
 }
 

@@ -7,6 +7,8 @@ import pytest
 from scenes import case, digest, momentum, simulate, turn
 
 import cdem
+from cdem.case.softening import reduced_tables
+from cdem.run.fields import stress_of
 from cdem.run.law_fields import state_of, yielded_counts, yielded_of
 
 ELASTIC = {"young_modulus": "1 GPa"}
@@ -136,3 +138,72 @@ def test_a_strength_factor_goes_with_a_factor_of_safety():
 
     rock = case(box(), {"rock": {}}, rock=MASS | {"strength_factor": 1.5}).materials["rock"]
     assert BLOCK_LAWS["hoek-brown"].reduced(rock, 2) == {"strength_factor": 3}
+
+
+SOFT = {
+    "law": "mohr-coulomb", "young_modulus": "1 GPa", "cohesion": "1 MPa", "friction_angle": 30,
+    "dilation_angle": 10, "tensile_strength": "0.5 MPa",
+    "softening": {"cohesion": [[0, "1 MPa"], ["5 mm", "0.5 MPa"], ["1 cm", "0.1 MPa"]],
+                  "fracture_energy": "1 kJ/m2"},
+}  # fmt: skip
+
+
+def test_energy_closes_while_rock_softens():
+    sim = simulate(
+        box(), {"rock": {"velocity": [0, 0, -5]}}, rock=SOFT, loads={"supports": [FLOOR]}
+    )
+    sim.step(600)
+    assert sim.energies["plastic"] > 0.5 * sim.energies["start"]
+    assert abs(sim.energies["error"]) < 1e-3
+
+
+def test_a_cube_that_softens_bears_its_residual_strength():
+    """Uniaxial: 2 c_r (tan phi + sqrt(1 + tan^2 phi)) = 0.2 * 1.7320508 MPa, without dilation."""
+    rock = SOFT | {"dilation_angle": 0, "softening": {"cohesion": [[0, 1e6], [0.01, 1e5]]}}
+    top = {"surface": {"group": "rock", "normal": [0, 0, 1]}, "components": ["z"],
+           "velocity": [0, 0, -0.2], "history": [[0, 0], [0.02, 1], [0.2, 1], [0.21, 0.001]]}  # fmt: skip
+    sim = simulate(box("hex8", (1, 1, 1)), {"rock": {}}, rock=rock,
+                   loads={"supports": [FLOOR], "velocities": [top]},
+                   stages=[{"name": "press", "mode": "dynamic", "duration": 0.3,
+                            "damping": {"stiffness": 0.5}}])  # fmt: skip
+    sim.run()
+    assert -stress_of(sim)[0, 2] == pytest.approx(2e5 * np.sqrt(3), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "wrong, told",
+    [
+        ({"softening": {"cohesion": [[0, 2e6], [1, 1e6]]}}, r"must begin with \[0, 1e\+06\]"),
+        ({"softening": {"cohesion": [[0, 1e6], [1, 2e6]]}}, "must fall or stay"),
+        ({"softening": {"cohesion": [[0, 1e6], [0, 1e5]]}}, "slips must increase"),
+        ({"softening": {"cohesion": [[0, 1e6]]}}, "takes 2 to 8 rows, got 1"),
+        ({"softening": {"joint_cohesion": [[0, 1e6], [1, 1]]}}, "has no such strength; it has coh"),
+        ({"softening": {}}, "says nothing of what falls"),
+        ({"softening": {"friction_angle": [[0, 30], [1, 5]]}}, "let dilation_angle fall as well"),
+        ({"tensile_strength": None, "softening": {"fracture_energy": 1}}, "needs a tensile_strength"),
+        ({"softening": {"tensile_strength": [[0, 5e5], [1, 0]], "fracture_energy": 1}}, "not both"),
+        (MASS | {"softening": {"cohesion": [[0, 1]]}}, "law hoek-brown does not soften; give law: moh"),
+    ],
+)  # fmt: skip
+def test_softening_that_cannot_be_is_refused(wrong, told):
+    rock = wrong if "law" in wrong else SOFT | wrong
+    with pytest.raises(cdem.CaseError, match=told):
+        case(box(), {"rock": {}}, rock={k: v for k, v in rock.items() if v is not None})
+
+
+@pytest.mark.parametrize(
+    "softening, told",
+    [
+        ({"fracture_energy": 50}, r"by a factor of 1.25; it takes elements of 0.396 m at most \(here 0.5"),
+        ({"cohesion": [[0, 1e6], [1e-3, 0]]}, "cohesion would fall faster than the element at"),
+    ],
+)  # fmt: skip
+def test_rock_that_would_snap_back_is_refused(softening, told):
+    """h A < E in tension: 0.5 m * T^2 / (2 G) = 1.25 GPa; h A < mu in shear."""
+    with pytest.raises(cdem.CdemError, match=told):
+        simulate(box(), {"rock": {}}, rock=SOFT | {"softening": softening})
+
+
+def test_a_factor_of_safety_divides_tables_too():
+    rock = case(box(), {"rock": {}}, rock=SOFT).materials["rock"]
+    assert reduced_tables(rock, 2) == {"softening.cohesion": [(0, 5e5), (5e-3, 2.5e5), (0.01, 5e4)]}

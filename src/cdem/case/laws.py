@@ -91,6 +91,7 @@ class Law:
         flows: Of a block law: whether it ever gives inelastic strain.
         parameters: In the order of the core.
         state: In the order of the core.
+        softening: Of a block law: the names of the strengths that may fall.
     """
 
     name: str
@@ -98,6 +99,7 @@ class Law:
     flows: bool
     parameters: tuple[Parameter, ...]
     state: tuple[StateVariable, ...]
+    softening: tuple[str, ...] = ()
 
     def values(self, part: Part) -> dict[str, float]:
         """Parameters of a part of a case, those that it leaves out included."""
@@ -157,6 +159,7 @@ def _declared(laws: list[dict[str, Any]]) -> dict[str, Law]:
             law["flows"],
             tuple(Parameter(**p) for p in law["parameters"]),
             tuple(StateVariable(**v) for v in law["state"]),
+            tuple(law["softening"]),
         )
         for law in laws
     }

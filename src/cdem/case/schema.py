@@ -11,6 +11,7 @@ from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
 from cdem.case.output_fields import CHOICE
+from cdem.case.softening import Softening
 from cdem.case.stress_schema import InitialStress
 from cdem.case.types import (
     FileName,
@@ -36,6 +37,9 @@ class Material(Part):
     )
     poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(
         description="Poisson's ratio [1]"
+    )
+    softening: Softening | None = Field(
+        None, description="How strengths fall with slip, of a law that flows"
     )
     if TYPE_CHECKING:
         law: str

@@ -15,6 +15,7 @@ from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
 from cdem.case.laws import BLOCK_LAWS
 from cdem.case.schema import Material
+from cdem.case.softening import tables_of
 from cdem.errors import CaseError
 from cdem.mesh.blocks import build_topology, snap_mates
 from cdem.mesh.extent import check_extent
@@ -35,7 +36,7 @@ from cdem.model.interfaces import (
 from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of
-from cdem.model.snap_back import check_fall
+from cdem.model.snap_back import check_fall, check_softening
 from cdem.model.stiffness import bond_row, interface_entries
 from cdem.model.supports import supports_of
 
@@ -232,6 +233,7 @@ def _assemble(
     )
     parts = assemble(topology, properties, native.padded_stride)
     check_fall(case, topology, laws, parts)
+    check_softening(case, topology, names, parts)
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
@@ -254,8 +256,9 @@ def _unloading_row(entry: dict[str, Any]) -> list[float]:
 
 
 def _law_row(material: Material) -> list[float]:
-    """Numbers of a material's law, filled up to the most that any law has."""
-    return native.block_law_numbers(material.law, BLOCK_LAWS[material.law].numbers(material))
+    """Numbers of a material's law and of how it softens."""
+    numbers = BLOCK_LAWS[material.law].numbers(material)
+    return native.material_numbers(material.law, numbers, tables_of(material))
 
 
 def change(built: Build) -> dict[str, NDArray]:

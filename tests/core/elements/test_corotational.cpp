@@ -71,9 +71,9 @@ struct Flowing : Loaded<Shape> {
   const Real lambda[2] = {6e9, 6e9}, mu[2] = {4e9, 4e9};
   const Index law[2] = {0, 1};
   std::vector<Real> parameters = [] {
-    std::vector<Real> rows(2 * law_numbers);
+    std::vector<Real> rows(2 * material_row);
     const Real row[] = {strength, 0.6, 0.2, 0.5 * strength};
-    std::copy(std::begin(row), std::end(row), rows.begin() + law_numbers);
+    std::copy(std::begin(row), std::end(row), rows.begin() + material_row);
     return rows;
   }();
   std::vector<Real> history = std::vector<Real>(point_history * Shape::points * this->stride);
