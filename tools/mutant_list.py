@@ -877,6 +877,22 @@ CORE = [
         "tests/validation/test_block_laws.py::test_rock_that_would_snap_back_is_refused",
     ),
     Mutant(
+        "fourth step",
+        "rotations of three steps where rock flows",
+        "core/elements/corotational.hpp",
+        "if (flows) rotation[q] = Rotation::nearer(rotation[q]);",
+        "(void)flows;",
+        "tests/core/elements/test_corotational.cpp",
+    ),
+    Mutant(
+        "strain limit",
+        "large strain is not told",
+        "src/cdem/run/law_fields.py",
+        "if value > limit:",
+        "if value > 10 * limit:",
+        "tests/validation/test_block_laws.py::test_large_strain_is_told_and_ends_a_run",
+    ),
+    Mutant(
         "weak plane",
         "a weak plane that looks the other way",
         "core/materials/ubiquitous_joint.hpp",

@@ -14,6 +14,11 @@ struct FollowRotation {
   CDEM_HD static Mat3<T> of(const Mat3<T>& f) {
     return polar_rotation(f);
   }
+  /// One more step, for large strain.
+  template <class T>
+  CDEM_HD static Mat3<T> nearer(const Mat3<T>& r) {
+    return nearer_rotation(r);
+  }
 };
 
 /// No rotation: F = K u, Feng et al. (2014), Eq. 1. A baseline; it cannot turn at all.
@@ -21,6 +26,10 @@ struct IgnoreRotation {
   template <class T>
   CDEM_HD static Mat3<T> of(const Mat3<T>&) {
     return identity<T>();
+  }
+  template <class T>
+  CDEM_HD static Mat3<T> nearer(const Mat3<T>& r) {
+    return r;
   }
 };
 
@@ -31,15 +40,18 @@ struct PointStrains {
   Sym3<T> strain[Shape::points];
   T own_dilatation[Shape::points];  // trace of the strain before the element's mean took its place
 
+  /// `flows`: may the element flow? Its strains may be large, so its rotation takes a step more.
   template <class I>
-  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e)
-      : PointStrains(c, e, position_arms<Shape>(c, e)) {}
+  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, bool flows)
+      : PointStrains(c, e, flows, position_arms<Shape>(c, e)) {}
   /// The same where the nodes are at these arms.
   template <class I>
-  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, const Arms<Shape, T>& arms) {
+  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, bool flows,
+                       const Arms<Shape, T>& arms) {
     for (Index q = 0; q < Shape::points; ++q) {
       const Mat3<T> f = gradient_of<Shape>(c, e, q, arms);
       rotation[q] = Rotation::of(f);
+      if (flows) rotation[q] = Rotation::nearer(rotation[q]);
       strain[q] = symmetric(transpose(rotation[q]) * f - identity<T>());
       own_dilatation[q] = trace(strain[q]);
     }
@@ -82,6 +94,7 @@ struct AllElastic {
 /// Elements of which no material flows and that begin without stress. Their kernels have no code
 /// for it: it would cost them 4 to 11 %.
 struct NoFlow {
+  CDEM_HD static constexpr bool may_flow() { return false; }
   template <class Shape, class I, class Rotation, class T>
   CDEM_HD AllElastic move_on(const ElementColumns<Shape>&, I,
                              const PointStrains<Shape, Rotation, T>&) const {
@@ -121,8 +134,10 @@ CDEM_HD constexpr Real yield_bit(Index k) { return Real((k % 2 + 1) << (4 * (k /
 template <class Shape>
 struct PointFlow {
   InOutTable history;  // [point * point_history + number][element]
-  InOutTable work;     // [1][element] spent so far  [J]
+  InOutTable work;     // [1][element] spent so far  [J]; without data where no material flows
   Real dt;             // of the last step  [s]
+
+  CDEM_HD bool may_flow() const { return work.data; }
 
   template <class I, class Rotation, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> elastic_part(const ElementColumns<Shape>& c, I e,
@@ -215,7 +230,7 @@ struct PointFlow {
     Arms<Shape, T> arms = position_arms<Shape>(c, e);
     const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
     for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
-    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, arms));
+    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, may_flow(), arms));
     T spent(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> both = elastic.stress(was.part[q] + strains.part[q]);
@@ -277,7 +292,7 @@ struct CorotationalForce {
   CDEM_HD CornerForces<Shape, Number<I>> forces(I e) const {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
-    const PointStrains<Shape, Rotation, T> p(columns, e);
+    const PointStrains<Shape, Rotation, T> p(columns, e, flow.may_flow());
     const auto strains = flow.move_on(columns, e, p);
     CornerForces<Shape, T> force;
     for (Index q = 0; q < Shape::points; ++q) {
@@ -333,7 +348,7 @@ struct CorotationalReport {
   CDEM_HD void operator()(I e) const {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
-    const PointStrains<Shape, Rotation, T> p(columns, e);
+    const PointStrains<Shape, Rotation, T> p(columns, e, flow.may_flow());
     const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p);
     ElasticStrains<Shape, T> shown = strains;
     if (yielded.data) {

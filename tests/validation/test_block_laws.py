@@ -9,7 +9,7 @@ from scenes import case, digest, momentum, simulate, turn
 import cdem
 from cdem.case.softening import reduced_tables
 from cdem.run.fields import stress_of
-from cdem.run.law_fields import state_of, yielded_counts, yielded_of
+from cdem.run.law_fields import large_strains, state_of, yielded_counts, yielded_of
 
 ELASTIC = {"young_modulus": "1 GPa"}
 WEAK = {
@@ -138,6 +138,36 @@ def test_a_strength_factor_goes_with_a_factor_of_safety():
 
     rock = case(box(), {"rock": {}}, rock=MASS | {"strength_factor": 1.5}).materials["rock"]
     assert BLOCK_LAWS["hoek-brown"].reduced(rock, 2) == {"strength_factor": 3}
+
+
+def test_large_strain_is_told_and_ends_a_run(tmp_path):
+    """A cube pressed to 0.7 of its height is told of, with its place; pulled to 2.3 times it, the run ends."""
+    rock = ELASTIC | {"law": "mohr-coulomb", "cohesion": "1 MPa", "friction_angle": 0}
+    top = {"surface": {"group": "rock", "normal": [0, 0, 1]}, "components": ["z"],
+           "velocity": [0, 0, -2]}  # fmt: skip
+    parts = {"rock": rock, "loads": {"supports": [FLOOR], "velocities": [top]},
+             "time": {"energy_error": "any"}}  # fmt: skip
+
+    def press(time, folder):
+        stage = {
+            "name": "press",
+            "mode": "dynamic",
+            "duration": time,
+            "damping": {"stiffness": 0.5},
+        }
+        this = case(box("hex8", (1, 1, 1)), {"rock": {}}, stages=[stage], **parts)
+        return cdem.Simulation(this, threads=1, output=tmp_path / folder)
+
+    sim = press(0.15, "told")
+    sim.run()
+    (strain,) = large_strains(sim)
+    assert strain.state == "plastic_shear" and 0.25 < strain.value < 0.45
+    assert strain.place[2] == pytest.approx(0.35, abs=1e-3)
+    assert "above elements.strain_limit 0.2" in (tmp_path / "told/run.log").read_text()
+    assert "above elements.strain_limit 0.2" in sim.summary("finished")["large_strains"][0]
+    with pytest.raises(cdem.errors.UnstableError, match="above 1 a run ends"):
+        top["velocity"] = [0, 0, 2]
+        press(0.65, "ended").run()
 
 
 SOFT = {

@@ -213,6 +213,9 @@ class Elements(Part):
         "full",
         description="Integration of hexahedra: 2 x 2 x 2 points, or one and hourglass springs",
     )
+    strain_limit: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
+        0.2, description="Plastic strain above which a run warns; above 1 it ends [1]"
+    )
 
 
 class MassScaling(Part):

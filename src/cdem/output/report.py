@@ -65,7 +65,8 @@ def info(folder: Path) -> str:
             f"  {what}: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
             f"({100 * share:.3g} % of its mass)"
         )
-    lines += [f"  warning: {text}" for text in s.get("departures", [])]
+    warnings = s.get("departures", []) + s.get("large_strains", [])
+    lines += [f"  warning: {text}" for text in warnings]
     return "\n".join(lines) + "\n"
 
 
