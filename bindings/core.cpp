@@ -206,6 +206,18 @@ nb::dict stress(nb::handle_t<Core> self) {
   return tables;
 }
 
+/// What has yielded in all elements by shape; empty where no material flows.
+nb::dict yielded(nb::handle_t<Core> self) {
+  Core& c = nb::cast<Core&>(self);
+  report_stress(c.model, c.state);
+  nb::dict tables;
+  for_each_element_set(c.model, c.state,
+                       [&](const auto& kind, const ElementSet&, ElementState& es) {
+                         tables[kind.name] = view(es.yielded, self);
+                       });
+  return tables;
+}
+
 /// Position and both faces of every bond point.
 auto bond_place_arrays(Core& c) {
   std::vector<Real> position;
@@ -291,6 +303,7 @@ void bind_views(nb::class_<Core>& core) {
            [](nb::handle_t<Core> self) {
              return view(nb::cast<Core&>(self).state.nodes.force, self);
            })
+      .def("yielded", &yielded, "What has yielded in each element now and ever, by shape.")
       .def("stress", &stress);
 }
 
@@ -324,7 +337,8 @@ NB_MODULE(CDEM_MODULE, module) {
   module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
   module.def("interface_steepest_fall", &steepest_fall, "law"_a, "parameters"_a);
   module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
-  module.attr("block_law_parameters") = BlockLaws::most_parameters;
+  module.def("material_numbers", &material_numbers, "law"_a, "parameters"_a, "softening"_a);
+  module.attr("fall_pieces") = fall_pieces;
   module.attr("interface_law_state") = InterfaceLaws::most_state;
   module.attr("point_history") = point_history;
   module.def("device_name", &device_name);

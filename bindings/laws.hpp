@@ -47,6 +47,42 @@ std::string contradiction(const std::string& law, const nb::dict& values) {
   return why;
 }
 
+/// Pieces of a table of (slip, value) for one falling number.
+inline void add_pieces(std::vector<Real>& row, Index number, const nb::list& table) {
+  using Entry = std::tuple<Real, Real>;
+  if (nb::len(table) > fall_pieces + 1) throw nb::value_error("a table of too many rows");
+  for (std::size_t s = 0; s + 1 < nb::len(table); ++s) {
+    const auto [begin, before] = nb::cast<Entry>(table[s]);
+    const auto [end, after] = nb::cast<Entry>(table[s + 1]);
+    Real* piece = row.data() + law_numbers + 1 + (number * fall_pieces + Index(s)) * piece_numbers;
+    piece[0] = begin, piece[1] = end - begin, piece[2] = (after - before) / (end - begin);
+  }
+}
+
+/// The row of numbers that kernels read of a material: its parameters as the core takes them, and
+/// tables of (slip, value) by the name of what softens.
+inline std::vector<Real> material_numbers(const std::string& law, const nb::dict& values,
+                                          const nb::dict& softening) {
+  std::vector<Real> row(material_row);
+  for (Index piece = 0; piece < falling_numbers * fall_pieces; ++piece)
+    row[law_numbers + 1 + piece * piece_numbers] = unlimited;
+  row[law_numbers] = nb::len(softening) > 0;
+  with_law<BlockLaws>(law, [&]<template <class> class Law, Index>() {
+    const auto parameters = parameters_of<Law<Real>>(values);
+    if constexpr (requires { &Law<Real>::prepare; }) {
+      const auto numbers = Law<Real>::prepare(parameters.data());
+      std::copy(numbers.begin(), numbers.end(), row.begin());
+    } else {
+      std::copy(parameters.begin(), parameters.end(), row.begin());
+    }
+    if constexpr (numbers_that_fall<Law>() > 0)
+      for (Index k = 0; k < numbers_that_fall<Law>(); ++k)
+        if (softening.contains(Law<Real>::softening[k]))
+          add_pieces(row, k, nb::cast<nb::list>(softening[Law<Real>::softening[k]]));
+  });
+  return row;
+}
+
 /// How fast the strength of an interface law falls, normal and in shear  [Pa/m].
 inline std::pair<Real, Real> steepest_fall(const std::string& law, const nb::dict& values) {
   std::pair<Real, Real> fall{0, 0};
@@ -84,10 +120,14 @@ nb::list declarations() {
       d["unit"] = p.unit, d["meaning"] = p.meaning;
       d["at_least"] = p.at_least;
       d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
+      d["at_most"] = std::isfinite(p.at_most) ? nb::cast(p.at_most) : nb::none();
       d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);
       d["like"] = p.like ? nb::cast(p.like) : nb::none();
       d["is_tangent"] = p.form == Form::tangent;
+      d["is_half_tangent"] = p.form == Form::half_tangent;
       d["is_strength"] = p.is_strength;
+      d["is_factor"] = p.is_factor;
+      d["choices"] = p.choices ? p.choices : "";
       d["bonds"] = p.bonds;
       parameters.append(d);
     }
@@ -96,6 +136,10 @@ nb::list declarations() {
       d["name"] = v.name, d["unit"] = v.unit, d["meaning"] = v.meaning;
       state.append(d);
     }
+    nb::list softening;
+    if constexpr (requires { Law<Real>::softening; })
+      for (const char* name : Law<Real>::softening) softening.append(name);
+    law["softening"] = softening;
     law["parameters"] = parameters;
     law["state"] = state;
     laws.append(law);

@@ -26,9 +26,15 @@ def law_rows(key: str, law: Law) -> list[str]:
     rows = [f"| **{key}: {law.name}** | | | | {law.meaning} |"]
     for p in law.parameters:
         upper = "" if p.below is None else f", below {p.below:g}"
+        upper += "" if p.at_most is None else f", at most {p.at_most:g}"
         default = "required" if p.default is None else f"{p.default:g}".replace("inf", "no limit")
         default = default if p.like is None else f"`{p.like}`"
         limits = f"at least {p.at_least:g}{upper}"
+        if p.choices:
+            limits, default = (
+                ", ".join(f"`{word}`" for word in p.choices.split()),
+                p.choices.split()[0],
+            )
         rows.append(f"| `{p.name}` | {p.unit} | {limits} | {default} | {p.meaning} |")
     rows += [f"| state `{v.name}` | {v.unit} | | | {v.meaning} |" for v in law.state]
     return rows

@@ -11,10 +11,13 @@
 #if defined(__CUDACC__)
 #include <cuda_runtime.h>
 #define CDEM_HD __host__ __device__
+#define CDEM_OUT_OF_LINE __host__ __device__ __noinline__
 #else
 // Kernels are small functions over packs of numbers; one that is called and not inlined takes its
 // packs through memory.
 #define CDEM_HD __attribute__((always_inline))
+// What few items need, and what many kernels would else have a copy of.
+#define CDEM_OUT_OF_LINE __attribute__((noinline))
 #endif
 
 namespace cdem {

@@ -2,6 +2,7 @@
 // baseline.
 #pragma once
 
+#include "core/base/powers.hpp"
 #include "core/elements/shapes.hpp"
 #include "core/materials/laws.hpp"
 
@@ -13,6 +14,11 @@ struct FollowRotation {
   CDEM_HD static Mat3<T> of(const Mat3<T>& f) {
     return polar_rotation(f);
   }
+  /// One more step, for large strain.
+  template <class T>
+  CDEM_HD static Mat3<T> nearer(const Mat3<T>& r) {
+    return nearer_rotation(r);
+  }
 };
 
 /// No rotation: F = K u, Feng et al. (2014), Eq. 1. A baseline; it cannot turn at all.
@@ -20,6 +26,10 @@ struct IgnoreRotation {
   template <class T>
   CDEM_HD static Mat3<T> of(const Mat3<T>&) {
     return identity<T>();
+  }
+  template <class T>
+  CDEM_HD static Mat3<T> nearer(const Mat3<T>& r) {
+    return r;
   }
 };
 
@@ -30,15 +40,18 @@ struct PointStrains {
   Sym3<T> strain[Shape::points];
   T own_dilatation[Shape::points];  // trace of the strain before the element's mean took its place
 
+  /// `flows`: may the element flow? Its strains may be large, so its rotation takes a step more.
   template <class I>
-  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e)
-      : PointStrains(c, e, position_arms<Shape>(c, e)) {}
+  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, bool flows)
+      : PointStrains(c, e, flows, position_arms<Shape>(c, e)) {}
   /// The same where the nodes are at these arms.
   template <class I>
-  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, const Arms<Shape, T>& arms) {
+  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, bool flows,
+                       const Arms<Shape, T>& arms) {
     for (Index q = 0; q < Shape::points; ++q) {
       const Mat3<T> f = gradient_of<Shape>(c, e, q, arms);
       rotation[q] = Rotation::of(f);
+      if (flows) rotation[q] = Rotation::nearer(rotation[q]);
       strain[q] = symmetric(transpose(rotation[q]) * f - identity<T>());
       own_dilatation[q] = trace(strain[q]);
     }
@@ -81,12 +94,36 @@ struct AllElastic {
 /// Elements of which no material flows and that begin without stress. Their kernels have no code
 /// for it: it would cost them 4 to 11 %.
 struct NoFlow {
+  CDEM_HD static constexpr bool may_flow() { return false; }
   template <class Shape, class I, class Rotation, class T>
   CDEM_HD AllElastic move_on(const ElementColumns<Shape>&, I,
                              const PointStrains<Shape, Rotation, T>&) const {
     return {};
   }
 };
+
+/// What a law asks for of a point: its state, row by row, and the size of its element.
+template <class I>
+struct StateRows {
+  InOutTable history;
+  Index first;  // row of the state
+  InTable point_volume;
+  Index points, per_cell;
+  I e;
+
+  CDEM_HD Number<I> at(Index k) const { return history.at(first + k, e); }
+  /// Side of a cube of the volume of as many elements as make a cell  [m].
+  CDEM_HD Number<I> size() const {
+    using T = Number<I>;
+    T volume(0.0);
+    for (Index q = 0; q < points; ++q) volume += point_volume.at(q, e);
+    return pow_of(T(Real(per_cell)) * volume, T(1.0 / 3.0));
+  }
+};
+
+/// What stands in the field `yielded` for number k of a law's state where it grows now; where it
+/// ever has, four times that: 1, 2, 16, 32.
+CDEM_HD constexpr Real yield_bit(Index k) { return Real((k % 2 + 1) << (4 * (k / 2))); }
 
 /// Inelastic strain and state of the laws at the Gauss points. Initial stress S0 is the inelastic
 /// strain -C^-1 : S0.
@@ -97,8 +134,10 @@ struct NoFlow {
 template <class Shape>
 struct PointFlow {
   InOutTable history;  // [point * point_history + number][element]
-  InOutTable work;     // [1][element] spent so far  [J]
+  InOutTable work;     // [1][element] spent so far  [J]; without data where no material flows
   Real dt;             // of the last step  [s]
+
+  CDEM_HD bool may_flow() const { return work.data; }
 
   template <class I, class Rotation, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> elastic_part(const ElementColumns<Shape>& c, I e,
@@ -124,13 +163,28 @@ struct PointFlow {
     return strains;
   }
 
-  /// What the laws would make of the elastic strains now: nothing is kept.
+  /// What the laws would make of the elastic strains now: nothing is kept. `yielded` gets what
+  /// flows now and what ever has, see `yield_bits`.
   template <class I, class Rotation, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> after_flow(const ElementColumns<Shape>& c, I e,
-                                              const PointStrains<Shape, Rotation, T>& p) const {
+                                              const PointStrains<Shape, Rotation, T>& p,
+                                              T& yielded) const {
     ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
+    const T none(0.0), one(1.0);
+    T now[BlockLaws::most_state + 1], ever[BlockLaws::most_state + 1];
+    for (Index k = 0; k < BlockLaws::most_state; ++k) {
+      now[k] = ever[k] = none;
+      for (Index q = 0; q < Shape::points; ++q)
+        ever[k] = select(history.at(row(q, 6 + k), e) > none, one, ever[k]);
+    }
     Sym3<T> increment[Shape::points];
-    if (history.data) flow_points(c, e, strains, increment, [](Index, const T*) {});
+    flow_points(c, e, strains, increment, [&](Index q, const T* state) {
+      for (Index k = 0; k < BlockLaws::most_state; ++k)
+        now[k] = select(state[k] > history.at(row(q, 6 + k), e), one, now[k]);
+    });
+    yielded = none;
+    for (Index k = 0; k < BlockLaws::most_state; ++k)
+      yielded += T(yield_bit(k)) * (now[k] + T(4.0) * ever[k]);
     return strains;
   }
 
@@ -142,18 +196,27 @@ struct PointFlow {
                                const Keep& keep) const {
     const auto material = c.element_material.at(0, e);
     const ElasticConstants<T> elastic = c.materials.elastic(material);
+    const T law = c.materials.laws(material);
     Truth<T> any = T(0.0) > T(0.0);
+    bool flowed[Shape::points];
     for (Index q = 0; q < Shape::points; ++q) {
-      T state[BlockLaws::most_state + 1];
-      for (Index k = 0; k < BlockLaws::most_state; ++k) state[k] = history.at(row(q, 6 + k), e);
-      increment[q] = flow(c.materials, material, elastic.stress(strains.part[q]), state);
-      const auto flows = contract(increment[q], increment[q]) > T(0.0);
-      if (any_of(flows)) keep(q, static_cast<const T*>(state));
+      const PointIncrement<T> now =
+          flow(c.materials, material, law, elastic.stress(strains.part[q]),
+               StateRows<I>{history, row(q, 6), c.point_volume, Shape::points, Shape::per_cell, e});
+      flowed[q] = now.any;
+      if (!now.any) continue;
+      increment[q] = now.strain;
+      const auto flows = contract(now.strain, now.strain) > T(0.0);
+      if (any_of(flows)) keep(q, static_cast<const T*>(now.state));
       any = any | flows;
     }
     if (!any_of(any)) return any;
+    const T none(0.0);
     Sym3<T> less[Shape::points];
-    for (Index q = 0; q < Shape::points; ++q) less[q] = strains.part[q] - increment[q];
+    for (Index q = 0; q < Shape::points; ++q) {
+      if (!flowed[q]) increment[q] = {none, none, none, none, none, none};
+      less[q] = strains.part[q] - increment[q];
+    }
     use_mean_dilatation<Shape>(c, e, less);
     for (Index q = 0; q < Shape::points; ++q)  // the other lanes keep their bits
       strains.part[q] = select(any, less[q], strains.part[q]);
@@ -167,7 +230,7 @@ struct PointFlow {
     Arms<Shape, T> arms = position_arms<Shape>(c, e);
     const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
     for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
-    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, arms));
+    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, may_flow(), arms));
     T spent(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> both = elastic.stress(was.part[q] + strains.part[q]);
@@ -229,7 +292,7 @@ struct CorotationalForce {
   CDEM_HD CornerForces<Shape, Number<I>> forces(I e) const {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
-    const PointStrains<Shape, Rotation, T> p(columns, e);
+    const PointStrains<Shape, Rotation, T> p(columns, e, flow.may_flow());
     const auto strains = flow.move_on(columns, e, p);
     CornerForces<Shape, T> force;
     for (Index q = 0; q < Shape::points; ++q) {
@@ -278,15 +341,21 @@ struct CorotationalReport {
   ElementColumns<Shape> columns;
   InOutTable stress;      // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
   InOutTable energy;      // [1][element]  [J]
+  InOutTable yielded;     // [1][element], see yield_bit; without data where no material flows
   PointFlow<Shape> flow;  // without history where no material flows
 
   template <class I>
   CDEM_HD void operator()(I e) const {
     using T = Number<I>;
     const ElasticConstants<T> elastic = columns.elastic(e);
-    const PointStrains<Shape, Rotation, T> p(columns, e);
-    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p),
-                                   shown = flow.after_flow(columns, e, p);
+    const PointStrains<Shape, Rotation, T> p(columns, e, flow.may_flow());
+    const ElasticStrains<Shape, T> strains = flow.elastic_part(columns, e, p);
+    ElasticStrains<Shape, T> shown = strains;
+    if (yielded.data) {
+      T bits;
+      shown = flow.after_flow(columns, e, p, bits);
+      yielded.set(0, e, bits);
+    }
     const T zero(0.0);
     Sym3<T> mean{zero, zero, zero, zero, zero, zero};
     T volume(0.0), stored(0.0);

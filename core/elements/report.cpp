@@ -16,10 +16,12 @@ namespace {
 template <class Shape, class Rotation>
 void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
   for_each_lane(q, e.count,
-                CorotationalReport<Shape, Rotation>{.columns = element_columns<Shape>(m, s, e),
-                                                    .stress = {es.stress.data(), e.stride},
-                                                    .energy = {es.energy.data(), e.stride},
-                                                    .flow = point_flow<Shape>(s, e, es)});
+                CorotationalReport<Shape, Rotation>{
+                    .columns = element_columns<Shape>(m, s, e),
+                    .stress = {es.stress.data(), e.stride},
+                    .energy = {es.energy.data(), e.stride},
+                    .yielded = {es.yielded.size() > 0 ? es.yielded.data() : nullptr, e.stride},
+                    .flow = point_flow<Shape>(s, e, es)});
 }
 
 /// Mean over the Gauss points of the stress that the incremental forms keep.

@@ -10,28 +10,33 @@ namespace cdem {
 /// One Gauss point: the strain is constant.
 struct Tet4 {
   static constexpr Index nodes = 4, points = 1;
+  static constexpr Index per_cell = 6;  // so many of a Box's elements make a cell of it
   static constexpr bool mean_dilatation = false, hourglass = false;
 };
 /// Rational shape functions, five Gauss points.
 struct Pyramid5 {
   static constexpr Index nodes = 5, points = 5;
+  static constexpr Index per_cell = 6;
   static constexpr bool mean_dilatation = false, hourglass = false;
 };
 /// Six Gauss points: three in the triangle times two.
 struct Wedge6 {
   static constexpr Index nodes = 6, points = 6;
+  static constexpr Index per_cell = 2;
   static constexpr bool mean_dilatation = false, hourglass = false;
 };
 /// 2 x 2 x 2 Gauss points; the volumetric strain is the element's mean (B-bar), so that nearly
 /// incompressible rock does not lock.
 struct Hex8 {
   static constexpr Index nodes = 8, points = 8;
+  static constexpr Index per_cell = 1;
   static constexpr bool mean_dilatation = true, hourglass = false;
 };
 /// One point with the mean gradients, and springs against the four ways to deform that have no mean
 /// strain (hourglass modes).
 struct Hex8OnePoint {
   static constexpr Index nodes = 8, points = 1;
+  static constexpr Index per_cell = 1;
   static constexpr bool mean_dilatation = false, hourglass = true;
 };
 

@@ -25,7 +25,7 @@ ElementColumns<Shape> element_columns(const Model& m, const State& s, const Elem
 template <class Shape>
 PointFlow<Shape> point_flow(const State& s, const ElementSet& e, ElementState& es) {
   return {.history = {es.history.size() > 0 ? es.history.data() : nullptr, e.stride},
-          .work = {es.plastic_work.data(), e.stride},
+          .work = {es.plastic_work.size() > 0 ? es.plastic_work.data() : nullptr, e.stride},
           .dt = s.dt_last};
 }
 

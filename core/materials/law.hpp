@@ -10,12 +10,19 @@
 //   static constexpr bool inelastic;                   does it ever flow?
 //   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr
 //
+//   static constexpr std::array<const char*, n> softening;   if you like: the names of the first
+//                                                      numbers that it reads, which may fall,
+//                                                      see softening.hpp
+//
 // and where it is inelastic
 //
-//   static Law read(number);                           number(k) is parameter k
+//   static std::array<Real, m> prepare(const Real*);   numbers that kernels read, from the
+//                                                      parameters; without it, those
+//   static Law read(number);                           number(k) is number k of them
 //   Sym3<T> flow(const ElasticConstants<T>&, const Sym3<T>& trial, T* state) const;
 //                                                      increment of Ei, from the trial stress; the
 //                                                      state may change only where it is not zero
+//   Truth<T> surely_elastic(const Sym3<T>& trial) const;   if you like: a quick answer for most
 //
 // It must not be stiffer than C: the time step is found for that.
 #pragma once

@@ -1,9 +1,15 @@
 // laws.hpp - the list of block laws, and the table of the materials of a model.
 #pragma once
 
+#include <tuple>
+
+#include "core/materials/drucker_prager.hpp"
 #include "core/materials/elastic.hpp"
+#include "core/materials/hoek_brown.hpp"
 #include "core/materials/material_table.hpp"
 #include "core/materials/mohr_coulomb.hpp"
+#include "core/materials/softening.hpp"
+#include "core/materials/ubiquitous_joint.hpp"
 #include "core/records/law_list.hpp"
 #if defined(CDEM_OWN_BLOCK_LAW)  // a law that is built beside those of the list, for a test
 #include CDEM_OWN_BLOCK_HEADER
@@ -11,11 +17,15 @@
 
 namespace cdem {
 
+template <class T>
+using UbiquitousJoint = JointedRock<T, MohrCoulomb>;
+
 /// Every block law; a new one is one header and its name here.
 #if defined(CDEM_OWN_BLOCK_LAW)
-using BlockLaws = LawList<Elastic, MohrCoulomb, CDEM_OWN_BLOCK_LAW>;
+using BlockLaws =
+    LawList<Elastic, MohrCoulomb, UbiquitousJoint, DruckerPrager, HoekBrown, CDEM_OWN_BLOCK_LAW>;
 #else
-using BlockLaws = LawList<Elastic, MohrCoulomb>;
+using BlockLaws = LawList<Elastic, MohrCoulomb, UbiquitousJoint, DruckerPrager, HoekBrown>;
 #endif
 
 /// Does any law of the list flow?
@@ -25,40 +35,106 @@ inline constexpr bool any_law_flows = [] {
   return any;
 }();
 
+/// Numbers of a law that kernels read.
+template <template <class> class Law>
+constexpr Index numbers_read() {
+  if constexpr (requires { &Law<Real>::prepare; })
+    return Index(std::tuple_size_v<decltype(Law<Real>::prepare(nullptr))>);
+  else
+    return Index(Law<Real>::parameters.size());
+}
+
+/// The most of them that any law has.
+inline constexpr Index law_numbers = [] {
+  Index most = 0;
+  BlockLaws::for_each([&]<template <class> class Law, Index>() {
+    most = numbers_read<Law>() > most ? numbers_read<Law>() : most;
+  });
+  return most;
+}();
+
+/// Numbers of a material: those of its law, then how they soften.
+inline constexpr Index material_row = law_numbers + softening_numbers;
+
 /// Numbers at each Gauss point with inelastic strain: Ei xx yy zz xy yz zx, and the law's state.
 inline constexpr Index point_history = 6 + BlockLaws::most_state;
 
-/// The law of this type with the parameters of a material, or of one a lane.
-template <template <class> class Law, class Ids>
-CDEM_HD inline auto law_of(const MaterialTable& table, const Ids& material) {
-  return Law<Number<Ids>>::read([&](Index k) {
-    const auto number = [&](Index i) {
-      return table.parameters[std::size_t(i) * BlockLaws::most_parameters + k];
-    };
-    return numbers_of(number, material);
-  });
+/// How many of a law's numbers may fall.
+template <template <class> class Law>
+constexpr Index numbers_that_fall() {
+  if constexpr (requires { Law<Real>::softening; })
+    return Index(Law<Real>::softening.size());
+  else
+    return 0;
 }
 
-/// Increment of the inelastic strain of one point under a trial stress; the law of each lane moves
-/// its state on.
-template <class T, class Ids>
-CDEM_HD inline Sym3<T> flow(const MaterialTable& table, const Ids& material, const Sym3<T>& trial,
-                            T* state) {
-  const T zero(0.0);
-  Sym3<T> increment{zero, zero, zero, zero, zero, zero};
+/// The law of this type with the parameters of a material, or of one a lane, as strong as it is in
+/// the state of the rows.
+template <template <class> class Law, class Ids, class Rows>
+CDEM_HD inline auto law_of(const MaterialTable& table, const Ids& material, const Rows& rows) {
+  using T = Number<Ids>;
+  const auto number = [&](Index k) {
+    const auto own = [&](Index i) { return table.parameters[std::size_t(i) * material_row + k]; };
+    return numbers_of(own, material);
+  };
+  constexpr Index falls = numbers_that_fall<Law>();
+  if constexpr (falls > 0) {
+    const auto piece = [&](Index k) { return number(law_numbers + k); };
+    if (any_of(piece(0) > T(0.5))) {
+      const T size = rows.size();
+      return Law<T>::read([&](Index k) {
+        return k < falls ? after_slip(number(k), k, size * rows.at(falls_with(k)), piece)
+                         : number(k);
+      });
+    }
+  }
+  return Law<T>::read(number);
+}
+
+/// What flows at a point in a step.
+template <class T>
+struct PointIncrement {
+  bool any = false;                    // where not, the rest says nothing
+  Sym3<T> strain;                      // of the inelastic strain
+  T state[BlockLaws::most_state + 1];  // after the step
+};
+
+/// What one law makes of a trial stress, for the lanes that have it; `rows` has the state that the
+/// point is in and the size of its element. One copy for all kernels: they would else take minutes
+/// to build.
+template <template <class> class Law, class T, class Ids, class Rows>
+CDEM_OUT_OF_LINE inline void flow_by(const MaterialTable& table, const Ids& material,
+                                     const Truth<T>& mine, const Sym3<T>& trial, const Rows& rows,
+                                     PointIncrement<T>& out) {
+  const auto law = law_of<Law>(table, material, rows);
+  if constexpr (requires { law.surely_elastic(trial); })
+    if (!any_of(mine & !law.surely_elastic(trial))) return;
+  const T none(0.0);
+  if (!out.any) {
+    out.any = true;
+    out.strain = {none, none, none, none, none, none};
+    for (Index k = 0; k < BlockLaws::most_state; ++k) out.state[k] = rows.at(k);
+  }
+  constexpr Index size = Index(Law<T>::state.size());
+  T own[size + 1];
+  for (Index k = 0; k < size; ++k) own[k] = out.state[k];
+  const Sym3<T> part = law.flow(table.elastic(material), trial, own);
+  out.strain = select(mine, part, out.strain);
+  for (Index k = 0; k < size; ++k) out.state[k] = select(mine, own[k], out.state[k]);
+}
+
+/// What flows at one point under a trial stress, each lane by the law of this number.
+template <class T, class Ids, class Rows>
+CDEM_HD inline PointIncrement<T> flow(const MaterialTable& table, const Ids& material, const T& law,
+                                      const Sym3<T>& trial, const Rows& rows) {
+  PointIncrement<T> out;
   BlockLaws::for_each([&]<template <class> class Law, Index number>() {
     if constexpr (Law<T>::inelastic) {
-      const auto mine = table.has_law<number>(material);
-      if (!any_of(mine)) return;
-      constexpr Index size = Index(Law<T>::state.size());
-      T own[size + 1];
-      for (Index k = 0; k < size; ++k) own[k] = state[k];
-      const Sym3<T> part = law_of<Law>(table, material).flow(table.elastic(material), trial, own);
-      increment = select(mine, part, increment);
-      for (Index k = 0; k < size; ++k) state[k] = select(mine, own[k], state[k]);
+      const auto mine = (law > T(number - 0.5)) & (law < T(number + 0.5));
+      if (any_of(mine)) flow_by<Law>(table, material, mine, trial, rows, out);
     }
   });
-  return increment;
+  return out;
 }
 
 }  // namespace cdem

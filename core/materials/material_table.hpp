@@ -10,17 +10,16 @@ namespace cdem {
 struct MaterialTable {
   const Real *lambda, *mu;  // [Pa]
   const Index* law;         // number in BlockLaws
-  const Real* parameters;   // [material][BlockLaws::most_parameters]
+  const Real* parameters;   // [material][material_row]
 
   template <class Ids>
   CDEM_HD auto elastic(const Ids& material) const {
     return ElasticConstants<Number<Ids>>{look_up(lambda, material), look_up(mu, material)};
   }
-  /// The lanes that have law `number`.
-  template <Index number, class Ids>
-  CDEM_HD Truth<Number<Ids>> has_law(const Ids& material) const {
-    const auto own = [&](Index i) { return Real(law[i] == number); };
-    return numbers_of(own, material) > Number<Ids>(0.5);
+  /// The number of each lane's law.
+  template <class Ids>
+  CDEM_HD Number<Ids> laws(const Ids& material) const {
+    return numbers_of([&](Index i) { return Real(law[i]); }, material);
   }
 };
 

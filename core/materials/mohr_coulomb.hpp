@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/materials/frictional.hpp"
 #include "core/materials/law.hpp"
 #include "core/materials/principal_planes.hpp"
 
@@ -20,49 +21,18 @@ struct MohrCoulomb {
   static constexpr LawText text{.name = "mohr-coulomb",
                                 .meaning = "Elastic, then Mohr-Coulomb with a tension cut-off"};
   static constexpr std::array parameters{
-      Parameter{.name = "cohesion",
-                .symbol = "c",
-                .unit = "Pa",
-                .meaning = "Cohesion",
-                .is_strength = true},
-      Parameter{.name = "friction_angle",
-                .symbol = "phi",
-                .unit = "deg",
-                .meaning = "Friction angle",
-                .below = 90,
-                .form = Form::tangent,
-                .is_strength = true},
-      Parameter{.name = "dilation_angle",
-                .symbol = "psi",
-                .unit = "deg",
-                .meaning = "Dilation angle, at most the friction angle; a factor of safety divides "
-                           "its tangent too, so that it stays so",
-                .below = 90,
-                .otherwise = 0,
-                .form = Form::tangent,
-                .is_strength = true},
+      frictional[0], frictional[1], frictional[2],
       Parameter{.name = "tensile_strength",
                 .symbol = "T",
                 .unit = "Pa",
                 .meaning = "Largest principal stress; left out, or above it: c / tan(phi)",
                 .otherwise = unlimited,
                 .is_strength = true}};
-  static constexpr std::array state{
-      StateVariable{.name = "plastic_shear",
-                    .unit = "1",
-                    .meaning = "Plastic shear strain: sqrt(2/3 s:s) summed over the increments, s "
-                               "the deviator of what flows in shear"},
-      StateVariable{
-          .name = "plastic_tension",
-          .unit = "1",
-          .meaning = "Plastic strain of the tension cut-off, summed over the increments"}};
+  static constexpr std::array state{plastic_state[0], plastic_state[1]};
+  static constexpr auto softening = frictional_softening;
   static constexpr bool inelastic = true;
   static const char* contradiction(const Real* parameter) {
-    if (parameter[2] > parameter[1])
-      return "dilation_angle must not be larger than friction_angle, {friction_angle:g} deg";
-    if (parameter[0] + parameter[1] == 0)
-      return "cohesion and friction_angle must not both be 0: such a material bears no shear";
-    return nullptr;
+    return frictional_contradiction(parameter);
   }
 
   T cohesion, tan_friction, tan_dilation, tensile_strength;
@@ -74,32 +44,6 @@ struct MohrCoulomb {
             .tan_dilation = number(2),
             .tensile_strength = number(3)};
   }
-  CDEM_HD Sym3<T> flow(const ElasticConstants<T>& elastic, const Sym3<T>& trial, T* state) const {
-    const T none(0.0);
-    const Sym3<T> still{none, none, none, none, none, none};
-    const auto may_yield = !surely_elastic(trial);
-    if (!any_of(may_yield)) return still;
-    const PrincipalAxes<T> p = principal_axes(trial);
-    const PrincipalPlanes<T> planes = yield_planes();
-    const T tolerance =
-        T(round_off) * (max_of(abs_of(p.value.x), abs_of(p.value.z)) + planes.strength);
-    const auto yields = may_yield & (planes.outside(p.value) > tolerance);
-    if (!any_of(yields)) return still;
-    const PrincipalFlow<T> flows =
-        planes.bring_back(elastic.lambda, elastic.mu, p.value, tolerance);
-    state[0] += select(yields, flows.shear, none);
-    state[1] += select(yields, flows.tension, none);
-    Mat3<T> strain{{none, none, none}, {none, none, none}, {none, none, none}};
-    for (Index k = 0; k < 3; ++k) add_outer(strain, flows.strain[k] * p.axis[k], p.axis[k]);
-    return select(yields, symmetric(strain), still);
-  }
-
- private:
-  /// Part of the stress by which a plane may be overstepped: what rounding makes of the corners.
-  static constexpr Real round_off = 1e-12;
-  /// tan(phi) below which the apex of the cone is out of reach.
-  static constexpr Real no_apex = 1e-6;
-
   /// Is a stress inside without knowing its principal values? By its mean sm and J2 the largest of
   /// (s1 + s3) / 2 sin(phi) + (s1 - s3) / 2 is sm sin(phi) + sqrt(J2 (1 + sin^2(phi) / 3)); divided
   /// by cos(phi) it needs the tangent only. The largest s1 is sm + 2 sqrt(J2 / 3).
@@ -111,16 +55,34 @@ struct MohrCoulomb {
     const T tension = mean + T(2.0) * sqrt_of(j2 / T(3.0));
     return !((shear > cohesion) | (tension > tensile_strength));
   }
+  CDEM_HD Sym3<T> flow(const ElasticConstants<T>& elastic, const Sym3<T>& trial, T* state) const {
+    const T none(0.0);
+    const Sym3<T> still{none, none, none, none, none, none};
+    const PrincipalAxes<T> p = principal_axes(trial);
+    const PrincipalPlanes<T> planes = yield_planes();
+    const T tolerance =
+        T(round_off) * (max_of(abs_of(p.value.x), abs_of(p.value.z)) + planes.strength);
+    const auto yields = (planes.outside(p.value) > tolerance) & !surely_elastic(trial);
+    if (!any_of(yields)) return still;
+    const PrincipalFlow<T> flows =
+        planes.bring_back(elastic.lambda, elastic.mu, p.value, tolerance);
+    state[0] += select(yields, flows.shear, none);
+    state[1] += select(yields, flows.tension, none);
+    return select(yields, tensor_of(flows, p), still);
+  }
+
+ private:
+  /// Part of the stress by which a plane may be overstepped: what rounding makes of the corners.
+  static constexpr Real round_off = 1e-12;
+  /// tan(phi) below which the apex of the cone is out of reach.
+  static constexpr Real no_apex = 1e-6;
+
   CDEM_HD PrincipalPlanes<T> yield_planes() const {
     const T one(1.0), root = root_of_n(tan_friction), m = root_of_n(tan_dilation);
     return {.slope = one / (root * root),
             .flow_slope = one / (m * m),
             .strength = T(2.0) * cohesion / root,
             .cut = min_of(tensile_strength, cohesion / max_of(tan_friction, T(no_apex)))};
-  }
-  /// sqrt(N) from the tangent of an angle.
-  CDEM_HD static T root_of_n(const T& tangent) {
-    return tangent + sqrt_of(T(1.0) + tangent * tangent);
   }
 };
 

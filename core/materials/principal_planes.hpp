@@ -14,6 +14,21 @@ struct PrincipalFlow {
   T tension;  // what flows on those of tension
 };
 
+/// The same as a tensor.
+template <class T>
+CDEM_HD inline Sym3<T> tensor_of(const PrincipalFlow<T>& flow, const PrincipalAxes<T>& p) {
+  const T none(0.0);
+  Mat3<T> strain{{none, none, none}, {none, none, none}, {none, none, none}};
+  for (Index k = 0; k < 3; ++k) add_outer(strain, flow.strain[k] * p.axis[k], p.axis[k]);
+  return symmetric(strain);
+}
+
+/// sqrt(N), N = (1 + sin) / (1 - sin), from the tangent of an angle.
+template <class T>
+CDEM_HD inline T root_of_n(const T& tangent) {
+  return tangent + sqrt_of(T(1.0) + tangent * tangent);
+}
+
 /// Planes of yield in principal stress s1 >= s2 >= s3, tension positive: shear s_i - s_j / N =
 /// strength for the pairs 13, 23 and 12, and tension s_i = cut for 1, 2 and 3. Flow is along
 /// (1, -1/M) on those of shear and along the normal on those of tension.

@@ -531,7 +531,7 @@ void describe_model(Model& m, State& s, Visit&& visit) {
          .unit = "see the law",
          .meaning = "parameters of the block law",
          .rows = "materials",
-         .numbers = BlockLaws::most_parameters},
+         .numbers = material_row},
         m.material_parameters);
   for_each_set(m, s,
                [&](const auto& kind, auto& set, auto&) { describe_set(kind.name, set, given); });

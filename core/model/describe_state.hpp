@@ -331,6 +331,13 @@ void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stor
            .numbers = 6,
            .layout = Layout::columns},
           e.stress);
+  rebuilt("report_elements",
+          {.name = name + "yielded",
+           .meaning = "what flows now and what ever has, for output",
+           .rows = rows,
+           .layout = Layout::columns,
+           .optional = true},
+          e.yielded);
   rebuilt("find_awake",
           {.name = name + "awake",
            .meaning = "blocks of elements that are computed",

@@ -28,6 +28,7 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
   const bool flows = has_flowing_element(m, e);
   if (flows || m.initial_stress) es.history.resize(std::size_t(point_history * e.points) * row);
   if (flows) es.plastic_work.resize(row);
+  if (flows) es.yielded.resize(row);
   if (keeps_stress) es.point_stress.resize(6 * std::size_t(e.points) * row);
 }
 

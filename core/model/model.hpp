@@ -95,7 +95,7 @@ struct Model {
   ElementSet tet4, pyramid5, wedge6, hex8;
   Column<Real> material_lambda, material_mu;
   Column<Index> material_law;        // number in BlockLaws
-  Column<Real> material_parameters;  // [material][BlockLaws::most_parameters]
+  Column<Real> material_parameters;  // [material][law_numbers]
 
   // exterior faces and edges
   Index face_count = 0, edge_count = 0;

@@ -45,6 +45,7 @@ struct ElementState {
   Column<Real> energy, damping_work;
   Column<Real> history;       // [point * point_history][element], see PointFlow; may be empty
   Column<Real> plastic_work;  // empty where no material of the set flows
+  Column<Real> yielded;       // for output, see yield_bit; empty where plastic_work is
   Column<Index> awake;        // blocks of elements, see nodes/sleep.hpp
   FusedBlocks fused;
 };

@@ -17,8 +17,9 @@ struct LawText {
 
 /// How a kernel gets a parameter.
 enum class Form {
-  number,   // as the case says it, in SI units
-  tangent,  // an angle in a case [deg], its tangent in the kernel
+  number,        // as the case says it, in SI units
+  tangent,       // an angle in a case [deg], its tangent in the kernel
+  half_tangent,  // the tangent of half of it: sine and cosine follow without a library
 };
 
 /// The default of a parameter that a case must give.
@@ -35,12 +36,15 @@ struct Parameter {
   const char* meaning;
   double at_least = 0;  // range in the unit of the case
   double below = std::numeric_limits<double>::infinity();
+  double at_most = std::numeric_limits<double>::infinity();
   double otherwise = required;  // where the case is silent
   const char* like = nullptr;   // then it is that of another parameter
   Form form = Form::number;
-  bool is_strength = false;  // divided by a factor of safety (of an angle, the tangent is)
-  bool bonds = false;        // above zero, it bonds faces that touch at the start
-  int scatter = 0;           // power of the factor of a pair's strength that it has, see draws.hpp
+  bool is_strength = false;       // divided by a factor of safety (of an angle, the tangent is)
+  bool is_factor = false;         // multiplied by one
+  const char* choices = nullptr;  // words, with blanks between; the kernel gets the word's place
+  bool bonds = false;             // above zero, it bonds faces that touch at the start
+  int scatter = 0;  // power of the factor of a pair's strength that it has, see draws.hpp
 };
 
 /// One number that a law remembers. It may only grow: where several contacts share a history, the

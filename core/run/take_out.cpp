@@ -41,13 +41,17 @@ Index holding_support(Model& m) {
 /// Row of a material without stiffness: it has neither stress nor energy, however deformed.
 Index slack_material(Model& m) {
   const Index count = Index(m.material_lambda.size());
-  if (count > 0 && m.material_mu[count - 1] == 0) return count - 1;
-  m.material_lambda.push(0);
-  m.material_mu.push(0);
-  m.material_law.push(0);
-  if (m.water.biot.size() > 0) m.water.biot.push(0);
-  m.material_parameters.resize(m.material_parameters.size() + BlockLaws::most_parameters);
-  return count;
+  const bool known = count > 0 && m.material_mu[count - 1] == 0;
+  const Index row = known ? count - 1 : count;
+  if (!known) {
+    m.material_lambda.push(0);
+    m.material_mu.push(0);
+    m.material_law.push(0);
+  }
+  // a stage that changes these gives them for the materials of the case alone
+  m.material_parameters.resize(std::size_t(row + 1) * material_row);
+  if (m.water.biot.size() > 0) m.water.biot.resize(row + 1);
+  return row;
 }
 
 /// Is an item of a set out, or a side of a pair?

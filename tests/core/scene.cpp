@@ -156,7 +156,7 @@ void Scene::build_elements() {
   model.material_lambda.push(rock.lambda);
   model.material_mu.push(rock.mu);
   model.material_law.push(0);
-  model.material_parameters.resize(BlockLaws::most_parameters);
+  model.material_parameters.resize(material_row);
 }
 
 void Scene::build_shape(ElementSet& e, Index nodes, Index points) {

@@ -12,6 +12,7 @@ from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, block_contradiction
 from cdem.case.plausible import doubts
 from cdem.case.schema import CaseParts
+from cdem.case.softening import softening_problems
 from cdem.errors import CaseError
 
 Problem = tuple[tuple[str | int, ...], str]  # path, what is wrong
@@ -87,6 +88,8 @@ def _materials(case: CaseParts) -> Iterator[Problem]:
     for name, material in case.materials.items():
         if why := block_contradiction(material):
             yield ("materials", name), why
+        for keys, why in softening_problems(material):
+            yield ("materials", name, *keys), why
         rotates = case.elements.formulation == "corotational"
         if BLOCK_LAWS[material.law].flows and not rotates:
             yield (

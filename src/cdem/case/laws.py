@@ -23,10 +23,14 @@ class Parameter:
         meaning: What it is.
         at_least: Lowest value allowed [unit].
         below: Limit that it must stay below [unit], or None.
+        at_most: Highest value allowed [unit], or None.
         default: Value where the case is silent, infinity for a strength without a limit, or None.
         like: Parameter whose value it has where the case is silent, or None.
         is_tangent: Whether it is an angle whose tangent the core takes.
+        is_half_tangent: Whether it is an angle of which the core takes the tangent of the half.
         is_strength: Whether a factor of safety divides it (of an angle, the tangent).
+        is_factor: Whether a factor of safety multiplies it.
+        choices: Words that it may be, the core takes the place of the word; empty for a number.
         bonds: Whether a value above zero bonds faces that touch at the start.
     """
 
@@ -36,19 +40,28 @@ class Parameter:
     meaning: str
     at_least: float
     below: float | None
+    at_most: float | None
     default: float | None
     like: str | None
     is_tangent: bool
+    is_half_tangent: bool
     is_strength: bool
+    is_factor: bool
+    choices: str
     bonds: bool
 
     @property
     def annotation(self) -> Any:
         """Its type in a case."""
-        return Annotated[float, Quantity(self.unit, at_least=self.at_least, below=self.below)]
+        if self.choices:
+            return Literal[tuple(self.choices.split())]
+        limits = Quantity(self.unit, at_least=self.at_least, below=self.below, at_most=self.at_most)
+        return Annotated[float, limits]
 
     def field(self, required: bool) -> tuple[Any, Any]:
         """Type and field of a pydantic model; not required: it may be left out and is then None."""
+        if self.choices:
+            return self.annotation, Field(self.choices.split()[0], description=self.meaning)
         text = f"{self.meaning} [{self.unit}]"
         if self.default == math.inf:  # no number of a case
             return self.annotation | None, Field(None, description=text)
@@ -78,6 +91,7 @@ class Law:
         flows: Of a block law: whether it ever gives inelastic strain.
         parameters: In the order of the core.
         state: In the order of the core.
+        softening: Of a block law: the names of the strengths that may fall.
     """
 
     name: str
@@ -85,12 +99,16 @@ class Law:
     flows: bool
     parameters: tuple[Parameter, ...]
     state: tuple[StateVariable, ...]
+    softening: tuple[str, ...] = ()
 
     def values(self, part: Part) -> dict[str, float]:
         """Parameters of a part of a case, those that it leaves out included."""
         given = {p.name: getattr(part, p.name) for p in self.parameters}
         of_like = {p.name: given[p.like] for p in self.parameters if p.like}
         values = {name: of_like.get(name) if v is None else v for name, v in given.items()}
+        for p in self.parameters:
+            if p.choices:
+                values[p.name] = p.choices.split().index(getattr(part, p.name))
         return {name: math.inf if v is None else float(v) for name, v in values.items()}
 
     def numbers(self, part: Part) -> dict[str, float]:
@@ -99,6 +117,8 @@ class Law:
         for p in self.parameters:
             if p.is_tangent:
                 values[p.name] = math.tan(math.radians(values[p.name]))
+            if p.is_half_tangent:
+                values[p.name] = math.tan(math.radians(values[p.name]) / 2)
         return values
 
     def bonds(self, part: Part) -> bool:
@@ -107,7 +127,7 @@ class Law:
 
     def reduced(self, part: Part, factor: float) -> dict[str, float]:
         """Strengths of a part of a case, divided by a factor of safety."""
-        reduced = {}
+        reduced = {p.name: getattr(part, p.name) * factor for p in self.parameters if p.is_factor}
         for p in self.parameters:
             if not p.is_strength or getattr(part, p.name) is None:  # unlimited, or like another
                 continue
@@ -139,6 +159,7 @@ def _declared(laws: list[dict[str, Any]]) -> dict[str, Law]:
             law["flows"],
             tuple(Parameter(**p) for p in law["parameters"]),
             tuple(StateVariable(**v) for v in law["state"]),
+            tuple(law["softening"]),
         )
         for law in laws
     }

@@ -93,6 +93,12 @@ OUTPUT_FIELDS = [
         frames="never", surface="always", colors=None,
     ),
 ]  # fmt: skip
+YIELDED = OutputField(
+    "yielded", "What flows in the element now and what ever has, the sum of 1 shear now, 2 tension now, "
+    "4 shear ever, 8 tension ever; 16, 32, 64, 128 the same of the weak plane", "", "elements",
+    frames="chosen", surface="chosen", colors="whole range",
+)  # fmt: skip
+OUTPUT_FIELDS += [YIELDED]
 OUTPUT_FIELDS += [
     OutputField(
         state.name, f"{state.meaning}; the largest in the element", state.unit, "elements",

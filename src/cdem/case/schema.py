@@ -12,6 +12,7 @@ from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
 from cdem.case.output_fields import CHOICE
+from cdem.case.softening import Softening
 from cdem.case.stress_schema import InitialStress
 from cdem.case.types import (
     FileName,
@@ -46,6 +47,9 @@ class Material(Part):
     )
     saturated_density: Annotated[float, Quantity("kg/m3", above=0)] | None = Field(
         None, description="Density that weighs below the water table; by default density [kg/m3]"
+    )
+    softening: Softening | None = Field(
+        None, description="How strengths fall with slip, of a law that flows"
     )
     if TYPE_CHECKING:
         law: str
@@ -218,6 +222,9 @@ class Elements(Part):
     hexahedra: Literal["full", "one-point"] = Field(
         "full",
         description="Integration of hexahedra: 2 x 2 x 2 points, or one and hourglass springs",
+    )
+    strain_limit: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
+        0.2, description="Plastic strain above which a run warns; above 1 it ends [1]"
     )
 
 

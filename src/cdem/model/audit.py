@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.laws import BLOCK_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
@@ -77,6 +78,7 @@ class Audit:
                 mass += b.assembly.element_mass[shape][some].sum()
                 elements += int(some.sum())
             out[name] = {
+                "law": b.case.materials[b.case.groups[name].material].law,
                 "blocks": int((t.block_group == index).sum()),
                 "elements": int(elements),
                 "volume": float(volume),
@@ -259,6 +261,9 @@ class Audit:
                 f"  {name:<18}{g['blocks']:>9,}{g['elements']:>10,}{g['volume']:>14.6g}"
                 f"{g['mass']:>14.6g}"
             )
+        flow = {name: g for name, g in self.groups.items() if BLOCK_LAWS[g["law"]].flows}
+        lines += [""] * bool(flow)
+        lines += [f"  {n}: {g['elements']:,} elements of law {g['law']}" for n, g in flow.items()]
         low = np.min([g["low"] for g in self.groups.values()], axis=0)
         high = np.max([g["high"] for g in self.groups.values()], axis=0)
         spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))

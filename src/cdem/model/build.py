@@ -15,6 +15,7 @@ from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
 from cdem.case.laws import BLOCK_LAWS
 from cdem.case.schema import Material
+from cdem.case.softening import tables_of
 from cdem.errors import CaseError
 from cdem.mesh.blocks import build_topology, snap_mates
 from cdem.mesh.extent import check_extent
@@ -38,7 +39,7 @@ from cdem.model.interfaces import (
 from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of, pairs_loose_joints
-from cdem.model.snap_back import check_fall
+from cdem.model.snap_back import check_fall, check_softening
 from cdem.model.stiffness import bond_row, interface_entries
 from cdem.model.supports import supports_of
 from cdem.model.water import water_of
@@ -246,6 +247,7 @@ def _assemble(
     )
     parts = assemble(topology, properties, native.padded_stride)
     check_fall(case, topology, laws, parts)
+    check_softening(case, topology, names, parts)
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
@@ -269,9 +271,9 @@ def _unloading_row(entry: dict[str, Any]) -> list[float]:
 
 
 def _law_row(material: Material) -> list[float]:
-    """Parameters of a material's law, filled up to the most that any law has."""
-    numbers = list(BLOCK_LAWS[material.law].numbers(material).values())
-    return numbers + [0.0] * (native.block_law_parameters - len(numbers))
+    """Numbers of a material's law and of how it softens."""
+    numbers = BLOCK_LAWS[material.law].numbers(material)
+    return native.material_numbers(material.law, numbers, tables_of(material))
 
 
 def change(built: Build) -> dict[str, NDArray]:

@@ -1,4 +1,4 @@
-"""Bonds that would lose strength faster than they unload are refused."""
+"""Bonds and elements that would lose strength faster than they unload are refused."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
 from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.softening import tables_of
 from cdem.errors import ModelError
 from cdem.mesh.topology import Topology
 from cdem.model.flat_arrays import Assembly
@@ -65,3 +66,46 @@ def _why(
         f"{case.where(path)}: {path}: bonds at ({x:.4g}, {y:.4g}, {z:.4g}) would lose strength faster "
         f"than they unload, by a factor of {ratio:.3g}; it takes {remedy}, or more fracture energy"
     )
+
+
+PER_CELL = {"hex8": 1, "wedge6": 2, "pyramid5": 6, "tet4": 6}
+"""Elements of a shape in a cell of a box, as in core/elements/shapes.hpp."""
+
+
+def check_softening(case: Case, t: Topology, names: list[str], parts: Assembly) -> None:
+    """Refuse elements so large that their rock would snap back.
+
+    With h the side of a cube of the volume of a cell, tensile strength that falls by A [Pa/m] with
+    slip asks for A h < E, cohesion for A h < mu.
+
+    Raises:
+        ModelError: It is not so; with the worst element and the size it would take.
+    """
+    for group, name in enumerate(names):
+        material = case.materials[case.groups[name].material]
+        tables = tables_of(material)
+        young = material.young_modulus
+        shear = young / (2 * (1 + material.poisson_ratio))
+        for strength, stiffness in (
+            ("tensile_strength", young), ("cohesion", shear),
+            ("joint_tensile_strength", young), ("joint_cohesion", shear),
+        ):  # fmt: skip
+            rows = np.array(tables.get(strength, []))
+            fall = (-np.diff(rows[:, 1]) / np.diff(rows[:, 0])).max() if len(rows) else 0.0
+            if fall == 0:
+                continue
+            for shape, count in PER_CELL.items():
+                size = np.cbrt(count * parts.element_volume[shape])
+                size = np.where(t.element_group[shape] == group, size, 0.0)
+                worst = int(size.argmax()) if len(size) else -1
+                if worst >= 0 and size[worst] * fall >= stiffness:
+                    x, y, z = t.node_position[t.element_nodes[shape][worst]].mean(axis=0)
+                    path = f"materials.{case.groups[name].material}.softening"
+                    energy = ", or more fracture energy" if strength == "tensile_strength" else ""
+                    raise ModelError(
+                        f"{case.where(path)}: {path}: {strength} would fall faster than the element at "
+                        f"({x:.4g}, {y:.4g}, {z:.4g}) unloads, by a factor of "
+                        f"{size[worst] * fall / stiffness:.3g}; it takes elements of "
+                        f"{0.99 * stiffness / fall:.3g} m at most (here {size[worst]:.3g} m), or a "
+                        f"longer slip{energy}"
+                    )

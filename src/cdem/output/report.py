@@ -54,6 +54,10 @@ def info(folder: Path) -> str:
         lines.append(
             f"  {name:<18}{g['mass']:>13.5g}{moved:>12.5g}{g['max_displacement']:>12.5g}{speed:>13.5g}"
         )
+    for name, count in s.get("yielded", {}).items():
+        lines.append(
+            f"  yielded: {count['ever']:,} elements of group {name}, {count['now']:,} of them flow now"
+        )
     for name, lost in s.get("taken_out", {}).items():
         share = lost["mass"] / s["groups"][name]["mass"]
         what = "dug out" if lost.get("dug_out") else "left the domain"
@@ -61,7 +65,8 @@ def info(folder: Path) -> str:
             f"  {what}: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
             f"({100 * share:.3g} % of its mass)"
         )
-    lines += [f"  warning: {text}" for text in s.get("departures", [])]
+    warnings = s.get("departures", []) + s.get("large_strains", [])
+    lines += [f"  warning: {text}" for text in warnings]
     return "\n".join(lines) + "\n"
 
 

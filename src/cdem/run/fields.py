@@ -12,7 +12,7 @@ from cdem.case.laws import STATES
 from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
 from cdem.mesh.arrays import components
 from cdem.model.interfaces import bonded_pairs, interfaces_of
-from cdem.run.law_fields import state_of
+from cdem.run.law_fields import state_of, yielded_of
 from cdem.run.state import RunState
 
 Values = Callable[[RunState], NDArray]
@@ -31,6 +31,7 @@ def output_field(name: str) -> Callable[[Values], Values]:
 
 for state in STATES:
     output_field(state)(partial(state_of, name=state))
+output_field("yielded")(yielded_of)
 
 
 def values_of(sim: RunState, fields: Iterable[OutputField]) -> dict[str, NDArray]:

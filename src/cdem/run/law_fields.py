@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, STATES, Law
-from cdem.case.output_fields import OF_WATER
+from cdem.case.output_fields import OF_WATER, YIELDED
 from cdem.model.interfaces import interfaces_of
 from cdem.run.state import RunState
+
+NOW = 0x33
+"""The bits of `yielded` that say what flows now."""
 
 
 def wanted_fields(case: Case) -> list[str]:
@@ -19,11 +24,37 @@ def wanted_fields(case: Case) -> list[str]:
     used = [BLOCK_LAWS[material.law] for material in case.materials.values()]
     used += [INTERFACE_LAWS[one.law] for one in (i.default, *i.pairs) if one is not None]
     states = {variable.name for law in used for variable in law.state}
+    if any(BLOCK_LAWS[material.law].flows for material in case.materials.values()):
+        states.add(YIELDED.name)
+    of_laws = STATES.keys() | {YIELDED.name}
     return [
         name
         for name in case.output.fields
-        if (name not in STATES or name in states) and (name not in OF_WATER or case.water)
+        if (name not in of_laws or name in states) and (name not in OF_WATER or case.water)
     ]
+
+
+def yielded_of(sim: RunState) -> NDArray[np.int32]:
+    """What flows in each element now and what ever has (`YIELDED`), shapes one after the other."""
+    tables = sim.core.yielded()
+    counts = {shape: len(nodes) for shape, nodes in sim.build.topology.element_nodes.items()}
+    rows = [tables[shape][:count] if tables[shape].size else np.zeros(count)
+            for shape, count in counts.items()]  # fmt: skip
+    return np.concatenate(rows).astype(np.int32)
+
+
+def yielded_counts(sim: RunState) -> dict[str, dict[str, int]]:
+    """How many elements flow now and how many ever have, of each group whose material can."""
+    case, names = sim.case, sim.build.group_names
+    flow = [n for n in names if BLOCK_LAWS[case.materials[case.groups[n].material].law].flows]
+    if not flow:
+        return {}
+    group, bits = np.concatenate(list(sim.build.topology.element_group.values())), yielded_of(sim)
+    counts = {}
+    for name in flow:
+        own = bits[group == names.index(name)]
+        counts[name] = {"now": int(((own & NOW) > 0).sum()), "ever": int((own > 0).sum())}
+    return counts
 
 
 def state_of(sim: RunState, name: str) -> NDArray[np.float64]:
@@ -33,6 +64,68 @@ def state_of(sim: RunState, name: str) -> NDArray[np.float64]:
     vertices and sides of its faces. Elements without the law have 0.
     """
     return np.maximum(_of_block_laws(sim, name), _of_interface_laws(sim, name))
+
+
+STRAIN_THAT_ENDS = 1.0
+"""Plastic strain above which a run ends: the stress is no longer that of the rock."""
+
+
+@dataclass
+class LargeStrain:
+    """The largest plastic strain of a group, above the limit of the case.
+
+    Attributes:
+        group: The group.
+        state: Which strain.
+        value: How much [1].
+        place: Middle of the element now [m].
+        limit: What the case takes [1].
+    """
+
+    group: str
+    state: str
+    value: float
+    place: list[float]
+    limit: float
+
+    def text(self) -> str:
+        """One line for the user."""
+        place = ", ".join(f"{x:.4g}" for x in self.place)
+        return (
+            f"{self.state} of group {self.group} is {self.value:.3g} at ({place}) m, above "
+            f"elements.strain_limit {self.limit:g}: stress is exact for small strain only. Let rock that "
+            "moves far break along faces (bonds between blocks)"
+        )
+
+
+def large_strains(sim: RunState) -> list[LargeStrain]:
+    """The largest plastic strain of each group that is above the limit of the case."""
+    case, names = sim.case, sim.build.group_names
+    group = np.concatenate(list(sim.build.topology.element_group.values()))
+    found = []
+    for number, name in enumerate(names):
+        law = BLOCK_LAWS[case.materials[case.groups[name].material].law]
+        if not law.flows:
+            continue
+        own = np.flatnonzero(group == number)
+        tables = {v.name: _of_block_laws(sim, v.name)[own] for v in law.state}
+        state = max(tables, key=lambda key: tables[key].max())
+        worst = int(tables[state].argmax())
+        value, limit = float(tables[state][worst]), case.elements.strain_limit
+        if value > limit:
+            place = _middle(sim, int(own[worst]))
+            found.append(LargeStrain(name, state, value, place, limit))
+    return found
+
+
+def _middle(sim: RunState, element: int) -> list[float]:
+    """Where the middle of an element is, counted over the shapes one after the other."""
+    for nodes in sim.build.topology.element_nodes.values():
+        if element < len(nodes):
+            middle: list[float] = sim.motion[nodes[element], :3].mean(axis=0).tolist()
+            return middle
+        element -= len(nodes)
+    raise IndexError(element)
 
 
 def _places(laws: dict[str, Law], name: str) -> dict[int, int]:

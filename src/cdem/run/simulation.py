@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from cdem.model.ruling_step import ruling_step
 from cdem.run import restored, stages
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
+from cdem.run.law_fields import STRAIN_THAT_ENDS, large_strains, yielded_counts
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
 from cdem.run.state import Attributes, RunState, StageState
@@ -197,6 +199,14 @@ class Simulation(RunState):
         self.check_case()
         return self._guard(partial(stages.advance, self, stage, steps, until))
 
+    def summary(self, status: str) -> dict[str, Any]:
+        """What summary.json says."""
+        of_laws = {
+            "yielded": yielded_counts(self),
+            "large_strains": [strain.text() for strain in large_strains(self)],
+        }
+        return super().summary(status) | of_laws
+
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing and ending no stage."""
         self.check_case()
@@ -227,6 +237,7 @@ class Simulation(RunState):
                 stages.look_for_rest(self, stage)
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
                 self._check_energy()
+                self._check_strain()
             status = stages.status(self, stage, outcome)
             known, note = (
                 note,
@@ -259,6 +270,9 @@ class Simulation(RunState):
                 "wall_time": stage.wall_time,
             }
         )
+        if self.results:
+            for strain in large_strains(self):
+                self.results.log(f"warning: {strain.text()}")
         self.stage_index += 1
         self.stage, self.ended_stage = None, stage
         self.checkpoint()
@@ -285,6 +299,12 @@ class Simulation(RunState):
             f"time.energy_error allows ({100 * limit:.3g} %), so that the results are not to be "
             f"trusted. Use a smaller {smaller}; time.energy_error: any goes on whatever it is."
         )
+
+    def _check_strain(self) -> None:
+        """End a run in which rock flows further than its stress is right."""
+        for strain in large_strains(self):
+            if strain.value > STRAIN_THAT_ENDS:
+                raise self._failed(f"{strain.text()}; above {STRAIN_THAT_ENDS:g} a run ends")
 
     def _failed(self, why: str) -> UnstableError:
         """The error that says where a run failed and why; the result folder says so, too."""

@@ -11,6 +11,7 @@ import numpy as np
 from cdem.case.case import Case
 from cdem.case.checks import SETTABLE
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
+from cdem.case.softening import reduced_tables
 from cdem.case.types import Part
 from cdem.errors import CaseError, UnstableError
 from cdem.run import stages
@@ -109,7 +110,8 @@ def strength_reduction() -> Apply:
         if not whole:  # the first trial: nothing is reduced yet
             whole.update(_parts_with_strengths(case))
         for path, (law, part) in whole.items():
-            for name, strength in law.reduced(part, factor).items():
+            reduced = law.reduced(part, factor) | reduced_tables(part, factor)
+            for name, strength in reduced.items():
                 case.set(f"{path}.{name}", strength)
 
     return apply

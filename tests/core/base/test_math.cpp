@@ -193,4 +193,19 @@ TEST_CASE("a row is four numbers that lie together") {
   CHECK(out[3] == -4);
 }
 
+TEST_CASE("a fourth step squares the error of the rotation, at strains of 50 % too") {
+  Random random(9);
+  Real three = 0, four = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const Mat r = random.rotation(), turn = random.rotation();
+    const Mat stretch =
+        turn * Mat{{1.5, 0, 0}, {0, random.between(0.5, 1.5), 0}, {0, 0, 0.5}} * transpose(turn);
+    const Mat found = polar_rotation(r * stretch);
+    three = std::max(three, distance(found, r));
+    four = std::max(four, distance(nearer_rotation(found), r));
+  }
+  CHECK(three > 1e-6);
+  CHECK(four < 2e-7);
+}
+
 }  // namespace cdem::test

@@ -16,16 +16,18 @@ TEST_CASE("elements of a lane have the constants of their materials") {
     CHECK(rocks.mu.n[j] == mu[j % 3]);
     CHECK(table.elastic(j % 3).mu == mu[j % 3]);
   }
-  CHECK(lane_bits(table.has_law<0>(material)) == (1u << lanes) - 1);
+  CHECK(!any_of(table.laws(material) > Pack(0.0)));
 }
 
 TEST_CASE("an elastic material does not flow") {
   const Real lambda[] = {1e9}, mu[] = {4e9};
   const Index law[] = {0};
   const MaterialTable table{lambda, mu, law, nullptr};
-  const Sym3<Real> increment =
-      flow(table, 0, Sym3<Real>{1e12, -1e12, 0, 1e12, 0, 0}, static_cast<Real*>(nullptr));
-  CHECK(contract(increment, increment) == 0);
+  struct NoRows {
+    Real at(Index) const { return 0; }
+    Real size() const { return 1; }
+  };
+  CHECK(!flow(table, 0, 0.0, Sym3<Real>{1e12, -1e12, 0, 1e12, 0, 0}, NoRows{}).any);
 }
 
 }  // namespace cdem::test

@@ -24,7 +24,13 @@ def test_the_core_has_the_laws_of_the_documents():
     assert list(INTERFACE_LAWS) == [
         "brittle", "residual", "slip-weakening", "softening", "velocity-weakening", "voellmy"
     ]  # fmt: skip
-    assert list(BLOCK_LAWS) == ["elastic", "mohr-coulomb"]
+    assert list(BLOCK_LAWS) == [
+        "elastic",
+        "mohr-coulomb",
+        "ubiquitous-joint",
+        "drucker-prager",
+        "hoek-brown",
+    ]
     assert [p.name for p in INTERFACE_LAWS["brittle"].parameters] == [
         "friction_angle", "cohesion", "tensile_strength", "dilation_angle", "dilation_slip"
     ]  # fmt: skip

@@ -16,7 +16,8 @@ def test_the_case_offers_the_fields_of_frames():
     assert output["items"]["enum"] == output["default"] == CHOICE
     assert CHOICE == [
         "displacement", "velocity", "stress", "effective_stress", "pore_pressure", "damage", "piece",
-        "plastic_shear", "plastic_tension", "joint_slip", "joint_damage", "joint_opening"
+        "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
+        "joint_slip", "joint_damage", "joint_opening"
     ]  # fmt: skip
 
 
@@ -24,7 +25,8 @@ def test_pictures_show_what_the_surface_holds():
     assert {name for name, field in DRAWN.items() if field.surface == "never"} == set()
     assert list(DRAWN) == [
         "displacement", "velocity", "pore_pressure", "damage", "group", "block", "piece", "joint",
-        "plastic_shear", "plastic_tension", "joint_slip", "joint_damage", "joint_opening"
+        "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
+        "joint_slip", "joint_damage", "joint_opening"
     ]  # fmt: skip
 
 

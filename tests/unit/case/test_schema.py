@@ -20,7 +20,7 @@ import pytest
         (
             "law: elastic",
             "law: elastc",
-            "must be elastic or mohr-coulomb, got 'elastc'; did you mean elastic?",
+            "must be elastic, mohr-coulomb, ubiquitous-joint, drucker-prager or hoek-brown, got 'elastc'; did you mean elastic?",
         ),
         ("fix: [x, y, z]", "fix: [x, w]", "groups.bed.fix.1: must be x, y or z, got 'w'"),
         (

@@ -25,6 +25,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     names = [line.split()[0] for line in out.splitlines()]
     assert names == [
         "dam",
+        "foliated",
         "incline",
         "landslide",
         "safety",
@@ -46,7 +47,18 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
 
 
 @pytest.mark.parametrize(
-    "name", ["incline", "wall", "slope", "safety", "landslide", "tunnel", "tunnel_bolts", "dam"]
+    "name",
+    [
+        "incline",
+        "wall",
+        "slope",
+        "safety",
+        "landslide",
+        "tunnel",
+        "tunnel_bolts",
+        "dam",
+        "foliated",
+    ],
 )
 def test_templates_check(run_cli, name):
     run_cli("new", name)

@@ -48,19 +48,23 @@ def theory(rock):
     return rim, stress, displacement
 
 
-def load(study, cells, dilation):
-    """The ring under the exact pressure on its outer rim, brought up slowly."""
+def load(study, cells, pressures, *settings):
+    """The ring under pressures on its inner and outer rim [Pa], brought up slowly.
+
+    `pressures` gives both for the rock of the case.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "ring.msh"
         meshio.write(path, ring(cells), "gmsh22", binary=False)
-        settings = f"model.mesh={path}", f"materials.rock.dilation_angle={dilation}"
-        pressure = float(theory(study.case(*settings).materials["rock"])[1](OUTER)[0])
+        settings = f"model.mesh={path}", *settings
+        inner, outer = pressures(study.case(*settings).materials["rock"])
         entries = []
-        for k in range(cells):
-            angle = (k + 0.5) * np.pi / 2 / cells
-            x, y = -pressure * np.cos(angle), -pressure * np.sin(angle)
-            entries.append(f"{{surface: outer{k}, traction: [{x:.9g}, {y:.9g}, 0], "
-                           "history: [[0, 0], [0.01, 0.9], [0.02, 1]]}")  # fmt: skip
+        for rim, pressure in (("inner", inner), ("outer", -outer)):
+            for k in range(cells if pressure else 0):
+                angle = (k + 0.5) * np.pi / 2 / cells
+                x, y = pressure * np.cos(angle), pressure * np.sin(angle)
+                entries.append(f"{{surface: {rim}{k}, traction: [{x:.9g}, {y:.9g}, 0], "
+                               "history: [[0, 0], [0.01, 0.9], [0.02, 1]]}")  # fmt: skip
         simulation = study.simulate(*settings, f"loads.tractions=[{', '.join(entries)}]")
     simulation.run()
     return simulation
@@ -82,7 +86,8 @@ def run(study):
     for dilation in (30, 0):
         for cells in (24, 48):
             within = 0.02 * 48 / cells
-            simulation = load(study, cells, dilation)
+            simulation = load(study, cells, lambda rock: (0.0, float(theory(rock)[1](OUTER)[0])),
+                              f"materials.rock.dilation_angle={dilation}")  # fmt: skip
             rim, stress, displacement = theory(simulation.case.materials["rock"])
             r, _, polar = polar_stress(simulation)
             exact = np.array(stress(r))
