@@ -1101,14 +1101,6 @@ CORE = [
         "tests/core/materials/test_hoek_brown.cpp",
     ),
     Mutant(
-        "powers",
-        "a logarithm without its last terms",
-        "core/base/powers.hpp",
-        "int n = 23",
-        "int n = 13",
-        "tests/core/base/test_powers.cpp",
-    ),
-    Mutant(
         "yielded before",
         "what has yielded is not told",
         "core/elements/corotational.hpp",

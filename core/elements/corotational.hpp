@@ -2,7 +2,7 @@
 // baseline.
 #pragma once
 
-#include "core/base/powers.hpp"
+#include "core/base/elementary.hpp"
 #include "core/elements/shapes.hpp"
 #include "core/materials/laws.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/powers.hpp"
+#include "core/base/elementary.hpp"
 #include "core/materials/frictional.hpp"
 #include "core/materials/law.hpp"
 #include "core/materials/principal_planes.hpp"
