@@ -264,6 +264,46 @@ def test_a_stage_raises_the_water():
     assert water_on(sim, "top")[2] == pytest.approx(2 * UNIT, rel=1e-5)
 
 
+def test_a_stage_weakens_rock():
+    """Strengths of a material may change: a pillar crushes once its cohesion falls."""
+    rock = {"law": "mohr-coulomb", "cohesion": 1e7, "friction_angle": 30}
+    weaker = {"materials.rock.cohesion": 1e4}
+    stages = [*STATIC, {"name": "rot", "mode": "dynamic", "duration": 0.01, "set": weaker}]
+    sim = start([box("rock", size=[1, 1, 4], divisions=[1, 1, 4])], rock=rock, stages=stages,
+                water={"fields": [{"level": -9}]},
+                loads={"supports": [{"surface": {"group": "rock", "normal": [0, 0, -1]}, "fix": ["z"]}]})  # fmt: skip
+    sim.run_stage("rest")
+    assert sim.energies["plastic"] == 0
+    sim.run_stage("rot")
+    assert sim.energies["plastic"] > 0
+
+
+def test_a_stage_that_would_wet_other_faces_is_refused():
+    stages = [*STATIC, STATIC[0] | {"name": "rain", "set": {"water.fields.0.wet": "always"}}]
+    sim = start([box("bed", [0, 0, -1]), box("top")], stages=stages,
+                water={"fields": [{"level": 1, "wet": "never"}]})  # fmt: skip
+    sim.run_stage("rest")
+    with pytest.raises(cdem.errors.CaseError, match="a stage cannot change which joints"):
+        sim.run_stage("rain")
+
+
+def test_a_resumed_run_knows_its_water_table(tmp_path):
+    """A raster that is another one is refused; a case that moved finds its file."""
+    raster = tmp_path / "t.asc"
+    head = "ncols 3\nnrows 3\nxllcorner -3\nyllcorner -3\ncellsize 3\n"
+    raster.write_text(head + "7 7 7\n" * 3)
+    made = wet([box("rock")], water={"fields": [{"surface": str(raster)}]}, rock={"biot": 1},
+               stages=[{"name": "a", "mode": "dynamic", "duration": 1}])  # fmt: skip
+    first = cdem.Simulation(made, threads=1, output=tmp_path / "r")
+    first.run_until(0.01)
+    first.checkpoint()
+    first.close()
+    cdem.Simulation(made, threads=1, output=tmp_path / "r", resume=True).close()
+    raster.write_text(head + "9 9 9\n" * 3)
+    with pytest.raises(cdem.errors.CdemError):
+        cdem.Simulation(made, threads=1, output=tmp_path / "r", resume=True)
+
+
 def test_threads_and_resume_change_no_bit(tmp_path):
     joints = [{"name": "j", "dip": 30, "dip_direction": 70, "spacing": 0.6}]
     blocks = [box("bed", [-1, -1, -1], [5, 5, 1]), box("rock", [0, 0, 0], [3, 3, 3])]

@@ -155,6 +155,12 @@ class Case(CaseParts):
         for block, data_of_block in zip(self.model.blocks, data["model"]["blocks"], strict=True):
             if block.file is not None:
                 data_of_block["file"] = str(self.path_of(block.file).resolve())
+        of_water = data["water"]["fields"] if self.water else []
+        for entry, plain_entry in zip(
+            self.water.fields if self.water else [], of_water, strict=True
+        ):
+            for key in {"surface", "table"} & plain_entry.keys():
+                plain_entry[key] = str(self.path_of(getattr(entry, key)).resolve())
         if self.interfaces.default is not None:
             # A pair's inherited values follow the default when a stage sets it, so leave them out.
             for pair, written in zip(

@@ -20,9 +20,12 @@ SETTABLE = (
     "interfaces.",
     "loads.",
     "groups.",
+    "materials.",
     "water.",
 )  # another mesh or material is another model
 AT_START = ("material", "velocity", "angular_velocity")  # of a group
+STRENGTHS = {p.name for law in BLOCK_LAWS.values() for p in law.parameters if p.is_strength}
+"""What a stage may change of a material."""
 
 
 def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
@@ -273,10 +276,14 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
 
 
 def _fixed_at_the_start(path: str, value: Any) -> str:
-    """Which entry of a group or interface a setting would change that only the start of a run knows, or ""."""
+    """Which entry a setting would change that only the start of a run knows, or ""."""
     keys = path.split(".")
     if keys[0] == "interfaces":
         return "'law' of an interface" if keys[-1] == "law" else ""
+    if keys[0] == "materials":
+        changed = value if len(keys) == 2 and isinstance(value, dict) else keys[2:3]
+        found = next((str(key) for key in changed if key not in STRENGTHS), "")
+        return f"'{found}' of a material" if found else ""
     if keys[0] != "groups":
         return ""
     inside = value if len(keys) == 2 and isinstance(value, dict) else {}

@@ -97,10 +97,12 @@ class Build:
 
     @cached_property
     def fingerprint(self) -> str:
-        """The same for models with the same nodes, elements and groups, in the same order."""
+        """The same for models with the same nodes, elements, groups, in the same order, and with the
+        same water in them as far as that comes from files."""
         digest = hashlib.sha256(self.start_position.tobytes())
         for shape, cells in sorted(self.mesh.cells.items()):
             digest.update(shape.encode() + cells.tobytes() + self.mesh.cell_group[shape].tobytes())
+        digest.update(self.arrays["water.node_kept"].tobytes())  # from files; empty where dry
         return digest.hexdigest()
 
     @property
@@ -302,6 +304,12 @@ def change(built: Build) -> dict[str, NDArray]:
         built.assembly.added_mass,
         built.bolts,
     )
+    for kind in ("triangles", "quads"):
+        if parts.counts[f"wet_{kind}.count"] != built.assembly.counts[f"wet_{kind}.count"]:
+            raise CaseError(
+                f"{case.where('water')}: a stage cannot change which joints and faces may be wet at all; "
+                "begin with wet: always or broken, and a level that is too low"
+            )
     kept = ("support.", "load.", "water.", "wet_", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
             "material.parameters")  # fmt: skip
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}

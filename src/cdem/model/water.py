@@ -184,16 +184,20 @@ class WaterTables:
             top = z + float(fall @ [x, y]) + entry.lift
             return _Field([unit * top, *(-unit * fall), -unit, 0, 0, 0, 0], (0, factor))
         kept: Pressure
+        raised = 0.0
         if entry.surface is not None:
-            heights = self._heights(entry.surface)
-            kept = lambda points: unit * (heights(points[:, :2]) + entry.lift - points[:, 2])  # noqa: E731
+            heights, raised = self._heights(entry.surface), unit * entry.lift
+
+            def kept(points: Floats) -> Floats:
+                return unit * (heights(points[:, :2]) - points[:, 2])
+
         elif entry.formula is not None:
             kept = _by_formula(Formula(entry.formula))
         elif entry.table is not None:
             kept = _by_table(self._case, entry.table)
         else:
             kept = self._by_weight(float(entry.ru or 0.0))
-        return _Field([0, 0, 0, 0, 1, 0, 0, 0], (0, factor), kept)
+        return _Field([raised, 0, 0, 0, 1, 0, 0, 0], (0, factor), kept)
 
     def _at_level(self, level: Level, lift: float, factor: int) -> _Field:
         first, curve = (level, 0) if not isinstance(level, list) else (level[0][1], -1)

@@ -10,7 +10,7 @@ from typing import Any
 from cdem.case.case import Case
 from cdem.errors import CaseError
 
-FILES = ("model.mesh", "model.blocks.*.file")
+FILES = ("model.mesh", "model.blocks.*.file", "water.fields.*.surface", "water.fields.*.table")
 """Values that may differ because the files themselves are compared."""
 FREE = ("title", "output.every", "output.checkpoint_every", "time.energy_error")
 """Values that a resumed run may change."""

@@ -72,12 +72,17 @@ def test_a_similar_mesh_file_is_suggested(write, tmp_path):
         (
             "interfaces.base.cohesion: 0",
             "time.safety: 0.5",
-            "stages.1.set.time.safety: a stage can change interfaces.*, loads.*, groups.*, water.* only",
+            "stages.1.set.time.safety: a stage can change interfaces.*, loads.*, groups.*, materials.*, water.* only",
         ),
         (
             "interfaces.base.cohesion: 0",
             "groups.block.material: rock",
             "'material' of a group holds from the start and cannot change",
+        ),
+        (
+            "interfaces.base.cohesion: 0",
+            "materials.rock.young_modulus: 1e9",
+            "'young_modulus' of a material holds from the start and cannot change",
         ),
         (
             "interfaces.base.cohesion: 0",
