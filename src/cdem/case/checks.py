@@ -277,18 +277,16 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
 
 def _fixed_at_the_start(path: str, value: Any) -> str:
     """Which entry a setting would change that only the start of a run knows, or ""."""
-    keys = path.split(".")
-    if keys[0] == "interfaces":
+    part, *keys = path.split(".")
+    if part == "interfaces":
         return "'law' of an interface" if keys[-1] == "law" else ""
-    if keys[0] == "materials":
-        changed = value if len(keys) == 2 and isinstance(value, dict) else keys[2:3]
-        found = next((str(key) for key in changed if key not in STRENGTHS), "")
-        return f"'{found}' of a material" if found else ""
-    if keys[0] != "groups":
-        return ""
-    inside = value if len(keys) == 2 and isinstance(value, dict) else {}
-    found = next((key for key in AT_START if key in keys[2:3] or key in inside), "")
-    return f"'{found}' of a group" if found else ""
+    whole = len(keys) == 1 and isinstance(value, dict)
+    changed = [str(key) for key in value] if whole else keys[1:2]
+    if part == "materials":
+        found = [key for key in changed if key not in STRENGTHS]
+    else:
+        found = [key for key in changed if part == "groups" and key in AT_START]
+    return f"'{found[0]}' of a {part.removesuffix('s')}" if found else ""
 
 
 def stage_settings(

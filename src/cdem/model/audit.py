@@ -18,6 +18,7 @@ from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
+from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.wetted import idle_water, water_text, wetted
 
@@ -268,26 +269,7 @@ class Audit:
         high = np.max([g["high"] for g in self.groups.values()], axis=0)
         spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))
         lines += ["", f"  extent x, y, z [m]: {spans}"]
-        if self.interfaces:
-            stressed = self._build.initial is not None
-            lines += [
-                "",
-                "  bonded interfaces" + (", and joints without strength" if stressed else ""),
-            ]
-        for row in self.interfaces:
-            adds = "made up for by the elements"
-            if not set(row["between"]) <= self.compensation.keys():
-                adds = (
-                    f"adds {row['compliance_percent']:.3g} % compliance in tension and bending, "
-                    f"{row['shear_compliance_percent']:.3g} % in shear"
-                )
-            weakest, strongest = row["strength_factors"]
-            varies = f", strength times {weakest:.3g} .. {strongest:.3g}" if weakest < 1 else ""
-            lines.append(
-                f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
-                f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
-                f"{row['stiffness_n'][1]:.3g} Pa/m, {adds}{varies}"
-            )
+        lines += self._interfaces_text()
         lines += self._stiffness_text()
         lines += self._initial_text()
         lines += water_text(self.water)
@@ -303,6 +285,31 @@ class Audit:
             lines.append(estimate.rstrip())
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+    def _interfaces_text(self) -> list[str]:
+        """Pairs of faces that are bonded, or begin as broken ones."""
+        lines: list[str] = []
+        if self.interfaces:
+            loose = pairs_loose_joints(self._build.case)
+            lines += [
+                "",
+                "  bonded interfaces" + (", and joints without strength" if loose else ""),
+            ]
+        for row in self.interfaces:
+            adds = "made up for by the elements"
+            if not set(row["between"]) <= self.compensation.keys():
+                adds = (
+                    f"adds {row['compliance_percent']:.3g} % compliance in tension and bending, "
+                    f"{row['shear_compliance_percent']:.3g} % in shear"
+                )
+            weakest, strongest = row["strength_factors"]
+            varies = f", strength times {weakest:.3g} .. {strongest:.3g}" if weakest < 1 else ""
+            lines.append(
+                f"    {_place(row)}: {row['bonded_pairs']:,} pairs, "
+                f"{row['area']:.6g} m2, k_n {row['stiffness_n'][0]:.3g} .. "
+                f"{row['stiffness_n'][1]:.3g} Pa/m, {adds}{varies}"
+            )
+        return lines
 
     def _initial_text(self) -> list[str]:
         """The stress that the rock begins with."""
