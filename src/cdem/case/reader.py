@@ -61,6 +61,19 @@ def load_case_data(
     return data, source
 
 
+def read_settings(texts: Iterable[str]) -> dict[str, Any]:
+    """Values of texts such as ``"cohesion=1 MPa"``, as plain dicts and lists.
+
+    Raises:
+        CaseError: One of them sets nothing.
+    """
+    data: dict[str, Any] = {}
+    source = Source()
+    for text in texts:
+        _override(data, text, source)
+    return data
+
+
 def _note_places(node: Any, source: Source, keys: Keys) -> None:
     """Remember line and column of every key and list entry of a tree with positions."""
     if not isinstance(node, dict | list):

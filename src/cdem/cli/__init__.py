@@ -10,6 +10,7 @@ import typer
 
 from cdem._version import __version__
 from cdem.cli.installation_commands import benchmark, doctor, verify
+from cdem.cli.law_commands import law
 from cdem.cli.messages import Messages
 from cdem.cli.model_commands import check, mesh, new, schema
 from cdem.cli.result_commands import export, info, plot, render, runout
@@ -76,3 +77,4 @@ def _top(
 for _verb in (new, check, mesh, schema, critical, sweep, verify, benchmark, run,
               info, plot, render, runout, export, doctor):  # fmt: skip
     app.command()(_verb)
+app.add_typer(law, name="law")
