@@ -59,6 +59,8 @@ inline JointInput<Real> joint_at(Real opening, Real shear1, Real kn, Real ks, Re
           .damping = 0,
           .bond = bond,
           .risen = 0,
+          .rate1 = 0,
+          .rate2 = 0,
           .has_area = 1};
 }
 
@@ -72,6 +74,8 @@ JointInput<T> joint_of(const T* in, Real kn, Real ks) {
           .damping = in[3],
           .bond = in[4],
           .risen = in[5],
+          .rate1 = T(0.0),
+          .rate2 = T(0.0),
           .has_area = in[7]};
 }
 
