@@ -63,7 +63,8 @@ struct DruckerPrager {
     const T size = sqrt_of(T(0.5) * contract(deviator, deviator));
     const T tiny = T(round_off) * (size + abs_of(mean) + strength);
     const T excess = size + slope * mean - strength;
-    const auto shears = excess > tiny, yields = shears | (mean > cut + tiny);
+    const auto shears = excess > tiny;
+    const auto yields = shears | (mean > cut + tiny);
     if (!any_of(yields)) return {none, none, none, none, none, none};
     // the cone alone; past the cut-off: the ring where they meet, or the cut-off alone
     const T d = select(shears, excess / (elastic.mu + bulk * slope * flow_slope), none);
