@@ -59,6 +59,17 @@ def test_buoyancy_is_exact(shape, biot, more):
     np.testing.assert_allclose(water_on(sim), [0, 0, UNIT * 3], atol=1e-9 * UNIT)
 
 
+def test_pores_turn_with_the_rock():
+    """Turned by 50 degrees, every node of a cube full of pores is lifted by its eighth, and not pushed."""
+    sim = start([box("rock")], water={"reservoir": {"level": 10}}, rock={"biot": 1})
+    c, s = np.cos(np.radians(50)), np.sin(np.radians(50))
+    x = sim.fields["position"]
+    x[:] = x @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    sim.core.find_water()
+    force = sim.core.fields()["node.water"].reshape(-1, 4)[:, :3]
+    np.testing.assert_allclose(force, np.tile([0, 0, UNIT / 8], (8, 1)), atol=1e-9 * UNIT)
+
+
 @pytest.mark.parametrize("shape", ["hex8", "tet4"])
 def test_a_sunken_block_presses_less_on_its_bed(shape):
     """25,506 N dry, 15,696 N under water; the water in the joint below counts."""
