@@ -59,29 +59,40 @@ class Vertices {
     });
   }
   bool is_closed(Index f, Index k) const {
-    const Index place = s_.search.face_exposed.size() > 0 ? s_.search.face_exposed[w_.face[f]] : -1;
-    if (place >= 0 && s_.springs.target[4 * std::size_t(place) + k] >= 0) return true;
-    const InMotion nodes{s_.nodes.motion.data()};
-    const Vec3<Real> x = nodes.position(w_.nodes[std::size_t(k) * w_.stride + f]);
+    if (touches(w_.face[f], k)) return true;
+    const Vec3<Real> x = position(w_.nodes[std::size_t(k) * w_.stride + f]);
     const Range mates = pairs_of(f);
     for (Index c = mates.first; c < mates.last; ++c)
       if (is_near(x, w_.mate[c], w_.aperture[f])) return true;
     return false;
   }
+  /// Does a vertex of a face touch another one that the face lies on? A face that only stands on it
+  /// is outside the joint.
+  bool touches(Index face, Index k) const {
+    const Index place = s_.search.face_exposed.size() > 0 ? s_.search.face_exposed[face] : -1;
+    if (place < 0) return false;
+    const Index target = s_.springs.target[4 * std::size_t(place) + k];
+    constexpr Real opposite = -0.7;  // cosine between the normals
+    return target >= 0 && dot(normal(face), normal(s_.search.exposed_face[target])) < opposite;
+  }
   /// Is a place no farther than the aperture in front of a face, and over it?
   bool is_near(const Vec3<Real>& x, Index face, Real aperture) const {
     if (is_out(face)) return false;
-    const InMotion nodes{s_.nodes.motion.data()};
-    const Index count = vertex(face, 3) < 0 ? 3 : 4;
     Vec3<Real> middle{0, 0, 0};
-    for (Index k = 0; k < count; ++k) middle = middle + nodes.position(vertex(face, k));
-    middle = (1.0 / count) * middle;
-    const Vec3<Real> x0 = nodes.position(vertex(face, 0)), x1 = nodes.position(vertex(face, 1)),
-                     x2 = nodes.position(vertex(face, 2)),
-                     x3 = nodes.position(vertex(face, count - 1));
-    const Vec3<Real> n = unit(cross(x2 - x0, x3 - x1));
+    for (Index k = 0; k < count(face); ++k) middle = middle + position(vertex(face, k));
+    middle = (1.0 / count(face)) * middle;
+    const Vec3<Real> n = normal(face);
     const Real away = dot(n, x - middle);
-    return away < aperture && norm(x - middle - away * n) <= m_.face_reach[face];
+    const Real reach = m_.face_reach[face];  // behind it by more, it is beside another face
+    return away < aperture && away > -reach && norm(x - middle - away * n) <= reach;
+  }
+
+  Index count(Index face) const { return vertex(face, 3) < 0 ? 3 : 4; }
+  Vec3<Real> position(Index node) const { return InMotion{s_.nodes.motion.data()}.position(node); }
+  Vec3<Real> normal(Index face) const {
+    const Vec3<Real> x0 = position(vertex(face, 0)), x1 = position(vertex(face, 1)),
+                     x2 = position(vertex(face, 2)), x3 = position(vertex(face, count(face) - 1));
+    return unit(cross(x2 - x0, x3 - x1));
   }
 
   const Model& m_;

@@ -144,6 +144,30 @@ def test_when_water_enters_a_bonded_joint(wet, biot, force):
         assert water_on(sim, "top")[2] == pytest.approx(UNIT, rel=1e-3)
 
 
+def test_water_of_a_joint_stays_off_the_sides_of_a_block():
+    """The sides stand on the bed with their lower vertices: the water below pushes up, not sideways."""
+    blocks = [box("bed", [-1, -1, -1], [5, 5, 1]), box("top", size=[1, 1, 2])]
+    water = {"fields": [{"plane": {"point": [0, 0, 1.5], "dip": 20, "dip_direction": 90}}]}
+    sim = start(blocks, water=water, stages=[{"name": "a", "mode": "dynamic", "duration": 0.05}])
+    for _ in range(10):
+        sim.step(50)
+        force = water_on(sim, "top")
+        assert np.abs(force[:2]).max() < 1e-3 * force[2]
+
+
+def test_a_joint_that_slips_keeps_its_water():
+    """Walls of several faces: vertices that come over the neighbours of their mates stay wet."""
+    size, many = [4, 1, 1], [16, 4, 1]
+    blocks = [box("bed", [0, 0, -1], size, many, "tet4"), box("top", [0, 0, 0], size, many, "tet4")]
+    water = {"fields": [{"formula": "1000", "aperture": "1 cm"}]}
+    sim = start(blocks, water=water, loads={"gravity": [0, 0, -1e-3]},
+                stages=[{"name": "slip", "mode": "dynamic", "duration": 1}],
+                groups={"top": {"velocity": [1, 0, 0.01]}})  # fmt: skip
+    sim.run_until(0.1)  # by 0.4 of a face, and open by 1 mm
+    assert water_on(sim, "top")[2] == pytest.approx(4000, rel=0.05)
+    assert water_on(sim, "top")[2] == pytest.approx(-water_on(sim, "bed")[2], rel=0.05)
+
+
 def test_a_joint_that_opens_wide_loses_its_water():
     """Up to the aperture the joint's pressure holds, beyond it what stands in the open: nothing."""
     blocks = [box("bed", [0, 0, -1]), box("top")]

@@ -24,6 +24,8 @@ OPEN = 0.05
 """Joints keep their water up to this part of the length of a face."""
 SIDE = 1e-5
 """Points are looked at so far aside, in parts of the model."""
+FLUSH = 0.9
+"""Cosine between the normals of faces that make one wall of a joint."""
 KINDS = ("triangles", "quads", "overlaps")
 """Of pairs, in the order of the core."""
 Pressure = Callable[[Floats], Floats]
@@ -358,7 +360,7 @@ class _Faces:
         bonded: Whether the joint is wet while bonds hold.
         aperture: Up to which an open joint keeps its water [m].
         mate_of: Place of the face of each mate, ascending.
-        mate: Faces that lie on it at the start.
+        mate: Faces that lie on it at the start, then those beside them on the same wall.
         pair: Their pair: 3 times its number plus its kind; -1 where they are not paired.
     """
 
@@ -477,7 +479,47 @@ def _mates(
     touching = touching[~paired[touching[:, 0]]] if len(touching) else touching
     both = np.concatenate([*pairs, touching]).astype(np.intp)
     code = np.concatenate([*codes, np.full(len(touching), -1)]).astype(np.intp)
-    return both.T.ravel(), both[:, ::-1].T.ravel(), np.tile(code, 2)
+    face, mate, code = both.T.ravel(), both[:, ::-1].T.ravel(), np.tile(code, 2)
+    beside = _beside(t, face, mate)
+    return (
+        np.concatenate([face, beside[0]]),
+        np.concatenate([mate, beside[1]]),
+        np.concatenate([code, np.full(len(beside[0]), -1)]),
+    )
+
+
+def _beside(
+    t: Topology, face: NDArray[np.intp], mate: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Faces with the flush neighbours of their mates, over which they come when the joint slips."""
+    walls = np.unique(face)
+    nodes = t.face_nodes[walls]
+    used = nodes >= 0
+    owner = np.repeat(walls, used.sum(axis=1))
+    first, at_node = ragged(nodes[used].astype(np.int64), owner, len(t.node_position))
+    ends = t.face_nodes[mate]
+    of, corner = np.nonzero(ends >= 0)
+    node = ends[of, corner]
+    count = np.diff(first)[node]
+    place = np.repeat(np.cumsum(count) - count, count)
+    beside = at_node[np.repeat(first[:-1][node], count) + np.arange(count.sum()) - place]
+    of = np.repeat(of, count)
+    normal = _normals(t)
+    flush = (normal[beside] * normal[mate[of]]).sum(axis=1) > FLUSH
+    found = np.unique(np.stack([face[of[flush]], beside[flush]], axis=1), axis=0)
+    known = set(zip(face.tolist(), mate.tolist(), strict=True))
+    new = np.array([pair not in known for pair in map(tuple, found.tolist())], bool)
+    return found[new, 0], found[new, 1]
+
+
+def _normals(t: Topology) -> Floats:
+    """Unit normals of all faces, shape (faces, 3)."""
+    nodes = t.face_nodes
+    x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+    four = nodes[:, 3:] >= 0
+    across = np.where(four, x[:, 3] - x[:, 1], x[:, 2] - x[:, 1])
+    n = np.cross(np.where(four, x[:, 2] - x[:, 0], x[:, 1] - x[:, 0]), across)
+    return n / np.sqrt((n * n).sum(axis=1))[:, None]
 
 
 def _wet_set(
