@@ -384,6 +384,14 @@ CORE = [
         "tests/validation/test_water.py",
     ),
     Mutant(
+        "wet face",
+        "water of a joint on every face that stands on a wall",
+        "core/water/wet_faces.cpp",
+        "constexpr Real opposite = -0.7;",
+        "constexpr Real opposite = 2;",
+        "tests/validation/test_water.py",
+    ),
+    Mutant(
         "pores",
         "pores that ignore how the element has turned",
         "core/water/pressure.hpp",
