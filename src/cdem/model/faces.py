@@ -36,5 +36,16 @@ def face_heights(t: Topology, volume: Floats, area: Floats) -> Floats:
 
 def face_areas(position: Floats, face_nodes: NDArray) -> Floats:
     """Area of triangles and (mean-plane) quadrilaterals [m2], shape (faces,)."""
+    return 0.5 * lengths(_doubled(position, face_nodes))
+
+
+def face_normals(position: Floats, face_nodes: NDArray) -> Floats:
+    """Outward unit normals of triangles and (mean-plane) quadrilaterals, shape (faces, 3)."""
+    doubled = _doubled(position, face_nodes)
+    return doubled / lengths(doubled)[:, None]
+
+
+def _doubled(position: Floats, face_nodes: NDArray) -> Floats:
+    """Vectors along the normals, twice as long as the areas [m2], shape (faces, 3)."""
     x = position[np.where(face_nodes < 0, face_nodes[:, 2:3], face_nodes)]
-    return 0.5 * lengths(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]))
+    return np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cdem.case.case import Case
 from cdem.errors import CaseError
 from cdem.mesh.topology import Topology
+from cdem.model.faces import face_normals
 
 LOOKS_ALONG = 1e-3
 """Faces whose normal is within about 2.5 degrees of a wanted direction look along it."""
@@ -68,10 +69,7 @@ def select_faces(
     free = topology.face_group == names.index(surface.group)
     free[topology.pair_faces.ravel()] = False  # what touches another block is inside the rock
     faces = np.flatnonzero(free)
-    nodes = topology.face_nodes[faces]
-    x = topology.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
-    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    normal = face_normals(topology.node_position, topology.face_nodes[faces])
     wanted = np.asarray(surface.normal, float)
     faces = faces[normal @ (wanted / np.linalg.norm(wanted)) > 1 - LOOKS_ALONG]
     if len(faces) == 0:

@@ -17,6 +17,7 @@ from cdem.errors import CaseError
 from cdem.mesh import element_shapes
 from cdem.mesh.topology import Topology
 from cdem.model.curves import Curves, add_curve
+from cdem.model.faces import face_normals
 from cdem.model.flat_arrays import Assembly, Floats, ragged, table
 from cdem.model.overburden import weight_above
 
@@ -504,22 +505,12 @@ def _beside(
     place = np.repeat(np.cumsum(count) - count, count)
     beside = at_node[np.repeat(first[:-1][node], count) + np.arange(count.sum()) - place]
     of = np.repeat(of, count)
-    normal = _normals(t)
+    normal = face_normals(t.node_position, t.face_nodes)
     flush = (normal[beside] * normal[mate[of]]).sum(axis=1) > FLUSH
     found = np.unique(np.stack([face[of[flush]], beside[flush]], axis=1), axis=0)
-    known = set(zip(face.tolist(), mate.tolist(), strict=True))
-    new = np.array([pair not in known for pair in map(tuple, found.tolist())], bool)
+    faces = len(t.face_nodes)
+    new = ~np.isin(found @ [faces, 1], face * faces + mate)
     return found[new, 0], found[new, 1]
-
-
-def _normals(t: Topology) -> Floats:
-    """Unit normals of all faces, shape (faces, 3)."""
-    nodes = t.face_nodes
-    x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
-    four = nodes[:, 3:] >= 0
-    across = np.where(four, x[:, 3] - x[:, 1], x[:, 2] - x[:, 1])
-    n = np.cross(np.where(four, x[:, 2] - x[:, 0], x[:, 1] - x[:, 0]), across)
-    return n / np.sqrt((n * n).sum(axis=1))[:, None]
 
 
 def _wet_set(
