@@ -14,7 +14,7 @@ STRENGTH = 2e6 * np.sqrt(N)
 
 
 @pytest.mark.parametrize(("path", "axial", "to", "within"), [
-    ("uniaxial", -STRENGTH, 3e-3, 2e-3), ("triaxial 5 MPa", -N * 5e6 - STRENGTH, 3e-3, 2e-3),
+    ("uniaxial", -STRENGTH, 3e-3, 1e-3), ("triaxial 5 MPa", -N * 5e6 - STRENGTH, 3e-3, 2e-4),
     ("extension 5 MPa", -(5e6 - STRENGTH) / N, 1e-3, 1e-2),  # strain times the pressure counts
 ])  # fmt: skip
 def test_strength_of_a_cube(path, axial, to, within):
@@ -30,7 +30,7 @@ def test_oedometer_of_an_elastic_cube():
     """ds / de = lambda + 2 mu = 12 GPa of E = 10 GPa, nu = 0.25."""
     curve = lead_law("elastic", "oedometer", to=1e-3)
     slope = np.polyfit(curve.rows[20:, 0], curve.rows[20:, 1], 1)[0]
-    assert slope == pytest.approx(12e9, rel=2e-3)
+    assert slope == pytest.approx(12e9, rel=1e-13)
     np.testing.assert_allclose(curve.rows[:, 3], curve.rows[:, 0], atol=1e-9)
 
 
@@ -52,9 +52,9 @@ def test_a_joint_is_sheared_and_opened():
     curve = lead_law("slip-weakening", "shear 1 MPa",
                      ["friction_angle=45", "residual_friction_angle=30", "slip_distance=1 mm"],
                      to=2e-3)  # fmt: skip
-    assert curve.rows[:, 1].max() == pytest.approx(1e6, rel=0.05)
-    assert curve.rows[-1, 1] == pytest.approx(np.tan(np.radians(30)) * 1e6, rel=2e-3)
-    assert curve.rows[-1, 2] == pytest.approx(-1e6, rel=2e-3)
+    assert curve.rows[:, 1].max() == pytest.approx(1e6, rel=3e-3)
+    assert curve.rows[-1, 1] == pytest.approx(np.tan(np.radians(30)) * 1e6, rel=2e-6)
+    assert curve.rows[-1, 2] == pytest.approx(-1e6, rel=1e-8)
     soft = ["friction_angle=30", "tensile_strength=3e6", "cohesion=6e6", "fracture_energy_1=100",
             "fracture_energy_2=300", "stiffness_n=3e12", "stiffness_s=2e12"]  # fmt: skip
     curve = lead_law("softening", "opening", soft, to=1e-4)
