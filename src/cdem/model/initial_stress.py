@@ -20,7 +20,7 @@ from cdem.mesh.topology import Topology
 from cdem.model.curves import constant
 from cdem.model.options import pairs_loose_joints
 from cdem.model.overburden import weight_above
-from cdem.model.water import WaterTables
+from cdem.model.water_fields import WaterTables
 
 Floats = NDArray[np.float64]
 
