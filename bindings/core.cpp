@@ -21,6 +21,7 @@
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
+#include "core/run/bring_in.hpp"
 #include "core/run/change_bolts.hpp"
 #include "core/run/excavate.hpp"
 #include "core/run/run.hpp"
@@ -171,6 +172,16 @@ void take_nodes(Core& c, Array<Flag> leaves) {
   leave(c.model, c.state, leaves.data());
 }
 
+/// Bring whole blocks in, given by a flag for each node, with arrays of the model that go with it.
+void bring_nodes_in(Core& c, Array<Flag> comes, Array<Real> position, const nb::dict& arrays,
+                    Array<Flag> bonded) {
+  if (comes.ndim() != 1 || comes.shape(0) != std::size_t(c.model.node_count))
+    throw nb::value_error("one flag for each node");
+  place_nodes(c.state, comes.data(), position.data());
+  update_model(c, arrays);
+  bring_in(c.model, c.state, comes.data(), bonded.data());
+}
+
 /// Install or remove bolts, given by a flag for each.
 template <auto change>
 void take_bolts(Core& c, Array<Flag> which) {
@@ -274,6 +285,7 @@ void bind_run(nb::class_<Core>& core) {
            "check_interval"_a = 20, "relaxation"_a = "none")
       .def("take_out", &take_nodes<take_out>, "leaves"_a)
       .def("excavate", &take_nodes<excavate>, "leaves"_a)
+      .def("bring_in", &bring_nodes_in, "comes"_a, "position"_a, "arrays"_a, "bonded"_a)
       .def("install_bolts", &take_bolts<install_bolts>, "which"_a)
       .def("remove_bolts", &take_bolts<remove_bolts>, "which"_a)
       .def(

@@ -329,7 +329,11 @@ struct OverlapBonds {
 
   /// Jump of displacement at a bond point that strains its spring  [m].
   CDEM_HD Vec3<Real> jump_at(Index a, Index b, const Frame<Real>& frame, Index c) const {
-    return pairs.past_rest(One{c}, 0, 1, frame, at(b, weights_b, c) - at(a, weights_a, c));
+    return pairs.past_rest(One{c}, 0, 1, frame, distance(a, b, c));
+  }
+  /// x_b - x_a at a bond point  [m].
+  CDEM_HD Vec3<Real> distance(Index a, Index b, Index c) const {
+    return at(b, weights_b, c) - at(a, weights_a, c);
   }
   CDEM_HD Vec3<Real> position(Index a, Index c) const { return at(a, weights_a, c); }
   CDEM_HD Frame<Real> frame_of(Index a, Index b) const {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
+#include "core/bonds/transfer_to_contact.hpp"
 #include "core/bonds/views.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/model/init_state.hpp"
 
 namespace cdem {
 
@@ -13,6 +15,7 @@ namespace {
 /// A bond point, with the frame and the spring of its pair.
 struct Point {
   BondPlace at;
+  Vec3<Real> jump;  // past nothing
   Frame<Real> frame;
   BondSpring<Real> spring;
   Index pair, interface;
@@ -37,8 +40,10 @@ void visit_points(PairKind<ConformingBonds<count>>, const Model& m, State& s, co
     bonds.gather_vertices(One{i}, mean, jump);
     const Frame<Real> frame = pair_frame<count>(mean);
     move_inside<count>(place_of_stress, mean);
+    move_inside<count>(bonds.indentation, jump);
     for (Index k = 0; k < count; ++k)
       visit(Point{.at = {mean[k], {p.faces[2 * i], p.faces[2 * i + 1]}},
+                  .jump = jump[k],
                   .frame = frame,
                   .spring = bonds.spring(One{i}),
                   .pair = i,
@@ -56,6 +61,7 @@ void visit_points(PairKind<OverlapBonds>, const Model& m, State& s, const PairSe
     const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
     for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
       visit(Point{.at = {bonds.position(a, c), {a, b}},
+                  .jump = bonds.distance(a, b, c),
                   .frame = bonds.frame_of(a, b),
                   .spring = bonds.pairs.spring(One{i}, p.point_area[c]),
                   .pair = i,
@@ -132,6 +138,46 @@ CutTractions set_initial_tractions(Model& m, State& s, const Real* stress, const
   m.rules.lifted += fewer * 2 * lift - m.initial_lift;
   m.initial_lift = fewer * 2 * lift;
   return cut;
+}
+
+namespace {
+
+/// Pairs of a set that are bonded again.
+std::vector<Flag> pairs_to_bond(const Model& m, const State& s, const PairSet& p, const Flag* comes) {
+  std::vector<Flag> some(p.count);
+  for (Index i = 0; i < p.count; ++i) {
+    const Index a = m.face_nodes[4 * p.faces[2 * i]], b = m.face_nodes[4 * p.faces[2 * i + 1]];
+    some[i] = (comes[a] || comes[b]) && !s.nodes.out[a] && !s.nodes.out[b];
+  }
+  return some;
+}
+
+}  // namespace
+
+void bond_again(Model& m, State& s, const Flag* comes, const Flag* bonded) {
+  constexpr Real near = 0.1;  // parts of the pair's length
+  for_each_pair_set(m, s, [&](auto kind, const PairSet& p, PairState& ps) {
+    std::vector<Flag> some = pairs_to_bond(m, s, p, comes);
+    visit_points(kind, m, s, p, ps, [&](const Point& point) {
+      if (norm(point.jump) > near * pair_length(m, p, point.pair)) some[point.pair] = 0;
+    });
+    visit_points(kind, m, s, p, ps, [&](const Point& point) {
+      if (!some[point.pair]) return;
+      const Vec3<Real> axes[] = {point.frame.n, point.frame.t1, point.frame.t2};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        ps.rest[point.place + axis * point.row] = dot(point.jump, axes[axis]);
+      ps.bond[point.place] = bonded[point.interface] ? 1 : 0;
+      ps.slip1[point.place] = ps.slip2[point.place] = 0;
+      if (ps.rise.size() > 0) ps.rise[point.place] = 0;
+      begin_history(m, p, ps, point.pair, point.place);
+    });
+    for (Index i = 0; i < p.count; ++i) {
+      if (!some[i]) continue;
+      ps.status[i] = Flag(PairStatus::bonded);
+      ps.jump[i] = 0;
+      ps.jump_at_break[i] = -1;
+    }
+  });
 }
 
 }  // namespace cdem

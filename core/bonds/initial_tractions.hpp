@@ -35,4 +35,8 @@ struct CutTractions {
 CutTractions set_initial_tractions(Model& model, State& state, const Real* stress,
                                    const Flag* bonded);
 
+/// Bond the pairs again of which a side comes in, given by a flag for each node, and none is out:
+/// their springs are free where they are. Those whose faces are not at each other stay released.
+void bond_again(Model& model, State& state, const Flag* comes, const Flag* bonded);
+
 }  // namespace cdem

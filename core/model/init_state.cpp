@@ -32,23 +32,15 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
   if (keeps_stress) es.point_stress.resize(6 * std::size_t(e.points) * row);
 }
 
-/// History of the bond points as their laws say of an intact bond.
 void init_histories(const Model& m, const PairSet& p, PairState& s) {
-  const std::size_t points = std::size_t(p.points) * p.point_stride;
   if (!interface_table(m).remembers) return;
-  s.history.resize(InterfaceLaws::most_state * points);
-  InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-    const auto begin = [&](Index i, std::size_t point) {
-      if (m.interfaces[p.interface[i]].law != number) return;
-      for (std::size_t k = 0; k < Law<Real>::state.size(); ++k)
-        s.history[k * points + point] = Law<Real>::state[k].intact;
-    };
-    for (Index i = 0; i < p.count; ++i)
-      if (!conforms(p))
-        for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c) begin(i, c);
-      else
-        for (Index k = 0; k < p.points; ++k) begin(i, std::size_t(k) * p.point_stride + i);
-  });
+  s.history.resize(InterfaceLaws::most_state * std::size_t(p.points) * p.point_stride);
+  for (Index i = 0; i < p.count; ++i)
+    if (!conforms(p))
+      for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c) begin_history(m, p, s, i, c);
+    else
+      for (Index k = 0; k < p.points; ++k)
+        begin_history(m, p, s, i, std::size_t(k) * p.point_stride + i);
 }
 
 void size(const Model& m, const PairSet& p, PairState& s) {
@@ -84,6 +76,16 @@ void size(const Model&, const BoltSet& b, BoltState& s) {
 }
 
 }  // namespace
+
+void begin_history(const Model& m, const PairSet& p, PairState& s, Index i, std::size_t point) {
+  if (s.history.size() == 0) return;
+  const std::size_t points = std::size_t(p.points) * p.point_stride;
+  InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+    if (m.interfaces[p.interface[i]].law != number) return;
+    for (std::size_t k = 0; k < Law<Real>::state.size(); ++k)
+      s.history[k * points + point] = Law<Real>::state[k].intact;
+  });
+}
 
 void make_room_for_rises(const Model& m, State& s) {
   if (!(m.rules.lifted > m.initial_lift)) return;  // no interface dilates

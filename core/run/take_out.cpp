@@ -15,13 +15,6 @@ namespace cdem {
 
 namespace {
 
-/// Energy that counts as stored  [J].
-Real stored_energy(const Model& m, const State& s) {
-  const Energies e = energies(m, s);
-  return e.terms[energy_term("kinetic")] + e.terms[energy_term("strain")] +
-         e.terms[energy_term("contact")];
-}
-
 /// Row of a support that holds a node in all directions.
 Index holding_support(Model& m) {
   const Index count = Index(m.support_component.size() / 3);
@@ -98,10 +91,15 @@ void relieve(State& s, const BoltSet& b, BoltState& bs, Index bolt) {
   cut_bolt(b, s.nodes.out.data(), bs, bolt);
 }
 
-/// Hide the faces of blocks that are out; what their contacts have lost stays in the ledger.
-void hide_faces(const Model& m, State& s) {
-  std::vector<Flag> hidden(m.face_count);
-  for (Index f = 0; f < m.face_count; ++f) hidden[f] = s.nodes.out[m.face_nodes[4 * f]];
+}  // namespace
+
+Real stored_energy(const Model& m, const State& s) {
+  const Energies e = energies(m, s);
+  return e.terms[energy_term("kinetic")] + e.terms[energy_term("strain")] +
+         e.terms[energy_term("contact")];
+}
+
+void hide_faces(State& s, const std::vector<Flag>& hidden) {
   for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
     if (!hidden[s.search.exposed_face[x]]) continue;
     s.taken_out_friction += s.edges.friction[x];
@@ -113,8 +111,6 @@ void hide_faces(const Model& m, State& s) {
   }
   hide(s, hidden);
 }
-
-}  // namespace
 
 void take_out(Model& m, State& s, const Flag* leaves) {
   const Real before = stored_energy(m, s);
@@ -128,7 +124,9 @@ void take_out(Model& m, State& s, const Flag* leaves) {
     for (Index i = 0; i < set.count; ++i)
       if (is_out(m, s, set, i)) relieve(s, set, state, i);
   });
-  hide_faces(m, s);
+  std::vector<Flag> hidden(m.face_count);
+  for (Index f = 0; f < m.face_count; ++f) hidden[f] = s.nodes.out[m.face_nodes[4 * f]];
+  hide_faces(s, hidden);
   sort_exposed(s);
   s.taken_out += before - stored_energy(m, s);
   hold_taken_out(m, s);

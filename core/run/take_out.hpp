@@ -1,5 +1,7 @@
-// take_out.hpp - blocks that leave the computation for good. Host code.
+// take_out.hpp - blocks that leave the computation. Host code.
 #pragma once
+
+#include <vector>
 
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
@@ -14,5 +16,11 @@ void take_out(Model& model, State& state, const Flag* leaves);
 
 /// Hold what has been taken out, after Python has handed over arrays of the model.
 void hold_taken_out(Model& model, const State& state);
+
+/// Hide faces, given by a flag for each; what their contacts have lost stays in the ledger.
+void hide_faces(State& state, const std::vector<Flag>& hidden);
+
+/// Energy that counts as stored  [J].
+Real stored_energy(const Model& model, const State& state);
 
 }  // namespace cdem

@@ -11,7 +11,7 @@ from typing import Any
 from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, block_contradiction
 from cdem.case.plausible import doubts
-from cdem.case.schema import CaseParts
+from cdem.case.schema import CaseParts, Stage
 from cdem.case.softening import softening_problems
 from cdem.errors import CaseError
 
@@ -23,7 +23,7 @@ SETTABLE = (
     "materials.",
     "water.",
 )  # another mesh or material is another model
-AT_START = ("material", "velocity", "angular_velocity")  # of a group
+AT_START = ("velocity", "angular_velocity")  # of a group
 STRENGTHS = {p.name for law in BLOCK_LAWS.values() for p in law.parameters if p.is_strength}
 """What a stage may change of a material."""
 
@@ -113,15 +113,12 @@ def _groups(case: CaseParts) -> Iterator[Problem]:
 
 
 def _excavation(case: CaseParts) -> Iterator[Problem]:
-    dug: dict[str, str] = {}
+    dug = False
     let_go = 1.0
     for i, stage in enumerate(case.stages):
         if stage.remove:
-            let_go = 0.0
-        for k, name in enumerate(stage.remove):
-            if name in dug:
-                yield ("stages", i, "remove", k), f"{name} was dug out in the stage {dug[name]!r}"
-            dug[name] = stage.name
+            dug, let_go = True, 0.0
+        yield from _presence(case, i)
         if stage.remove and i == 0:
             yield (
                 ("stages", 0, "remove"),
@@ -137,6 +134,26 @@ def _excavation(case: CaseParts) -> Iterator[Problem]:
             )
         if stage.remove or stage.release:
             let_go = stage.release.to if stage.release else 1.0
+
+
+def _presence(case: CaseParts, number: int) -> Iterator[Problem]:
+    """Whether what a stage removes is there, and what it adds is not."""
+    stage, before = case.stages[number], case.stages[:number]
+    gone = set(case.absent(number))
+    for key, names in (("remove", stage.remove), ("add", stage.add)):
+        for k, name in enumerate(names):
+            past = [s.name for s in before if name in s.remove or name in s.add]
+            if name in names[:k] or (key == "add" and name in stage.remove):
+                yield ("stages", number, key, k), f"the stage names {name} twice"
+            elif key == "remove" and name in gone and past:
+                yield ("stages", number, key, k), f"{name} was dug out in the stage {past[-1]!r}"
+            elif key == "remove" and name in gone:
+                why = f"{name} is not there yet: a later stage adds it"
+                yield ("stages", number, key, k), why
+            elif key == "add" and name not in gone:
+                yield ("stages", number, key, k), f"{name} is there since the stage {past[-1]!r}"
+    if stage.add and number == 0:
+        yield ("stages", 0, "add"), "leave it out: what is in no add is there from the start"
 
 
 def _bolts(case: CaseParts) -> Iterator[Problem]:
@@ -235,8 +252,9 @@ def _listed_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]
         for k, name in enumerate(field.groups or []):
             yield ("water", "fields", i, "groups", k), name
     for i, stage in enumerate(case.stages):
-        for k, name in enumerate(stage.remove):
-            yield ("stages", i, "remove", k), name
+        for key in ("remove", "add"):
+            for k, name in enumerate(getattr(stage, key)):
+                yield ("stages", i, key, k), name
 
 
 def _unique_names(case: CaseParts) -> Iterator[Problem]:
@@ -275,7 +293,7 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
     return rest
 
 
-def _fixed_at_the_start(path: str, value: Any) -> str:
+def _fixed_at_the_start(trial: CaseParts, stage: Stage, path: str, value: Any) -> str:
     """Which entry a setting would change that only the start of a run knows, or ""."""
     part, *keys = path.split(".")
     if part == "interfaces":
@@ -286,7 +304,17 @@ def _fixed_at_the_start(path: str, value: Any) -> str:
         found = [key for key in changed if key not in STRENGTHS]
     else:
         found = [key for key in changed if part == "groups" and key in AT_START]
+        if part == "groups" and "material" in changed:
+            new = value["material"] if whole else value
+            found += ["material"] * (not _may_change_material(trial, stage, keys[0], new))
     return f"'{found[0]}' of a {part.removesuffix('s')}" if found else ""
+
+
+def _may_change_material(trial: CaseParts, stage: Stage, group: str, material: Any) -> bool:
+    """Whether a group is filled with another material: of the same law, and when it comes in."""
+    laws = [trial.materials[name].law for name in (trial.groups[group].material, material)
+            if name in trial.materials] if group in trial.groups else []  # fmt: skip
+    return group in stage.add and len(set(laws)) == 1
 
 
 def stage_settings(
@@ -313,8 +341,11 @@ def stage_settings(
                 allowed = ", ".join(f"{start}*" for start in SETTABLE)
                 problems.append((keys, f"a stage can change {allowed} only"))
                 continue
-            if fixed := _fixed_at_the_start(path, value):
-                problems.append((keys, f"{fixed} holds from the start and cannot change"))
+            if fixed := _fixed_at_the_start(trial, stage, path, value):
+                hint = ""
+                if fixed == "'material' of a group":
+                    hint = ", unless the stage adds the group and both have the same law"
+                problems.append((keys, f"{fixed} holds from the start and cannot change{hint}"))
                 continue
             try:
                 put(path, value)

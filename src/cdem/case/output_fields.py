@@ -92,6 +92,10 @@ OUTPUT_FIELDS = [
         "broken", "1 where all bonds of the face are broken, 0 on the outside", "", "faces",
         frames="never", surface="always", colors=None,
     ),
+    OutputField(
+        "water_pressure", "Pressure of the water on the face, mean of its vertices", "Pa", "faces",
+        frames="never", surface="always", colors="amount",
+    ),
 ]  # fmt: skip
 YIELDED = OutputField(
     "yielded", "What flows in the element now and what ever has, the sum of 1 shear now, 2 tension now, "

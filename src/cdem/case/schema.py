@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -143,6 +144,11 @@ class Stage(Part):
     )
     remove: list[Name] = Field(
         [], description="Groups that are dug out when the stage begins, and are no part of it"
+    )
+    add: list[Name] = Field(
+        [],
+        description="Groups that come in when the stage begins, free of stress and at rest: they are "
+        "no part of it before, or were dug out",
     )
     release: Release | None = Field(
         None,
@@ -321,6 +327,22 @@ class HistoryPoint(Part):
         return self
 
 
+def absent_groups(changes: Sequence[tuple[list[str], list[str]]], begun: int) -> list[str]:
+    """Groups that are no part of a model once so many of its stages have begun, sorted.
+
+    Args:
+        changes: What each stage removes and adds.
+        begun: Number of stages.
+    """
+    first: dict[str, bool] = {}  # whether a stage adds it before any removes it
+    for removes, adds in changes:
+        first |= {name: name in adds for name in [*removes, *adds] if name not in first}
+    gone = {name for name, added in first.items() if added}
+    for removes, adds in changes[:begun]:
+        gone = (gone | set(removes)) - set(adds)
+    return sorted(gone)
+
+
 class CaseParts(Part):
     """All parts of a case."""
 
@@ -350,6 +372,10 @@ class CaseParts(Part):
         for stage in self.stages:
             stage.complete(self.cdem)
         return self
+
+    def absent(self, begun: int) -> list[str]:
+        """Groups that are no part of the model once so many stages have begun, in any order."""
+        return absent_groups([(stage.remove, stage.add) for stage in self.stages], begun)
 
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:

@@ -89,6 +89,15 @@ class Audit:
             }
         return out
 
+    @property
+    def absent(self) -> dict[str, str]:
+        """Groups that are not there at the start, and the stages that add them first."""
+        case = self._build.case
+        return {
+            name: next(stage.name for stage in case.stages if name in stage.add)
+            for name in case.absent(0)
+        }
+
     def _compensation(self) -> dict[str, dict[str, Any]]:
         b, out = self._build, {}
         for name, made_up in b.compensation.items():
@@ -144,7 +153,9 @@ class Audit:
             exposed[_pairs_of(sources, core["outer.faces_acting_on"])],
         ]
         joined = np.concatenate([t.face_block[np.concatenate(pairs)], b.bolts.joined_blocks()])
-        held = np.zeros(len(t.block_group), bool)
+        out = np.isin(t.block_group, [b.group_names.index(name) for name in b.case.absent(0)])
+        joined = joined[~out[joined].any(axis=1)]
+        held = out.copy()  # what a later stage adds needs nothing before
         held[t.node_block[b.arrays["support.row"][: len(t.node_block)] >= 0]] = True
         while True:  # as many rounds as blocks lie one behind another
             reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
@@ -236,6 +247,7 @@ class Audit:
         return {
             "counts": self.counts,
             "groups": self.groups,
+            "absent": self.absent,
             "interfaces": self.interfaces,
             "compensation": self.compensation,
             "contacts": self.contacts,
@@ -262,6 +274,7 @@ class Audit:
                 f"  {name:<18}{g['blocks']:>9,}{g['elements']:>10,}{g['volume']:>14.6g}"
                 f"{g['mass']:>14.6g}"
             )
+        lines += [f"  not there before the stage {at!r}: {n}" for n, at in self.absent.items()]
         flow = {name: g for name, g in self.groups.items() if BLOCK_LAWS[g["law"]].flows}
         lines += [""] * bool(flow)
         lines += [f"  {n}: {g['elements']:,} elements of law {g['law']}" for n, g in flow.items()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,6 +18,7 @@ from cdem.case.laws import BLOCK_LAWS
 from cdem.case.schema import Material
 from cdem.case.softening import tables_of
 from cdem.errors import CaseError
+from cdem.mesh import element_shapes
 from cdem.mesh.blocks import build_topology, snap_mates
 from cdem.mesh.extent import check_extent
 from cdem.mesh.mesh import Mesh
@@ -109,6 +111,11 @@ class Build:
     def group_names(self) -> list[str]:
         """Names of the groups, by index."""
         return self.mesh.group_names
+
+    def compensate_again(self, names: Iterable[str]) -> None:
+        """Make up for the bonds of groups anew whose material a stage has changed."""
+        groups = [self.group_names.index(name) for name in names if name in self.compensation]
+        self.compensation |= compensate(self.case, self.topology, self.group_names, groups)
 
     def node_groups(self) -> NDArray[np.int32]:
         """Group of each node's block, shape (nodes,)."""
@@ -278,10 +285,24 @@ def _law_row(material: Material) -> list[float]:
     return native.material_numbers(material.law, numbers, tables_of(material))
 
 
-def change(built: Build) -> dict[str, NDArray]:
+KEPT = ("support.", "load.", "water.", "wet_", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
+        "material.parameters")  # fmt: skip
+"""Arrays of the core, or how their names begin, that a stage may change."""
+OF_PLACES = ("material.", *(f"{shape}.{key}" for shape in element_shapes.NODES for key in (
+    "material", "gradient", "volume", "hourglass")),
+    *(f"{kind}.area" for kind in ("triangles", "quads", "overlaps")),
+    *(f"face.{key}" for key in ("length", "reach", "area", "height", "stiffness", "radius")))  # fmt: skip
+"""Those that change besides when groups come in, which are free of stress where they lie then."""
+
+
+def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
     """Arrays of the core that follow from the parts of a case that a stage may change.
 
     Supports change the inverse mass matrices of small blocks, so those are made again too.
+
+    Args:
+        built: The model; its case as it is now.
+        places: With those that follow from where nodes of groups lie that have come in.
     """
     case, names = built.case, built.group_names
     laws, interface_of = interfaces_of(case, names)
@@ -310,6 +331,5 @@ def change(built: Build) -> dict[str, NDArray]:
                 f"{case.where('water')}: a stage cannot change which joints and faces may be wet at all; "
                 "begin with wet: always or broken, and a level that is too low"
             )
-    kept = ("support.", "load.", "water.", "wet_", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
-            "material.parameters")  # fmt: skip
+    kept = KEPT + (OF_PLACES if places else ())
     return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}

@@ -89,6 +89,7 @@ def set_initial_stress(
         joint = field.water.in_wet_joints(core.model(), points, faces[:, 0])
         pores = 0.5 * sum(field.in_pores(points, group[:, side]) for side in (0, 1))
         stress[:, :3] += (joint - pores)[:, None]
+    stress[field.absent[group].any(axis=1)] = 0
     cut, most, face = core.set_initial_tractions(stress, bonded)
     nodes = t.face_nodes[face] if face >= 0 else None
     at = None if nodes is None else t.node_position[nodes[nodes >= 0]].mean(axis=0).tolist()
@@ -113,8 +114,9 @@ def _set_elements(t: Topology, field: _Field, core: Any) -> tuple[list[float], l
             ]
         count = places.shape[1]
         stress = field.at(places.reshape(-1, 3), np.repeat(group, count))
-        low = np.minimum(low, stress[:, :3].min(axis=0))
-        high = np.maximum(high, stress[:, :3].max(axis=0))
+        there = stress[~field.absent[np.repeat(group, count)], :3]
+        low = np.minimum(low, there.min(axis=0, initial=np.inf))
+        high = np.maximum(high, there.max(axis=0, initial=-np.inf))
         first, mu = np.repeat(lame[group], count), np.repeat(shear[group], count)
         strain = stress / (2 * mu)[:, None]
         strain[:, :3] -= (first / (2 * mu * (3 * first + 2 * mu)) * stress[:, :3].sum(axis=1))[
@@ -132,11 +134,15 @@ class _Field:
         case: With entries of `initial_stress`.
         t: Blocks and faces.
         names: Of the groups.
+
+    Attributes:
+        absent: Groups that a later stage adds, which are free of stress, shape (groups,).
     """
 
     def __init__(self, case: Case, t: Topology, names: list[str]) -> None:
         self._case, self._t, self._names = case, t, names
         self.water = None if case.water is None else WaterTables(case, t, names, constant())
+        self.absent = np.isin(names, case.absent(0))
         self._pulls: dict[int, bool] = {}
         for i, entry in enumerate(case.initial_stress):
             if entry.vertical:
@@ -147,7 +153,7 @@ class _Field:
         """Stress xx yy zz xy yz zx of points of these groups [Pa], shape (points, 6)."""
         found = np.zeros((len(points), 6))
         for i, entry in enumerate(self._case.initial_stress):
-            some = np.ones(len(points), bool)
+            some = ~self.absent[group]
             if entry.groups is not None:
                 some &= np.isin(group, [self._names.index(name) for name in entry.groups])
             if entry.box is not None:
@@ -186,7 +192,7 @@ class _Field:
     def _overburden(
         self, entry: InitialStress, points: Floats, group: NDArray[np.integer]
     ) -> Floats:
-        density = np.array([m.density for m in self._materials])
+        density = np.where(self.absent, 0.0, [m.density for m in self._materials])
         mass, top = weight_above(self._t, density, points)
         if entry.surface != "top":
             ends = np.where(np.isfinite(top), np.maximum(top, points[:, 2]), points[:, 2])

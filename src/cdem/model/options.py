@@ -17,8 +17,9 @@ integrate a linear stress exactly (method of the theory page on bonds)."""
 
 def pairs_loose_joints(case: Case) -> bool:
     """Whether joints without strength begin as pairs that are broken: so they have the traction of
-    initial stress, and water knows all of their faces."""
-    return bool(case.initial_stress) or case.water is not None
+    initial stress, water knows all of their faces, and what a stage adds lies on what is there."""
+    adds = any(stage.add for stage in case.stages)
+    return bool(case.initial_stress) or case.water is not None or adds
 
 
 def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:

@@ -23,7 +23,7 @@ def weight_above(topology: Topology, density: Floats, points: Floats) -> tuple[F
 
     Args:
         topology: Blocks and their faces.
-        density: By group [kg/m3].
+        density: By group [kg/m3]; 0 where it is no part of the model.
         points: [m], shape (points, 3).
 
     Returns:
@@ -49,7 +49,7 @@ def weight_above(topology: Topology, density: Floats, points: Floats) -> tuple[F
 
 def _triangles(t: Topology, density: Floats) -> tuple[Floats, Floats]:
     """Triangles of faces that end the rock of one density, and their density with a sign."""
-    ends = np.ones(len(t.face_nodes), bool)
+    ends = density[t.face_group] > 0
     a, b = t.pair_faces.reshape(-1, 2).T
     same = density[t.face_group[a]] == density[t.face_group[b]]
     ends[t.pair_faces[same].ravel()] = False

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from cdem.model.build import Build
 
@@ -15,23 +19,12 @@ def wetted(build: Build) -> dict[str, Any] | None:
     """
     if build.case.water is None:
         return None
-    arrays, now = build.arrays, build.core.rebuilt()
-    rows = now["water.fields_now"].reshape(-1, 8)
+    arrays = build.arrays
     faces, area, most = 0, 0.0, 0.0
-    for kind, corners in (("triangles", 3), ("quads", 4)):
-        count = build.assembly.counts[f"wet_{kind}.count"]
-        if not count:
-            continue
-        nodes = arrays[f"wet_{kind}.nodes"].reshape(corners, -1)[:, :count]
-        row = rows[now[f"wet_{kind}.field"].reshape(corners, -1)[:, :count]]
-        kept = arrays[f"wet_{kind}.kept"].reshape(corners, -1)[:, :count]
-        at = build.start_position[nodes]
-        pressure = row[..., 5] * (
-            row[..., 0] + (row[..., 1:4] * at).sum(axis=-1) + row[..., 4] * kept
-        )
+    for face, pressure in face_pressures(build, build.start_position):
         wet = (pressure > 0).any(axis=0)
         faces += int(wet.sum())
-        area += float(arrays["face.area"][arrays[f"wet_{kind}.face"]][wet].sum())
+        area += float(arrays["face.area"][face][wet].sum())
         most = max(most, float(pressure.max(initial=0.0)))
     force = build.core.fields()["node.water"].reshape(-1, 4)[:, :3]
     free = arrays["support.row"][: len(force)] < 0
@@ -43,6 +36,31 @@ def wetted(build: Build) -> dict[str, Any] | None:
         "force_on_free_nodes": force[free].sum(axis=0).tolist(),
         "porous_groups": [n for n, b in zip(build.group_names, biot, strict=False) if b > 0],
     }
+
+
+def face_pressures(
+    build: Build, position: NDArray[np.float64]
+) -> Iterator[tuple[NDArray[np.int32], NDArray[np.float64]]]:
+    """Faces that may be wet, and the pressure of water at their vertices [Pa], shape (vertices, faces).
+
+    Args:
+        build: A model with water.
+        position: Of its nodes [m], shape (nodes, 3).
+    """
+    arrays, now = build.arrays, build.core.rebuilt()
+    rows = now["water.fields_now"].reshape(-1, 8)
+    for kind, corners in (("triangles", 3), ("quads", 4)):
+        count = build.assembly.counts[f"wet_{kind}.count"]
+        if not count:
+            continue
+        nodes = arrays[f"wet_{kind}.nodes"].reshape(corners, -1)[:, :count]
+        row = rows[now[f"wet_{kind}.field"].reshape(corners, -1)[:, :count]]
+        kept = arrays[f"wet_{kind}.kept"].reshape(corners, -1)[:, :count]
+        at = position[nodes]
+        pressure = row[..., 5] * (
+            row[..., 0] + (row[..., 1:4] * at).sum(axis=-1) + row[..., 4] * kept
+        )
+        yield arrays[f"wet_{kind}.face"][:count], np.maximum(pressure, 0.0)
 
 
 def water_text(water: dict[str, Any] | None) -> list[str]:

@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from cdem.case.case import Case
+from cdem.case.schema import absent_groups
 from cdem.errors import CaseError
 
 FILES = ("model.mesh", "model.blocks.*.file", "water.fields.*.surface", "water.fields.*.table")
@@ -66,6 +67,10 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
         begun: Stages that have begun.
     """
     found = Changes()
+    was, new = (_absent_at_the_start(case) for case in (then, now))
+    for name in sorted(was ^ new):
+        words = ("there from the start", "not there at the start")
+        found.refused.append((f"groups.{name}", words[name in was], words[name in new]))
     last = f"stages.{begun - 1}."
     for path, a, b in differences(then, now):
         later = path.startswith("stages.") and int(path.split(".")[1]) >= begun
@@ -79,6 +84,11 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
         allowed = later or path in FREE or end in ENDS
         (found.allowed if allowed else found.refused).append((path, a, b))
     return found
+
+
+def _absent_at_the_start(case: dict[str, Any]) -> set[str]:
+    stages = case["stages"]
+    return set(absent_groups([(stage["remove"], stage["add"]) for stage in stages], 0))
 
 
 def differences(then: Any, now: Any, path: str = "") -> Iterator[Difference]:

@@ -12,6 +12,7 @@ from cdem.case.laws import STATES
 from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
 from cdem.mesh.arrays import components
 from cdem.model.interfaces import bonded_pairs, interfaces_of
+from cdem.model.wetted import face_pressures
 from cdem.run.law_fields import state_of, yielded_of
 from cdem.run.state import RunState
 
@@ -64,8 +65,17 @@ def surface_of(
         | {
             "broken": broken.astype(np.int8),
             "joint": (t.face_kind // len(t.group_names))[faces],
-        },
+        }
+        | ({"water_pressure": _water_pressure(sim)[faces]} if sim.case.water else {}),
     )
+
+
+def _water_pressure(sim: RunState) -> NDArray[np.float64]:
+    """Pressure of water on each face, mean of its vertices [Pa]."""
+    pressure = np.zeros(len(sim.build.topology.face_nodes))
+    for face, at_vertices in face_pressures(sim.build, sim.motion[:, :3]):
+        pressure[face] = at_vertices.mean(axis=0)
+    return pressure
 
 
 @output_field("displacement")
@@ -139,7 +149,8 @@ def pieces_of(sim: RunState) -> NDArray[np.int32]:
     laws, interface = interfaces_of(sim.case, sim.build.group_names)
     faces, intact = bonds_of(sim)
     kinds = t.face_kind[faces]
-    holds = (intact > 0) & bonded_pairs(laws, interface)[kinds[:, 0], kinds[:, 1]]
+    holds = (intact > 0) & ~sim.out[t.face_block[faces]].any(axis=1)
+    holds &= bonded_pairs(laws, interface)[kinds[:, 0], kinds[:, 1]]
     a, b = t.face_block[faces[holds]].T
     piece = components(len(t.block_group), a, b)
     return piece[np.concatenate(list(t.element_block.values()))].astype(np.int32)
@@ -192,6 +203,7 @@ def visible_faces(sim: RunState) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
         pairs = b.assembly.counts[f"{kind}.count"]
         faces = b.assembly.pair_faces[kind]
         intact = state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].any(axis=0)
+        intact &= ~sim.out[b.topology.face_block[faces]].any(axis=1)
         glued[faces[intact].ravel()] = True
         bonded[faces.ravel()] = True
     shown = np.flatnonzero(~glued & ~sim.out[b.topology.face_block])

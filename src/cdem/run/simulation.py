@@ -17,6 +17,7 @@ from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.errors import CdemError, DiskError, UnstableError
 from cdem.model.audit import Audit
+from cdem.model.fill import nodes_of_groups
 from cdem.model.overlaps import adopt_overlaps
 from cdem.model.ruling_step import ruling_step
 from cdem.run import restored, stages
@@ -108,12 +109,20 @@ class Simulation(RunState):
             self._restore(force=force)
         else:
             self.core.prepare()
+            self._hold_back()
             self.overlap = adopt_overlaps(self.build)
         self.audit = Audit(self.build, self.overlap, self.threads)
         if strict:
             self.audit.refuse_warnings()
         if self.results and not resume:
             self.results.open(self)
+
+    def _hold_back(self) -> None:
+        """Leave out of the core what a later stage adds."""
+        if names := self.case.absent(0):
+            comes = nodes_of_groups(self.build.topology, names)
+            self.core.take_out(comes.astype(np.int8))
+            self.core.find_water()
 
     # ------------------------------------------------------------------ running
 
@@ -414,12 +423,14 @@ class Simulation(RunState):
         self.stage_index, self.stage = attributes.stage_index, attributes.stage
         self.ended_stage, self.finished_stages = attributes.ended_stage, attributes.finished_stages
         self.wall_time, self.departures = attributes.wall_time, attributes.departures
-        begun = self.stage_index + (self.stage is not None)
-        changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
+        changes = compare(attributes.case, self.given_case.model_dump(mode="json"), self.begun)
         self.results.notes += changes.check(self.case, force=force)
         stages.change_end(self, longer=changes.longer)
-        for done in range(self.stage_index + (self.stage is not None)):
+        for done in range(self.begun):
             stages.apply_settings(self, done)
+        added = {name for stage in self.case.stages[: self.begun] for name in stage.add}
+        if added:
+            self.core.update_model(stages.renewed(self, sorted(added)))
         self.core.prepare()
         if not self.is_over or self.results.ended(self) is None:
             self.results.reopen(self, attributes)
@@ -434,7 +445,7 @@ class Simulation(RunState):
                 "begin at other places or are numbered otherwise; resume with the case and the mesh "
                 "that were run"
             )
-        other = set(arrays) - {"simulation.reference"} | set(attributes.core)
+        other = set(arrays) - {f"simulation.{key}" for key in self.kept} | set(attributes.core)
         other ^= set(self.core.fields()) | set(self.core.scalars())
         if other or (attributes.version != __version__ and not force):
             fields = (
@@ -448,10 +459,12 @@ class Simulation(RunState):
 
     def _restore_core(self, path: Path, arrays: dict[str, NDArray], attributes: Attributes) -> None:
         """Hand the arrays of a checkpoint to the core, if it can work with them."""
-        self.reference = arrays.pop("simulation.reference")
-        fault = restored.wrong_type(self.core, arrays)
-        if self.reference.shape != self.build.start_position.shape:
-            fault = "simulation.reference has another shape"
+        shape, fault = self.build.start_position.shape, ""
+        for key in self.kept:
+            if (kept := arrays.pop(f"simulation.{key}")).shape != shape:
+                fault = f"simulation.{key} has another shape"
+            setattr(self, key, kept)
+        fault = fault or restored.wrong_type(self.core, arrays)
         fault = fault or restored.wrong_stage(attributes)
         if not fault:
             self.core.restore(arrays, attributes.core)

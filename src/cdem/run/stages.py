@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterable
 
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.laws import INTERFACE_LAWS
 from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
 from cdem.model.build import change
+from cdem.model.fill import folded, nodes_of_groups, places
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.stiffness import interface_entries
 from cdem.run.state import RunState, StageState
@@ -83,6 +88,8 @@ def begin(sim: RunState) -> StageState:
     change_bolts(sim, stage.name)
     sim.core.change_mass(is_lumped(stage))
     apply_settings(sim, index)
+    if stage.add:
+        fill(sim, stage.add)
     if sim.step_count:
         sim.core.renew_step()
     if stage.reset_displacement:
@@ -116,6 +123,35 @@ def excavate(sim: RunState, names: list[str]) -> None:
     t = sim.build.topology
     leave = np.isin(t.block_group, [sim.build.group_names.index(name) for name in names])
     sim.core.excavate(leave[t.node_block].astype(np.int8))
+
+
+def fill(sim: RunState, names: list[str]) -> None:
+    """Bring groups in, free of stress where they lie between the rock as it is now."""
+    b, t = sim.build, sim.build.topology
+    comes, out = nodes_of_groups(t, names), sim.core.fields()["node.out"] != 0
+    moved = sim.motion[:, :3] - b.start_position
+    lie = places(t, b.start_position, comes, ~out, moved)
+    if (node := folded(t, lie, comes)) >= 0:
+        group = b.group_names[t.block_group[t.node_block[node]]]
+        place = ", ".join(f"{x:.4g}" for x in b.start_position[node])
+        raise CaseError(
+            f"{sim.case.where(f'stages.{sim.stage_index}.add')}: stages.{sim.stage_index}.add: the rock "
+            f"around group {group} has moved so far that an element near ({place}) would be turned "
+            "inside out; add it earlier, or give it larger elements"
+        )
+    sim.born = np.where(comes[:, None], lie, sim.born)
+    sim.reference = np.where(comes[:, None], lie, sim.reference)
+    laws = interfaces_of(sim.case, b.group_names)[0]
+    bonded = np.array([INTERFACE_LAWS[law.law].bonds(law) for law in laws], np.int8)
+    sim.core.bring_in(comes.astype(np.int8), lie, renewed(sim, names), bonded)
+
+
+def renewed(sim: RunState, names: Iterable[str]) -> dict[str, NDArray]:
+    """Arrays of the core once groups have come in where they are free of stress."""
+    b = sim.build
+    b.topology.node_position = sim.born
+    b.compensate_again(names)
+    return change(b, places=True)
 
 
 def change_bolts(sim: RunState, stage: str) -> None:

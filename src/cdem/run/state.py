@@ -139,6 +139,8 @@ class RunState:
         ended_stage: The stage that ended last, as long as no other has begun.
         finished_stages: A row of the summary for each stage that has ended.
         reference: Positions from which displacements count [m], shape (nodes, 3).
+        born: Positions at which the rock is free of stress [m], those of the start but for groups
+            that have come in since, shape (nodes, 3).
         departures: The first block of each group that fell past the edge of the model, and that left
             its domain.
         wall_time: Wall time spent in stages [s].
@@ -158,7 +160,7 @@ class RunState:
         self.stage: StageState | None = None
         self.ended_stage: StageState | None = None
         self.finished_stages: list[dict[str, Any]] = []
-        self.reference = self.build.start_position
+        self.reference = self.born = self.build.start_position
         self.departures: list[Departure] = []
         self.wall_time = 0.0
 
@@ -313,7 +315,7 @@ class RunState:
         mass = np.add.reduceat(self.fields["mass"], t.block_first_node[:-1])
         lost = {}
         for index, name in enumerate(self.build.group_names):
-            if (these := out & (t.block_group == index)).any():
+            if name not in self.awaited and (these := out & (t.block_group == index)).any():
                 lost[name] = {
                     "blocks": int(these.sum()),
                     "mass": float(mass[these].sum()),
@@ -324,8 +326,19 @@ class RunState:
     @property
     def dug_out(self) -> list[str]:
         """Groups that stages so far have removed."""
-        begun = self.stage_index + (self.stage is not None)
-        return [name for stage in self.case.stages[:begun] for name in stage.remove]
+        stages = self.case.stages[: self.begun]
+        removed = {name for stage in stages for name in stage.remove}
+        return sorted(removed & set(self.case.absent(self.begun)))
+
+    @property
+    def awaited(self) -> list[str]:
+        """Groups that have not been there yet."""
+        return sorted(set(self.case.absent(self.begun)) - set(self.dug_out))
+
+    @property
+    def begun(self) -> int:
+        """How many stages have begun."""
+        return self.stage_index + (self.stage is not None)
 
     @property
     def energies(self) -> dict[str, float]:
@@ -346,6 +359,12 @@ class RunState:
         return sums
 
     # ------------------------------------------------------------------ keeping
+
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """Names of the arrays that a checkpoint keeps besides those of the core."""
+        adds = any(stage.add for stage in self.case.stages)
+        return ("reference", "born") if adds else ("reference",)
 
     def attributes(self, rows: int, frames: int) -> Attributes:
         """What a checkpoint keeps besides arrays, after so many rows of histories and frames."""
