@@ -43,6 +43,38 @@ PYTHON = [
         "tests/validation/test_excavation.py",
     ),
     Mutant(
+        "fill stays",
+        "what comes in lies where it lay at the start",
+        "src/cdem/model/fill.py",
+        "return np.where(comes[:, None], t.node_position + way, t.node_position)",
+        "return t.node_position",
+        "tests/validation/test_fill.py",
+    ),
+    Mutant(
+        "old rest",
+        "elements that come in are free of stress where they lay at the start",
+        "src/cdem/model/build.py",
+        "at_birth = replace(topology, node_position=born)",
+        "at_birth = replace(topology, node_position=topology.node_position)",
+        "tests/validation/test_fill.py",
+    ),
+    Mutant(
+        "absent weight",
+        "overburden counts what is not there yet",
+        "src/cdem/model/initial_stress.py",
+        "np.where(self.absent, 0.0, [m.density for m in self._materials])",
+        "np.array([m.density for m in self._materials])",
+        "tests/validation/test_fill.py",
+    ),
+    Mutant(
+        "hidden wall",
+        "walls of a hole in bonded rock are not drawn",
+        "src/cdem/run/fields.py",
+        "intact &= ~sim.out[b.topology.face_block[faces]].any(axis=1)",
+        "intact &= True",
+        "tests/validation/test_fill.py",
+    ),
+    Mutant(
         "azimuth",
         "the two horizontal stresses change places",
         "src/cdem/model/initial_stress.py",
@@ -351,8 +383,8 @@ PYTHON = [
         "rock stays strong",
         "a factor of safety does not reach the core's materials",
         "src/cdem/model/build.py",
-        '            "material.parameters")  # fmt: skip\n',
-        "            )\n",
+        '        "material.parameters")  # fmt: skip\n',
+        "        )\n",
         "tests/validation/test_mohr_coulomb.py::test_factor_of_safety_of_a_loaded_column",
     ),
     Mutant(
@@ -367,6 +399,22 @@ PYTHON = [
 """Faults in Python: nothing is built."""
 
 CORE = [
+    Mutant(
+        "loaded fill",
+        "bonds of what comes in take its way for a strain",
+        "core/bonds/initial_tractions.cpp",
+        "ps.rest[point.place + axis * point.row] = dot(point.jump, axes[axis]);",
+        "ps.rest[point.place + axis * point.row] = 0 * dot(point.jump, axes[axis]);",
+        "tests/core/run/test_bring_in.cpp",
+    ),
+    Mutant(
+        "bare walls",
+        "faces that fill covers can still be touched",
+        "core/run/bring_in.cpp",
+        "hidden[f] = !faces.bare[f];",
+        "hidden[f] = 0;",
+        "tests/core/run/test_bring_in.cpp",
+    ),
     Mutant(
         "clipped",
         "water that presses on all of a face of which a part is dry",

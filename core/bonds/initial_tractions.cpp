@@ -143,7 +143,8 @@ CutTractions set_initial_tractions(Model& m, State& s, const Real* stress, const
 namespace {
 
 /// Pairs of a set that are bonded again.
-std::vector<Flag> pairs_to_bond(const Model& m, const State& s, const PairSet& p, const Flag* comes) {
+std::vector<Flag> pairs_to_bond(const Model& m, const State& s, const PairSet& p,
+                                const Flag* comes) {
   std::vector<Flag> some(p.count);
   for (Index i = 0; i < p.count; ++i) {
     const Index a = m.face_nodes[4 * p.faces[2 * i]], b = m.face_nodes[4 * p.faces[2 * i + 1]];

@@ -42,7 +42,8 @@ struct Covered {
 };
 
 Covered covered_faces(const Model& m, const State& s, const Flag* comes) {
-  Covered found{.touched = std::vector<Flag>(m.face_count), .bare = std::vector<Flag>(m.face_count)};
+  Covered found{.touched = std::vector<Flag>(m.face_count),
+                .bare = std::vector<Flag>(m.face_count)};
   for (Index f = 0; f < m.face_count; ++f) {
     found.touched[f] = comes[m.face_nodes[4 * f]];
     found.bare[f] = m.face_initially_exposed[f];

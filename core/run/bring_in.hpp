@@ -1,5 +1,5 @@
-// bring_in.hpp - blocks that come into the computation: fill, linings, and what waits for its stage.
-// Host code.
+// bring_in.hpp - blocks that come into the computation: fill, linings, and what waits for its
+// stage. Host code.
 #pragma once
 
 #include "core/model/model.hpp"

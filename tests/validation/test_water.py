@@ -7,6 +7,7 @@ import pytest
 from scenes import case, digest
 
 import cdem
+from cdem.run.fields import surface_of
 
 G = 9.81
 UNIT = 1000 * G
@@ -57,6 +58,19 @@ def test_buoyancy_is_exact(shape, biot, more):
     block = box("block", size=[1, 1.5, 2], divisions=[2, 2, 2], shape=shape, **more)
     sim = start([block], water={"reservoir": {"level": 10}}, rock={"biot": biot})
     np.testing.assert_allclose(water_on(sim), [0, 0, UNIT * 3], atol=1e-9 * UNIT)
+
+
+def test_the_pressure_on_faces_is_shown():
+    """rho_w g z in a joint without strength, mean of the face; none on faces that are dry."""
+    blocks = [box("bed", [0, 0, -1]), box("block", size=[1, 1, 4])]
+    water = {"fields": [{"level": 3, "interface": "seam"}]}
+    pairs = [{"name": "seam", "between": ["bed", "block"]}]
+    sim = start(blocks, water=water, interfaces={"default": {"friction_angle": 30}, "pairs": pairs})
+    places, faces, _, fields = surface_of(sim, {})
+    middle = places[faces].mean(axis=1)
+    in_seam = np.abs(middle[:, 2]) < 1e-6
+    assert in_seam.sum() == 2
+    np.testing.assert_allclose(fields["water_pressure"], np.where(in_seam, 3 * UNIT, 0), rtol=1e-12)
 
 
 def test_pores_turn_with_the_rock():

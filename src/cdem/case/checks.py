@@ -138,20 +138,26 @@ def _excavation(case: CaseParts) -> Iterator[Problem]:
 
 def _presence(case: CaseParts, number: int) -> Iterator[Problem]:
     """Whether what a stage removes is there, and what it adds is not."""
-    stage, before = case.stages[number], case.stages[:number]
-    gone = set(case.absent(number))
-    for key, names in (("remove", stage.remove), ("add", stage.add)):
-        for k, name in enumerate(names):
-            past = [s.name for s in before if name in s.remove or name in s.add]
-            if name in names[:k] or (key == "add" and name in stage.remove):
-                yield ("stages", number, key, k), f"the stage names {name} twice"
-            elif key == "remove" and name in gone and past:
-                yield ("stages", number, key, k), f"{name} was dug out in the stage {past[-1]!r}"
-            elif key == "remove" and name in gone:
-                why = f"{name} is not there yet: a later stage adds it"
-                yield ("stages", number, key, k), why
-            elif key == "add" and name not in gone:
-                yield ("stages", number, key, k), f"{name} is there since the stage {past[-1]!r}"
+    stage = case.stages[number]
+    absent = case.absent(number)
+    last: dict[str, str] = {}  # stage that removed or added a group last
+    for before in case.stages[:number]:
+        last |= dict.fromkeys(before.remove + before.add, before.name)
+    named = [("remove", *entry) for entry in enumerate(stage.remove)]
+    named += [("add", *entry) for entry in enumerate(stage.add)]
+    seen: set[str] = set()
+    for key, k, name in named:
+        why = ""
+        if name in seen:
+            why = f"the stage names {name} twice"
+        elif key == "add" and name not in absent:
+            why = f"{name} is there since the stage {last.get(name)!r}"
+        elif key == "remove" and name in absent:
+            why = f"{name} was dug out in the stage {last[name]!r}" if name in last else (
+                f"{name} is not there yet: a later stage adds it")  # fmt: skip
+        seen.add(name)
+        if why:
+            yield ("stages", number, key, k), why
     if stage.add and number == 0:
         yield ("stages", 0, "add"), "leave it out: what is in no add is there from the start"
 
@@ -294,27 +300,34 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
 
 
 def _fixed_at_the_start(trial: CaseParts, stage: Stage, path: str, value: Any) -> str:
-    """Which entry a setting would change that only the start of a run knows, or ""."""
+    """Why a setting would change what only the start of a run knows, or ""."""
     part, *keys = path.split(".")
-    if part == "interfaces":
-        return "'law' of an interface" if keys[-1] == "law" else ""
     whole = len(keys) == 1 and isinstance(value, dict)
     changed = [str(key) for key in value] if whole else keys[1:2]
-    if part == "materials":
-        found = [key for key in changed if key not in STRENGTHS]
-    else:
-        found = [key for key in changed if part == "groups" and key in AT_START]
-        if part == "groups" and "material" in changed:
-            new = value["material"] if whole else value
-            found += ["material"] * (not _may_change_material(trial, stage, keys[0], new))
-    return f"'{found[0]}' of a {part.removesuffix('s')}" if found else ""
+    fixed = {"interfaces": ["law"], "groups": AT_START}.get(part, [])
+    if part == "interfaces":
+        changed = keys[-1:]
+    elif part == "materials":
+        fixed = [key for key in changed if key not in STRENGTHS]
+    found = [key for key in changed if key in fixed]
+    if found:
+        kind = {"interfaces": "an interface", "groups": "a group", "materials": "a material"}[part]
+        return f"{found[0]!r} of {kind} holds from the start and cannot change"
+    if part == "groups" and "material" in changed:
+        return _fixed_material(trial, stage, keys[0], value["material"] if whole else value)
+    return ""
 
 
-def _may_change_material(trial: CaseParts, stage: Stage, group: str, material: Any) -> bool:
-    """Whether a group is filled with another material: of the same law, and when it comes in."""
-    laws = [trial.materials[name].law for name in (trial.groups[group].material, material)
-            if name in trial.materials] if group in trial.groups else []  # fmt: skip
-    return group in stage.add and len(set(laws)) == 1
+def _fixed_material(trial: CaseParts, stage: Stage, group: str, material: Any) -> str:
+    """Why a stage cannot give a group this material, or "": it fills it, and the law is the same."""
+    was = trial.groups[group].material if group in trial.groups else material
+    laws = {trial.materials[name].law for name in (was, material) if name in trial.materials}
+    if group in stage.add and len(laws) == 1:
+        return ""
+    return (
+        "'material' of a group holds from the start and cannot change, unless the stage adds the group "
+        "and both have the same law"
+    )
 
 
 def stage_settings(
@@ -342,10 +355,7 @@ def stage_settings(
                 problems.append((keys, f"a stage can change {allowed} only"))
                 continue
             if fixed := _fixed_at_the_start(trial, stage, path, value):
-                hint = ""
-                if fixed == "'material' of a group":
-                    hint = ", unless the stage adds the group and both have the same law"
-                problems.append((keys, f"{fixed} holds from the start and cannot change{hint}"))
+                problems.append((keys, fixed))
                 continue
             try:
                 put(path, value)

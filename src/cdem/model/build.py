@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -43,7 +43,7 @@ from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of, pairs_loose_joints
 from cdem.model.snap_back import check_fall, check_softening
 from cdem.model.stiffness import bond_row, interface_entries
-from cdem.model.supports import supports_of
+from cdem.model.supports import held_components, supports_of
 from cdem.model.water import water_of
 
 Floats = NDArray[np.float64]
@@ -70,6 +70,8 @@ class Build:
         core: The compiled core, holding model and state.
         curves: Times and factors of load and velocity histories; the first is constant.
         start_position: Positions at the start [m], shape (nodes, 3).
+        born: Positions at which the rock is free of stress [m]: those of the start but for groups
+            that have come in since, shape (nodes, 3).
         compensation: By group, what makes up for the compliance of bonds between its elements.
         bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
             at the start, shape (kinds, kinds).
@@ -92,6 +94,9 @@ class Build:
     initial: InitialState | None
     bolts: BoltModel
 
+    def __post_init__(self) -> None:
+        self.born = self.start_position
+
     @property
     def arrays(self) -> dict[str, NDArray]:
         """Flat arrays of the model by name: views of the core's, until a stage changes them."""
@@ -113,7 +118,7 @@ class Build:
         return self.mesh.group_names
 
     def compensate_again(self, names: Iterable[str]) -> None:
-        """Make up for the bonds of groups anew whose material a stage has changed."""
+        """Make up again for the bonds of groups whose material a stage has changed."""
         groups = [self.group_names.index(name) for name in names if name in self.compensation]
         self.compensation |= compensate(self.case, self.topology, self.group_names, groups)
 
@@ -156,17 +161,16 @@ def build(case: Case) -> Build:
         case, topology, names, compensated_groups(case, topology, names, laws, interface_of, bonds)
     )
     bolts = bolts_of(case, topology, names)
-    parts = _assemble(
-        case, topology, names, laws, interface_of, paired, made_up, curves, None, bolts
-    )
+    at = topology.node_position
+    parts = _assemble(case, topology, at, laws, interface_of, paired, made_up, curves, None, bolts)
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
     _share(topology, core.model())
     core.set_curves([c[0] for c in curves], [c[1] for c in curves])
-    core.set_interfaces(interface_entries(case, laws, names, topology.node_position))
+    core.set_interfaces(interface_entries(case, laws, names, at))
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
-    core.start(topology.node_position)
+    core.start(at)
     under = set_initial_stress(case, topology, names, laws, core)
     core.find_water()
     built = Build(
@@ -176,7 +180,7 @@ def build(case: Case) -> Build:
         parts,
         core,
         curves,
-        topology.node_position,
+        at,
         made_up,
         bonds,
         paired,
@@ -211,7 +215,7 @@ def _share(topology: Topology, arrays: dict[str, NDArray]) -> None:
 def _assemble(
     case: Case,
     topology: Topology,
-    names: list[str],
+    born: Floats,
     laws: list[Interface],
     interface_of: NDArray[np.int32],
     paired: NDArray[np.bool_],
@@ -222,13 +226,14 @@ def _assemble(
 ) -> Assembly:
     """Arrays of the core, with supports and loads as the case has them now.
 
-    What mass scaling adds is as given, or follows from the case.
+    What mass scaling adds is as given, or follows from the case. Elements are free of stress where
+    their nodes are in `born`.
     """
+    names = topology.group_names
     entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]
     stiffening, bond_stiffness = _made_up(names, made_up)
     supports = supports_of(case, topology, names, curves)
-    held = supports["component"][np.maximum(supports["row"], 0)].astype(bool)
     properties = Properties(
         density=np.array([m.density for m in materials]),
         young_modulus=np.array([m.young_modulus for m in materials]),
@@ -247,14 +252,15 @@ def _assemble(
         in_series=np.array([e["in_series"] for e in entries], bool),
         exact_mass=case.moved_masses != "lumped",
         lumped_while_bonded=case.moved_masses == "lumped-while-bonded",
-        supported=held & (supports["row"] >= 0)[:, None],
+        supported=held_components(supports),
         mass_scaling=case.time.mass_scaling,
         safety=case.time.safety,
         added_mass=added_mass,
         one_point=case.elements.hexahedra == "one-point",
         bolts=bolts,
     )
-    parts = assemble(topology, properties, native.padded_stride)
+    at_birth = replace(topology, node_position=born)
+    parts = assemble(at_birth, properties, native.padded_stride)
     check_fall(case, topology, laws, parts)
     check_softening(case, topology, names, parts)
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
@@ -316,7 +322,7 @@ def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
     parts = _assemble(
         case,
         built.topology,
-        names,
+        built.born,
         laws,
         interface_of,
         built.paired,

@@ -25,32 +25,32 @@ def nodes_of_groups(t: Topology, names: Iterable[str]) -> NDArray[np.bool_]:
     return np.isin(t.block_group, groups)[t.node_block]
 
 
-def places(t: Topology, start: Floats, comes: NDArray[np.bool_], there: NDArray[np.bool_],
-           moved: Floats) -> Floats:  # fmt: skip
+def places(t: Topology, comes: NDArray[np.bool_], there: NDArray[np.bool_],
+           held: NDArray[np.bool_], moved: Floats) -> Floats:  # fmt: skip
     """Where nodes that come in lie: beside the rock as it lies now, evenly spread between.
 
-    Vertices that touched rock at the start move with it; those between take the mean of their
-    neighbours. A face whose rock has left its place is not followed.
+    Vertices that touched rock at the start move with it, supports stay; nodes between take the mean of
+    their neighbours. A face whose rock has left its place is not followed.
 
     Args:
-        t: Blocks and pairs of touching faces.
-        start: Positions at the start [m], shape (nodes, 3).
+        t: Blocks, as they lay at the start, and pairs of touching faces.
         comes: Nodes that come in, shape (nodes,).
         there: Nodes that are part of the model already, the same shape.
+        held: Components of nodes that a support holds, shape (nodes, 3).
         moved: Displacement of the nodes since the start [m], shape (nodes, 3).
 
     Returns:
-        Positions [m], those of other nodes as in `start`; shape (nodes, 3).
+        Positions [m], those of other nodes as at the start; shape (nodes, 3).
     """
     node, follows, weight = _followed(t, comes, there, moved)
-    total = np.bincount(node, weight, len(start))
-    led = total > 0
-    own = np.zeros_like(start)
+    count = len(t.node_position)
+    total = np.bincount(node, weight, count)
+    way = np.zeros((count, 3))
     for axis in range(3):
-        own[:, axis] = np.bincount(node, weight * follows[:, axis], len(start))
-    own[led] /= total[led, None]
-    way = _spread(t, comes, led, own)
-    return np.where(comes[:, None], start + way, start)
+        own = np.bincount(node, weight * follows[:, axis], count) / np.maximum(total, 1e-300)
+        led = (total > 0) | (held[:, axis] & comes)
+        way[:, axis] = _spread(t, comes, led, np.where(held[:, axis], 0.0, own))
+    return np.where(comes[:, None], t.node_position + way, t.node_position)
 
 
 def folded(t: Topology, position: Floats, comes: NDArray[np.bool_]) -> int:
@@ -117,25 +117,23 @@ def _size(t: Topology) -> Floats:
 
 
 def _spread(t: Topology, comes: NDArray[np.bool_], led: NDArray[np.bool_], own: Floats) -> Floats:
-    """Displacement of nodes that come in: `own` where it is led, the mean of neighbours elsewhere.
+    """Displacement along an axis of nodes that come in: `own` where it is led, the mean of
+    neighbours elsewhere [m], shape (nodes,).
 
     Nodes that began at the same place move alike. What nothing leads stays.
     """
     place = t.node_place.astype(np.intp)
     count = int(place.max(initial=-1)) + 1
     share = np.bincount(place[led], minlength=count).astype(float)
-    total = np.stack([np.bincount(place[led], own[led, k], count) for k in range(3)], axis=1)
     fixed = share > 0
-    way = np.zeros((count, 3))
-    way[fixed] = total[fixed] / share[fixed, None]
+    way = np.bincount(place[led], own[led], count) / np.maximum(share, 1.0)
     a, b = _neighbours(t, comes, place)
     degree = np.bincount(a, minlength=count).astype(float)
     free = (degree > 0) & ~fixed
 
     def pull(x: Floats) -> Floats:
         """What neighbours pull each free place by: 0 where it takes their mean."""
-        total = np.stack([np.bincount(a, x[b, k], count) for k in range(3)], axis=1)
-        return np.where(free[:, None], total - degree[:, None] * x, 0.0)
+        return np.where(free, np.bincount(a, x[b], count) - degree * x, 0.0)
 
     largest = np.abs(way).max(initial=0.0)
     residual = pull(way)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +11,12 @@ from cdem.case.case import Case
 from cdem.mesh.topology import Topology
 from cdem.model.curves import Curves, add_curve
 from cdem.model.selection import select_nodes
+
+
+def held_components(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
+    """Components of nodes that are held or moved, shape (nodes, 3); from `supports_of`."""
+    row = supports["row"]
+    return (row >= 0)[:, None] & (supports["component"][np.maximum(row, 0)] != 0)
 
 
 def supports_of(

@@ -66,11 +66,7 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
         now: The case that it is resumed with.
         begun: Stages that have begun.
     """
-    found = Changes()
-    was, new = (_absent_at_the_start(case) for case in (then, now))
-    for name in sorted(was ^ new):
-        words = ("there from the start", "not there at the start")
-        found.refused.append((f"groups.{name}", words[name in was], words[name in new]))
+    found = Changes(refused=list(_other_start(then, now)))
     last = f"stages.{begun - 1}."
     for path, a, b in differences(then, now):
         later = path.startswith("stages.") and int(path.split(".")[1]) >= begun
@@ -86,9 +82,18 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
     return found
 
 
-def _absent_at_the_start(case: dict[str, Any]) -> set[str]:
-    stages = case["stages"]
-    return set(absent_groups([(stage["remove"], stage["add"]) for stage in stages], 0))
+def _other_start(then: dict[str, Any], now: dict[str, Any]) -> Iterator[Difference]:
+    """What later stages have changed of the start: groups that are not there, and what are pairs."""
+    cases = [[(stage.get("remove", []), stage.get("add", [])) for stage in case.get("stages", [])]
+             for case in (then, now)]  # fmt: skip
+    was, new = (set(absent_groups(changes, 0)) for changes in cases)
+    words = ("there from the start", "not there at the start")
+    for name in sorted(was ^ new):
+        yield f"groups.{name}", words[name in was], words[name in new]
+    added, adds = (any(come for _, come in changes) for changes in cases)
+    words = ("no stage with add", "a stage with add")  # joints without strength are pairs then
+    if added != adds:
+        yield "stages", words[added], words[adds]
 
 
 def differences(then: Any, now: Any, path: str = "") -> Iterator[Difference]:

@@ -205,7 +205,7 @@ class Results:
         for series in self._series():
             series.sync()
         arrays = dict(sim.core.fields())
-        arrays |= {f"simulation.{key}": getattr(sim, key) for key in sim.kept}
+        arrays |= sim.kept
         attributes = sim.attributes(self._history.rows, self.frames)
         write_checkpoint(self.folder, arrays, attributes.model_dump_json())
         self._checkpoint = self._stat()

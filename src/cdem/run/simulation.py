@@ -418,13 +418,14 @@ class Simulation(RunState):
         assert self.results is not None
         path, arrays, attributes = self.results.read_checkpoint()
         self._check_model(path, arrays, attributes, force=force)
+        begun = attributes.stage_index + (attributes.stage is not None)
+        changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
+        self.results.notes += changes.check(self.case, force=force)
         self._restore_core(path, arrays, attributes)
         self.overlap = attributes.overlap
         self.stage_index, self.stage = attributes.stage_index, attributes.stage
         self.ended_stage, self.finished_stages = attributes.ended_stage, attributes.finished_stages
         self.wall_time, self.departures = attributes.wall_time, attributes.departures
-        changes = compare(attributes.case, self.given_case.model_dump(mode="json"), self.begun)
-        self.results.notes += changes.check(self.case, force=force)
         stages.change_end(self, longer=changes.longer)
         for done in range(self.begun):
             stages.apply_settings(self, done)
@@ -445,7 +446,8 @@ class Simulation(RunState):
                 "begin at other places or are numbered otherwise; resume with the case and the mesh "
                 "that were run"
             )
-        other = set(arrays) - {f"simulation.{key}" for key in self.kept} | set(attributes.core)
+        own = {"simulation.reference", "simulation.born"}  # see RunState.kept
+        other = set(arrays) - own | set(attributes.core)
         other ^= set(self.core.fields()) | set(self.core.scalars())
         if other or (attributes.version != __version__ and not force):
             fields = (
@@ -459,11 +461,11 @@ class Simulation(RunState):
 
     def _restore_core(self, path: Path, arrays: dict[str, NDArray], attributes: Attributes) -> None:
         """Hand the arrays of a checkpoint to the core, if it can work with them."""
-        shape, fault = self.build.start_position.shape, ""
-        for key in self.kept:
-            if (kept := arrays.pop(f"simulation.{key}")).shape != shape:
-                fault = f"simulation.{key} has another shape"
-            setattr(self, key, kept)
+        own = {name: arrays.pop(name) for name in self.kept}
+        wrong = [name for name in own if own[name].shape != self.build.start_position.shape]
+        self.reference = own["simulation.reference"]
+        self.build.born = own.get("simulation.born", self.build.born)
+        fault = f"{wrong[0]} has another shape" if wrong else ""
         fault = fault or restored.wrong_type(self.core, arrays)
         fault = fault or restored.wrong_stage(attributes)
         if not fault:

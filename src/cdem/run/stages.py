@@ -11,9 +11,11 @@ from cdem.case.laws import INTERFACE_LAWS
 from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
 from cdem.model.build import change
+from cdem.model.curves import constant
 from cdem.model.fill import folded, nodes_of_groups, places
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.stiffness import interface_entries
+from cdem.model.supports import held_components, supports_of
 from cdem.run.state import RunState, StageState
 
 STATIC_RECORD_STEPS = 200
@@ -130,7 +132,8 @@ def fill(sim: RunState, names: list[str]) -> None:
     b, t = sim.build, sim.build.topology
     comes, out = nodes_of_groups(t, names), sim.core.fields()["node.out"] != 0
     moved = sim.motion[:, :3] - b.start_position
-    lie = places(t, b.start_position, comes, ~out, moved)
+    held = held_components(supports_of(sim.case, t, b.group_names, constant()))
+    lie = places(t, comes, ~out, held, moved)
     if (node := folded(t, lie, comes)) >= 0:
         group = b.group_names[t.block_group[t.node_block[node]]]
         place = ", ".join(f"{x:.4g}" for x in b.start_position[node])
@@ -139,7 +142,7 @@ def fill(sim: RunState, names: list[str]) -> None:
             f"around group {group} has moved so far that an element near ({place}) would be turned "
             "inside out; add it earlier, or give it larger elements"
         )
-    sim.born = np.where(comes[:, None], lie, sim.born)
+    b.born = np.where(comes[:, None], lie, b.born)
     sim.reference = np.where(comes[:, None], lie, sim.reference)
     laws = interfaces_of(sim.case, b.group_names)[0]
     bonded = np.array([INTERFACE_LAWS[law.law].bonds(law) for law in laws], np.int8)
@@ -149,7 +152,6 @@ def fill(sim: RunState, names: list[str]) -> None:
 def renewed(sim: RunState, names: Iterable[str]) -> dict[str, NDArray]:
     """Arrays of the core once groups have come in where they are free of stress."""
     b = sim.build
-    b.topology.node_position = sim.born
     b.compensate_again(names)
     return change(b, places=True)
 

@@ -139,8 +139,6 @@ class RunState:
         ended_stage: The stage that ended last, as long as no other has begun.
         finished_stages: A row of the summary for each stage that has ended.
         reference: Positions from which displacements count [m], shape (nodes, 3).
-        born: Positions at which the rock is free of stress [m], those of the start but for groups
-            that have come in since, shape (nodes, 3).
         departures: The first block of each group that fell past the edge of the model, and that left
             its domain.
         wall_time: Wall time spent in stages [s].
@@ -160,7 +158,7 @@ class RunState:
         self.stage: StageState | None = None
         self.ended_stage: StageState | None = None
         self.finished_stages: list[dict[str, Any]] = []
-        self.reference = self.born = self.build.start_position
+        self.reference = self.build.start_position
         self.departures: list[Departure] = []
         self.wall_time = 0.0
 
@@ -361,10 +359,11 @@ class RunState:
     # ------------------------------------------------------------------ keeping
 
     @property
-    def kept(self) -> tuple[str, ...]:
-        """Names of the arrays that a checkpoint keeps besides those of the core."""
+    def kept(self) -> dict[str, NDArray[np.float64]]:
+        """Arrays that a checkpoint keeps besides those of the core, shape (nodes, 3)."""
         adds = any(stage.add for stage in self.case.stages)
-        return ("reference", "born") if adds else ("reference",)
+        born = {"simulation.born": self.build.born} if adds else {}
+        return {"simulation.reference": self.reference} | born
 
     def attributes(self, rows: int, frames: int) -> Attributes:
         """What a checkpoint keeps besides arrays, after so many rows of histories and frames."""

@@ -25,7 +25,7 @@ def test_pictures_show_what_the_surface_holds():
     assert {name for name, field in DRAWN.items() if field.surface == "never"} == set()
     assert list(DRAWN) == [
         "displacement", "velocity", "pore_pressure", "damage", "group", "block", "piece", "joint",
-        "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
+        "water_pressure", "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
         "joint_slip", "joint_damage", "joint_opening"
     ]  # fmt: skip
 
