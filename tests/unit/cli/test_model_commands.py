@@ -24,6 +24,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     assert status == 0
     names = [line.split()[0] for line in out.splitlines()]
     assert names == [
+        "bedded_slope",
         "dam",
         "foliated",
         "incline",
@@ -58,6 +59,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
         "tunnel_bolts",
         "dam",
         "foliated",
+        "bedded_slope",
     ],
 )
 def test_templates_check(run_cli, name):
