@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.interfaces import interfaces_of
-from cdem.output.render import color, legend, load_pyvista, snapshot
+from cdem.output.render import color, load_pyvista, snapshot
+from cdem.output.scene import View, add_rock, labels, new_plotter, take
 
 if TYPE_CHECKING:
     from cdem.errors import BodyError
@@ -45,7 +46,7 @@ def draw_model(sim: RunState) -> NDArray[np.uint8]:
     _interfaces(panels[1], sim)
     rows = max(len(panel.legend) for panel in panels)
     return np.concatenate(
-        [np.concatenate([legend(panel.legend, rows, SIZE[0]), panel.image()]) for panel in panels],
+        [np.concatenate([labels(panel.legend, rows, SIZE[0]), panel.image()]) for panel in panels],
         axis=1,
     )
 
@@ -59,11 +60,10 @@ def draw_refused(refused: BodyError) -> NDArray[np.uint8]:
     pyvista = load_pyvista()
     points = np.asarray(refused.points, float)
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
-    plotter.set_background("white")
+    plotter, view = new_plotter(pyvista, SIZE), View.framing(points, _BACK, SIZE)
     flat = np.concatenate([[len(face), *face] for face in refused.faces])
     body = pyvista.PolyData(points, faces=flat)
-    plotter.add_mesh(body, color="#bab0ac", opacity=0.6, show_edges=True, edge_color="#444444")
+    add_rock(plotter, body, view, color="#bab0ac", opacity=0.6)
     for mark in refused.marks:
         if len(mark) == 1:
             shape = pyvista.Sphere(radius=0.015 * size, center=points[mark[0]])
@@ -72,12 +72,8 @@ def draw_refused(refused: BodyError) -> NDArray[np.uint8]:
                 pointa=points[mark[0]], pointb=points[mark[1]], radius=0.006 * size
             )
         plotter.add_mesh(shape, color="#d62728")
-    plotter.camera_position = [points.mean(axis=0) + size * _BACK, points.mean(axis=0), (0, 0, 1)]
-    plotter.reset_camera()
     plotter.add_axes(color="black")
-    image = plotter.screenshot(return_img=True)
-    plotter.close()
-    return image
+    return take(plotter, view)
 
 
 class _Panel:
@@ -85,12 +81,11 @@ class _Panel:
 
     def __init__(self, pyvista: Any, sim: RunState) -> None:
         self.pyvista = pyvista
-        self.plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
-        self.plotter.set_background("white")
+        self.plotter = new_plotter(pyvista, SIZE)
         self.legend: list[tuple[str, str]] = []
         position = sim.build.start_position
-        self.low, self.high = position.min(axis=0), position.max(axis=0)
-        self.size = float(np.linalg.norm(self.high - self.low))
+        self.size = float(np.linalg.norm(np.ptp(position, axis=0)))
+        self.view = View.framing(position, _BACK, SIZE)
         self.surface = snapshot(sim)
 
     def add(self, mesh: Any, color: str, label: str | None = None, **how: Any) -> None:
@@ -106,14 +101,8 @@ class _Panel:
         return self.pyvista.PolyData(points, faces=flat[flat >= 0])
 
     def image(self) -> NDArray[np.uint8]:
-        center = 0.5 * (self.low + self.high)
-        self.plotter.camera_position = [center + 2 * self.size * _BACK, center, (0, 0, 1)]
-        self.plotter.reset_camera(bounds=np.ravel([self.low, self.high], order="F"))
-        self.plotter.camera.zoom(1.1)
         self.plotter.add_axes(color="black")
-        image = self.plotter.screenshot(return_img=True)
-        self.plotter.close()
-        return image
+        return take(self.plotter, self.view)
 
 
 def _groups(panel: _Panel, sim: RunState) -> None:
@@ -123,8 +112,10 @@ def _groups(panel: _Panel, sim: RunState) -> None:
         some = np.flatnonzero(surface.cell_data["group"] == index)
         if len(some):
             part = mesh.extract_cells(some)
-            edges = {"show_edges": mesh.n_cells < 20000, "edge_color": "#444444", "line_width": 0.4}
-            panel.add(part, color(index), f"{name}", **edges)
+            add_rock(
+                panel.plotter, part.extract_surface(algorithm=None), panel.view, color=color(index)
+            )
+            panel.legend.append((name, color(index)))
 
 
 def _held(panel: _Panel, sim: RunState) -> None:

@@ -16,19 +16,28 @@ from numpy.typing import NDArray
 from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS
 from cdem.errors import CdemError
 from cdem.output.reader import Surface, SurfaceSeries
+from cdem.output.scene import (
+    SIZE,
+    View,
+    add_rock,
+    bar,
+    color_map,
+    labels,
+    new_plotter,
+    take,
+    write_title,
+)
 
 if TYPE_CHECKING:
     from cdem.run.state import RunState
 
 DRAWN = {field.name: field for field in OUTPUT_FIELDS if field.colors}
 """Fields that `render` can colour by."""
-COLOR_MAPS = {
-    "amount": "YlOrBr", "whole range": "YlOrBr", "label": "tab10", "scattered label": "tab20"
-}  # fmt: skip
+COLOR_MAPS = {"amount": "viridis", "whole range": "viridis", "scattered label": "tab20"}
 GOLDEN = 0.6180339887
 """Its multiples, modulo 1, lie far from one another."""
-ROW = 28
-"""Height of a row of the legend [pixels]."""
+AROUND = 0.6
+"""Rock that has flown further out than this, in sizes of the model, is not framed."""
 THROUGH = 0.6
 """Opacity of rock with bolts, which are seen through it."""
 OPENGL_HINT = "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install libosmesa6 libgl1 libxrender1"
@@ -55,25 +64,11 @@ def snapshot(sim: RunState) -> Surface:
 
 
 def color(index: int) -> str:
-    """One of ten colours that are easy to tell apart (Tableau's), again and again."""
-    colors = ("4e79a7", "f28e2b", "59a14f", "e15759", "76b7b2", "edc948", "b07aa1", "ff9da7",
-              "9c755f", "bab0ac")  # fmt: skip
+    """One of twelve colours that are easy to tell apart, also without red or green (Tol), again and
+    again."""
+    colors = ("4477aa", "ee6677", "228833", "ccbb44", "66ccee", "aa3377", "bbbbbb", "332288",
+              "ddcc77", "44aa99", "882255", "999933")  # fmt: skip
     return "#" + colors[index % len(colors)]
-
-
-def legend(entries: Sequence[tuple[str, str]], rows: int, width: int) -> NDArray[np.uint8]:
-    """Labels with their colours under each other, shape (rows * ROW + 10, width, 3)."""
-    import matplotlib
-    from PIL import Image, ImageDraw, ImageFont
-
-    font = ImageFont.truetype(f"{matplotlib.get_data_path()}/fonts/ttf/DejaVuSans.ttf", 19)
-    image = Image.new("RGB", (width, ROW * rows + 10), "white")
-    draw = ImageDraw.Draw(image)
-    for number, (label, fill) in enumerate(entries):
-        y = 10 + ROW * number
-        draw.rectangle((20, y + 3, 38, y + 21), fill=fill, outline="#888888")
-        draw.text((50, y), label, fill="black", font=font)
-    return np.asarray(image)
 
 
 @cache
@@ -186,10 +181,10 @@ class _Scene:
         self.high = float(np.nanpercentile(values, 99.5)) if len(values) else 1.0
         if self.colors != "amount":
             self.high = max(float(values.max()), 1.0)
-        first = series[0]
-        middle = series[(len(series) - 1) // 2]
-        self.low_corner, self.high_corner = self._bounds(first, middle, last)
-        self.camera = self._camera(first, last)
+        if field == "group" and last.group_names:
+            self.high = len(last.group_names) - 1.0
+        self.map = self._map()
+        self.view = self._view(series[0], series[(len(series) - 1) // 2], last)
 
     def _values(self, surface: Surface) -> NDArray:
         if self.field in surface.point_data:
@@ -200,79 +195,58 @@ class _Scene:
         # neighbours in space have similar numbers: spread them over the palette
         return values * GOLDEN % 1 if self.colors == "scattered label" else values
 
-    @staticmethod
-    def _bounds(*frames: Surface) -> tuple[NDArray, NDArray]:
-        """What to show: all that moved with half its size around it, but nothing beyond the model."""
-        low = np.min([f.points.min(axis=0) for f in frames], axis=0)
-        high = np.max([f.points.max(axis=0) for f in frames], axis=0)
-        places = []
-        for f in frames:
-            displacement = f.point_data.get("displacement", np.zeros((1, 3)))
-            moved = np.linalg.norm(displacement, axis=1)
-            if moved.max() > 1e-3 * np.linalg.norm(high - low):
-                some = moved > 0.2 * np.nanpercentile(moved, 99.5)
-                places += [f.points[some], f.points[some] - displacement[some]]
-        if not places:
-            return low, high
-        near, far = np.vstack(places).min(axis=0), np.vstack(places).max(axis=0)
-        margin = 0.5 * (far - near).max()
-        return np.maximum(low, near - margin), np.minimum(high, far + margin)
+    def _map(self) -> Any:
+        """Colour map of values from 0 to `high`."""
+        import matplotlib
+        from matplotlib.colors import ListedColormap
 
-    def _camera(self, first: Surface, last: Surface) -> list[Any]:
-        """Look across the main motion from above; along -y when nothing moves in plan."""
+        if self.colors == "amount":
+            return color_map(COLOR_MAPS["amount"])
+        if self.colors == "label":
+            return ListedColormap([color(i) for i in range(round(self.high) + 1)])
+        return matplotlib.colormaps[COLOR_MAPS[self.colors]]
+
+    def _view(self, first: Surface, middle: Surface, last: Surface) -> View:
+        """All of the model, seen across the main motion and from above; along -y when nothing moves
+        in plan."""
+        low, high = first.points.min(axis=0), first.points.max(axis=0)
+        size = float(np.linalg.norm(high - low))
         moved = last.point_data.get("displacement", np.zeros((1, 3)))
         way = moved.mean(axis=0)[:2]
-        size = float(np.linalg.norm(self.high_corner - self.low_corner))
         way = way / np.linalg.norm(way) if np.linalg.norm(way) > 1e-3 * size else np.array([1.0, 0])
         side = np.array([way[1], -way[0]])
         # from the side, a little from where things go to, and from above
         back = np.array([*(0.8 * side + 0.6 * way), 0.75])
-        center = 0.5 * (self.low_corner + self.high_corner)
-        return [center + 2.0 * size * back / np.linalg.norm(back), center, (0, 0, 1)]
+        away = AROUND * size
+        points = np.vstack([first.points, middle.points, last.points])
+        return View.framing(np.clip(points, low - away, high + away), back)
 
     def draw(self, surface: Surface, title: str = "") -> NDArray:
         """A picture of one frame, called by its time if it has no title, shape (height, width, 3)."""
         pyvista = self.pyvista
         mesh = pyvista.PolyData(surface.points, faces=surface.faces)
         values = self._values(surface)
-        name = f"{self.field} [{self.unit}]" if self.unit else self.field
         on_points = len(values) == len(surface.points) and self.field in surface.point_data
-        (mesh.point_data if on_points else mesh.cell_data)[name] = values
-        plotter = pyvista.Plotter(off_screen=True, window_size=(1100, 800))
-        plotter.set_background("white")
-        by_group = self.field == "group" and len(surface.group_names) > 0
-        if by_group:
-            last = len(surface.group_names) - 1
-            look = {"cmap": [color(i) for i in range(last + 1)], "clim": (-0.5, last + 0.5)}
-        else:
-            look = {
-                "cmap": COLOR_MAPS[self.colors],
-                "clim": (0.0, max(self.high, 1e-12)),
-            }
-        plotter.add_mesh(
-            mesh,
-            scalars=name,
-            opacity=THROUGH if len(surface.bolts) else 1.0,
-            **look,
-            show_edges=mesh.n_cells < 20000,
-            edge_color="#444444",
-            line_width=0.4,
-            show_scalar_bar=self.colors != "scattered label"
-            and not by_group,  # whose numbers mean nothing
-            # labels that leave room for the title in the middle
-            scalar_bar_args={"color": "black", "vertical": False, "fmt": "%.3g", "n_labels": 4},
-        )
+        (mesh.point_data if on_points else mesh.cell_data)[self.field] = values
+        plotter = new_plotter(pyvista)
+        high = max(self.high, 1e-12)
+        span = (-0.5, self.high + 0.5) if self.colors == "label" else (0.0, high)
+        opacity = THROUGH if len(surface.bolts) else 1.0
+        look = {"scalars": self.field, "cmap": self.map, "clim": span}
+        add_rock(plotter, mesh, self.view, opacity=opacity, **look)
         if len(surface.bolts):
             bars = surface.bolts.reshape(-1, 3)
             plotter.add_lines(bars, color="#202020", width=4)
-        plotter.add_text(title or f"t = {surface.time:.4g} s", font_size=12, color="black")
-        plotter.camera_position = self.camera
-        box = np.ravel([self.low_corner, self.high_corner], order="F")
-        plotter.reset_camera(bounds=box)
-        plotter.camera.zoom(1.05)
-        image = plotter.screenshot(return_img=True)
-        plotter.close()
-        if not by_group:
-            return image
-        entries = [(label, color(i)) for i, label in enumerate(surface.group_names)]
-        return np.concatenate([image, legend(entries, len(entries), image.shape[1])])
+        image = write_title(take(plotter, self.view), title or f"t = {surface.time:.4g} s")
+        return np.concatenate([image, self._strip(surface, image.shape[1])])
+
+    def _strip(self, surface: Surface, width: int) -> NDArray:
+        """What stands below the picture: what the colours mean, and a scale."""
+        metres = self.view.height / SIZE[1]
+        name = "" if self.colors == "scattered label" else self.field  # whose numbers mean nothing
+        if self.colors != "label":
+            return bar(name, self.unit, self.map, max(self.high, 1e-12), metres, width)
+        names = surface.group_names if self.field == "group" else []
+        known = [names[i] if names else str(i) for i in range(round(self.high) + 1)]
+        entries = [(label, color(i)) for i, label in enumerate(known)]
+        return labels(entries, len(entries), width)

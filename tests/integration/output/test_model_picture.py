@@ -20,9 +20,9 @@ def test_the_picture_shows_and_names_everything(run_cli, wall_folder, monkeypatc
     if not can_draw():
         pytest.skip("no OpenGL")
     legends = []
-    legend = model_picture.legend
+    legend = model_picture.labels
     monkeypatch.setattr(
-        model_picture, "legend", lambda e, *size: legends.append(e) or legend(e, *size)
+        model_picture, "labels", lambda e, *size: legends.append(e) or legend(e, *size)
     )
     status, out, err = run_cli("check", "model.yaml", "--picture", "model.png", "--threads", "1")
     assert (status, err) == (0, "")
@@ -51,7 +51,7 @@ def test_many_inner_pairs_are_counted_not_drawn(wall_folder, monkeypatch):
     monkeypatch.setattr(model_picture, "MOST_INNER", 10)
     entries = []
     monkeypatch.setattr(
-        model_picture, "legend", lambda e, rows, _: entries.extend(e) or white(rows)
+        model_picture, "labels", lambda e, rows, _: entries.extend(e) or white(rows)
     )
     white = lambda rows: np.full((28 * rows, model_picture.SIZE[0], 3), 255, np.uint8)  # noqa: E731
     model_picture.draw_model(cdem.Simulation("model.yaml", threads=1))

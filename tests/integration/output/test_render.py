@@ -21,8 +21,8 @@ def test_pictures_of_results_name_the_groups(wall_folder, monkeypatch):
     cdem.Simulation("model.yaml", output="r.results", threads=1).run()
     series = SurfaceSeries(wall_folder / "r.results")
     legends = []
-    legend = render.legend
-    monkeypatch.setattr(render, "legend", lambda e, *size: legends.append(e) or legend(e, *size))
+    legend = render.labels
+    monkeypatch.setattr(render, "labels", lambda e, *size: legends.append(e) or legend(e, *size))
     image = render.picture([series[0]], "group", titles=["before"])
     assert [label for label, _ in legends[0]] == ["base", "wall", "loose"]
     rows = len(image) - 28 * 3 - 10
