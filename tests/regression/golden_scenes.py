@@ -168,6 +168,7 @@ def landslide(threads):
     """The template: a meshed body slides on its bed. Both stages, cut short."""
     folder = files("cdem") / "templates"
     data = cdem.Case.load(str(folder / "landslide.yaml"))
+    data.set("interfaces.bed.friction_angle", "12 deg")
     data.stages[0].max_steps = 100
     data.stages[1].duration = 1.0
     sim = cdem.Simulation(data, threads=threads)
