@@ -124,9 +124,7 @@ def compensated_groups(
     """Groups whose every element is a block, bonded to others with the stiffness left to cdem: 2."""
     if case.cdem < 2:
         return []
-    elements = np.zeros(len(t.block_group), np.int64)
-    for block in t.element_block.values():
-        elements += np.bincount(block, minlength=len(elements))
+    elements = elements_of_blocks(t)
     kind = t.face_kind[t.pair_faces]
     bonded = np.unique(kind[(kind[:, 0] == kind[:, 1]) & bonds[kind[:, 0], kind[:, 1]], 0])
     return [
@@ -135,6 +133,14 @@ def compensated_groups(
         if is_automatic(laws[interface_of[group, group]])
         and (elements[t.block_group == group] == 1).all()
     ]
+
+
+def elements_of_blocks(t: Topology) -> NDArray[np.int64]:
+    """How many elements each block has, shape (blocks,)."""
+    elements = np.zeros(len(t.block_group), np.int64)
+    for block in t.element_block.values():
+        elements += np.bincount(block, minlength=len(elements))
+    return elements
 
 
 def is_automatic(law: Interface) -> bool:
@@ -155,7 +161,7 @@ def _of_group(
     faces = t.pair_faces[pairs]
     elements = t.face_element[faces]
     count = np.bincount(elements.ravel(), minlength=len(volume))
-    inner = count == np.bincount(t.face_element, minlength=len(volume))
+    inner = surrounded(t, pairs)
     if not inner[elements].any():
         inner = count > 0
     share = 0.5 * inner[elements].sum(axis=1) * area[faces[:, 0]]
@@ -191,9 +197,8 @@ def _found(
     poisson: float,
 ) -> tuple[float, tuple[float, float, float]]:
     """q of tets as it acts, and what errors are left, for Young's modulus 1."""
-    tets = bonded_tets(t, pairs, _around_the_middle(t, pairs, inner))
-    layers = [tets.inner(n) for n in range(LAYERS, 0, -1)]
-    counted = next((inside for inside in layers if inside.any()), np.ones(len(tets.x), bool))
+    tets = bonded_tets(t, pairs, around_the_middle(t, pairs, inner))
+    counted = counted_tets(tets)
     e = 1 + q / (3 * a)
     c = compliance(tets, e, poisson * e, a * e / h, counted)
     acts = 3 * a * (e * _isotropic(c)[0] - 1)
@@ -217,16 +222,30 @@ def _isotropic(c: Floats) -> tuple[float, float]:
     return float(3 * normal + 2 * cross + shear) / 15, float(c[:3, :3].sum())
 
 
-def _around_the_middle(
+def surrounded(t: Topology, pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Elements of which all faces are of these pairs, shape (elements,)."""
+    count = sum(len(nodes) for nodes in t.element_nodes.values())
+    faces = np.bincount(t.face_element, minlength=count)
+    bonded = np.bincount(t.face_element[t.pair_faces[pairs]].ravel(), minlength=count)
+    return (bonded == faces) & (faces > 0)
+
+
+def around_the_middle(
     t: Topology, pairs: NDArray[np.intp], inner: NDArray[np.bool_]
 ) -> NDArray[np.integer]:
-    """Tets of pairs around the middle of those inside."""
+    """Tets of pairs around the middle of those inside, `MOST_TETS` at most."""
     used = np.unique(t.face_element[t.pair_faces[pairs]])
     center = t.node_position[t.element_nodes["tet4"][used]].mean(axis=1)
     inside = center[inner[used]]
     start = inside[np.argmin(((inside - inside.mean(axis=0)) ** 2).sum(axis=1))]
     near = np.argsort(((center - start) ** 2).sum(axis=1), kind="stable")[:MOST_TETS]
     return used[near]
+
+
+def counted_tets(tets: BondedTets) -> NDArray[np.bool_]:
+    """Tets far enough inside the others to stand for the rock, or all where none is."""
+    layers = [tets.inner(n) for n in range(LAYERS, 0, -1)]
+    return next((inside for inside in layers if inside.any()), np.ones(len(tets.x), bool))
 
 
 def bonded_tets(t: Topology, pairs: NDArray[np.intp], some: NDArray[np.integer]) -> BondedTets:
@@ -241,7 +260,7 @@ def bonded_tets(t: Topology, pairs: NDArray[np.intp], some: NDArray[np.integer])
     order = (t.pair_shift[pairs, None] - np.arange(3)) % 3
     corner_a = _corner_of(nodes[tet[:, 0]], t.face_nodes[a, :3])
     corner_b = _corner_of(nodes[tet[:, 1]], np.take_along_axis(t.face_nodes[b, :3], order, axis=1))
-    return BondedTets(t.node_position[nodes], tet, np.stack([corner_a, corner_b], axis=1))
+    return BondedTets(t.node_position[nodes], tet, np.stack([corner_a, corner_b], axis=1), pairs)
 
 
 def _corner_of(nodes: NDArray, some: NDArray) -> NDArray[np.intp]:

@@ -17,7 +17,7 @@ def pair():
     """A tet and its mirror image behind the face x = 0."""
     x = np.stack([CORNERS, CORNERS * [-1, 1, 1]])
     x[1, [1, 2]] = x[1, [2, 1]]
-    return BondedTets(x, np.array([[0, 1]]), np.array([[[0, 2, 3], [0, 1, 3]]]))
+    return BondedTets(x, np.array([[0, 1]]), np.array([[[0, 2, 3], [0, 1, 3]]]), np.zeros(1, int))
 
 
 def test_a_layer_adds_its_opening_along_its_normal():
