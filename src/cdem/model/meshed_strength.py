@@ -45,8 +45,9 @@ HALFWAY = (6.0, 9.0)
 """D0 in tension and in compression."""
 GAIN = 1.5
 """What bonds with much fracture energy regain, over what brittle ones lack."""
-WANTED = 2.0
-"""D over `HALFWAY` at which f is 1: GAIN D / (D + D0) = 1."""
+WANTED = (8.0, 15.0)
+"""D in tension and in compression that are told: there f is 0.93 to 0.98 and a Brazilian disc splits
+at 1.0 to 1.1 of T; more makes that too strong."""
 LEAST = 0.9
 """Part of the strength below which the report says what helps."""
 WAYS = ("tension", "compression")
@@ -219,8 +220,8 @@ def _ductility(law: dict[str, float], stiffness: float) -> list[float]:
 
 def _energies(law: dict[str, float], stiffness: float) -> list[float]:
     return [
-        WANTED * half * square / (2 * stiffness)
-        for half, square in zip(HALFWAY, _squares(law), strict=True)
+        wanted * square / (2 * stiffness)
+        for wanted, square in zip(WANTED, _squares(law), strict=True)
     ]
 
 
@@ -244,9 +245,9 @@ def strength_text(strengths: dict[str, dict[str, Any]]) -> list[str]:
         if min(of["strength"][way][0] for way in WAYS) < LEAST:
             g1, g2 = of["fracture_energies"]
             lines.append(
-                f"      irregular tets overload some bonds: divide cohesion and tensile_strength by these "
-                f"parts, or use law softening with about {g1:.2g} and {g2:.2g} J/m2 as fracture energies 1 "
-                "and 2"
+                "      irregular tets overload some bonds: divide tensile_strength and cohesion by these parts, "
+                f"or use law softening with fracture_energy_1 of about {g1:.2g} and fracture_energy_2 of "
+                f"about {g2:.2g} J/m2"
             )
     return lines
 
