@@ -45,9 +45,9 @@ HALFWAY = (6.0, 9.0)
 """D0 in tension and in compression."""
 GAIN = 1.5
 """What bonds with much fracture energy regain, over what brittle ones lack."""
-WANTED = (8.0, 15.0)
-"""D in tension and in compression that are told: there f is 0.93 to 0.98 and a Brazilian disc splits
-at 1.0 to 1.1 of T; more makes that too strong."""
+WANTED = (10.0, 15.0)
+"""D in tension and in compression that are told: f is 0.93 to 1 there. With more a Brazilian disc,
+which splits at 0.95 to 1.2 of T, becomes too strong."""
 LEAST = 0.9
 """Part of the strength below which the report says what helps."""
 WAYS = ("tension", "compression")

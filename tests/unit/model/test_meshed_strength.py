@@ -72,8 +72,8 @@ def test_the_fracture_energies_that_are_told_give_nearly_the_strength_of_the_bon
     told = meshed_strengths(shaken(tmp_path, SOFT))["default"]["fracture_energies"]
     law = SOFT | dict(zip(("fracture_energy_1", "fracture_energy_2"), told, strict=True))
     found = meshed_strengths(shaken(tmp_path, law))["default"]
-    assert found["ductility"] == pytest.approx([8, 15])
-    for way, gain in (("tension", 1.5 * 8 / 14), ("compression", 1.5 * 15 / 24)):
+    assert found["ductility"] == pytest.approx([10, 15])
+    for way, gain in (("tension", 1.5 * 10 / 16), ("compression", 1.5 * 15 / 24)):
         least = found["first_bond"][way][0]
         assert found["strength"][way][0] == pytest.approx(least + gain * (1 - least))
 
