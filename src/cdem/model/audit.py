@@ -104,7 +104,8 @@ class Audit:
         b, out = self._build, {}
         for name, made_up in b.compensation.items():
             rock = b.case.materials[b.case.groups[name].material]
-            out[name] = asdict(made_up) | {
+            numbers = {key: value for key, value in vars(made_up).items() if key != "state"}
+            out[name] = numbers | {
                 "young_modulus": made_up.stiffening * rock.young_modulus,
                 "poisson_ratio": made_up.stiffening * rock.poisson_ratio,
             }

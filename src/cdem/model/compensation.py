@@ -26,7 +26,15 @@ from cdem.mesh import element_shapes
 from cdem.mesh.arrays import in_pieces, inverses, same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
-from cdem.model.homogenize import COLUMN, ROW, BondedTets, compliance, elasticity
+from cdem.model.homogenize import (
+    COLUMN,
+    ROW,
+    BondedTets,
+    compliance,
+    displacements,
+    elasticity,
+    jumps,
+)
 
 Floats = NDArray[np.float64]
 
@@ -53,6 +61,20 @@ DIRECTIONS = _pulls()
 
 
 @dataclass(frozen=True)
+class ElasticState:
+    """Tets around the middle of a group under six uniform stresses of 1 Pa.
+
+    Attributes:
+        tets: The tets.
+        tractions: On the faces, at their corners, of `homogenize.STATES`: pulling along the outward
+            normal of the first tet [1], shape (faces, 3, xyz, 6).
+    """
+
+    tets: BondedTets
+    tractions: Floats
+
+
+@dataclass(frozen=True)
 class Compensation:
     """What the elements and bonds of a group have, so that the whole is as the case says.
 
@@ -65,6 +87,7 @@ class Compensation:
         stiffness: Of the bonds [Pa/m].
         errors: What is left: in E along the axis or diagonal of space where it is worst, and in the
             isotropic G and K [1].
+        state: From which q was found; None where it is the sum over faces.
     """
 
     q: float
@@ -74,6 +97,7 @@ class Compensation:
     stiffening: float
     stiffness: float
     errors: tuple[float, float, float]
+    state: ElasticState | None
 
 
 def compensate(
@@ -171,9 +195,10 @@ def _of_group(
     h = float(same_everywhere(q / area_per_volume))
     factor = max(FACTOR, float(same_everywhere(q * poisson / (3 * (MOST_POISSON - poisson)))))
     tets = len(t.element_nodes["tet4"])
-    errors = (0.0, 0.0, 0.0)
+    errors, state = (0.0, 0.0, 0.0), None
     if (elements < tets).all():
-        q, errors = _found(t, pairs, inner, q, h, factor, poisson)
+        near = bonded_tets(t, pairs, around_the_middle(t, pairs, inner))
+        q, errors, state = _found(near, q, h, factor, poisson)
     q = float(same_everywhere(q))
     stiffening = 1 + q / (3 * factor)
     return Compensation(
@@ -184,23 +209,18 @@ def _of_group(
         stiffening=stiffening,
         stiffness=factor * stiffening * young / h,
         errors=errors,
+        state=state,
     )
 
 
 def _found(
-    t: Topology,
-    pairs: NDArray[np.intp],
-    inner: NDArray[np.bool_],
-    q: float,
-    h: float,
-    a: float,
-    poisson: float,
-) -> tuple[float, tuple[float, float, float]]:
-    """q of tets as it acts, and what errors are left, for Young's modulus 1."""
-    tets = bonded_tets(t, pairs, around_the_middle(t, pairs, inner))
-    counted = counted_tets(tets)
+    tets: BondedTets, q: float, h: float, a: float, poisson: float
+) -> tuple[float, tuple[float, float, float], ElasticState]:
+    """q of tets as it acts, what errors are left, and their state, for Young's modulus 1."""
     e = 1 + q / (3 * a)
-    c = compliance(tets, e, poisson * e, a * e / h, counted)
+    u = displacements(tets, e, poisson * e, a * e / h)
+    state = ElasticState(tets, a * e / h * jumps(tets, u))
+    c = compliance(tets, u, e, poisson * e, counted_tets(tets))
     acts = 3 * a * (e * _isotropic(c)[0] - 1)
     e_new = 1 + acts / (3 * a)
     own, new = inverses(np.stack([elasticity(x, poisson * x) for x in (e, e_new)]))
@@ -209,11 +229,8 @@ def _found(
     worst = float(along[np.argmax(abs(along))])
     young, bulk = (1 / part for part in _isotropic(left))
     shear = 3 * bulk * young / (9 * bulk - young)
-    return acts, (
-        worst,
-        shear * 2 * (1 + poisson) - 1,
-        bulk * 3 * (1 - 2 * poisson) - 1,
-    )
+    errors = (worst, shear * 2 * (1 + poisson) - 1, bulk * 3 * (1 - 2 * poisson) - 1)
+    return acts, errors, state
 
 
 def _isotropic(c: Floats) -> tuple[float, float]:

@@ -82,21 +82,20 @@ class BondedTets:
 
 
 def compliance(
-    tets: BondedTets, young: float, poisson: float, stiffness: float, inner: NDArray[np.bool_]
+    tets: BondedTets, u: Floats, young: float, poisson: float, inner: NDArray[np.bool_]
 ) -> Floats:
     """Compliance of the whole under six uniform stresses, from what its inner tets do.
 
     Args:
         tets: The tets.
+        u: Their `displacements` [m].
         young: Young's modulus of the tets [Pa].
         poisson: Their Poisson's ratio.
-        stiffness: Of the faces, normal and shear [Pa/m].
         inner: Tets whose mean strain and stress count.
 
     Returns:
         Strains (engineering shears) by stresses, in the order of `STATES` [1/Pa], shape (6, 6).
     """
-    u = displacements(tets, young, poisson, stiffness)
     strains, stresses = means(tets, u, young, poisson, inner)
     normal = matrix_product(stresses, stresses.T)
     return matrix_product(matrix_product(strains, stresses.T), inverses(normal))

@@ -28,6 +28,7 @@ from cdem.mesh.topology import Topology
 from cdem.model.build import Build
 from cdem.model.compensation import (
     DIRECTIONS,
+    ElasticState,
     around_the_middle,
     bonded_tets,
     counted_tets,
@@ -78,7 +79,8 @@ def meshed_strengths(build: Build) -> dict[str, dict[str, Any]]:
     out = {}
     for group, name in enumerate(build.group_names):
         number = interface_of[group, group]
-        if number < 0 or not (breaks[number] and build.bonded[group, group]):
+        held = len(build.case.groups[name].fix) == 3
+        if held or number < 0 or not (breaks[number] and build.bonded[group, group]):
             continue
         law = _strengths_of(laws[number])
         pairs = _pairs_of_tets(build.topology, group)
@@ -112,27 +114,24 @@ def _of_group(
     interface: Interface,
     law: dict[str, float],
 ) -> dict[str, Any]:
-    t = build.topology
-    tets = bonded_tets(t, pairs, around_the_middle(t, pairs, surrounded(t, pairs)))
-    rock = build.case.materials[build.case.groups[name].material]
-    made_up = build.compensation.get(name)
-    stiffening = made_up.stiffening if made_up else 1.0
-    stiffness = _stiffness(build, t.pair_faces[tets.pair, 0])
-    young, poisson = stiffening * rock.young_modulus, stiffening * rock.poisson_ratio
-    mean = float(stiffness.mean())
-    u = displacements(tets, young, poisson, mean)
+    t, made_up = build.topology, build.compensation.get(name)
+    if made_up and made_up.state:
+        state, stiffness = made_up.state, made_up.stiffness
+    else:
+        state, stiffness = _elastic_state(build, name, pairs)
+    tets = state.tets
     some = np.flatnonzero(counted_tets(tets)[tets.tet].any(axis=1))
     weakness = np.ones(len(tets.pair))
     factors = strength_factors_of(interface)
     if factors is not None:
         weakness = 1 / factors(t.pair_faces[tets.pair])
     first = first_breaks(
-        mean * jumps(tets, u)[some],
+        state.tractions[some],
         _normals(tets)[some],
         weakness[some],
         *(law[key] for key in STRENGTHS),
     )
-    ductility = _ductility(law, mean)
+    ductility = _ductility(law, stiffness)
     bears = [borne(f, d, half) for f, d, half in zip(first, ductility, HALFWAY, strict=True)]
     return {
         "first_bond": _ranges(first),
@@ -141,7 +140,7 @@ def _of_group(
         "strength_along_xyz": _along_xyz(bears),
         "faces": len(some),
         "ductility": ductility,
-        "fracture_energies": _energies(law, mean),
+        "fracture_energies": _energies(law, stiffness),
     }
 
 
@@ -202,12 +201,17 @@ def _normals(tets: BondedTets) -> Floats:
     return tets.vectors / lengths(tets.vectors)[:, None]
 
 
-def _stiffness(build: Build, faces: NDArray[np.integer]) -> Floats:
-    """Normal stiffness of the bonds of these first faces of pairs [Pa/m]."""
+def _elastic_state(build: Build, name: str, pairs: NDArray[np.intp]) -> tuple[ElasticState, float]:
+    """State of a group whose bonds have the stiffness of the case, and their mean k_n [Pa/m]."""
+    t, rock = build.topology, build.case.materials[build.case.groups[name].material]
+    tets = bonded_tets(t, pairs, around_the_middle(t, pairs, surrounded(t, pairs)))
     first = build.assembly.pair_faces["triangles"][:, 0]
-    place = np.zeros(len(build.topology.face_nodes), np.intp)
+    place = np.zeros(len(t.face_nodes), np.intp)
     place[first] = np.arange(len(first))
-    return build.arrays["triangles.stiffness"][place[faces]]
+    stiffness = build.arrays["triangles.stiffness"][place[t.pair_faces[tets.pair, 0]]]
+    mean = float(stiffness.mean())
+    u = displacements(tets, rock.young_modulus, rock.poisson_ratio, mean)
+    return ElasticState(tets, mean * jumps(tets, u)), mean
 
 
 def _ductility(law: dict[str, float], stiffness: float) -> list[float]:

@@ -15,11 +15,11 @@ SOFT = BRITTLE | {"law": "softening", "fracture_energy_1": 10, "fracture_energy_
 BOX = {"size": [4, 4, 4], "divisions": [4, 4, 4], "shape": "tet4"}
 
 
-def bonded(law, *, box=BOX, split=True, **more):
+def bonded(law, *, box=BOX, split=True, fix=(), **more):
     """A box of bonded elements."""
     return build(
         case(
-            [{"group": "rock", "box": box}], {"rock": {}}, cdem=2, interfaces={"default": law},
+            [{"group": "rock", "box": box}], {"rock": {"fix": [*fix]}}, cdem=2, interfaces={"default": law},
             model={"split": {"rock": "elements"}} if split else {}, **more,
         )
     )  # fmt: skip
@@ -102,6 +102,7 @@ def test_scattered_strengths_are_felt():
         {"law": {"friction_angle": 30}},
         {"law": BRITTLE | {"tensile_strength": 0}},
         {"split": False},
+        {"fix": "xyz"},
         {"box": BOX | {"shape": "hex8"}},
         {"box": BOX | {"divisions": [1, 1, 1]}},
     ],
