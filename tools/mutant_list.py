@@ -155,6 +155,22 @@ PYTHON = [
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
+        "meshed friction",
+        "bonds that are pulled gain by friction where their strength is estimated",
+        "src/cdem/model/meshed_strength.py",
+        "slips = (shear + sign * normal * tan_friction) / cohesion",
+        "slips = (shear - sign * normal * tan_friction) / cohesion",
+        "tests/unit/model/test_meshed_strength.py",
+    ),
+    Mutant(
+        "meshed jumps",
+        "irregular tets said to bear what even rock does",
+        "src/cdem/model/homogenize.py",
+        "    return b - a\n",
+        "    return np.broadcast_to((b - a).mean(axis=1, keepdims=True), a.shape)\n",
+        "tests/unit/model/test_meshed_strength.py",
+    ),
+    Mutant(
         "mirrored",
         "all cells of a box divided along the same diagonal",
         "src/cdem/model/bodies.py",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
+from cdem.model.meshed_strength import meshed_strengths, strength_text
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.wetted import idle_water, water_text, wetted
@@ -102,7 +104,8 @@ class Audit:
         b, out = self._build, {}
         for name, made_up in b.compensation.items():
             rock = b.case.materials[b.case.groups[name].material]
-            out[name] = asdict(made_up) | {
+            numbers = {key: value for key, value in vars(made_up).items() if key != "state"}
+            out[name] = numbers | {
                 "young_modulus": made_up.stiffening * rock.young_modulus,
                 "poisson_ratio": made_up.stiffening * rock.poisson_ratio,
             }
@@ -125,6 +128,11 @@ class Audit:
             "remedy": remedy(b, ruling, dt),
             "added_mass": float(b.assembly.added_mass.sum()),
         }
+
+    @cached_property
+    def meshed_strength(self) -> dict[str, dict[str, Any]]:
+        """Of `meshed_strengths`: about a second a group, so only where it is asked for."""
+        return meshed_strengths(self._build)
 
     def _slivers(self) -> int:
         t = self._build.topology
@@ -250,6 +258,7 @@ class Audit:
             "absent": self.absent,
             "interfaces": self.interfaces,
             "compensation": self.compensation,
+            "meshed_strength": self.meshed_strength,
             "contacts": self.contacts,
             "water": self.water,
             "bolts": self.bolts,
@@ -283,6 +292,7 @@ class Audit:
         spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))
         lines += ["", f"  extent x, y, z [m]: {spans}"]
         lines += self._interfaces_text()
+        lines += strength_text(self.meshed_strength)
         lines += self._stiffness_text()
         lines += self._initial_text()
         lines += water_text(self.water)

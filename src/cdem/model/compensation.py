@@ -26,7 +26,15 @@ from cdem.mesh import element_shapes
 from cdem.mesh.arrays import in_pieces, inverses, same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
-from cdem.model.homogenize import COLUMN, ROW, BondedTets, compliance, elasticity
+from cdem.model.homogenize import (
+    COLUMN,
+    ROW,
+    BondedTets,
+    compliance,
+    displacements,
+    elasticity,
+    jumps,
+)
 
 Floats = NDArray[np.float64]
 
@@ -53,6 +61,20 @@ DIRECTIONS = _pulls()
 
 
 @dataclass(frozen=True)
+class ElasticState:
+    """Tets around the middle of a group under six uniform stresses of 1 Pa.
+
+    Attributes:
+        tets: The tets.
+        tractions: On the faces, at their corners, of `homogenize.STATES`: pulling along the outward
+            normal of the first tet [1], shape (faces, 3, xyz, 6).
+    """
+
+    tets: BondedTets
+    tractions: Floats
+
+
+@dataclass(frozen=True)
 class Compensation:
     """What the elements and bonds of a group have, so that the whole is as the case says.
 
@@ -65,6 +87,7 @@ class Compensation:
         stiffness: Of the bonds [Pa/m].
         errors: What is left: in E along the axis or diagonal of space where it is worst, and in the
             isotropic G and K [1].
+        state: From which q was found; None where it is the sum over faces.
     """
 
     q: float
@@ -74,6 +97,7 @@ class Compensation:
     stiffening: float
     stiffness: float
     errors: tuple[float, float, float]
+    state: ElasticState | None
 
 
 def compensate(
@@ -124,9 +148,7 @@ def compensated_groups(
     """Groups whose every element is a block, bonded to others with the stiffness left to cdem: 2."""
     if case.cdem < 2:
         return []
-    elements = np.zeros(len(t.block_group), np.int64)
-    for block in t.element_block.values():
-        elements += np.bincount(block, minlength=len(elements))
+    elements = elements_of_blocks(t)
     kind = t.face_kind[t.pair_faces]
     bonded = np.unique(kind[(kind[:, 0] == kind[:, 1]) & bonds[kind[:, 0], kind[:, 1]], 0])
     return [
@@ -135,6 +157,14 @@ def compensated_groups(
         if is_automatic(laws[interface_of[group, group]])
         and (elements[t.block_group == group] == 1).all()
     ]
+
+
+def elements_of_blocks(t: Topology) -> NDArray[np.int64]:
+    """How many elements each block has, shape (blocks,)."""
+    elements = np.zeros(len(t.block_group), np.int64)
+    for block in t.element_block.values():
+        elements += np.bincount(block, minlength=len(elements))
+    return elements
 
 
 def is_automatic(law: Interface) -> bool:
@@ -155,7 +185,7 @@ def _of_group(
     faces = t.pair_faces[pairs]
     elements = t.face_element[faces]
     count = np.bincount(elements.ravel(), minlength=len(volume))
-    inner = count == np.bincount(t.face_element, minlength=len(volume))
+    inner = surrounded(t, pairs)
     if not inner[elements].any():
         inner = count > 0
     share = 0.5 * inner[elements].sum(axis=1) * area[faces[:, 0]]
@@ -165,9 +195,10 @@ def _of_group(
     h = float(same_everywhere(q / area_per_volume))
     factor = max(FACTOR, float(same_everywhere(q * poisson / (3 * (MOST_POISSON - poisson)))))
     tets = len(t.element_nodes["tet4"])
-    errors = (0.0, 0.0, 0.0)
+    errors, state = (0.0, 0.0, 0.0), None
     if (elements < tets).all():
-        q, errors = _found(t, pairs, inner, q, h, factor, poisson)
+        near = bonded_tets(t, pairs, around_the_middle(t, pairs, inner))
+        q, errors, state = _found(near, q, h, factor, poisson)
     q = float(same_everywhere(q))
     stiffening = 1 + q / (3 * factor)
     return Compensation(
@@ -178,24 +209,18 @@ def _of_group(
         stiffening=stiffening,
         stiffness=factor * stiffening * young / h,
         errors=errors,
+        state=state,
     )
 
 
 def _found(
-    t: Topology,
-    pairs: NDArray[np.intp],
-    inner: NDArray[np.bool_],
-    q: float,
-    h: float,
-    a: float,
-    poisson: float,
-) -> tuple[float, tuple[float, float, float]]:
-    """q of tets as it acts, and what errors are left, for Young's modulus 1."""
-    tets = bonded_tets(t, pairs, _around_the_middle(t, pairs, inner))
-    layers = [tets.inner(n) for n in range(LAYERS, 0, -1)]
-    counted = next((inside for inside in layers if inside.any()), np.ones(len(tets.x), bool))
+    tets: BondedTets, q: float, h: float, a: float, poisson: float
+) -> tuple[float, tuple[float, float, float], ElasticState]:
+    """q of tets as it acts, what errors are left, and their state, for Young's modulus 1."""
     e = 1 + q / (3 * a)
-    c = compliance(tets, e, poisson * e, a * e / h, counted)
+    u = displacements(tets, e, poisson * e, a * e / h)
+    state = ElasticState(tets, a * e / h * jumps(tets, u))
+    c = compliance(tets, u, e, poisson * e, counted_tets(tets))
     acts = 3 * a * (e * _isotropic(c)[0] - 1)
     e_new = 1 + acts / (3 * a)
     own, new = inverses(np.stack([elasticity(x, poisson * x) for x in (e, e_new)]))
@@ -204,11 +229,8 @@ def _found(
     worst = float(along[np.argmax(abs(along))])
     young, bulk = (1 / part for part in _isotropic(left))
     shear = 3 * bulk * young / (9 * bulk - young)
-    return acts, (
-        worst,
-        shear * 2 * (1 + poisson) - 1,
-        bulk * 3 * (1 - 2 * poisson) - 1,
-    )
+    errors = (worst, shear * 2 * (1 + poisson) - 1, bulk * 3 * (1 - 2 * poisson) - 1)
+    return acts, errors, state
 
 
 def _isotropic(c: Floats) -> tuple[float, float]:
@@ -217,16 +239,30 @@ def _isotropic(c: Floats) -> tuple[float, float]:
     return float(3 * normal + 2 * cross + shear) / 15, float(c[:3, :3].sum())
 
 
-def _around_the_middle(
+def surrounded(t: Topology, pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Elements of which all faces are of these pairs, shape (elements,)."""
+    count = sum(len(nodes) for nodes in t.element_nodes.values())
+    faces = np.bincount(t.face_element, minlength=count)
+    bonded = np.bincount(t.face_element[t.pair_faces[pairs]].ravel(), minlength=count)
+    return (bonded == faces) & (faces > 0)
+
+
+def around_the_middle(
     t: Topology, pairs: NDArray[np.intp], inner: NDArray[np.bool_]
 ) -> NDArray[np.integer]:
-    """Tets of pairs around the middle of those inside."""
+    """Tets of pairs around the middle of those inside, `MOST_TETS` at most."""
     used = np.unique(t.face_element[t.pair_faces[pairs]])
     center = t.node_position[t.element_nodes["tet4"][used]].mean(axis=1)
     inside = center[inner[used]]
     start = inside[np.argmin(((inside - inside.mean(axis=0)) ** 2).sum(axis=1))]
     near = np.argsort(((center - start) ** 2).sum(axis=1), kind="stable")[:MOST_TETS]
     return used[near]
+
+
+def counted_tets(tets: BondedTets) -> NDArray[np.bool_]:
+    """Tets far enough inside the others to stand for the rock, or all where none is."""
+    layers = [tets.inner(n) for n in range(LAYERS, 0, -1)]
+    return next((inside for inside in layers if inside.any()), np.ones(len(tets.x), bool))
 
 
 def bonded_tets(t: Topology, pairs: NDArray[np.intp], some: NDArray[np.integer]) -> BondedTets:
@@ -241,7 +277,7 @@ def bonded_tets(t: Topology, pairs: NDArray[np.intp], some: NDArray[np.integer])
     order = (t.pair_shift[pairs, None] - np.arange(3)) % 3
     corner_a = _corner_of(nodes[tet[:, 0]], t.face_nodes[a, :3])
     corner_b = _corner_of(nodes[tet[:, 1]], np.take_along_axis(t.face_nodes[b, :3], order, axis=1))
-    return BondedTets(t.node_position[nodes], tet, np.stack([corner_a, corner_b], axis=1))
+    return BondedTets(t.node_position[nodes], tet, np.stack([corner_a, corner_b], axis=1), pairs)
 
 
 def _corner_of(nodes: NDArray, some: NDArray) -> NDArray[np.intp]:

@@ -43,11 +43,13 @@ class BondedTets:
         tet: The tets on either side of each face, shape (faces, 2).
         corner: Which of their corners the face has, those that touch in the same place, shape
             (faces, 2, 3).
+        pair: Which pairs of faces of the model these are, shape (faces,).
     """
 
     x: Floats
     tet: Ints
     corner: Ints
+    pair: NDArray[np.intp]
 
     @cached_property
     def volume(self) -> Floats:
@@ -80,19 +82,36 @@ class BondedTets:
 
 
 def compliance(
-    tets: BondedTets, young: float, poisson: float, stiffness: float, inner: NDArray[np.bool_]
+    tets: BondedTets, u: Floats, young: float, poisson: float, inner: NDArray[np.bool_]
 ) -> Floats:
     """Compliance of the whole under six uniform stresses, from what its inner tets do.
+
+    Args:
+        tets: The tets.
+        u: Their `displacements` [m].
+        young: Young's modulus of the tets [Pa].
+        poisson: Their Poisson's ratio.
+        inner: Tets whose mean strain and stress count.
+
+    Returns:
+        Strains (engineering shears) by stresses, in the order of `STATES` [1/Pa], shape (6, 6).
+    """
+    strains, stresses = means(tets, u, young, poisson, inner)
+    normal = matrix_product(stresses, stresses.T)
+    return matrix_product(matrix_product(strains, stresses.T), inverses(normal))
+
+
+def displacements(tets: BondedTets, young: float, poisson: float, stiffness: float) -> Floats:
+    """Displacements of the tets' corners under the six uniform stresses, shape (tets, 12, 6) [m].
 
     Args:
         tets: The tets.
         young: Young's modulus of the tets [Pa].
         poisson: Their Poisson's ratio.
         stiffness: Of the faces, normal and shear [Pa/m].
-        inner: Tets whose mean strain and stress count.
 
-    Returns:
-        Strains (engineering shears) by stresses, in the order of `STATES` [1/Pa], shape (6, 6).
+    Raises:
+        ModelError: No equilibrium was found.
     """
     rows = tets.strain_rows
     stresses_of = np.einsum("ij,ejk->eik", elasticity(young, poisson), rows)
@@ -111,10 +130,15 @@ def compliance(
         return np.einsum("eij,ejs->eis", own, u) + out.reshape(u.shape)
 
     start = _start(tets, young, poisson, stiffness)
-    u = _solve(force, inverses(block), _loads(tets), start)
-    strains, stresses = means(tets, u, young, poisson, inner)
-    normal = matrix_product(stresses, stresses.T)
-    return matrix_product(matrix_product(strains, stresses.T), inverses(normal))
+    return _solve(force, inverses(block), _loads(tets), start)
+
+
+def jumps(tets: BondedTets, u: Floats) -> Floats:
+    """Of displacements of the corners, (tets, 12, states), across the faces from the first tet to
+    the other, at their corners, shape (faces, 3, xyz, states) [m]."""
+    at = u.reshape(-1, 4, 3, u.shape[2])
+    a, b = (at[tets.tet[:, side, None], tets.corner[:, side]] for side in (0, 1))
+    return b - a
 
 
 def _springs(tets: BondedTets, stiffness: Floats) -> tuple[NDArray[np.intp], Floats]:
@@ -201,13 +225,11 @@ def means(
     Returns:
         Strains (engineering shears) [1] and stresses [Pa], shape (6, states), as in `STATES`.
     """
-    volume, states = tets.volume[inner], u.shape[2]
+    volume = tets.volume[inner]
     strain = np.einsum("eik,eks,e->is", tets.strain_rows[inner], u[inner], volume)
     stress = np.einsum("ij,js->is", elasticity(young, poisson), strain)
     share = 0.5 * inner[tets.tet].sum(axis=1)
-    at = u.reshape(-1, 4, 3, states)
-    a, b = (at[tets.tet[:, side, None], tets.corner[:, side]] for side in (0, 1))
-    opened = np.einsum("f,fxs,fy->xys", share, (b - a).mean(axis=1), tets.vectors)
+    opened = np.einsum("f,fxs,fy->xys", share, jumps(tets, u).mean(axis=1), tets.vectors)
     both = 0.5 * (opened + opened.transpose(1, 0, 2))
     strain += both[ROW, COLUMN] * np.array([1, 1, 1, 2, 2, 2])[:, None]
     return strain / volume.sum(), stress / volume.sum()

@@ -8,7 +8,7 @@ import pytest
 from cdem.errors import ModelError
 from cdem.mesh import element_shapes
 from cdem.model import homogenize
-from cdem.model.homogenize import BondedTets, compliance, elasticity
+from cdem.model.homogenize import BondedTets, compliance, displacements, elasticity
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 
@@ -17,12 +17,13 @@ def pair():
     """A tet and its mirror image behind the face x = 0."""
     x = np.stack([CORNERS, CORNERS * [-1, 1, 1]])
     x[1, [1, 2]] = x[1, [2, 1]]
-    return BondedTets(x, np.array([[0, 1]]), np.array([[[0, 2, 3], [0, 1, 3]]]))
+    return BondedTets(x, np.array([[0, 1]]), np.array([[[0, 2, 3], [0, 1, 3]]]), np.zeros(1, int))
 
 
 def test_a_layer_adds_its_opening_along_its_normal():
     """1/E of the pair along x: that of the rock, and A / (k V) of the face."""
-    c = compliance(pair(), 10.0, 0.2, 7.0, np.ones(2, bool))
+    u = displacements(pair(), 10.0, 0.2, 7.0)
+    c = compliance(pair(), u, 10.0, 0.2, np.ones(2, bool))
     own = np.linalg.inv(elasticity(10.0, 0.2))
     added = 0.5 / 7.0 / (1 / 3)
     expected = own.copy()
@@ -48,4 +49,4 @@ def test_elasticity_is_that_of_the_elements():
 def test_no_equilibrium_is_an_error(monkeypatch):
     monkeypatch.setattr(homogenize, "MOST_STEPS", 1)
     with pytest.raises(ModelError, match="no equilibrium of its elements and bonds was found"):
-        compliance(pair(), 10.0, 0.2, 1e-3, np.ones(2, bool))
+        displacements(pair(), 10.0, 0.2, 1e-3)
