@@ -17,6 +17,8 @@ if TYPE_CHECKING:
         ModelError,
         UnstableError,
     )
+    from cdem.output.results import Results
+    from cdem.output.results import open_results as open
     from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
 
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "Case": "cdem.case.case",
     "Progress": "cdem.run.progress",
+    "Results": "cdem.output.results",
     "Simulation": "cdem.run.simulation",
     "BackendError": "cdem.errors",
     "CaseError": "cdem.errors",
@@ -41,19 +44,24 @@ __all__ = [
     "MeshError",
     "ModelError",
     "Progress",
+    "Results",
     "Simulation",
     "UnstableError",
     "__version__",
+    "open",
 ]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
+    if name == "open":  # a function of that name would hide Python's own in its module
+        value = importlib.import_module("cdem.output.results").open_results
+    elif name in _HOMES:
+        value = getattr(importlib.import_module(_HOMES[name]), name)
+    else:
         raise AttributeError(f"module 'cdem' has no attribute {name!r}")
-    value = getattr(importlib.import_module(_HOMES[name]), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted(globals().keys() | _HOMES.keys())
+    return sorted(globals().keys() | _HOMES.keys() | {"open"})

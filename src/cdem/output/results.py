@@ -1,0 +1,171 @@
+"""A result folder opened from Python: numbers, tables, and meshes for pyvista."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.errors import CdemError
+from cdem.mesh.element_shapes import NODES
+from cdem.output.reader import FrameSeries, SurfaceSeries, read_histories, read_summary
+from cdem.run.frame_files import VTK_TYPES
+
+
+def open_results(folder: str | Path) -> Results:
+    """Open the result folder of a run, which may be going on.
+
+    Args:
+        folder: What `cdem run -o` or `Simulation(output=...)` wrote to.
+
+    Raises:
+        CdemError: It is no result folder.
+    """
+    return Results(Path(folder))
+
+
+class Results:
+    """What a run has left in its folder; files are read when they are asked for.
+
+    Frames are numbered from 0; those below 0 count from the end. In a notebook it shows what
+    `cdem info` says, and the last frame.
+
+    Attributes:
+        folder: The result folder.
+
+    Example:
+        >>> import cdem
+        >>> results = cdem.open("incline.results")  # doctest: +SKIP
+        >>> results.histories["block.displacement_x [m]"].max()  # doctest: +SKIP
+        >>> results.volume(-1).plot(scalars="stress")  # doctest: +SKIP
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        if not (folder / "histories.csv").is_file():
+            raise CdemError(f"{folder}: no histories.csv; is this a result folder?")
+
+    def __repr__(self) -> str:
+        return f"Results({str(self.folder)!r})"
+
+    def __len__(self) -> int:
+        """Number of frames."""
+        return len(self.times)
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Content of summary.json.
+
+        Raises:
+            CdemError: The run has not come to an end.
+        """
+        return read_summary(self.folder)
+
+    @property
+    def histories(self) -> dict[str, NDArray[np.float64]]:
+        """Columns of histories.csv by name, e.g. "time [s]"."""
+        return read_histories(self.folder)
+
+    def table(self) -> Any:
+        """The histories as a table of pandas.
+
+        Raises:
+            CdemError: pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise CdemError("tables need pandas; pip install pandas, or use histories") from None
+        return pandas.DataFrame(self.histories)
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the frames [s]."""
+        return self._surfaces.times
+
+    @cached_property
+    def _surfaces(self) -> SurfaceSeries:
+        return SurfaceSeries(self.folder)
+
+    @cached_property
+    def _volumes(self) -> FrameSeries:
+        return FrameSeries(self.folder)
+
+    def surface(self, frame: int = -1) -> Any:
+        """The outer and broken faces of a frame, a PolyData of pyvista with the fields that it carries.
+
+        Raises:
+            CdemError: pyvista is not installed, or there is no such frame.
+        """
+        self._check(frame)
+        surface = self._surfaces[frame]
+        mesh = _pyvista().PolyData(surface.points, faces=surface.faces)
+        mesh.point_data.update(surface.point_data)
+        mesh.cell_data.update(surface.cell_data)
+        return _told(mesh, surface.time, surface.group_names)
+
+    def volume(self, frame: int = -1) -> Any:
+        """All elements of a frame, an UnstructuredGrid of pyvista with the fields of `output.fields`.
+
+        Raises:
+            CdemError: pyvista is not installed, or there is no such frame.
+        """
+        self._check(frame)
+        series = self._volumes
+        place = range(len(series))[frame]
+        cells = [np.column_stack([np.full(len(ids), NODES[shape]), ids]).ravel()
+                 for shape, ids in series.cells.items()]  # fmt: skip
+        types = [np.full(len(ids), VTK_TYPES[shape]) for shape, ids in series.cells.items()]
+        mesh = _pyvista().UnstructuredGrid(
+            np.concatenate(cells), np.concatenate(types).astype(np.uint8), series.points(place)
+        )
+        for kind, data in (("PointData", mesh.point_data), ("CellData", mesh.cell_data)):
+            for name in series.names[kind]:
+                data[name] = series.field(kind, name, place)
+        return _told(mesh, float(series.times[place]), series.group_names)
+
+    def _check(self, frame: int) -> None:
+        if not -len(self) <= frame < len(self):
+            raise CdemError(f"{self.folder}: no frame {frame}; there are {len(self)}")
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from cdem.output.render import picture
+        from cdem.output.report import info
+
+        try:
+            text = info(self.folder)
+        except CdemError as error:
+            text = str(error)
+        page = f"<pre>{html.escape(text)}</pre>"
+        try:
+            image = picture([self._surfaces[-1]])
+        except CdemError as error:
+            return page + f"<p>{html.escape(str(error))}</p>"
+        from PIL import Image
+
+        file = io.BytesIO()
+        Image.fromarray(image).save(file, "png")
+        data = base64.b64encode(file.getvalue()).decode()
+        return page + f'<img src="data:image/png;base64,{data}">'
+
+
+def _pyvista() -> Any:
+    try:
+        import pyvista
+    except ImportError:
+        raise CdemError("meshes need pyvista; pip install 'cdem[viz]'") from None
+    return pyvista
+
+
+def _told(mesh: Any, time: float, group_names: list[str]) -> Any:
+    """A mesh that knows its time and the names of its groups."""
+    mesh.field_data["time"] = [time]
+    mesh.field_data["group_names"] = group_names
+    return mesh
