@@ -48,7 +48,6 @@ __all__ = [
     "Simulation",
     "UnstableError",
     "__version__",
-    "open",
 ]
 
 
