@@ -250,8 +250,8 @@ def strength_text(strengths: dict[str, dict[str, Any]]) -> list[str]:
             g1, g2 = of["fracture_energies"]
             lines.append(
                 "      irregular tets overload some bonds: divide tensile_strength and cohesion by these parts, "
-                f"or use law softening with fracture_energy_1 of about {g1:.2g} and fracture_energy_2 of "
-                f"about {g2:.2g} J/m2"
+                f"or use law softening with fracture_energy_1 of about {g1:.3g} and fracture_energy_2 of "
+                f"about {g2:.3g} J/m2"
             )
     return lines
 
