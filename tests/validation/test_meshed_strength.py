@@ -30,7 +30,7 @@ def test_the_first_bond_breaks_where_the_report_says(tmp_path):
         ),
         threads=1,
     )  # fmt: skip
-    told = sim.audit.meshed_strength["default"]["first_bond_along_xyz"]["tension"][2]
+    told = sim.audit.meshed_strength["default"]["brittle_along_xyz"]["tension"][2]
     volume = sim.build.assembly.element_volume["tet4"]
     while not sum(sim.broken.values()):
         sim.step(5)

@@ -2,7 +2,7 @@
 
 In irregular tets that hold together by springs the tractions of bonds scatter about those of the mean
 stress: forces that the balance of nodes leaves free run from bond to bond around every edge. Brittle
-rock breaks with the bond that they load most, at a part f0 of its strength that does not depend on the
+rock breaks with the bonds that they load most, at a part f0 of its strength that does not depend on the
 stiffness of bonds. Where bonds have fracture energies, others take over first:
 
     f = f0 + 1.5 (1 - f0) D / (D + D0),    D = 2 G1 k / T^2 or 2 G2 k / (c (c - c_r))
@@ -65,11 +65,10 @@ def meshed_strengths(build: Build) -> dict[str, dict[str, Any]]:
     `compensation.MOST_TETS` tets around its middle, and 13 uniaxial stresses are made of these.
 
     Returns:
-        first_bond: At what part of the uniaxial strength of even rock the first bond breaks: of
-            "tension" and "compression" the smallest and the largest among the directions of the
-            load [1], shape (2,).
-        first_bond_along_xyz: The same along the axes [1], shape (3,).
-        strength, strength_along_xyz: The same, for the stress that the group bears at most.
+        strength: Part of the uniaxial strength of even rock: of "tension" and "compression" the
+            smallest and the largest among the directions of the load [1], shape (2,).
+        strength_along_xyz: The same along the axes [1], shape (3,).
+        brittle, brittle_along_xyz: The same if its bonds were brittle.
         faces: Bonds that were looked at.
         ductility: D of tension and compression, 0 where bonds are brittle [1].
         fracture_energies: Which G1 and G2 give the group the strength of its bonds [J/m2].
@@ -125,17 +124,17 @@ def _of_group(
     factors = strength_factors_of(interface)
     if factors is not None:
         weakness = 1 / factors(t.pair_faces[tets.pair])
-    first = first_breaks(
+    brittle = brittle_parts(
         state.tractions[some],
         _normals(tets)[some],
         weakness[some],
         *(law[key] for key in STRENGTHS),
     )
     ductility = _ductility(law, stiffness)
-    bears = [borne(f, d, half) for f, d, half in zip(first, ductility, HALFWAY, strict=True)]
+    bears = [borne(f, d, half) for f, d, half in zip(brittle, ductility, HALFWAY, strict=True)]
     return {
-        "first_bond": _ranges(first),
-        "first_bond_along_xyz": _along_xyz(first),
+        "brittle": _ranges(brittle),
+        "brittle_along_xyz": _along_xyz(brittle),
         "strength": _ranges(bears),
         "strength_along_xyz": _along_xyz(bears),
         "faces": len(some),
@@ -144,9 +143,9 @@ def _of_group(
     }
 
 
-def borne(first: Floats, ductility: float, halfway: float) -> Floats:
-    """f of f0, D and D0, see above; directions in which even the first bond is strong keep theirs."""
-    return first + GAIN * np.maximum(1 - first, 0) * ductility / (ductility + halfway)
+def borne(brittle: Floats, ductility: float, halfway: float) -> Floats:
+    """f of f0, D and D0, see above; directions in which even brittle bonds are strong keep theirs."""
+    return brittle + GAIN * np.maximum(1 - brittle, 0) * ductility / (ductility + halfway)
 
 
 def _ranges(parts: Sequence[Floats]) -> dict[str, list[float]]:
@@ -157,7 +156,7 @@ def _along_xyz(parts: Sequence[Floats]) -> dict[str, list[float]]:
     return {way: p[ALONG_XYZ].tolist() for way, p in zip(WAYS, parts, strict=True)}
 
 
-def first_breaks(
+def brittle_parts(
     tractions: Floats,
     normals: Floats,
     weakness: Floats,
@@ -165,7 +164,10 @@ def first_breaks(
     cohesion: float,
     tensile_strength: float,
 ) -> tuple[Floats, Floats]:
-    """Uniaxial stresses at which the first of some bonds breaks, over those of even rock.
+    """Uniaxial stresses that brittle bonds bear, over those of even rock.
+
+    Pulled rock breaks with its first bond. Pressed rock outlives one, which keeps its friction, and
+    breaks with the second.
 
     Args:
         tractions: At the points of the bonds under `homogenize.STATES`, of 1 Pa, on the face whose
@@ -192,8 +194,8 @@ def first_breaks(
         for way, (sign, strength) in enumerate(zip((1, -1), even, strict=True)):
             opens = sign * normal / tensile_strength
             slips = (shear + sign * normal * tan_friction) / cohesion
-            used = np.maximum(opens, slips) * weakness[:, None]
-            found[way, number] = 1 / max(used.max() * strength, TINY)
+            used = np.sort(np.maximum(opens, slips).max(axis=1) * weakness)[-1 - way :]
+            found[way, number] = 1 / max(used[0] * strength, TINY)
     return found[0], found[1]
 
 
@@ -239,19 +241,17 @@ def strength_text(strengths: dict[str, dict[str, Any]]) -> list[str]:
     """Lines of the report on what `meshed_strengths` gives."""
     lines = ["", "  strength as meshed, as a part of that of the bonds"] if strengths else []
     for name, of in strengths.items():
-        first, all_of = (_words(of[key]) for key in ("first_bond", "strength"))
+        brittle, all_of = (_words(of[key]) for key in ("brittle", "strength"))
         if not any(of["ductility"]):
             lines.append(f"    {name}: {all_of}, by direction of the load: bonds are brittle")
         else:
-            lines.append(
-                f"    {name}: about {all_of}, by direction of the load; first bond {first}"
-            )
+            lines.append(f"    {name}: about {all_of}, by direction of the load; brittle {brittle}")
         if min(of["strength"][way][0] for way in WAYS) < LEAST:
             g1, g2 = of["fracture_energies"]
             lines.append(
                 "      irregular tets overload some bonds: divide tensile_strength and cohesion by these parts, "
-                f"or use law softening with fracture_energy_1 of about {g1:.2g} and fracture_energy_2 of "
-                f"about {g2:.2g} J/m2"
+                f"or use law softening with fracture_energy_1 of about {g1:.3g} and fracture_energy_2 of "
+                f"about {g2:.3g} J/m2"
             )
     return lines
 
