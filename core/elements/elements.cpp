@@ -4,6 +4,7 @@
 #include "core/base/parallel.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
+#include "core/elements/nodal_mean.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/force_sets.hpp"
@@ -51,6 +52,19 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   }
 }
 
+/// Pass 3 of the tets whose dilatation is averaged.
+void update_averaged_tets(const Model& m, State& s, Queue q) {
+  const ElementSet& e = m.tet4;
+  for_each_lane(q, e.count, averaged_tets(s),
+                CorotationalForce<Tet4, FollowRotation, NodalFlow>{
+                    .columns = element_columns<Tet4>(m, s, e),
+                    .damping_time = m.stiffness_damping * s.dt,
+                    .dt = s.dt,
+                    .damping_work = {s.tet4.damping_work.data(), e.stride},
+                    .flow = nodal_flow(m, s),
+                    .corner_force = {s.corner_force.data() + std::size_t(e.corner_first) * 4}});
+}
+
 }  // namespace
 
 void update_element_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
@@ -58,9 +72,11 @@ void update_element_forces(const Model& m, State& s, Queue q, const StepPlan& pl
   const bool fuses = fuses_blocks(s, plan);
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
-                         const Blocks some = awake(plan, fuses ? es.fused.general : es.awake);
+                         Blocks some = awake(plan, fuses ? es.fused.general : es.awake);
+                         if (e.nodal_mean.size() > 0 && !some.id) some = other_tets(s);
                          update_elements<Shape>(m, s, q, e, es, some);
                        });
+  if (has_nodal_means(m)) update_averaged_tets(m, s, q);
 }
 
 }  // namespace cdem
