@@ -52,19 +52,6 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   }
 }
 
-/// Pass 3 of the tets whose dilatation is averaged.
-void update_averaged_tets(const Model& m, State& s, Queue q) {
-  const ElementSet& e = m.tet4;
-  for_each_lane(q, e.count, averaged_tets(s),
-                CorotationalForce<Tet4, FollowRotation, NodalFlow>{
-                    .columns = element_columns<Tet4>(m, s, e),
-                    .damping_time = m.stiffness_damping * s.dt,
-                    .dt = s.dt,
-                    .damping_work = {s.tet4.damping_work.data(), e.stride},
-                    .flow = nodal_flow(m, s),
-                    .corner_force = {s.corner_force.data() + std::size_t(e.corner_first) * 4}});
-}
-
 }  // namespace
 
 void update_element_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {

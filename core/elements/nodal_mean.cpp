@@ -1,6 +1,9 @@
 // nodal_mean.cpp - see nodal_mean.hpp.
 #include "core/elements/nodal_mean.hpp"
 
+#include <vector>
+
+#include "core/elements/nodal_dilatation.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/phase_timer.hpp"
@@ -13,6 +16,8 @@ Blocks blocks_of(const Column<Index>& list) {
   static constexpr Index none = 0;  // a null pointer would stand for all
   return {list.size() > 0 ? list.data() : &none, Index(list.size())};
 }
+
+Blocks averaged_tets(const State& s) { return blocks_of(s.nodal.blocks); }
 
 NodalDilatation dilatation(const Model& m, const State& s, const Column<Real>& at_nodes) {
   return {.averaged = {m.tet4.nodal_mean.data()},
@@ -54,7 +59,6 @@ void begin(const Model& m, State& s, Queue q) {
 
 }  // namespace
 
-Blocks averaged_tets(const State& s) { return blocks_of(s.nodal.blocks); }
 Blocks other_tets(const State& s) { return blocks_of(s.nodal.other_blocks); }
 
 void list_nodal_means(const Model& m, State& s) {
@@ -95,23 +99,37 @@ void update_nodal_means(const Model& m, State& s, Queue q) {
   average(m, s, q, s.nodal.after);
 }
 
-bool find_nodal_means(const Model& m, State& s, Queue q) {
+void update_averaged_tets(const Model& m, State& s, Queue q) {
+  const ElementSet& e = m.tet4;
+  const NodalFlow flow{.flow = flow_of_tets(m, s),
+                       .after = dilatation(m, s, s.nodal.after),
+                       .flowed = {s.nodal.flowed.data(), e.stride}};
+  for_each_lane(q, e.count, averaged_tets(s),
+                CorotationalForce<Tet4, FollowRotation, NodalFlow>{
+                    .columns = element_columns<Tet4>(m, s, e),
+                    .damping_time = m.stiffness_damping * s.dt,
+                    .dt = s.dt,
+                    .damping_work = {s.tet4.damping_work.data(), e.stride},
+                    .flow = flow,
+                    .corner_force = {s.corner_force.data() + std::size_t(e.corner_first) * 4}});
+}
+
+bool report_averaged_tets(const Model& m, State& s, Queue q) {
   if (s.nodal.after.size() == 0) return false;
   find_dilatation(m, s, q);
   average(m, s, q, s.nodal.trial);
+  const ElementSet& e = m.tet4;
+  const NodalReport flow{.flow = flow_of_tets(m, s),
+                         .now = dilatation(m, s, s.nodal.trial),
+                         .own = {s.nodal.own.data(), e.stride}};
+  for_each_lane(q, e.count, averaged_tets(s),
+                CorotationalReport<Tet4, FollowRotation, NodalReport>{
+                    .columns = element_columns<Tet4>(m, s, e),
+                    .stress = {s.tet4.stress.data(), e.stride},
+                    .energy = {s.tet4.energy.data(), e.stride},
+                    .yielded = {s.tet4.yielded.data(), e.stride},
+                    .flow = flow});
   return true;
-}
-
-NodalFlow nodal_flow(const Model& m, State& s) {
-  return {.flow = flow_of_tets(m, s),
-          .after = dilatation(m, s, s.nodal.after),
-          .flowed = {s.nodal.flowed.data(), m.tet4.stride}};
-}
-
-NodalReport nodal_report(const Model& m, State& s) {
-  return {.flow = flow_of_tets(m, s),
-          .now = dilatation(m, s, s.nodal.trial),
-          .own = {s.nodal.own.data(), m.tet4.stride}};
 }
 
 }  // namespace cdem

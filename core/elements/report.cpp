@@ -2,7 +2,6 @@
 #include "core/elements/report.hpp"
 
 #include <algorithm>
-#include <type_traits>
 #include <vector>
 
 #include "core/base/parallel.hpp"
@@ -15,28 +14,16 @@ namespace cdem {
 
 namespace {
 
-template <class Shape, class Rotation, class Flow>
-void report_some(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es,
-                 Blocks some, const Flow& flow) {
-  for_each_lane(q, e.count, some,
-                CorotationalReport<Shape, Rotation, Flow>{
+template <class Shape, class Rotation>
+void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
+  const bool averaged = e.nodal_mean.size() > 0 && report_averaged_tets(m, s, q);
+  for_each_lane(q, e.count, averaged ? other_tets(s) : Blocks{},
+                CorotationalReport<Shape, Rotation>{
                     .columns = element_columns<Shape>(m, s, e),
                     .stress = {es.stress.data(), e.stride},
                     .energy = {es.energy.data(), e.stride},
                     .yielded = {es.yielded.size() > 0 ? es.yielded.data() : nullptr, e.stride},
-                    .flow = flow});
-}
-
-template <class Shape, class Rotation>
-void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
-  Blocks some;
-  if constexpr (std::is_same_v<Shape, Tet4> && std::is_same_v<Rotation, FollowRotation>) {
-    if (has_nodal_means(m) && find_nodal_means(m, s, q)) {
-      report_some<Shape, Rotation>(m, s, q, e, es, averaged_tets(s), nodal_report(m, s));
-      some = other_tets(s);
-    }
-  }
-  report_some<Shape, Rotation>(m, s, q, e, es, some, point_flow<Shape>(s, e, es));
+                    .flow = point_flow<Shape>(s, e, es)});
 }
 
 /// Mean over the Gauss points of the stress that the incremental forms keep.

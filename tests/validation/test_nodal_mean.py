@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import case, digest, momentum, simulate
-
-import cdem
+from scenes import digest, momentum, simulate
 
 ROCK = {
     "law": "mohr-coulomb",
@@ -101,6 +99,7 @@ def test_rock_that_cannot_flow_and_blocks_of_one_tet_keep_their_bits():
 
 def test_sampling_changes_nothing():
     """Averaged tets beside blocks of one tet: looked at in every step or at the end."""
+
     def run(steps):
         blocks = box((1, 1, 2)) + [
             {"group": "rock", "polyhedron": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]},
