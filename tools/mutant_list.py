@@ -1130,7 +1130,7 @@ CORE = [
         "core/elements/elements.cpp",
         "if (e.nodal_mean.size() > 0 && !some.id) some = other_tets(s);",
         "",
-        "tests/validation/test_nodal_mean.py",
+        "tests/core/elements/test_nodal_mean.cpp",
     ),
     Mutant(
         "single tets",
