@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from scenes import digest, momentum, simulate
+from scenes import case, digest, momentum, simulate
+
+import cdem
 
 ROCK = {
     "law": "mohr-coulomb",
@@ -114,3 +116,29 @@ def test_sampling_changes_nothing():
         return digest(sim)
 
     assert run(1) == run(60)
+
+
+def test_the_same_bits_on_any_number_of_threads_and_after_resuming(tmp_path):
+    """1,296 tets that flow, enough for several threads."""
+
+    def hit(**more):
+        data = case(
+            box((6, 6, 6)),
+            {"rock": {"velocity": [5, 0, -30]}},
+            rock=ROCK,
+            loads={"supports": [FLOOR]},
+            stages=[{"name": "hit", "mode": "dynamic", "duration": 0.004}],
+            output={"frames": False},
+        )
+        return cdem.Simulation(data, **more)
+
+    whole = hit(threads=1, output=tmp_path / "one")
+    whole.run()
+    assert whole.energies["plastic"] > 0.3 * whole.energies["start"]
+    two = hit(threads=2, output=tmp_path / "two")
+    two.run_until(0.002)
+    two.checkpoint()
+    two.close()
+    again = hit(threads=3, output=tmp_path / "two", resume=True)
+    again.run()
+    assert digest(again) == digest(whole)
