@@ -1125,6 +1125,14 @@ CORE = [
         "tests/core/elements/test_nodal_mean.cpp",
     ),
     Mutant(
+        "dilatation of a fill",
+        "the means of a fill go on from before",
+        "core/run/bring_in.cpp",
+        "renew_nodal_means(m, s, comes);\n  bond",
+        "bond",
+        "tests/validation/test_nodal_mean.py::test_a_fill_begins_free_of_stress",
+    ),
+    Mutant(
         "averaged twice",
         "blocks with averaged tets run the other kernels too",
         "core/elements/elements.cpp",
