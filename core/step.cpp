@@ -5,6 +5,7 @@
 #include "core/bonds/bonds.hpp"
 #include "core/contact/contact.hpp"
 #include "core/elements/elements.hpp"
+#include "core/elements/nodal_mean.hpp"
 #include "core/nodes/nodes.hpp"
 #include "core/water/water.hpp"
 
@@ -25,6 +26,7 @@ void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   check_against_all_pairs(m, s);                             // contact/broad_phase
   if (has_contact_pairs(s)) update_contact_forces(m, s, q);  // contact/force         Eq. 13-14
   update_water(m, s, q);                                     // water/
+  update_nodal_means(m, s, q);                               // elements/nodal_mean
   update_element_forces(m, s, q, plan);                      // elements/             Eq. 2
   advance_nodes(m, s, q, plan);                              // nodes/
   advance_clock(m, s);                                       // nodes/time_step

@@ -156,20 +156,37 @@ struct PointFlow {
                                            const PointStrains<Shape, Rotation, T>& p) const {
     ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
     Sym3<T> increment[Shape::points];
-    const auto flows = flow_points(c, e, strains, increment, [&](Index q, const T* state) {
-      for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
-    });
-    if (any_of(flows)) book<Rotation>(c, e, strains, increment);
+    if (any_of(flow_on(c, e, strains, increment))) book<Rotation>(c, e, strains, increment);
     return strains;
   }
 
-  /// What the laws would make of the elastic strains now: nothing is kept. `yielded` gets what
-  /// flows now and what ever has, see `yield_bits`.
-  template <class I, class Rotation, class T = Number<I>>
+  /// Take what flows in this step from the elastic strains, and keep the laws' state; returns where
+  /// any does. Where none does, the increments say nothing.
+  template <class I, class T = Number<I>>
+  CDEM_HD Truth<T> flow_on(const ElementColumns<Shape>& c, I e, ElasticStrains<Shape, T>& strains,
+                           Sym3<T>* increment) const {
+    return flow_points(c, e, strains, increment, [&](Index q, const T* state) {
+      for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
+    });
+  }
+  /// Elastic strains where the nodes were one step ago, before what has flowed since.
+  template <class Rotation, class I, class T = Number<I>>
+  CDEM_HD ElasticStrains<Shape, T> elastic_part_before(const ElementColumns<Shape>& c, I e) const {
+    Arms<Shape, T> arms = position_arms<Shape>(c, e);
+    const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
+    for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
+    return elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, may_flow(), arms));
+  }
+  template <class I>
+  CDEM_HD void add_inelastic(I e, Index q, const Sym3<Number<I>>& increment) const {
+    set_inelastic(e, q, inelastic_at(e, q) + increment);
+  }
+
+  /// What the laws would make of elastic strains now: nothing is kept. `yielded` gets what flows
+  /// now and what ever has, see `yield_bit`.
+  template <class I, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> after_flow(const ElementColumns<Shape>& c, I e,
-                                              const PointStrains<Shape, Rotation, T>& p,
-                                              T& yielded) const {
-    ElasticStrains<Shape, T> strains = elastic_part(c, e, p);
+                                              ElasticStrains<Shape, T> strains, T& yielded) const {
     const T none(0.0), one(1.0);
     T now[BlockLaws::most_state + 1], ever[BlockLaws::most_state + 1];
     for (Index k = 0; k < BlockLaws::most_state; ++k) {
@@ -226,16 +243,12 @@ struct PointFlow {
   CDEM_HD void book(const ElementColumns<Shape>& c, I e, const ElasticStrains<Shape, T>& strains,
                     const Sym3<T>* increment) const {
     const ElasticConstants<T> elastic = c.elastic(e);
-    // where the nodes were one step ago
-    Arms<Shape, T> arms = position_arms<Shape>(c, e);
-    const Arms<Shape, T> velocity = velocity_arms<Shape>(c, e);
-    for (Index k = 1; k < Shape::nodes; ++k) arms.a[k] = arms[k] - T(dt) * velocity[k];
-    const auto was = elastic_part(c, e, PointStrains<Shape, Rotation, T>(c, e, may_flow(), arms));
+    const auto was = elastic_part_before<Rotation>(c, e);
     T spent(0.0);
     for (Index q = 0; q < Shape::points; ++q) {
       const Sym3<T> both = elastic.stress(was.part[q] + strains.part[q]);
       spent += T(0.5) * c.point_volume.at(q, e) * contract(both, increment[q]);
-      set_inelastic(e, q, inelastic_at(e, q) + increment[q]);
+      add_inelastic(e, q, increment[q]);
     }
     // where a step is so long that it makes energy, the closing error must tell
     work.set(0, e, work.at(0, e) + max_of(spent, T(0.0)));
@@ -336,13 +349,13 @@ struct CorotationalForce {
 
 /// Mean stress and stored energy of an element, for output and the energy ledger. The stress is
 /// that which the next step will compute, the energy that of what has flowed so far.
-template <class Shape, class Rotation>
+template <class Shape, class Rotation, class Flow = PointFlow<Shape>>
 struct CorotationalReport {
   ElementColumns<Shape> columns;
-  InOutTable stress;      // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
-  InOutTable energy;      // [1][element]  [J]
-  InOutTable yielded;     // [1][element], see yield_bit; without data where no material flows
-  PointFlow<Shape> flow;  // without history where no material flows
+  InOutTable stress;   // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
+  InOutTable energy;   // [1][element]  [J]
+  InOutTable yielded;  // [1][element], see yield_bit; without data where no material flows
+  Flow flow;           // PointFlow<Shape>, without history where no material flows, or its like
 
   template <class I>
   CDEM_HD void operator()(I e) const {
@@ -353,7 +366,7 @@ struct CorotationalReport {
     ElasticStrains<Shape, T> shown = strains;
     if (yielded.data) {
       T bits;
-      shown = flow.after_flow(columns, e, p, bits);
+      shown = flow.after_flow(columns, e, strains, bits);
       yielded.set(0, e, bits);
     }
     const T zero(0.0);
@@ -371,6 +384,8 @@ struct CorotationalReport {
       const Hourglass<T> modes(columns, e, position_arms<Shape>(columns, e));
       stored += T(0.5) * modes.stiffness * modes.square();
     }
+    if constexpr (requires { flow.more_energy(columns, e); })
+      stored += flow.more_energy(columns, e);
     energy.set(0, e, stored);
     const T scale = T(1.0) / volume;
     stress.set(0, e, scale * mean.xx);

@@ -4,6 +4,7 @@
 #include "core/base/parallel.hpp"
 #include "core/elements/corotational.hpp"
 #include "core/elements/incremental.hpp"
+#include "core/elements/nodal_mean.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/force_sets.hpp"
@@ -58,9 +59,11 @@ void update_element_forces(const Model& m, State& s, Queue q, const StepPlan& pl
   const bool fuses = fuses_blocks(s, plan);
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
-                         const Blocks some = awake(plan, fuses ? es.fused.general : es.awake);
+                         Blocks some = awake(plan, fuses ? es.fused.general : es.awake);
+                         if (e.nodal_mean.size() > 0 && !some.id) some = other_tets(s);
                          update_elements<Shape>(m, s, q, e, es, some);
                        });
+  if (has_nodal_means(m)) update_averaged_tets(m, s, q);
 }
 
 }  // namespace cdem

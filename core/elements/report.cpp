@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/elements/corotational.hpp"
+#include "core/elements/nodal_mean.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/force_sets.hpp"
 
@@ -15,7 +16,8 @@ namespace {
 
 template <class Shape, class Rotation>
 void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
-  for_each_lane(q, e.count,
+  const bool averaged = e.nodal_mean.size() > 0 && report_averaged_tets(m, s, q);
+  for_each_lane(q, e.count, averaged ? other_tets(s) : Blocks{},
                 CorotationalReport<Shape, Rotation>{
                     .columns = element_columns<Shape>(m, s, e),
                     .stress = {es.stress.data(), e.stride},

@@ -23,10 +23,13 @@ template void for_each_lane(Queue, Index, Blocks,
 template void for_each_lane(
     Queue, Index, Blocks,
     const CorotationalForce<Hex8OnePoint, FollowRotation, PointFlow<Hex8OnePoint>>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Tet4, FollowRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Pyramid5, FollowRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Wedge6, FollowRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Hex8, FollowRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Hex8OnePoint, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalReport<Tet4, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalReport<Pyramid5, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalReport<Wedge6, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalReport<Hex8, FollowRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalReport<Hex8OnePoint, FollowRotation>&);
 
 }  // namespace cdem

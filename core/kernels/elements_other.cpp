@@ -13,11 +13,14 @@ template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Wedge6
 template void for_each_lane(Queue, Index, Blocks, const CorotationalForce<Hex8, IgnoreRotation>&);
 template void for_each_lane(Queue, Index, Blocks,
                             const CorotationalForce<Hex8OnePoint, IgnoreRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Tet4, IgnoreRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Pyramid5, IgnoreRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Wedge6, IgnoreRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Hex8, IgnoreRotation>&);
-template void for_each_lane(Queue, Index, const CorotationalReport<Hex8OnePoint, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalReport<Tet4, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalReport<Pyramid5, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalReport<Wedge6, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks, const CorotationalReport<Hex8, IgnoreRotation>&);
+template void for_each_lane(Queue, Index, Blocks,
+                            const CorotationalReport<Hex8OnePoint, IgnoreRotation>&);
 template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Tet4, TurnByHalves>&);
 template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Pyramid5, TurnByHalves>&);
 template void for_each_lane(Queue, Index, Blocks, const IncrementalForce<Wedge6, TurnByHalves>&);

@@ -128,6 +128,12 @@ void describe_set(const char* rows, ElementSet& e, Visit&& given) {
          .layout = Layout::columns,
          .optional = true},
         e.hourglass);
+  given({.name = set + "nodal_mean",
+         .meaning = "1: its dilatation is averaged at its nodes",
+         .rows = rows,
+         .layout = Layout::columns,
+         .optional = true},
+        e.nodal_mean);
   given({.name = set + "values",
          .meaning = "shape functions of the nodes at the Gauss points, where rock has pores"},
         e.values);

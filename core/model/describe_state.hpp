@@ -463,6 +463,48 @@ void describe_set(const char* rows, const BoltSet&, BoltState& b, Stored&& store
           b.awake);
 }
 
+/// Dilatation that is averaged at nodes: part of `describe_state`.
+template <class Stored, class Rebuilt>
+void describe_nodal_means(NodalMeans& n, Stored&& stored, Rebuilt&& rebuilt) {
+  stored({.name = "tet4.start_dilatation",
+          .meaning = "elastic dilatation at the start, which is not averaged",
+          .rows = "tet4",
+          .layout = Layout::columns,
+          .optional = true},
+         n.start);
+  stored({.name = "node.dilatation",
+          .meaning = "mean elastic dilatation of its tets since the start, after the last step",
+          .rows = "nodes",
+          .optional = true},
+         n.after);
+  const auto of_tet = [&](const char* name, const char* meaning, Column<Real>& column) {
+    rebuilt("update_nodal_means",
+            {.name = name,
+             .meaning = meaning,
+             .rows = "tet4",
+             .layout = Layout::columns,
+             .optional = true},
+            column);
+  };
+  of_tet("tet4.dilatation", "elastic dilatation since the start", n.own);
+  of_tet("tet4.flowed_dilatation", "inelastic dilatation of the step", n.flowed);
+  rebuilt("update_nodal_means",
+          {.name = "node.trial_dilatation",
+           .meaning = "mean elastic dilatation of its tets before the laws moved on",
+           .rows = "nodes",
+           .optional = true},
+          n.trial);
+  const auto of_blocks = [&](const char* name, const char* meaning, const char* rows,
+                             Column<Index>& column) {
+    rebuilt("list_nodal_means", {.name = name, .meaning = meaning, .refers_to = {blocks_of(rows)}},
+            column);
+  };
+  of_blocks("tet4.averaged", "blocks of tets with one that is averaged", "tet4", n.blocks);
+  of_blocks("tet4.not_averaged", "the other ones", "tet4", n.other_blocks);
+  of_blocks("node.averaging", "blocks of nodes with one of an averaged tet", "nodes",
+            n.node_blocks);
+}
+
 /// Call stored(info, column) or rebuilt(by, info, column) for every array of nodes and force sets.
 template <class Stored, class Rebuilt>
 void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt) {
@@ -476,6 +518,7 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
   for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {
     describe_set(kind.name, set, state, stored, rebuilt);
   });
+  describe_nodal_means(s.nodal, stored, rebuilt);
   rebuilt("update_element_forces",
           {.name = "corner.force",
            .unit = "N",

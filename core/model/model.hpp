@@ -19,8 +19,9 @@ struct ElementSet {
   Index corner_first = 0;         // first of its rows among the corner forces
   Column<Index> nodes, material;
   Column<Real> gradient, volume;
-  Column<Real> hourglass;  // of hexahedra with one point, else empty
-  Column<Real> values;     // [point][corner] of the shape functions; empty: no rock has pores
+  Column<Real> hourglass;   // of hexahedra with one point, else empty
+  Column<Real> values;      // [point][corner] of the shape functions; empty: no rock has pores
+  Column<Flag> nodal_mean;  // of tets, 1: see elements/nodal_mean.hpp; empty: none
 };
 
 /// Bonded pairs of one kind: conforming triangles, conforming quadrilaterals, or overlaps.

@@ -50,6 +50,16 @@ struct ElementState {
   FusedBlocks fused;
 };
 
+/// Dilatation of tets that is averaged at their nodes, see elements/nodal_mean.hpp; empty where
+/// none is.
+struct NodalMeans {
+  Column<Real> start;        // [tet] what it was at the start
+  Column<Real> after;        // [node] mean of what came since, after the last step
+  Column<Real> own, flowed;  // [tet] made in every step
+  Column<Real> trial;        // [node] the same
+  Column<Index> blocks, other_blocks, node_blocks;
+};
+
 /// What walls of contacts remember for the laws of their interfaces, see interfaces/history.hpp.
 struct HistoryColumns {
   Index width = 0;  // numbers of a row; 0 where no law of the model has state
@@ -207,6 +217,7 @@ struct State {
   Relief relief;
   NodeState nodes;
   ElementState tet4, pyramid5, wedge6, hex8;
+  NodalMeans nodal;
   PairState triangles, quads, overlaps;
   BoltState bolts;
   Column<Index> released_overlaps;  // their contacts are still to be found in this step

@@ -22,6 +22,16 @@ bool is_fixed(const Model& m, const State& s, Index node) {
   return true;
 }
 
+/// Blocks of tets of which one is averaged have kernels of their own, which run in every step.
+void leave_averaged(const State& s, Column<Index>& awake) {
+  const Column<Index>& averaged = s.nodal.blocks;
+  std::size_t kept = 0;
+  for (const Index block : std::vector<Index>(awake.data(), awake.data() + awake.size()))
+    if (!std::binary_search(averaged.data(), averaged.data() + averaged.size(), block))
+      awake[kept++] = block;
+  awake.resize(kept);
+}
+
 }  // namespace
 
 void find_awake(const Model& m, State& s) {
@@ -35,6 +45,7 @@ void find_awake(const Model& m, State& s) {
     }
     list_blocks(set.count, state.awake, [&](Index i) { return moves[i] != 0; });
   });
+  leave_averaged(s, s.tet4.awake);
   s.nodes.sleeps.resize(m.node_count);
   for (Index i = 0; i < m.node_count; ++i)
     s.nodes.sleeps[i] = fixed[i] && !pulled[i] && m.load_first[i] == m.load_first[i + 1];

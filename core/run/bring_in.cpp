@@ -27,6 +27,15 @@ void renew_elements(const Model& m, State& s, const Flag* comes) {
   });
 }
 
+/// The same of the dilatation of tets and of its means at their nodes.
+void renew_nodal_means(const Model& m, State& s, const Flag* comes) {
+  const ElementSet& e = m.tet4;
+  for (std::size_t i = 0; i < s.nodal.start.size(); ++i)
+    if (comes[e.nodes[i]]) s.nodal.start[i] = 0;
+  for (std::size_t i = 0; i < s.nodal.after.size(); ++i)
+    if (comes[i]) s.nodal.after[i] = 0;
+}
+
 /// Bolts that are not installed yet have their grout in blocks that come in.
 void renew_bolts(const BoltSet& b, BoltState& bs, const Flag* out) {
   for (Index i = 0; i < b.count; ++i) {
@@ -77,6 +86,7 @@ void place_nodes(State& s, const Flag* comes, const Real* position) {
 void bring_in(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   const Real before = stored_energy(m, s);
   renew_elements(m, s, comes);
+  renew_nodal_means(m, s, comes);
   bond_again(m, s, comes, bonded);
   renew_bolts(m.bolts, s.bolts, s.nodes.out.data());
   Covered faces = covered_faces(m, s, comes);

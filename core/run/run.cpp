@@ -7,6 +7,7 @@
 #include "core/contact/pair_list/rebuild.hpp"
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
+#include "core/elements/nodal_mean.hpp"
 #include "core/nodes/corner_lists.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
@@ -17,6 +18,7 @@
 namespace cdem {
 
 void prepare(const Model& m, State& s) {
+  list_nodal_means(m, s);
   set_loads_and_supports(m, s);
   if (s.built_step < 0) {
     rebuild_pair_list(m, s, {.everything_awake = true});

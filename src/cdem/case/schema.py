@@ -229,6 +229,11 @@ class Elements(Part):
         "full",
         description="Integration of hexahedra: 2 x 2 x 2 points, or one and hourglass springs",
     )
+    tetrahedra: Literal["nodal-mean", "full"] = Field(
+        "nodal-mean",
+        description="Dilatation of tets in blocks of several whose material can flow: the mean at their "
+        "nodes, or each its own, which locks. Other tets have their own",
+    )
     strain_limit: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.2, description="Plastic strain above which a run warns; above 1 it ends [1]"
     )

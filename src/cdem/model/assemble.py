@@ -89,6 +89,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
         out.arrays[f"{shape}.gradient"] = table(flat.T, stride)
         out.arrays[f"{shape}.volume"] = table(volume.T, stride)
         out.arrays[f"{shape}.hourglass"] = table(hourglass.T, stride)
+        out.arrays[f"{shape}.nodal_mean"] = table(_averaged(t, p, shape), stride)
         out.counts[f"{shape}.count"] = count
         out.counts[f"{shape}.corner_first"] = row
         row += count * nodes
@@ -100,6 +101,15 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
     out.arrays["node.place"] = t.node_place
     out.added_mass = np.zeros(len(t.node_position)) if p.added_mass is None else p.added_mass
     node_masses(t, p, mass, geometry, out.added_mass, out)
+
+
+def _averaged(t: Topology, p: Properties, shape: str) -> NDArray[np.int8]:
+    """Whether elements average their dilatation at the nodes, shape (1, elements): tets of blocks of
+    several that can flow. Shape (0, elements) where none does."""
+    block = t.node_block[t.element_nodes[shape][:, 0]]
+    several = np.bincount(block, minlength=len(t.block_group))[block] > 1
+    averaged = several & p.nodal_mean[t.element_group[shape]] & (shape == "tet4")
+    return averaged[None][: int(averaged.any())].astype(np.int8)
 
 
 def _scale_masses(t: Topology, p: Properties, out: Assembly) -> None:

@@ -84,6 +84,7 @@ class Audit:
                 "law": b.case.materials[b.case.groups[name].material].law,
                 "blocks": int((t.block_group == index).sum()),
                 "elements": int(elements),
+                "nodal_means": self._nodal_means(index),
                 "volume": float(volume),
                 "mass": float(mass),
                 "low": b.start_position[nodes].min(axis=0).tolist(),
@@ -99,6 +100,12 @@ class Audit:
             name: next(stage.name for stage in case.stages if name in stage.add)
             for name in case.absent(0)
         }
+
+    def _nodal_means(self, group: int) -> int:
+        """Tets of a group whose dilatation is averaged at their nodes."""
+        of = self._build.topology.element_group["tet4"]
+        averaged = self._build.arrays["tet4.nodal_mean"][: len(of)]
+        return int(averaged[of[: len(averaged)] == group].sum())
 
     def _compensation(self) -> dict[str, dict[str, Any]]:
         b, out = self._build, {}
@@ -286,7 +293,7 @@ class Audit:
         lines += [f"  not there before the stage {at!r}: {n}" for n, at in self.absent.items()]
         flow = {name: g for name, g in self.groups.items() if BLOCK_LAWS[g["law"]].flows}
         lines += [""] * bool(flow)
-        lines += [f"  {n}: {g['elements']:,} elements of law {g['law']}" for n, g in flow.items()]
+        lines += [f"  {name}: {_flow_text(g)}" for name, g in flow.items()]
         low = np.min([g["low"] for g in self.groups.values()], axis=0)
         high = np.max([g["high"] for g in self.groups.values()], axis=0)
         spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))
@@ -389,6 +396,12 @@ class Audit:
                     f"{row['restitution'] ** -2:.3g} times as stiff in unloading, which shortens the step"
                 )
         return lines
+
+
+def _flow_text(group: dict[str, Any]) -> str:
+    """Elements of a group that may flow."""
+    means = f", {group['nodal_means']:,} with nodal mean" if group["nodal_means"] else ""
+    return f"{group['elements']:,} elements of law {group['law']}{means}"
 
 
 def _place(row: dict[str, Any]) -> str:

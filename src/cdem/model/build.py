@@ -253,6 +253,12 @@ def _assemble(
         exact_mass=case.moved_masses != "lumped",
         lumped_while_bonded=case.moved_masses == "lumped-while-bonded",
         supported=held_components(supports),
+        nodal_mean=np.array(
+            [
+                case.elements.tetrahedra == "nodal-mean" and BLOCK_LAWS[m.law].flows
+                for m in materials
+            ]
+        ),
         mass_scaling=case.time.mass_scaling,
         safety=case.time.safety,
         added_mass=added_mass,

@@ -50,6 +50,8 @@ class Properties:
         added_mass: What mass scaling has added to each node at the start, once that is known [kg],
             shape (nodes,).
         one_point: Whether hexahedra have one Gauss point and hourglass springs.
+        nodal_mean: Whether tets of blocks of several average their dilatation at the nodes, shape
+            (groups,).
         bolts: Bolts in the rock.
     """
 
@@ -71,6 +73,7 @@ class Properties:
     exact_mass: bool
     lumped_while_bonded: bool
     supported: NDArray[np.bool_]
+    nodal_mean: NDArray[np.bool_]
     mass_scaling: MassScaling | None = None
     safety: float = 1.0
     added_mass: Floats | None = None

@@ -28,7 +28,7 @@ struct Loaded : Elements<Shape> {
   }
   void update() {
     for_each_lane({}, this->count, Blocks{}, force_kernel());
-    for_each_lane({}, this->count, report_kernel());
+    for_each_lane({}, this->count, Blocks{}, report_kernel());
   }
   Vec force(Index e, Index k) const {
     return vector_at(corner_force.data() + 4 * (e * Shape::nodes + k));

@@ -41,3 +41,32 @@ def test_faces_know_the_sphere_of_their_blocks_volume():
         own = radius[group == build.group_names.index(name)]
         assert own == pytest.approx(np.full(len(own), (0.75 * volume / np.pi) ** (1 / 3)), rel=1e-8)
     assert (radius[group == build.group_names.index("c")] == 1e300).all()
+
+
+def test_tets_that_flow_beside_others_have_a_nodal_mean():
+    """Not tets alone in a block, of elastic rock, or where the case asks for none; no hexahedra."""
+    blocks = [
+        {"group": g, "box": {"size": [1, 1, 1], "shape": shape}, "translate": [2 * i, 0, 0]}
+        for i, (g, shape) in enumerate(
+            (("soft", "tet4"), ("hard", "tet4"), ("single", "tet4"), ("cubes", "hex8"))
+        )
+    ]
+    soft = {"law": "mohr-coulomb", "cohesion": 1e6, "friction_angle": 30}
+    rock = {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.25}
+    for asked, expected in (("nodal-mean", {"soft": 6}), ("full", {})):
+        sim = simulate(
+            blocks,
+            {b["group"]: {"material": "hard" if b["group"] == "hard" else "soft"} for b in blocks},
+            materials={"soft": rock | soft, "hard": rock},
+            model={"split": {"single": "elements"}},
+            elements={"tetrahedra": asked},
+        )
+        b = sim.build
+        averaged = b.arrays["tet4.nodal_mean"]
+        names = np.array(b.group_names)[b.topology.element_group["tet4"]][: len(averaged)]
+        flags = averaged[: len(names)].astype(bool)
+        assert {g: int(flags[names == g].sum()) for g in set(names[flags])} == expected
+        assert len(b.arrays["hex8.nodal_mean"]) == 0
+        text = "soft: 6 elements of law mohr-coulomb"
+        assert (f"  {text}, 6 with nodal mean\n" in sim.audit.text()) == bool(expected)
+        assert f"  {text}" in sim.audit.text()

@@ -1,0 +1,135 @@
+// nodal_mean.cpp - see nodal_mean.hpp.
+#include "core/elements/nodal_mean.hpp"
+
+#include <vector>
+
+#include "core/elements/nodal_dilatation.hpp"
+#include "core/elements/views.hpp"
+#include "core/model/block_lists.hpp"
+#include "core/model/phase_timer.hpp"
+
+namespace cdem {
+
+namespace {
+
+Blocks blocks_of(const Column<Index>& list) {
+  static constexpr Index none = 0;  // a null pointer would stand for all
+  return {list.size() > 0 ? list.data() : &none, Index(list.size())};
+}
+
+Blocks averaged_tets(const State& s) { return blocks_of(s.nodal.blocks); }
+
+NodalDilatation dilatation(const Model& m, const State& s, const Column<Real>& at_nodes) {
+  return {.averaged = {m.tet4.nodal_mean.data()},
+          .start = {s.nodal.start.data(), m.tet4.stride},
+          .at_nodes = at_nodes.data()};
+}
+
+PointFlow<Tet4> flow_of_tets(const Model& m, State& s) {
+  return point_flow<Tet4>(s, m.tet4, s.tet4);
+}
+
+void find_dilatation(const Model& m, State& s, Queue q) {
+  for_each_lane(q, m.tet4.count, averaged_tets(s),
+                FindDilatation{.columns = element_columns<Tet4>(m, s, m.tet4),
+                               .flow = flow_of_tets(m, s),
+                               .start = {s.nodal.start.data(), m.tet4.stride},
+                               .own = {s.nodal.own.data(), m.tet4.stride}});
+}
+
+void average(const Model& m, State& s, Queue q, Column<Real>& at_nodes) {
+  const Index first = m.tet4.corner_first;
+  for_each_item(q, m.node_count, blocks_of(s.nodal.node_blocks),
+                AverageAtNodes{.first = s.nodes.corner_first.data(),
+                               .corner = s.nodes.corner.data(),
+                               .rows = {first, first + 4 * m.tet4.count},
+                               .volume = m.tet4.volume.data(),
+                               .own = s.nodal.own.data(),
+                               .at_nodes = at_nodes.data()});
+}
+
+/// What tets have at the start is initial stress: it is not averaged, and stays in equilibrium.
+void begin(const Model& m, State& s, Queue q) {
+  s.nodal.start.resize(m.tet4.stride);
+  find_dilatation(m, s, q);
+  finish(q);
+  s.nodal.start.assign(s.nodal.own.data(), m.tet4.stride);
+  s.nodal.after.resize(m.node_count);
+}
+
+}  // namespace
+
+Blocks other_tets(const State& s) { return blocks_of(s.nodal.other_blocks); }
+
+void list_nodal_means(const Model& m, State& s) {
+  if (!has_nodal_means(m)) return;
+  const ElementSet& e = m.tet4;
+  NodalMeans& n = s.nodal;
+  std::vector<Flag> averages(m.node_count);
+  for (Index i = 0; i < e.count; ++i)
+    for (Index k = 0; e.nodal_mean[i] && k < 4; ++k)
+      averages[e.nodes[std::size_t(k) * e.stride + i]] = 1;
+  list_blocks(e.count, n.blocks, [&](Index i) { return e.nodal_mean[i] != 0; });
+  list_blocks(m.node_count, n.node_blocks, [&](Index i) { return averages[i] != 0; });
+  n.other_blocks.resize(0);
+  std::size_t next = 0;
+  for (Index b = 0; b < Blocks{}.count_in(e.count); ++b)
+    if (next < n.blocks.size() && n.blocks[next] == b)
+      ++next;
+    else
+      n.other_blocks.push(b);
+  n.own.resize(e.stride);
+  n.flowed.resize(e.stride);
+  n.trial.resize(m.node_count);
+}
+
+void update_nodal_means(const Model& m, State& s, Queue q) {
+  if (!has_nodal_means(m)) return;
+  const PhaseTimer timer(s, Phase::element);
+  if (s.nodal.after.size() == 0) begin(m, s, q);
+  find_dilatation(m, s, q);
+  average(m, s, q, s.nodal.trial);
+  for_each_lane(q, m.tet4.count, averaged_tets(s),
+                FlowOfTets{.columns = element_columns<Tet4>(m, s, m.tet4),
+                           .flow = flow_of_tets(m, s),
+                           .trial = dilatation(m, s, s.nodal.trial),
+                           .before = dilatation(m, s, s.nodal.after),
+                           .own = {s.nodal.own.data(), m.tet4.stride},
+                           .flowed = {s.nodal.flowed.data(), m.tet4.stride}});
+  average(m, s, q, s.nodal.after);
+}
+
+void update_averaged_tets(const Model& m, State& s, Queue q) {
+  const ElementSet& e = m.tet4;
+  const NodalFlow flow{.flow = flow_of_tets(m, s),
+                       .after = dilatation(m, s, s.nodal.after),
+                       .flowed = {s.nodal.flowed.data(), e.stride}};
+  for_each_lane(q, e.count, averaged_tets(s),
+                CorotationalForce<Tet4, FollowRotation, NodalFlow>{
+                    .columns = element_columns<Tet4>(m, s, e),
+                    .damping_time = m.stiffness_damping * s.dt,
+                    .dt = s.dt,
+                    .damping_work = {s.tet4.damping_work.data(), e.stride},
+                    .flow = flow,
+                    .corner_force = {s.corner_force.data() + std::size_t(e.corner_first) * 4}});
+}
+
+bool report_averaged_tets(const Model& m, State& s, Queue q) {
+  if (s.nodal.after.size() == 0) return false;
+  find_dilatation(m, s, q);
+  average(m, s, q, s.nodal.trial);
+  const ElementSet& e = m.tet4;
+  const NodalReport flow{.flow = flow_of_tets(m, s),
+                         .now = dilatation(m, s, s.nodal.trial),
+                         .own = {s.nodal.own.data(), e.stride}};
+  for_each_lane(q, e.count, averaged_tets(s),
+                CorotationalReport<Tet4, FollowRotation, NodalReport>{
+                    .columns = element_columns<Tet4>(m, s, e),
+                    .stress = {s.tet4.stress.data(), e.stride},
+                    .energy = {s.tet4.energy.data(), e.stride},
+                    .yielded = {s.tet4.yielded.data(), e.stride},
+                    .flow = flow});
+  return true;
+}
+
+}  // namespace cdem
