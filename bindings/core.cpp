@@ -347,6 +347,7 @@ NB_MODULE(CDEM_MODULE, module) {
              "What the interface laws say of themselves.");
   module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
   module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
+  module.def("interface_curve_end", &curve_end, "law"_a, "parameters"_a, "stiffness_n"_a);
   module.def("interface_steepest_fall", &steepest_fall, "law"_a, "parameters"_a);
   module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
   module.def("material_numbers", &material_numbers, "law"_a, "parameters"_a, "softening"_a);

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from cdem._native import core as native
 from cdem.case.interface_schema import Interface, InterfacePair
+from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.build import Build
 from cdem.model.interfaces import interfaces_of
 from cdem.model.stiffness import (
@@ -35,6 +37,7 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
         sides = list(_sides(build, law, *entry["stiffness_n"]))
         if not sides:
             continue
+        own = INTERFACE_LAWS[law.law]
         stiffness = np.array([k for _, pair in sides for k in pair])
         weight = impact = 0.0
         speed = greatest_speed(case, law)
@@ -52,6 +55,11 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
                 "speed": speed,
                 "overlap_at_speed": float(impact),
                 "restitution": min(law.coefficients()),
+                "curve_end": native.interface_curve_end(
+                    law.law, own.numbers(law), float(stiffness.max())
+                )
+                if own.curved
+                else None,
             }
         )
     return rows

@@ -22,7 +22,8 @@ def interface(**values):
 
 def test_the_core_has_the_laws_of_the_documents():
     assert list(INTERFACE_LAWS) == [
-        "brittle", "residual", "slip-weakening", "softening", "velocity-weakening", "voellmy"
+        "brittle", "residual", "slip-weakening", "softening", "velocity-weakening", "voellmy",
+        "barton-bandis", "continuously-yielding",
     ]  # fmt: skip
     assert list(BLOCK_LAWS) == [
         "elastic",
