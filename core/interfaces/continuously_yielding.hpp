@@ -70,47 +70,28 @@ struct ContinuouslyYielding {
   }
 
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T* state) const {
-    const T none(0.0), half(0.5), one(1.0), tiny(1e-300);
+    const T none(0.0), half(0.5), angle(radians_of_degree);
     const JointStiffness<T>& k = in.stiffness;
-    T elastic = max_of(-k.n * in.opening, none);
-    T pressed = max_of(elastic + in.damping, none);
-    const T angle = worn + (initial - worn) * exp_of(-state[0] / roughness);
-    const T strength = pressed * tan_of(angle * T(radians_of_degree)) / factor;
-    const T most = pressed * tan_of(initial * T(radians_of_degree)) / factor;
-    // the way that tractions go in this step, and those of one step ago
-    const T moved1 = in.dt * in.rate1, moved2 = in.dt * in.rate2;
-    const T way = sqrt_of(moved1 * moved1 + moved2 * moved2);
-    const auto moves = way > none;
-    const T along1 = -moved1 / max_of(way, tiny), along2 = -moved2 / max_of(way, tiny);
-    const T old1 = k.s * (moved1 - in.shear1), old2 = k.s * (moved2 - in.shear2);
-    const T before = old1 * along1 + old2 * along2;
-    const T ratio = before / max_of(strength, tiny);
-    const auto unloaded = state[2] > half;
-    const auto turns = moves & ((unloaded & (before > none)) | ((!unloaded) & (before < none)));
-    const T least(-2.0), most_ratio(0.75);  // below -1 where strength has worn
-    state[1] = select(turns, max_of(min_of(ratio, most_ratio), least), state[1]);
-    const T scale = max_of(strength * (one - state[1]), tiny);
-    const T left = select(moves, exp_of(-k.s * way / scale), one);
-    const T gained = min_of((strength - before) * (one - left), k.s * way);
-    const T after = before + gained;
-    const T new1 = after * along1 + left * (old1 - before * along1),
-            new2 = after * along2 + left * (old2 - before * along2);
-    const T size = sqrt_of(new1 * new1 + new2 * new2);
-    const T keep = select(size < most, one, most / max_of(size, tiny));
-    const T shear1 = keep * new1, shear2 = keep * new2;
-    state[2] = select(moves, select(shear1 * along1 + shear2 * along2 < none, one, none), state[2]);
-    const auto slides = moves & (pressed > none);
-    const T slip = select(slides, max_of(way - k.compliance_s * gained, none), none);
-    state[0] += slip;
-    const T rise = select(slides, slip * dilation(keep * size / max_of(pressed, tiny)), none);
-    pressed += k.n * rise;
-    elastic += k.n * rise;
-    return {.elastic = elastic,
-            .normal = pressed,
-            .shear1 = shear1,
-            .shear2 = shear2,
-            .stored_n = half * k.compliance_n * elastic * elastic,
-            .stored_s = half * k.compliance_s * (shear1 * shear1 + shear2 * shear2),
+    const T elastic = max_of(-k.n * in.opening, none);
+    const T pressed = max_of(elastic + in.damping, none);
+    const T worn_part = exp_of(-state[0] / roughness);
+    const T tangent = tan_of((worn + (initial - worn) * worn_part) * angle) / factor;
+    const T most = tan_of(initial * angle) / factor;
+    const Sheared first = shear(in, state, pressed, tangent, most);
+    const T rise = select(pressed > none, first.slip * first.dilation, none);
+    Sheared end = first;
+    if (any_of(rise > none)) end = shear(in, state, pressed + k.n * rise, tangent, most);
+    state[0] += select(pressed > none, end.slip, none);
+    state[1] = end.reversal;
+    state[2] = end.unloads;
+    const T normal = elastic + k.n * rise;
+    const T squared = end.shear1 * end.shear1 + end.shear2 * end.shear2;
+    return {.elastic = normal,
+            .normal = pressed + k.n * rise,
+            .shear1 = end.shear1,
+            .shear2 = end.shear2,
+            .stored_n = half * k.compliance_n * normal * normal,
+            .stored_s = half * k.compliance_s * squared,
             .rise = rise,
             .fracture = none,
             .bond = none,
@@ -118,6 +99,46 @@ struct ContinuouslyYielding {
   }
 
  private:
+  /// Tractions after a step, what it slipped, the tangent of dilation, and the two states of turns.
+  struct Sheared {
+    T shear1, shear2;  // [Pa]
+    T slip;            // [m]
+    T dilation, reversal, unloads;
+  };
+  /// A step under a pressure, with tangents of phi_m and phi_0.
+  CDEM_HD Sheared shear(const JointInput<T>& in, const T* state, const T& pressed, const T& tangent,
+                        const T& most_tangent) const {
+    const T none(0.0), half(0.5), one(1.0), tiny(1e-300);
+    const JointStiffness<T>& k = in.stiffness;
+    const T strength = pressed * tangent, most = pressed * most_tangent;
+    // the way that tractions go in this step, and those of one step ago
+    const T moved1 = in.dt * in.rate1, moved2 = in.dt * in.rate2;
+    const T way = sqrt_of(moved1 * moved1 + moved2 * moved2);
+    const auto moves = way > none;
+    const T along1 = -moved1 / max_of(way, tiny), along2 = -moved2 / max_of(way, tiny);
+    const T old1 = k.s * (moved1 - in.shear1), old2 = k.s * (moved2 - in.shear2);
+    const T before = old1 * along1 + old2 * along2;
+    const auto unloaded = state[2] > half;
+    const auto turns = moves & ((unloaded & (before > none)) | ((!unloaded) & (before < none)));
+    const T least(-2.0), most_ratio(0.75);  // below -1 where strength has worn
+    const T ratio = max_of(min_of(before / max_of(strength, tiny), most_ratio), least);
+    const T reversal = select(turns, ratio, state[1]);
+    const T scale = max_of(strength * (one - reversal), tiny);
+    const T left = select(moves, exp_of(-k.s * way / scale), one);
+    const T gained = min_of((strength - before) * (one - left), k.s * way);
+    const T after = before + gained;
+    const T new1 = after * along1 + left * (old1 - before * along1),
+            new2 = after * along2 + left * (old2 - before * along2);
+    const T size = sqrt_of(new1 * new1 + new2 * new2);
+    const T keep = select(size < most, one, most / max_of(size, tiny));
+    const T against = keep * (new1 * along1 + new2 * along2);
+    return {.shear1 = keep * new1,
+            .shear2 = keep * new2,
+            .slip = select(moves, max_of(way - k.compliance_s * gained, none), none),
+            .dilation = dilation(keep * size / max_of(pressed, tiny)),
+            .reversal = reversal,
+            .unloads = select(moves, select(against < none, one, none), state[2])};
+  }
   /// tan(atan(F tau / sigma) - phi), divided by F as the strength is.
   CDEM_HD T dilation(const T& ratio) const {
     const T tangent = tan_of(worn * T(radians_of_degree)), now = factor * ratio;

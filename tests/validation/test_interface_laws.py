@@ -175,7 +175,7 @@ LAWS = {
             "friction_angle": 30,
             "initial_friction_angle": 33,
             "roughness": "1 mm",
-            "stiffness_s": "1e11 Pa/m",  # it lags by what pressure grows with its rise
+            "stiffness_s": "3e11 Pa/m",  # it lags by what pressure grows with its rise
         },
         lambda slip: np.tan(np.radians(30 + 3 * np.exp(-slip / 1e-3))),
     ),

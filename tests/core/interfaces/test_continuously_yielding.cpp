@@ -65,7 +65,7 @@ TEST_CASE("it begins with k_s and nears its strength, which wears with the slip"
   CHECK(relative_error(joint.shear, ks * 1e-8) < 1e-4);
   Expected exact;
   exact.lead_by(1e-3, 1000000, 0);
-  joint.lead_to(1e-3, 20000);
+  joint.lead_to(1e-3, 100000);
   CHECK(relative_error(joint.shear, exact.shear) < 1e-4);
   CHECK(relative_error(joint.state[0], exact.slip) < 1e-4);
   joint.lead_to(8e-3, 20000);
