@@ -17,6 +17,9 @@
 //   static std::array<Real, 2> steepest_fall(const Real*);
 //                                                      how fast strength falls, normal and in
 //                                                      shear  [Pa/m]; may be left out
+//   static Real friction_fall(const Real*);            how fast friction falls with the speed, in
+//                                                      which the law is explicit, at most  [s/m];
+//                                                      may be left out
 //   static std::array<Real, m> prepare(const Real*);   numbers that kernels read, from the
 //                                                      parameters; may be left out. Then it is
 //                                                      these that `read` and `rise_most` get

@@ -54,6 +54,9 @@ struct VelocityWeakening {
     return nullptr;
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
+  static Real friction_fall(const Real* parameter) {
+    return (parameter[0] - parameter[5]) / parameter[6];
+  }
 
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T* state) const {
     return at_rest.bears(in, state);

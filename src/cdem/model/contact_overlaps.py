@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from cdem._native import core as native
-from cdem.case.interface_schema import Interface, InterfacePair
+from cdem.case.interface_schema import Interface
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.build import Build
-from cdem.model.interfaces import interfaces_of
+from cdem.model.interfaces import interfaces_of, name_of
 from cdem.model.stiffness import (
     greatest_speed,
     groups_of,
@@ -48,7 +48,7 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
             impact = max(impact, speed * math.sqrt(2 * ratio * soft))
         rows.append(
             {
-                "interface": _name(law),
+                "interface": name_of(law),
                 "stiffness_n": [float(stiffness.min()), float(stiffness.max())],
                 "height": height,
                 "overlap_under_weight": float(weight),
@@ -82,11 +82,3 @@ def _sides(
             {"young_modulus": rock.young_modulus, "density": rock.density, "height": height},
             (float(low), float(high)),
         )
-
-
-def _name(law: Interface) -> str:
-    if not isinstance(law, InterfacePair):
-        return "default"
-    if law.name:
-        return law.name
-    return " - ".join(law.between) if law.between else f"joint {law.joint}"
