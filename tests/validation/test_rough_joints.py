@@ -63,7 +63,7 @@ def test_a_joint_in_initial_stress_rests_and_slips_with_its_true_area(law):
     """At rest it bears sigma and does not move; then tau follows the law, before its release and after."""
     sigma = 2e6
     sim = stressed(law, sigma, [[0.002, 0], [0.004, 0.01], [0.3, 0.01]])
-    sim.run_until(0.002)
+    sim.run_until(0.0018)
     assert sim.core.fields()["quads.status"][0] == 1
     assert joint_force(sim)[1] == pytest.approx(sigma, rel=1e-9)
     assert np.abs(sim.fields["displacement"]).max() < 1e-12
@@ -82,9 +82,12 @@ def test_a_joint_in_initial_stress_rests_and_slips_with_its_true_area(law):
 
 
 def expected(law, slip, sigma):
-    """tan(phi) of a law after a slip under a pressure."""
+    """tan(phi) of a law after a slip under a pressure; above it where strength wears as traction follows."""
     if law is YIELDING:
-        return np.tan(np.radians(30 + 15 * np.exp(-slip / 2e-3)))
+        angle = np.radians([30, 15 * np.exp(-slip / 2e-3)])
+        tangent = np.tan(angle.sum())
+        wear = sigma * (1 + tangent**2) * angle[1] / 2e-3  # F k_s = -d tau_m / ds
+        return tangent * (1 + wear / 1e11)
     x = slip / (0.1 / 500 * 100**0.33)
     rough = np.interp(x, [0.3, 0.6, 1, 2], [0, 0.75, 1, 0.85])
     return np.tan(np.radians(28 * min(x / 0.3, 1) + rough * 10 * np.log10(50e6 / sigma)))
@@ -119,7 +122,7 @@ def test_blocks_that_tumble_close_their_energy_on_any_number_of_threads(law):
             ),
             threads=threads,
         )
-        sim.step(3000)
+        sim.run_until(0.4)
         digests.add(digest(sim))
         assert abs(sim.energies["error"]) < 1e-3
         assert sim.energies["friction"] > 0
@@ -172,4 +175,4 @@ def test_friction_that_falls_faster_than_a_step_can_follow_is_told(velocity, tol
         fall = (np.tan(np.radians(40)) - np.tan(np.radians(20))) / velocity
         most = fall * force * sim.core.scalars()["dt"] * 2 / sim.fields["mass"].min()
         now = max(one[1] for one in sim.core.fast_weakenings())
-        assert 0.5 * most < now <= most * (1 + 1e-9)
+        assert 0.5 * most < now < 1.01 * most

@@ -134,6 +134,15 @@ def test_strengths_in_words():
     assert INTERFACE_LAWS["brittle"].summary(interface(friction_angle=30)) == "30 deg"
 
 
+def test_a_factor_of_safety_multiplies_the_factor_of_rough_joints():
+    of = interface(law="barton-bandis", jrc=8, jcs="50 MPa", residual_friction_angle=27)
+    law = INTERFACE_LAWS["barton-bandis"]
+    assert law.reduced(of, 1.5) == {"strength_factor": 1.5}
+    assert law.numbers(of)["uniaxial_strength"] == 5e7
+    assert law.curved and not law.bonds(of)
+    assert law.summary(of) == "8 1, 5e+07 Pa, 27 deg"
+
+
 def test_an_unknown_law_is_refused():
     with pytest.raises(CaseError, match="law"):
         interface(law="britle", friction_angle=30)
