@@ -39,12 +39,12 @@ def near(moved, peak):
 def shear(study, pressure):
     """Displacement [m] and shear traction [Pa], its peak, and energy error."""
     peak, slip, *_ = theory(study.case().interfaces.default, pressure)
-    there, rows = slip + peak / 100e9, []
+    there = slip + peak / 100e9
     slow = 0.042 + 0.9 * there / 0.02  # a tenth of the speed from there on
     simulation = study.simulate(
         f"loads.tractions.0.traction=[0, 0, {-pressure * AREA}]",
         f"loads.velocities.0.history=[[0, 0], [0.04, 0], [0.044, 1], [{slow}, 1], [{slow + 1e-3}, 0.1]]")  # fmt: skip
-    block = simulation.build.nodes_of("block")
+    block, rows = simulation.build.nodes_of("block"), []
     while not rows or rows[-1][0] < 1.02 * there:
         rows.append((simulation.fields["displacement"][block, 0].mean(), tractions(simulation)[0]))
         if not near(rows[-1][0], there):
