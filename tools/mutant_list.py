@@ -1029,6 +1029,14 @@ CORE = [
         "tests/core/interfaces/test_closure.cpp",
     ),
     Mutant(
+        "curved penetration",
+        "a contact that closes by a curve takes its depth for its effective penetration",
+        "core/contact/force/unloading.hpp",
+        "select(curved, spring.stiffness.compliance_n * joint.elastic, f.penetration)",
+        "f.penetration",
+        "tests/core/contact/force/test_unloading.cpp",
+    ),
+    Mutant(
         "yielding turn",
         "a joint that yields continuously does not remember where it turned",
         "core/interfaces/continuously_yielding.hpp",

@@ -25,6 +25,7 @@ struct InterfaceTable {
   /// The lanes whose joints close by a curve.
   template <class Ids>
   CDEM_HD Truth<Number<Ids>> closes_by_curve(const Ids& interface) const {
+    if (curved == 0) return Number<Ids>(0.0) > Number<Ids>(0.5);
     const auto own = [&](Index i) { return Real(curved >> interfaces[i].law & 1); };
     return numbers_of(own, interface) > Number<Ids>(0.5);
   }

@@ -80,7 +80,7 @@ struct ElasticUnloading {
 template <class T>
 struct HystereticUnloading {
   T returned_n, returned_s;
-  Truth<T> curved;
+  Truth<T> curved = T(0.0) > T(0.5);
 
   template <class Ids>
   CDEM_HD static HystereticUnloading of(const ContactLaws& laws, const Ids& interface) {

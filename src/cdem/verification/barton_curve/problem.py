@@ -44,10 +44,11 @@ def shear(study, pressure):
     simulation = study.simulate(
         f"loads.tractions.0.traction=[0, 0, {-pressure * AREA}]",
         f"loads.velocities.0.history=[[0, 0], [0.04, 0], [0.044, 1], [{slow}, 1], [{slow + 1e-3}, 0.1]]")  # fmt: skip
-    block, rows = simulation.build.nodes_of("block"), []
-    while not rows or rows[-1][0] < 1.02 * there:
-        rows.append((simulation.fields["displacement"][block, 0].mean(), tractions(simulation)[0]))
-        if not near(rows[-1][0], there):
+    block, at, rows = simulation.build.nodes_of("block"), 0.0, []
+    while at < 1.02 * there:
+        at = simulation.fields["displacement"][block, 0].mean()
+        rows.append((at, tractions(simulation)[0]))
+        if not near(at, there):
             simulation.run_until(simulation.time + 2e-4)
     moved, traction = np.array(rows).T
     return moved, traction, traction[near(moved, there)].max(), simulation.energies["error"]
