@@ -14,6 +14,7 @@
 #include "core/contact/pair_list/deep_overlaps.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
+#include "core/diagnostics/fast_weakening.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/report.hpp"
 #include "core/model/force_sets.hpp"
@@ -327,6 +328,15 @@ void bind_diagnostics(nb::class_<Core>& core) {
              const Real* t = c.state.seconds;
              return std::make_tuple(t[0], t[1], t[2], t[3], t[4]);
            })
+      .def(
+          "fast_weakenings",
+          [](Core& c) {
+            nb::list found;
+            for (const FastWeakening& w : fast_weakenings(c.model, c.state))
+              found.append(nb::make_tuple(w.interface, w.ratio, w.place.x, w.place.y, w.place.z));
+            return found;
+          },
+          "Interface, ratio and place of contacts whose friction falls with the speed.")
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
       .def("step_limit", [](const Core& c) {
         const StepLimit l = step_limit(c.model, c.state);
@@ -347,6 +357,7 @@ NB_MODULE(CDEM_MODULE, module) {
              "What the interface laws say of themselves.");
   module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
   module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
+  module.def("interface_curve_end", &curve_end, "law"_a, "parameters"_a, "stiffness_n"_a);
   module.def("interface_steepest_fall", &steepest_fall, "law"_a, "parameters"_a);
   module.def("block_contradiction", &contradiction<BlockLaws>, "law"_a, "parameters"_a);
   module.def("material_numbers", &material_numbers, "law"_a, "parameters"_a, "softening"_a);

@@ -24,6 +24,17 @@ std::vector<Real> parameters_of(const nb::dict& values) {
   return row;
 }
 
+/// The numbers that kernels read: those that the law makes of its parameters, or these.
+template <class Law>
+std::vector<Real> numbers_of_law(const nb::dict& values) {
+  std::vector<Real> row = parameters_of<Law>(values);
+  if constexpr (requires { &Law::prepare; }) {
+    const auto numbers = Law::prepare(row.data());
+    row.assign(numbers.begin(), numbers.end());
+  }
+  return row;
+}
+
 /// Call act.template operator()<Law, number>() for the law of this name.
 template <class Laws, class Act>
 void with_law(const std::string& name, const Act& act) {
@@ -68,13 +79,8 @@ inline std::vector<Real> material_numbers(const std::string& law, const nb::dict
     row[law_numbers + 1 + piece * piece_numbers] = unlimited;
   row[law_numbers] = nb::len(softening) > 0;
   with_law<BlockLaws>(law, [&]<template <class> class Law, Index>() {
-    const auto parameters = parameters_of<Law<Real>>(values);
-    if constexpr (requires { &Law<Real>::prepare; }) {
-      const auto numbers = Law<Real>::prepare(parameters.data());
-      std::copy(numbers.begin(), numbers.end(), row.begin());
-    } else {
-      std::copy(parameters.begin(), parameters.end(), row.begin());
-    }
+    const auto numbers = numbers_of_law<Law<Real>>(values);
+    std::copy(numbers.begin(), numbers.end(), row.begin());
     if constexpr (numbers_that_fall<Law>() > 0)
       for (Index k = 0; k < numbers_that_fall<Law>(); ++k)
         if (softening.contains(Law<Real>::softening[k]))
@@ -95,6 +101,17 @@ inline std::pair<Real, Real> steepest_fall(const std::string& law, const nb::dic
   return fall;
 }
 
+/// The pressure from which on joints of an interface law are as stiff as k_n [Pa/m], which is zero
+/// where they are so from the start  [Pa].
+inline Real curve_end(const std::string& law, const nb::dict& values, Real stiffness_n) {
+  Real pressure = 0;
+  with_law<InterfaceLaws>(law, [&]<template <class> class Law, Index number>() {
+    if constexpr (is_curved<Law>)
+      pressure = Law<Real>::curve_end(numbers_of_law<Law<Real>>(values).data(), stiffness_n);
+  });
+  return pressure;
+}
+
 /// Factors on the strength of pairs, from rows of two faces.
 inline nb::object weibull_factors(Array<Index> faces, std::uint64_t seed, Real shape, Real mean) {
   std::vector<Real> factors;
@@ -112,6 +129,8 @@ nb::list declarations() {
     law["name"] = Law<Real>::text.name;
     law["meaning"] = Law<Real>::text.meaning;
     law["flows"] = false;
+    law["curved"] = false;
+    if constexpr (requires { Law<Real>::curve_end(nullptr, Real(0)); }) law["curved"] = true;
     if constexpr (requires { Law<Real>::inelastic; }) law["flows"] = Law<Real>::inelastic;
     nb::list parameters, state;
     for (const Parameter& p : Law<Real>::parameters) {
@@ -172,7 +191,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
     const auto name = nb::cast<std::string>(entry["law"]);
     with_law<InterfaceLaws>(name, [&]<template <class> class Law, Index number>() {
       interface.law = number;
-      const auto row = parameters_of<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
+      const auto row = numbers_of_law<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
       std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
       lift = std::max(lift, 2 * Law<Real>::rise_most(row.data()));
     });

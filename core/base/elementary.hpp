@@ -1,5 +1,5 @@
-// elementary.hpp - exponential function, logarithm and power. Those of the C library differ from
-// CPU to CPU and from compiler to compiler; these have the same bits everywhere.
+// elementary.hpp - exponential function, logarithm, power and tangent. Those of the C library
+// differ from CPU to CPU and from compiler to compiler; these have the same bits everywhere.
 #pragma once
 
 #include "core/base/lanes.hpp"
@@ -64,6 +64,28 @@ CDEM_HD inline T log_of(const T& number) {
 template <class T>
 CDEM_HD inline T pow_of(const T& x, const T& y) {
   return exp_of(y * log_of(x));
+}
+
+/// Tangent of an angle from 0 to 1.3 rad, with an error below 16 units in the last place: from that
+/// of a quarter of it.
+template <class T>
+CDEM_HD inline T tan_of(const T& angle) {
+  constexpr Real odd[] = {1.0,
+                          1.0 / 3,
+                          2.0 / 15,
+                          17.0 / 315,
+                          62.0 / 2835,
+                          1382.0 / 155925,
+                          21844.0 / 6081075,
+                          929569.0 / 638512875,
+                          6404582.0 / 10854718875,
+                          443861162.0 / 1856156927625,
+                          18888466084.0 / 194896477400625,
+                          113927491862.0 / 2900518163668125};
+  const T one(1.0), two(2.0), x = T(0.25) * angle;
+  const T quarter = x * polynomial(odd, x * x);
+  const T half = two * quarter / (one - quarter * quarter);
+  return two * half / (one - half * half);
 }
 
 }  // namespace cdem

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/contact/geometry/face.hpp"
-#include "core/interfaces/law.hpp"
+#include "core/interfaces/closure.hpp"
 
 namespace cdem {
 
@@ -20,6 +20,7 @@ struct BondHistory {
 template <class T>
 struct SlipRate {
   T along1, along2;
+  T dt = T(0.0);  // of the step that it is of; 0 at rest  [s]
 };
 
 /// Spring of one bond point: its share of the true overlap area, so that strength does not depend
@@ -41,6 +42,7 @@ struct BondSpring {
             .risen = h.rise,
             .rate1 = rate.along1,
             .rate2 = rate.along2,
+            .dt = rate.dt,
             .has_area = T(1.0)};
   }
   /// The same at rest.
@@ -98,8 +100,15 @@ CDEM_HD inline JointAnswer<T> before_step(const Laws& laws, const JointInput<T>&
   was.shear2 = select(open, zero, was.shear2);
   was.stored_n = half * k.compliance_n * was.normal * was.normal;
   was.stored_s = half * k.compliance_s * (was.shear1 * was.shear1 + was.shear2 * was.shear2);
-  if constexpr (Laws::most_state > 0)
+  if constexpr (Laws::most_state > 0) {
+    if (laws.table.curved != 0) {
+      const auto curved = broken & laws.table.closes_by_curve(laws.interface);
+      const Closure<T> closed = laws.close(max_of(-in.opening, zero), k);
+      was.normal = select(curved, closed.pressure, was.normal);
+      was.stored_n = select(curved, closed.stored, was.stored_n);
+    }
     was = select(laws.remember() & !broken, laws.respond(in, state), was);
+  }
   return was;
 }
 
@@ -119,7 +128,7 @@ CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& sp
                                        BondHistory<T>& h, T* state) {
   const T zero(0.0), one(1.0), half(0.5);
   const Vec3<T> way = jump - jump_old;
-  const SlipRate<T> rate{dot(frame.t1, way) / T(dt), dot(frame.t2, way) / T(dt)};
+  const SlipRate<T> rate{dot(frame.t1, way) / T(dt), dot(frame.t2, way) / T(dt), T(dt)};
   const auto input_at = [&](const Vec3<T>& x) { return spring.input(frame, x, h, rate); };
   constexpr Index size = Laws::most_state;
   T state_old[size + 1];

@@ -112,21 +112,27 @@ CutTractions set_initial_tractions(Model& m, State& s, const Real* stress, const
     const Vec3<Real> t = full(of_rock) * f.n;
     const Vec3<Real> wanted{-dot(t, f.n), -dot(t, f.t1), -dot(t, f.t2)};
     const Real bond = bonded[point.interface] ? 1 : 0;
+    const auto depth = [&](Real pressure, const JointStiffness<Real>& spring) {
+      return depth_under(pairs.interfaces, point.interface, pressure, spring);
+    };
     const JointAnswer<Real> joint =
-        answer_at(m, pairs, point, {wanted.x / k.n, wanted.y / k.s, wanted.z / k.s}, bond);
+        answer_at(m, pairs, point, {depth(wanted.x, k), wanted.y / k.s, wanted.z / k.s}, bond);
     const Vec3<Real> borne{joint.elastic, joint.shear1, joint.shear2};
     const Real lost = norm(wanted - borne);
     if (lost > 1e-9 * norm(wanted)) {
       ++cut.count;
       if (lost > cut.most) cut.most = lost, cut.face = point.at.faces[0];
     }
-    ps.rest[point.place] = borne.x / k.n;
+    ps.rest[point.place] = depth(borne.x, k);
     ps.rest[point.place + point.row] = borne.y / k.s;
     ps.rest[point.place + 2 * point.row] = borne.z / k.s;
     ps.bond[point.place] = joint.bond;
     const Interface& contact = m.interfaces[point.interface];
-    lift = std::max(lift, borne.x / contact.stiffness_n(m.face_stiffness[point.at.faces[0]],
-                                                        m.face_stiffness[point.at.faces[1]]));
+    const Real side_a = m.face_stiffness[point.at.faces[0]],
+               side_b = m.face_stiffness[point.at.faces[1]];
+    lift = std::max(lift,
+                    depth(borne.x, JointStiffness<Real>::of(contact.stiffness_n(side_a, side_b),
+                                                            contact.stiffness_s(side_a, side_b))));
   };
   for_each_pair_set(m, s, [&](auto kind, const PairSet& p, PairState& ps) {
     const PairColumns pairs = pair_columns(m, p, ps);

@@ -48,6 +48,18 @@ bool is_over(const Model& m, const FaceColumns& faces, Index mother, Index verte
                    m.rules.tolerance * std::min(m.face_length[mother], m.face_length[target]));
 }
 
+/// Let a contact on this area, which has its force, have the depth and energy of its law.
+void press(const Model& m, Index interface, Real area, const JointStiffness<Real>& k,
+           ContactState& contact) {
+  const InterfaceTable table = interface_table(m);
+  if (!table.closes_by_curve(interface)) return;
+  const Real gap = contact.stress_free_gap - contact.approach;
+  contact.approach = depth_under(table, interface, contact.force_n / area, k);
+  contact.stress_free_gap = gap + contact.approach;
+  contact.energy_n =
+      area * joint_laws<InterfaceLaws>(table, interface).close(contact.approach, k).stored;
+}
+
 /// Those of a pair as they were one step ago.
 std::vector<ReleasedPoint> released_points(const Model& m, State& s, const PairSet& p,
                                            PairState& ps, Index i) {
@@ -69,6 +81,13 @@ std::vector<ReleasedPoint> released_points(const Model& m, State& s, const PairS
     const Vec3<Real> slip = ps.slip1[row] * frame.t1 + ps.slip2[row] * frame.t2;
     const Vec3<Real> along = jump - dot(frame.n, jump) * frame.n;
     point.depth = -dot(frame.n, jump);
+    if (pairs.interfaces.closes_by_curve(p.interface[i])) {  // of a straight spring with its force
+      const auto k = pairs.spring(One{i}, area).stiffness;
+      point.depth = joint_laws<InterfaceLaws>(pairs.interfaces, p.interface[i])
+                        .close(point.depth, k)
+                        .pressure /
+                    k.n;
+    }
     point.kn = area * p.stiffness[i];
     point.ks = area * p.stiffness[std::size_t(p.stride) + i];
     point.strain = along - slip;
@@ -111,8 +130,9 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& 
   const Interface& contact = m.interfaces[p.interface[i]];
   const Real side_a = m.face_stiffness[face[0]], side_b = m.face_stiffness[face[1]];
   const Real area = 0.5 * p.area[i] / p.points;
-  const Real kn = area * contact.stiffness_n(side_a, side_b),
-             ks = area * contact.stiffness_s(side_a, side_b);
+  const auto k = JointStiffness<Real>::of(contact.stiffness_n(side_a, side_b),
+                                          contact.stiffness_s(side_a, side_b));
+  const Real kn = area * k.n, ks = area * k.s;
   Real handed = 0;
   for (const ReleasedPoint& point : points)
     for (Index side : {0, 1}) {
@@ -132,6 +152,7 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& 
       spring.approach = spring.penetration;
       spring.force_n = kn * spring.penetration;
       spring.energy_n = contact.returned_n * 0.5 * kn * spring.penetration * spring.penetration;
+      press(m, p.interface[i], area, k, spring);
       spring.energy_s = contact.returned_s * 0.5 / ks *
                         (spring.shear1 * spring.shear1 + spring.shear2 * spring.shear2);
       spring.store(s.springs.state.data(), slot);
@@ -203,6 +224,8 @@ struct Successor {
   Frame<Real> frame;   // of its target
   Real depth, kn, ks;  // [m], [N/m]
   Real returned_n, returned_s;
+  Index interface;
+  JointStiffness<Real> k;  // [Pa/m]
 };
 
 /// A contact without force that the search keeps where it finds it, up to the highest gap.
@@ -244,7 +267,9 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
          .kn = 0.5 * spring.n(),
          .ks = 0.5 * spring.s(),
          .returned_n = returned_n,
-         .returned_s = returned_s},
+         .returned_s = returned_s,
+         .interface = interface,
+         .k = spring.stiffness},
         awaited);
   }
   for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
@@ -267,13 +292,15 @@ void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
          .kn = spring.n(),
          .ks = spring.s(),
          .returned_n = returned_n,
-         .returned_s = returned_s},
+         .returned_s = returned_s,
+         .interface = interface,
+         .k = spring.stiffness},
         awaited);
   }
 }
 
 /// Returns the energy that the contact holds  [J].
-Real give(State& s, const Successor& c, Real penetration, const Vec3<Real>& shear) {
+Real give(const Model& m, State& s, const Successor& c, Real penetration, const Vec3<Real>& shear) {
   ContactState state{};
   state.penetration = penetration;
   state.approach = state.penetration;
@@ -282,6 +309,7 @@ Real give(State& s, const Successor& c, Real penetration, const Vec3<Real>& shea
   state.shear1 = dot(shear, c.frame.t1);
   state.shear2 = dot(shear, c.frame.t2);
   state.energy_n = c.returned_n * 0.5 * state.force_n * state.penetration;
+  press(m, c.interface, c.kn / c.k.n, c.k, state);
   state.energy_s =
       c.returned_s * 0.5 / c.ks * (state.shear1 * state.shear1 + state.shear2 * state.shear2);
   if (c.is_edge) {
@@ -403,7 +431,8 @@ void transfer_released_bonds(const Model& m, State& s, Queue q) {
       for (const Successor& c : contacts) {
         const Real penetration = part * std::max(c.depth, 0.0) + lift;
         const Real share = c.kn * penetration / carried.normal;
-        s.overlaps.stored[i] -= give(s, c, penetration, (c.on_b ? share : -share) * carried.shear);
+        s.overlaps.stored[i] -=
+            give(m, s, c, penetration, (c.on_b ? share : -share) * carried.shear);
       }
     s.overlaps.friction[i] += s.overlaps.stored[i];
     s.overlaps.stored[i] = 0;

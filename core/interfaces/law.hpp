@@ -17,6 +17,17 @@
 //   static std::array<Real, 2> steepest_fall(const Real*);
 //                                                      how fast strength falls, normal and in
 //                                                      shear  [Pa/m]; may be left out
+//   static Real friction_fall(const Real*);            how fast friction falls with the speed, in
+//                                                      which the law is explicit, at most  [s/m];
+//                                                      may be left out
+//   static std::array<Real, m> prepare(const Real*);   numbers that kernels read, from the
+//                                                      parameters; may be left out. Then it is
+//                                                      these that `read` and `rise_most` get
+//   Closure<T> close(depth, stiffness) const;          the normal spring of a pressed joint, and
+//   T depth(pressure, stiffness) const;                its inverse, where it is not straight: of
+//                                                      a joint without tensile strength
+//   static Real curve_end(const Real*, Real k_n);      the pressure from which on that spring is
+//                                                      straight, with the stiffness k_n  [Pa]
 //
 // It speaks of tractions [Pa] and separations [m], never of forces and areas: bond points,
 // semi-springs and semi-edges call the same law and bring their areas.
@@ -49,6 +60,7 @@ struct JointInput {
   T bond;          // 1 while bonded, then 0
   T risen;         // how far the stress-free gap lies above zero  [m]
   T rate1, rate2;  // of the joint's slip in this step  [m/s]
+  T dt = T(0.0);   // that step; 0 at rest  [s]
   T has_area;  // 1 where the area is that of the joint, so that a cohesion counts: at bond points
 
   CDEM_HD T slip_rate() const { return sqrt_of(rate1 * rate1 + rate2 * rate2); }  // [m/s]

@@ -1,7 +1,10 @@
 // laws.hpp - the list of interface laws, and who answers for a joint.
 #pragma once
 
+#include "core/interfaces/barton_bandis.hpp"
 #include "core/interfaces/brittle.hpp"
+#include "core/interfaces/closure.hpp"
+#include "core/interfaces/continuously_yielding.hpp"
 #include "core/interfaces/residual.hpp"
 #include "core/interfaces/slip_weakening.hpp"
 #include "core/interfaces/softening.hpp"
@@ -18,10 +21,10 @@ namespace cdem {
 /// Every interface law; a new one is one header and its name here.
 #if defined(CDEM_OWN_INTERFACE_LAW)
 using InterfaceLaws = LawList<Brittle, Residual, SlipWeakening, Softening, VelocityWeakening,
-                              Voellmy, CDEM_OWN_INTERFACE_LAW>;
+                              Voellmy, BartonBandis, ContinuouslyYielding, CDEM_OWN_INTERFACE_LAW>;
 #else
-using InterfaceLaws =
-    LawList<Brittle, Residual, SlipWeakening, Softening, VelocityWeakening, Voellmy>;
+using InterfaceLaws = LawList<Brittle, Residual, SlipWeakening, Softening, VelocityWeakening,
+                              Voellmy, BartonBandis, ContinuouslyYielding>;
 #endif
 /// The first of them alone. Models without another are many: their kernels ask for no other law.
 using BrittleAlone = LawList<Brittle>;
@@ -31,10 +34,11 @@ inline constexpr Index parameter_row = (InterfaceLaws::most_parameters + 3) / 4 
 
 inline InterfaceTable table_of(const Interface* interfaces, std::size_t count,
                                const Real* parameters) {
-  InterfaceTable table{interfaces, parameters, 0, false};
+  InterfaceTable table{interfaces, parameters, 0, 0, false};
   for (std::size_t i = 0; i < count; ++i) table.laws |= 1u << interfaces[i].law;
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
     table.remembers |= Law<Real>::state.size() > 0 && table.has(number);
+    if (is_curved<Law> && table.has(number)) table.curved |= 1u << number;
   });
   return table;
 }
@@ -123,6 +127,24 @@ struct JointLaws {
       return answer;
     }
   }
+  /// The normal spring of a joint that is pressed so deep  [m].
+  CDEM_HD Closure<T> close(const T& depth, const JointStiffness<T>& k) const {
+    Closure<T> answer = close_straight(depth, k);
+    of_curved([&](const auto& mine, const auto& law) {
+      const Closure<T> own = law.close(depth, k);
+      answer = {select(mine, own.pressure, answer.pressure),
+                select(mine, own.stored, answer.stored)};
+    });
+    return answer;
+  }
+  /// How deep it is under a pressure  [Pa].
+  CDEM_HD T depth(const T& pressure, const JointStiffness<T>& k) const {
+    T answer = k.compliance_n * pressure;
+    of_curved([&](const auto& mine, const auto& law) {
+      answer = select(mine, law.depth(pressure, k), answer);
+    });
+    return answer;
+  }
   /// The lanes whose law has state.
   CDEM_HD Truth<T> remember() const {
     Truth<T> any = T(0.0) > T(0.0);
@@ -132,7 +154,27 @@ struct JointLaws {
     });
     return any;
   }
+
+ private:
+  /// Call act(lanes, law) for every law with a curve that a lane has.
+  template <class Act>
+  CDEM_HD void of_curved(const Act& act) const {
+    Laws::for_each([&]<template <class> class Law, Index number>() {
+      if constexpr (is_curved<Law>) {
+        if (!table.has(number)) return;
+        const auto mine = table.has_law<number>(interface);
+        if (any_of(mine)) act(mine, law_at<Law>(table, interface, scatter));
+      }
+    });
+  }
 };
+
+/// How deep a joint of an interface is under a pressure [Pa]  [m].
+inline Real depth_under(const InterfaceTable& table, Index interface, Real pressure,
+                        const JointStiffness<Real>& k) {
+  if (!table.closes_by_curve(interface)) return pressure / k.n;
+  return JointLaws<InterfaceLaws, Index>{table, interface}.depth(max_of(pressure, 0.0), k);
+}
 
 /// A kernel that asks laws, limited to some of them: its `update<Laws>`.
 template <class Kernel, class Laws>

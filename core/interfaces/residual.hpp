@@ -19,10 +19,8 @@ struct Residual {
   static constexpr LawText text{
       .name = "residual",
       .meaning = "Brittle; friction and cohesion fall at once to residual values"};
-  static constexpr std::array parameters{
-      Brittle<T>::parameters[0], Brittle<T>::parameters[1], Brittle<T>::parameters[2],
-      Brittle<T>::parameters[3], Brittle<T>::parameters[4], optional_residual_friction_angle,
-      residual_cohesion};
+  static constexpr std::array parameters =
+      with_more(Brittle<Real>::parameters, optional_residual_friction_angle, residual_cohesion);
   static constexpr std::array<StateVariable, 0> state{};
 
   Brittle<T> bonded;

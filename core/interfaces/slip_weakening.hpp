@@ -18,13 +18,8 @@ template <class T>
 struct SlipWeakening {
   static constexpr LawText text{.name = "slip-weakening",
                                 .meaning = "Brittle; friction falls with the slip"};
-  static constexpr std::array parameters{Brittle<T>::parameters[0],
-                                         Brittle<T>::parameters[1],
-                                         Brittle<T>::parameters[2],
-                                         Brittle<T>::parameters[3],
-                                         Brittle<T>::parameters[4],
-                                         residual_friction_angle,
-                                         slip_distance};
+  static constexpr std::array parameters =
+      with_more(Brittle<Real>::parameters, residual_friction_angle, slip_distance);
   static constexpr std::array state{joint_slip};
 
   Brittle<T> bonded;

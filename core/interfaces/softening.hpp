@@ -26,13 +26,8 @@ struct Softening {
   static constexpr LawText text{
       .name = "softening",
       .meaning = "Cohesion and tensile strength fall linearly, with fracture energies"};
-  static constexpr std::array parameters{
-      Brittle<T>::parameters[0],
-      Brittle<T>::parameters[1],
-      Brittle<T>::parameters[2],
-      Brittle<T>::parameters[3],
-      Brittle<T>::parameters[4],
-      optional_residual_friction_angle,
+  static constexpr std::array parameters = with_more(
+      Brittle<Real>::parameters, optional_residual_friction_angle,
       [] {
         Parameter p = slip_distance;
         p.otherwise = 0;
@@ -48,7 +43,7 @@ struct Softening {
                 .symbol = "G2",
                 .unit = "J/m2",
                 .meaning = "Fracture energy in shear, friction apart",
-                .scatter = 2}};
+                .scatter = 2});
   static constexpr std::array state{
       StateVariable{.name = "joint_damage",
                     .unit = "1",

@@ -11,6 +11,7 @@ struct InterfaceTable {
   const Interface* interfaces;
   const Real* parameters;  // [interface][parameter_row]
   unsigned laws;           // those that any interface has, as bits
+  unsigned curved;         // those of them whose joints close by a curve, as bits
   bool remembers;          // has one of them state?
 
   CDEM_HD bool has(Index law) const { return (laws >> law & 1) != 0; }
@@ -20,6 +21,13 @@ struct InterfaceTable {
   template <class Ids>
   CDEM_HD Ids law_of(const Ids& interface) const {
     return indices_of([&](Index i) { return interfaces[i].law; }, interface);
+  }
+  /// The lanes whose joints close by a curve.
+  template <class Ids>
+  CDEM_HD Truth<Number<Ids>> closes_by_curve(const Ids& interface) const {
+    if (curved == 0) return Number<Ids>(0.0) > Number<Ids>(0.5);
+    const auto own = [&](Index i) { return Real(curved >> interfaces[i].law & 1); };
+    return numbers_of(own, interface) > Number<Ids>(0.5);
   }
   /// The lanes that have law `number`.
   template <Index number, class Ids>

@@ -16,23 +16,19 @@ template <class T>
 struct VelocityWeakening {
   static constexpr LawText text{.name = "velocity-weakening",
                                 .meaning = "Brittle; friction falls with the speed of slip"};
-  static constexpr std::array parameters{
-      Brittle<T>::parameters[0],
-      Brittle<T>::parameters[1],
-      Brittle<T>::parameters[2],
-      Brittle<T>::parameters[3],
-      Brittle<T>::parameters[4],
-      Parameter{.name = "dynamic_friction_angle",
-                .symbol = "phi_d",
-                .unit = "deg",
-                .meaning = "Friction angle at great speed",
-                .below = 90,
-                .form = Form::tangent,
-                .is_strength = true},
-      Parameter{.name = "velocity",
-                .symbol = "v_c",
-                .unit = "m/s",
-                .meaning = "Speed of slip at which half of the friction's fall is done"}};
+  static constexpr std::array parameters =
+      with_more(Brittle<Real>::parameters,
+                Parameter{.name = "dynamic_friction_angle",
+                          .symbol = "phi_d",
+                          .unit = "deg",
+                          .meaning = "Friction angle at great speed",
+                          .below = 90,
+                          .form = Form::tangent,
+                          .is_strength = true},
+                Parameter{.name = "velocity",
+                          .symbol = "v_c",
+                          .unit = "m/s",
+                          .meaning = "Speed of slip at which half of the friction's fall is done"});
   static constexpr std::array<StateVariable, 0> state{};
 
   Brittle<T> at_rest;
@@ -54,6 +50,9 @@ struct VelocityWeakening {
     return nullptr;
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
+  static Real friction_fall(const Real* parameter) {
+    return (parameter[0] - parameter[5]) / parameter[6];
+  }
 
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T* state) const {
     return at_rest.bears(in, state);

@@ -21,20 +21,16 @@ struct Voellmy {
       .name = "voellmy",
       .meaning =
           "Brittle; friction of a flow on its bed, which grows with the square of the speed"};
-  static constexpr std::array parameters{
-      Brittle<T>::parameters[0],
-      Brittle<T>::parameters[1],
-      Brittle<T>::parameters[2],
-      Brittle<T>::parameters[3],
-      Brittle<T>::parameters[4],
-      Parameter{.name = "turbulence",
-                .symbol = "xi",
-                .unit = "m/s2",
-                .meaning = "Turbulence coefficient: the larger, the faster the flow"},
-      Parameter{.name = "flow_density",
-                .symbol = "rho",
-                .unit = "kg/m3",
-                .meaning = "Density of what flows"}};
+  static constexpr std::array parameters =
+      with_more(Brittle<Real>::parameters,
+                Parameter{.name = "turbulence",
+                          .symbol = "xi",
+                          .unit = "m/s2",
+                          .meaning = "Turbulence coefficient: the larger, the faster the flow"},
+                Parameter{.name = "flow_density",
+                          .symbol = "rho",
+                          .unit = "kg/m3",
+                          .meaning = "Density of what flows"});
   static constexpr std::array<StateVariable, 0> state{};
   static constexpr Real gravity = 9.81;  // [m/s2]
 

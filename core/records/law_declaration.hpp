@@ -5,6 +5,7 @@
 // made from the declaration alone, see docs/contributing/adding_a_law.md.
 #pragma once
 
+#include <array>
 #include <limits>
 
 namespace cdem {
@@ -46,6 +47,17 @@ struct Parameter {
   bool bonds = false;             // above zero, it bonds faces that touch at the start
   int scatter = 0;  // power of the factor of a pair's strength that it has, see draws.hpp
 };
+
+/// A list of parameters, and then those of a law that is made of its law.
+template <std::size_t count, class... More>
+constexpr std::array<Parameter, count + sizeof...(More)> with_more(
+    const std::array<Parameter, count>& list, const More&... more) {
+  std::array<Parameter, count + sizeof...(More)> all{};
+  std::size_t k = 0;
+  for (const Parameter& p : list) all[k++] = p;
+  ((all[k++] = more), ...);
+  return all;
+}
 
 /// One number that a law remembers. It may only grow: where several contacts share a history, the
 /// largest of their numbers goes on.

@@ -84,6 +84,7 @@ CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
           .risen = motion.stress_free_gap,
           .rate1 = motion.slip1 / T(motion.dt),
           .rate2 = motion.slip2 / T(motion.dt),
+          .dt = T(motion.dt),
           .has_area = zero};
 }
 

@@ -1,4 +1,5 @@
-// unloading.hpp - how contacts unload: elastic, or stiffer than they load. Walton & Braun (1986).
+// unloading.hpp - how contacts unload: elastic, or stiffer than they load, Walton & Braun (1986);
+// or along a curve.
 #pragma once
 
 #include "core/contact/force/contact_force.hpp"
@@ -73,15 +74,18 @@ struct ElasticUnloading {
   }
 };
 
-/// Contacts of which some give back less. `returned` is e^2, the square of the coefficient of
-/// restitution; where it is 1 the contact is elastic, to the bit.
+/// Contacts of which some give back less, or have a normal spring that is curved. `returned` is
+/// e^2, the square of the coefficient of restitution; where it is 1 the contact is elastic, to the
+/// bit. The effective penetration of a curved one is that of a straight spring with its force.
 template <class T>
 struct HystereticUnloading {
   T returned_n, returned_s;
+  Truth<T> curved = T(0.0) > T(0.5);
 
   template <class Ids>
   CDEM_HD static HystereticUnloading of(const ContactLaws& laws, const Ids& interface) {
-    return {laws.faces.returned_n(interface), laws.faces.returned_s(interface)};
+    return {laws.faces.returned_n(interface), laws.faces.returned_s(interface),
+            laws.interfaces.closes_by_curve(interface)};
   }
   CDEM_HD static T depth(const ContactBefore<T>& before) { return max_of(before.approach, T(0.0)); }
   /// A contact that begins, or goes on on another face, was no deeper than it is there: as much of
@@ -121,6 +125,7 @@ struct HystereticUnloading {
                                 const JointAnswer<T>& joint) const {
     const T zero(0.0), half(0.5), one(1.0);
     ContactForce<T> f = contact_force(spring, motion, before, joint);
+    f.penetration = select(curved, spring.stiffness.compliance_n * joint.elastic, f.penetration);
     const T old_s = half * spring.compliance_s() *
                     (before.shear1 * before.shear1 + before.shear2 * before.shear2);
     f.friction -= (one - returned_s) * (old_s - f.energy_s);

@@ -19,10 +19,11 @@ inline ContactLaws contact_laws(const Model& m, const State& s) {
           .node_mass = lumped_masses(m, s).data()};
 }
 
-/// Does any interface ask for restitution?
+/// Does any interface ask for restitution, or close by a curve?
 inline bool any_hysteretic(const Model& m) {
   const Interface* first = m.interfaces.data();
-  return std::any_of(first, first + m.interfaces.size(),
+  return interface_table(m).curved != 0 ||
+         std::any_of(first, first + m.interfaces.size(),
                      [](const Interface& i) { return i.is_hysteretic(); });
 }
 

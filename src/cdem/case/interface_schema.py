@@ -113,6 +113,12 @@ class Interface(Part):
             return ""
         return "heterogeneity is of bonds; it needs cohesion or tensile_strength above 0"
 
+    def curve_conflict(self) -> str:
+        """Why a restitution does not go with the law, or nothing."""
+        if not INTERFACE_LAWS[self.law].curved or min(self.coefficients()) == 1:
+            return ""
+        return f"restitution must be 1 with law {self.law}, whose joints close by a curve"
+
     def coefficients(self) -> tuple[float, float]:
         """Normal and tangential coefficient of restitution [1]."""
         given = self.restitution
@@ -188,7 +194,8 @@ class Interfaces(Part):
                     )
         named = {} if self.default is None else {"default": self.default}
         for place, law in (named | {f"pairs.{i}": p for i, p in enumerate(self.pairs)}).items():
-            if why := interface_contradiction(law) or law.idle_heterogeneity():
+            why = interface_contradiction(law) or law.idle_heterogeneity() or law.curve_conflict()
+            if why:
                 raise ValueError(f"{place}: {why}")
         return self
 

@@ -89,6 +89,7 @@ class Law:
         name: Its value of the key `law` in a case.
         meaning: One sentence.
         flows: Of a block law: whether it ever gives inelastic strain.
+        curved: Of an interface law: whether its joints close by a curve.
         parameters: In the order of the core.
         state: In the order of the core.
         softening: Of a block law: the names of the strengths that may fall.
@@ -97,6 +98,7 @@ class Law:
     name: str
     meaning: str
     flows: bool
+    curved: bool
     parameters: tuple[Parameter, ...]
     state: tuple[StateVariable, ...]
     softening: tuple[str, ...] = ()
@@ -143,6 +145,8 @@ class Law:
         strengths = [
             p for p in self.parameters if p.is_strength and getattr(part, p.name) is not None
         ]
+        if not strengths:  # a factor divides what follows from all of them
+            strengths = [p for p in self.parameters if p.default is None and p.like is None]
         text = ", ".join(f"{getattr(part, p.name):g} {p.unit}" for p in strengths if not p.bonds)
         if self.bonds(part):
             bonds = [p for p in strengths if p.bonds]
@@ -157,6 +161,7 @@ def _declared(laws: list[dict[str, Any]]) -> dict[str, Law]:
             law["name"],
             law["meaning"],
             law["flows"],
+            law["curved"],
             tuple(Parameter(**p) for p in law["parameters"]),
             tuple(StateVariable(**v) for v in law["state"]),
             tuple(law["softening"]),

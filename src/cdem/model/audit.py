@@ -390,6 +390,11 @@ class Audit:
                 f"{row['height']:.3g} m of rock, {100 * row['overlap_at_speed']:.2g} % at "
                 f"{row['speed']:.3g} m/s"
             )
+            if row["curve_end"] is not None:
+                lines[-1] += (
+                    f"; joints close by a curve up to {row['curve_end']:.3g} Pa, from where on they "
+                    "are as stiff as k_n, for which the step is found"
+                )
             if row["restitution"] < 1 and self.step["rules"] == "contact":
                 lines[-1] += (
                     f"; restitution {row['restitution']:g} makes them "

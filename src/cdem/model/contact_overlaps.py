@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from cdem.case.interface_schema import Interface, InterfacePair
+from cdem._native import core as native
+from cdem.case.interface_schema import Interface
+from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.build import Build
-from cdem.model.interfaces import interfaces_of
+from cdem.model.interfaces import interfaces_of, name_of
 from cdem.model.stiffness import (
     greatest_speed,
     groups_of,
@@ -35,6 +37,7 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
         sides = list(_sides(build, law, *entry["stiffness_n"]))
         if not sides:
             continue
+        own = INTERFACE_LAWS[law.law]
         stiffness = np.array([k for _, pair in sides for k in pair])
         weight = impact = 0.0
         speed = greatest_speed(case, law)
@@ -45,13 +48,18 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
             impact = max(impact, speed * math.sqrt(2 * ratio * soft))
         rows.append(
             {
-                "interface": _name(law),
+                "interface": name_of(law),
                 "stiffness_n": [float(stiffness.min()), float(stiffness.max())],
                 "height": height,
                 "overlap_under_weight": float(weight),
                 "speed": speed,
                 "overlap_at_speed": float(impact),
                 "restitution": min(law.coefficients()),
+                "curve_end": native.interface_curve_end(
+                    law.law, own.numbers(law), float(stiffness.max())
+                )
+                if own.curved
+                else None,
             }
         )
     return rows
@@ -74,11 +82,3 @@ def _sides(
             {"young_modulus": rock.young_modulus, "density": rock.density, "height": height},
             (float(low), float(high)),
         )
-
-
-def _name(law: Interface) -> str:
-    if not isinstance(law, InterfacePair):
-        return "default"
-    if law.name:
-        return law.name
-    return " - ".join(law.between) if law.between else f"joint {law.joint}"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cdem._native import core as native
 from cdem.case.case import Case
-from cdem.case.interface_schema import Interface
+from cdem.case.interface_schema import Interface, InterfacePair
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.topology import Topology, group_touching
@@ -74,6 +74,15 @@ def check_interfaces(
             f"{case.where('interfaces')}: interfaces: groups {a!r} and {b!r} may come to touch but "
             f"have no interface; add a pair 'between: [{a}, {b}]' or interfaces.default"
         )
+
+
+def name_of(law: Interface) -> str:
+    """What an interface is called in messages."""
+    if not isinstance(law, InterfacePair):
+        return "default"
+    if law.name:
+        return law.name
+    return " - ".join(law.between) if law.between else f"joint {law.joint}"
 
 
 def that_may_break(case: Case) -> NDArray[np.bool_]:

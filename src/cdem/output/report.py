@@ -65,7 +65,11 @@ def info(folder: Path) -> str:
             f"  {what}: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
             f"({100 * share:.3g} % of its mass)"
         )
-    warnings = s.get("departures", []) + s.get("large_strains", [])
+    warnings = [
+        text
+        for what in ("departures", "large_strains", "fast_weakening")
+        for text in s.get(what, [])
+    ]
     lines += [f"  warning: {text}" for text in warnings]
     return "\n".join(lines) + "\n"
 

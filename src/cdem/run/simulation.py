@@ -23,6 +23,7 @@ from cdem.model.ruling_step import ruling_step
 from cdem.run import restored, stages
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
+from cdem.run.fast_weakening import FastWeakening, fast_weakenings
 from cdem.run.law_fields import STRAIN_THAT_ENDS, large_strains, yielded_counts
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
@@ -88,6 +89,7 @@ class Simulation(RunState):
         threads = threads or os.cpu_count() or 1
         native.set_threads(threads)
         self.results: Results | None = None
+        self._fast_weakening: dict[str, FastWeakening] = {}
         if output is not None:
             self.results = Results(
                 Path(output), case.path_of("."), overwrite=overwrite, resume=resume
@@ -212,6 +214,7 @@ class Simulation(RunState):
         """What summary.json says."""
         of_laws = {
             "yielded": yielded_counts(self),
+            "fast_weakening": [worst.text() for worst in self._fast_weakening.values()],
             "large_strains": [strain.text() for strain in large_strains(self)],
         }
         return super().summary(status) | of_laws
@@ -247,6 +250,7 @@ class Simulation(RunState):
                 self._record(frame=stages.frame_is_due(self, stage, outcome))
                 self._check_energy()
                 self._check_strain()
+                self._check_weakening()
             status = stages.status(self, stage, outcome)
             known, note = (
                 note,
@@ -308,6 +312,15 @@ class Simulation(RunState):
             f"time.energy_error allows ({100 * limit:.3g} %), so that the results are not to be "
             f"trusted. Use a smaller {smaller}; time.energy_error: any goes on whatever it is."
         )
+
+    def _check_weakening(self) -> None:
+        """Tell once of an interface whose friction falls faster than a step can follow."""
+        for worst in fast_weakenings(self):
+            known = self._fast_weakening.get(worst.interface)
+            if known is None and self.results:
+                self.results.log(f"warning: {worst.text()}")
+            if known is None or worst.ratio > known.ratio:
+                self._fast_weakening[worst.interface] = worst
 
     def _check_strain(self) -> None:
         """End a run in which rock flows further than its stress is right."""

@@ -42,11 +42,23 @@ TEST_CASE("exponential function and logarithm undo each other; powers multiply")
   CHECK(relative_error(pow_of(2.0, 0.5), 1.4142135623730951) < 4.5e-16);
 }
 
+TEST_CASE("tan_of meets 17 digits of the tangent") {
+  constexpr Real table[][2] = {{1e-09, 1e-09},
+                               {0.1, 0.10033467208545055},
+                               {0.5, 0.5463024898437905},
+                               {1.0, 1.5574077246549023},
+                               {1.2, 2.5721516221263188},
+                               {1.3, 3.6021024479679786}};
+  for (const auto& [x, exact] : table) CHECK(relative_error(tan_of(x), exact) < 2e-15);
+  CHECK(tan_of(0.0) == 0);
+}
+
 TEST_CASE("lanes have the bits of their numbers") {
   Random random(2);
-  check_lanes<2, 3>(
+  check_lanes<2, 4>(
       [](const auto* in, auto* out) {
         out[0] = exp_of(in[0]), out[1] = log_of(in[1]), out[2] = pow_of(in[1], in[0]);
+        out[3] = tan_of(in[0]);
       },
       [&](Real* in) { in[0] = random.between(-5, 5), in[1] = exp_of(random.between(-50, 50)); });
 }

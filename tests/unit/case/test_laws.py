@@ -22,7 +22,8 @@ def interface(**values):
 
 def test_the_core_has_the_laws_of_the_documents():
     assert list(INTERFACE_LAWS) == [
-        "brittle", "residual", "slip-weakening", "softening", "velocity-weakening", "voellmy"
+        "brittle", "residual", "slip-weakening", "softening", "velocity-weakening", "voellmy",
+        "barton-bandis", "continuously-yielding",
     ]  # fmt: skip
     assert list(BLOCK_LAWS) == [
         "elastic",
@@ -131,6 +132,15 @@ def test_strengths_in_words():
     law = interface(friction_angle=20, cohesion="2 MPa", tensile_strength="0.5 MPa")
     assert INTERFACE_LAWS["brittle"].summary(law) == "20 deg, bonded c 2e+06 T 5e+05 Pa"
     assert INTERFACE_LAWS["brittle"].summary(interface(friction_angle=30)) == "30 deg"
+
+
+def test_a_factor_of_safety_multiplies_the_factor_of_rough_joints():
+    of = interface(law="barton-bandis", jrc=8, jcs="50 MPa", residual_friction_angle=27)
+    law = INTERFACE_LAWS["barton-bandis"]
+    assert law.reduced(of, 1.5) == {"strength_factor": 1.5}
+    assert law.numbers(of)["uniaxial_strength"] == 5e7
+    assert law.curved and not law.bonds(of)
+    assert law.summary(of) == "8 1, 5e+07 Pa, 27 deg"
 
 
 def test_an_unknown_law_is_refused():

@@ -11,10 +11,11 @@ const ContactSpring<Real> spring{.area = area, .stiffness = JointStiffness<Real>
 const Named rough{{"friction_angle", 0.5}, {"dilation_angle", 0.2}, {"dilation_slip", 5e-4}};
 
 /// A contact that is led along a path, with its law, and its ledger.
-template <template <class> class Unloading>
+template <template <class> class Unloading, class Law = Brittle<Real>>
 struct Contact {
   Unloading<Real> unloading;
-  Brittle<Real> law;
+  Law law;
+  Real state[InterfaceLaws::most_state] = {};
   Real dashpot = 0;
   Real gap = 0, free = 0, approach = 0;
   ContactForce<Real> last{};
@@ -22,6 +23,7 @@ struct Contact {
 
   Contact(const Unloading<Real>& unloading, const Named& named)
       : unloading(unloading), law(Joints{named}.law(0)) {}
+  Contact(const Unloading<Real>& unloading, const Law& law) : unloading(unloading), law(law) {}
   void lead(Real gap_now, Real slip1 = 0, Real slip2 = 0) {
     const ContactBefore<Real> before{last.force_n, last.penetration, last.shear1, last.shear2,
                                      approach};
@@ -35,7 +37,7 @@ struct Contact {
                                      .dt = dt};
     const ContactForce<Real> f =
         unloading.force(spring, motion, gap_now - free, before,
-                        law.respond(unloading.input(spring, motion, before), nullptr));
+                        law.respond(unloading.input(spring, motion, before), state));
     work -= 0.5 * ((last.force_n + f.force_n) * (gap_now - gap) + (last.shear1 + f.shear1) * slip1 +
                    (last.shear2 + f.shear2) * slip2);
     friction += f.friction;
@@ -48,8 +50,30 @@ struct Contact {
   Real stored() const { return last.energy_n + last.energy_s; }
 };
 using Hysteretic = Contact<HystereticUnloading>;
+using Closing = Contact<HystereticUnloading, BartonBandis<Real>>;
+
+BartonBandis<Real> soft_joint() {
+  constexpr Real given[] = {10, 50e6, 28, 0.1, 50e6, unlimited, 1};
+  const auto row = BartonBandis<Real>::prepare(given);
+  return BartonBandis<Real>::read([&](Index k) { return row[std::size_t(k)]; });
+}
 
 }  // namespace
+
+TEST_CASE("a contact that closes by a curve keeps its depth and gives back what it took") {
+  Closing contact({.returned_n = 1, .returned_s = 1, .curved = true}, soft_joint());
+  contact.law.closure = {.initial = 1e8, .most = 1e-3};
+  for (int k = 1; k <= 1000; ++k) contact.lead(-0.6e-6 * k);
+  const Real force = area * 1e8 * 0.6e-3 / 0.4;
+  CHECK(relative_error(contact.last.force_n, force) < 1e-13);
+  CHECK(relative_error(contact.last.penetration, force / (area * kn)) < 1e-13);
+  CHECK(relative_error(contact.approach, 0.6e-3) < 1e-13);
+  CHECK(relative_error(contact.stored(), contact.work) < 1e-5);
+  const Real put_in = contact.work;
+  for (int k = 1; k <= 1000; ++k) contact.lead(-0.6e-6 * (1000 - k));
+  CHECK(std::abs(contact.work) < 1e-12 * put_in);
+  CHECK(std::abs(contact.braked) < 1e-12 * put_in);
+}
 
 TEST_CASE("a contact gives back e^2 of the work of loading, normal") {
   for (const Real e : {0.1, 0.5, 0.9}) {
