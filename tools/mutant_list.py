@@ -91,6 +91,22 @@ PYTHON = [
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
+        "unasked code",
+        "a case loads laws of users without being allowed to",
+        "src/cdem/case/case.py",
+        "if isinstance(file, str) and (source.folder / file).resolve() not in _native.headers:",
+        "if not isinstance(file, str):",
+        "tests/unit/test_own_laws.py",
+    ),
+    Mutant(
+        "other library",
+        "a library of another version of cdem is loaded",
+        "src/cdem/own_laws.py",
+        'if made.get("abi") != ABI or made.get("version") != __version__:',
+        'if made.get("abi") != ABI:',
+        "tests/unit/test_own_laws.py",
+    ),
+    Mutant(
         "scaled bonds",
         "mass scaling that does not count bonds",
         "src/cdem/model/mass_scaling.py",

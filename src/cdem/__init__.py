@@ -17,11 +17,13 @@ if TYPE_CHECKING:
         ModelError,
         UnstableError,
     )
+    from cdem.own_laws import load_own_laws
     from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
 
 # Public names and the module of each; imported at first use, so that `import cdem` takes no time.
 _HOMES = {
+    "load_own_laws": "cdem.own_laws",
     "Case": "cdem.case.case",
     "Progress": "cdem.run.progress",
     "Simulation": "cdem.run.simulation",
@@ -44,6 +46,7 @@ __all__ = [
     "Simulation",
     "UnstableError",
     "__version__",
+    "load_own_laws",
 ]
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem._native import digests
 from cdem.case.laws import BLOCK_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
@@ -245,6 +246,7 @@ class Audit:
     def as_dict(self) -> dict[str, Any]:
         """The whole report, ready for JSON."""
         return {
+            "own_laws": digests,
             "counts": self.counts,
             "groups": self.groups,
             "absent": self.absent,
@@ -281,6 +283,8 @@ class Audit:
         low = np.min([g["low"] for g in self.groups.values()], axis=0)
         high = np.max([g["high"] for g in self.groups.values()], axis=0)
         spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))
+        lines += [""] * bool(digests)
+        lines += [f"  own law: {name}, sha256 {d[:16]}..." for name, d in digests.items()]
         lines += ["", f"  extent x, y, z [m]: {spans}"]
         lines += self._interfaces_text()
         lines += self._stiffness_text()
