@@ -91,6 +91,22 @@ PYTHON = [
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
+        "rim",
+        "a disc that reaches into a block by its rim only does not cut it",
+        "src/cdem/joints/discs.py",
+        "met[c.cell[faces[_away(disc.center, start, end) <= disc.radius]]] = True",
+        "del faces, start, end",
+        "tests/unit/joints/test_discs.py",
+    ),
+    Mutant(
+        "centre of a face",
+        "a face counts for a disc by its first corner, not by its centre",
+        "src/cdem/joints/discs.py",
+        "center = x[0] + (area[:, None] * (a + b)).sum(axis=0) / (3 * area.sum())",
+        "center = x[0]",
+        "tests/unit/joints/test_discs.py",
+    ),
+    Mutant(
         "unasked code",
         "a case loads laws of users without being allowed to",
         "src/cdem/case/case.py",
@@ -285,7 +301,7 @@ PYTHON = [
     Mutant(
         "dip",
         "dip direction mirrored at the north",
-        "src/cdem/joints/joints.py",
+        "src/cdem/joints/directions.py",
         "across * math.sin(azimuth), across * math.cos(azimuth)",
         "-across * math.sin(azimuth), across * math.cos(azimuth)",
         "tests/unit/joints/test_joints.py",

@@ -18,6 +18,7 @@ from cdem.model.bolts import bolt_counts
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
+from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
 from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
@@ -60,6 +61,7 @@ class Audit:
         self.interfaces = bonded_interfaces(build)
         self.contacts = contact_interfaces(build)
         self.compensation = self._compensation()
+        self.discs = disc_areas(build)
         self.water = wetted(build)
         self.bolts = bolt_counts(build.bolts)
         self.step = self._step()
@@ -178,6 +180,7 @@ class Audit:
     def _warnings(self) -> list[str]:
         b = self._build
         out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
+        out += weak_bridges(b, {row["joint"] for row in self.interfaces})
         out += idle_bonds(b)
         out += uneven_tiles(b)
         out += idle_water(b, self.water)
@@ -253,6 +256,7 @@ class Audit:
             "interfaces": self.interfaces,
             "compensation": self.compensation,
             "contacts": self.contacts,
+            "discs": self.discs,
             "water": self.water,
             "bolts": self.bolts,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
@@ -287,6 +291,7 @@ class Audit:
         lines += [f"  own law: {name}, sha256 {d[:16]}..." for name, d in digests.items()]
         lines += ["", f"  extent x, y, z [m]: {spans}"]
         lines += self._interfaces_text()
+        lines += [""] * bool(self.discs) + disc_lines(self.discs)
         lines += self._stiffness_text()
         lines += self._initial_text()
         lines += water_text(self.water)

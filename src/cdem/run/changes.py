@@ -13,6 +13,7 @@ from cdem.errors import CaseError
 
 FILES = (
     "own_laws.*",
+    "model.joints.*.discs.file",
     "model.mesh",
     "model.blocks.*.file",
     "water.fields.*.surface",
