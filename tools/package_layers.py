@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent / "src"
 # Folders, lowest first: a module imports from its own folder and those before it. The modules of
 # the package itself stand where they belong.
 FOLDERS = [
-    "_version errors units whole_files _instruction_sets _native",
+    "_version errors units whole_files _instruction_sets _core_choice own_laws _native",
     "case",
     "mesh",
     "joints",

@@ -19,11 +19,13 @@ if TYPE_CHECKING:
     )
     from cdem.output.results import Results
     from cdem.output.results import open_results as open
+    from cdem.own_laws import load_own_laws
     from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
 
 # Public names and the module of each; imported at first use, so that `import cdem` takes no time.
 _HOMES = {
+    "load_own_laws": "cdem.own_laws",
     "Case": "cdem.case.case",
     "Progress": "cdem.run.progress",
     "Results": "cdem.output.results",
@@ -48,6 +50,7 @@ __all__ = [
     "Simulation",
     "UnstableError",
     "__version__",
+    "load_own_laws",
 ]
 
 

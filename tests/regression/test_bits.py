@@ -9,7 +9,7 @@ import pytest
 from scenes import case, digest
 
 import cdem
-from cdem import _native
+from cdem import _instruction_sets, _native
 
 STAGES = [
     {"name": "rest", "mode": "static", "max_steps": 100},
@@ -71,10 +71,10 @@ def test_instruction_sets_give_identical_results():
     """Each instruction set that is built and that this machine has, in a process of its own."""
     here = os.path.dirname(__file__)
     code = CHILD.format(tests=os.path.dirname(here), here=here)
-    flags = _native.cpu_flags()
+    flags = _instruction_sets.cpu_flags()
     found = set()
     for isa in _native.available:
-        if not flags >= _native.NEEDS[isa]:
+        if not flags >= _instruction_sets.NEEDS[isa]:
             continue
         done = subprocess.run(
             [sys.executable, "-c", code],

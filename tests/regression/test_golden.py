@@ -15,7 +15,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from golden_scenes import GOLDEN, SCENES, digest
 
-from cdem import _native
+from cdem import _instruction_sets, _native
 
 PINNED = json.loads(GOLDEN.read_text())
 ROOT = Path(__file__).parents[2]
@@ -40,8 +40,8 @@ def test_results_are_those_pinned(name, threads):
 
 def others() -> list[str]:
     """Instruction sets that are built and that this machine has, but for the one in use."""
-    flags = _native.cpu_flags()
-    runnable = [isa for isa in _native.available if flags >= _native.NEEDS[isa]]
+    flags = _instruction_sets.cpu_flags()
+    runnable = [isa for isa in _native.available if flags >= _instruction_sets.NEEDS[isa]]
     return [isa for isa in runnable if isa != _native.name]
 
 

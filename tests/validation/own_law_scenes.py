@@ -24,7 +24,7 @@ WEAK = {
 
 
 def load_core() -> None:
-    """Let cdem use the core of build/ that has the laws of tests/core/own_laws."""
+    """Let cdem use the core of build/ that has the own laws of the tests."""
     from cdem import _instruction_sets
 
     (path,) = (ROOT / "build" / "core").glob("_core_own_laws.*.so")
@@ -275,6 +275,25 @@ def results():
         frames = FrameSeries(Path(folder) / "a")
         slip = frames.field("CellData", "joint_slip", len(frames) - 1)
         assert 0.8 * SPEED * 0.2 < slip.max() < 1.01 * SPEED * 0.2, slip
+
+
+def copies():
+    """Copies of mohr-coulomb and voellmy give the same bits as the built-in laws."""
+    from shared.own_laws import differences, flow
+
+    import cdem
+
+    ended = []
+    with tempfile.TemporaryDirectory() as folder:
+        for prefix in ("", "copied-"):
+            path = Path(folder) / "case.yaml"
+            path.write_text(flow(prefix))
+            sim = cdem.Simulation(path, threads=1)
+            sim.run()
+            ended.append((sim.core.fields(), sim.energies))
+    (one, energies), (other, same) = ended
+    assert energies == same and energies["plastic"] > 100 and energies["friction"] > 100, energies
+    assert differences(one, other) == []
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from cdem.case.types import (
     MOST_SEEDS,
@@ -12,6 +12,7 @@ from cdem.case.types import (
     Direction3,
     Divisions3,
     Length3,
+    Line,
     Listed,
     Name,
     Part,
@@ -19,6 +20,9 @@ from cdem.case.types import (
     Size3,
     Three,
 )
+
+MOST_DISCS = 100_000
+"""More discs than this in one set are a slip."""
 
 
 class Rotate(Part):
@@ -91,6 +95,87 @@ class Scatter(Part):
     )
 
 
+Radius = Annotated[float, Quantity("m", above=0)]
+
+
+class Between(Part):
+    """Radii that are alike likely between two limits."""
+
+    min: Radius = Field(description="Smallest [m]")
+    max: Radius = Field(description="Largest [m]")
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Between:
+        if not self.min < self.max:
+            raise ValueError("min must be below max")
+        return self
+
+
+class Power(Between):
+    """Radii of which the density falls as r^-exponent between two limits."""
+
+    exponent: Annotated[float, Quantity("1", above=1)] = Field(
+        description="Exponent a of the density r^-a, e.g. 3 to 4.5 [1]"
+    )
+
+
+class Lognormal(Part):
+    """Radii whose logarithm is normal; above the largest they are drawn again."""
+
+    mean: Radius = Field(description="Mean of the radii, before the largest are cut off [m]")
+    deviation: Radius = Field(description="Their standard deviation, likewise [m]")
+    max: Radius = Field(description="Largest [m]")
+
+    @model_validator(mode="after")
+    def _is_likely(self) -> Lognormal:
+        if not self.mean < self.max:
+            raise ValueError("mean must be below max")
+        return self
+
+
+class Radii(Part):
+    """How radii of discs are spread."""
+
+    uniform: Between | None = Field(None, description="All alike likely between two limits")
+    power: Power | None = Field(None, description="Power law between two limits")
+    lognormal: Lognormal | None = Field(None, description="Lognormal up to a limit")
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Radii:
+        exactly_one(self, ("uniform", "power", "lognormal"))
+        return self
+
+
+class Discs(Part):
+    """Joints of finite size: discs from a file, or random ones."""
+
+    file: Line | None = Field(
+        None,
+        description="CSV file, relative to the case file: columns x, y, z [m] of the centre, dip, "
+        "dip direction [deg], radius [m]",
+    )
+    density: Annotated[float, Quantity("1/m3", above=0)] | None = Field(
+        None, description="Centres per volume, beyond the bodies too as far as discs reach [1/m3]"
+    )
+    count: int | None = Field(
+        None, ge=1, le=MOST_DISCS, description="So many, with centres in the box round the bodies"
+    )
+    radius: (
+        Annotated[
+            Annotated[Radius, Tag("same")] | Annotated[Radii, Tag("spread")],
+            Discriminator(lambda v: "spread" if isinstance(v, dict | Radii) else "same"),
+        ]
+        | None
+    ) = Field(None, description="Radius of random discs [m], or how radii are spread")
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Discs:
+        exactly_one(self, ("file", "density", "count"))
+        if (self.file is None) == (self.radius is None):
+            raise ValueError("random discs need a radius; a file has its own")
+        return self
+
+
 class Joint(Part):
     """A set of joints: planes that cut bodies into blocks. x is east, y north, z up."""
 
@@ -118,9 +203,38 @@ class Joint(Part):
     seed: int = Field(
         0, ge=0, le=MOST_SEEDS, description="Another number gives other scatter and persistence"
     )
+    discs: Discs | None = Field(
+        None, description="Discs instead of planes; what they cut beyond their rim is a rock bridge"
+    )
+    bridge: Name | None = Field(
+        None,
+        description="Name of the surface of rock bridges beside discs, which pairs of interfaces may "
+        "name as joint; default NAME.bridge",
+    )
+
+    @property
+    def bridges(self) -> str | None:
+        """Name of the surface of its rock bridges, if it has discs."""
+        return None if self.discs is None else self.bridge or f"{self.name}.bridge"
+
+    @model_validator(mode="after")
+    def _discs_or_planes(self) -> Joint:
+        if self.discs is None:
+            if self.bridge is not None:
+                raise ValueError("bridge has a meaning with discs only")
+            return self
+        planes = {"spacing", "origin", "persistence"}
+        if self.discs.file is not None:
+            planes |= {"dip", "dip_direction", "normal", "scatter", "seed"}
+        if idle := sorted(planes & self.model_fields_set):
+            kind = "random discs" if self.discs.file is None else "discs of a file"
+            raise ValueError(f"{idle[0]} has no meaning with {kind}; remove it")
+        return self
 
     @model_validator(mode="after")
     def _one_direction(self) -> Joint:
+        if self.discs is not None and self.discs.file is not None:
+            return self
         given = [self.dip is not None, self.dip_direction is not None]
         if self.normal is not None:
             if any(given):
@@ -178,6 +292,12 @@ class Model(Part):
         description="Blocks that leave this box, after rotate and translate, are taken out of the "
         "computation",
     )
+
+    @property
+    def joint_surfaces(self) -> list[str]:
+        """Names of what joints make: the sets in order, then the rock bridges of those with discs."""
+        bridges = [joint.bridges for joint in self.joints]
+        return [joint.name for joint in self.joints] + [name for name in bridges if name]
 
     @model_validator(mode="after")
     def _has_bodies(self) -> Model:

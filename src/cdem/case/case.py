@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import PrivateAttr, ValidationError
 
+from cdem import _native
 from cdem.case import checks, plausible
 from cdem.case.explain import explain, problems_of
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
@@ -43,6 +44,7 @@ class Case(CaseParts):
     def __init__(self, _source: Source | None = None, **data: Any) -> None:
         source, data = _source or Source(), plain(data, _source or Source())
         problems: list[checks.Problem] = []
+        _refuse_code(data, source)
         try:
             super().__init__(**data)
         except ValidationError as error:
@@ -155,6 +157,7 @@ class Case(CaseParts):
         for block, data_of_block in zip(self.model.blocks, data["model"]["blocks"], strict=True):
             if block.file is not None:
                 data_of_block["file"] = str(self.path_of(block.file).resolve())
+        data["own_laws"] = [str(self.path_of(file).resolve()) for file in self.own_laws]
         of_water = data["water"]["fields"] if self.water else []
         for entry, plain_entry in zip(
             self.water.fields if self.water else [], of_water, strict=True
@@ -180,3 +183,23 @@ class Case(CaseParts):
         """Return the JSON schema of a case file, for editors."""
         head = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
         return head | cls.model_json_schema() | {"title": "cdem case"}
+
+
+def _refuse_code(data: dict[str, Any], source: Source) -> None:
+    """Refuse laws of users that the user has not allowed.
+
+    Raises:
+        CaseError: The case names some.
+    """
+    files = data.get("own_laws")
+    for number, file in enumerate(files if isinstance(files, list) else []):
+        if isinstance(file, str) and (source.folder / file).resolve() not in _native.headers:
+            raise source.error(
+                [
+                    (
+                        ("own_laws", number),
+                        f"{file} is code that would run as part of cdem; read it, then allow it with "
+                        "--allow-code (in Python: cdem.load_own_laws before all else)",
+                    )
+                ]
+            )

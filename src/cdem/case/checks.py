@@ -204,10 +204,13 @@ def _histories_of_bolts(case: CaseParts) -> Iterator[Problem]:
 
 
 def _joints(case: CaseParts) -> Iterator[Problem]:
-    names = [joint.name for joint in case.model.joints]
+    names = case.model.joint_surfaces
     for i, pair in enumerate(case.interfaces.pairs):
         if pair.joint is not None and pair.joint not in names:
             yield ("interfaces", "pairs", i, "joint"), _no("joint set", pair.joint, names)
+    for i, joint in enumerate(case.model.joints):
+        if joint.bridges and names.count(joint.bridges) > 1:
+            yield ("model", "joints", i, "bridge"), f"'{joint.bridges}' is the name of two surfaces"
     everywhere = any(joint.group is None for joint in case.model.joints)
     cut = {joint.group for joint in case.model.joints}
     for name, kind in case.model.split.items():

@@ -356,6 +356,9 @@ class CaseParts(Part):
     )
     title: Line = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
+    own_laws: list[str] = Field(
+        [], description="Headers with laws of users, as given to cdem law build; needs --allow-code"
+    )
     model: Model = Field(description="The bodies")
     materials: dict[Name, AnyMaterial] = Field(description="Materials by name")
     groups: dict[Name, Group] = Field(description="Groups by name; every body is in one")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-from cdem.cli.options import print_paths
+from cdem.cli.options import AllowCode, print_paths
+from cdem.errors import CaseError
 
-law = typer.Typer(no_args_is_help=True, help="List laws, and try one on its own.")
+law = typer.Typer(no_args_is_help=True, help="List laws, try one on its own, or build your own.")
 SHOWN = 20
 """Rows of a curve that are printed."""
 
@@ -25,9 +26,54 @@ def list_laws() -> None:
             print(f"  {one.name:<20}{one.meaning}")
 
 
+@law.command("new")
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Of small letters, digits and -.")],
+    kind: Annotated[Literal["block", "interface"], typer.Option(help="Kind of law.")],
+    folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+) -> None:
+    """Write the header of a law of your own to start from, and a test of it."""
+    from cdem.tools.law_build import new_law
+
+    paths = new_law(name, kind, folder, force=force)
+    print_paths(paths)
+    print(f"next: cdem law build {paths[0]}")
+
+
+@law.command("build")
+def build(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE.hpp...", help="A law each.")],
+) -> None:
+    """Compile a library of your own laws, which cases name under own_laws.
+
+    Needs a C++20 compiler, and cmake, ninja and nanobind (extra laws). It takes a minute or two.
+    """
+    from cdem.tools import law_build
+
+    print_paths(law_build.build(files))
+
+
+def _load(file: Path, allow_code: bool) -> str:
+    """Load a law of the user's own; its name."""
+    from cdem.own_laws import load_own_laws
+    from cdem.tools.law_build import Header
+
+    name = Header.read(file).law
+    if not allow_code:
+        raise CaseError(
+            f"{file}: is code that would run as part of cdem; read it, then allow it with "
+            "--allow-code"
+        )
+    load_own_laws(file)
+    return name
+
+
 @law.command("test")
 def test(
-    name: Annotated[str, typer.Argument(metavar="LAW", help="See cdem law list.")],
+    name: Annotated[
+        str, typer.Argument(metavar="LAW", help="See cdem law list; or FILE.hpp of your own.")
+    ],
     path: Annotated[
         str,
         typer.Option(
@@ -49,12 +95,15 @@ def test(
     ] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="CSV file.")] = None,
     plot: Annotated[Path | None, typer.Option(help="PNG file (extra viz).")] = None,
+    allow_code: AllowCode = False,
 ) -> None:
     """Lead one law along the path of a laboratory test and print the curve.
 
     A block law moves a cube of 1 m, 10 GPa unless set otherwise; an interface law the joint between
     two. Stresses are positive in tension.
     """
+    if name.endswith(".hpp"):
+        name = _load(Path(name), allow_code)
     from cdem.case.laws import BLOCK_LAWS
     from cdem.study.law_test import lead_law, number
 

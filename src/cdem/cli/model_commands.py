@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from cdem.cli.options import CaseFile, Settings, Strict, Threads
+from cdem.cli.options import AllowCode, CaseFile, Settings, Strict, Threads, allow_own_laws
 from cdem.errors import BodyError, CaseError
 
 
@@ -55,11 +55,13 @@ def check(
         ),
     ] = None,
     strict: Strict = False,
+    allow_code: AllowCode = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Read everything and report on the model; runs nothing."""
     if picture and picture.suffix.lower() != ".png":
         raise typer.BadParameter(f"--picture writes PNG: name a .png file, not {picture}")
+    allow_own_laws(case_file, allow_code)
     from cdem.case.case import Case
 
     case = Case.load(case_file, settings or [])

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -21,6 +21,10 @@ Settings = Annotated[
 ]
 Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all cores.")]
 
+AllowCode = Annotated[
+    bool,
+    typer.Option("--allow-code", help="Let code of own_laws run; allow what you have read."),
+]
 Strict = Annotated[bool, typer.Option("--strict", help="Take warnings for errors.")]
 
 
@@ -28,6 +32,32 @@ def print_paths(paths: Path | Iterable[Path]) -> None:
     """Print one path a line."""
     for path in [paths] if isinstance(paths, Path) else paths:
         print(path)
+
+
+def allow_own_laws(case_file: Path, allowed: bool) -> None:
+    """Load the laws of users that a case names, if they are allowed; before it is read as a case."""
+    if not allowed:
+        return
+    from cdem.own_laws import load_own_laws
+
+    files = raw_data(case_file).get("own_laws")
+    if isinstance(files, list) and files and all(isinstance(file, str) for file in files):
+        load_own_laws(*(case_file.parent / file for file in files))
+
+
+def allow_own_laws_of_study(study_file: Path, allowed: bool) -> None:
+    """The same of the case that a study names."""
+    if allowed and isinstance(case := raw_data(study_file).get("case"), str):
+        allow_own_laws(study_file.parent / case, allowed)
+
+
+def raw_data(file: Path) -> dict[str, Any]:
+    """A case or study as plain data; nothing of it is checked."""
+    from cdem.case.input_file import read_text
+    from cdem.case.yaml_text import parse
+
+    data = parse(read_text(file, "file"), str(file))
+    return data if isinstance(data, dict) else {}
 
 
 @contextmanager

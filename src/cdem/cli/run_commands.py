@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from cdem.cli.options import STOPPED, CaseFile, Settings, Strict, Threads, stop_on_signal
+from cdem.cli.options import (
+    STOPPED,
+    AllowCode,
+    CaseFile,
+    Settings,
+    Strict,
+    Threads,
+    allow_own_laws,
+    stop_on_signal,
+)
 from cdem.errors import CdemError
 
 if TYPE_CHECKING:
@@ -34,6 +43,7 @@ def run(
         bool, typer.Option("--overwrite", help="Replace the results in the result folder.")
     ] = False,
     strict: Strict = False,
+    allow_code: AllowCode = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print summary.json at the end.")] = False,
 ) -> None:
@@ -44,6 +54,7 @@ def run(
         raise typer.BadParameter("--quiet and --json exclude one another")
     folder = output or Path(f"{case_file.stem}.results")
     with stop_on_signal() as stop:
+        allow_own_laws(case_file, allow_code)
         from cdem.case.case import Case
 
         case = Case.load(case_file, settings or [])
@@ -66,7 +77,7 @@ def run(
     elif not quiet:
         print(f"{status}; results are in {folder}")
     if status == "stopped":
-        again = _resume_command(case_file, folder, settings or [], threads)
+        again = _resume_command(case_file, folder, settings or [], threads, allow_code)
         print(f"stopped with a checkpoint; go on with: {again}", file=sys.stderr)
         raise typer.Exit(STOPPED)
 
@@ -120,8 +131,11 @@ def write_report(folder: Path, *, silent: bool) -> None:
             print(f"no report.html: {error}", file=sys.stderr)
 
 
-def _resume_command(case: Path, folder: Path, settings: list[str], threads: int | None) -> str:
+def _resume_command(
+    case: Path, folder: Path, settings: list[str], threads: int | None, allow_code: bool
+) -> str:
     words = ["cdem", "run", str(case), "-o", str(folder), "--resume"]
+    words += ["--allow-code"] * allow_code
     for setting in settings:
         words += ["--set", setting]
     return shlex.join(words + ([] if threads is None else ["--threads", str(threads)]))

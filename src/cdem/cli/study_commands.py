@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cdem.cli.options import STOPPED, CaseFile, Settings, Threads, print_paths, stop_on_signal
+from cdem.cli.options import (
+    STOPPED,
+    AllowCode,
+    CaseFile,
+    Settings,
+    Threads,
+    allow_own_laws,
+    allow_own_laws_of_study,
+    print_paths,
+    stop_on_signal,
+)
 from cdem.errors import CaseError, CdemError
 
 if TYPE_CHECKING:
@@ -44,6 +54,7 @@ def critical(
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
+    allow_code: AllowCode = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON at the end.")] = False,
 ) -> None:
     """Find the value at which a case fails, by bisection of its last, static stage.
@@ -56,6 +67,7 @@ def critical(
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
     ends = _two_numbers(between)
+    allow_own_laws(case_file, allow_code)
     from cdem.case.case import Case
     from cdem.study import critical as search
     from cdem.study.criterion import Criterion
@@ -65,15 +77,9 @@ def critical(
     name = parameter or "factor"
     criterion = Criterion.read(limits or [])
     print(f"a trial {criterion.text()}", file=sys.stderr)
-
+    report = partial(_print_trial, name)
     found = search.find_critical(
-        case,
-        vary,
-        ends,
-        tolerance=tolerance,
-        criterion=criterion,
-        threads=threads,
-        report=partial(_print_trial, name),
+        case, vary, ends, tolerance=tolerance, criterion=criterion, threads=threads, report=report
     )
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
@@ -116,6 +122,7 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Use this Dask scheduler instead.")
     ] = None,
+    allow_code: AllowCode = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
@@ -127,6 +134,7 @@ def sweep(
         raise typer.BadParameter("--quiet and --json exclude one another")
     if workers and scheduler:
         raise typer.BadParameter("--workers and --scheduler exclude one another")
+    allow_own_laws_of_study(study_file, allow_code)
     from cdem.run.progress import line
     from cdem.study.study import Study
     from cdem.study.sweep import describe, run_study

@@ -29,6 +29,7 @@ def cut(
     thinnest: float = 0.0,
     chance: Callable[[int], Floats] | None = None,
     persistence: float = 1.0,
+    only: NDArray[np.bool_] | None = None,
 ) -> tuple[Cells, int]:
     """Cut blocks by the plane normal . x = offset.
 
@@ -41,6 +42,7 @@ def cut(
         thinnest: A block is left whole if it reaches less than this far to one side [m].
         chance: Gives so many random numbers from 0 to 1, one for each block that could be cut.
         persistence: Blocks whose number is below are cut.
+        only: Which blocks it may cut; None: all.
 
     Returns:
         The cells now, and how many blocks were left whole because a part would be too thin.
@@ -56,6 +58,8 @@ def cut(
     may = np.zeros(c.blocks, bool)
     may[c.block] = among[c.group]
     may &= (low < -near) & (high > near)
+    if only is not None:
+        may &= only
     thin = may & (np.minimum(-low, high) < thinnest)
     chosen = may & ~thin
     if chance is not None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,8 @@ from cdem.errors import CaseError, MeshError
 from cdem.joints.cell_mesh import close_short_edges, to_mesh
 from cdem.joints.convex_cells import Cells, from_mesh, from_polyhedron, join
 from cdem.joints.cutting import cut
+from cdem.joints.directions import fisher, mean_normal
+from cdem.joints.discs import Disc, cut_by_disc, draw_discs
 from cdem.mesh.arrays import along
 from cdem.mesh.blocks import block_labels
 from cdem.mesh.element_shapes import NODES
@@ -31,40 +33,6 @@ MOST_PLANES = 100_000
 """More planes than this in one set are a slip of the spacing."""
 
 
-def pole(dip: float, dip_direction: float) -> Floats:
-    """Upward unit normal of a plane, x east, y north, z up.
-
-    Args:
-        dip: Steepest angle below the horizontal [deg].
-        dip_direction: Where that steepest line points, clockwise from north [deg].
-
-    Example:
-        >>> pole(90, 90).round(12) + 0.0  # a wall that faces east
-        array([1., 0., 0.])
-    """
-    dip, azimuth = np.radians(dip), np.radians(dip_direction)
-    across = math.sin(dip)
-    return np.array([across * math.sin(azimuth), across * math.cos(azimuth), math.cos(dip)])
-
-
-def fisher(mean: Floats, concentration: float, random: np.random.Generator) -> Floats:
-    """A unit vector of the Fisher distribution around a mean direction (Fisher 1953).
-
-    Args:
-        mean: Unit vector.
-        concentration: kappa [1]; 63 % lie within 81 deg / sqrt(kappa) of the mean.
-        random: Two numbers are drawn from it.
-    """
-    u, turn = random.random(), 2 * np.pi * random.random()
-    cosine = 1 + math.log(u + (1 - u) * math.exp(-2 * concentration)) / concentration
-    sine = np.sqrt(max(0.0, 1 - cosine**2))
-    across = np.cross(mean, np.eye(3)[np.abs(mean).argmin()])
-    across /= np.linalg.norm(across)
-    return cosine * mean + sine * (
-        math.cos(turn) * across + math.sin(turn) * np.cross(mean, across)
-    )
-
-
 def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.random.Generator]]:
     """The planes of a set that may meet a body.
 
@@ -79,11 +47,7 @@ def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.ran
     Yields:
         Unit normal, offset ``normal . x`` [m], and a generator for what else is random.
     """
-    if joint.dip is None or joint.dip_direction is None:
-        mean = np.asarray(joint.normal, float)
-    else:
-        mean = pole(joint.dip, joint.dip_direction)
-    mean = mean / np.linalg.norm(mean)
+    mean = mean_normal(joint)
     reach = along(points - joint.origin, mean)
     low, high = reach.min(), reach.max()
     if joint.scatter is not None:  # planes turned by up to 60 deg reach the body from so far
@@ -117,9 +81,32 @@ def thinnest_of(model: Model, points: Floats) -> float:
     return THINNEST_OF_ALL * float(np.ptp(points, axis=0).max())
 
 
+@dataclass
+class Cutting:
+    """How far cells have been cut by sets.
+
+    Attributes:
+        c: The cells.
+        of_plane: Name of the surface that each source of faces makes.
+        bridges: Sources that are rock bridges.
+        thin: How often a block was left whole because a part would be too thin.
+        discs: Of each set with discs, how many it has and how many of them meet a block.
+    """
+
+    c: Cells
+    of_plane: list[str] = field(default_factory=list)
+    bridges: list[int] = field(default_factory=list)
+    thin: int = 0
+    discs: dict[str, tuple[int, int]] = field(default_factory=dict)
+
+
 def cut_by_sets(
-    c: Cells, sets: Sequence[Joint], group_names: Sequence[str], thinnest: float
-) -> tuple[Cells, list[str], int]:
+    c: Cells,
+    sets: Sequence[Joint],
+    group_names: Sequence[str],
+    thinnest: float,
+    files: Mapping[str, list[Disc]],
+) -> Cutting:
     """Cut cells by all sets, one after the other.
 
     Args:
@@ -127,35 +114,55 @@ def cut_by_sets(
         sets: The sets, in order.
         group_names: Names of the groups that the cells number.
         thinnest: Least thickness of what is cut off [m].
-
-    Returns:
-        The cells; the set of each plane, by name; and how often a block was left whole because
-        a part would be too thin.
+        files: Discs of the sets that have a file of them, by name of the set.
     """
-    of_plane: list[str] = []
-    thin = 0
+    done = Cutting(c)
     corners = c.points
     for joint in sets:
         among = np.array([joint.group in (None, name) for name in group_names])
+        if joint.discs is not None:
+            of_set = np.isin(c.cell[c.owner()], np.flatnonzero(among[c.group]))
+            points = c.points[c.corner[of_set]]
+            discs = files.get(joint.name) or draw_discs(joint, joint.discs, points)
+            _cut_by_discs(done, joint, discs, among, thinnest)
+            continue
         for normal, offset, random in planes(joint, corners):
-            c, count = cut(
-                c,
+            done.c, count = cut(
+                done.c,
                 normal,
                 offset,
-                len(of_plane),
+                len(done.of_plane),
                 among=among,
                 thinnest=thinnest,
                 chance=random.random,
                 persistence=joint.persistence,
             )
-            of_plane.append(joint.name)
-            thin += count
-    return c, of_plane, thin
+            done.of_plane.append(joint.name)
+            done.thin += count
+    return done
+
+
+def _cut_by_discs(
+    done: Cutting, joint: Joint, discs: list[Disc], among: NDArray[np.bool_], thinnest: float
+) -> None:
+    """Cut by the discs of a set: their faces have one source, its rock bridges another."""
+    of_joint = len(done.of_plane)
+    done.of_plane += [joint.name, str(joint.bridges)]
+    done.bridges.append(of_joint + 1)
+    bridges, met = np.array(done.bridges), 0
+    for disc in discs:
+        done.c, meets, thin = cut_by_disc(
+            done.c, disc, of_joint, bridges, among=among, thinnest=thinnest
+        )
+        met += meets
+        done.thin += thin
+    done.discs[joint.name] = (len(discs), met)
 
 
 def cut_model(
     pieces: Sequence[tuple[Mesh, Sequence[Sequence[int]] | None]],
     model: Model,
+    files: Mapping[str, list[Disc]] | None = None,
 ) -> Mesh:
     """Cut a model by its joints and mesh the blocks.
 
@@ -163,6 +170,7 @@ def cut_model(
         pieces: Every mesh of the model in its place; with the faces of its hull if it is a
             polyhedron, which is then cut as one cell.
         model: Its joints.
+        files: Discs of the sets that have a file of them, by name of the set.
 
     Returns:
         One mesh: what no set may cut as it was, all else as tets. Faces made by a set form a
@@ -173,9 +181,9 @@ def cut_model(
     if all(joint.group is not None for joint in model.joints):
         jointed = {str(joint.group) for joint in model.joints}
     surfaces = sorted({name for piece, _ in pieces for name in piece.surfaces})
-    for joint in model.joints:
-        if joint.name in surfaces:
-            raise CaseError(f"joint set {joint.name!r} has the name of a surface of the mesh")
+    for name in model.joint_surfaces:
+        if name in surfaces:
+            raise CaseError(f"joint set {name!r} has the name of a surface of the mesh")
     parts, rest = [], []
     for piece, faces in pieces:
         inside, outside = _divide(piece, jointed)
@@ -184,7 +192,7 @@ def cut_model(
         if inside.cells:
             inside.surfaces = {name: piece.surfaces.get(name, []) for name in surfaces}
             parts.append(_cells_of(inside, faces, names, model))
-    whole = merge([*rest, _cut_and_mesh(join(parts), model, names, surfaces)])
+    whole = merge([*rest, _cut_and_mesh(join(parts), model, names, surfaces, files or {})])
     _refuse_lost(whole, names)
     return whole
 
@@ -211,19 +219,34 @@ def _cells_of(
     return from_polyhedron(piece.points[:used], faces, names.index(group))
 
 
-def _cut_and_mesh(c: Cells, model: Model, names: list[str], surfaces: list[str]) -> Mesh:
+def _cut_and_mesh(
+    c: Cells,
+    model: Model,
+    names: list[str],
+    surfaces: list[str],
+    files: Mapping[str, list[Disc]],
+) -> Mesh:
     """Cut cells by all sets and mesh what that leaves; notes say what was not as the sets want it."""
     thinnest = thinnest_of(model, c.points)
-    c, of_plane, thin = cut_by_sets(c, model.joints, names, thinnest)
-    whole = c.volumes().sum()
-    c, closed = close_short_edges(c, SHORTEST * thinnest)
-    made = to_mesh(c, names, surfaces, of_plane)
-    made.notes = _notes(thin, closed, c.volumes().sum() / whole - 1, thinnest)
+    done = cut_by_sets(c, model.joints, names, thinnest, files)
+    whole = done.c.volumes().sum()
+    c, closed = close_short_edges(done.c, SHORTEST * thinnest)
+    made = to_mesh(c, names, surfaces, done.of_plane)
+    made.discs = done.discs
+    made.notes = _notes(done.thin, closed, c.volumes().sum() / whole - 1, thinnest)
+    for name in model.joint_surfaces:
+        made.surfaces.setdefault(name, [])
     for joint in model.joints:
-        made.surfaces.setdefault(joint.name, [])
         if not any(len(part) for part in made.surfaces[joint.name]):
-            made.notes.append(f"joint set {joint.name} cuts nothing; look at its origin and group")
+            made.notes.append(f"joint set {joint.name} cuts nothing; {_look(joint)}")
     return made
+
+
+def _look(joint: Joint) -> str:
+    """Where to look if a set cuts nothing."""
+    if joint.discs is None:
+        return "look at its origin and group"
+    return "no centre of a face is in a disc: look at its centres, radii and group, or mesh finer"
 
 
 def _divide(piece: Mesh, jointed: set[str]) -> tuple[Mesh, Mesh]:

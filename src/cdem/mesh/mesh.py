@@ -27,6 +27,7 @@ class Mesh:
         group_names: Names of the groups of cells.
         surfaces: By name, arrays of point ids of triangles (faces, 3) or quadrilaterals (faces, 4).
         notes: Warnings of the reader.
+        discs: By set of joints of discs, how many it has and how many of them meet a block.
     """
 
     points: Floats
@@ -35,6 +36,7 @@ class Mesh:
     group_names: list[str] = field(default_factory=list)
     surfaces: dict[str, list[NDArray[np.int64]]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    discs: dict[str, tuple[int, int]] = field(default_factory=dict)
 
 
 def drop_unused(mesh: Mesh) -> Mesh:
@@ -83,6 +85,7 @@ def merge(pieces: Sequence[Mesh]) -> Mesh:
         for name, parts in piece.surfaces.items():
             out.surfaces.setdefault(name, []).extend(part + s for part in parts)
         out.notes += piece.notes
+        out.discs |= piece.discs
     return out
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem._native import digests
 from cdem.case.laws import BLOCK_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
@@ -18,6 +19,7 @@ from cdem.model.bolts import bolt_counts
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
+from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
 from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
 from cdem.model.meshed_strength import meshed_strengths, strength_text
 from cdem.model.options import pairs_loose_joints
@@ -61,6 +63,7 @@ class Audit:
         self.interfaces = bonded_interfaces(build)
         self.contacts = contact_interfaces(build)
         self.compensation = self._compensation()
+        self.discs = disc_areas(build)
         self.water = wetted(build)
         self.bolts = bolt_counts(build.bolts)
         self.step = self._step()
@@ -192,6 +195,7 @@ class Audit:
     def _warnings(self) -> list[str]:
         b = self._build
         out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
+        out += weak_bridges(b, {row["joint"] for row in self.interfaces})
         out += idle_bonds(b)
         out += uneven_tiles(b)
         out += idle_water(b, self.water)
@@ -260,6 +264,7 @@ class Audit:
     def as_dict(self) -> dict[str, Any]:
         """The whole report, ready for JSON."""
         return {
+            "own_laws": digests,
             "counts": self.counts,
             "groups": self.groups,
             "absent": self.absent,
@@ -267,6 +272,7 @@ class Audit:
             "compensation": self.compensation,
             "meshed_strength": self.meshed_strength,
             "contacts": self.contacts,
+            "discs": self.discs,
             "water": self.water,
             "bolts": self.bolts,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
@@ -297,9 +303,12 @@ class Audit:
         low = np.min([g["low"] for g in self.groups.values()], axis=0)
         high = np.max([g["high"] for g in self.groups.values()], axis=0)
         spans = ", ".join(f"{a:.10g} .. {b:.10g}" for a, b in zip(low, high, strict=True))
+        lines += [""] * bool(digests)
+        lines += [f"  own law: {name}, sha256 {d[:16]}..." for name, d in digests.items()]
         lines += ["", f"  extent x, y, z [m]: {spans}"]
         lines += self._interfaces_text()
         lines += strength_text(self.meshed_strength)
+        lines += [""] * bool(self.discs) + disc_lines(self.discs)
         lines += self._stiffness_text()
         lines += self._initial_text()
         lines += water_text(self.water)

@@ -7,6 +7,7 @@ import numpy as np
 from cdem.case.bodies_schema import Block
 from cdem.case.case import Case
 from cdem.errors import CaseError
+from cdem.joints.discs import read_discs
 from cdem.joints.joints import cut_model
 from cdem.mesh.mesh import Mesh, merge, place
 from cdem.mesh.mesh_files import read_mesh
@@ -31,8 +32,13 @@ def read_model(case: Case) -> Mesh:
     for block in model.blocks:
         body = block.polyhedron
         hulls.append(None if body is None else outward_faces(np.array(body.vertices), body.faces))
+    files = {}
+    for index, joint in enumerate(model.joints):
+        if joint.discs is not None and joint.discs.file is not None:
+            with case.blame(f"model.joints.{index}.discs.file"):
+                files[joint.name] = read_discs(case.path_of(joint.discs.file))
     with case.blame("model.joints"):
-        return cut_model(list(zip(pieces, hulls, strict=True)), model)
+        return cut_model(list(zip(pieces, hulls, strict=True)), model, files)
 
 
 def _block(case: Case, block: Block) -> Mesh:

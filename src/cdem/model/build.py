@@ -146,7 +146,7 @@ def build(case: Case) -> Build:
     check_groups(case, names)
     laws, interface_of = interfaces_of(case, names)
     bonds = bonded_pairs(laws, interface_of)
-    sets = [joint.name for joint in case.model.joints]
+    sets = case.model.joint_surfaces
     with case.blame("model"):
         check_memory(pieces_of_mesh(case, merged))
         check_extent(merged)

@@ -32,7 +32,7 @@ def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
     """
     t, a, case = build.topology, build.assembly, build.case
     volume = np.concatenate(list(a.element_volume.values()))
-    groups, sets = len(build.group_names), [None, *(joint.name for joint in case.model.joints)]
+    groups, sets = len(build.group_names), [None, *case.model.joint_surfaces]
     rows: dict[tuple[str, str, str | None], dict[str, Any]] = {}
     for kind in KINDS:
         faces = a.pair_faces[kind]

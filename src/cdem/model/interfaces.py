@@ -42,7 +42,7 @@ def interfaces_of(case: Case, names: list[str]) -> tuple[list[Interface], NDArra
         if pair.between is not None:
             a, b = (names.index(name) for name in pair.between)
             table[a, b] = table[b, a] = index
-    sets = [joint.name for joint in case.model.joints]
+    sets = case.model.joint_surfaces
     table = np.tile(table, (1 + len(sets), 1 + len(sets)))
     for index, pair in enumerate(case.interfaces.pairs):
         if pair.joint is not None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.case import Case
+from cdem.case.reader import load_case_data
 from cdem.errors import CdemError
 from cdem.output.element_volumes import Solids
 from cdem.output.reader import FrameSeries
@@ -59,8 +59,10 @@ class Body:
             if len(some):
                 self.cells[shape] = some
         self.nodes = np.unique(np.concatenate([c.ravel() for c in self.cells.values()]))
-        case = Case.load(folder / "case.yaml")
-        densities = [case.materials[case.groups[name].material].density for name in names]
+        case, _ = load_case_data(folder / "case.yaml")  # as data: its own laws need not be there
+        densities = [
+            case["materials"][case["groups"][name]["material"]]["density"] for name in names
+        ]
         self.density = np.array(densities)[self.group[self.chosen]]
         self.start = self.solids(self.frames[0])
         self.mass = self.density * self.solids(0).volumes()  # the mesh is free of stress

@@ -11,7 +11,14 @@ from cdem.case.case import Case
 from cdem.case.schema import absent_groups
 from cdem.errors import CaseError
 
-FILES = ("model.mesh", "model.blocks.*.file", "water.fields.*.surface", "water.fields.*.table")
+FILES = (
+    "own_laws.*",
+    "model.joints.*.discs.file",
+    "model.mesh",
+    "model.blocks.*.file",
+    "water.fields.*.surface",
+    "water.fields.*.table",
+)
 """Values that may differ because the files themselves are compared."""
 FREE = ("title", "output.every", "output.checkpoint_every", "time.energy_error")
 """Values that a resumed run may change."""

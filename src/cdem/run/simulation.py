@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
+from cdem._native import digests
 from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.errors import CdemError, DiskError, UnstableError
@@ -458,6 +459,12 @@ class Simulation(RunState):
                 f"{path}: belongs to another model, with other elements or groups, or whose nodes "
                 "begin at other places or are numbered otherwise; resume with the case and the mesh "
                 "that were run"
+            )
+        if attributes.own_laws != digests:
+            names = ", ".join(attributes.own_laws) or "none"
+            raise CdemError(
+                f"{path}: was written with another text of own laws ({names}); go on with the "
+                "headers that were run, or run the case again in another folder (-o)"
             )
         own = {"simulation.reference", "simulation.born"}  # see RunState.kept
         other = set(arrays) - own | set(attributes.core)

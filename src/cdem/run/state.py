@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, NonNegativeInt, field_validator
 
+from cdem._native import digests
 from cdem._native import name as native_name
 from cdem._version import __version__
 from cdem.case.case import Case
@@ -84,6 +85,7 @@ class Attributes(BaseModel):
 
     Attributes:
         version: Of cdem.
+        own_laws: SHA-256 of the headers of own laws, by name.
         case: The case as it was given.
         nodes: Fingerprint of the model.
         core: Scalars of the core.
@@ -96,6 +98,7 @@ class Attributes(BaseModel):
     model_config = ConfigDict(strict=True, ser_json_inf_nan="constants")
 
     version: str
+    own_laws: dict[str, str]
     case: dict[str, Any]
     nodes: str
     core: dict[str, bool | int | float]
@@ -369,6 +372,7 @@ class RunState:
         """What a checkpoint keeps besides arrays, after so many rows of histories and frames."""
         return Attributes(
             version=__version__,
+            own_laws=digests,
             case=self.given_case.model_dump(mode="json"),
             nodes=self.build.fingerprint,
             core=self.core.scalars(),
@@ -410,6 +414,7 @@ class RunState:
             "status": status,
             "title": self.case.title,
             "version": __version__,
+            "own_laws": digests,
             "device": f"cpu ({native_name})",
             "threads": self.threads,
             "counts": counts,

@@ -119,15 +119,18 @@ def _identity(case: Case, search: dict[str, Any] | None) -> str:
     return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
 
 
-def files_of(data: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
-    """Where the data of a case name a file: the dictionary and its key."""
+def files_of(data: dict[str, Any]) -> list[tuple[Any, str | int]]:
+    """Where the data of a case name a file: the dictionary and its key, or the list and its index."""
+    laws = data.get("own_laws")
+    of_laws = [(laws, k) for k in range(len(laws))] if isinstance(laws, list) else []
+    found: list[tuple[Any, str | int]] = [(a, k) for a, k in of_laws if isinstance(a[k], str)]
     model = data.get("model")
     if not isinstance(model, dict):
-        return []
+        return found
     blocks = model.get("blocks")
     bodies = [b for b in blocks if isinstance(b, dict)] if isinstance(blocks, list) else []
     named = [(model, "mesh"), *((body, "file") for body in bodies)]
-    return [(holder, key) for holder, key in named if isinstance(holder.get(key), str)]
+    return found + [(holder, key) for holder, key in named if isinstance(holder.get(key), str)]
 
 
 @lru_cache(maxsize=64)

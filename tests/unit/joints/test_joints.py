@@ -9,7 +9,7 @@ from shared.joints import SETS, block_volumes, jointed_case, model_of
 import cdem
 from cdem import Case
 from cdem.case.bodies_schema import Joint
-from cdem.joints import joints
+from cdem.joints import directions, joints
 from cdem.mesh import primitives
 
 
@@ -85,7 +85,7 @@ def test_fisher_scatter(kappa):
     mean = normals.mean(axis=0)
     length = np.linalg.norm(mean)  # Fisher (1953): coth(kappa) - 1 / kappa
     assert length == pytest.approx(1 / np.tanh(kappa) - 1 / kappa, rel=5e-3 * np.sqrt(5 / kappa))
-    off = np.degrees(np.arccos(mean / length @ joints.pole(50, 120)))
+    off = np.degrees(np.arccos(mean / length @ directions.pole(50, 120)))
     assert off < 3 * 81 / np.sqrt(kappa * len(normals))
 
 
@@ -102,7 +102,9 @@ def test_a_larger_body_has_the_same_joints():
     [(0, 77, (0, 0, 1)), (90, 0, (0, 1, 0)), (90, 270, (-1, 0, 0)), (45, 180, (0, -1, 1))],
 )
 def test_pole(dip, direction, normal):
-    assert joints.pole(dip, direction) == pytest.approx(normal / np.linalg.norm(normal), abs=1e-15)
+    assert directions.pole(dip, direction) == pytest.approx(
+        normal / np.linalg.norm(normal), abs=1e-15
+    )
 
 
 def test_models_that_cannot_be_cut_are_refused():

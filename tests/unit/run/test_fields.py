@@ -9,7 +9,7 @@ from shared.joints import SETS, jointed_case
 
 import cdem
 from cdem.case.output_fields import OUTPUT_FIELDS
-from cdem.joints import joints
+from cdem.joints import directions
 from cdem.output.render import snapshot
 from cdem.run.fields import pieces_of, surface_of, values_of, visible_faces
 
@@ -37,7 +37,7 @@ def test_surfaces_that_are_drawn_know_the_set():
     faces = surface.faces.reshape(-1, 4)[:, 1:]
     for number, joint in enumerate(SETS, start=1):
         x = surface.points[faces[surface.cell_data["joint"] == number]]
-        normal = joint.get("normal") or joints.pole(joint["dip"], joint["dip_direction"])
+        normal = joint.get("normal") or directions.pole(joint["dip"], joint["dip_direction"])
         along = (x - joint["origin"]) @ normal / np.linalg.norm(normal) / joint["spacing"]
         assert len(x) > 10 and np.abs(along - np.round(along)).max() < 1e-9
     assert set(surface.cell_data["joint"]) == {0, 1, 2, 3}

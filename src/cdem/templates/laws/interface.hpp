@@ -1,5 +1,5 @@
-// weakening.hpp - an interface law that only the tests have: Coulomb friction that weakens as the
-// joint slips. It shows that one header is enough, see docs/contributing/adding_a_law.md.
+// interface.hpp - the interface law `weakening`: Coulomb friction that weakens as the joint slips.
+// One header is a whole law: docs/contributing/adding_a_law.md.
 #pragma once
 
 #include <array>

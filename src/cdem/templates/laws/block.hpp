@@ -1,5 +1,5 @@
-// perfectly_plastic.hpp - a block law that only the tests have: von Mises plasticity without
-// hardening. It shows that one header is enough, see docs/contributing/adding_a_law.md.
+// block.hpp - the block law `perfectly-plastic`: von Mises plasticity without hardening. One header
+// is a whole law: docs/contributing/adding_a_law.md.
 #pragma once
 
 #include <array>

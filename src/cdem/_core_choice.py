@@ -1,0 +1,49 @@
+"""Which compiled core this process uses: the best that this machine can run, or the one asked for."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from pathlib import Path
+
+from cdem._instruction_sets import NEEDS, cpu_flags
+from cdem.errors import BackendError
+
+
+def _is_built(isa: str) -> bool:
+    spec = importlib.util.find_spec(f"cdem._core_{isa}")
+    return spec is not None and spec.origin is not None and Path(spec.origin).exists()
+
+
+def built() -> list[str]:
+    """Instruction sets that there is a core for, best first."""
+    return [isa for isa in NEEDS if _is_built(isa)]
+
+
+def choose() -> str:
+    """The instruction set of the core to load.
+
+    Raises:
+        BackendError: None runs here, or CDEM_ISA names one that does not.
+    """
+    there, flags = built(), cpu_flags()
+    wanted = os.environ.get("CDEM_ISA")
+    if wanted is not None:
+        if wanted not in there:
+            raise BackendError(
+                f"CDEM_ISA={wanted}: no such compiled core; built are: {', '.join(there) or 'none'}"
+            )
+        # Without this the first instruction that is missing kills Python. No flags: not known.
+        lacking = NEEDS[wanted] - flags
+        if flags and lacking:
+            raise BackendError(
+                f"CDEM_ISA={wanted}: this CPU lacks {', '.join(sorted(lacking))}; unset CDEM_ISA"
+            )
+        return wanted
+    for isa in there:
+        if flags >= NEEDS[isa]:
+            return isa
+    raise BackendError(
+        "the compiled core is missing or does not run on this CPU; "
+        f"built are: {', '.join(there) or 'none'}. Install cdem again with: pip install ."
+    )

@@ -1,0 +1,145 @@
+"""Laws of users: headers whose laws a library has, a core of its own that `cdem law build` makes.
+
+The library lies beside the first header, with a record of what it was made from. A process has one
+core, so its laws are chosen before anything of cdem is used; processes that it starts have them too.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import os
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from cdem._core_choice import choose
+from cdem._version import __version__
+from cdem.errors import BackendError, CaseError
+
+ABI = 1
+"""Version of what a library and its record hold."""
+VARIABLE = "CDEM_OWN_LAWS"
+"""Environment variable with the paths of the headers."""
+
+
+def sources() -> Path:
+    """Folder with the sources of the core: of the installed package, or of a clone."""
+    package = Path(__file__).resolve().parent
+    installed = package / "sources"
+    return installed if installed.is_dir() else package.parents[1]
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def digest_of_sources() -> str:
+    """SHA-256 of the sources of the core."""
+    home, whole = sources(), hashlib.sha256()
+    for folder in ("core", "bindings"):
+        for path in sorted((home / folder).rglob("*.[hc]pp")):
+            whole.update(path.relative_to(home).as_posix().encode() + path.read_bytes())
+    return whole.hexdigest()
+
+
+def library_of(headers: Iterable[Path], isa: str) -> Path:
+    """The library with the laws of these headers: beside the first, named after all."""
+    headers = list(headers)
+    return headers[0].with_name(f"{'+'.join(h.stem for h in headers)}.{isa}.so")
+
+
+def record_of(headers: Iterable[Path], isa: str) -> dict[str, Any]:
+    """What a library of these headers is made from, now."""
+    return {
+        "abi": ABI,
+        "version": __version__,
+        "instruction_set": isa,
+        "sources": digest_of_sources(),
+        "headers": digests(headers),
+    }
+
+
+def digests(headers: Iterable[Path]) -> dict[str, str]:
+    """SHA-256 of each header, by its name."""
+    return {header.name: digest(header) for header in headers}
+
+
+def load_own_laws(*headers: str | Path) -> None:
+    """Let cdem use laws of headers that `cdem law build` has made a library of.
+
+    Their code runs as part of cdem: allow what you have read. Call this before anything else of cdem.
+
+    Args:
+        headers: In the order in which they were built.
+
+    Raises:
+        CaseError: There is no such header.
+        BackendError: There is no library, or it was made from other files or for another version;
+            or this process uses other laws already.
+    """
+    paths = [Path(header).resolve() for header in headers]
+    _checked(paths, choose())
+    if (native := sys.modules.get("cdem._native")) and native.headers != paths:
+        raise BackendError("load_own_laws: call it before anything else of cdem is used")
+    os.environ[VARIABLE] = os.pathsep.join(map(str, paths))
+
+
+def allowed() -> list[Path]:
+    """Headers whose laws this process may use."""
+    return [Path(one) for one in os.environ.get(VARIABLE, "").split(os.pathsep) if one]
+
+
+def import_core(headers: list[Path], isa: str) -> ModuleType:
+    """Import the core with the laws of these headers.
+
+    Raises:
+        CaseError, BackendError: As `load_own_laws`.
+    """
+    name = f"cdem._core_{isa}"
+    spec = importlib.util.spec_from_file_location(name, _checked(headers, isa))
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    sys.modules[name] = module
+    return module
+
+
+def _checked(headers: list[Path], isa: str) -> Path:
+    """The library of these headers, if it is what `cdem law build` makes of them here and now."""
+    for header in headers:
+        if not header.is_file():
+            raise CaseError(f"{header}: no such file")
+    library = library_of(headers, isa)
+    again = f"cdem law build {' '.join(map(str, headers))}"
+    record = library.with_suffix(".json")
+    try:
+        made = json.loads(record.read_text())
+        whole = digest(library)
+    except FileNotFoundError:
+        raise BackendError(
+            f"{headers[0]}: has no library for the instruction set {isa}; make it: {again}"
+        ) from None
+    except ValueError as error:
+        raise BackendError(f"{record}: cannot be read ({error}); make it again: {again}") from None
+    if fault := _fault(made if isinstance(made, dict) else {}, record_of(headers, isa), whole):
+        raise BackendError(f"{library}: {fault}; make it again: {again}")
+    return library
+
+
+def _fault(made: Mapping[str, Any], now: Mapping[str, Any], library: str) -> str:
+    """Why a library does not fit, or ""."""
+    if made.get("abi") != ABI or made.get("version") != __version__:
+        return f"was made for cdem {made.get('version')}, this is {__version__}"
+    for key, what in (
+        ("instruction_set", "was made for another instruction set"),
+        ("sources", "was made from other sources of cdem"),
+        ("headers", "was made from another text of its headers"),
+    ):
+        if made.get(key) != now[key]:
+            return what
+    return "" if made.get("library") == library else "is not what cdem law build has written"

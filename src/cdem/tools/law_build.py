@@ -1,0 +1,195 @@
+"""Laws of users: a header to start from, and the library that is made of headers."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+from cdem._core_choice import choose
+from cdem.errors import BackendError, CaseError
+from cdem.own_laws import digest, library_of, record_of, sources
+from cdem.whole_files import replaced, write_json
+
+NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
+LAW = re.compile(
+    r'template\s*<class T>\s*struct\s+(\w+)[^;]*?LawText\s+text\s*\{\s*\.name\s*=\s*"([^"]*)"'
+)
+INCLUDE = re.compile(r'^\s*#\s*include\s*"(?!core/)([^"]*)"', re.MULTILINE)
+ANSWERS = {"BLOCK": re.compile(r"\bflow\s*\("), "INTERFACE": re.compile(r"\brespond\s*\(")}
+SHOWN = 8
+"""Lines of what the compiler says."""
+
+
+@dataclass(frozen=True)
+class Header:
+    """A header with one law.
+
+    Attributes:
+        path: The file.
+        structure: Name of its structure.
+        law: Name of the law in a case.
+        kind: "BLOCK" or "INTERFACE".
+    """
+
+    path: Path
+    structure: str
+    law: str
+    kind: str
+
+    @classmethod
+    def read(cls, path: Path) -> Header:
+        """Look at a header.
+
+        Raises:
+            CaseError: It has not one law, or includes files that are not of cdem.
+        """
+        if not path.is_file():
+            raise CaseError(f"{path}: no such file")
+        text = re.sub(r"//[^\n]*", "", path.read_text(errors="replace"))
+        if other := INCLUDE.search(text):
+            raise CaseError(
+                f'{path}: includes "{other[1]}"; a law stands in one header, which includes files of '
+                "core/ and of the language only"
+            )
+        laws = LAW.findall(text)
+        if len(laws) != 1:
+            raise CaseError(
+                f"{path}: has {len(laws)} laws (structures with a LawText text), not one; "
+                "cdem law new writes a header to start from"
+            )
+        ((structure, law),) = laws
+        if not NAME.fullmatch(law):
+            raise CaseError(f"{path}: the law's name {law!r} is not of small letters, digits and -")
+        kinds = [kind for kind, answer in ANSWERS.items() if answer.search(text)]
+        if len(kinds) != 1:
+            raise CaseError(
+                f"{path}: {structure} needs flow (of blocks) or respond (of interfaces)"
+            )
+        return cls(path.resolve(), structure, law, kinds[0])
+
+
+def new_law(name: str, kind: str, folder: Path, *, force: bool) -> list[Path]:
+    """Write a header to start from, and a test of it.
+
+    Args:
+        name: Of the law, e.g. ``"my-clay"``.
+        kind: "block" or "interface".
+        folder: Where to.
+        force: Whether files that exist are replaced.
+
+    Raises:
+        CaseError: The name is none, or a file exists.
+    """
+    if not NAME.fullmatch(name):
+        raise CaseError(f"{name!r}: a law's name is of small letters, digits and -, e.g. my-clay")
+    home = resources.files("cdem") / "templates" / "laws"
+    stem = name.replace("-", "_")
+    own, structure = _named((home / f"{kind}.hpp").read_text())
+    texts = {}
+    files = {f"{stem}.hpp": f"{kind}.hpp", f"test_{stem}.py": f"{kind}_test.txt"}
+    for file, template in files.items():
+        text = (home / template).read_text().replace(f"{kind}.hpp", f"{stem}.hpp")
+        text = re.sub(rf"\b{structure}\b", name.title().replace("-", ""), text)
+        texts[folder / file] = re.sub(rf"(?<![\w-]){own}(?![\w-])", name, text)
+    for path in texts:
+        if path.exists() and not force:
+            raise CaseError(f"{path}: exists already; use --force or name another folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    for path, text in texts.items():
+        path.write_text(text)
+    return list(texts)
+
+
+def _named(text: str) -> tuple[str, str]:
+    """Name and structure of the law of a template."""
+    ((structure, law),) = LAW.findall(text)
+    return law, structure
+
+
+def build(files: list[Path]) -> Path:
+    """Compile a core with the laws of some headers, for the instruction set that cdem uses here.
+
+    Args:
+        files: The headers; a case names them in the same order.
+
+    Returns:
+        The library, beside the first header.
+
+    Raises:
+        CaseError: A header is wrong, or does not compile.
+        BackendError: There is no compiler, or another tool is missing.
+    """
+    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
+
+    headers = [Header.read(path) for path in files]
+    for number, header in enumerate(headers):
+        others = {*BLOCK_LAWS, *INTERFACE_LAWS, *(h.law for h in headers[:number])}
+        if header.law in others:
+            raise CaseError(
+                f"{header.path}: there is a law {header.law} already; name it otherwise"
+            )
+    isa = choose()
+    paths = [header.path for header in headers]
+    if len({path.name for path in paths}) < len(paths):
+        raise CaseError("own laws of one library need file names that differ")
+    library, made = library_of(paths, isa), record_of(paths, isa)
+    with tempfile.TemporaryDirectory(prefix="cdem-law-") as folder:
+        built = _compile(headers, isa, Path(folder))
+        with replaced(library) as file:
+            file.write(built.read_bytes())
+    write_json(library.with_suffix(".json"), made | {"library": digest(library)})
+    return library
+
+
+def _compile(headers: list[Header], isa: str, folder: Path) -> Path:
+    """Compile in a folder; the library in it."""
+    settings = {"CDEM_ISAS": isa, "Python_EXECUTABLE": sys.executable}
+    for kind in ANSWERS:
+        own = [header for header in headers if header.kind == kind]
+        if own:
+            whole = folder / f"{kind.lower()}_laws.hpp"
+            whole.write_text("".join(f'#include "{header.path}"\n' for header in own))
+            settings[f"CDEM_OWN_{kind}_LAW"] = ",".join(header.structure for header in own)
+            settings[f"CDEM_OWN_{kind}_HEADER"] = str(whole)
+    given = [f"-D{name}={value}" for name, value in settings.items()]
+    build = folder / "build"
+    _run(["cmake", "-S", str(sources()), "-B", str(build), "-G", "Ninja", *given], headers)
+    _run(["ninja", "-C", str(build), f"_core_{isa}"], headers)
+    (built,) = build.glob(f"_core_{isa}.*")
+    return built
+
+
+def _run(command: list[str], headers: list[Header]) -> None:
+    """Run a tool of the build.
+
+    Raises:
+        CaseError: The compiler refuses a header.
+        BackendError: The tool is missing or fails.
+    """
+    beside = Path(sys.executable).parent
+    tools = os.pathsep.join([str(beside), os.environ.get("PATH", "")])
+    found = shutil.which(command[0], path=tools)
+    if found is None:
+        raise BackendError(
+            f"cdem law build needs {command[0]}, a C++20 compiler and nanobind: pip install "
+            "'cdem[laws]', and g++ or clang of the system"
+        )
+    environment = os.environ | {"PATH": tools, "LC_ALL": "C"}
+    done = subprocess.run(
+        [found, *command[1:]], capture_output=True, text=True, check=False, env=environment
+    )
+    if done.returncode == 0:
+        return
+    said = (done.stdout + done.stderr).splitlines()
+    faults = [line for line in said if "error" in line.lower()] or said
+    text = "\n".join(faults[:SHOWN])
+    if any(str(header.path) in text for header in headers):
+        raise CaseError(f"a law does not compile:\n{text}")
+    raise BackendError(f"{command[0]} fails:\n{text}")
