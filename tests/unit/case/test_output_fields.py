@@ -17,7 +17,7 @@ def test_the_case_offers_the_fields_of_frames():
     assert CHOICE == [
         "displacement", "velocity", "stress", "effective_stress", "pore_pressure", "damage", "piece",
         "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
-        "joint_slip", "joint_damage", "joint_opening"
+        "joint_slip", "joint_damage", "joint_opening", "joint_reversal", "joint_unloads"
     ]  # fmt: skip
 
 
@@ -26,7 +26,7 @@ def test_pictures_show_what_the_surface_holds():
     assert list(DRAWN) == [
         "displacement", "velocity", "pore_pressure", "damage", "group", "block", "piece", "joint",
         "water_pressure", "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
-        "joint_slip", "joint_damage", "joint_opening"
+        "joint_slip", "joint_damage", "joint_opening", "joint_reversal", "joint_unloads"
     ]  # fmt: skip
 
 
