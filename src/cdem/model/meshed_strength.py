@@ -46,9 +46,9 @@ HALFWAY = (6.0, 9.0)
 """D0 in tension and in compression."""
 GAIN = 1.5
 """What bonds with much fracture energy regain, over what brittle ones lack."""
-WANTED = (10.0, 15.0)
-"""D in tension and in compression that are told: f is 0.93 to 1 there. With more a Brazilian disc,
-which splits at 0.95 to 1.2 of T, becomes too strong."""
+WANTED = (10.0, 22.0)
+"""D in tension and in compression that are told: f is 0.93 to 1.05 there. With more a Brazilian disc,
+which splits at 0.95 to 1.25 of T, becomes too strong."""
 LEAST = 0.9
 """Part of the strength below which the report says what helps."""
 WAYS = ("tension", "compression")

@@ -83,10 +83,11 @@ def test_the_fracture_energies_that_are_told_give_nearly_the_strength_of_the_bon
     told = meshed_strengths(shaken(tmp_path, SOFT))["default"]["fracture_energies"]
     law = SOFT | dict(zip(("fracture_energy_1", "fracture_energy_2"), told, strict=True))
     found = meshed_strengths(shaken(tmp_path, law))["default"]
-    assert found["ductility"] == pytest.approx([10, 15])
-    for way, gain in (("tension", 1.5 * 10 / 16), ("compression", 1.5 * 15 / 24)):
-        least = found["brittle"][way][0]
-        assert found["strength"][way][0] == pytest.approx(least + gain * (1 - least))
+    assert found["ductility"] == pytest.approx([10, 22])
+    for way, gain in (("tension", 1.5 * 10 / 16), ("compression", 1.5 * 22 / 31)):
+        brittle = np.array(found["brittle_along_xyz"][way])
+        expected = brittle + gain * np.maximum(1 - brittle, 0)
+        np.testing.assert_allclose(found["strength_along_xyz"][way], expected)
 
 
 def test_ductility_is_the_way_of_failure_over_that_to_the_strength(tmp_path):
