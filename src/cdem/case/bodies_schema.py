@@ -226,7 +226,8 @@ class Joint(Part):
         planes = {"spacing", "origin", "persistence"}
         if self.discs.file is not None:
             planes |= {"dip", "dip_direction", "normal", "scatter", "seed"}
-        if idle := sorted(planes & self.model_fields_set):
+        fields = type(self).model_fields
+        if idle := sorted(f for f in planes if getattr(self, f) != fields[f].default):
             kind = "random discs" if self.discs.file is None else "discs of a file"
             raise ValueError(f"{idle[0]} has no meaning with {kind}; remove it")
         return self

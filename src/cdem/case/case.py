@@ -157,6 +157,9 @@ class Case(CaseParts):
         for block, data_of_block in zip(self.model.blocks, data["model"]["blocks"], strict=True):
             if block.file is not None:
                 data_of_block["file"] = str(self.path_of(block.file).resolve())
+        for joint, written in zip(self.model.joints, data["model"]["joints"], strict=True):
+            if joint.discs is not None and joint.discs.file is not None:
+                written["discs"]["file"] = str(self.path_of(joint.discs.file).resolve())
         data["own_laws"] = [str(self.path_of(file).resolve()) for file in self.own_laws]
         of_water = data["water"]["fields"] if self.water else []
         for entry, plain_entry in zip(

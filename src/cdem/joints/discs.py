@@ -84,8 +84,8 @@ def draw_discs(joint: Joint, discs: Discs, points: Floats) -> list[Disc]:
     mean = mean_normal(joint)
     found = []
     for center, radius in zip(centers, radii, strict=True):
-        turned = joint.scatter and fisher(mean, joint.scatter.fisher, random)
-        found.append(Disc(center, mean if turned is None else turned, float(radius)))
+        normal = mean if joint.scatter is None else fisher(mean, joint.scatter.fisher, random)
+        found.append(Disc(center, normal, float(radius)))
     return found
 
 

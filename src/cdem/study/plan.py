@@ -127,10 +127,15 @@ def files_of(data: dict[str, Any]) -> list[tuple[Any, str | int]]:
     model = data.get("model")
     if not isinstance(model, dict):
         return found
-    blocks = model.get("blocks")
-    bodies = [b for b in blocks if isinstance(b, dict)] if isinstance(blocks, list) else []
-    named = [(model, "mesh"), *((body, "file") for body in bodies)]
+    discs = [joint.get("discs") for joint in _mappings(model.get("joints"))]
+    named = [(model, "mesh")]
+    named += [(holder, "file") for holder in [*_mappings(model.get("blocks")), *_mappings(discs)]]
     return found + [(holder, key) for holder, key in named if isinstance(holder.get(key), str)]
+
+
+def _mappings(value: Any) -> list[dict[str, Any]]:
+    """The mappings in a list; none if it is no list."""
+    return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
 
 
 @lru_cache(maxsize=64)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 from shared.cells import cube
 from shared.joints import block_volumes, jointed_case, model_of
 
@@ -11,6 +12,11 @@ from cdem.errors import CaseError
 from cdem.joints import discs, joints
 from cdem.joints.directions import pole
 from cdem.mesh import primitives
+
+
+def read_text(text):
+    return YAML(typ="safe").load(text)
+
 
 FILE = {"name": "dfn", "discs": {"file": "discs.csv"}}
 SURFACES = [{"name": "dfn"}, {"name": "dfn.bridge"}]
@@ -176,5 +182,7 @@ def test_a_case_is_checked(tmp_path):
     )
     audit = cdem.Simulation(case, threads=1).audit
     assert audit.warnings == [] or not any("no strength" in w for w in audit.warnings)
+    case = cdem.Case.from_dict(read_text(case.dump()))  # as case.yaml of a result folder
+    assert case.model.joints[0].discs.file == file["file"]
     (row,) = audit.interfaces
     assert row["joint"] == "dfn.bridge" and row["area"] == pytest.approx(of["bridge_area"])
