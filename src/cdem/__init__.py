@@ -18,7 +18,6 @@ if TYPE_CHECKING:
         UnstableError,
     )
     from cdem.output.results import Results
-    from cdem.output.results import open_results as open
     from cdem.own_laws import load_own_laws
     from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
