@@ -219,7 +219,7 @@ def drawn_over(law, lower, upper):
             ]
         },
     )  # fmt: skip
-    for _ in range(130):
+    for _ in range(134):
         sim.step(10)
         yield sim
 
@@ -270,7 +270,7 @@ def test_a_law_is_the_same_at_all_kinds_of_contacts(law, lower, upper):
     assert len(seen) > 100
     if law in REMEMBERED:
         moved = np.hypot(*sim.fields["displacement"][sim.build.nodes_of("high")].mean(axis=0)[:2])
-        assert 0.9e-3 < max(seen) < 1.01 * moved
+        assert 1e-3 < max(seen) < 1.01 * moved
 
 
 @pytest.mark.parametrize("lower, upper", KINDS)

@@ -253,12 +253,7 @@ def _assemble(
         exact_mass=case.moved_masses != "lumped",
         lumped_while_bonded=case.moved_masses == "lumped-while-bonded",
         supported=held_components(supports),
-        nodal_mean=np.array(
-            [
-                case.elements.tetrahedra == "nodal-mean" and BLOCK_LAWS[m.law].flows
-                for m in materials
-            ]
-        ),
+        nodal_mean=_averages(case, materials),
         mass_scaling=case.time.mass_scaling,
         safety=case.time.safety,
         added_mass=added_mass,
@@ -289,6 +284,12 @@ def _unloading_row(entry: dict[str, Any]) -> list[float]:
     """(value, factor) of k_n / e_n^2, then of k_s / e_t^2: the stiffness of contacts that unload."""
     sides = zip(("stiffness_n", "stiffness_s"), entry["restitution"], strict=True)
     return [k / e**2 for key, e in sides for k in entry[key]]
+
+
+def _averages(case: Case, materials: list[Material]) -> NDArray[np.bool_]:
+    """Whether tets of these materials average their dilatation, shape (groups,)."""
+    flows = np.array([BLOCK_LAWS[m.law].flows for m in materials], bool)
+    return flows & (case.elements.tetrahedra == "nodal-mean")
 
 
 def _law_row(material: Material) -> list[float]:
