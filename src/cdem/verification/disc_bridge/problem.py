@@ -49,7 +49,7 @@ def run(study):
     crack = simulation.case.interfaces.pairs[0]
     limit = theory(bridge, pressed - on_joint, on_joint, rock, crack)
     study.check("friction of the joint", theory=theory(0, 0, on_joint[-1], rock, crack),
-                ours=friction[-1], within=1e-6, unit="N")  # fmt: skip
+                ours=friction[-1], within=1e-4, unit="N")  # fmt: skip
     study.check("shear force at which the bridge breaks", theory=limit[-1], ours=shear[-1],
                 within=5e-3, unit="N")  # fmt: skip
     study.curve("Shear force on the slab", "time [s]", "force [N]", {
