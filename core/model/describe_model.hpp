@@ -3,7 +3,9 @@
 
 #include "core/materials/laws.hpp"
 #include "core/model/column_info.hpp"
+#include "core/model/describe_bolts.hpp"
 #include "core/model/describe_rows.hpp"
+#include "core/model/describe_water.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -139,112 +141,6 @@ void describe_set(const char* rows, ElementSet& e, Visit&& given) {
         e.values);
 }
 
-/// Faces that water may press on: part of `describe_model`.
-template <class Visit>
-void describe_wet(const char* rows, WetFaces& w, Visit&& given) {
-  const std::string set = std::string(rows) + ".";
-  given({.name = set + "nodes",
-         .meaning = "vertices",
-         .rows = rows,
-         .numbers = w.vertices,
-         .layout = Layout::columns,
-         .refers_to = {"nodes"},
-         .optional = true},
-        w.nodes);
-  given({.name = set + "face", .meaning = "face", .rows = rows, .refers_to = {"faces"}}, w.face);
-  given({.name = set + "joint",
-         .meaning = "field of the water in its joint",
-         .rows = rows,
-         .refers_to = {"water_fields"}},
-        w.joint);
-  given({.name = set + "open",
-         .meaning = "field of the water where the face is free",
-         .rows = rows,
-         .refers_to = {"water_fields"}},
-        w.open);
-  given({.name = set + "bonded",
-         .meaning = "1: water of the joint presses while bonds hold, too",
-         .rows = rows},
-        w.bonded);
-  given({.name = set + "kept",
-         .unit = "Pa",
-         .meaning = "pressure at a vertex that fields keep, at the start",
-         .rows = rows,
-         .numbers = w.vertices,
-         .layout = Layout::columns,
-         .optional = true},
-        w.kept);
-  given({.name = set + "aperture",
-         .unit = "m",
-         .meaning = "up to which an open joint keeps its water",
-         .rows = rows},
-        w.aperture);
-  given({.name = set + "pair_first",
-         .meaning = "what lies on a face at the start",
-         .rows = rows,
-         .layout = Layout::starts,
-         .refers_to = {set + "pairs"}},
-        w.pair_first);
-  given({.name = set + "mate",
-         .meaning = "face that lies on it at the start",
-         .rows = set + "pairs",
-         .refers_to = {"faces"}},
-        w.mate);
-  given({.name = set + "pair",
-         .meaning = "3 times their pair, plus its kind: triangles, quads, overlaps; -1: none",
-         .rows = set + "pairs"},
-        w.pair);
-}
-
-/// Water: part of `describe_model`.
-template <class Visit>
-void describe_water(Water& w, Visit&& given) {
-  describe_wet("wet_triangles", w.triangles, given);
-  describe_wet("wet_quads", w.quads, given);
-  given({.name = "water.fields",
-         .unit = "Pa, Pa/m",
-         .meaning = "pressure at the origin, its slope x y z, 1 where points keep theirs, pressure "
-                    "for each metre of lift, two pads",
-         .rows = "water_fields",
-         .numbers = 8},
-        w.fields);
-  given({.name = "water.field_curve",
-         .meaning = "curves of lift [m] and factor",
-         .rows = "water_fields",
-         .numbers = 2,
-         .refers_to = {"curves"}},
-        w.field_curve);
-  given({.name = "water.biot",
-         .meaning = "Biot's coefficient of a material",
-         .rows = "materials",
-         .optional = true},
-        w.biot);
-  given({.name = "water.node_field",
-         .meaning = "field of the water in the pores",
-         .rows = "nodes",
-         .refers_to = {"water_fields"},
-         .optional = true},
-        w.node_field);
-  given({.name = "water.node_kept",
-         .unit = "Pa",
-         .meaning = "pressure in the pores that fields keep, at the start",
-         .rows = "nodes",
-         .optional = true},
-        w.node_kept);
-  given({.name = "water.node_first",
-         .meaning = "forces of water on a node",
-         .rows = "nodes",
-         .layout = Layout::starts,
-         .refers_to = {"node_water"},
-         .optional = true},
-        w.node_first);
-  given({.name = "water.row",
-         .meaning = "row that the node adds",
-         .rows = "node_water",
-         .refers_to = {"water_rows"}},
-        w.row);
-}
-
 /// Bond points of overlapping faces: part of `describe_model`.
 template <class Visit>
 void describe_points(const std::string& set, const char* rows, PairSet& p, Visit&& given) {
@@ -319,69 +215,6 @@ void describe_set(const char* rows, PairSet& p, Visit&& given) {
          .optional = true},
         p.strength);
   describe_points(set, rows, p, given);
-}
-
-/// Bolts: part of `describe_model`.
-template <class Visit>
-void describe_set(const char* rows, BoltSet& b, Visit&& given) {
-  given({.name = "bolts.first",
-         .meaning = "nodes of a bolt",
-         .rows = rows,
-         .layout = Layout::starts,
-         .refers_to = {"bolt_nodes"}},
-        b.first);
-  given({.name = "bolts.crossing_first",
-         .meaning = "crossings of a bolt with joints",
-         .rows = rows,
-         .layout = Layout::starts,
-         .refers_to = {"bolt_crossings"}},
-        b.crossing_first);
-  given({.name = "bolts.properties",
-         .unit = "N, N, N, 1, N",
-         .meaning = "E A, yield in tension and in compression, strain at rupture, pretension",
-         .rows = rows,
-         .numbers = 5},
-        b.properties);
-  given({.name = "bolts.waits", .meaning = "1: not installed at the start", .rows = rows}, b.waits);
-  given({.name = "bolts.grout",
-         .unit = "N/m, N",
-         .meaning = "stiffness and limit of the grout at a node",
-         .rows = "bolt_nodes",
-         .numbers = 2},
-        b.grout);
-  given({.name = "bolts.end",
-         .unit = "N/m, N",
-         .meaning = "the same of the plate or the anchor",
-         .rows = "bolt_nodes",
-         .numbers = 2},
-        b.end);
-  given({.name = "bolts.crossing_bar",
-         .meaning = "bar that leads across a joint, by its first node",
-         .rows = "bolt_crossings",
-         .refers_to = {"bolt_nodes"}},
-        b.crossing_bar);
-  given({.name = "bolts.dowel",
-         .unit = "N/m, N",
-         .meaning = "stiffness and limit of the dowel",
-         .rows = "bolt_crossings",
-         .numbers = 2},
-        b.dowel);
-  given({.name = "bolts.hosts",
-         .meaning = "nodes of the rock that a point lies between; -1: none",
-         .rows = "bolt_points",
-         .numbers = 8,
-         .refers_to = {"nodes"}},
-        b.hosts);
-  given({.name = "bolts.weights",
-         .meaning = "weights of a point on them",
-         .rows = "bolt_points",
-         .numbers = 8},
-        b.weights);
-  given({.name = "bolts.stiffness",
-         .unit = "N/m",
-         .meaning = "what a point puts on the rock at most",
-         .rows = "bolt_points"},
-        b.stiffness);
 }
 
 /// Exterior faces and edges: part of `describe_model`.

@@ -1,0 +1,115 @@
+// describe_water.hpp - the arrays of water: part of describe_model.hpp.
+#pragma once
+
+#include "core/model/column_info.hpp"
+#include "core/model/model.hpp"
+
+namespace cdem {
+
+/// Faces that water may press on: part of `describe_model`.
+template <class Visit>
+void describe_wet(const char* rows, WetFaces& w, Visit&& given) {
+  const std::string set = std::string(rows) + ".";
+  given({.name = set + "nodes",
+         .meaning = "vertices",
+         .rows = rows,
+         .numbers = w.vertices,
+         .layout = Layout::columns,
+         .refers_to = {"nodes"},
+         .optional = true},
+        w.nodes);
+  given({.name = set + "face", .meaning = "face", .rows = rows, .refers_to = {"faces"}}, w.face);
+  given({.name = set + "joint",
+         .meaning = "field of the water in its joint",
+         .rows = rows,
+         .refers_to = {"water_fields"}},
+        w.joint);
+  given({.name = set + "open",
+         .meaning = "field of the water where the face is free",
+         .rows = rows,
+         .refers_to = {"water_fields"}},
+        w.open);
+  given({.name = set + "bonded",
+         .meaning = "1: water of the joint presses while bonds hold, too",
+         .rows = rows},
+        w.bonded);
+  given({.name = set + "kept",
+         .unit = "Pa",
+         .meaning = "pressure at a vertex that fields keep, at the start",
+         .rows = rows,
+         .numbers = w.vertices,
+         .layout = Layout::columns,
+         .optional = true},
+        w.kept);
+  given({.name = set + "aperture",
+         .unit = "m",
+         .meaning = "up to which an open joint keeps its water",
+         .rows = rows},
+        w.aperture);
+  given({.name = set + "pair_first",
+         .meaning = "what lies on a face at the start",
+         .rows = rows,
+         .layout = Layout::starts,
+         .refers_to = {set + "pairs"}},
+        w.pair_first);
+  given({.name = set + "mate",
+         .meaning = "face that lies on it at the start",
+         .rows = set + "pairs",
+         .refers_to = {"faces"}},
+        w.mate);
+  given({.name = set + "pair",
+         .meaning = "3 times their pair, plus its kind: triangles, quads, overlaps; -1: none",
+         .rows = set + "pairs"},
+        w.pair);
+}
+
+/// Water: part of `describe_model`.
+template <class Visit>
+void describe_water(Water& w, Visit&& given) {
+  describe_wet("wet_triangles", w.triangles, given);
+  describe_wet("wet_quads", w.quads, given);
+  given({.name = "water.fields",
+         .unit = "Pa, Pa/m",
+         .meaning = "pressure at the origin, its slope x y z, 1 where points keep theirs, pressure "
+                    "for each metre of lift, two pads",
+         .rows = "water_fields",
+         .numbers = 8},
+        w.fields);
+  given({.name = "water.field_curve",
+         .meaning = "curves of lift [m] and factor",
+         .rows = "water_fields",
+         .numbers = 2,
+         .refers_to = {"curves"}},
+        w.field_curve);
+  given({.name = "water.biot",
+         .meaning = "Biot's coefficient of a material",
+         .rows = "materials",
+         .optional = true},
+        w.biot);
+  given({.name = "water.node_field",
+         .meaning = "field of the water in the pores",
+         .rows = "nodes",
+         .refers_to = {"water_fields"},
+         .optional = true},
+        w.node_field);
+  given({.name = "water.node_kept",
+         .unit = "Pa",
+         .meaning = "pressure in the pores that fields keep, at the start",
+         .rows = "nodes",
+         .optional = true},
+        w.node_kept);
+  given({.name = "water.node_first",
+         .meaning = "forces of water on a node",
+         .rows = "nodes",
+         .layout = Layout::starts,
+         .refers_to = {"node_water"},
+         .optional = true},
+        w.node_first);
+  given({.name = "water.row",
+         .meaning = "row that the node adds",
+         .rows = "node_water",
+         .refers_to = {"water_rows"}},
+        w.row);
+}
+
+}  // namespace cdem
