@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.interfaces import interfaces_of
 from cdem.output.render import color, load_pyvista, snapshot
-from cdem.output.scene import View, add_rock, labels, new_plotter, take
+from cdem.output.scene import MATTE, View, add_rock, labels, new_plotter, take
 
 if TYPE_CHECKING:
     from cdem.errors import BodyError
@@ -90,7 +90,7 @@ class _Panel:
 
     def add(self, mesh: Any, color: str, label: str | None = None, **how: Any) -> None:
         """Draw a mesh in one colour; with a label it is in the legend."""
-        self.plotter.add_mesh(mesh, color=color, **how)
+        self.plotter.add_mesh(mesh, color=color, **MATTE, **how)
         if label is not None:
             self.legend.append((label, color))
 

@@ -26,6 +26,8 @@ LIFT = 1e-3
 """Edges are drawn so far before their faces, in heights of the picture."""
 MOST_LINES = 20_000
 """Faces of a mesh whose lines are drawn, at most."""
+MATTE = {"ambient": 0.45, "diffuse": 0.65, "specular": 0.0}
+"""How surfaces take light: so little shading that colours stay those of the legend."""
 ROW = 28
 """Height of a row of the strip [pixels]."""
 PREFIXES = {-3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
@@ -83,7 +85,6 @@ def new_plotter(pyvista: Any, size: tuple[int, int] = SIZE) -> Any:
 
 def add_rock(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
     """Draw faces of rock in the colours of `look`, its sharp edges, and thin lines of its mesh."""
-    matte = {"ambient": 0.45, "diffuse": 0.65, "specular": 0.0}
     lines = {}
     if mesh.n_cells < MOST_LINES:
         lines = {
@@ -92,7 +93,7 @@ def add_rock(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
             "edge_opacity": 0.35,
             "line_width": 0.5,
         }
-    plotter.add_mesh(mesh, show_scalar_bar=False, smooth_shading=False, **matte, **lines, **look)
+    plotter.add_mesh(mesh, show_scalar_bar=False, smooth_shading=False, **MATTE, **lines, **look)
     edges = mesh.triangulate().extract_feature_edges(
         feature_angle=SHARP, boundary_edges=True, manifold_edges=False, non_manifold_edges=False
     )
