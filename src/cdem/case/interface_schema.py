@@ -188,7 +188,7 @@ class Interfaces(Part):
         self.inherit()
         for number, pair in enumerate(self.pairs):
             for parameter in INTERFACE_LAWS[pair.law].parameters:
-                if getattr(pair, parameter.name) is None and parameter.like is None:
+                if getattr(pair, parameter.name) is None and parameter.is_required:
                     raise ValueError(
                         f"pairs.{number}: {parameter.name} is missing, and so is interfaces.default"
                     )

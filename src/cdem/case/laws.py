@@ -58,6 +58,11 @@ class Parameter:
         limits = Quantity(self.unit, at_least=self.at_least, below=self.below, at_most=self.at_most)
         return Annotated[float, limits]
 
+    @property
+    def is_required(self) -> bool:
+        """Whether the case must give it, for a pair or by the default."""
+        return self.default is None and self.like is None
+
     def field(self, required: bool) -> tuple[Any, Any]:
         """Type and field of a pydantic model; not required: it may be left out and is then None."""
         if self.choices:

@@ -219,3 +219,21 @@ def test_a_pair_takes_from_the_default_what_its_own_law_has():
         0,
         25,
     )
+
+
+def test_a_pair_may_leave_out_what_has_no_number_for_nothing():
+    """The aperture of a rough joint follows from others, whatever the law of the default."""
+    case = Case(
+        model={"blocks": [{"group": "rock", "box": {"size": [1, 1, 1]}}]},
+        materials={"m": {"density": 2700, "young_modulus": 1e9, "poisson_ratio": 0.25}},
+        groups={"rock": {"material": "m"}},
+        interfaces={
+            "default": {"friction_angle": 30},
+            "pairs": [
+                {"between": ["rock", "rock"], "law": "barton-bandis", "jrc": 10, "jcs": "50 MPa",
+                 "residual_friction_angle": 28}
+            ],
+        },
+        stages=[{"name": "fall", "mode": "dynamic", "duration": 1}],
+    )  # fmt: skip
+    assert case.interfaces.pairs[0].aperture is None
