@@ -104,7 +104,7 @@ def run(study):
                     theory=joint.fracture_energy_2, within=0.04,
                     ours=np.ptp(spent[some]) / (WIDTH * np.ptp(length[some])))  # fmt: skip
         study.check(f"energy error, {cells} cells", theory=0, ours=sim.energies["error"],
-                    absolute=True, within=1e-6)  # fmt: skip
+                    absolute=True, within=3e-6)  # fmt: skip
     study.curve("Force at the load", "deflection [mm]", "force [N]", {
         "beams with a softening joint": (1e3 * bent, force), ".run": (1e3 * down, pressed)})  # fmt: skip
     study.picture("The crack", snapshot(sim), field="damage")
