@@ -371,6 +371,22 @@ PYTHON = [
         "tests/validation/test_critical.py::test_strength_reduction_gives_the_factor_of_safety",
     ),
     Mutant(
+        "bracket",
+        "a factor's bracket looked for in the wrong direction",
+        "src/cdem/study/critical.py",
+        "value * WIDER if stable else value / WIDER",
+        "value / WIDER if stable else value * WIDER",
+        "tests/validation/test_critical.py::test_factor_finds_its_own_bracket",
+    ),
+    Mutant(
+        "steady",
+        "a body that a steady force drives is said to creep",
+        "src/cdem/study/verdict.py",
+        "if now.least > STEADY * half.least else",
+        "if now.least > 1.1 * half.least else",
+        "tests/validation/test_critical.py::test_critical_friction_angle_is_the_slope",
+    ),
+    Mutant(
         "hourglass",
         "hourglass springs twice as stiff",
         "src/cdem/mesh/element_shapes.py",

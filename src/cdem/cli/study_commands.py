@@ -25,18 +25,19 @@ from cdem.cli.options import (
 from cdem.errors import CaseError, CdemError
 
 if TYPE_CHECKING:
-    from cdem.study.critical import Trial
+    from cdem.study.critical import Critical
     from cdem.study.results_table import Table
 
 
 def critical(
     case_file: CaseFile,
     between: Annotated[
-        tuple[str, str],
+        tuple[str, str] | None,
         typer.Option(
-            metavar="RESTS FAILS", help="A value that rests, one that fails: --between 20 50."
+            metavar="RESTS FAILS",
+            help="A value that rests, one that fails: --between 20 50; a factor finds its own.",
         ),
-    ],
+    ] = None,
     parameter: Annotated[
         str | None, typer.Option(metavar="PATH", help="Value of the case to vary.")
     ] = None,
@@ -61,12 +62,17 @@ def critical(
 
     A trial is stable when it comes to rest. It has failed when a node has moved 2 % (travel) of the
     mean face size while the kinetic energy grew, or the whole of it (far), or goes on moving at no
-    lower rate while the unbalance ratio stalls, or found no rest in a million steps. Trials start
-    from the last stable state, unless the parameter makes another model (model.*, materials.*).
+    lower rate, or found no rest in a million steps. Trials start from the last stable state, unless
+    the parameter makes another model (model.*, materials.*).
+
+    Writes CASE.factor.json, or CASE.PATH.json, after each trial, and with the extra viz the model as
+    it failed nearest to the critical value as PNG of the same name.
     """
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
-    ends = _two_numbers(between)
+    if parameter and not between:
+        raise typer.BadParameter("--parameter needs --between: a value that rests, one that fails")
+    ends = _two_numbers(between) if between else None
     allow_own_laws(case_file, allow_code)
     from cdem.case.case import Case
     from cdem.study import critical as search
@@ -77,10 +83,11 @@ def critical(
     name = parameter or "factor"
     criterion = Criterion.read(limits or [])
     print(f"a trial {criterion.text()}", file=sys.stderr)
-    report = partial(_print_trial, name)
+    report = partial(_tell_trial, name, file := Path(f"{case_file.stem}.{name}.json"))
     found = search.find_critical(
         case, vary, ends, tolerance=tolerance, criterion=criterion, threads=threads, report=report
     )
+    _draw_failure(found, f"{name} = {found.failed:.6g}", file.with_suffix(".png"))
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:
@@ -100,14 +107,32 @@ def _two_numbers(words: tuple[str, str]) -> tuple[float, float]:
     return first, second
 
 
-def _print_trial(name: str, trial: Trial, stable: float, failed: float) -> None:
+def _tell_trial(name: str, file: Path, found: Critical) -> None:
+    """Print the newest trial and write all of them."""
+    from cdem.whole_files import write_json
+
+    trial = found.trials[-1]
+    low, high = sorted((found.stable, found.failed))
     verdict = "stable" if trial.stable else "fails"
+    bracket = f"; between {low:.6g} and {high:.6g}" if high > low else ""
     print(
-        f"{name} = {trial.value:.6g}: {verdict} ({trial.steps:,} steps, {trial.why}); "
-        f"between {min(stable, failed):.6g} and {max(stable, failed):.6g}",
+        f"{name} = {trial.value:.6g}: {verdict}: {trial.saw} ({trial.steps:,} steps, {trial.why})"
+        + bracket,
         file=sys.stderr,
         flush=True,
     )
+    write_json(file, {"parameter": name} | found.as_dict())
+
+
+def _draw_failure(found: Critical, title: str, file: Path) -> None:
+    from cdem.output.render import picture, write_image
+
+    assert found.body is not None  # a search ends with a trial that failed
+    try:
+        write_image(file, picture([found.body], "displacement", [title]))
+        print(f"the model as it failed: {file}", file=sys.stderr)
+    except CdemError as error:
+        print(f"no picture of the failure: {error}", file=sys.stderr)
 
 
 def sweep(

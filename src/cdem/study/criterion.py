@@ -27,8 +27,8 @@ class Criterion(Part):
     stall_steps: int = Field(
         10_000,
         ge=1,
-        description="The unbalance ratio came no lower in so many steps, while the farthest node "
-        "moved on as far as in all steps before: the rate of displacement does not fall",
+        description="After so many steps or more, the last half of them moved the farthest node as "
+        "far as the quarter before did, and the unbalance ratio fell by less than half: it creeps on",
     )
     most_steps: int = Field(
         1_000_000, ge=1, description="There was no rest in so many steps (or the stage's max_steps)"
@@ -58,7 +58,6 @@ class Criterion(Part):
         """The whole rule in one line."""
         return (
             f"fails when a node has moved {100 * self.travel:g} % of the mean face size with growing "
-            f"kinetic energy, or {100 * self.far:g} % in any way, or moves on at no lower rate while "
-            f"the unbalance ratio stalls for {self.stall_steps:,} steps, or finds no rest in "
-            f"{self.most_steps:,} steps"
+            f"kinetic energy, or {100 * self.far:g} % in any way, or creeps on after "
+            f"{self.stall_steps:,} steps, or finds no rest in {self.most_steps:,} steps"
         )

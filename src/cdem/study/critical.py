@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,10 +14,14 @@ from cdem.case.checks import SETTABLE
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
 from cdem.case.softening import reduced_tables
 from cdem.case.types import Part
-from cdem.errors import CaseError, UnstableError
-from cdem.run import stages
-from cdem.run.simulation import CHECK_INTERVAL, Simulation
+from cdem.errors import CaseError
+from cdem.output.render import snapshot
+from cdem.run.simulation import Simulation
 from cdem.study.criterion import Criterion
+from cdem.study.verdict import Seen, Verdict, rests
+
+if TYPE_CHECKING:
+    from cdem.output.reader import Surface
 
 Apply = Callable[[Case, float], None]
 
@@ -28,12 +33,14 @@ class Trial:
     Attributes:
         value: Of the parameter.
         stable: Whether the case came to rest.
-        why: The verdict in words.
+        saw: What it did, see `Verdict`.
+        why: The same with figures.
         steps: Steps that it took.
     """
 
     value: float
     stable: bool
+    saw: Seen
     why: str
     steps: int
 
@@ -47,12 +54,14 @@ class Critical:
         failed: The nearest value at which it fails.
         criterion: What counted as failed.
         trials: All values tried, in order.
+        body: The model as the trial at `failed` left it.
     """
 
     stable: float
     failed: float
     criterion: Criterion
     trials: list[Trial] = field(default_factory=list)
+    body: Surface | None = field(default=None, compare=False)
 
     @property
     def value(self) -> float:
@@ -70,8 +79,13 @@ class Critical:
         }
 
 
-Report = Callable[[Trial, float, float], None]
-"""Takes a trial and the bracket (stable, failed) so far."""
+WIDER = 1.5
+"""Ratio of the factors that are tried before there is a bracket."""
+WIDEST = 100.0
+"""A factor beyond this, or below its inverse, ends the search for a bracket."""
+
+Report = Callable[["Critical"], None]
+"""Takes the search so far: its last trial is the newest, its bracket nan where there is none yet."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +153,7 @@ def check_last_stage(case: Case) -> None:
 def find_critical(
     case: Case,
     apply: Apply,
-    between: tuple[float, float],
+    between: tuple[float, float] | None,
     *,
     tolerance: float,
     criterion: Criterion | None = None,
@@ -158,11 +172,12 @@ def find_critical(
     Args:
         case: Is changed: it ends with the last value tried.
         apply: Puts a value into the case; see `parameter` and `strength_reduction`.
-        between: Two values, one stable and one not, in either order.
+        between: Two values, one stable and one not, in either order. None, for a factor: 1 and its
+            multiples by 1.5, up or down, until both are found.
         tolerance: Width of the bracket at which the search ends.
         criterion: What counts as failed; by default that of `Criterion`.
         threads: Threads of the core; None for all.
-        report: Called after every trial with the trial and the bracket (stable, failed) so far.
+        report: Called after every trial.
 
     Raises:
         CaseError: The last stage is not static, or both ends rest or fail.
@@ -173,36 +188,49 @@ def find_critical(
     criterion = criterion or Criterion()
     cold = isinstance(apply, _OneValue) and apply.makes_a_model
     search = (_Cold if cold else _Warm)(case, apply, criterion, threads)
-    found = Critical(between[0], between[1], criterion)
-    _try_ends(search, found, report)
+    found = Critical(np.nan, np.nan, criterion)
+    step = partial(_attempt, search, found, report)
+    if between:
+        _try_ends(between, step)
+    else:
+        _widen(step)
     search.begin_bisection()
     while abs(found.stable - found.failed) > tolerance:
-        trial = search.attempt(found.value)
-        found.trials.append(trial)
-        if trial.stable:
-            found.stable = trial.value
-        else:
-            found.failed = trial.value
-        if report:
-            report(trial, found.stable, found.failed)
+        step(found.value)
     return found
 
 
-def _try_ends(search: _Warm | _Cold, found: Critical, report: Report | None) -> None:
-    """Try both ends of the bracket, and put the one that rests first."""
-    between = found.stable, found.failed
-    for value in between:
-        found.trials.append(search.attempt(float(value)))
-        if report:
-            report(found.trials[-1], *between)
-    first, last = found.trials
+def _attempt(search: _Warm | _Cold, found: Critical, report: Report | None, value: float) -> Trial:
+    """Try a value and put it into the bracket."""
+    trial = search.attempt(value)
+    found.trials.append(trial)
+    if trial.stable:
+        found.stable = value
+    else:
+        found.failed, found.body = value, snapshot(search.sim)
+    if report:
+        report(found)
+    return trial
+
+
+def _try_ends(between: tuple[float, float], step: Callable[[float], Trial]) -> None:
+    first, last = (step(float(value)) for value in between)
     if first.stable == last.stable:
         what = "come to rest" if first.stable else "fail"
         raise CaseError(
             f"both {between[0]:g} and {between[1]:g} {what} ({last.why}); give a wider range"
         )
-    ends = (first, last) if first.stable else (last, first)
-    found.stable, found.failed = (end.value for end in ends)
+
+
+def _widen(step: Callable[[float], Trial]) -> None:
+    """Try 1, then its multiples by 1.5 in one direction, until one rests and one fails."""
+    value, stable = 1.0, step(1.0).stable
+    while step(value := value * WIDER if stable else value / WIDER).stable == stable:
+        if not 1 / WIDEST < value < WIDEST:
+            what = "come to rest" if stable else "fail"
+            raise CaseError(
+                f"all factors from 1 to {value:.3g} {what}: is there anything to slide?"
+            )
 
 
 class _Warm:
@@ -224,10 +252,10 @@ class _Warm:
         sim = self.sim
         _bring_back(sim, self.at_rest if self.bisecting else self.start)
         before = sim.step_count
-        stable, why = rests(sim, lambda: self.apply(sim.case, value), self.criterion)
-        if stable:
+        verdict = rests(sim, lambda: self.apply(sim.case, value), self.criterion)
+        if verdict.stable:
             self.at_rest = _keep(sim)
-        return Trial(value, stable, why, sim.step_count - before)
+        return _trial(value, verdict, sim.step_count - before)
 
 
 class _Cold:
@@ -242,66 +270,23 @@ class _Cold:
     def attempt(self, value: float) -> Trial:
         case = self.case.model_copy(deep=True)
         self.apply(case, value)
-        sim = Simulation(case, threads=self.threads)
-        stable, why = True, ""
+        sim = self.sim = Simulation(case, threads=self.threads)
+        verdict = Verdict(True, "at rest", "")
         for index, stage in enumerate(case.stages):
             if stage.mode == "static":
-                stable, why = rests(sim, None, self.criterion, index)
+                verdict = rests(sim, None, self.criterion, index)
                 sim.stage_index, sim.stage = index + 1, None
             else:
                 sim.run_stage(stage.name)
-            if not stable:
-                why = why if index == len(case.stages) - 1 else f"stage {stage.name}: {why}"
+            if not verdict.stable:
+                if index < len(case.stages) - 1:
+                    verdict.why = f"stage {stage.name}: {verdict.why}"
                 break
-        return Trial(value, stable, why, sim.step_count)
+        return _trial(value, verdict, sim.step_count)
 
 
-def rests(
-    sim: Simulation,
-    prepare: Callable[[], None] | None = None,
-    criterion: Criterion | None = None,
-    index: int = -1,
-) -> tuple[bool, str]:
-    """Run a static stage, by default the last; return whether it comes to rest, and why or why not.
-
-    `prepare` may change the case as the stage begins.
-    """
-    c = criterion or Criterion()
-    sim.stage_index = range(len(sim.case.stages))[index]
-    stage = stages.begin(sim)
-    if prepare:
-        prepare()
-        stages.update_core(sim, sim.stage_index)
-        sim.core.renew_step()
-    size = float(sim.build.arrays["face.length"][: sim.audit.counts["faces"]].mean())
-    start = sim.fields["position"].copy()
-    most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
-    half_way = 0.0  # kinetic energy when half of the travel was reached
-    least, least_step, least_moved = np.inf, 0, 0.0  # unbalance ratio
-    done = 0
-    while True:
-        try:
-            outcome = sim.advance(stage, min(10 * CHECK_INTERVAL, most - done))
-        except UnstableError as error:
-            return False, str(error)
-        done, unbalance = sim.step_count - stage.start_step, sim.core.unbalance_ratio()
-        if outcome == "converged":
-            return True, f"rests, unbalance ratio {unbalance:.2g}"
-        moved = float(np.linalg.norm(sim.fields["position"] - start, axis=1).max()) / size
-        kinetic = float(sim.energies["kinetic"])
-        if moved < 0.5 * c.travel:
-            half_way = kinetic
-        elif moved > c.far or (moved > c.travel and kinetic > half_way):
-            speed = np.linalg.norm(sim.fields["velocity"], axis=1).max()
-            return False, (
-                f"has moved {moved * size:.3g} m, {speed:.2g} m/s, kinetic energy {kinetic:.3g} J"
-            )
-        if unbalance < 0.95 * least:
-            least, least_step, least_moved = unbalance, done, moved
-        elif done - least_step >= c.stall_steps and moved > 2 * least_moved:
-            return False, f"goes on moving, {moved * size:.3g} m, ratio stays at {unbalance:.2g}"
-        if done >= most:
-            return False, f"no rest in {done:,} steps, ratio {unbalance:.2g}"
+def _trial(value: float, verdict: Verdict, steps: int) -> Trial:
+    return Trial(value, verdict.stable, verdict.saw, verdict.why, steps)
 
 
 @dataclass
