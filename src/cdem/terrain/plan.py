@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.errors import CaseError, MeshError
+from cdem.errors import MeshError
 from cdem.terrain.heights import Heights, extra
 from cdem.terrain.landslide import Landslide
-from cdem.terrain.schema import SlblBy
-from cdem.terrain.slbl import Membrane, OnTriangles, curvature_for
+from cdem.terrain.slbl import Membrane, OnTriangles, base_level
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
@@ -75,52 +74,15 @@ def make_plan(landslide: Landslide) -> Plan:
 
 def _base_level(landslide: Landslide, plan: Plan, ground: Heights) -> tuple[Heights, Ints]:
     """The sloping local base level under the bodies, and the points where it meets the ground."""
-    by = landslide.surface.slbl if landslide.surface else None
-    assert by is not None
     used, local = np.unique(plan.triangles[plan.body >= 0], return_inverse=True)
     points, triangles = plan.points[used], local.reshape(-1, 3)
     z = _known(landslide, "terrain", ground, points)
     around = np.zeros(len(plan.points), bool)
     around[plan.triangles[plan.body < 0]] = True
-    floor = np.full(len(z), -np.inf if by.deepest is None else -by.deepest) + z
-    for plane in landslide.planes(by.above):
-        floor = np.maximum(floor, plane(points))
-    membrane = Membrane(points, triangles, z, np.minimum(floor, z), around[used])
-    size = np.sqrt(np.ptp(points, axis=0)).prod()
-    try:
-        k = _curvature(by, membrane, float(size))
-    except CaseError as error:
-        raise landslide.error("surface.slbl", str(error)) from None
-    bed = membrane.surface(k)
-    plan.notes.append(
-        f"slbl: curvature {k:.4g} 1/m, depth {membrane.depth(bed):.2f} m, "
-        f"{membrane.volume(bed):,.0f} m3"
-    )
-    if k < 0:
-        plan.notes.append(
-            "slbl: the surface bulges: the ground is so convex that a flat one cuts off more"
-        )
-    bare = z - bed < 1e-6
-    thick = np.maximum(z - bed, THIN * landslide.sizes.body)
-    bed = np.where(bare, z, z - thick)
-    if bare.all():
-        raise landslide.error("surface.slbl", "leaves no rock between itself and the ground")
-    return OnTriangles(points, triangles, bed), used[bare]
-
-
-def _curvature(by: SlblBy, membrane: Membrane, size: float) -> float:
-    if by.curvature is not None:
-        return by.curvature
-    if by.depth is not None:
-        first = by.depth / size**2
-        return curvature_for(
-            lambda k: membrane.depth(membrane.surface(k)), by.depth, first, "depth [m]"
-        )
-    assert by.volume is not None
-    first = by.volume / size**4
-    return curvature_for(
-        lambda k: membrane.volume(membrane.surface(k)), by.volume, first, "volume [m3]"
-    )
+    thin = THIN * landslide.sizes.body
+    bed, notes = base_level(landslide, Membrane(points, triangles, z, around[used]), thin)
+    plan.notes += notes
+    return OnTriangles(points, triangles, bed), used[bed == z]
 
 
 def _check_base(landslide: Landslide, plan: Plan) -> None:

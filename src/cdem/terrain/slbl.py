@@ -9,7 +9,7 @@ on the triangles of the plan, whose edge is the outline.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,11 +17,15 @@ from numpy.typing import NDArray
 
 from cdem.errors import CaseError
 from cdem.terrain.heights import extra
+from cdem.terrain.landslide import Landslide
+from cdem.terrain.schema import SlblBy
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 PASSES = 100
 NEAR = 1e-9  # heights are the same [m]
+VOLUME_ERROR = 0.01  # part by which the volume may differ from the one asked for
+TOUCHES = 1e-6  # so near to the ground a surface is counted as touching it [m]
 
 
 @dataclass
@@ -32,17 +36,19 @@ class Membrane:
         points: [m], shape (points, 2).
         triangles: Point ids, shape (triangles, 3).
         ground: Height of the ground at the points [m].
-        floor: Height below which the surface never is [m]; -inf for none.
         edge: Whether a point is held at the ground.
+        floor: Height below which the surface never is [m]; by default there is none.
     """
 
     points: Floats
     triangles: Ints
     ground: Floats
-    floor: Floats
     edge: NDArray[np.bool_]
+    floor: Floats = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
+        if not len(self.floor):
+            self.floor = np.full(len(self.ground), -np.inf)
         sparse = extra("scipy.sparse")
         corners = self.points[self.triangles]
         # sides opposite the corners
@@ -85,6 +91,12 @@ class Membrane:
             at = new
         return s
 
+    def thickened(self, surface: Floats, thin: float) -> Floats:
+        """A surface at least so far below the ground [m] where it does not touch it."""
+        bare = self.ground - surface < TOUCHES
+        lower = np.minimum(surface, self.ground - thin)
+        return np.where(bare, self.ground, lower)
+
     def depth(self, surface: Floats) -> float:
         """Greatest depth below the ground [m]."""
         return float((self.ground - surface).max())
@@ -123,6 +135,73 @@ def curvature_for(
     raise CaseError(
         f"no surface has a {what} of {wanted:.6g}; the outline gives {reached:.6g} at most"
     )
+
+
+def base_level(landslide: Landslide, membrane: Membrane, thin: float) -> tuple[Floats, list[str]]:
+    """The surface that a landslide file asks for.
+
+    Args:
+        landslide: What is asked for.
+        membrane: Its triangles; takes the floor that is asked for.
+        thin: Least thickness of the body [m].
+
+    Returns:
+        Heights at the points [m], those of the ground where it comes out; and what was found.
+
+    Raises:
+        CaseError: No surface has that depth or volume.
+    """
+    by = landslide.surface.slbl if landslide.surface else None
+    assert by is not None
+    z = membrane.ground
+    for plane in landslide.planes(by.above):
+        membrane.floor = np.minimum(z, np.maximum(membrane.floor, plane(membrane.points)))
+    if by.deepest is not None:
+        membrane.floor = np.maximum(membrane.floor, z - by.deepest)
+    try:
+        k = _curvature(by, membrane, thin)
+    except CaseError as error:
+        raise landslide.error("surface.slbl", str(error)) from None
+    bed = membrane.thickened(membrane.surface(k), thin)
+    if (bed == z).all():
+        raise landslide.error("surface.slbl", "leaves no rock between itself and the ground")
+    notes = [
+        f"slbl: curvature {k:.4g} 1/m, depth {membrane.depth(bed):.2f} m, "
+        f"{membrane.volume(bed):,.0f} m3"
+    ]
+    if k < 0:
+        notes.append(
+            "slbl: the surface bulges: the ground is so convex that a flat one cuts off more"
+        )
+    return bed, notes
+
+
+def _curvature(by: SlblBy, membrane: Membrane, thin: float) -> float:
+    """The curvature [1/m] that a landslide file asks for.
+
+    Raises:
+        CaseError: No curvature does, or the body would be thinner than its elements may be.
+    """
+    size = float(np.sqrt(np.ptp(membrane.points, axis=0)).prod())
+    if by.curvature is not None:
+        return by.curvature
+    if by.depth is not None:
+        first = by.depth / size**2
+        return curvature_for(
+            lambda k: membrane.depth(membrane.surface(k)), by.depth, first, "depth [m]"
+        )
+    assert by.volume is not None
+
+    def volume(k: float) -> float:
+        return membrane.volume(membrane.thickened(membrane.surface(k), thin))
+
+    k = curvature_for(volume, by.volume, by.volume / size**4, "volume [m3]")
+    if abs(volume(k) / by.volume - 1) > VOLUME_ERROR:
+        raise CaseError(
+            f"a volume of {by.volume:,.0f} m3 makes a body thinner than elements of this size can be; "
+            "give a smaller sizes.body"
+        )
+    return k
 
 
 class OnTriangles:

@@ -17,7 +17,7 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
 K = 0.01
 
 
-def membrane(ring, size, ground, floor=-np.inf):
+def membrane(ring, size, ground):
     """Triangles inside a ring."""
     lines = [(np.array([a, b]), 1, 0) for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True)]
     points, triangles, _ = flat_mesh(lines, [size], 0.3)
@@ -25,8 +25,7 @@ def membrane(ring, size, ground, floor=-np.inf):
     pairs = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     ends, count = np.unique(pairs, axis=0, return_counts=True)
     edge[ends[count == 1]] = True
-    z = ground(points)
-    return Membrane(points, triangles, z, np.full(len(z), floor), edge)
+    return Membrane(points, triangles, ground(points), edge)
 
 
 def slope(points):
