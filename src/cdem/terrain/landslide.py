@@ -19,8 +19,8 @@ from cdem.terrain import files, surfaces
 from cdem.terrain.features import read_features
 from cdem.terrain.heights import Grid, Heights, Lines, Plane, Smooth
 from cdem.terrain.projection import Projection, horizontal, name_of, short_name, utm_zone
-from cdem.terrain.rasters import read_label, read_raster
-from cdem.terrain.resample import Wanted, filled, read_heights
+from cdem.terrain.rasters import read_raster
+from cdem.terrain.resample import Wanted, filled, label_of, read_heights
 from cdem.terrain.schema import HeightsBy, LandslideParts, OutlineFile, PlaneBy, PlaneThrough
 
 Floats = NDArray[np.float64]
@@ -162,7 +162,7 @@ class Landslide(LandslideParts):
         if by.crs is not None:
             return by.crs
         if by.grid is not None:
-            return read_label(self._source.folder / by.grid)
+            return label_of(self._source.folder / by.grid)
         if by.contours is not None and not by.contours.lower().endswith((".csv", ".txt")):
             return read_features(self._source.folder / by.contours).label
         return None

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from cdem.case.map_system import look_up
 from cdem.errors import CaseError
+from cdem.terrain.clouds import KINDS, read_cloud, read_cloud_label
 from cdem.terrain.heights import Grid, extra
 from cdem.terrain.projection import Projection, horizontal, moved, vertical_name
-from cdem.terrain.rasters import Box, Raster, read_raster
+from cdem.terrain.rasters import Box, read_label, read_raster
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
@@ -48,16 +49,23 @@ class Wanted:
     classes: str = "ground"
 
 
+def label_of(path: Path) -> str | None:
+    """What a grid or point cloud says of its projection, for `look_up`; None if it says nothing."""
+    return read_cloud_label(path) if path.suffix.lower() in KINDS else read_label(path)
+
+
 def read_heights(path: Path, projection: Projection, wanted: Wanted) -> Grid:
-    """Read a grid of heights and bring it to metres in the projection of the landslide.
+    """Read a grid of heights, or a point cloud, and bring it to metres in the landslide's projection.
 
     Raises:
         CaseError: The file cannot be read, or its projection or unit cannot be true.
     """
+    if path.suffix.lower() in KINDS:
+        return _of_cloud(path, projection, wanted)
     raster = read_raster(path, lambda label, whole: _part(path, label, whole, projection, wanted))
     projection.same_heights(path, wanted.told or raster.label)
     own = projection.own(path, raster.label, wanted.told, raster.grid.low, raster.grid.high)
-    values = raster.grid.values * _factor(path, raster, wanted, projection)
+    values = raster.grid.values * _factor(path, raster.label, raster.unit, wanted, projection)
     for value in wanted.nodata or []:
         values[raster.grid.values == value] = np.nan
     grid = Grid(raster.grid.west, raster.grid.south, raster.grid.step, values)
@@ -67,6 +75,14 @@ def read_heights(path: Path, projection: Projection, wanted: Wanted) -> Grid:
     if not np.isfinite(grid.values).any():
         raise CaseError(f"{path}: has no heights where they are needed")
     return grid
+
+
+def _of_cloud(path: Path, projection: Projection, wanted: Wanted) -> Grid:
+    label = label_of(path)
+    projection.same_heights(path, wanted.told or label)
+    grid = read_cloud(path, projection, wanted.told, wanted.box, wanted.cell, wanted.classes)
+    values = grid.values * _factor(path, label, "", wanted, projection)
+    return trimmed(Grid(grid.west, grid.south, grid.step, values))
 
 
 def _part(
@@ -89,18 +105,18 @@ def _edge(low: Floats, high: Floats) -> Floats:
     return np.concatenate([a + (b - a) * t for a, b in pairwise(corners)])
 
 
-def _factor(path: Path, raster: Raster, wanted: Wanted, projection: Projection) -> float:
+def _factor(
+    path: Path, label: str | None, unit: str, wanted: Wanted, projection: Projection
+) -> float:
     """Metres in a unit of the heights: as told, as the band says, or as the heights' system says."""
     if wanted.unit is not None:
         return UNITS[wanted.unit]
-    named = raster.unit.lower()
-    named = OTHER_NAMES.get(named, named)
+    named = OTHER_NAMES.get(unit.lower(), unit.lower())
     if named and named not in UNITS:
         raise CaseError(
-            f"{path}: its heights are in '{raster.unit}'; write 'unit' beside it, one of "
-            f"{', '.join(UNITS)}"
+            f"{path}: its heights are in '{unit}'; write 'unit' beside it, one of {', '.join(UNITS)}"
         )
-    factor = UNITS[named] if named else _axis_factor(wanted.told or raster.label)
+    factor = UNITS[named] if named else _axis_factor(wanted.told or label)
     if factor != 1.0:
         projection.tell(f"{path.name}: its heights are taken times {factor:.10g}")
     return factor

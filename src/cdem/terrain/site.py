@@ -30,8 +30,7 @@ from cdem.terrain.projection import (
     stretch,
     utm_zone,
 )
-from cdem.terrain.rasters import read_label
-from cdem.terrain.resample import Wanted, filled, read_heights
+from cdem.terrain.resample import Wanted, filled, label_of, read_heights
 
 Floats = NDArray[np.float64]
 ACROSS = 15  # elements across a body by default
@@ -245,7 +244,7 @@ def _target(question: Question) -> Any | None:
         if why := unfit(system):
             raise CaseError(f"--crs {question.crs}: {why}")
         return system
-    label = question.dem_crs or read_label(question.dem)
+    label = question.dem_crs or label_of(question.dem)
     system = None if label is None else look_up(label)
     if system is not None and not unfit(system):
         return horizontal(system)
