@@ -316,7 +316,9 @@ def _triangulate(landslide: Landslide, pieces: list[Piece]) -> tuple[Floats, Int
     for piece in pieces:
         for ends in zip(piece.points[:-1], piece.points[1:], strict=True):
             lines.append((np.array(ends), piece.left + 2, piece.right + 2))
-    domain_size = [sizes.far] + [sizes.body] * len(landslide.bodies)
+    # bare ground is what blocks fall on: fine, above rock that grows coarser
+    around = sizes.far if landslide.bodies else sizes.body
+    domain_size = [around] + [sizes.body] * len(landslide.bodies)
     points, triangles, domain = flat_mesh(lines, domain_size, sizes.growth)
     bare = {tuple(p) for piece in pieces if piece.outcrop for p in piece.points.tolist()}
     outcrop = np.array([i for i, p in enumerate(points.tolist()) if tuple(p) in bare], np.int64)

@@ -1,6 +1,9 @@
 """cdem site: from a DEM and an outline in degrees to files that run, in the words of a user."""
 
 import json
+import re
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,6 +54,7 @@ def test_two_files_in_degrees_become_a_case_that_runs(maps, run_cli):
     assert ": rock: {density: 2600, young_modulus" in out
     assert out.count("  assumed: site/case.yaml:") == 6
     short = ["--set", "stages.slide.duration=0.02", "--set", "stages.settle.max_steps=5"]
+    short += ["--set", "output.frames=false"]
     status, out, err = run_cli("run", "site/case.yaml", "-o", "r", "--threads", "1", *short)
     assert status == 0, err
     assert Case.load("r/case.yaml").crs == UTM32
@@ -123,7 +127,6 @@ def test_mistakes_are_one_line(maps, run_cli, words, message):
     status, _, err = run_cli("site", "dem.tif", "outline.kml", *words)
     assert status == 1
     assert len(err.splitlines()) <= 2, err
-    import re
 
     assert re.search(message, err), err
 
@@ -151,3 +154,21 @@ def test_local_metres_need_no_projection(tmp_path):
     assert Case.load(tmp_path / "site" / "case.yaml").crs is None
     with pytest.raises(CaseError, match="says no projection; give it with --dem-crs"):
         make_site(Question(tmp_path / "dem.tif", write_shape(tmp_path / "o.gpkg"), tmp_path / "x"))
+
+
+def test_rockfall_on_bare_ground_runs(tmp_path, monkeypatch, run_cli):
+    example = Path(__file__).parents[3] / "examples/rockfall"
+    for file in example.iterdir():
+        if file.suffix in (".yaml", ".obj", ".asc"):
+            shutil.copy(file, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run_cli(
+        "mesh", "landslide.yaml", "-o", "ground.msh", "--set", "sizes.body=12"
+    )
+    assert status == 0, err
+    assert "ground_bedrock" in out and "bed:" not in out
+    settings = ["--set", "stages.fall.duration=0.4", "--set", "output.frames=false"]
+    status, out, err = run_cli("run", "rockfall.yaml", "-o", "r", "--threads", "1", *settings)
+    assert status == 0, err
+    rocks = json.loads((tmp_path / "r/summary.json").read_text())["groups"]["rocks"]
+    assert rocks["centroid"][0] > 21.7 + 0.4 * 3 and rocks["max_displacement"] > 1
