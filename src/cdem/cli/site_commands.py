@@ -124,6 +124,8 @@ def _draw(found: Any, folder: Path) -> None:
 
 def _text(found: Any, folder: Path) -> str:
     """What was found, for people."""
+    from cdem.terrain import site_files
+
     f = found.facts
     columns, rows = f["cells"]
     lines = [
@@ -146,13 +148,12 @@ def _text(found: Any, folder: Path) -> str:
                 "  choose where it slides: again with --force and --depth, --volume or --surface",
             ]
         )
-    factor = f["factor"]
+    between = site_files.between_text(f["factor"])
     return "\n".join(
         [
             *lines,
             f"  cdem mesh {folder}/landslide.yaml -o {folder}/landslide.msh",
-            f"  cdem critical {folder}/factor.yaml --factor --between {0.8 * factor:.2f} "
-            f"{1.3 * factor:.2f}",
+            f"  cdem critical {folder}/factor.yaml --factor --between {between}",
             f"  cdem run {folder}/case.yaml -o {folder}/case.results",
         ]
     )

@@ -136,7 +136,9 @@ def make_site(question: Question) -> Site:
     notes = ground.projection.notes
     title = question.outline.stem
     surface = question.surface
-    text = site_files.landslide_text(title, ground.low, ground.high, _base(ground), crs, surface)
+    text = site_files.landslide_text(
+        title, ground.low, ground.high, _base(ground, surface), crs, surface
+    )
     text += site_files.sizes_text(ground.size, _far(ground))
     landslide_file = folder / "landslide.yaml"
     landslide_file.write_text(text)
@@ -300,12 +302,17 @@ def _within(
     return shapely.get_coordinates(kept.exterior)[:-1]
 
 
-def _base(ground: Ground) -> float:
-    """A flat base well below the ground."""
+def _base(ground: Ground, surface: dict[str, Any] | None) -> float:
+    """A flat base well below the ground, and below a base level of the depth or volume asked for."""
     lowest = float(np.nanmin(ground.grid.values))
     relief = float(np.nanmax(ground.grid.values)) - lowest
+    by = (surface or {}).get("slbl") or {}
+    area = extra("shapely").Polygon(ground.ring).area
+    # a paraboloid is twice as deep as its mean; others somewhat more
+    depth = by.get("depth") or 3 * (by.get("volume") or 0.0) / area
+    deep = max(0.3 * relief, depth) if isinstance(depth, int | float) else 0.3 * relief
     unit = 10.0 ** max(0, math.floor(math.log10(max(relief, 1.0))) - 1)
-    return math.floor((lowest - 0.3 * relief - 2 * _far(ground)) / unit) * unit
+    return math.floor((lowest - deep - 2 * _far(ground)) / unit) * unit
 
 
 def _far(ground: Ground) -> float:

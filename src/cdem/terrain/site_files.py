@@ -18,6 +18,10 @@ from cdem.terrain.slbl import OnTriangles
 
 Floats = NDArray[np.float64]
 EMPTY = -9999.0
+BETWEEN = (
+    0.8,
+    2.0,
+)  # a body that does not break rests on a curved bed at more than the columns say
 GROUP = "slide"
 FRICTION, COHESION, DENSITY, GRAVITY = 25.0, 0.0, 2600.0, 9.81
 """What the cases assume of the sliding surface [deg], [Pa], and of the rock [kg/m3]."""
@@ -122,6 +126,13 @@ def sizes_text(size: float, far: float) -> str:
     )
 
 
+def between_text(factor: float) -> str:
+    """Factors at which a search may begin, from that of the columns."""
+    if not np.isfinite(factor):
+        return "RESTS FAILS"
+    return " ".join(f"{part * factor:.2f}" for part in BETWEEN)
+
+
 STAGES = {
     "case": """  - name: slide
     mode: dynamic
@@ -148,8 +159,7 @@ def case_text(kind: str, title: str, landslide: Landslide, facts: dict[str, Any]
     """
     low, high = (np.array([s[k] for s in (landslide.extent.x, landslide.extent.y)]) for k in (0, 1))
     (west, south), (east, north) = low - landslide.sizes.far, high + landslide.sizes.far
-    factor = facts["factor"]
-    between = f"{0.8 * factor:.2f} {1.3 * factor:.2f}" if np.isfinite(factor) else "RESTS FAILS"
+    between = between_text(facts["factor"])
     how = {
         "case": "cdem check case.yaml; cdem run case.yaml; cdem runout case.results",
         "factor": f"cdem critical factor.yaml --factor --between {between}",
