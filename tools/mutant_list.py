@@ -357,7 +357,7 @@ PYTHON = [
     Mutant(
         "runout",
         "front of the run-out measured at the rear end",
-        "src/cdem/output/runout.py",
+        "src/cdem/output/runout_measures.py",
         "places.max() - origin",
         "places.min() - origin",
         "tests/unit/output/test_runout.py",

@@ -19,6 +19,7 @@ FOLDERS = {
     "frames": ["frame-*.vtkhdf", "elements.h5"],
     "surface": ["frame-*.vtkhdf"],
     "bolts": ["frame-*.vtkhdf"],
+    "maps": ["*.tif", "*.qml", "*.tif.aux.xml"],  # cdem runout, and what GIS put beside them
 }
 """Folders inside a result folder, and patterns of the names of their files."""
 WRITTEN = {
@@ -32,7 +33,7 @@ WRITTEN = {
     *(f"{field.name}.gif" for field in OUTPUT_FIELDS),
     # cdem runout
     "runout.json", "runout.csv", "fragments.csv", "sections.csv", "deposit.asc", "deposit.tif",
-    "deposit.png",
+    "deposit.png", "maps.png", "energy_line.png", "grain_sizes.csv", "grain_sizes.png", "runout.gpkg", "runout.gpkg-shm", "runout.gpkg-wal",
 }  # fmt: skip
 """Patterns of the names of all files that commands write into a result folder."""
 
