@@ -18,7 +18,7 @@ from cdem.run.flow_maps import ARRIVAL, MAXIMA, FlowMaps
 Floats = NDArray[np.float64]
 
 FOLDER = "maps"
-CLASSES = 6
+CLASSES = 8
 """Classes of a map at most, with limits at round numbers."""
 EARTH = ("#ffffd4", "#fee391", "#fec44f", "#fe9929", "#d95f0e", "#993404")
 VIRIDIS = ("#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#fde725")
@@ -195,9 +195,11 @@ def _round_up(size: float) -> float:
 
 
 def colors_of(layer: Layer, count: int) -> list[str]:
-    """Colours of so many classes."""
-    places = np.linspace(0, len(layer.colors) - 1, count) if count > 1 else [0]
-    return [layer.colors[round(place)] for place in places]
+    """Colours of so many classes, from the lowest to the highest."""
+    table = np.array([[int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in layer.colors])
+    places = np.linspace(0, len(table) - 1, count) if count > 1 else np.zeros(1)
+    mixed = [np.interp(places, np.arange(len(table)), channel) for channel in table.T]
+    return ["#" + "".join(f"{round(v):02x}" for v in color) for color in zip(*mixed, strict=True)]
 
 
 def raster_style(layer: Layer, limits: Sequence[float]) -> str:

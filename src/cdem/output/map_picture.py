@@ -30,6 +30,8 @@ FLAT = 1e-3
 SHEET = ("thickness_max", "velocity_mean_max", "energy_area_max", "arrival")
 """Layers of maps.png."""
 TICKS = 5
+UNDER = 0.55
+"""Where the legend begins under a map [in]."""
 
 
 @dataclass
@@ -82,8 +84,9 @@ def draw_deposit(path: Path, maps: Maps, view: View, title: str, plt: Any) -> Pa
     axes.set_title(title, fontsize=9, loc="left")
     axes.plot(*view.crown[:2], "k^", ms=5, label="crown")
     axes.plot(*view.front[:2], "C3v", ms=5, label="front")
+    below = UNDER / (axes.get_position().height * figure.get_figheight())
     axes.legend(
-        fontsize=7, frameon=False, ncols=5, loc="upper left", bbox_to_anchor=(0, -0.12),
+        fontsize=7, frameon=False, ncols=3, loc="upper left", bbox_to_anchor=(0, -below),
         borderaxespad=0,
     )  # fmt: skip
     return _save(figure, plt, path)
@@ -92,9 +95,12 @@ def draw_deposit(path: Path, maps: Maps, view: View, title: str, plt: Any) -> Pa
 def draw_sheet(path: Path, maps: Maps, view: View, plt: Any) -> Path:
     """Draw largest thickness, velocity and energy, and arrival, on one sheet."""
     names = [name for name in SHEET if name in maps.rasters]
-    wide, high = _size(view, 6.0)
-    rows = (len(names) + 1) // 2
-    figure, all_axes = plt.subplots(rows, 2, figsize=(2 * wide, rows * high), squeeze=False)
+    wide, high = _size(view, 6.0 if view.east - view.west > view.north - view.south else 4.0)
+    columns = 2 if high <= wide else len(names)  # upright maps stand side by side
+    rows = -(-len(names) // columns)
+    figure, all_axes = plt.subplots(
+        rows, columns, figsize=(columns * wide, rows * high), squeeze=False
+    )
     for axes, name in zip(all_axes.flat, names, strict=False):
         bar = _draw(axes, figure, maps, name, view)
         bar.set_label(f"[{LAYERS[name].unit}]", fontsize=8)
@@ -114,7 +120,7 @@ def _save(figure: Any, plt: Any, path: Path) -> Path:
 def _size(view: View, wide: float) -> tuple[float, float]:
     """Width and height of a picture [in], with room for the scale beside the map."""
     ratio = (view.north - view.south) / (view.east - view.west)
-    return wide, float(np.clip(0.75 * wide * ratio + 1.0, 0.4 * wide, 1.3 * wide))
+    return wide, float(np.clip(0.75 * wide * ratio + 1.0, 0.4 * wide, 1.8 * wide))
 
 
 def _draw(axes: Any, figure: Any, maps: Maps, name: str, view: View) -> Any:
