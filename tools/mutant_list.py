@@ -358,8 +358,8 @@ PYTHON = [
         "runout",
         "front of the run-out measured at the rear end",
         "src/cdem/output/runout_measures.py",
-        "places.max() - origin",
-        "places.min() - origin",
+        "(solids.triangles @ way).max() - origin",
+        "(solids.triangles @ way).min() - origin",
         "tests/unit/output/test_runout.py",
     ),
     Mutant(

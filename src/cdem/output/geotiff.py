@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from cdem._version import __version__
 from cdem.case.map_system import look_up
 from cdem.errors import BackendError
+from cdem.terrain.projection import horizontal
 
 Floats = NDArray[np.float64]
 
@@ -138,4 +139,5 @@ def epsg_of(crs: str | None) -> int | None:
         system = look_up(crs)
     except BackendError:  # without the extra that knows projections a code is taken at its word
         return int(crs[5:]) if crs.startswith("EPSG:") else None
-    return (system.sub_crs_list[0] if system.is_compound else system).to_epsg()
+    code = horizontal(system).to_epsg()
+    return None if code is None else int(code)

@@ -73,14 +73,14 @@ class Maps:
     Attributes:
         rasters: By name, in the order and units of `LAYERS`.
         flow: What they were made from.
-        from_run: Whether largest values were followed during the run, not from its frames.
+        from_frames: Why largest values are those of frames; empty if they were followed in the run.
         affected: Where rock has been, the values true or not a number.
         classes: Limits of the classes of each map.
     """
 
     rasters: dict[str, Raster]
     flow: FlowMaps
-    from_run: bool
+    from_frames: str
     affected: Raster
     classes: dict[str, list[float]]
 
@@ -91,7 +91,7 @@ class Maps:
         start: Deposit,
         end: Deposit,
         *,
-        from_run: bool = False,
+        from_frames: str = "",
         left_out: Container[str] = (),
         classes: Mapping[str, Sequence[float]] | None = None,
     ) -> Maps:
@@ -101,7 +101,7 @@ class Maps:
             flow: Largest values and arrivals.
             start: Thickness at the start.
             end: Thickness at the end, on cells of the same size.
-            from_run: Whether `flow` was followed during the run.
+            from_frames: Why `flow` is not what the run has followed.
             left_out: Names of maps that cannot be made.
             classes: Limits of the classes by name; others are made to fit.
         """
@@ -129,7 +129,7 @@ class Maps:
             name: [float(v) for v in given.get(name, _limits(name, raster.values))]
             for name, raster in kept.items()
         }
-        return cls(kept, flow, from_run, over(np.where(met, 1.0, np.nan)), limits)
+        return cls(kept, flow, from_frames, over(np.where(met, 1.0, np.nan)), limits)
 
     @property
     def has_gaps(self) -> bool:
@@ -141,7 +141,7 @@ class Maps:
         return {
             "cell": self.flow.cell,
             "met": self.flow.met,
-            "from_run": self.from_run,
+            "from_run": not self.from_frames,
             "jump": self.flow.jump,
             "area_affected": float(self.flow.affected.sum()) * self.flow.cell**2,
             "largest": {n: float(np.nanmax(r.values, initial=0)) for n, r in self.rasters.items()},

@@ -9,9 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.errors import CdemError
+from cdem.case.input_file import reading
+from cdem.case.map_system import look_up
+from cdem.errors import CaseError
 from cdem.output.geotiff import Raster
+from cdem.terrain.features import read_features
 from cdem.terrain.heights import extra
+from cdem.terrain.projection import Projection
 
 Floats = NDArray[np.float64]
 
@@ -31,6 +35,7 @@ class Fit:
         missed: Area that only the outline holds [m2].
         front_gap: How much farther the model's front lies than the outline's, along the motion [m].
         rings: The outline [m], each of shape (points, 2).
+        notes: What was done to bring the outline to the model.
     """
 
     file: str
@@ -39,6 +44,7 @@ class Fit:
     missed: float
     front_gap: float
     rings: list[Floats]
+    notes: list[str]
 
     @property
     def csi(self) -> float:
@@ -69,13 +75,14 @@ class Fit:
         }  # fmt: skip
 
     def text(self) -> str:
-        """Two lines for the user."""
+        """Lines for the user."""
         side = "beyond" if self.front_gap >= 0 else "short of"
         return (
             f"  against {self.file}, area met at any time: CSI {self.csi:.3f}, hit rate "
             f"{self.hit_rate:.3f}, precision {self.precision:.3f}, FoC {self.area_factor:.3f}\n"
             f"    {self.hit:.5g} m2 in both, {self.beyond:.5g} m2 of the model alone, "
             f"{self.missed:.5g} m2 missed; front {abs(self.front_gap):.4g} m {side} the outline's"
+            + "".join(f"\n    {note}" for note in self.notes)
         )
 
 
@@ -84,15 +91,16 @@ def compare(affected: Raster, path: Path, crs: str | None, way: Floats, front: f
 
     Args:
         affected: Numbers where rock has been, nan elsewhere.
-        path: GeoPackage, Shapefile, GeoJSON, KML, ...: what pyogrio reads.
+        path: GIS file, see `read_features`.
         crs: Projection of the model; None if it is not known.
         way: Direction of the motion in plan, a unit vector.
         front: Place of the model's front along it [m].
 
     Raises:
-        CdemError: The file cannot be read, holds no area, or lies elsewhere.
+        CaseError: The file cannot be read, holds no area, or lies elsewhere.
     """
-    outline = read_outline(path, crs)
+    projection = Projection(None if crs is None else look_up(crs))
+    outline = read_outline(path, projection)
     shapely = extra("shapely", WHAT)
     x, y = affected.middles()
     within = shapely.contains_xy(outline, *np.meshgrid(x, y))
@@ -101,7 +109,7 @@ def compare(affected: Raster, path: Path, crs: str | None, way: Floats, front: f
     hit, beyond = float((met & within).sum()) * cell, float((met & ~within).sum()) * cell
     if hit == 0:
         west, south, east, north = outline.bounds
-        raise CdemError(
+        raise CaseError(
             f"{path}: its outline, x {west:.2f} to {east:.2f}, y {south:.2f} to {north:.2f}, has no "
             f"cell in common with the run-out, x {x[0]:.2f} to {x[-1]:.2f}, y {y[0]:.2f} to "
             f"{y[-1]:.2f}; is it in the coordinates of the case?"
@@ -113,7 +121,7 @@ def compare(affected: Raster, path: Path, crs: str | None, way: Floats, front: f
         for part in shapely.get_parts(outline)
         for ring in shapely.get_parts(shapely.boundary(part))
     ]
-    return Fit(str(path), hit, beyond, missed, float(front - farthest), rings)
+    return Fit(str(path), hit, beyond, missed, float(front - farthest), rings, projection.notes)
 
 
 def _cells_within(outline: Any, cell: float) -> int:
@@ -127,29 +135,27 @@ def _cells_within(outline: Any, cell: float) -> int:
     )
 
 
-def read_outline(path: Path, crs: str | None) -> Any:
+def read_outline(path: Path, projection: Projection) -> Any:
     """The union of the polygons and closed lines of a file, in the coordinates of the model.
 
+    Args:
+        path: GIS file, see `read_features`.
+        projection: Of the model.
+
     Raises:
-        CdemError: The file cannot be read, or holds no area.
+        CaseError: The file cannot be read, or holds no area.
     """
-    pyogrio, shapely = extra("pyogrio", WHAT), extra("shapely", WHAT)
-    if not path.is_file():
-        raise CdemError(f"{path}: no such file; --against needs a polygon mapped in the field")
-    try:
-        meta, _, geometries, _ = pyogrio.raw.read(path, columns=[], force_2d=True)
-    except pyogrio.errors.DataSourceError as error:
-        raise CdemError(f"{path}: cannot be read as a vector map ({error})") from None
-    shapes = (
-        [] if geometries is None else [g for g in shapely.from_wkb(geometries) if g is not None]
-    )
-    areas = [area for shape in shapes for area in _areas(shape)]
+    shapely = extra("shapely", WHAT)
+    found = read_features(path)
+    with reading(path, CaseError, "--against needs a polygon or a closed line"):
+        shapes = [shapely.geometry.shape(geometry) for geometry, _ in found.items]
+        areas = [area for shape in shapes for area in _areas(shapely.force_2d(shape))]
     if not areas:
-        raise CdemError(f"{path}: holds no polygon or closed line to compare with")
+        raise CaseError(f"{path}: holds no polygon or closed line to compare with")
     outline = shapely.union_all(shapely.make_valid(np.array(areas)))
-    if crs and meta["crs"]:
-        outline = shapely.transform(outline, _projector(meta["crs"], crs, path))
-    return outline
+    return shapely.transform(
+        outline, lambda points: projection.bring(path, found.label, None, points)
+    )
 
 
 def _areas(shape: Any) -> list[Any]:
@@ -159,18 +165,8 @@ def _areas(shape: Any) -> list[Any]:
     for part in shapely.get_parts(shape):
         if part.geom_type == "Polygon" and not part.is_empty:
             areas.append(part)
-        elif part.geom_type == "LineString" and len(part.coords) > 3:
-            first, last = np.array(part.coords[0][:2]), np.array(part.coords[-1][:2])
+        elif part.geom_type == "LineString" and len(part.coords) > 2:
+            first, last = np.array(part.coords[0]), np.array(part.coords[-1])
             if np.linalg.norm(last - first) <= ENDS_MEET * part.length:
                 areas.append(shapely.Polygon(part.coords))
     return areas
-
-
-def _projector(source: str, target: str, path: Path) -> Any:
-    """The function that brings points from one projection to another."""
-    pyproj = extra("pyproj", WHAT)
-    try:
-        change = pyproj.Transformer.from_crs(source, target, always_xy=True)
-    except pyproj.exceptions.CRSError as error:
-        raise CdemError(f"{path}: its projection cannot be brought to {target} ({error})") from None
-    return lambda points: np.column_stack(change.transform(*points.T))

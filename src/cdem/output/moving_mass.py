@@ -31,6 +31,7 @@ class Body:
     """The moving elements of a run, frame by frame.
 
     Attributes:
+        folder: The result folder.
         frames: From the start, where displacements were last reset, to the end.
         start: The elements at the start.
         mass: Of each element [kg].
@@ -39,6 +40,7 @@ class Body:
     """
 
     def __init__(self, folder: Path, groups: Sequence[str] | None) -> None:
+        self.folder = folder
         self.series = FrameSeries(folder)
         self.frames = range(self._first(), len(self.series))
         if len(self.frames) < 2:

@@ -25,6 +25,7 @@ from cdem.output.moving_mass import Body, Line
 from cdem.output.runout_measures import EndMotion, crown_of, direction_of, follow, front_of
 from cdem.output.runout_result import RunOut
 from cdem.run.flow_maps import FlowMaps
+from cdem.run.flow_recorder import read_maxima
 
 Floats = NDArray[np.float64]
 
@@ -82,11 +83,16 @@ def _measure(
     lines = [Line(line, way[:2], body.start) for line in sections]
     stays = body.stays(body.frames[-1])
     left = end.only(stays)
-    flow = FlowMaps(checked_cell(left, cell), body.series.times[body.frames[0]])
+    flow, why = _maps_to_fill(body, left, cell)
     deposit = Deposit.of(left, flow.cell)
-    history, fragments = follow(body, way, crown @ way, lines, flow)
+    history, fragments = follow(
+        body, way, crown @ way, lines, flow, body.frames if why else body.frames[-1:]
+    )
     source = Deposit.of(body.start, deposit.cell)
-    maps = Maps.of(flow, source, deposit, left_out=_left_out(body), classes=classes)
+    maps = Maps.of(
+        flow, source, deposit, from_frames=why, classes=classes,
+        left_out=_left_out(body) if why else (),
+    )  # fmt: skip
     front = front_of(body, body.frames[-1], way)
     fit = None
     if outline is not None:
@@ -109,6 +115,27 @@ def _measure(
         fit=fit,
         crs=body.crs,
     )
+
+
+def _maps_to_fill(body: Body, left: Solids, cell: float | None) -> tuple[FlowMaps, str]:
+    """Maps that the run has followed, if they are of this body and cell up to the end; or empty ones.
+
+    Returns:
+        The maps, and why they are not those of the run.
+    """
+    first, last = (body.series.times[body.frames[k]] for k in (0, -1))
+    empty = FlowMaps(checked_cell(left, cell), first)
+    found = read_maxima(body.folder)
+    if found is None:
+        return empty, "the case has no output.maps"
+    flow, groups, time = found
+    if cell is not None and cell != flow.cell:
+        return empty, f"the run followed cells of {flow.cell:g} m"
+    if set(groups) != set(body.groups):
+        return empty, f"the run followed {', '.join(groups)}"
+    if time < last:
+        return empty, f"the run followed them up to t = {time:.6g} s"
+    return flow, ""
 
 
 def _azimuth(body: Body, end: Solids, direction: float | None) -> float:

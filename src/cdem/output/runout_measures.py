@@ -64,7 +64,12 @@ class EndMotion:
 
 
 def follow(
-    body: Body, way: Floats, origin: float, lines: Sequence[Line], flow: FlowMaps | None
+    body: Body,
+    way: Floats,
+    origin: float,
+    lines: Sequence[Line],
+    flow: FlowMaps,
+    seen: Sequence[int],
 ) -> tuple[dict[str, Floats], dict[str, NDArray]]:
     """Columns `HISTORY` frame by frame, without springs, and the pieces at the end.
 
@@ -73,7 +78,8 @@ def follow(
         way: Unit vector along the motion.
         origin: Where distances along it count from [m].
         lines: Sections through which rock is followed; they see every frame.
-        flow: Maps that every frame is taken into, or None.
+        flow: Maps that frames are taken into.
+        seen: Those frames.
     """
     rows, before = [], body.start.centroids()
     for frame in body.frames:
@@ -84,33 +90,20 @@ def follow(
         )
         stays, centroid = body.stays(frame), solids.centroids()
         left, mass = solids.only(stays), body.mass[stays]
-        volume, speeds = left.volumes(), velocity[stays]
-        centre = mass @ centroid[stays] / mass.sum()
-        density = mass / volume  # the mass stays while the volume changes
-        places = left.triangles @ way
+        volume = left.volumes()
         pieces = body.pieces(frame, volume, stays)
-        speed = np.linalg.norm(speeds, axis=1)
+        now = Moment(time, left, velocity[stays], mass, None if pieces is None else pieces.member)
         rows.append(
             [
-                time,
-                places.max() - origin,
-                *(left.level_below_which(q, way, density) - origin for q in (0.999, 0.95)),
-                centre @ way - origin,
-                *centre,
-                np.linalg.norm(mass @ speeds) / mass.sum(),
-                speed.max(),
-                volume.sum(),
-                0.5 * mass @ speed**2,
+                *_row(now, volume, centroid[stays], way, origin),
                 *((np.nan,) * 3 if pieces is None else pieces.row()),
                 mass.sum(),
             ]
         )
         for line in lines:
             line.follow(time, solids, stays, velocity, before, centroid)
-        if flow is not None:
-            flow.take_in(
-                Moment(time, left, speeds, mass, None if pieces is None else pieces.member)
-            )
+        if frame in seen:
+            flow.take_in(now)
         before = centroid
     columns = np.array(rows).T
     history = dict(zip(list(HISTORY), columns[:-1], strict=False))
@@ -119,8 +112,35 @@ def follow(
     history["energy_line"] = energy_line(
         history["centre_z"], history["kinetic_energy"], columns[-1] * body.gravity
     )
-    history |= _broken(body.series.folder.parent, history["time"])
+    history |= _broken(body.folder, history["time"])
     return history, {} if pieces is None else pieces.table(mass, centroid[stays])
+
+
+def _row(now: Moment, volume: Floats, centroid: Floats, way: Floats, origin: float) -> list[float]:
+    """The columns `HISTORY` of a moment up to the kinetic energy.
+
+    Args:
+        now: The elements that stay.
+        volume: Of each [m3].
+        centroid: Of each [m], shape (elements, 3).
+        way: Unit vector along the motion.
+        origin: Where distances along it count from [m].
+    """
+    solids, mass = now.solids, now.mass
+    density = mass / volume  # the mass stays while the volume changes
+    centre = mass @ centroid / mass.sum()
+    speed = np.linalg.norm(now.velocity, axis=1)
+    return [
+        now.time,
+        (solids.triangles @ way).max() - origin,
+        *(solids.level_below_which(q, way, density) - origin for q in (0.999, 0.95)),
+        centre @ way - origin,
+        *centre,
+        np.linalg.norm(mass @ now.velocity) / mass.sum(),
+        speed.max(),
+        volume.sum(),
+        0.5 * mass @ speed**2,
+    ]
 
 
 def direction_of(body: Body, end: Solids) -> float:

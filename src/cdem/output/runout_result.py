@@ -269,9 +269,9 @@ class RunOut:
         lines.append(
             f"  maps: rock met {maps.flow.affected.sum() * maps.flow.cell**2:.6g} m2 (at least "
             f"{maps.flow.met:g} m thick), "
-            f"{'followed during the run' if maps.from_run else 'from frames'}; an element passed up "
+            f"{_how(maps)}; an element passed up "
             f"to {maps.flow.jump:.2g} cells between two looks"
-            + (": maxima have gaps, record more often (output.every)" if maps.has_gaps else "")
+            + (": maxima have gaps, give the case output.maps" if maps.has_gaps else "")
         )
         if self.crs is None:
             lines.append("  maps carry no projection: the case has none (crs: EPSG:...)")
@@ -317,7 +317,7 @@ class RunOut:
             "cdem_at_rest": str(self.rests),
             "cdem_time_end": f"{self.history['time'][-1]:.6g} s",
             "cdem_met_from": f"{self.maps.flow.met:g} m",
-            "cdem_maxima": "run" if self.maps.from_run else "frames",
+            "cdem_maxima": "frames" if self.maps.from_frames else "run",
         }
 
     def write_geopackage(self, folder: str | Path) -> Path:
@@ -398,6 +398,10 @@ class RunOut:
         figure.savefig(path, bbox_inches="tight")
         plt.close(figure)
         return path
+
+
+def _how(maps: Maps) -> str:
+    return f"from frames ({maps.from_frames})" if maps.from_frames else "followed during the run"
 
 
 def _ratio(drop: float, reach: float) -> float:

@@ -26,7 +26,7 @@ WRITTEN = {
     # cdem run
     MARKER, LOCK, "case.yaml", "run.log", "summary.json", "checkpoint.h5", "checkpoint-before.h5",
     "histories.csv", "frames.vtkhdf", "surface.vtkhdf", "bolts.vtkhdf",
-    "report.html",
+    "report.html", "maxima.h5",
     # cdem plot, render, export
     "energies.png", "unbalance.png", "history-*.png", "frames.pvd",
     *(f"{field.name}-{part}.png" for field in OUTPUT_FIELDS for part in ("[0-9]" * 4, "overview")),
