@@ -288,9 +288,9 @@ def _fraction_below(knots: Floats, level: float) -> Floats:
 
 def _slices(polygons: Floats, axis: int) -> tuple[Floats, NDArray[np.intp], NDArray[np.intp]]:
     """Cut convex polygons at every whole number along an axis: parts, slice and polygon of each."""
-    value = polygons[:, :, axis]
-    low = np.floor(value.min(axis=1)).astype(np.intp)
-    count = np.maximum(np.ceil(value.max(axis=1)).astype(np.intp) - low, 1)
+    value = np.ascontiguousarray(polygons[:, :, axis].T)  # rows of corners: the sums run along them
+    low = np.floor(value.min(axis=0)).astype(np.intp)
+    count = np.maximum(np.ceil(value.max(axis=0)).astype(np.intp) - low, 1)
     owner = np.repeat(np.arange(len(polygons)), count)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     index = low[owner] + number
@@ -325,7 +325,7 @@ def _keep(
     kept = np.stack([crossed, d >= 0], axis=2).reshape(n, 2 * k)
     places = np.arange(2 * k)
     order = np.sort(np.where(kept, places, 2 * k), axis=1)[:, : k + 1]  # kept ones first, in order
-    last = np.where(kept, places, 0).max(axis=1)
+    last = np.where(kept.any(axis=1), 2 * k - 1 - kept[:, ::-1].argmax(axis=1), 0)
     take = np.minimum(order, last[:, None])
     out[some] = points.reshape(n, 2 * k, 3)[np.arange(n)[:, None], take]
     return out

@@ -61,6 +61,11 @@ class View:
     sections: Sequence[tuple[float, ...]]
     outline: Sequence[Floats] = ()
 
+    @property
+    def is_upright(self) -> bool:
+        """Whether the picture is higher than wide."""
+        return self.north - self.south > self.east - self.west
+
 
 def frame_of(raster: Raster) -> tuple[float, float, float, float]:
     """West, east, south and north of a picture that shows a raster and some ground round it [m]."""
@@ -86,8 +91,8 @@ def draw_deposit(path: Path, maps: Maps, view: View, title: str, plt: Any) -> Pa
     axes.plot(*view.front[:2], "C3v", ms=5, label="front")
     below = UNDER / (axes.get_position().height * figure.get_figheight())
     axes.legend(
-        fontsize=7, frameon=False, ncols=3, loc="upper left", bbox_to_anchor=(0, -below),
-        borderaxespad=0,
+        fontsize=7, frameon=False, ncols=3 if view.is_upright else 5, loc="upper left",
+        bbox_to_anchor=(0, -below), borderaxespad=0,
     )  # fmt: skip
     return _save(figure, plt, path)
 
@@ -95,8 +100,8 @@ def draw_deposit(path: Path, maps: Maps, view: View, title: str, plt: Any) -> Pa
 def draw_sheet(path: Path, maps: Maps, view: View, plt: Any) -> Path:
     """Draw largest thickness, velocity and energy, and arrival, on one sheet."""
     names = [name for name in SHEET if name in maps.rasters]
-    wide, high = _size(view, 6.0 if view.east - view.west > view.north - view.south else 4.0)
-    columns = 2 if high <= wide else len(names)  # upright maps stand side by side
+    wide, high = _size(view, 4.0 if view.is_upright else 6.0)
+    columns = len(names) if view.is_upright else 2  # upright maps stand side by side
     rows = -(-len(names) // columns)
     figure, all_axes = plt.subplots(
         rows, columns, figsize=(columns * wide, rows * high), squeeze=False
@@ -132,20 +137,13 @@ def _draw(axes: Any, figure: Any, maps: Maps, name: str, view: View) -> Any:
     colors = ListedColormap(colors_of(LAYERS[name], len(limits) - 1))
     image = axes.imshow(
         raster.values, origin="lower", extent=raster.extent, cmap=colors, alpha=0.85,
-        norm=BoundaryNorm(limits, colors.N, clip=True), interpolation="nearest",
+        norm=BoundaryNorm(limits, colors.N, clip=True), interpolation="nearest", zorder=1,
     )  # fmt: skip
     bar = figure.colorbar(image, ax=axes, shrink=0.7, pad=0.02, ticks=limits)
     bar.ax.tick_params(labelsize=7)
-    x, y = view.source.middles()
-    has = np.pad(np.isfinite(view.source.values).astype(float), 1)
-    cell = view.source.cell
-    axes.contour(
-        np.concatenate([[x[0] - cell], x, [x[-1] + cell]]),
-        np.concatenate([[y[0] - cell], y, [y[-1] + cell]]),
-        has, [0.5], colors="k", linestyles="--", linewidths=0.9,
-    )  # fmt: skip
+    axes.add_collection(_outline_of(view.source))
     axes.plot(*view.centre[:, :2].T, "C0-", lw=1.2, label="centre of mass")
-    axes.plot([], [], "k--", lw=0.9, label="source")
+    axes.plot([], [], "k:", lw=1.0, label="source")
     for number, (x0, y0, x1, y1) in enumerate(view.sections, start=1):
         axes.plot([x0, x1], [y0, y1], "C2-", lw=1.5)
         axes.annotate(str(number), (x1, y1), color="C2", fontsize=8)
@@ -155,6 +153,19 @@ def _draw(axes: Any, figure: Any, maps: Maps, name: str, view: View) -> Any:
     _label(axes)
     _scale_and_north(axes, view)
     return bar
+
+
+def _outline_of(raster: Raster) -> Any:
+    """The edges between cells with a value and cells without."""
+    from matplotlib.collections import LineCollection
+
+    has = np.pad(np.isfinite(raster.values), 1).astype(int)
+    row, column = np.nonzero(np.diff(has, axis=0)[:, 1:-1])
+    along = np.stack([np.column_stack([column + k, row]) for k in (0, 1)], axis=1)
+    row, column = np.nonzero(np.diff(has, axis=1)[1:-1])
+    up = np.stack([np.column_stack([column, row + k]) for k in (0, 1)], axis=1)
+    edges = np.array([raster.x, raster.y]) + raster.cell * np.concatenate([along, up])
+    return LineCollection(list(edges), colors="k", linewidths=1.0, linestyles=":")
 
 
 def _shade(axes: Any, ground: Raster) -> None:
@@ -167,7 +178,9 @@ def _shade(axes: Any, ground: Raster) -> None:
         cmap="gray", vmin=0, vmax=1, interpolation="bilinear",
     )  # fmt: skip
     if np.nanmax(z) - np.nanmin(z) > FLAT * ground.cell * max(z.shape):
-        contours = axes.contour(*ground.middles(), z, CONTOURS, colors="0.35", linewidths=0.4)
+        contours = axes.contour(
+            *ground.middles(), z, CONTOURS, colors="0.35", linewidths=0.4, zorder=0.5
+        )
         axes.clabel(contours, fontsize=6, fmt="%.10g")
 
 

@@ -113,6 +113,7 @@ def compare(affected: Raster, path: Path, crs: str | None, way: Floats, front: f
             f"{path}: its outline, x {west:.2f} to {east:.2f}, y {south:.2f} to {north:.2f}, has no "
             f"cell in common with the run-out, x {x[0]:.2f} to {x[-1]:.2f}, y {y[0]:.2f} to "
             f"{y[-1]:.2f}; is it in the coordinates of the case?"
+            + "".join(f" ({note})" for note in projection.notes)
         )
     missed = float(_cells_within(outline, affected.cell)) * cell - hit
     farthest = float((shapely.get_coordinates(outline) @ way[:2]).max())

@@ -212,7 +212,7 @@ class RunOut:
                 if self.taken_out
                 else []
             ),
-            f"  crown at ({coordinates(self.crown)}), front at ({coordinates(self.front)}) m",
+            f"  crown at ({_place(self.crown)}), front at ({_place(self.front)}) m",
             "",
             f"  {'from the crown to':<22}{'L [m]':>12}{'H [m]':>12}{'H/L':>9}{'angle [deg]':>13}",
             _row("front", self.reach, self.drop),
@@ -398,6 +398,11 @@ class RunOut:
         figure.savefig(path, bbox_inches="tight")
         plt.close(figure)
         return path
+
+
+def _place(point: Floats) -> str:
+    """Coordinates to a centimetre."""
+    return coordinates(np.round(point, 2) + 0.0)
 
 
 def _how(maps: Maps) -> str:
