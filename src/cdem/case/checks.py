@@ -36,12 +36,17 @@ def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
         case: The case.
         folder: Folder that relative paths in it start at.
     """
-    return [*_mesh_file(case, folder), *_projection(case), *_names(case)]
+    return [*_mesh_file(case, folder), *_projection(case), *_maps(case), *_names(case)]
 
 
 def _projection(case: CaseParts) -> Iterator[Problem]:
     if case.crs is not None and (why := why_not(case.crs)):
         yield ("crs",), why
+
+
+def _maps(case: CaseParts) -> Iterator[Problem]:
+    if case.output.maps and not case.output.maps.groups and not case.movable:
+        yield ("output", "maps"), "there is no group to follow: all are fixed in x, y and z"
 
 
 def _names(case: CaseParts) -> Iterator[Problem]:

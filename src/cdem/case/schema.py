@@ -392,6 +392,11 @@ class CaseParts(Part):
     output: Output = Field(Output(), description="What is written")
     histories: list[HistoryPoint] = Field([], description="Quantities followed over time")
 
+    @property
+    def movable(self) -> list[str]:
+        """Groups that are not fixed in all directions."""
+        return [name for name, group in self.groups.items() if len(set(group.fix)) < 3]
+
     @model_validator(mode="after")
     def _complete(self) -> CaseParts:
         for stage in self.stages:

@@ -19,7 +19,6 @@ Floats = NDArray[np.float64]
 FILE = "maxima.h5"
 PREFIX = "maps."
 """Names of the arrays in a checkpoint begin with it."""
-ALL_DIRECTIONS = {"x", "y", "z"}
 STEP = 0.5
 """Part of a cell that the fastest node goes in plan between two looks."""
 FALL = 9.81
@@ -41,9 +40,7 @@ class FlowRecorder:
     def __init__(self, sim: RunState) -> None:
         wanted = sim.case.output.maps
         assert wanted is not None
-        self.groups = wanted.groups or [
-            name for name, group in sim.case.groups.items() if set(group.fix) != ALL_DIRECTIONS
-        ]
+        self.groups = wanted.groups or sim.case.movable
         topology, names = sim.build.topology, sim.build.group_names
         self._chosen = np.isin(group_of(sim), [names.index(name) for name in self.groups])
         self._block = block_of(sim)[self._chosen]
@@ -76,7 +73,8 @@ class FlowRecorder:
 
     def look(self, sim: RunState) -> None:
         """Take in what is there now, if the maps have room for it: a run does not end for them."""
-        if self.ended:
+        if self.ended or not np.isfinite(sim.motion).all():  # the core says where it failed
+            self.due = np.inf
             return
         try:
             self.take_in(sim)

@@ -155,6 +155,24 @@ def test_a_block_on_an_incline_runs_out_at_the_angle_of_its_bed(tmp_path):
     assert found.drop == pytest.approx(foot, rel=1e-3)
 
 
+def test_the_energy_line_of_a_block_that_slides_falls_by_its_friction(tmp_path):
+    incline = {"axis": [0, 1, 0], "angle": "30 deg"}
+    blocks = [
+        box("bed", [20, 4, 1], [0, 0, 0]) | {"rotate": incline},
+        box("block", [1, 1, 0.5], [0, 0, 0])
+        | {"rotate": incline, "translate": [np.sin(np.pi / 6), 1.5, np.cos(np.pi / 6)]},
+    ]
+    folder = run(
+        tmp_path / "r", blocks, {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+        loads={"gravity": [0, 0, -10]}, rock={"young_modulus": "100 MPa"},
+        interfaces={"default": {"friction_angle": 20}},
+        stages=[{"name": "slide", "mode": "dynamic", "duration": 2.0}], output={"every": 0.2},
+    )  # fmt: skip
+    found = runout.measure(folder)  # the block still vibrates: 0.8 % off
+    assert found.energy_slope == pytest.approx(np.tan(np.radians(20)), rel=2.5e-2)
+    assert "energy line: falls by 0.36" in found.text()
+
+
 @pytest.fixture(scope="module")
 def broken(tmp_path_factory):
     """A bonded bar of six cubes, torn at its weak third joint; the left end hangs on a post."""

@@ -147,3 +147,9 @@ def test_what_makes_no_sense_is_said(maps, message):
     with pytest.raises(CdemError) as caught:
         cdem.Simulation(thrown(maps), threads=1).run()
     assert message in str(caught.value)
+
+
+def test_a_case_in_which_nothing_moves_has_no_maps():
+    blocks = [{"group": "plate", "box": {"size": [1, 1, 1]}}]
+    with pytest.raises(CdemError, match=r"output\.maps: there is no group to follow"):
+        case(blocks, {"plate": {"fix": ["x", "y", "z"]}}, output={"maps": {"cell": 1}})
