@@ -74,7 +74,7 @@ def runout(
         against=against,
         classes=classes,
     )
-    paths = found.write(folder)
+    paths = list(dict.fromkeys(p if p.parent == folder else p.parent for p in found.write(folder)))
     try:
         paths.append(found.write_geopackage(folder))
     except BackendError as error:  # without an extra the numbers and the rasters are whole

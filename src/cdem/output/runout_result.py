@@ -205,7 +205,7 @@ class RunOut:
             *(
                 []
                 if self.rests
-                else [f"  {self.motion}: no deposit; front and reach are not final"]
+                else [f"  {self.motion}: no deposit yet; front and reach are not final"]
             ),
             *(
                 [f"  {self.taken_out:.6g} m3 more have left model.domain and do not count"]
