@@ -491,6 +491,12 @@ class Simulation(RunState):
                 f"{path}: was written with another text of own laws ({names}); go on with the "
                 "headers that were run, or run the case again in another folder (-o)"
             )
+        output = self.given_case.model_dump(mode="json")["output"]
+        if attributes.case.get("output", {}).get("maps") != output["maps"]:
+            raise CdemError(
+                f"{path}: was written with another output.maps, whose values are half there; go on with "
+                "that of the run"
+            )
         own = {"simulation.reference", "simulation.born"}  # see RunState.kept
         own |= {name for name in arrays if name.startswith(PREFIX)}
         other = set(arrays) - own | set(attributes.core)

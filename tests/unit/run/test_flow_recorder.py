@@ -86,6 +86,16 @@ def test_a_resumed_run_follows_to_the_same_bits(tmp_path):
         np.testing.assert_array_equal(a, b)
 
 
+def test_a_resumed_run_cannot_follow_other_cells(tmp_path):
+    half = cdem.Simulation(thrown({"cell": 1}), threads=1, output=tmp_path / "r")
+    half.run_until(0.1)
+    half.checkpoint()
+    half.close()
+    for maps in ({"cell": 2}, None):
+        with pytest.raises(CdemError, match=r"was written with another output\.maps"):
+            cdem.Simulation(thrown(maps), threads=1, output=tmp_path / "r", resume=True, force=True)
+
+
 def test_a_reset_begins_the_run_out_again(tmp_path):
     stages = [
         {"name": "before", "mode": "dynamic", "duration": 0.2},
