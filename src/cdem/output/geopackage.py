@@ -45,10 +45,11 @@ def areas(name: str, raster: Raster, color: str) -> Features:
     row, first = np.nonzero(np.diff(has, axis=1) == 1)  # runs of cells, row by row
     last = np.nonzero(np.diff(has, axis=1) == -1)[1]
     x, y = raster.x + raster.cell * np.array([first, last]), raster.y + raster.cell * row
-    area = shapely.union_all(shapely.box(x[0], y, x[1], y + raster.cell))
-    parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
-    columns = {"area_m2": np.array([shapely.area(area)])}
-    return Features(name, "MultiPolygon", [shapely.multipolygons(parts)], columns, color)
+    runs = shapely.box(x[0], y, x[1], y + raster.cell) if len(row) else []
+    area = shapely.MultiPolygon(
+        [part for part in shapely.get_parts(shapely.union_all(runs)) if part.geom_type == "Polygon"]
+    )
+    return Features(name, "MultiPolygon", [area], {"area_m2": np.array([area.area])}, color)
 
 
 def lines(

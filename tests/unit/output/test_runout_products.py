@@ -316,3 +316,15 @@ def test_pictures_are_drawn(slid, tmp_path):
     names = [path.name for path in runout.measure(slid, cell=0.5).draw(tmp_path)]
     assert names == ["deposit.png", "maps.png", "grain_sizes.png"]  # no weight, no energy line
     assert min((tmp_path / name).stat().st_size for name in names) > 5000
+
+
+def test_cells_too_large_to_be_met_make_empty_maps(slid, tmp_path):
+    pyogrio = pytest.importorskip("pyogrio", reason="needs the extra 'terrain'")
+    found = runout.measure(slid, cell=50.0)
+    assert not found.maps.flow.affected.any()
+    assert np.nansum(found.maps.rasters["thickness_end"].values) * 2500 == pytest.approx(
+        2, rel=1e-3
+    )
+    found.write(tmp_path)
+    path = found.write_geopackage(tmp_path)
+    assert pyogrio.raw.read(path, layer="affected")[3][0] == 0
