@@ -357,9 +357,9 @@ PYTHON = [
     Mutant(
         "runout",
         "front of the run-out measured at the rear end",
-        "src/cdem/output/runout.py",
-        "places.max() - origin",
-        "places.min() - origin",
+        "src/cdem/output/runout_measures.py",
+        "(solids.triangles @ way).max() - origin",
+        "(solids.triangles @ way).min() - origin",
         "tests/unit/output/test_runout.py",
     ),
     Mutant(

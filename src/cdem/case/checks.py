@@ -36,12 +36,17 @@ def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
         case: The case.
         folder: Folder that relative paths in it start at.
     """
-    return [*_mesh_file(case, folder), *_projection(case), *_names(case)]
+    return [*_mesh_file(case, folder), *_projection(case), *_maps(case), *_names(case)]
 
 
 def _projection(case: CaseParts) -> Iterator[Problem]:
     if case.crs is not None and (why := why_not(case.crs)):
         yield ("crs",), why
+
+
+def _maps(case: CaseParts) -> Iterator[Problem]:
+    if case.output.maps and not case.output.maps.groups and not case.movable:
+        yield ("output", "maps"), "there is no group to follow: all are fixed in x, y and z"
 
 
 def _names(case: CaseParts) -> Iterator[Problem]:
@@ -260,12 +265,18 @@ def _listed_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]
     for i, pair in enumerate(case.interfaces.pairs):
         for k, name in enumerate(pair.between or []):
             yield ("interfaces", "pairs", i, "between", k), name
-    for i, stress in enumerate(case.initial_stress):
-        for k, name in enumerate(stress.groups or []):
-            yield ("initial_stress", i, "groups", k), name
-    for i, field in enumerate(case.water.fields if case.water else []):
-        for k, name in enumerate(field.groups or []):
-            yield ("water", "fields", i, "groups", k), name
+    maps = case.output.maps
+    groups = [
+        *((("initial_stress", i), s.groups) for i, s in enumerate(case.initial_stress)),
+        *(
+            (("water", "fields", i), f.groups)
+            for i, f in enumerate(case.water.fields if case.water else [])
+        ),
+        (("output", "maps"), maps and maps.groups),
+    ]
+    for place, names in groups:
+        for k, name in enumerate(names or []):
+            yield (*place, "groups", k), name
     for i, stage in enumerate(case.stages):
         for key in ("remove", "add"):
             for k, name in enumerate(getattr(stage, key)):

@@ -282,6 +282,15 @@ else:
     FieldName = Literal[tuple(CHOICE)]
 
 
+class FlowMaps(Part):
+    """Largest velocity, thickness, energy ... at each place, followed while the case runs."""
+
+    cell: Annotated[float, Quantity("m", above=0)] = Field(description="Side of a cell [m]")
+    groups: Annotated[list[Name], Field(min_length=1)] | None = Field(
+        None, description="Groups that are followed; by default those not fixed in all directions"
+    )
+
+
 class Output(Part):
     """What is written while the case runs."""
 
@@ -296,6 +305,9 @@ class Output(Part):
         300.0, description="Wall time between checkpoints [s]"
     )
     frames: bool = Field(True, description="Whether frames are written at all")
+    maps: FlowMaps | None = Field(
+        None, description="Follow largest values at each place for the maps of cdem runout"
+    )
 
 
 class HistoryPoint(Part):
@@ -379,6 +391,11 @@ class CaseParts(Part):
     time: Time = Field(Time(), description="The time step")
     output: Output = Field(Output(), description="What is written")
     histories: list[HistoryPoint] = Field([], description="Quantities followed over time")
+
+    @property
+    def movable(self) -> list[str]:
+        """Groups that are not fixed in all directions."""
+        return [name for name, group in self.groups.items() if len(set(group.fix)) < 3]
 
     @model_validator(mode="after")
     def _complete(self) -> CaseParts:

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from cdem.cli.options import print_paths
-from cdem.errors import CaseError, CdemError
+from cdem.errors import BackendError, CaseError, CdemError
 
 ResultFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Result folder of a run.")]
 
@@ -54,6 +54,12 @@ def runout(
         list[str] | None,
         typer.Option("--section", metavar="X0,Y0,X1,Y1", help="Line to look through; repeatable."),
     ] = None,
+    against: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Mapped outline to compare with.")
+    ] = None,
+    classes: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Another run whose classes the maps take.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print runout.json instead.")] = False,
 ) -> None:
     """Measure front, reach, H/L, deposit, sections and pieces; write maps and tables."""
@@ -65,12 +71,18 @@ def runout(
         direction=None if direction == "auto" else _numbers(direction, "--direction", 1)[0],
         cell=cell,
         sections=[_numbers(line, "--section", 4) for line in sections or []],
+        against=against,
+        classes=classes,
     )
-    paths = found.write(folder)
+    paths = list(dict.fromkeys(p if p.parent == folder else p.parent for p in found.write(folder)))
     try:
-        paths.append(found.draw(folder))
-    except CdemError as error:  # without the extra that draws, the numbers are whole
-        print(f"no deposit.png: {error}", file=sys.stderr)
+        paths.append(found.write_geopackage(folder))
+    except BackendError as error:  # without an extra the numbers and the rasters are whole
+        print(f"no runout.gpkg: {error}", file=sys.stderr)
+    try:
+        paths += found.draw(folder)
+    except CdemError as error:
+        print(f"no pictures: {error}", file=sys.stderr)
     if as_json:
         print((folder / "runout.json").read_text().rstrip())
         return

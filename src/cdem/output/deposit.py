@@ -1,8 +1,7 @@
-"""The map of a deposit's thickness: ESRI ASCII grid, GeoTIFF and a picture."""
+"""The map of a deposit's thickness, and its ESRI ASCII grid."""
 
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,15 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
-from cdem.output.element_volumes import Solids
+from cdem.mesh.element_volumes import Solids
+from cdem.output.geotiff import NOTHING, Raster
+from cdem.run.flow_maps import TRACE, check_size
 
 Floats = NDArray[np.float64]
-
-NOTHING = -9999.0
-"""What the files hold where no rock lies."""
-TRACE = 1e-9
-"""Less than this part of the greatest thickness is round-off."""
-MOST_CELLS = 4_000_000
 
 
 @dataclass
@@ -44,16 +39,9 @@ class Deposit:
         Raises:
             CdemError: The cell is not above zero, or so small that the map would be huge.
         """
-        if cell is None:
-            cell = _round(float(np.cbrt(solids.volumes().mean())))
-        cell = float(cell)
-        if not (np.isfinite(cell) and cell > 0):
-            raise CdemError(f"the cell of the map must be above 0 m, got {cell:g}")
+        cell = checked_cell(solids, cell)
         _, (rows, columns) = solids.grid(cell)
-        if rows * columns > MOST_CELLS:
-            raise CdemError(
-                f"cells of {cell:g} m make a map of {rows:,} x {columns:,}; choose a larger cell"
-            )
+        check_size(cell, rows, columns)
         (column, row), thickness = solids.columns(cell)
         return cls(column * cell, row * cell, cell, thickness)
 
@@ -72,9 +60,10 @@ class Deposit:
         """Area of the cells over which rock lies [m2]."""
         return float(self.covered.sum() * self.cell**2)
 
-    def _rows(self) -> Floats:
-        """Thickness from north to south, as maps are written."""
-        return np.where(self.covered, self.thickness, NOTHING)[::-1]
+    @property
+    def raster(self) -> Raster:
+        """Thickness where rock lies."""
+        return Raster(self.x, self.y, self.cell, np.where(self.covered, self.thickness, np.nan))
 
     def write_asc(self, path: Path) -> None:
         """Write an ESRI ASCII grid that reads back to the same numbers."""
@@ -83,42 +72,21 @@ class Deposit:
             f"ncols {columns}\nnrows {rows}\nxllcorner {self.x!r}\nyllcorner {self.y!r}\n"
             f"cellsize {self.cell!r}\nNODATA_value {NOTHING:g}\n"
         )
-        lines = "\n".join(" ".join(repr(float(v)) for v in row) for row in self._rows())
+        lines = "\n".join(" ".join(repr(float(v)) for v in row) for row in self.raster.rows)
         path.write_text(f"{head}{lines}\n")
 
-    def write_tiff(self, path: Path) -> None:
-        """Write a GeoTIFF of 32-bit numbers: TIFF 6.0 and OGC GeoTIFF 1.1, without a map projection.
 
-        A case does not say in which projection its x and y are, so neither does the file.
-        """
-        rows, columns = self.thickness.shape
-        north = self.y + rows * self.cell
-        pixels = self._rows().astype("<f4").tobytes()
-        short, long, double, ascii_ = "H", "I", "d", "s"
-        tags: list[tuple[int, str, tuple]] = [
-            (256, long, (columns,)), (257, long, (rows,)), (258, short, (32,)),
-            (259, short, (1,)), (262, short, (1,)), (273, long, (8,)), (277, short, (1,)),
-            (278, long, (rows,)), (279, long, (len(pixels),)), (339, short, (3,)),
-            (33550, double, (self.cell, self.cell, 0.0)),
-            (33922, double, (0.0, 0.0, 0.0, self.x, north, 0.0)),
-            (34735, short, (1, 1, 0, 1, 1025, 0, 1, 1)),  # one key: a pixel is an area
-            (42113, ascii_, (f"{NOTHING:g}\0".encode(),)),
-        ]  # fmt: skip
-        kinds = {ascii_: 2, short: 3, long: 4, double: 12}
-        entries, more = b"", b""
-        first = 8 + len(pixels)  # of the directory; long values follow it
-        after = first + 2 + 12 * len(tags) + 4
-        for tag, kind, values in tags:
-            data = values[0] if kind == ascii_ else struct.pack(f"<{len(values)}{kind}", *values)
-            count = len(data) if kind == ascii_ else len(values)
-            if len(data) > 4:
-                place = struct.pack("<I", after + len(more))
-                more += data + b"\0" * (len(data) % 2)
-            else:
-                place = data.ljust(4, b"\0")
-            entries += struct.pack("<HHI", tag, kinds[kind], count) + place
-        head = struct.pack("<2sHI", b"II", 42, first)
-        path.write_bytes(head + pixels + struct.pack("<H", len(tags)) + entries + b"\0" * 4 + more)
+def checked_cell(solids: Solids, cell: float | None) -> float:
+    """The cell of a map [m]: that which is given, else about as large as a mean element.
+
+    Raises:
+        CdemError: It is not above zero.
+    """
+    if cell is None:
+        return _round(float(np.cbrt(solids.volumes().mean())))
+    if not (np.isfinite(cell) and cell > 0):
+        raise CdemError(f"the cell of the map must be above 0 m, got {cell:g}")
+    return float(cell)
 
 
 def _round(size: float) -> float:

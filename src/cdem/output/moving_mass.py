@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cdem.case.reader import load_case_data
 from cdem.errors import CdemError
-from cdem.output.element_volumes import Solids
+from cdem.mesh.element_volumes import Solids
 from cdem.output.reader import FrameSeries
 
 Floats = NDArray[np.float64]
@@ -31,12 +31,16 @@ class Body:
     """The moving elements of a run, frame by frame.
 
     Attributes:
+        folder: The result folder.
         frames: From the start, where displacements were last reset, to the end.
         start: The elements at the start.
         mass: Of each element [kg].
+        gravity: Size of gravity [m/s2].
+        crs: Projection of the coordinates as the case has it, or None.
     """
 
     def __init__(self, folder: Path, groups: Sequence[str] | None) -> None:
+        self.folder = folder
         self.series = FrameSeries(folder)
         self.frames = range(self._first(), len(self.series))
         if len(self.frames) < 2:
@@ -51,21 +55,27 @@ class Body:
             if name not in names:
                 raise CdemError(f"{folder}: no group {name!r}; it has: {', '.join(names)}")
         self.chosen = np.isin(self.group, [names.index(name) for name in self.groups])
-        first = 0
-        self.cells: dict[str, NDArray[np.int64]] = {}
-        for shape, nodes in self.series.cells.items():
-            some = nodes[self.chosen[first : first + len(nodes)]]
-            first += len(nodes)
-            if len(some):
-                self.cells[shape] = some
+        self.cells = self._cells(self.chosen)
         self.nodes = np.unique(np.concatenate([c.ravel() for c in self.cells.values()]))
         case, _ = load_case_data(folder / "case.yaml")  # as data: its own laws need not be there
         densities = [
             case["materials"][case["groups"][name]["material"]]["density"] for name in names
         ]
         self.density = np.array(densities)[self.group[self.chosen]]
+        self.gravity = float(np.linalg.norm([float(g) for g in case["loads"]["gravity"]]))
+        self.crs: str | None = case.get("crs")
         self.start = self.solids(self.frames[0])
         self.mass = self.density * self.solids(0).volumes()  # the mesh is free of stress
+
+    def _cells(self, chosen: NDArray[np.bool_]) -> dict[str, NDArray[np.int64]]:
+        """Nodes of chosen elements by shape."""
+        first, cells = 0, {}
+        for shape, nodes in self.series.cells.items():
+            some = nodes[chosen[first : first + len(nodes)]]
+            first += len(nodes)
+            if len(some):
+                cells[shape] = some
+        return cells
 
     def _first(self) -> int:
         """Last frame without displacements: settling that a stage has reset is no run-out."""
@@ -98,6 +108,16 @@ class Body:
             return np.full((len(self.mass), 3), np.nan)
         nodal = self.series.field("PointData", "velocity", frame)
         return np.concatenate([nodal[nodes].mean(axis=1) for nodes in self.cells.values()])
+
+    def ground(self, x: Floats, y: Floats) -> Floats:
+        """Height of what does not move, at the end, at the points of a grid: see `Solids.tops` [m]."""
+        last = self.frames[-1]
+        others = ~self.chosen
+        if "out" in self.series.names["CellData"]:
+            others &= self.series.field("CellData", "out", last) == 0
+        if not others.any():
+            return np.full((len(y), len(x)), np.nan)
+        return Solids.of(self.series.points(last), self._cells(others)).tops(x, y)
 
     def stays(self, frame: int) -> NDArray[np.bool_]:
         """Which elements have not left the domain of the case.

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from cdem.errors import CdemError
+from cdem.run.state import RunState
 
-if TYPE_CHECKING:
-    from cdem.run.simulation import Simulation
-
-Act = Callable[["Simulation"], object]
+Act = Callable[[Any], object]
 """Takes the simulation; True ends the running stage, anything else does not."""
 
 
@@ -44,7 +42,7 @@ class Action:
         """Let the next call be the first after a time [s]."""
         self.count = max(self.count, int(time / self.interval) + 1)
 
-    def call(self, simulation: Simulation) -> bool:
+    def call(self, simulation: RunState) -> bool:
         """Call the function if its time has come; whether it ends the stage."""
         if simulation.time < self.due:
             return False

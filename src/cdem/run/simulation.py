@@ -26,6 +26,7 @@ from cdem.run.actions import Act, Action
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
 from cdem.run.fast_weakening import FastWeakening, fast_weakenings
+from cdem.run.flow_recorder import PREFIX, FlowRecorder
 from cdem.run.law_fields import STRAIN_THAT_ENDS, large_strains, yielded_counts
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
@@ -99,6 +100,7 @@ class Simulation(RunState):
             )
         try:
             super().__init__(case, threads)
+            self.flow = FlowRecorder(self) if self.case.output.maps else None
             self._begin(resume=resume, force=force, strict=strict)
         except BaseException:
             if self.results:
@@ -256,6 +258,8 @@ class Simulation(RunState):
     def advance(self, stage: StageState, steps: int, until: float = np.inf) -> str:
         """Run towards the next event of a stage, at most `steps` steps; returns the outcome."""
         self.check_case()
+        if self.flow:
+            until = min(until, self.flow.due)
         return self._guard(partial(stages.advance, self, stage, steps, until))
 
     def summary(self, status: str) -> dict[str, Any]:
@@ -278,10 +282,7 @@ class Simulation(RunState):
         should_stop: Callable[[], bool] | None,
         until: float = np.inf,
     ) -> str:
-        if self.stage is None:
-            self.stage, self.ended_stage = stages.begin(self), None
-            self._record()
-        stage = self.stage
+        stage = self.stage or self._begin_stage()
         speed, began, note = 0.0, time.perf_counter(), ""
         while True:
             steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
@@ -293,6 +294,7 @@ class Simulation(RunState):
             speed = done / max(now - clock, 1e-9)
             self.wall_time += now - clock
             stage.wall_time += now - clock
+            self._look_at_flow()
             ended = any([action.call(self) for action in self._actions])
             if stages.record_is_due(self, stage, outcome) or ended:
                 self._log_departures()
@@ -322,6 +324,20 @@ class Simulation(RunState):
                 began = now
                 self.checkpoint()
 
+    def _begin_stage(self) -> StageState:
+        self.stage, self.ended_stage = stages.begin(self), None
+        if self.flow:
+            self.flow.begin(self, self.stage)
+        self._record()
+        return self.stage
+
+    def _look_at_flow(self) -> None:
+        """Follow the largest values at each place, where they are followed and a look is due."""
+        if self.flow and self.time >= self.flow.due:
+            self.flow.look(self)
+            if self.flow.ended and self.results:
+                self.results.log(f"warning: {self.flow.ended}")
+
     def _end_stage(self, stage: StageState, status: str) -> None:
         self.finished_stages.append(
             {
@@ -336,6 +352,8 @@ class Simulation(RunState):
         if self.results:
             for strain in large_strains(self):
                 self.results.log(f"warning: {strain.text()}")
+        if self.flow and stage.mode == "dynamic":
+            self.flow.look(self)
         self.stage_index += 1
         self.stage, self.ended_stage = None, stage
         self.checkpoint()
@@ -476,6 +494,13 @@ class Simulation(RunState):
         """Write everything that is needed to go on bit for bit, if there is a result folder."""
         if self.results:
             self.results.checkpoint(self)
+            if self.flow:
+                self.flow.write(self.results.folder, self.time)
+
+    @property
+    def kept(self) -> dict[str, NDArray[np.float64]]:
+        """Arrays that a checkpoint keeps besides those of the core."""
+        return super().kept | (self.flow.arrays if self.flow else {})
 
     def _restore(self, *, force: bool) -> None:
         assert self.results is not None
@@ -520,7 +545,14 @@ class Simulation(RunState):
                 f"{path}: was written with another text of own laws ({names}); go on with the "
                 "headers that were run, or run the case again in another folder (-o)"
             )
+        output = self.given_case.model_dump(mode="json")["output"]
+        if attributes.case.get("output", {}).get("maps") != output["maps"]:
+            raise CdemError(
+                f"{path}: was written with another output.maps, whose values are half there; go on with "
+                "that of the run"
+            )
         own = {"simulation.reference", "simulation.born"}  # see RunState.kept
+        own |= {name for name in arrays if name.startswith(PREFIX)}
         other = set(arrays) - own | set(attributes.core)
         other ^= set(self.core.fields()) | set(self.core.scalars())
         if other or (attributes.version != __version__ and not force):
@@ -535,13 +567,15 @@ class Simulation(RunState):
 
     def _restore_core(self, path: Path, arrays: dict[str, NDArray], attributes: Attributes) -> None:
         """Hand the arrays of a checkpoint to the core, if it can work with them."""
-        own = {name: arrays.pop(name) for name in self.kept}
+        followed = {n: arrays.pop(n) for n in list(arrays) if n.startswith(PREFIX)}
+        own = {name: arrays.pop(name) for name in super().kept}
         wrong = [name for name in own if own[name].shape != self.build.start_position.shape]
         self.reference = own["simulation.reference"]
         self.build.born = own.get("simulation.born", self.build.born)
         fault = f"{wrong[0]} has another shape" if wrong else ""
         fault = fault or restored.wrong_type(self.core, arrays)
         fault = fault or restored.wrong_stage(attributes)
+        fault = fault or (self.flow.restore(followed) if self.flow else "")
         if not fault:
             self.core.restore(arrays, attributes.core)
             fault = restored.wrong_array(self.core)

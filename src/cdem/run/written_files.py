@@ -19,20 +19,21 @@ FOLDERS = {
     "frames": ["frame-*.vtkhdf", "elements.h5"],
     "surface": ["frame-*.vtkhdf"],
     "bolts": ["frame-*.vtkhdf"],
+    "maps": ["*.tif", "*.qml", "*.tif.aux.xml"],  # cdem runout, and what GIS put beside them
 }
 """Folders inside a result folder, and patterns of the names of their files."""
 WRITTEN = {
     # cdem run
     MARKER, LOCK, "case.yaml", "run.log", "summary.json", "checkpoint.h5", "checkpoint-before.h5",
     "histories.csv", "frames.vtkhdf", "surface.vtkhdf", "bolts.vtkhdf",
-    "report.html",
+    "report.html", "maxima.h5",
     # cdem plot, render, export
     "energies.png", "unbalance.png", "history-*.png", "frames.pvd",
     *(f"{field.name}-{part}.png" for field in OUTPUT_FIELDS for part in ("[0-9]" * 4, "overview")),
     *(f"{field.name}.gif" for field in OUTPUT_FIELDS),
     # cdem runout
     "runout.json", "runout.csv", "fragments.csv", "sections.csv", "deposit.asc", "deposit.tif",
-    "deposit.png",
+    "deposit.png", "maps.png", "energy_line.png", "grain_sizes.csv", "grain_sizes.png", "runout.gpkg", "runout.gpkg-shm", "runout.gpkg-wal",
 }  # fmt: skip
 """Patterns of the names of all files that commands write into a result folder."""
 

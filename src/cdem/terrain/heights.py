@@ -28,8 +28,8 @@ class Heights(Protocol):
         """Heights [m], shape (points,), at xy [m], shape (points, 2)."""
 
 
-def extra(module: str) -> Any:
-    """Import a library of the extra `terrain`.
+def extra(module: str, what: str = "meshing terrain") -> Any:
+    """Import a library of the extra `terrain`, which something needs.
 
     Raises:
         BackendError: It is not installed.
@@ -40,7 +40,7 @@ def extra(module: str) -> Any:
         return importlib.import_module(module)
     except ImportError as error:
         raise BackendError(
-            f"meshing terrain needs {module.split('.')[0]}: pip install 'cdem[terrain]' ({error})"
+            f"{what} needs {module.split('.')[0]}: pip install 'cdem[terrain]' ({error})"
         ) from None
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from cdem.mesh import primitives
 from cdem.mesh.element_shapes import NODES, reference_gradients
-from cdem.output.element_volumes import Solids
+from cdem.mesh.element_volumes import Solids
 
 FAR = np.array([5e5, 3e6, 800.0])  # where maps put a slope
 

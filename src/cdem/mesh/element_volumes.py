@@ -6,7 +6,7 @@ triangles around its centre, which enclose exactly the volume that its bilinear 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,9 @@ Floats = NDArray[np.float64]
 
 CHUNK = 200_000
 """Cells under the boxes of triangles that are cut up at once: some 100 MB."""
+
+SLIGHT = 1e-9
+"""Points this part of a triangle beyond its edges lie on it."""
 
 
 @dataclass
@@ -158,19 +161,70 @@ class Solids:
             from south to north.
         """
         low, shape = self.grid(cell)
+        out = np.zeros(shape[0] * shape[1])
+        for part in self.parts(cell, low, shape):
+            out += np.bincount(part.place, part.thickness, len(out))
+        return low, out.reshape(shape)
+
+    def parts(self, cell: float, low: tuple[int, int], shape: tuple[int, int]) -> Iterator[Parts]:
+        """The surface cut at the lines of a grid, some triangles at a time.
+
+        Args:
+            cell: Side of a cell [m].
+            low: Column and row of the south-western cell, counted from the origin.
+            shape: Rows and columns of the grid, which holds all elements.
+        """
         polygons = self.triangles.copy()
         polygons[:, :, :2] = polygons[:, :, :2] / cell - low
         polygons[:, :, 2] -= self.middle[self.owner][:, None, 2]
-        out = np.zeros(shape[0] * shape[1])
         spans = np.ptp(polygons[:, :, :2], axis=1) + 2
         chunk = np.cumsum(spans.prod(axis=1)) // CHUNK
-        for some in np.split(polygons, np.flatnonzero(np.diff(chunk)) + 1):
-            strips, column, _ = _slices(some, 0)
+        ends = np.flatnonzero(np.diff(chunk)) + 1
+        for some, owner in zip(np.split(polygons, ends), np.split(self.owner, ends), strict=True):
+            strips, column, triangle = _slices(some, 0)
             pieces, row, strip = _slices(strips, 1)
             place = np.minimum(row, shape[0] - 1) * shape[1]
             place += np.minimum(column, shape[1] - 1)[strip]
-            out += np.bincount(place, _integrals(pieces), len(out))
-        return low, out.reshape(shape)
+            yield Parts(place, owner[triangle[strip]], *_integrals(pieces))
+
+    def tops(self, x: Floats, y: Floats) -> Floats:
+        """Height of the highest surface at the points of an even grid [m]; nan where there is none.
+
+        Args:
+            x: Of its columns [m], rising.
+            y: Of its rows [m], rising.
+
+        Returns:
+            Shape (rows, columns).
+        """
+        origin, step = np.array([x[0], y[0]]), np.array([x[1] - x[0], y[1] - y[0]])
+        corners = self.triangles.copy()
+        corners[:, :, :2] = (corners[:, :, :2] - origin) / step
+        u, v = (corners[:, k, :2] - corners[:, 0, :2] for k in (1, 2))
+        area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        corners, u, v, area = (
+            each[area > 0] for each in (corners, u, v, area)
+        )  # those that look up
+        low = np.maximum(np.ceil(corners[:, :, :2].min(axis=1) - SLIGHT), 0).astype(int)
+        most = np.array([len(x), len(y)]) - 1
+        high = np.minimum(np.floor(corners[:, :, :2].max(axis=1) + SLIGHT), most).astype(int)
+        wide, count = np.maximum(high - low + 1, 0).T[0], np.maximum(high - low + 1, 0).prod(axis=1)
+        top = np.full(len(x) * len(y), -np.inf)
+        chunk = np.cumsum(count) // CHUNK
+        for some in np.split(np.arange(len(count)), np.flatnonzero(np.diff(chunk)) + 1):
+            of = np.repeat(some, count[some])
+            number = np.arange(len(of)) - np.repeat(
+                np.cumsum(count[some]) - count[some], count[some]
+            )
+            place = low[of] + np.column_stack([number % wide[of], number // wide[of]])
+            arm = place - corners[of, 0, :2]
+            a = (arm[:, 0] * v[of, 1] - arm[:, 1] * v[of, 0]) / area[of]
+            b = (u[of, 0] * arm[:, 1] - u[of, 1] * arm[:, 0]) / area[of]
+            inside = (a >= -SLIGHT) & (b >= -SLIGHT) & (a + b <= 1 + SLIGHT)
+            z = corners[of, :, 2]
+            height = z[:, 0] + a * (z[:, 1] - z[:, 0]) + b * (z[:, 2] - z[:, 0])
+            np.maximum.at(top, (place[:, 1] * len(x) + place[:, 0])[inside], height[inside])
+        return np.where(np.isfinite(top), top, np.nan).reshape(len(y), len(x))
 
     def grid(self, cell: float) -> tuple[tuple[int, int], tuple[int, int]]:
         """South-western cell, and rows and columns, of the grid that holds all elements."""
@@ -178,6 +232,24 @@ class Solids:
         low = np.floor(plan.min(axis=0) / cell)
         size = np.maximum(np.ceil(plan.max(axis=0) / cell) - low, 1)
         return (int(low[0]), int(low[1])), (int(size[1]), int(size[0]))
+
+
+@dataclass
+class Parts:
+    """Parts of triangles, each above or below one cell of a grid.
+
+    Attributes:
+        place: Row times columns plus column of the cell.
+        owner: Element of each.
+        thickness: Integral of z over the plan of the part, positive if it looks up, over the area of
+            a cell [m]; sums to the thickness of each element above each cell.
+        share: Part of the cell that it covers, positive if it looks up [1].
+    """
+
+    place: NDArray[np.intp]
+    owner: NDArray[np.intp]
+    thickness: Floats
+    share: Floats
 
 
 def _triangle_weights(shape: str) -> Floats:
@@ -216,37 +288,53 @@ def _fraction_below(knots: Floats, level: float) -> Floats:
 
 def _slices(polygons: Floats, axis: int) -> tuple[Floats, NDArray[np.intp], NDArray[np.intp]]:
     """Cut convex polygons at every whole number along an axis: parts, slice and polygon of each."""
-    value = polygons[:, :, axis]
-    low = np.floor(value.min(axis=1)).astype(np.intp)
-    count = np.maximum(np.ceil(value.max(axis=1)).astype(np.intp) - low, 1)
+    value = np.ascontiguousarray(polygons[:, :, axis].T)  # rows of corners: the sums run along them
+    low = np.floor(value.min(axis=0)).astype(np.intp)
+    count = np.maximum(np.ceil(value.max(axis=0)).astype(np.intp) - low, 1)
     owner = np.repeat(np.arange(len(polygons)), count)
-    index = low[owner] + np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
-    parts = _keep(polygons[owner], lambda p: p[:, :, axis] - index[:, None])
-    return _keep(parts, lambda p: index[:, None] + 1 - p[:, :, axis]), index, owner
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    index = low[owner] + number
+    parts = _keep(polygons[owner], number > 0, lambda p, i: p[:, :, axis] - index[i, None])
+    ends = number + 1 < count[owner]
+    return _keep(parts, ends, lambda p, i: index[i, None] + 1 - p[:, :, axis]), index, owner
 
 
-def _keep(polygons: Floats, distance: Callable[[Floats], Floats]) -> Floats:
+def _keep(
+    polygons: Floats, chosen: NDArray[np.bool_], distance: Callable[[Floats, NDArray], Floats]
+) -> Floats:
     """The parts of convex polygons (n, k, 3) where a linear function is not negative: (n, k + 1, 3).
 
     Places that are not needed repeat the last corner, and a polygon that vanishes is one point.
+
+    Args:
+        polygons: Corners in order.
+        chosen: Which of them reach where the function is negative; the others stay whole.
+        distance: The function at the corners of some of them, whose numbers it is given.
     """
-    d = distance(polygons)
+    out = np.concatenate([polygons, polygons[:, -1:]], axis=1)
+    some = np.flatnonzero(chosen)
+    if len(some) == 0:
+        return out
+    polygons = polygons[some]
+    d = distance(polygons, some)
     before, d_before = np.roll(polygons, 1, axis=1), np.roll(d, 1, axis=1)
     crossed = (d < 0) != (d_before < 0)
     t = np.where(crossed, d_before / np.where(crossed, d_before - d, 1.0), 0.0)
     points = np.stack([before + t[..., None] * (polygons - before), polygons], axis=2)
-    kept = np.stack([crossed, d >= 0], axis=2)
     n, k = d.shape
-    order = np.argsort(~kept.reshape(n, 2 * k), axis=1, kind="stable")
-    last = np.maximum(kept.reshape(n, -1).sum(axis=1) - 1, 0)
-    take = np.take_along_axis(order, np.minimum(np.arange(k + 1), last[:, None]), axis=1)
-    return np.take_along_axis(points.reshape(n, 2 * k, 3), take[..., None], axis=1)
+    kept = np.stack([crossed, d >= 0], axis=2).reshape(n, 2 * k)
+    places = np.arange(2 * k)
+    order = np.sort(np.where(kept, places, 2 * k), axis=1)[:, : k + 1]  # kept ones first, in order
+    last = np.where(kept.any(axis=1), 2 * k - 1 - kept[:, ::-1].argmax(axis=1), 0)
+    take = np.minimum(order, last[:, None])
+    out[some] = points.reshape(n, 2 * k, 3)[np.arange(n)[:, None], take]
+    return out
 
 
-def _integrals(polygons: Floats) -> Floats:
-    """Integral of z over each polygon's plan, positive if it looks up."""
+def _integrals(polygons: Floats) -> tuple[Floats, Floats]:
+    """Integral of z over each polygon's plan, and the plan's area; positive if it looks up."""
     arms = polygons[:, 1:] - polygons[:, :1]
     a, b = arms[:, :-1], arms[:, 1:]
     area = 0.5 * (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
     mean = polygons[:, :1, 2] + (a[..., 2] + b[..., 2]) / 3
-    return (area * mean).sum(axis=1)
+    return (area * mean).sum(axis=1), area.sum(axis=1)

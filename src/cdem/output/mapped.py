@@ -1,0 +1,173 @@
+"""How well the area that rock has met fits an outline mapped in the field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.input_file import reading
+from cdem.case.map_system import look_up
+from cdem.errors import CaseError
+from cdem.output.geotiff import Raster
+from cdem.terrain.features import read_features
+from cdem.terrain.heights import extra
+from cdem.terrain.projection import Projection
+
+Floats = NDArray[np.float64]
+
+WHAT = "reading a mapped outline"
+ENDS_MEET = 0.05
+"""A line whose ends are nearer than this part of its length is an outline."""
+
+
+@dataclass
+class Fit:
+    """Cells met by the model against those within a mapped outline, by their middles.
+
+    Attributes:
+        file: The outline's.
+        hit: Area met in both [m2].
+        beyond: Area that only the model has met [m2].
+        missed: Area that only the outline holds [m2].
+        front_gap: How much farther the model's front lies than the outline's, along the motion [m].
+        rings: The outline [m], each of shape (points, 2).
+        notes: What was done to bring the outline to the model.
+    """
+
+    file: str
+    hit: float
+    beyond: float
+    missed: float
+    front_gap: float
+    rings: list[Floats]
+    notes: list[str]
+
+    @property
+    def csi(self) -> float:
+        """Critical success index, also called Jaccard's: 1 if both are the same, 0 if apart."""
+        return self.hit / (self.hit + self.beyond + self.missed)
+
+    @property
+    def hit_rate(self) -> float:
+        """Part of the outline that the model has met."""
+        return self.hit / (self.hit + self.missed)
+
+    @property
+    def precision(self) -> float:
+        """Part of the model's area that lies within the outline."""
+        return self.hit / (self.hit + self.beyond)
+
+    @property
+    def area_factor(self) -> float:
+        """Area of the model over that of the outline: the factor of conservativeness, FoC."""
+        return (self.hit + self.beyond) / (self.hit + self.missed)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON."""
+        return {
+            "file": self.file, "layer": "affected", "csi": self.csi, "hit_rate": self.hit_rate,
+            "precision": self.precision, "foc": self.area_factor, "front_gap": self.front_gap,
+            "area": {"hit": self.hit, "beyond": self.beyond, "missed": self.missed},
+        }  # fmt: skip
+
+    def text(self) -> str:
+        """Lines for the user."""
+        side = "beyond" if self.front_gap >= 0 else "short of"
+        return (
+            f"  against {self.file}, area met at any time: CSI {self.csi:.3f}, hit rate "
+            f"{self.hit_rate:.3f}, precision {self.precision:.3f}, FoC {self.area_factor:.3f}\n"
+            f"    {self.hit:.5g} m2 in both, {self.beyond:.5g} m2 of the model alone, "
+            f"{self.missed:.5g} m2 missed; front {abs(self.front_gap):.4g} m {side} the outline's"
+            + "".join(f"\n    {note}" for note in self.notes)
+        )
+
+
+def compare(affected: Raster, path: Path, crs: str | None, way: Floats, front: float) -> Fit:
+    """Compare with the polygons of a file.
+
+    Args:
+        affected: Numbers where rock has been, nan elsewhere.
+        path: GIS file, see `read_features`.
+        crs: Projection of the model; None if it is not known.
+        way: Direction of the motion in plan, a unit vector.
+        front: Place of the model's front along it [m].
+
+    Raises:
+        CaseError: The file cannot be read, holds no area, or lies elsewhere.
+    """
+    projection = Projection(None if crs is None else look_up(crs))
+    outline = read_outline(path, projection)
+    shapely = extra("shapely", WHAT)
+    x, y = affected.middles()
+    within = shapely.contains_xy(outline, *np.meshgrid(x, y))
+    met = np.isfinite(affected.values)
+    cell = affected.cell**2
+    hit, beyond = float((met & within).sum()) * cell, float((met & ~within).sum()) * cell
+    if hit == 0:
+        west, south, east, north = outline.bounds
+        raise CaseError(
+            f"{path}: its outline, x {west:.2f} to {east:.2f}, y {south:.2f} to {north:.2f}, has no "
+            f"cell in common with the run-out, x {x[0]:.2f} to {x[-1]:.2f}, y {y[0]:.2f} to "
+            f"{y[-1]:.2f}; is it in the coordinates of the case?"
+            + "".join(f" ({note})" for note in projection.notes)
+        )
+    missed = float(_cells_within(outline, affected.cell)) * cell - hit
+    farthest = float((shapely.get_coordinates(outline) @ way[:2]).max())
+    rings = [
+        shapely.get_coordinates(ring)
+        for part in shapely.get_parts(outline)
+        for ring in shapely.get_parts(shapely.boundary(part))
+    ]
+    return Fit(str(path), hit, beyond, missed, float(front - farthest), rings, projection.notes)
+
+
+def _cells_within(outline: Any, cell: float) -> int:
+    """Cells whose middles lie in an outline, also beyond the map; lines lie at multiples of a cell."""
+    shapely = extra("shapely", WHAT)
+    west, south, east, north = np.floor(np.array(outline.bounds) / cell)
+    x = cell * (np.arange(west, east + 1) + 0.5)
+    return sum(
+        int(shapely.contains_xy(outline, x, np.full(len(x), cell * (row + 0.5))).sum())
+        for row in np.arange(south, north + 1)
+    )
+
+
+def read_outline(path: Path, projection: Projection) -> Any:
+    """The union of the polygons and closed lines of a file, in the coordinates of the model.
+
+    Args:
+        path: GIS file, see `read_features`.
+        projection: Of the model.
+
+    Raises:
+        CaseError: The file cannot be read, or holds no area.
+    """
+    shapely = extra("shapely", WHAT)
+    found = read_features(path)
+    with reading(path, CaseError, "--against needs a polygon or a closed line"):
+        shapes = [shapely.geometry.shape(geometry) for geometry, _ in found.items]
+        areas = [area for shape in shapes for area in _areas(shapely.force_2d(shape))]
+    if not areas:
+        raise CaseError(f"{path}: holds no polygon or closed line to compare with")
+    outline = shapely.union_all(shapely.make_valid(np.array(areas)))
+    return shapely.transform(
+        outline, lambda points: projection.bring(path, found.label, None, points)
+    )
+
+
+def _areas(shape: Any) -> list[Any]:
+    """Polygons of a geometry, closed lines among them."""
+    shapely = extra("shapely", WHAT)
+    areas = []
+    for part in shapely.get_parts(shape):
+        if part.geom_type == "Polygon" and not part.is_empty:
+            areas.append(part)
+        elif part.geom_type == "LineString" and len(part.coords) > 2:
+            first, last = np.array(part.coords[0]), np.array(part.coords[-1])
+            if np.linalg.norm(last - first) <= ENDS_MEET * part.length:
+                areas.append(shapely.Polygon(part.coords))
+    return areas
