@@ -62,7 +62,7 @@ class Surface:
     Attributes:
         time: [s].
         points: [m], shape (points, 3).
-        faces: Connectivity with the number of vertices before each face, as pyvista wants it.
+        polygons: Point ids, shape (faces, 4), with -1 last in a triangle.
         point_data: By name.
         cell_data: By name.
         group_names: By the numbers of the field "group"; empty where the file does not tell.
@@ -71,11 +71,18 @@ class Surface:
 
     time: float
     points: NDArray[np.float64]
-    faces: NDArray[np.int64]
+    polygons: NDArray[np.int64]
     point_data: dict[str, NDArray]
     cell_data: dict[str, NDArray]
     group_names: list[str]
     bolts: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2, 3)))
+
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """Point ids with the number of vertices before each face, as pyvista wants it."""
+        corners = (self.polygons >= 0).sum(axis=1)
+        faces = np.column_stack([corners, self.polygons])
+        return faces[faces >= 0]
 
 
 class _Frames:
@@ -141,11 +148,13 @@ class SurfaceSeries(_Frames):
     def __getitem__(self, frame: int) -> Surface:
         frame = range(len(self))[frame]
         with self._root(frame) as root:
-            offsets, connectivity = root["Offsets"][()], root["Connectivity"][()]
+            corners, connectivity = np.diff(root["Offsets"][()]), root["Connectivity"][()]
+            polygons = np.full((len(corners), 4), -1)
+            polygons[np.arange(4) < corners[:, None]] = connectivity
             return Surface(
                 float(self.times[frame]),
                 root["Points"][()],
-                np.insert(connectivity, offsets[:-1], np.diff(offsets)),
+                polygons,
                 {name: data[()] for name, data in root["PointData"].items()},
                 {name: data[()] for name, data in root["CellData"].items()},
                 _group_names(root),

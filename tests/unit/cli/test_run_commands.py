@@ -67,7 +67,7 @@ def test_a_report_that_cannot_be_written_is_said_even_by_a_quiet_run(monkeypatch
         raise CdemError(f"{folder}/report.html: cannot be written (Input/output error)")
 
     monkeypatch.setattr("cdem.output.report.report", fails)
-    WRITE_REPORT(tmp_path, silent=True)  # `no_report` has taken its place
+    WRITE_REPORT(tmp_path)  # `no_report` has taken its place
     assert capsys.readouterr().err == (
         f"no report.html: {tmp_path}/report.html: cannot be written (Input/output error)\n"
     )
