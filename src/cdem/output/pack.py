@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import json
 import zlib
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.output.moving_surface import COLORS, NEVER, MovingSurface, SurfaceOf, values_of
+from cdem.output.moving_surface import NEVER, MovingSurface, SurfaceOf, values_of
 
 LEVEL = 6
 """Of gzip: level 9 takes three times as long and saves 2 %."""
@@ -31,7 +31,6 @@ WIDEST = 8.0
 """The largest value of a field that is kept apart, over the value of the last colour."""
 HELD = 150_000_000
 """Positions of all frames take so much memory at most [bytes]; else frames are left out before."""
-NONE = 0xFFFFFFFF
 
 
 @dataclass(frozen=True)
@@ -117,11 +116,13 @@ def put_frames(
     bytes_a_frame = max(6 * len(moving.nodes), 1)
     sparse = max(1, int(np.ceil((total - first) * bytes_a_frame / HELD)))
     held = _hold(moving, surface_of, _every(first, total, sparse))
-    rung = next((r for r in LADDER if _estimate(held, r) <= budget), LADDER[-1])
+    _put_rows(pack, moving, first)
+    room = budget - len(pack.compressed())
+    rung = next((r for r in LADDER if _estimate(held, r) <= room), LADDER[-1])
     kept = _every(0, len(held.frames), rung.every)
     frames = held.frames[kept]
     size = _size(moving)
-    _put_rows(pack, moving, first, frames)
+    _put_coming_and_going(pack, moving, first, frames)
     pack.put("place", _coded_places(_coarse(held.place[kept], rung.bits)))
     for name, values in held.values.items():
         pack.put(f"field.{name}", _coded_bytes(values[kept]))
@@ -218,6 +219,13 @@ def _coded_places(place: NDArray[np.uint16]) -> NDArray[np.uint8]:
     return coded
 
 
+def _coded_numbers(numbers: NDArray[np.int64]) -> NDArray[np.uint32]:
+    """Difference from row to row, modulo 2^32."""
+    coded = numbers.astype("<u4")
+    coded[1:] -= numbers[:-1].astype("<u4")
+    return coded
+
+
 def _coded_bytes(values: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """First difference in time, modulo 256."""
     coded = values.copy()
@@ -240,35 +248,35 @@ def _estimate(held: _Held, rung: Rung) -> float:
     return sizes[0] + float(np.mean(sizes[1:] or [0])) * (len(kept) - 1)
 
 
-def _put_rows(pack: Pack, moving: MovingSurface, first: int, frames: NDArray[np.int64]) -> None:
-    """Put the triangles and elements that come with frames, and the triangles that go."""
+def _put_rows(pack: Pack, moving: MovingSurface, first: int) -> None:
+    """Put the triangles and elements that come from a frame on."""
     triangles, face, edges = _triangles(moving)
     faces = moving.faces
     new = faces.born[face] >= first
-    goes = np.minimum(np.searchsorted(frames, faces.goes[face]), len(frames)).astype(np.uint32)
-    goes[faces.goes[face] == NEVER] = NONE
-    went = np.flatnonzero((goes != NONE) & (faces.goes[face] >= first))
     elements = moving.elements.born >= first
-    pack.put("triangle", triangles[new].astype("<u4"))
-    pack.put("element", faces.element[face[new]].astype("<u4"))
-    pack.put("face", face[new].astype("<u4"))
+    pack.put("triangle", _coded_numbers(triangles[new]))
+    pack.put("element", _coded_numbers(faces.element[face[new]]))
+    pack.put("face", _coded_numbers(face[new]))
     pack.put("edges", edges[new].astype(np.uint8))
     pack.put("joint", faces.joint[face[new]].clip(0, 255).astype(np.uint8))
     pack.put("group", moving.group[elements].clip(0, 255).astype(np.uint8))
-    pack.put("block", moving.block[elements].astype("<u4"))
-    pack.put("goes", np.stack([went, goes[went]], axis=1).astype("<u4"))
-    born = faces.born[face]
+    pack.put("block", _coded_numbers(moving.block[elements]))
     pack.header |= {
         "nodes": len(moving.nodes),
-        "shown": np.searchsorted(born, frames, side="right").tolist(),
         "groups": moving.group_names,
-        "colors": COLORS,
-        "fields": [
-            {"name": f.name, "label": f.label, "unit": f.unit, "on": f.on, "kind": f.kind,
-             "labels": list(f.labels), "top": _top(moving, f.name)}
-            for f in moving.fields.values()
-        ],
-    }  # fmt: skip
+        "fields": [asdict(f) | {"top": _top(moving, f.name)} for f in moving.fields.values()],
+    }
+
+
+def _put_coming_and_going(
+    pack: Pack, moving: MovingSurface, first: int, frames: NDArray[np.int64]
+) -> None:
+    """Put how many triangles have come by each frame, and which go when."""
+    _, face, _ = _triangles(moving)
+    born, goes = moving.faces.born[face], moving.faces.goes[face]
+    went = np.flatnonzero((goes != NEVER) & (goes >= first))
+    pack.put("goes", np.stack([went, np.searchsorted(frames, goes[went])], axis=1).astype("<u4"))
+    pack.header["shown"] = np.searchsorted(born, frames, side="right").tolist()
 
 
 def _top(moving: MovingSurface, name: str) -> float:

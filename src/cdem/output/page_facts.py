@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 from pathlib import Path
 from typing import Any
@@ -57,8 +58,8 @@ def page_facts(folder: Path) -> dict[str, Any]:
         summary = read_summary(folder)
     except CdemError:
         summary = None
-    if summary and columns and columns["step"][-1] > summary["steps"]:
-        summary = None  # of a part of the run: it has been resumed
+    if not is_over(folder):
+        summary = None
     facts = {
         "title": _title(summary, case) or folder.resolve().name,
         "over": summary is not None,
@@ -70,6 +71,16 @@ def page_facts(folder: Path) -> dict[str, Any]:
         "missing": "",
     }
     return facts | (_ended(summary) if summary else _going_on(columns))
+
+
+def is_over(folder: Path) -> bool:
+    """Whether the summary is of the last row of the histories: a run that goes on has passed it."""
+    try:
+        steps = json.loads((folder / "summary.json").read_text())["steps"]
+        last = (folder / "histories.csv").read_text().rstrip().rpartition("\n")[2]
+        return int(last.split(",")[1]) <= steps
+    except (OSError, KeyError, IndexError, ValueError):
+        return (folder / "summary.json").is_file()
 
 
 def _text(path: Path) -> str:

@@ -16,7 +16,7 @@ from cdem._version import __version__
 from cdem.errors import CdemError
 from cdem.output.moving_surface import MovingSurface
 from cdem.output.pack import Pack, put_frames
-from cdem.output.page_facts import page_facts
+from cdem.output.page_facts import is_over, page_facts
 from cdem.output.reader import FrameSeries, Surface, SurfaceSeries, read_histories
 from cdem.run.frame_files import frame_numbers
 
@@ -67,7 +67,7 @@ class RunPage:
             "run": self.run_id(),
             "frames": len(frame_numbers(self.folder / "surface")),
             "rows": rows,
-            "over": (self.folder / "summary.json").is_file(),
+            "over": is_over(self.folder),
         }
 
     def html(self, data: str = "") -> str:
@@ -98,8 +98,11 @@ class RunPage:
         Args:
             budget: Bytes that it should take at most.
         """
-        around = len(self.html("-").encode())
-        data = self.pack(0, 0, max(0, budget - around) * 3 // 4)
+        room = (budget - len(self.html("-").encode())) * 3 // 4
+        data = self.pack(0, 0, room)
+        for part in (0.9, 0.7, 0.5):  # how small frames become is estimated
+            if len(data) > room:
+                data = self.pack(0, 0, int(part * room))
         return self.html(base64.b64encode(data).decode())
 
     def pack(self, frames: int, rows: int, budget: int) -> bytes:

@@ -12,6 +12,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const COLOR_OF = { amount: 0, label: 1, scattered: 2 };
 const DRAW = { ROCK: 0, START: 1, NUMBERS: 2 };
 const ABOVE = 34, BELOW = 66; // pixels of the page
+const COLORS = 251; // of blocks and pieces: the same in moving_surface.py
 const UNITS = ["place0", "place1", "corners", "about", "value0", "value1", "map"];
 
 const VERTEX = `#version 300 es
@@ -33,7 +34,7 @@ void main() {
   value = mix(v0 * scale0, v1 * scale1, between);
   uint group = a.z & 255u;
   label = source == 1 ? int(group) : source == 2 ? int((a.z >> 8) & 255u)
-        : source == 3 ? int(c.w % 251u) : int(v0 * 255. + .5);
+        : source == 3 ? int(c.w % ${COLORS}u) : int(v0 * 255. + .5);
   side = vec3(k == 0, k == 1, k == 2);
   bits = a.z; block = c.w; triangle = t;
   gl_Position = view * vec4(P, 1.);

@@ -53,6 +53,12 @@ function decodeBytes(coded, frames, count) {
   return found;
 }
 
+// Numbers from their difference from row to row, in an array of rows of `width`.
+function decodeNumbers(coded, width = 1) {
+  for (let i = width; i < coded.length; i++) coded[i] += coded[i - width];
+  return coded;
+}
+
 // Two typed arrays one after the other.
 function joined(first, second) {
   const both = new first.constructor(first.length + second.length);
@@ -101,9 +107,8 @@ class Run {
     const base = this.times.length, frames = header.times.length;
     this.fields = header.fields;
     this.groups = header.groups;
-    this.colors = header.colors;
     this.group = joined(this.group, array("group", Uint8Array));
-    this.block = joined(this.block, array("block", Uint32Array));
+    this.block = joined(this.block, decodeNumbers(array("block", Uint32Array)));
     this.appendTriangles(base, array);
     const places = decodePlaces(array("place", Uint8Array), frames, header.nodes);
     const values = {};
@@ -123,8 +128,8 @@ class Run {
   }
 
   appendTriangles(base, array) {
-    const nodes = array("triangle", Uint32Array), element = array("element", Uint32Array);
-    const face = array("face", Uint32Array), edges = array("edges", Uint8Array);
+    const nodes = decodeNumbers(array("triangle", Uint32Array), 3), element = decodeNumbers(array("element", Uint32Array));
+    const face = decodeNumbers(array("face", Uint32Array)), edges = array("edges", Uint8Array);
     const joint = array("joint", Uint8Array), goes = array("goes", Uint32Array);
     const count = element.length, corners = new Uint32Array(4 * count), about = new Uint32Array(4 * count);
     for (let t = 0; t < count; t++) {
