@@ -4,7 +4,8 @@ A pack is the length of a header in JSON (four bytes), the header, and arrays on
 all of it compressed by gzip. The page's own unpack.js reads it.
 
 - Positions are whole numbers in the box of the frames. A frame holds the second difference in time,
-  folded so that small ones are small numbers (zigzag), low bytes before high bytes.
+  of that the difference from node to node, folded so that small ones are small numbers (zigzag), low
+  bytes before high bytes.
 - Amounts are bytes of their largest value, labels their numbers; a frame holds the difference.
 - Rows that a frame does not have keep what they had, or have what they will come with: no difference.
 """
@@ -39,15 +40,18 @@ class Rung:
 
     Attributes:
         bits: Of a coordinate.
+        fine: Steps of 255 from one amount to the next.
         every: Frames from one that is kept to the next.
     """
 
     bits: int
+    fine: int
     every: int
 
 
-LADDER = (Rung(16, 1), Rung(14, 1), Rung(12, 1), Rung(12, 2), Rung(12, 3), Rung(12, 5), Rung(12, 8),
-          Rung(12, 13), Rung(12, 21), Rung(12, 34), Rung(12, 55))  # fmt: skip
+LADDER = [Rung(16, 1, 1), Rung(14, 1, 1), Rung(14, 5, 1), Rung(12, 5, 1)] + [
+    Rung(12, 5, every) for every in (2, 3, 4, 5, 7, 10, 15, 22, 33, 50)
+]
 """From all that there is to the least."""
 
 
@@ -125,7 +129,8 @@ def put_frames(
     _put_coming_and_going(pack, moving, first, frames)
     pack.put("place", _coded_places(_coarse(held.place[kept], rung.bits)))
     for name, values in held.values.items():
-        pack.put(f"field.{name}", _coded_bytes(values[kept]))
+        fine = rung.fine if name in held.high else 1
+        pack.put(f"field.{name}", _coded_bytes(_rounded(values[kept], fine)))
     pack.header |= {
         "times": [moving.times[k] for k in frames],
         "low": moving.lowest.tolist(),
@@ -136,6 +141,8 @@ def put_frames(
     told = []
     if rung.bits < 16:
         told.append(f"positions are rounded to {size / (2**rung.bits - 1):.2g} m")
+    if rung.fine > 1:
+        told.append(f"fields have {255 // rung.fine} steps from nothing to their largest value")
     if len(frames) < total - first:
         told.append(f"{len(frames)} of {total - first} frames are shown")
     return told
@@ -205,14 +212,23 @@ def _coarse(place: NDArray[np.uint16], bits: int) -> NDArray[np.uint16]:
     return np.round(place * np.float32((2**bits - 1) / 65535)).astype(np.uint16)
 
 
+def _rounded(values: NDArray[np.uint8], fine: int) -> NDArray[np.uint8]:
+    """Bytes as multiples of a divisor of 255."""
+    if fine == 1:
+        return values
+    return ((values.astype(np.uint16) + fine // 2) // fine * fine).astype(np.uint8)
+
+
 def _coded_places(place: NDArray[np.uint16]) -> NDArray[np.uint8]:
-    """Second difference in time, modulo 65536, folded; for each frame low bytes, then high bytes."""
+    """Differences in time and from node to node, modulo 65536, folded; low bytes, then high bytes."""
     coded = np.zeros((len(place), 2, place[:1].size), np.uint8)
     zero = np.zeros_like(place[0]) if len(place) else place
     before, change = zero, zero
     for k, now in enumerate(place):
         difference = now - before
-        signed = (difference - change if k > 1 else difference).view(np.int16)
+        second = difference - change if k > 1 else difference.copy()
+        second[1:] -= second[:-1].copy()  # nodes of an element move much alike
+        signed = second.view(np.int16)
         folded = ((signed << 1) ^ (signed >> 15)).view(np.uint16).ravel()
         coded[k] = folded & 255, folded >> 8
         before, change = now, difference
@@ -243,7 +259,9 @@ def _estimate(held: _Held, rung: Rung) -> float:
     for k in some:
         window = kept[max(0, k - 2) : k + 1]
         parts = [_coded_places(_coarse(held.place[window], rung.bits))[-1]]
-        parts += [_coded_bytes(v[window[-2:]])[-1] for v in held.values.values()]
+        for name, values in held.values.items():
+            fine = rung.fine if name in held.high else 1
+            parts.append(_coded_bytes(_rounded(values[window[-2:]], fine))[-1])
         sizes.append(sum(len(zlib.compress(part.tobytes(), LEVEL)) for part in parts))
     return sizes[0] + float(np.mean(sizes[1:] or [0])) * (len(kept) - 1)
 

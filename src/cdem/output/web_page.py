@@ -100,7 +100,7 @@ class RunPage:
         """
         room = (budget - len(self.html("-").encode())) * 3 // 4
         data = self.pack(0, 0, room)
-        for part in (0.9, 0.7, 0.5):  # how small frames become is estimated
+        for part in (0.96, 0.9, 0.7):  # how small frames become is estimated
             if len(data) > room:
                 data = self.pack(0, 0, int(part * room))
         return self.html(base64.b64encode(data).decode())

@@ -18,20 +18,22 @@ async function unpack(bytes) {
   return { header, array };
 }
 
-// Positions from low and high bytes, zigzag, and the second difference in time.
+// Positions from low and high bytes, zigzag, the difference from node to node, and the second one in
+// time; typed arrays count modulo 65536 by themselves.
 function decodePlaces(coded, frames, nodes) {
   const count = 3 * nodes, found = [];
-  let before = null, change = new Uint16Array(count);
+  const change = new Uint16Array(count), difference = new Uint16Array(count);
+  let before = null;
   for (let f = 0; f < frames; f++) {
     const low = coded.subarray(2 * f * count, (2 * f + 1) * count);
     const high = coded.subarray((2 * f + 1) * count, (2 * f + 2) * count);
     const place = new Uint16Array(3 * ROW * rowsOf(nodes));
     for (let i = 0; i < count; i++) {
       const folded = low[i] | (high[i] << 8);
-      const difference = (folded >>> 1) ^ -(folded & 1);
-      if (f === 0) place[i] = difference;
+      difference[i] = ((folded >>> 1) ^ -(folded & 1)) + (i < 3 ? 0 : difference[i - 3]);
+      if (f === 0) place[i] = difference[i];
       else {
-        change[i] = f > 1 ? change[i] + difference : difference;
+        change[i] = f > 1 ? change[i] + difference[i] : difference[i];
         place[i] = before[i] + change[i];
       }
     }
