@@ -11,11 +11,18 @@ function digits(value, count = 4) {
   return String(Number(value.toPrecision(count)));
 }
 
+// A number to as many decimals as its smallest step has.
+function rounded(value, step) {
+  const decimals = Math.min(12, Math.max(0, Math.ceil(-Math.log10(step))));
+  return String(Number(value.toFixed(decimals)) + 0);
+}
+
 // The factor and the unit that make numbers up to `largest` easy to read: 3.2e6 Pa are 3.2 MPa.
 function scaled(largest, unit) {
   if (!TAKE_PREFIX.has(unit) || !(largest > 0)) return { factor: 1, unit };
   const [factor, prefix] = PREFIXES.find(([f]) => largest >= f) ?? PREFIXES.at(-1);
-  if (unit === "m" && factor >= 1e3) return { factor: 1, unit }; // metres stay metres upwards
+  const small = unit === "m"; // metres have small parts only, the others large multiples only
+  if (small ? factor >= 1e3 : factor < 1) return { factor: 1, unit };
   return { factor, unit: prefix + unit };
 }
 

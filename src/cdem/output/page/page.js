@@ -307,7 +307,7 @@ class Page {
     const t = this.picked.triangle, f = Math.round(this.frame), frame = run.frames[f];
     const [node, element, face] = [run.corners[4 * t], run.about[4 * t], run.about[4 * t + 1]];
     const texts = [`block ${this.picked.block} of ${run.groups[run.group[element]]}`,
-      `at ${run.place(node, f).map((x) => digits(x)).join(", ")} m`];
+      `at ${run.place(node, f).map((x) => rounded(x, frame.step)).join(", ")} m`];
     for (const { name, label, unit, on, kind, top, labels } of run.fields) {
       const value = frame.values[name]?.[{ node, element, face }[on]];
       if (value === undefined || kind === "scattered") continue;
