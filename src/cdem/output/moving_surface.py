@@ -110,7 +110,6 @@ class MovingSurface:
         faces: By row.
         group, block: Of each row of elements.
         group_names: By the numbers of the groups.
-        bars: Number of bars of bolts, if all frames have as many; else 0.
         fields: Those that every frame has.
         top: Value of a field that gets the last colour: the largest 99.5th percentile of a frame.
         most: Largest value of a field.

@@ -64,12 +64,14 @@ class _Held:
         place: Positions in steps of the finest rung, shape (frames, nodes, 3).
         values: By field, shape (frames, rows).
         high: Value of 255, by field.
+        bars: Ends of the bars of bolts from the low corner of the box [m], by frame.
     """
 
     frames: NDArray[np.int64]
     place: NDArray[np.uint16]
     values: dict[str, NDArray[np.uint8]]
     high: dict[str, float]
+    bars: list[NDArray[np.float32]]
 
 
 class Pack:
@@ -131,7 +133,10 @@ def put_frames(
     for name, values in held.values.items():
         fine = rung.fine if name in held.high else 1
         pack.put(f"field.{name}", _coded_bytes(_rounded(values[kept], fine)))
+    bars = [held.bars[k] for k in kept]
+    pack.put("bars", np.concatenate(bars))
     pack.header |= {
+        "bars": [len(some) for some in bars],
         "times": [moving.times[k] for k in frames],
         "low": moving.lowest.tolist(),
         "box": moving.highest.tolist(),
@@ -178,7 +183,7 @@ def _hold(moving: MovingSurface, surface_of: SurfaceOf, frames: NDArray[np.int64
     values = {n: np.zeros((len(frames), rows[f.on]), np.uint8) for n, f in changing.items()}
     scale = 65535 / _size(moving)
     latest = np.round((moving.last - moving.lowest) * scale).clip(0, 65535).astype(np.uint16)
-    since: dict[str, int] = dict.fromkeys(rows, -1)
+    bars, known = [], -1
     for k, frame in enumerate(frames):
         surface, stress = surface_of(int(frame))
         where = moving.rows(surface)
@@ -191,10 +196,11 @@ def _hold(moving: MovingSurface, surface_of: SurfaceOf, frames: NDArray[np.int64
                 values[name][k] = values[name][k - 1] if k else 0
                 values[name][k, where[changing[name].on]] = _bytes(of, high.get(name))
         born = moving.nodes.born
-        comes = np.flatnonzero((born > since["node"]) & (born <= frame))
-        since["node"] = int(frame)
+        comes = np.flatnonzero((born > known) & (born <= frame))
+        known = int(frame)
         place[:k, comes] = place[k, comes]
-    return _Held(frames, place, values, high)
+        bars.append((surface.bolts - moving.lowest).astype("<f4"))
+    return _Held(frames, place, values, high, bars)
 
 
 def _bytes(values: NDArray, high: float | None) -> NDArray[np.uint8]:

@@ -97,6 +97,20 @@ void main() {
   result = vec4(c, 1.);
 }`;
 
+// Bolts: each bar is a strip of a few pixels, on both sides of the line between its ends.
+const BAR_VERTEX = `#version 300 es
+precision highp float;
+in vec3 end0, end1; uniform mat4 view; uniform vec2 pixel;
+void main() {
+  vec4 a = view * vec4(end0, 1.), b = view * vec4(end1, 1.);
+  vec2 way = (b.xy - a.xy) / pixel, along = way / max(length(way), 1e-6);
+  vec2 aside = vec2(-along.y, along.x) * pixel * (gl_VertexID % 2 == 0 ? -1.6 : 1.6);
+  gl_Position = (gl_VertexID < 2 ? a : b) + vec4(aside, -2e-4, 0.);
+}`;
+const BAR_FRAGMENT = `#version 300 es
+precision highp float; uniform vec4 ink; out vec4 result;
+void main() { result = ink; }`;
+
 class Picture {
   // Throws an error if the browser has no WebGL 2.
   constructor(canvas) {
@@ -104,21 +118,24 @@ class Picture {
     const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
     if (!gl) throw new Error("this browser has no WebGL 2, so there is no moving picture");
     this.gl = gl;
-    this.program = this.link();
+    this.program = this.link(VERTEX, FRAGMENT);
+    this.barProgram = this.link(BAR_VERTEX, BAR_FRAGMENT);
     this.places = new Map();
     this.held = UNITS.map(() => null); // what each texture holds
     this.textures = UNITS.map(() => gl.createTexture());
     this.camera = { azimuth: -1, height: 0.5, radius: 1, center: [0, 0, 0] };
     this.look = { field: null, hidden: new Uint32Array(8), least: 0, section: null, lines: true, start: false, chosen: STAYS };
     gl.useProgram(this.program);
-    gl.bindVertexArray(gl.createVertexArray());
+    this.noArrays = gl.createVertexArray();
+    this.setUpBars();
+    gl.bindVertexArray(this.noArrays);
     UNITS.forEach((name, unit) => gl.uniform1i(this.at(name), unit));
     gl.uniform3fv(this.at("palette"), GROUPS.flatMap(rgb));
   }
 
-  link() {
+  link(vertex, fragment) {
     const gl = this.gl, program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
@@ -226,8 +243,73 @@ class Picture {
     this.setFrame(first, Math.min(first + 1, this.run.frames.length - 1), frame - first);
     gl.uniform1i(this.at("draw"), DRAW.ROCK);
     gl.uniform1f(this.at("bias"), 0);
-    gl.drawArrays(gl.TRIANGLES, 0, 3 * this.run.shown[first]);
+    this.drawRock(this.run.shown[first]);
+    this.drawBars(first, [width, height]);
     if (this.look.start) this.drawStart();
+  }
+
+  // The hatched insides of a cut lie a little behind: they must not shine through seams of blocks.
+  drawRock(triangles) {
+    const gl = this.gl;
+    if (this.look.section) {
+      gl.enable(gl.CULL_FACE);
+      gl.enable(gl.POLYGON_OFFSET_FILL);
+      gl.cullFace(gl.FRONT);
+      gl.polygonOffset(1, 8);
+      gl.drawArrays(gl.TRIANGLES, 0, 3 * triangles);
+      gl.cullFace(gl.BACK);
+      gl.disable(gl.POLYGON_OFFSET_FILL);
+    }
+    gl.drawArrays(gl.TRIANGLES, 0, 3 * triangles);
+    gl.disable(gl.CULL_FACE);
+  }
+
+  // Ends of the bars of a frame, without those that a cut takes away.
+  barsOf(number) {
+    const { bars, low } = this.run.frames[number], [nx, ny, nz, place] = this.look.section ?? [0, 0, 0, -1];
+    const ends = bars.map((x, k) => x + low[k % 3] - this.origin[k % 3]), kept = [];
+    for (let k = 0; k < ends.length; k += 6) {
+      const [x, y, z] = [0, 1, 2].map((i) => (ends[k + i] + ends[k + 3 + i]) / 2);
+      if (x * nx + y * ny + z * nz >= place) kept.push(...ends.subarray(k, k + 6));
+    }
+    return new Float32Array(kept);
+  }
+
+  setUpBars() {
+    const gl = this.gl;
+    this.barArrays = gl.createVertexArray();
+    this.barBuffer = gl.createBuffer();
+    gl.bindVertexArray(this.barArrays);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.barBuffer);
+    ["end0", "end1"].forEach((name, k) => {
+      const place = gl.getAttribLocation(this.barProgram, name);
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 24, 12 * k);
+      gl.vertexAttribDivisor(place, 1);
+    });
+  }
+
+  // Bolts, faint where they lie in the rock.
+  drawBars(number, size) {
+    const gl = this.gl, bars = this.barsOf(number), ink = [0.78, 0.1, 0.12];
+    if (!bars.length) return;
+    gl.useProgram(this.barProgram);
+    gl.bindVertexArray(this.barArrays);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.barBuffer);
+    gl.bufferData(gl.ARRAY_BUFFER, bars, gl.STREAM_DRAW);
+    const at = (name) => gl.getUniformLocation(this.barProgram, name);
+    gl.uniformMatrix4fv(at("view"), false, this.view);
+    gl.uniform2fv(at("pixel"), size.map((length) => ((devicePixelRatio || 1) / length)));
+    gl.enable(gl.BLEND);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    for (const [test, much] of [[gl.GREATER, 0.45], [gl.LEQUAL, 1]]) {
+      gl.depthFunc(test);
+      gl.uniform4f(at("ink"), ...ink, much);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, bars.length / 6);
+    }
+    gl.disable(gl.BLEND);
+    gl.bindVertexArray(this.noArrays);
+    gl.useProgram(this.program);
   }
 
   // The rock as it began, like glass; behind rock that has not moved.
@@ -254,6 +336,7 @@ class Picture {
       view[4 * i + 2] = -eye[i] / depth;
     }
     view.set([-dot(center, right) / radius / wide, -dot(center, up) / radius, dot(center, eye) / depth, 1], 12);
+    this.view = view;
     gl.uniformMatrix4fv(this.at("view"), false, view);
     gl.uniform3fv(this.at("eye"), eye);
   }

@@ -73,7 +73,7 @@ class Run {
   constructor() {
     this.facts = {}; // title, tables, log: texts of the page
     this.times = []; // of the frames [s]
-    this.frames = []; // {place, low, step, values, high}
+    this.frames = []; // {bars, place, low, step, values, high}
     this.shown = []; // triangles that a frame draws, but those that have gone
     this.fields = [];
     this.groups = [];
@@ -118,8 +118,11 @@ class Run {
       const coded = array(name, Uint8Array);
       values[name.slice(6)] = decodeBytes(coded, frames, coded.length / frames);
     }
+    const bars = array("bars", Float32Array);
+    let bar = 0;
     for (let f = 0; f < frames; f++)
       this.frames.push({
+        bars: bars.subarray(6 * bar, 6 * (bar += header.bars[f])), // both ends of each, from `low`
         place: places[f], nodes: header.nodes, low: header.low, step: header.step, high: header.high,
         values: Object.fromEntries(Object.entries(values).map(([name, all]) => [name, all[f]])),
       });
