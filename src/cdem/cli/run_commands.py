@@ -19,7 +19,7 @@ from cdem.cli.options import (
     allow_own_laws,
     stop_on_signal,
 )
-from cdem.errors import CdemError
+from cdem.errors import CdemError, UnstableError
 
 if TYPE_CHECKING:
     from cdem.run.progress import Progress
@@ -104,7 +104,11 @@ def _run(
             if show:
                 show(now)
 
-        status = simulation.run(progress, lambda: bool(stop))
+        try:
+            status = simulation.run(progress, lambda: bool(stop))
+        except UnstableError:
+            write_report(folder)  # it shows where
+            raise
     if status != "stopped" and not _is_reported(folder):
         write_report(folder)
     return status

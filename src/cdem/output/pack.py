@@ -30,7 +30,7 @@ GZIP = 31
 """How zlib is told to write gzip, which has no time in it then."""
 WIDEST = 8.0
 """The largest value of a field that is kept apart, over the value of the last colour."""
-HELD = 150_000_000
+HELD = 100_000_000
 """Positions of all frames take so much memory at most [bytes]; else frames are left out before."""
 
 
