@@ -88,13 +88,18 @@ class Surface:
 class _Frames:
     """Frames of a series by place: the files of its folder, opened one at a time.
 
+    Args:
+        folder: The folder.
+        numbers: Of the frames; None for all.
+
     Attributes:
         times: [s].
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, numbers: Sequence[int] | None = None) -> None:
         self.folder = folder
-        self._paths = [frame_path(folder, number) for number in frame_numbers(folder)]
+        numbers = frame_numbers(folder) if numbers is None else numbers
+        self._paths = [frame_path(folder, number) for number in numbers]
         if not self._paths:
             raise CdemError(
                 f"{folder}: holds no frames; was output.frames switched off, or has the run only begun?"
@@ -134,9 +139,11 @@ class SurfaceSeries(_Frames):
     """Frames of the surface, read one at a time; those below 0 count from the end."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(Path(folder) / "surface")
-        bolts = Path(folder) / "bolts"
-        self._bolts = _Frames(bolts) if frame_numbers(bolts) else None
+        bolts, surface = Path(folder) / "bolts", Path(folder) / "surface"
+        known = set(frame_numbers(bolts))  # a run writes them after the surface
+        numbers = [n for n in frame_numbers(surface) if n in known or not bolts.is_dir()]
+        super().__init__(surface, numbers)
+        self._bolts = _Frames(bolts, numbers) if known else None
 
     def _bars(self, frame: int) -> NDArray[np.float64]:
         """Ends of the bars of bolts [m], shape (bars, 2, 3)."""

@@ -119,6 +119,8 @@ class RunPage:
         facts["leftOut"] += self._put_histories(pack, rows)
         self._look()
         moving = self._moving
+        if moving.times and self._missing:
+            facts["warnings"].append(f"later frames are not shown: {self._missing}")
         facts["missing"] = self._missing
         pack.header["framesKnown"] = len(moving.times)
         if len(moving.times) > frames:
@@ -134,7 +136,7 @@ class RunPage:
         if known == len(frame_numbers(self.folder / "surface")) and known:
             return
         try:
-            self._surfaces = SurfaceSeries(self.folder)
+            self._surfaces, self._missing = SurfaceSeries(self.folder), ""
         except CdemError as error:
             self._missing = f"no moving picture: {error}"
             return
@@ -144,7 +146,6 @@ class RunPage:
                 self._moving.add(*self._surface(frame))
         except CdemError as error:
             self._missing = str(error)
-            self._moving = MovingSurface()
 
     def _find_stress(self) -> None:
         """Look which frames of the volume have stress, and which belong to those of the surface."""
@@ -171,7 +172,7 @@ class RunPage:
             columns = read_histories(self.folder)
         except CdemError:
             columns = {}
-        values = np.array(list(columns.values()), "<f4").reshape(len(columns), -1)
+        values = np.array(list(columns.values()) or np.zeros((0, 0)), "<f4")
         total = values.shape[1]
         every = max(1, int(np.ceil((total - known) / MOST_ROWS)))
         kept = np.arange(total - 1, known - 1, -every)[::-1]

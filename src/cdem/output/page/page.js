@@ -3,6 +3,7 @@
 
 const by = (id) => document.getElementById(id);
 const LOOK_SECONDS = 2; // between two looks for new frames
+const LOST_AFTER = 3; // looks that get no answer
 const PLAY_SECONDS = 8; // that all frames take
 
 class Page {
@@ -469,20 +470,23 @@ class Page {
   // ---------------------------------------------------------------- a run that goes on
 
   async follow() {
-    const wait = () => new Promise((done) => setTimeout(done, 1000 * LOOK_SECONDS));
-    for (;;) {
-      await wait();
+    for (let failed = 0; failed < LOST_AFTER; ) {
+      await new Promise((done) => setTimeout(done, 1000 * LOOK_SECONDS));
       try {
-        const state = await (await this.source("state")).json();
-        if (state.run !== this.run.facts.run) { location.reload(); return; }
-        if (state.frames > this.run.framesKnown || state.rows !== this.run.rowsKnown || state.over !== this.run.facts.over) await this.grow();
-      } catch (error) {
-        if (!(error instanceof TypeError)) throw error; // what fetch says when nobody answers
-        by("status").textContent = "cdem view has ended";
-        by("status").className = "badge doubt";
-        return;
+        await this.look();
+        failed = 0;
+      } catch {
+        failed++;
       }
     }
+    by("status").textContent = "cdem view has ended";
+    by("status").className = "badge doubt";
+  }
+
+  async look() {
+    const { facts, framesKnown, rowsKnown } = this.run, state = await (await this.source("state")).json();
+    if (state.run !== facts.run) location.reload();
+    else if (state.frames > framesKnown || state.rows !== rowsKnown || state.over !== facts.over) await this.grow();
   }
 
   async grow() {

@@ -11,7 +11,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 const COLOR_OF = { amount: 0, label: 1, scattered: 2 };
 const DRAW = { ROCK: 0, START: 1, NUMBERS: 2 };
-const ABOVE = 34, BELOW = 66; // pixels of the page
+const ABOVE = 56, BELOW = 66; // pixels of the page
 const COLORS = 251; // of blocks and pieces: the same in moving_surface.py
 const UNITS = ["place0", "place1", "corners", "about", "value0", "value1", "map"];
 
