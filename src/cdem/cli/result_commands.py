@@ -53,16 +53,19 @@ def view(
         typer.Option(metavar="FILE.html", help="Write the page into a file instead."),
     ] = None,
     budget: Annotated[
-        float, typer.Option(metavar="MB", min=0.2, help="Size of that file at most.")
-    ] = 10.0,
+        float | None,
+        typer.Option(metavar="MB", min=0.2, help="Size of that file at most; default 10."),
+    ] = None,
 ) -> None:
     """Show a run in the browser; it follows a run that goes on. Ctrl-C ends it."""
     _results(folder)
     if save is not None:
-        from cdem.output.report import report
+        from cdem.output.report import BUDGET, report
 
-        print_paths(report(folder, save, budget=int(1e6 * budget)))
+        print_paths(report(folder, save, budget=int(1e6 * budget) if budget else BUDGET))
         return
+    if budget is not None:
+        raise typer.BadParameter("--budget goes with --save")
     from cdem.output.view import ViewServer
 
     with ViewServer(folder, port) as server:

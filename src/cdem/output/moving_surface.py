@@ -141,7 +141,7 @@ class MovingSurface:
         """
         if "node" not in surface.point_data or "face" not in surface.cell_data:
             raise CdemError(
-                "no moving picture: an older cdem wrote these frames, without the numbers of nodes and "
+                "No moving picture: an older cdem wrote these frames, without the numbers of nodes and "
                 "faces; run the case again, or look at them with cdem render"
             )
         frame = len(self.times)

@@ -138,7 +138,7 @@ class RunPage:
         try:
             self._surfaces, self._missing = SurfaceSeries(self.folder), ""
         except CdemError as error:
-            self._missing = f"no moving picture: {error}"
+            self._missing = f"No moving picture: {error}"
             return
         self._find_stress()
         try:

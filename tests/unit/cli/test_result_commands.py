@@ -20,6 +20,7 @@ def results(run_cli, cube_folder) -> Path:
 def test_the_page_into_a_file(run_cli, results):
     status, out, err = run_cli("view", str(results), "--save", "page.html", "--budget", "0.5")
     assert (status, out, err) == (0, "page.html\n", "")
+    assert run_cli("view", str(results), "--budget", "0.5")[0] == 2
     assert 60_000 < Path("page.html").stat().st_size < 500_000
 
 

@@ -4,7 +4,7 @@
 // triangle, that its nodes, those their positions in the two frames around the time.
 
 const GROUPS = ["#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#9a9a9a",
-  "#332288", "#ddcc77", "#44aa99", "#882255", "#999933"];
+  "#8866cc", "#ddcc77", "#44aa99", "#882255", "#999933"];
 
 const rgb = (color) => [1, 3, 5].map((k) => parseInt(color.slice(k, k + 2), 16) / 255);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
