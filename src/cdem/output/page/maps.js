@@ -26,8 +26,10 @@ const NOTHING = [0.76, 0.745, 0.71]; // where next to nothing has happened: rock
 function bytesOfMap(name) {
   const colors = MAPS[name].split(" ").map((c) => rgb("#" + c)), bytes = new Uint8Array(3 * 256);
   for (let k = 0; k < 256; k++) {
-    const place = (k / 255) * (colors.length - 1), first = Math.min(Math.floor(place), colors.length - 2);
-    const part = Math.min(1, Math.max(0, (k / 255 - 0.004) / 0.018)), much = part * part * (3 - 2 * part);
+    const place = (k / 255) * (colors.length - 1);
+    const first = Math.min(Math.floor(place), colors.length - 2);
+    const part = Math.min(1, Math.max(0, (k / 255 - 0.004) / 0.018));
+    const much = part * part * (3 - 2 * part);
     for (let i = 0; i < 3; i++) {
       const color = colors[first][i] + (colors[first + 1][i] - colors[first][i]) * (place - first);
       bytes[3 * k + i] = Math.round(255 * (NOTHING[i] + (color - NOTHING[i]) * much));

@@ -33,7 +33,9 @@ class Page {
     by("status").textContent = facts.status;
     by("status").className = `badge ${facts.tone}`;
     by("tiles").replaceChildren(...facts.tiles.map(([name, value, tone]) => {
-      const tile = document.createElement("div"), strong = document.createElement("b"), label = document.createElement("span");
+      const tile = document.createElement("div");
+      const strong = document.createElement("b");
+      const label = document.createElement("span");
       tile.className = `tile ${tone}`;
       strong.textContent = value;
       label.textContent = name;
@@ -48,11 +50,14 @@ class Page {
     }));
     by("tables").replaceChildren(...facts.tables.map((table) => this.card(table)));
     for (const name of ["repeat", "case", "log"]) by(name).textContent = facts[name];
-    by("left-out").textContent = facts.leftOut.length ? `Left out to keep this page small: ${facts.leftOut.join("; ")}.` : "";
+    const out = facts.leftOut.join("; ");
+    by("left-out").textContent = out && `Left out to keep this page small: ${out}.`;
   }
 
   card({ title, head, rows }) {
-    const card = document.createElement("article"), heading = document.createElement("h2"), table = document.createElement("table");
+    const card = document.createElement("article");
+    const heading = document.createElement("h2");
+    const table = document.createElement("table");
     card.className = "card";
     heading.textContent = title;
     const line = (cells, kind) => {
@@ -133,8 +138,7 @@ class Page {
   setFields() {
     const now = by("field").value, names = this.run.fields.map((f) => f.name);
     by("field").replaceChildren(...this.run.fields.map((f) => new Option(f.label, f.name)));
-    const moved = this.run.fields.find((f) => f.name === "displacement");
-    by("field").value = names.includes(now) ? now : moved ? "displacement" : names.includes("damage") ? "damage" : "group";
+    by("field").value = [now, "displacement", "damage", "group"].find((n) => names.includes(n));
     this.setField();
   }
 
@@ -151,7 +155,8 @@ class Page {
     const part = this.field.kind === "amount" ? Number(by("least").value) : 0;
     const { factor, unit } = scaled(this.field.top, this.field.unit);
     this.picture.look.least = part;
-    by("least-value").textContent = part ? `${digits(part * this.field.top / factor, 3)} ${unit === "1" ? "" : unit}` : "all";
+    const least = digits((part * this.field.top) / factor, 3);
+    by("least-value").textContent = part ? `${least} ${unit === "1" ? "" : unit}` : "all";
     this.dirty = true;
   }
 
@@ -170,7 +175,7 @@ class Page {
     };
     if (kind === "amount") {
       const stops = [];
-      for (let k = 0; k <= 32; k++) stops.push(`rgb(${[0, 1, 2].map((i) => this.mapBytes[3 * Math.min(255, 8 * k) + i])})`);
+      for (let k = 0; k <= 255; k += 15) stops.push(`rgb(${this.mapBytes.slice(3 * k, 3 * k + 3)})`);
       by("bar").style.background = `linear-gradient(90deg, ${stops})`;
       by("ticks").replaceChildren(...ticks(0, top / inUnit.factor, 4).map((v) => {
         const tick = mark(digits(v), "");
@@ -226,13 +231,16 @@ class Page {
 
   // Look from the side of the motion, a little from above.
   turnToMotion() {
-    const { run, picture } = this, move = [0, 0], every = Math.max(1, Math.floor(run.frames[0].nodes / 3000));
+    const { run, picture } = this;
+    const move = [0, 0];
+    const every = Math.max(1, Math.floor(run.frames[0].nodes / 3000));
     for (let n = 0; n < run.frames[0].nodes; n += every) {
       const [a, b] = [run.place(n, 0), run.place(n, this.last)];
       move[0] += b[0] - a[0];
       move[1] += b[1] - a[1];
     }
-    const size = Math.max(...run.high.map((h, i) => h - run.low[i])), much = Math.hypot(...move) * every / run.frames[0].nodes;
+    const size = Math.max(...run.high.map((h, i) => h - run.low[i]));
+    const much = Math.hypot(...move) * every / run.frames[0].nodes;
     picture.camera.azimuth = much > 1e-3 * size ? Math.atan2(move[1], move[0]) - 1.05 : -1.05;
     picture.camera.height = 0.48;
     this.fit();
@@ -277,7 +285,8 @@ class Page {
       this.dirty = true;
     });
     const end = (event) => {
-      if (points.delete(event.pointerId) && way < 5 && event.type === "pointerup" && event.button === 0) this.pick(event);
+      const click = event.type === "pointerup" && event.button === 0 && way < 5;
+      if (points.delete(event.pointerId) && click) this.pick(event);
     };
     for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, end);
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -287,7 +296,8 @@ class Page {
       this.dirty = true;
     }, { passive: false });
     canvas.addEventListener("keydown", (event) => {
-      const steps = { ArrowRight: Math.floor(this.frame) + 1, ArrowLeft: Math.ceil(this.frame) - 1, Home: 0, End: this.last };
+      const [after, before] = [Math.floor(this.frame) + 1, Math.ceil(this.frame) - 1];
+      const steps = { ArrowRight: after, ArrowLeft: before, Home: 0, End: this.last };
       if (event.key === " ") this.play(!this.playing);
       else if (event.key in steps) { this.play(false); this.seek(steps[event.key]); } else return;
       event.preventDefault();
@@ -313,7 +323,8 @@ class Page {
       const value = frame.values[name]?.[{ node, element, face }[on]];
       if (value === undefined || kind === "scattered") continue;
       const amount = (value / 255) * (frame.high[name] ?? 1), inUnit = scaled(top, unit);
-      texts.push(`${label}: ${kind === "label" ? labels[value] : `${digits(amount / inUnit.factor, 2)} ${unit === "1" ? "" : inUnit.unit}`}`);
+      const shown = `${digits(amount / inUnit.factor, 2)} ${unit === "1" ? "" : inUnit.unit}`;
+      texts.push(`${label}: ${kind === "label" ? labels[value] : shown}`);
     }
     by("picked").textContent = texts.join("\n");
   }
@@ -332,7 +343,8 @@ class Page {
   fillPlots() {
     const { run } = this, sets = new Map(), energies = [];
     run.columns.forEach((name, k) => {
-      const energy = name.match(/^(\w+) (energy|work) \[J\]$/), part = name.match(/^(.+)_([xyz]) \[(.*)\]$/);
+      const energy = name.match(/^(\w+) (energy|work) \[J\]$/);
+      const part = name.match(/^(.+)_([xyz]) \[(.*)\]$/);
       const [, plain, unit] = name.match(/^(.*?)(?: \[(.*)\])?$/);
       const line = { name: part ? part[2] : plain, values: run.history[k] };
       if (energy) energies.push({ name: energy[1].replaceAll("_", " "), values: run.history[k] });
@@ -404,7 +416,9 @@ class Page {
     x.font = `12px ${style.fontFamily}`;
     x.strokeStyle = x.fillStyle = style.color;
     x.lineWidth = 2;
-    const metres = this.picture.metresPerPixel, length = roundDown(Math.min(150, w / 3) * metres), wide = length / metres;
+    const metres = this.picture.metresPerPixel;
+    const length = roundDown(Math.min(150, w / 3) * metres);
+    const wide = length / metres;
     const inUnit = scaled(length, "m"), left = w - 22 - wide, low = h - 68;
     x.strokeRect(left, low, 0, 5);
     x.strokeRect(left + wide, low, 0, 5);
@@ -427,7 +441,10 @@ class Page {
 
   // Picture, scale, legend and time as one PNG.
   save() {
-    const gl = by("gl"), all = document.createElement("canvas"), x = all.getContext("2d"), ratio = devicePixelRatio || 1;
+    const gl = by("gl");
+    const all = document.createElement("canvas");
+    const x = all.getContext("2d");
+    const ratio = devicePixelRatio || 1;
     this.draw();
     all.width = gl.width;
     all.height = gl.height;
@@ -484,7 +501,8 @@ class Page {
   }
 
   async look() {
-    const { facts, framesKnown, rowsKnown } = this.run, state = await (await this.source("state")).json();
+    const { facts, framesKnown, rowsKnown } = this.run;
+    const state = await (await this.source("state")).json();
     if (state.run !== facts.run) location.reload();
     else if (state.frames > framesKnown || state.rows !== rowsKnown || state.over !== facts.over) await this.grow();
   }
@@ -514,7 +532,9 @@ async function main() {
     return answer;
   };
   const text = by("data").textContent.trim();
-  const bytes = live ? await (await source("data?frames=0&rows=0")).arrayBuffer() : Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const bytes = live
+    ? await (await source("data?frames=0&rows=0")).arrayBuffer()
+    : Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   run.append(await unpack(bytes));
   const page = new Page(run, live ? source : null);
   if (live) await page.follow();

@@ -124,7 +124,10 @@ class Picture {
     this.held = UNITS.map(() => null); // what each texture holds
     this.textures = UNITS.map(() => gl.createTexture());
     this.camera = { azimuth: -1, height: 0.5, radius: 1, center: [0, 0, 0] };
-    this.look = { field: null, hidden: new Uint32Array(8), least: 0, section: null, lines: true, start: false, chosen: STAYS };
+    this.look = {
+      field: null, hidden: new Uint32Array(8), least: 0, section: null, lines: true, start: false,
+      chosen: STAYS,
+    };
     gl.useProgram(this.program);
     this.noArrays = gl.createVertexArray();
     this.setUpBars();
@@ -195,7 +198,8 @@ class Picture {
     const { azimuth, height } = this.camera, flat = Math.cos(height);
     const eye = [Math.cos(azimuth) * flat, Math.sin(azimuth) * flat, Math.sin(height)];
     const right = [-Math.sin(azimuth), Math.cos(azimuth), 0];
-    const up = [eye[1] * right[2] - eye[2] * right[1], eye[2] * right[0] - eye[0] * right[2], eye[0] * right[1] - eye[1] * right[0]];
+    const up = [0, 1, 2].map((i) => [(i + 1) % 3, (i + 2) % 3])
+      .map(([j, k]) => eye[j] * right[k] - eye[k] * right[j]);
     return { eye, right, up };
   }
 
@@ -206,10 +210,14 @@ class Picture {
 
   // Look at points so that all are in the picture: those of a few nodes at the start and end.
   fit() {
-    const { right, up } = this.axes(), run = this.run, wide = this.canvas.clientWidth / this.canvas.clientHeight || 1;
+    const { right, up } = this.axes();
+    const run = this.run;
+    const wide = this.canvas.clientWidth / this.canvas.clientHeight || 1;
     const box = { x: [Infinity, -Infinity], y: [Infinity, -Infinity], z: [Infinity, -Infinity] };
     for (const f of new Set([0, run.frames.length - 1])) {
-      const count = run.frames[f].nodes, every = Math.max(1, Math.floor(count / 4000)), eye = this.axes().eye;
+      const count = run.frames[f].nodes;
+      const every = Math.max(1, Math.floor(count / 4000));
+      const eye = this.axes().eye;
       for (let n = 0; n < count; n += every) {
         const p = run.place(n, f).map((x, i) => x - this.origin[i]);
         for (const [axis, way] of [["x", right], ["y", up], ["z", eye]]) {
@@ -230,7 +238,8 @@ class Picture {
   // Draw a frame, which may lie between two.
   draw(frame, paper) {
     const gl = this.gl, ratio = devicePixelRatio || 1, canvas = this.canvas;
-    const width = Math.max(1, canvas.clientWidth * ratio | 0), height = Math.max(1, canvas.clientHeight * ratio | 0);
+    const width = Math.max(1, canvas.clientWidth * ratio | 0);
+    const height = Math.max(1, canvas.clientHeight * ratio | 0);
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
@@ -266,7 +275,8 @@ class Picture {
 
   // Ends of the bars of a frame, without those that a cut takes away.
   barsOf(number) {
-    const { bars, low } = this.run.frames[number], [nx, ny, nz, place] = this.look.section ?? [0, 0, 0, -1];
+    const { bars, low } = this.run.frames[number];
+    const [nx, ny, nz, place] = this.look.section ?? [0, 0, 0, -1];
     const ends = bars.map((x, k) => x + low[k % 3] - this.origin[k % 3]), kept = [];
     for (let k = 0; k < ends.length; k += 6) {
       const [x, y, z] = [0, 1, 2].map((i) => (ends[k + i] + ends[k + 3 + i]) / 2);
@@ -328,7 +338,8 @@ class Picture {
 
   setView(wide) {
     const gl = this.gl, { eye, right, up } = this.axes(), { center, radius } = this.camera;
-    const size = Math.hypot(...this.run.high.map((h, i) => h - this.origin[i])), depth = 4 * Math.max(size, radius);
+    const size = Math.hypot(...this.run.high.map((h, i) => h - this.origin[i]));
+    const depth = 4 * Math.max(size, radius);
     const view = new Float32Array(16);
     for (let i = 0; i < 3; i++) {
       view[4 * i] = right[i] / radius / wide;
@@ -360,7 +371,9 @@ class Picture {
     gl.uniform1ui(this.at("frame"), first);
     gl.uniform1i(this.at("on"), ["node", "element", "face"].indexOf(field.on));
     gl.uniform1i(this.at("color"), COLOR_OF[field.kind]);
-    gl.uniform1i(this.at("source"), ["", "group", "joint", "block"].indexOf(field.name in run.frames[first].values ? "" : field.name));
+    const changes = field.name in run.frames[first].values;
+    const source = changes ? 0 : ["", "group", "joint", "block"].indexOf(field.name);
+    gl.uniform1i(this.at("source"), source);
     gl.uniform1f(this.at("least"), this.look.least);
     gl.uniform1uiv(this.at("hidden"), this.look.hidden);
     gl.uniform1ui(this.at("chosen"), this.look.chosen);
@@ -372,9 +385,14 @@ class Picture {
   // The triangle under a pixel of the page, or -1.
   under(x, y, frame) {
     const gl = this.gl, ratio = devicePixelRatio || 1, { width, height } = this.canvas;
-    const target = gl.createFramebuffer(), colors = gl.createRenderbuffer(), depths = gl.createRenderbuffer();
+    const target = gl.createFramebuffer();
+    const colors = gl.createRenderbuffer();
+    const depths = gl.createRenderbuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
-    for (const [buffer, format, where] of [[colors, gl.RGBA8, gl.COLOR_ATTACHMENT0], [depths, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+    for (const [buffer, format, where] of [
+      [colors, gl.RGBA8, gl.COLOR_ATTACHMENT0],
+      [depths, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT],
+    ]) {
       gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
       gl.renderbufferStorage(gl.RENDERBUFFER, format, width, height);
       gl.framebufferRenderbuffer(gl.FRAMEBUFFER, where, gl.RENDERBUFFER, buffer);

@@ -29,7 +29,10 @@ class Plot {
   }
 
   draw(time) {
-    const canvas = this.canvas, ratio = devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
+    const canvas = this.canvas;
+    const ratio = devicePixelRatio || 1;
+    const w = canvas.clientWidth;
+    const h = canvas.clientHeight;
     if (!w || !this.lines.length || !this.times.length) return;
     canvas.width = w * ratio;
     canvas.height = h * ratio;
@@ -38,12 +41,19 @@ class Plot {
     x.font = `11px ${style.fontFamily}`;
     x.fillStyle = style.color;
     let low = Infinity, high = -Infinity;
-    for (const { values } of this.lines) for (const v of values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+    for (const { values } of this.lines)
+      for (const v of values.filter(Number.isFinite)) {
+        low = Math.min(low, v);
+        high = Math.max(high, v);
+      }
     if (!(high > low)) { low = Math.min(low, 0); high = Math.max(high, low + 1); }
     if (!Number.isFinite(low)) return;
     const { factor, unit } = scaled(Math.max(Math.abs(low), Math.abs(high)), this.unit);
     const marks = ticks(low / factor, high / factor, 4), texts = marks.map((v) => digits(v));
-    const left = 10 + Math.max(...texts.map((t) => x.measureText(t).width)), top = 20, bottom = 20, right = 12;
+    const left = 10 + Math.max(...texts.map((t) => x.measureText(t).width));
+    const top = 20;
+    const bottom = 20;
+    const right = 12;
     const start = this.times[0], end = Math.max(this.times.at(-1), start + 1e-12);
     const px = (t) => left + (w - left - right) * (t - start) / (end - start);
     const py = (v) => h - bottom - (h - bottom - top) * (v - low) / (high - low);

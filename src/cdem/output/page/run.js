@@ -98,7 +98,8 @@ class Run {
   }
 
   appendHistories(header, array) {
-    const values = array("history", Float32Array), rows = header.columns.length ? values.length / header.columns.length : 0;
+    const values = array("history", Float32Array);
+    const rows = header.columns.length ? values.length / header.columns.length : 0;
     this.columns = header.columns;
     const known = this.history;
     this.history = header.columns.map((_, k) =>
@@ -133,10 +134,13 @@ class Run {
   }
 
   appendTriangles(base, array) {
-    const nodes = decodeNumbers(array("triangle", Uint32Array), 3), element = decodeNumbers(array("element", Uint32Array));
+    const nodes = decodeNumbers(array("triangle", Uint32Array), 3);
+    const element = decodeNumbers(array("element", Uint32Array));
     const face = decodeNumbers(array("face", Uint32Array)), edges = array("edges", Uint8Array);
     const joint = array("joint", Uint8Array), goes = array("goes", Uint32Array);
-    const count = element.length, corners = new Uint32Array(4 * count), about = new Uint32Array(4 * count);
+    const count = element.length;
+    const corners = new Uint32Array(4 * count);
+    const about = new Uint32Array(4 * count);
     for (let t = 0; t < count; t++) {
       const e = element[t];
       corners.set([nodes[3 * t], nodes[3 * t + 1], nodes[3 * t + 2], this.block[e]], 4 * t);
