@@ -32,10 +32,10 @@ def run_cli(monkeypatch, capsys):
 
 @pytest.fixture
 def no_report(monkeypatch):
-    """Runs write no report.html, which takes seconds."""
+    """Runs write no report.html."""
     from cdem.cli import run_commands
 
-    monkeypatch.setattr(run_commands, "write_report", lambda folder, silent: None)
+    monkeypatch.setattr(run_commands, "write_report", lambda folder: None)
 
 
 @pytest.fixture

@@ -1,8 +1,11 @@
-"""Verbs of the command line that look at results: info, plot, render, runout, export."""
+"""Verbs of the command line that look at results: info, plot, render, view, runout, export."""
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
+import webbrowser
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -37,6 +40,47 @@ def render(
     from cdem.output import render as drawing
 
     print_paths(drawing.render(_results(folder), field=field, movie=movie))
+
+
+def view(
+    folder: ResultFolder,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for any.")] = 0,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the address only.")
+    ] = False,
+    save: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.html", help="Write the page into a file instead."),
+    ] = None,
+    budget: Annotated[
+        float | None,
+        typer.Option(metavar="MB", min=0.2, help="Size of that file at most; default 10."),
+    ] = None,
+) -> None:
+    """Show a run in the browser; it follows a run that goes on. Ctrl-C ends it."""
+    _results(folder)
+    if save is not None:
+        from cdem.output.report import BUDGET, report
+
+        print_paths(report(folder, save, budget=int(1e6 * budget) if budget else BUDGET))
+        return
+    if budget is not None:
+        raise typer.BadParameter("--budget goes with --save")
+    from cdem.output.view import ViewServer
+
+    with ViewServer(folder, port) as server:
+        print(f"{server.address}\nCtrl-C ends it", flush=True)
+        if not no_browser and _has_screen():
+            webbrowser.open(server.address)
+        with contextlib.suppress(KeyboardInterrupt):
+            server.serve_forever()
+
+
+def _has_screen() -> bool:
+    """Whether a browser can open a window; one in the terminal would take that from us."""
+    return sys.platform == "darwin" or any(
+        os.environ.get(n) for n in ("DISPLAY", "WAYLAND_DISPLAY")
+    )
 
 
 def runout(

@@ -19,7 +19,7 @@ from cdem.cli.options import (
     allow_own_laws,
     stop_on_signal,
 )
-from cdem.errors import CdemError
+from cdem.errors import CdemError, UnstableError
 
 if TYPE_CHECKING:
     from cdem.run.progress import Progress
@@ -104,9 +104,13 @@ def _run(
             if show:
                 show(now)
 
-        status = simulation.run(progress, lambda: bool(stop))
+        try:
+            status = simulation.run(progress, lambda: bool(stop))
+        except UnstableError:
+            write_report(folder)  # it shows where
+            raise
     if status != "stopped" and not _is_reported(folder):
-        write_report(folder, silent=silent)
+        write_report(folder)
     return status
 
 
@@ -118,7 +122,7 @@ def _is_reported(folder: Path) -> bool:
     )
 
 
-def write_report(folder: Path, *, silent: bool) -> None:
+def write_report(folder: Path) -> None:
     """Write report.html; the results are whole without it, so that it is missing is only said."""
     from cdem.output import report
 
@@ -126,9 +130,6 @@ def write_report(folder: Path, *, silent: bool) -> None:
         report.report(folder)
     except CdemError as error:
         print(f"no report.html: {error}", file=sys.stderr)
-    except ImportError as error:
-        if not silent:  # who has no extra for pictures knows
-            print(f"no report.html: {error}", file=sys.stderr)
 
 
 def _resume_command(

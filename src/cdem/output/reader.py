@@ -62,7 +62,7 @@ class Surface:
     Attributes:
         time: [s].
         points: [m], shape (points, 3).
-        faces: Connectivity with the number of vertices before each face, as pyvista wants it.
+        polygons: Point ids, shape (faces, 4), with -1 last in a triangle.
         point_data: By name.
         cell_data: By name.
         group_names: By the numbers of the field "group"; empty where the file does not tell.
@@ -71,23 +71,35 @@ class Surface:
 
     time: float
     points: NDArray[np.float64]
-    faces: NDArray[np.int64]
+    polygons: NDArray[np.int64]
     point_data: dict[str, NDArray]
     cell_data: dict[str, NDArray]
     group_names: list[str]
     bolts: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2, 3)))
 
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """Point ids with the number of vertices before each face, as pyvista wants it."""
+        corners = (self.polygons >= 0).sum(axis=1)
+        faces = np.column_stack([corners, self.polygons])
+        return faces[faces >= 0]
+
 
 class _Frames:
     """Frames of a series by place: the files of its folder, opened one at a time.
+
+    Args:
+        folder: The folder.
+        numbers: Of the frames; None for all.
 
     Attributes:
         times: [s].
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, numbers: Sequence[int] | None = None) -> None:
         self.folder = folder
-        self._paths = [frame_path(folder, number) for number in frame_numbers(folder)]
+        numbers = frame_numbers(folder) if numbers is None else numbers
+        self._paths = [frame_path(folder, number) for number in numbers]
         if not self._paths:
             raise CdemError(
                 f"{folder}: holds no frames; was output.frames switched off, or has the run only begun?"
@@ -127,9 +139,11 @@ class SurfaceSeries(_Frames):
     """Frames of the surface, read one at a time; those below 0 count from the end."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(Path(folder) / "surface")
-        bolts = Path(folder) / "bolts"
-        self._bolts = _Frames(bolts) if frame_numbers(bolts) else None
+        bolts, surface = Path(folder) / "bolts", Path(folder) / "surface"
+        known = set(frame_numbers(bolts))  # a run writes them after the surface
+        numbers = [n for n in frame_numbers(surface) if n in known or not bolts.is_dir()]
+        super().__init__(surface, numbers)
+        self._bolts = _Frames(bolts, numbers) if known else None
 
     def _bars(self, frame: int) -> NDArray[np.float64]:
         """Ends of the bars of bolts [m], shape (bars, 2, 3)."""
@@ -141,11 +155,13 @@ class SurfaceSeries(_Frames):
     def __getitem__(self, frame: int) -> Surface:
         frame = range(len(self))[frame]
         with self._root(frame) as root:
-            offsets, connectivity = root["Offsets"][()], root["Connectivity"][()]
+            corners, connectivity = np.diff(root["Offsets"][()]), root["Connectivity"][()]
+            polygons = np.full((len(corners), 4), -1)
+            polygons[np.arange(4) < corners[:, None]] = connectivity
             return Surface(
                 float(self.times[frame]),
                 root["Points"][()],
-                np.insert(connectivity, offsets[:-1], np.diff(offsets)),
+                polygons,
                 {name: data[()] for name, data in root["PointData"].items()},
                 {name: data[()] for name, data in root["CellData"].items()},
                 _group_names(root),

@@ -48,14 +48,12 @@ def snapshot(sim: RunState) -> Surface:
     from cdem.run.bolt_fields import bolt_lines
     from cdem.run.fields import surface_of, values_of
 
-    places, vertices, point_data, cell_data = surface_of(sim, values_of(sim, CARRIED))
-    counts = (vertices >= 0).sum(axis=1)
-    faces = np.column_stack([counts, vertices])
+    places, polygons, point_data, cell_data = surface_of(sim, values_of(sim, CARRIED))
     ends, lines, _, _ = bolt_lines(sim)
     return Surface(
         sim.time,
         places,
-        faces[faces >= 0],
+        polygons,
         point_data,
         cell_data,
         sim.build.group_names,

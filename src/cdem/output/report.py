@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import base64
-from importlib import resources
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from jinja2 import Environment
 
-from cdem.errors import CdemError
-from cdem.output.figures import plot
+from cdem.output.page_facts import closing, moving
 from cdem.output.reader import read_summary
-from cdem.output.render import render
+from cdem.output.web_page import RunPage
 from cdem.run.energy_terms import ENERGY_TERMS
-from cdem.run.rest import REST_SPEED, SLOW_SPEED
 from cdem.whole_files import write_text
 
-DOUBTFUL = 0.01
-"""Closing error of the energy balance that is flagged, as a share of its largest term."""
+BUDGET = 10_000_000
+"""Size of report.html at most [bytes]."""
 
 
 def info(folder: Path) -> str:
@@ -74,48 +68,18 @@ def info(folder: Path) -> str:
     return "\n".join(lines) + "\n"
 
 
-def closing(energies: dict[str, float]) -> str:
-    """How well the energy balance closes, with a word if that is not well enough."""
-    error = energies["error"]
-    doubt = (
-        "" if abs(error) <= DOUBTFUL else f": above {100 * DOUBTFUL:g} %, look before you trust it"
-    )
-    return f"{100 * error:.3g} %{doubt}"
+def report(folder: Path, path: Path | None = None, *, budget: int = BUDGET) -> Path:
+    """Write the page of a run: moving picture, histories, energies, warnings, in one file.
 
+    Args:
+        folder: Result folder.
+        path: The file; None for report.html in the folder.
+        budget: Bytes that it should take at most; frames and digits are left out until it does.
 
-def moving(summary: dict[str, Any]) -> str:
-    """Say how fast the fastest block moved at the end of a run; nothing if all rest, or not known."""
-    # of a run that failed, numbers that are not finite are null
-    speeds = {name: g.get("fastest_block") or 0.0 for name, g in summary["groups"].items()}
-    name = max(speeds, key=speeds.__getitem__)
-    if speeds[name] < (SLOW_SPEED if summary["status"] == "at rest" else REST_SPEED):
-        return ""
-    return f", still moving at {speeds[name]:.3g} m/s (a block of group {name})"
-
-
-def report(folder: Path) -> Path:
-    """Write report.html: summary, energy balance, pictures, all in one file."""
-    folder = Path(folder)
-    s = read_summary(folder)
-    pictures = plot(folder)
-    try:
-        pictures = render(folder)[-1:] + pictures
-        missing = ""
-    except CdemError as error:
-        missing = str(error)
-    e = s["energies"]
-    # case files come from strangers: whatever they name is escaped
-    page = Environment(autoescape=True).from_string(
-        (resources.files("cdem.output") / "report_page.html").read_text(encoding="utf-8")
-    )
-    text = page.render(
-        title=s["title"] or "cdem run",
-        closing=closing(e) if e else "not sampled",
-        info=info(folder),
-        missing=missing,
-        images=[(p.stem, base64.b64encode(p.read_bytes()).decode()) for p in pictures],
-        energies=[(t.name, f"{e[t.name]:.6g}") for t in ENERGY_TERMS if e],
-    )
-    path = folder / "report.html"
-    write_text(path, text)
+    Raises:
+        DiskError: It cannot be written.
+    """
+    page = RunPage(Path(folder)).whole(budget)
+    path = path or Path(folder) / "report.html"
+    write_text(path, page)
     return path

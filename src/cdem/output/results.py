@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,7 +13,12 @@ from numpy.typing import NDArray
 from cdem.errors import CdemError
 from cdem.mesh.element_shapes import NODES
 from cdem.output.reader import FrameSeries, SurfaceSeries, read_histories, read_summary
+from cdem.output.report import info
+from cdem.output.web_page import RunPage
 from cdem.run.frame_files import VTK_TYPES
+
+NOTEBOOK = 3_000_000
+"""Size at most of the page that a notebook keeps [bytes]."""
 
 
 def open_results(folder: str | Path) -> Results:
@@ -33,8 +36,8 @@ def open_results(folder: str | Path) -> Results:
 class Results:
     """What a run has left in its folder; files are read when they are asked for.
 
-    Frames are numbered from 0; those below 0 count from the end. In a notebook it shows what
-    `cdem info` says, and the last frame.
+    Frames are numbered from 0; those below 0 count from the end. In a notebook it shows
+    the page of the run.
 
     Attributes:
         folder: The result folder.
@@ -135,25 +138,18 @@ class Results:
             raise CdemError(f"{self.folder}: no frame {frame}; there are {len(self)}")
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
-        from cdem.output.render import picture
-        from cdem.output.report import info
-
+        """What a notebook shows: the page of the run, and its summary where pages are not shown."""
         try:
             text = info(self.folder)
         except CdemError as error:
             text = str(error)
-        page = f"<pre>{html.escape(text)}</pre>"
-        try:
-            image = picture([self._surfaces[-1]])
-        except CdemError as error:
-            return page + f"<p>{html.escape(str(error))}</p>"
-        from PIL import Image
-
-        file = io.BytesIO()
-        Image.fromarray(image).save(file, "png")
-        data = base64.b64encode(file.getvalue()).decode()
-        return page + f'<img src="data:image/png;base64,{data}">'
+        page = html.escape(RunPage(self.folder).whole(NOTEBOOK))
+        return (
+            f"<details><summary>{html.escape(str(self))}</summary>"
+            f"<pre>{html.escape(text)}</pre></details>"
+            f'<iframe srcdoc="{page}" sandbox="allow-scripts allow-downloads" '
+            'style="width:100%;height:720px;border:0"></iframe>'
+        )
 
 
 def _pyvista() -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import resource
 import time
 from dataclasses import asdict, dataclass
@@ -25,8 +24,8 @@ PIECE = (20, 0.02)
 """Between two looks at the clock there are so many steps, or as many as take so long [s]."""
 BALANCED = 1e-3
 """Rock that begins under stress is in equilibrium if its unbalanced force is below this."""
-DRAWING = 340_000_000
-"""Memory of matplotlib, pyvista and VTK when they draw report.html [bytes], measured in five runs."""
+REPORT = (10_000_000, 21.0, 350_000_000)
+"""Memory that writing report.html takes [bytes]: at least, a node and frame, and at most; measured."""
 
 
 @dataclass
@@ -135,7 +134,7 @@ def estimate(sim: RunState) -> Estimate:
                 step_broken, length = _measure(sim)
                 broken = stage.duration / length * step_broken
         found.append(StageEstimate(stage.name, stage.mode, step, wall, broken))
-    return Estimate(found, peak_memory(), unbalance)
+    return Estimate(found, peak_memory(sim), unbalance)
 
 
 def _bonded(sim: RunState) -> bool:
@@ -173,10 +172,10 @@ def _measure(sim: RunState) -> tuple[float, float]:
     return wall / done, passed / done
 
 
-def peak_memory() -> int:
+def peak_memory(sim: RunState) -> int:
     """Largest memory that a run takes [bytes].
 
-    That of this process so far, or what it has now and the libraries that draw the report need.
+    That of this process so far, or what it has now and what writing the report takes.
     """
     try:  # what getrusage says begins with the memory of the process that began this one
         lines = [line.split() for line in Path("/proc/self/status").read_text().splitlines()]
@@ -184,8 +183,20 @@ def peak_memory() -> int:
         most, now = 1024 * kilobytes["VmHWM:"], 1024 * kilobytes["VmRSS:"]
     except OSError:  # no Linux
         most = now = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS
-    draws = all(importlib.util.find_spec(name) for name in ("matplotlib", "pyvista"))
-    return max(most, now + (DRAWING if draws else 0))
+    return max(most, now + _report_memory(sim))
+
+
+def _report_memory(sim: RunState) -> int:
+    """Memory that writing report.html takes [bytes], if every node is seen in every frame."""
+    least, each, at_most = REPORT
+    output = sim.case.output
+    if not output.frames:
+        return int(least)
+    lengths = [stage.duration or 0.0 for stage in sim.case.stages]
+    frames = sum(
+        2 + (length / output.every if output.every else stages.FRAMES) for length in lengths
+    )
+    return int(least + min(each * len(sim.reference) * frames, at_most))
 
 
 def _clock(seconds: float) -> str:

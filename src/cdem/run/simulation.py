@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable
 from functools import partial
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -270,6 +271,24 @@ class Simulation(RunState):
             "large_strains": [strain.text() for strain in large_strains(self)],
         }
         return super().summary(status) | of_laws
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: where the simulation is."""
+        counts, broken = self.audit.counts, self.broken
+        stage = "all stages have ended" if self.is_over else self.case.stages[self.stage_index].name
+        rows = {
+            "stage": stage,
+            "time": f"{self.time:.6g} s",
+            "steps": f"{self.step_count:,}",
+            "elements, blocks": f"{counts['elements']:,}, {counts['blocks']:,}",
+            "springs broken in tension, shear": f"{broken['tension']:,}, {broken['shear']:,}",
+        }
+        if self.step_count:
+            rows["energy balance closes to"] = f"{100 * self.energies['error']:.2g} %"
+        if self.results:
+            rows["results"] = f"cdem.open({str(self.results.folder)!r})"
+        lines = (f"<tr><td>{escape(k)}</td><td>{escape(v)}</td></tr>" for k, v in rows.items())
+        return f"<b>{escape(self.case.title or 'Simulation')}</b><table>{''.join(lines)}</table>"
 
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing and ending no stage."""

@@ -58,10 +58,22 @@ def test_histories_as_a_table(folder):
     assert np.array_equal(table["time [s]"], cdem.open(folder).histories["time [s]"])
 
 
-def test_a_notebook_shows_it(folder):
+def test_a_notebook_shows_the_page_of_the_run(folder):
     page = cdem.open(folder)._repr_html_()
-    assert page.startswith("<pre>") and "energy closing error" in page
-    assert "data:image/png" in page or "OpenGL" in page
+    assert "energy closing error" in page and "&lt;!doctype html&gt;" in page
+    assert 'sandbox="allow-scripts allow-downloads"' in page and "<script" not in page
+
+
+def test_a_notebook_shows_where_a_simulation_is(tmp_path):
+    blocks = [{"group": "box", "box": {"size": [1, 1, 1]}}]
+    stages = [FALL[0] | {"duration": 0.01}]
+    data = case(blocks, {"box": {}}, stages=stages, title="<b>", output={"every": 1})
+    sim = cdem.Simulation(data, threads=1, output=tmp_path / "r")
+    assert "&lt;b&gt;" in sim._repr_html_() and "<td>fall</td>" in sim._repr_html_()
+    sim.run()
+    page = sim._repr_html_()
+    assert "all stages have ended" in page and f"<td>{sim.step_count:,}</td>" in page
+    assert "cdem.open(" in page
 
 
 def test_other_folders_are_refused(tmp_path):

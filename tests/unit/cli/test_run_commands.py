@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
 from cdem import Case, CdemError
+from cdem.cli import run_commands
 from cdem.cli.run_commands import write_report as WRITE_REPORT
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
@@ -39,12 +41,15 @@ def test_resuming_with_another_case_is_said(run_cli):
     assert "warning: title changes from A cube falls to Other" in err
 
 
-def test_a_failed_run_is_status_3(run_cli, cube_folder):
+def test_a_failed_run_is_status_3_and_has_a_report(run_cli, cube_folder, monkeypatch):
+    reported = []
+    monkeypatch.setattr(run_commands, "write_report", reported.append)
     # An initial speed above that of a P wave is taken for a runaway.
     status, out, err = run_cli("run", "cube.yaml", "--set", "groups.cube.velocity=[1e6, 0, 0]")
     assert (status, out) == (3, "")
     assert "Traceback" not in err
     assert json.loads((cube_folder / "cube.results/summary.json").read_text())["status"] == "failed"
+    assert reported == [Path("cube.results")]
 
 
 def test_warnings_go_to_stderr_and_the_log_and_strict_refuses_before_it_writes(
@@ -67,7 +72,7 @@ def test_a_report_that_cannot_be_written_is_said_even_by_a_quiet_run(monkeypatch
         raise CdemError(f"{folder}/report.html: cannot be written (Input/output error)")
 
     monkeypatch.setattr("cdem.output.report.report", fails)
-    WRITE_REPORT(tmp_path, silent=True)  # `no_report` has taken its place
+    WRITE_REPORT(tmp_path)  # `no_report` has taken its place
     assert capsys.readouterr().err == (
         f"no report.html: {tmp_path}/report.html: cannot be written (Input/output error)\n"
     )

@@ -1,0 +1,272 @@
+"""The surface of a run as one set of rows that all its frames share: what a page draws from.
+
+Faces come when bonds break and go when rock is dug out. Each has a row from the frame that first
+shows it, so that rows are in the order in which they come and new frames only add to them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.output_fields import OUTPUT_FIELDS
+from cdem.errors import CdemError
+from cdem.output.reader import Surface
+
+NEVER = np.iinfo(np.int32).max
+"""Frame in which a face goes that stays."""
+MISES = "von_mises_stress"
+YIELDED = ("has not flowed", "has flowed", "flows now")
+FLOWS_NOW = 1 + 2 + 16 + 32
+"""Bits of the field "yielded" that say that rock flows in this moment."""
+COLORS = 251
+"""So many colours tell blocks and pieces apart; a prime, so that neighbours differ."""
+
+
+@dataclass(frozen=True)
+class PageField:
+    """A field as a page shows it.
+
+    Attributes:
+        name: Of the field, or `MISES`.
+        label: What a reader sees.
+        unit: As of an output field.
+        on: "node", "element" or "face".
+        kind: "amount", coloured from 0 to `top`; "label", by few colours; "scattered", by many.
+        labels: What the numbers of a label stand for.
+    """
+
+    name: str
+    label: str
+    unit: str
+    on: str
+    kind: str
+    labels: tuple[str, ...] = ()
+
+
+class _Rows:
+    """Rows of things that come one after the other, by their numbers."""
+
+    def __init__(self) -> None:
+        self.number = np.zeros(0, np.int64)
+        self.born = np.zeros(0, np.int32)
+        self._row = np.zeros(0, np.int64)
+
+    def __len__(self) -> int:
+        return len(self.number)
+
+    def of(self, numbers: NDArray) -> NDArray[np.int64]:
+        """Rows of numbers that are known."""
+        return self._row[numbers]
+
+    def add(self, numbers: NDArray, frame: int, again: NDArray | None = None) -> NDArray[np.int64]:
+        """Give rows to numbers that have none, and new ones to those that come again.
+
+        Returns:
+            The rows that are new.
+        """
+        if len(numbers) and numbers.max() >= len(self._row):
+            grown = np.full(2 * int(numbers.max()) + 1, -1)
+            grown[: len(self._row)] = self._row
+            self._row = grown
+        new = self._row[numbers] < 0
+        if again is not None:
+            new |= again
+        fresh = np.unique(numbers[new])
+        rows = np.arange(len(self), len(self) + len(fresh))
+        self._row[fresh] = rows
+        self.number = np.concatenate([self.number, fresh])
+        self.born = np.concatenate([self.born, np.full(len(fresh), frame, np.int32)])
+        return rows
+
+
+@dataclass
+class Faces:
+    """Faces by row.
+
+    Attributes:
+        nodes: Rows of nodes, shape (faces, 4), -1 last in a triangle.
+        element: Row of the element.
+        joint: Set of joints.
+        born: Frame that first shows it.
+        goes: First frame that does not show it any more, or `NEVER`.
+    """
+
+    nodes: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 4), np.int64))
+    element: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    joint: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    born: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    goes: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+
+
+class MovingSurface:
+    """Rows of nodes, elements and faces over the frames that have been added.
+
+    Attributes:
+        times: Of the frames [s].
+        faces: By row.
+        group, block: Of each row of elements.
+        group_names: By the numbers of the groups.
+        fields: Those that every frame has.
+        top: Value of a field that gets the last colour: the largest 99.5th percentile of a frame.
+        most: Largest value of a field.
+        lowest, highest: Corners of the box of all frames [m].
+    """
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+        self.faces = Faces()
+        self.group = np.zeros(0, np.int64)
+        self.block = np.zeros(0, np.int64)
+        self.group_names: list[str] = []
+        self.fields: dict[str, PageField] = {}
+        self.top: dict[str, float] = {}
+        self.most: dict[str, float] = {}
+        self.lowest, self.highest = np.full(3, np.inf), np.full(3, -np.inf)
+        self.nodes, self.elements, self._faces = _Rows(), _Rows(), _Rows()
+        self.last = np.zeros((0, 3))
+
+    def add(self, surface: Surface, stress: NDArray | None = None) -> None:
+        """Add the next frame.
+
+        Args:
+            surface: With the fields `node`, `element` and `face`.
+            stress: Of all elements [Pa], shape (elements, 6), or None.
+
+        Raises:
+            CdemError: The surface has no numbers of nodes, elements and faces.
+        """
+        if "node" not in surface.point_data or "face" not in surface.cell_data:
+            raise CdemError(
+                "No moving picture: an older cdem wrote these frames, without the numbers of nodes and "
+                "faces; run the case again, or look at them with cdem render"
+            )
+        frame = len(self.times)
+        self._add_nodes(surface, frame)
+        self._add_faces(surface, frame)
+        self.times.append(surface.time)
+        self.group_names = surface.group_names
+        values = values_of(surface, stress)
+        kept = fields_of(surface, values)
+        self.fields = kept if frame == 0 else {k: f for k, f in self.fields.items() if k in kept}
+        for name, of in values.items():
+            finite = of[np.isfinite(of)]
+            if len(finite):
+                self.most[name] = max(self.most.get(name, 0.0), float(finite.max()))
+                top = float(np.percentile(finite, 99.5))
+                self.top[name] = max(self.top.get(name, 0.0), top)
+
+    def _add_nodes(self, surface: Surface, frame: int) -> None:
+        numbers = surface.point_data["node"]
+        self.nodes.add(numbers, frame)
+        grown = np.zeros((len(self.nodes), 3))
+        grown[: len(self.last)] = self.last
+        here = surface.points
+        whole = np.isfinite(here).all(axis=1)
+        grown[self.nodes.of(numbers[whole])] = here[whole]
+        self.last = grown
+        if whole.any():
+            self.lowest = np.minimum(self.lowest, here[whole].min(axis=0))
+            self.highest = np.maximum(self.highest, here[whole].max(axis=0))
+
+    def _add_faces(self, surface: Surface, frame: int) -> None:
+        cells, known = surface.cell_data, self.faces
+        new = self.elements.add(cells["element"], frame)
+        first = np.zeros(len(self.elements), np.int64)
+        first[self.elements.of(cells["element"])] = np.arange(len(cells["element"]))
+        self.group = np.concatenate([self.group, cells["group"][first[new]]])
+        self.block = np.concatenate([self.block, cells["block"][first[new]]])
+        numbers = cells["face"]
+        before = len(self._faces)
+        again = np.zeros(len(numbers), bool)
+        if before:
+            here = np.isin(self._faces.number, numbers)
+            went = (known.goes == NEVER) & ~here
+            known.goes[went] = frame
+            gone = np.zeros(int(max(numbers.max(initial=0), self._faces.number.max())) + 1, bool)
+            gone[self._faces.number] = True
+            gone[self._faces.number[known.goes == NEVER]] = False
+            again = gone[numbers]
+        rows = self._faces.add(numbers, frame, again)
+        place = np.zeros(len(self._faces), np.int64)
+        place[self._faces.of(numbers)] = np.arange(len(numbers))
+        some = place[rows]
+        polygons = surface.polygons[some]
+        nodes = self.nodes.of(surface.point_data["node"][polygons])
+        nodes[polygons < 0] = -1
+        self.faces = Faces(
+            np.concatenate([known.nodes, nodes]),
+            np.concatenate([known.element, self.elements.of(cells["element"][some])]),
+            np.concatenate([known.joint, cells["joint"][some]]),
+            self._faces.born,
+            np.concatenate([known.goes, np.full(len(rows), NEVER, np.int32)]),
+        )
+
+    def rows(self, surface: Surface) -> dict[str, NDArray[np.int64]]:
+        """Rows of the points and cells of a frame that has been added.
+
+        Returns:
+            By what has them: "node" of the points; "element" and "face" of the cells.
+        """
+        cells = surface.cell_data
+        return {
+            "node": self.nodes.of(surface.point_data["node"]),
+            "element": self.elements.of(cells["element"]),
+            "face": self._faces.of(cells["face"]),
+        }
+
+
+def values_of(surface: Surface, stress: NDArray | None) -> dict[str, NDArray]:
+    """Values of the fields of a frame that change, one number for each of its points or cells."""
+    points, cells = surface.point_data, surface.cell_data
+    values: dict[str, NDArray] = {}
+    for f in OUTPUT_FIELDS:
+        data = points if f.on == "nodes" else cells
+        if f.name not in data or f.colors is None or f.name in ("group", "block", "joint"):
+            continue
+        of = np.asarray(data[f.name])
+        values[f.name] = np.linalg.norm(of, axis=1) if of.ndim == 2 else of
+    if stress is not None:
+        values[MISES] = von_mises(stress[cells["element"]])
+    if "yielded" in values:
+        bits = values["yielded"].astype(np.int64)
+        values["yielded"] = np.where(bits & FLOWS_NOW, 2, bits > 0).astype(np.int64)
+    if "piece" in values:
+        values["piece"] = values["piece"].astype(np.int64) % COLORS
+    return values
+
+
+def von_mises(stress: NDArray) -> NDArray[np.float64]:
+    """Von Mises stress [Pa] of tensors xx yy zz xy yz zx, shape (n, 6)."""
+    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
+    normal = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2)
+    return np.sqrt(normal + 3 * (xy**2 + yz**2 + zx**2))
+
+
+def fields_of(surface: Surface, values: Mapping[str, NDArray]) -> dict[str, PageField]:
+    """The fields of a frame that a page offers, in the order of its list."""
+    labels: dict[str, tuple[str, ...]] = {"yielded": YIELDED, "group": tuple(surface.group_names)}
+    sets = int(surface.cell_data["joint"].max(initial=0))
+    if sets:
+        labels["joint"] = ("no joint", *(f"set {k + 1}" for k in range(sets)))
+    found = {}
+    for f in OUTPUT_FIELDS:
+        if f.name not in values and f.name not in ("group", "block", "joint"):
+            continue
+        if f.name == "joint" and not sets:
+            continue
+        kind = "scattered" if f.name in ("block", "piece") else "amount"
+        kind = "label" if f.name in labels else kind
+        found[f.name] = PageField(
+            f.name, f.name.replace("_", " "), f.unit, f.on[:-1], kind, labels.get(f.name, ())
+        )
+    if MISES in values:
+        found[MISES] = PageField(MISES, "von Mises stress", "Pa", "element", "amount")
+    return found
+
+
+SurfaceOf = Callable[[int], tuple[Surface, NDArray | None]]
+"""Gives the surface of a frame, and the stress of all elements where there is one."""

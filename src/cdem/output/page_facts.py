@@ -1,0 +1,217 @@
+"""The texts of a run's page: state, warnings, tables, how to repeat it. All of it is plain text."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cdem._version import __version__
+from cdem.errors import CdemError
+from cdem.output.reader import read_histories, read_summary
+from cdem.run.energy_terms import ENERGY_TERMS
+from cdem.run.rest import REST_SPEED, SLOW_SPEED
+
+DOUBTFUL = 0.01
+"""Closing error of the energy balance that is flagged, as a share of its largest term."""
+MOST_LOG = 200_000
+"""Characters of run.log that a page holds, from its end."""
+BROKEN = "springs broken in tension / shear"
+WARNING = "warning: "
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"))
+
+
+def closing(energies: dict[str, float]) -> str:
+    """How well the energy balance closes, with a word if that is not well enough."""
+    error = energies["error"]
+    doubt = (
+        "" if abs(error) <= DOUBTFUL else f": above {100 * DOUBTFUL:g} %, look before you trust it"
+    )
+    return f"{100 * error:.3g} %{doubt}"
+
+
+def moving(summary: dict[str, Any]) -> str:
+    """Say how fast the fastest block moved at the end of a run; nothing if all rest, or not known."""
+    # of a run that failed, numbers that are not finite are null
+    speeds = {name: g.get("fastest_block") or 0.0 for name, g in summary["groups"].items()}
+    name = max(speeds, key=speeds.__getitem__)
+    if speeds[name] < (SLOW_SPEED if summary["status"] == "at rest" else REST_SPEED):
+        return ""
+    return f", still moving at {speeds[name]:.3g} m/s (a block of group {name})"
+
+
+def page_facts(folder: Path) -> dict[str, Any]:
+    """What the page of a run says.
+
+    Args:
+        folder: Result folder; the run may go on.
+    """
+    log, case = _text(folder / "run.log"), _text(folder / "case.yaml")
+    try:
+        columns = read_histories(folder)
+    except CdemError:
+        columns = {}
+    try:
+        summary = read_summary(folder)
+    except CdemError:
+        summary = None
+    if not is_over(folder):
+        summary = None
+    facts = {
+        "title": _title(summary, case) or folder.resolve().name,
+        "over": summary is not None,
+        "warnings": _warnings(log),
+        "repeat": _repeat(folder, summary),
+        "case": case,
+        "log": log[-MOST_LOG:],
+        "leftOut": [],
+        "missing": "",
+    }
+    return facts | (_ended(summary) if summary else _going_on(columns))
+
+
+def is_over(folder: Path) -> bool:
+    """Whether the summary is of the last row of the histories: a run that goes on has passed it."""
+    try:
+        steps = json.loads((folder / "summary.json").read_text())["steps"]
+        last = (folder / "histories.csv").read_text().rstrip().rpartition("\n")[2]
+        return int(last.split(",")[1]) <= steps
+    except (OSError, KeyError, IndexError, ValueError):
+        return (folder / "summary.json").is_file()
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def _title(summary: dict[str, Any] | None, case: str) -> str:
+    if summary:
+        return summary["title"]
+    lines = [
+        line.removeprefix("title: ") for line in case.splitlines() if line.startswith("title: ")
+    ]
+    return lines[0] if lines and lines[0] != "''" else ""
+
+
+def _warnings(log: str) -> list[str]:
+    """Each warning of the log once."""
+    found = [line.partition(WARNING)[2] for line in log.splitlines() if WARNING in line]
+    return list(dict.fromkeys(found))
+
+
+def _repeat(folder: Path, summary: dict[str, Any] | None) -> str:
+    version = summary["version"] if summary else __version__
+    words = ["cdem", "run", str(folder / "case.yaml"), "-o", f"{folder}.again"]
+    words += ["--allow-code"] * bool(summary and summary["own_laws"])
+    return (
+        f"{shlex.join(words)}\n\n"
+        f"With cdem {version} this gives the same bits on any number of threads. The case below names\n"
+        "the files that it reads (mesh, tables): keep them with it."
+    )
+
+
+def _ended(s: dict[str, Any]) -> dict[str, Any]:
+    """The part that the summary tells."""
+    energies = s["energies"]
+    error = energies.get("error") if energies else None
+    broken = s["broken"]
+    tiles = [
+        ["time simulated", _quantity(s["time"], "s"), ""],
+        ["steps", f"{s['steps']:,}", ""],
+        ["elements", f"{s['counts']['elements']:,}", ""],
+        ["blocks", f"{s['counts']['blocks']:,}", ""],
+        _closing_tile(error),
+        [BROKEN, f"{broken['tension']:,} / {broken['shear']:,}", ""],
+        ["wall time", _quantity(s["wall_time"], "s"), ""],
+    ]
+    return {
+        "status": s["status"],
+        "tone": {"failed": "bad", "stopped": "doubt"}.get(s["status"], "good"),
+        "subtitle": f"cdem {s['version']} · {s['device']} · {s['threads']} threads{moving(s)}",
+        "tiles": tiles,
+        "tables": [_groups(s), *_stages(s), *_energies(energies)],
+    }
+
+
+def _going_on(columns: dict[str, Any]) -> dict[str, Any]:
+    """The part that the histories tell."""
+    tiles = []
+    if columns:
+        last = {name: float(values[-1]) for name, values in columns.items()}
+        tiles = [
+            ["time simulated", _quantity(last["time [s]"], "s"), ""],
+            ["steps", f"{last['step']:,.0f}", ""],
+            _closing_tile(last["energy error"]),
+            [BROKEN, f"{last['broken tension']:,.0f} / {last['broken shear']:,.0f}", ""],
+        ]
+    return {
+        "status": "not at its end",
+        "tone": "live",
+        "subtitle": f"cdem {__version__} · the run goes on, or was interrupted",
+        "tiles": tiles,
+        "tables": [],
+    }
+
+
+def _closing_tile(error: float | None) -> list[str]:
+    if error is None:
+        return ["energy balance", "not sampled", ""]
+    good = abs(error) <= DOUBTFUL
+    label = "energy balance closes to" if good else "energy balance: do not trust it unseen"
+    return [label, f"{100 * abs(error):.2g} %", "good" if good else "doubt"]
+
+
+def _groups(s: dict[str, Any]) -> dict[str, Any]:
+    rows = [
+        [
+            name,
+            _number(g["mass"]),
+            _norm(g["displacement"]),
+            _number(g["max_displacement"]),
+            _norm(g["velocity"]),
+        ]
+        for name, g in s["groups"].items()
+    ]
+    head = ["group", "mass [kg]", "moved [m]", "most [m]", "speed [m/s]"]
+    return {"title": "Groups at the end", "head": head, "rows": rows}
+
+
+def _stages(s: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = [
+        [t["name"], t["mode"], t["status"], f"{t['steps']:,}", _number(t["time"]), _number(t["wall_time"])]
+        for t in s["stages"]
+    ]  # fmt: skip
+    head = ["stage", "mode", "ended", "steps", "time [s]", "wall [s]"]
+    return [{"title": "Stages", "head": head, "rows": rows}] if rows else []
+
+
+def _energies(energies: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = [
+        [term.name.replace("_", " "), term.kind, _quantity(energies[term.name], "J")]
+        for term in ENERGY_TERMS
+        if energies and energies.get(term.name)
+    ]
+    return [{"title": "Energies at the end", "head": [], "rows": rows}] if rows else []
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4g}"
+
+
+def _norm(vector: list[float | None]) -> str:
+    """Length of a vector; of a run that failed, numbers that are not finite are None."""
+    return "–" if None in vector else _number(float(np.linalg.norm(np.array(vector, float))))
+
+
+def _quantity(value: float, unit: str) -> str:
+    """A number with its unit, and a prefix where that shortens it."""
+    if unit == "s" and abs(value) >= 1:
+        return f"{value:.4g} s" if value < 3600 else f"{value / 3600:.3g} h"
+    factor, prefix = next((p for p in PREFIXES if abs(value) >= p[0]), (1.0, ""))
+    return f"{value / factor:.4g} {prefix}{unit}"

@@ -1,0 +1,186 @@
+"""The page of a run: HTML, style and script in one, with the frames packed in it or served to it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment
+from numpy.typing import NDArray
+
+from cdem._version import __version__
+from cdem.errors import CdemError
+from cdem.output.moving_surface import MovingSurface
+from cdem.output.pack import Pack, put_frames
+from cdem.output.page_facts import is_over, page_facts
+from cdem.output.reader import FrameSeries, Surface, SurfaceSeries, read_histories
+from cdem.run.frame_files import frame_numbers
+
+SCRIPTS = ("numbers.js", "run.js", "picture.js", "maps.js", "plot.js", "page.js")
+"""In the order in which they lean on one another."""
+MOST_ROWS = 1000
+"""Rows of the histories that a page shows."""
+STRESSES = ("stress", "effective_stress")
+"""Fields that give the von Mises stress, which water does not change."""
+
+
+class RunPage:
+    """The page of a result folder; it goes on with the run.
+
+    Args:
+        folder: Result folder.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = Path(folder)
+        self._begin()
+
+    def _begin(self) -> None:
+        self._run = self.run_id()
+        self._moving = MovingSurface()
+        self._surfaces: SurfaceSeries | None = None
+        self._volumes: dict[float, int] = {}
+        self._series: FrameSeries | None = None
+        self._stress = ""
+        self._missing = ""
+
+    def run_id(self) -> str:
+        """Tells runs in the folder apart: it changes when one begins, or is resumed."""
+        try:
+            return str((self.folder / "case.yaml").stat().st_mtime_ns)
+        except OSError:
+            return ""
+
+    def state(self) -> dict[str, Any]:
+        """What a page that follows the run looks at: how much there is now."""
+        rows = 0
+        try:
+            with (self.folder / "histories.csv").open("rb") as file:
+                rows = sum(1 for _ in file) - 1
+        except OSError:
+            pass
+        return {
+            "run": self.run_id(),
+            "frames": len(frame_numbers(self.folder / "surface")),
+            "rows": rows,
+            "over": is_over(self.folder),
+        }
+
+    def html(self, data: str = "") -> str:
+        """The page: with its data, or one that asks its server for them."""
+        folder = resources.files("cdem.output") / "page"
+        style = (folder / "page.css").read_text(encoding="utf-8")
+        script = "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)
+        script = f'"use strict";\n{script}'
+        rules = [
+            "default-src 'none'", f"script-src '{_hash(script)}'", f"style-src '{_hash(style)}'",
+            "img-src data:", "base-uri 'none'", "form-action 'none'",
+        ]  # fmt: skip
+        if not data:
+            rules.append("connect-src 'self'")
+        # case files come from strangers: whatever they name is escaped
+        template = Environment(autoescape=True, keep_trailing_newline=True).from_string(
+            (folder / "page.html").read_text(encoding="utf-8")
+        )
+        title = page_facts(self.folder)["title"] if data else "cdem"
+        return template.render(
+            title=title, version=__version__, policy="; ".join(rules), style=style, script=script,
+            data=data, live=not data,
+        )  # fmt: skip
+
+    def whole(self, budget: int) -> str:
+        """The page with all data in it.
+
+        Args:
+            budget: Bytes that it should take at most.
+        """
+        room = (budget - len(self.html("-").encode())) * 3 // 4
+        data = self.pack(0, 0, room)
+        for part in (0.96, 0.9, 0.7):  # how small frames become is estimated
+            if len(data) > room:
+                data = self.pack(0, 0, int(part * room))
+        return self.html(base64.b64encode(data).decode())
+
+    def pack(self, frames: int, rows: int, budget: int) -> bytes:
+        """Frames and rows of the histories that somebody does not know, and all texts.
+
+        Args:
+            frames, rows: So many are known.
+            budget: Bytes that it should take at most.
+        """
+        if self._run != self.run_id():
+            self._begin()
+        facts = page_facts(self.folder) | {"run": self._run}
+        pack = Pack({"facts": facts})
+        facts["leftOut"] += self._put_histories(pack, rows)
+        self._look()
+        moving = self._moving
+        if moving.times and self._missing:
+            facts["warnings"].append(f"later frames are not shown: {self._missing}")
+        facts["missing"] = self._missing
+        pack.header["framesKnown"] = len(moving.times)
+        if len(moving.times) > frames:
+            room = budget - len(pack.compressed())
+            facts["leftOut"] += put_frames(pack, moving, self._surface, frames, room)
+        return pack.compressed()
+
+    # ------------------------------------------------------------------ reading
+
+    def _look(self) -> None:
+        """Add the frames that are new."""
+        known = len(self._moving.times)
+        if known == len(frame_numbers(self.folder / "surface")) and known:
+            return
+        try:
+            self._surfaces, self._missing = SurfaceSeries(self.folder), ""
+        except CdemError as error:
+            self._missing = f"No moving picture: {error}"
+            return
+        self._find_stress()
+        try:
+            for frame in range(known, len(self._surfaces)):
+                self._moving.add(*self._surface(frame))
+        except CdemError as error:
+            self._missing = str(error)
+
+    def _find_stress(self) -> None:
+        """Look which frames of the volume have stress, and which belong to those of the surface."""
+        try:
+            self._series = FrameSeries(self.folder)
+        except CdemError:
+            return
+        names = self._series.names["CellData"]
+        self._stress = next((name for name in STRESSES if name in names), "")
+        self._volumes = {float(time): k for k, time in enumerate(self._series.times)}
+
+    def _surface(self, frame: int) -> tuple[Surface, NDArray | None]:
+        """The surface of a frame, and the stress of all elements if there is one."""
+        assert self._surfaces is not None
+        surface = self._surfaces[frame]
+        place = self._volumes.get(surface.time)
+        if self._series is None or not self._stress or place is None:
+            return surface, None
+        return surface, self._series.field("CellData", self._stress, place)
+
+    def _put_histories(self, pack: Pack, known: int) -> list[str]:
+        """Put the rows of the histories that are new; returns what was left out."""
+        try:
+            columns = read_histories(self.folder)
+        except CdemError:
+            columns = {}
+        values = np.array(list(columns.values()) or np.zeros((0, 0)), "<f4")
+        total = values.shape[1]
+        every = max(1, int(np.ceil((total - known) / MOST_ROWS)))
+        kept = np.arange(total - 1, known - 1, -every)[::-1]
+        pack.header |= {"columns": list(columns), "rowsKnown": total}
+        pack.put("history", values[:, kept])
+        return [f"one row of {every} of the histories is drawn"] if every > 1 else []
+
+
+def _hash(text: str) -> str:
+    """A script or style as a policy names it."""
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
