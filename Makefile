@@ -101,8 +101,7 @@ demo: build
 	@echo "Pictures, histories and summary are in demo/landslide.results"
 
 # The site, in build/docs: every page, notebooks run, references made from the code.
-docs: setup
-	$(BIN)/python tools/build.py --native
+docs: build
 	$(BIN)/python -m sphinx -q -E -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 
