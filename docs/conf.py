@@ -8,6 +8,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_ext"))
 # Kernels of notebooks inherit these: they draw without a screen, and on one core.
 os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
+os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from cdem._version import __version__  # noqa: E402
