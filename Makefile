@@ -83,7 +83,7 @@ lint: setup
 	$(BIN)/python tools/package_layers.py
 	$(BIN)/python tools/words.py --all
 	$(BIN)/mypy src/cdem
-	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools
+	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools docs/_ext
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	$(BIN)/zizmor --quiet --offline .github
 	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md core bindings src tests docs tools

@@ -84,16 +84,13 @@ class Reference:
             return [nodes.Text(_number(value))]
         if choices := _choices(value):
             return _joined([self.kind(one) for one in choices if one.get("type") != "null"])
-        if allowed := value.get("enum") or [value[k] for k in ("const",) if k in value]:
-            return _joined([[nodes.literal("", str(one))] for one in allowed])
         if value.get("type") == "array":
             count = value.get("minItems") == value.get("maxItems") and value.get("minItems")
             prefix = f"{count} of: " if count else "list of: "
             return [nodes.Text(prefix), *self.kind(value.get("items", {}))]
         if isinstance(value.get("additionalProperties"), dict):
             return [nodes.Text("by name: "), *self.kind(value["additionalProperties"])]
-        kind = value.get("type", "any value")
-        return [nodes.Text(" ".join([KINDS.get(kind, kind), *_limits(value)]))]
+        return _simple(value)
 
     def link(self, name):
         """A link to a part: its law, or its name in words."""
@@ -116,6 +113,14 @@ def _name(value):
 
 def _choices(value):
     return value.get("anyOf") or value.get("oneOf") or []
+
+
+def _simple(value):
+    """One of some words, or a plain kind with its limits."""
+    if allowed := value.get("enum") or [value[key] for key in ("const",) if key in value]:
+        return _joined([[nodes.literal("", str(one))] for one in allowed])
+    kind = value.get("type", "any value")
+    return [nodes.Text(" ".join([KINDS.get(kind, kind), *_limits(value)]))]
 
 
 def _joined(kinds):
