@@ -66,6 +66,7 @@ def run_page(page: Path, folder: Path, *, slow: bool, pictures: bool) -> None:
         if picture:
             if pictures and last:
                 shrink(folder / last, picture)
+            last = ""  # a picture without commands before it is made on another page
         elif comment.startswith("save: "):
             (folder / comment.removeprefix("save: ")).write_text(text)
         elif language in RUN and comment != "not run" and (slow or comment != "slow"):
