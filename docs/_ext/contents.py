@@ -10,7 +10,7 @@ from pathlib import Path
 
 LINK = re.compile(r"\]\(([^):#\s]+?)\.(?:md|rst|ipynb)(?:#[^)]*)?\)")
 
-INDEXES = ("index", "manual", "gallery")
+INDEXES = ("index", "manual")
 
 
 def tree(pages, caption=""):
