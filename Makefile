@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants torture sanitize nightly verify lint format demo cuda clean
+.PHONY: setup build dev check test validate coverage mutants torture sanitize nightly verify lint format demo docs cuda clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -74,8 +74,8 @@ verify: build
 	$(BIN)/cdem verify
 
 lint: setup
-	$(BIN)/ruff check src tests tools
-	$(BIN)/ruff format --check src tests tools
+	$(BIN)/ruff check src tests tools docs/_ext docs/conf.py
+	$(BIN)/ruff format --check src tests tools docs/_ext docs/conf.py
 	$(BIN)/clang-format --dry-run -Werror $(CPP)
 	$(BIN)/python tools/layers.py
 	$(BIN)/python tools/members.py
@@ -83,12 +83,14 @@ lint: setup
 	$(BIN)/python tools/package_layers.py
 	$(BIN)/python tools/words.py --all
 	$(BIN)/mypy src/cdem
-	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools
+	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools docs/_ext
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/zizmor --quiet --offline .github
 	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md core bindings src tests docs tools
 
 format: setup
-	$(BIN)/ruff check --fix src tests tools
-	$(BIN)/ruff format src tests tools
+	$(BIN)/ruff check --fix src tests tools docs/_ext docs/conf.py
+	$(BIN)/ruff format src tests tools docs/_ext docs/conf.py
 	$(BIN)/clang-format -i $(CPP)
 
 demo: build
@@ -99,6 +101,11 @@ demo: build
 	$(BIN)/cdem render demo/landslide.results
 	$(BIN)/cdem info demo/landslide.results
 	@echo "Pictures, histories and summary are in demo/landslide.results"
+
+# The site, in build/docs: every page, notebooks run, references made from the code.
+docs: build
+	$(BIN)/python -m sphinx -q -E -W --keep-going -b html docs build/docs
+	@echo "open build/docs/index.html"
 
 cuda: setup
 	tools/cuda.sh

@@ -6,6 +6,7 @@ from pathlib import Path
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
 from cdem.case.output_fields import OUTPUT_FIELDS
 from cdem.case.plausible import RANGES, written
+from cdem.verification.runner import problems
 
 DOCS = Path(__file__).parent.parent / "docs"
 BEGIN, END = "<!-- table -->\n\n", "\n<!-- end of table -->"
@@ -63,7 +64,18 @@ def checks_table() -> str:
     return "\n".join([*rows, ""])
 
 
+def problems_table() -> str:
+    """The problems of `cdem verify`, with links to their pages."""
+    rows = ["| problem | what | in the quick set |", "|---|---|---|"]
+    for problem in problems():
+        page = f"../src/cdem/verification/{problem.name}/README.md"
+        quick = "yes" if problem.quick else ""
+        rows.append(f"| [{problem.name}]({page}) | {problem.title} | {quick} |")
+    return "\n".join([*rows, ""])
+
+
 TABLES = {
+    "manual.md": problems_table,
     "output_fields.md": fields_table,
     "laws.md": laws_table,
     "checks.md": checks_table,

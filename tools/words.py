@@ -12,6 +12,7 @@ ROOT = Path(__file__).resolve().parent.parent
 WIDTH = 100
 PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs", "src")
 CODE = ("core", "bindings", "src", "tests", "tools")
+MADE = ROOT / "docs/problems"  # pages that `make docs` makes of READMEs
 OLD_NAMES = "docs/contributing/names.md"  # its first columns hold what is no longer there
 
 DENIED = {
@@ -42,7 +43,7 @@ def files(places: tuple[str, ...], *suffixes: str) -> list[Path]:
     found: set[Path] = set()
     for place in map(ROOT.joinpath, places):
         found |= {place} if place.is_file() else {p for s in suffixes for p in place.rglob(f"*{s}")}
-    return sorted(found)
+    return sorted(path for path in found if MADE not in path.parents)
 
 
 def denied(text: str) -> list[str]:

@@ -1,5 +1,6 @@
 """Laws of users: no case builds or loads code by itself, and no library fits but its own."""
 
+import importlib.util
 import json
 import os
 import subprocess
@@ -120,3 +121,13 @@ def test_headers(folder):
         new_law("MyClay", "block", folder, force=False)
     with pytest.raises(CaseError, match="exists already"):
         new_law("my-clay", "block", folder, force=False)
+
+
+def test_a_build_without_its_tools_says_what_to_install(folder, monkeypatch):
+    """Also where the system has a cmake of its own."""
+    there = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda n: None if n == "nanobind" else there(n)
+    )
+    with pytest.raises(BackendError, match=r"finds no nanobind: pip install 'cdem\[laws\]'"):
+        build([folder / HEADER])

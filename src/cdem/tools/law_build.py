@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import re
 import shutil
@@ -150,6 +151,8 @@ def build(files: list[Path]) -> Path:
 
 def _compile(headers: list[Header], isa: str, folder: Path) -> Path:
     """Compile in a folder; the library in it."""
+    if importlib.util.find_spec("nanobind") is None:
+        raise BackendError(_needs("nanobind"))
     settings = {"CDEM_ISAS": isa, "Python_EXECUTABLE": sys.executable}
     for kind in ANSWERS:
         own = [header for header in headers if header.kind == kind]
@@ -166,6 +169,11 @@ def _compile(headers: list[Header], isa: str, folder: Path) -> Path:
     return built
 
 
+def _needs(missing: str) -> str:
+    """What to install where something is missing."""
+    return f"cdem law build finds no {missing}: pip install 'cdem[laws]', and g++ or clang of the system"
+
+
 def _run(command: list[str], headers: list[Header]) -> None:
     """Run a tool of the build.
 
@@ -177,10 +185,7 @@ def _run(command: list[str], headers: list[Header]) -> None:
     tools = os.pathsep.join([str(beside), os.environ.get("PATH", "")])
     found = shutil.which(command[0], path=tools)
     if found is None:
-        raise BackendError(
-            f"cdem law build needs {command[0]}, a C++20 compiler and nanobind: pip install "
-            "'cdem[laws]', and g++ or clang of the system"
-        )
+        raise BackendError(_needs(command[0]))
     environment = os.environ | {"PATH": tools, "LC_ALL": "C"}
     done = subprocess.run(
         [found, *command[1:]], capture_output=True, text=True, check=False, env=environment
