@@ -62,20 +62,30 @@ class Surface:
     Attributes:
         time: [s].
         points: [m], shape (points, 3).
-        faces: Connectivity with the number of vertices before each face, as pyvista wants it.
+        polygons: Point ids, shape (faces, corners), with -1 last where a face has fewer: (faces, 4) of
+            a surface, of a cut through it up to (faces, 6).
         point_data: By name.
         cell_data: By name.
         group_names: By the numbers of the field "group"; empty where the file does not tell.
         bolts: Ends of the bars of bolts, shape (bars, 2, 3) [m].
+        bolt_forces: Axial force of each bar, tension positive [N].
     """
 
     time: float
     points: NDArray[np.float64]
-    faces: NDArray[np.int64]
+    polygons: NDArray[np.int64]
     point_data: dict[str, NDArray]
     cell_data: dict[str, NDArray]
     group_names: list[str]
     bolts: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2, 3)))
+    bolt_forces: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """Point ids with the number of vertices before each face, as pyvista wants it."""
+        corners = (self.polygons >= 0).sum(axis=1)
+        faces = np.column_stack([corners, self.polygons])
+        return faces[faces >= 0]
 
 
 class _Frames:
@@ -131,25 +141,33 @@ class SurfaceSeries(_Frames):
         bolts = Path(folder) / "bolts"
         self._bolts = _Frames(bolts) if frame_numbers(bolts) else None
 
-    def _bars(self, frame: int) -> NDArray[np.float64]:
-        """Ends of the bars of bolts [m], shape (bars, 2, 3)."""
+    @property
+    def has_bolts(self) -> bool:
+        """Whether the case has bolts, which may not all be installed."""
+        return self._bolts is not None
+
+    def _bars(self, frame: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Ends of the bars of bolts [m], shape (bars, 2, 3), and their axial forces [N]."""
         if self._bolts is None:
-            return np.zeros((0, 2, 3))
-        points, ends = self._bolts.read(frame, ["Points", "Connectivity"])
-        return points[ends].reshape(-1, 2, 3)
+            return np.zeros((0, 2, 3)), np.zeros(0)
+        names = ["Points", "Connectivity", "CellData/axial_force"]
+        points, ends, forces = self._bolts.read(frame, names)
+        return points[ends].reshape(-1, 2, 3), forces
 
     def __getitem__(self, frame: int) -> Surface:
         frame = range(len(self))[frame]
         with self._root(frame) as root:
-            offsets, connectivity = root["Offsets"][()], root["Connectivity"][()]
+            corners, connectivity = np.diff(root["Offsets"][()]), root["Connectivity"][()]
+            polygons = np.full((len(corners), 4), -1)
+            polygons[np.arange(4) < corners[:, None]] = connectivity
             return Surface(
                 float(self.times[frame]),
                 root["Points"][()],
-                np.insert(connectivity, offsets[:-1], np.diff(offsets)),
+                polygons,
                 {name: data[()] for name, data in root["PointData"].items()},
                 {name: data[()] for name, data in root["CellData"].items()},
                 _group_names(root),
-                self._bars(frame),
+                *self._bars(frame),
             )
 
 

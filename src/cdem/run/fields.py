@@ -63,6 +63,7 @@ def surface_of(
         {name: of[used] for name, of in values.items() if name in on_nodes},
         {name: of[element] for name, of in values.items() if name not in on_nodes}
         | {
+            "face": faces.astype(np.int32),
             "broken": broken.astype(np.int8),
             "joint": (t.face_kind // len(t.group_names))[faces],
         }
@@ -88,6 +89,18 @@ def displacement_of(sim: RunState) -> NDArray[np.float64]:
 def velocity_of(sim: RunState) -> NDArray[np.float64]:
     """Velocity of each node [m/s], shape (nodes, 3)."""
     return sim.motion[:, 4:7]
+
+
+@output_field("node")
+def node_of(sim: RunState) -> NDArray[np.int32]:
+    """Number of each node."""
+    return np.arange(len(sim.reference), dtype=np.int32)
+
+
+@output_field("element")
+def element_of(sim: RunState) -> NDArray[np.int32]:
+    """Number of each element, shapes one after the other."""
+    return np.arange(len(group_of(sim)), dtype=np.int32)
 
 
 @output_field("group")
