@@ -69,6 +69,14 @@ OUTPUT_FIELDS = [
         frames="chosen", surface="always", colors="whole range",
     ),
     OutputField(
+        "slip", "How far faces of blocks that met at the start have slid; the most in the element", "m",
+        "elements", frames="chosen", surface="chosen", colors="amount",
+    ),
+    OutputField(
+        "opening", "How far faces of blocks that met at the start have parted; the most in the element",
+        "m", "elements", frames="chosen", surface="chosen", colors="amount",
+    ),
+    OutputField(
         "group", "Number of the group; the file names the groups", "", "elements",
         frames="always", surface="always", colors="label",
     ),

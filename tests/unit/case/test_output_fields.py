@@ -14,7 +14,7 @@ def test_the_case_offers_the_fields_of_frames():
     output = Case.schema()["$defs"]["Output"]["properties"]["fields"]
     assert output["items"]["enum"] == output["default"] == CHOICE
     assert CHOICE == [
-        "displacement", "velocity", "stress", "effective_stress", "pore_pressure", "damage", "piece",
+        "displacement", "velocity", "stress", "effective_stress", "pore_pressure", "damage", "slip", "opening", "piece",
         "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
         "joint_slip", "joint_damage", "joint_opening", "joint_reversal", "joint_unloads"
     ]  # fmt: skip
