@@ -22,7 +22,6 @@ from cdem.errors import CdemError
 app = typer.Typer(
     name="cdem",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     help="Rock as blocks of finite elements that touch, bond, break and slide (CDEM).",

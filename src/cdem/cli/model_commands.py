@@ -19,7 +19,13 @@ if TYPE_CHECKING:
 
 
 def new(
-    template: Annotated[str | None, typer.Argument(help="Name; by default, list all.")] = None,
+    template: Annotated[
+        str | None,
+        typer.Argument(
+            help="Name; by default, list all.",
+            autocompletion=lambda: sorted(_template_names(resources.files("cdem") / "templates")),
+        ),
+    ] = None,
     folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
 ) -> None:
@@ -101,12 +107,14 @@ def check(
         raise typer.BadParameter(f"--picture writes PNG: name a .png file, not {picture}")
     allow_own_laws(case_file, allow_code)
     from cdem.case.case import Case
+    from cdem.run.progress import busy
 
     case = Case.load(case_file, settings or [])
     from cdem.run.simulation import Simulation
 
     try:
-        simulation = Simulation(case, threads=threads)
+        with busy("building the model"):
+            simulation = Simulation(case, threads=threads)
     except BodyError as refused:
         if picture:
             from cdem.output import model_picture, render
@@ -121,7 +129,8 @@ def check(
         render.write_image(picture, model_picture.draw_model(simulation))
     from cdem.run.estimate import estimate
 
-    cost = estimate(simulation)
+    with busy("measuring the speed"):
+        cost = estimate(simulation)
     facts = audit.as_dict() | cost.as_dict()
     assumed = _assumed(case_file)
     if as_json:
@@ -158,9 +167,11 @@ def mesh(
 ) -> None:
     """Mesh a landslide from terrain, a sliding surface and bodies outlined in plan."""
     from cdem import terrain
+    from cdem.run.progress import busy
 
     path = output or Path(f"{landslide_file.stem}.msh")
-    solid = terrain.make_mesh(terrain.Landslide.load(landslide_file, settings or []))
+    with busy("meshing"):
+        solid = terrain.make_mesh(terrain.Landslide.load(landslide_file, settings or []))
     terrain.write(solid, path)
     facts = terrain.measure(solid)
     print(json.dumps(facts, indent=2) if as_json else f"{path}: {terrain.text(facts)}")

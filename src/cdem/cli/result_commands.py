@@ -29,6 +29,12 @@ def plot(folder: ResultFolder) -> None:
     print_paths(figures.plot(_results(folder)))
 
 
+def _fields() -> list[str]:
+    from cdem.output.shown import SHOWN
+
+    return list(SHOWN)
+
+
 class Fields(TyperCommand):
     """The verb render, whose help ends with the fields."""
 
@@ -42,7 +48,10 @@ class Fields(TyperCommand):
 def render(
     folder: ResultFolder,
     field: Annotated[
-        str, typer.Option(help="Field that colours the picture, of those below.")
+        str,
+        typer.Option(
+            help="Field that colours the picture, of those below.", autocompletion=_fields
+        ),
     ] = "displacement",
     time: Annotated[
         float | None, typer.Option(help="Only the frame next to this time [s].")
