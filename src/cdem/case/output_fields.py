@@ -11,9 +11,9 @@ from typing import Literal
 
 from cdem.case.laws import STATES
 
-Recorded = Literal["always", "chosen", "domain", "never"]
-"""When a file holds a field: "chosen" where `output.fields` of the case names it, "domain" where the
-case has `model.domain`."""
+Recorded = Literal["always", "chosen", "leaving", "never"]
+"""When a file holds a field: "chosen" where `output.fields` of the case names it, "leaving" where the
+case has `model.domain`, or stages that remove or add groups."""
 Colors = Literal["amount", "whole range", "label", "scattered label"]
 """How a field is coloured: an amount up to the 99.5th percentile of the last frame, or from 0 to the
 largest value; a label by one of few colours, or of many so that neighbours differ."""
@@ -69,6 +69,14 @@ OUTPUT_FIELDS = [
         frames="chosen", surface="always", colors="whole range",
     ),
     OutputField(
+        "slip", "How far faces of blocks that met at the start have slid; the most in the element", "m",
+        "elements", frames="chosen", surface="chosen", colors="amount",
+    ),
+    OutputField(
+        "opening", "How far faces of blocks that met at the start have parted; the most in the element",
+        "m", "elements", frames="chosen", surface="chosen", colors="amount",
+    ),
+    OutputField(
         "group", "Number of the group; the file names the groups", "", "elements",
         frames="always", surface="always", colors="label",
     ),
@@ -81,8 +89,20 @@ OUTPUT_FIELDS = [
         frames="chosen", surface="always", colors="scattered label",
     ),
     OutputField(
-        "out", "1 where the block has left the domain: it stays where it left, held", "", "elements",
-        frames="domain", surface="never", colors=None,
+        "out", "1 where the block is not there: dug out, not yet brought in, or left the domain", "",
+        "elements", frames="leaving", surface="never", colors=None,
+    ),
+    OutputField(
+        "node", "Number of the node: its row in frames.vtkhdf", "", "nodes",
+        frames="never", surface="always", colors=None,
+    ),
+    OutputField(
+        "element", "Number of the element that the face belongs to: its row in frames.vtkhdf", "",
+        "elements", frames="never", surface="always", colors=None,
+    ),
+    OutputField(
+        "face", "Number of the face, the same in all frames", "", "faces",
+        frames="never", surface="always", colors=None,
     ),
     OutputField(
         "node", "Number of the node: its row in frames.vtkhdf", "", "nodes",

@@ -13,7 +13,7 @@ from cdem.cli.installation_commands import benchmark, doctor, verify
 from cdem.cli.law_commands import law
 from cdem.cli.messages import Messages
 from cdem.cli.model_commands import check, mesh, new, schema
-from cdem.cli.result_commands import export, info, plot, render, runout, view
+from cdem.cli.result_commands import Fields, export, info, plot, render, runout, view
 from cdem.cli.run_commands import run
 from cdem.cli.site_commands import site
 from cdem.cli.study_commands import critical, sweep
@@ -22,7 +22,6 @@ from cdem.errors import CdemError
 app = typer.Typer(
     name="cdem",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     help="Rock as blocks of finite elements that touch, bond, break and slide (CDEM).",
@@ -77,5 +76,5 @@ def _top(
 
 for _verb in (new, check, site, mesh, schema, critical, sweep, verify, benchmark, run,
               info, plot, render, view, runout, export, doctor):  # fmt: skip
-    app.command()(_verb)
+    app.command(cls=Fields if _verb is render else None)(_verb)
 app.add_typer(law, name="law")

@@ -4,44 +4,88 @@ from __future__ import annotations
 
 import difflib
 import json
+from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from cdem.cli.options import AllowCode, CaseFile, Settings, Strict, Threads, allow_own_laws
 from cdem.errors import BodyError, CaseError
 
+if TYPE_CHECKING:
+    from importlib.abc import Traversable
+
 
 def new(
-    template: Annotated[str | None, typer.Argument(help="Name; by default, list all.")] = None,
+    template: Annotated[
+        str | None,
+        typer.Argument(
+            help="Name; by default, list all.",
+            autocompletion=lambda: sorted(_template_names(resources.files("cdem") / "templates")),
+        ),
+    ] = None,
     folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
 ) -> None:
     """Write a commented case to start from."""
     home = resources.files("cdem") / "templates"
-    names = sorted(f.name[:-5] for f in home.iterdir() if f.name.endswith(".yaml"))
+    names = sorted(_template_names(home))
     if template is None:
         for name in names:
-            title = (home / f"{name}.yaml").read_text().splitlines()[0].lstrip("# ")
-            print(f"{name:<14}{title}")
+            title = _case_of(home, name).read_text().splitlines()[0].lstrip("# ")
+            print(f"{name:<15}{title}")
         return
     if template not in names:
         close = difflib.get_close_matches(template, names, n=1)
         hint = f"; did you mean {close[0]}?" if close else ""
         raise typer.BadParameter(f"no template '{template}'{hint} There are: {', '.join(names)}")
-    case = (home / f"{template}.yaml").read_text()
-    meshes = [f.name for f in home.iterdir() if f.name.endswith(".msh") and f.name in case]
-    files = {f"{template}.yaml": case} | {name: (home / name).read_text() for name in meshes}
-    for name in files:
-        if (folder / name).exists() and not force:
-            raise CaseError(f"{folder / name}: exists already; use --force or name another folder")
+    case = _case_of(home, template)
+    beside = case.read_text()
+    own = list((home / template).iterdir()) if (home / template).is_dir() else _meshes(home)
+    files = [case, *(f for f in own if f.name != case.name and f.name in beside)]
+    for file in files:
+        if (folder / file.name).exists() and not force:
+            raise CaseError(
+                f"{folder / file.name}: exists already; use --force or name another folder"
+            )
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in files.items():
-        (folder / name).write_text(text)
-        print(f"wrote {folder / name}")
-    print(f"next: cdem run {folder / template}.yaml")
+    for file in files:
+        (folder / file.name).write_text(file.read_text())
+        print(f"wrote {folder / file.name}")
+    for line in _next_commands(beside, folder):
+        print(f"next: {line}")
+
+
+def _template_names(home: Traversable) -> Iterator[str]:
+    """Templates are cases, or folders that hold one of their name with what belongs to it."""
+    for entry in home.iterdir():
+        if entry.name.endswith(".yaml"):
+            yield entry.name[: -len(".yaml")]
+        elif (entry / f"{entry.name}.yaml").is_file():
+            yield entry.name
+
+
+def _meshes(home: Traversable) -> list[Traversable]:
+    return [entry for entry in home.iterdir() if entry.name.endswith(".msh")]
+
+
+def _case_of(home: Traversable, name: str) -> Traversable:
+    return home / name / f"{name}.yaml" if (home / name).is_dir() else home / f"{name}.yaml"
+
+
+def _next_commands(case: str, folder: Path) -> Iterator[str]:
+    """The commands that lead to a first result, as the head of a template has them."""
+    for line in case.splitlines():
+        words = line.lstrip("# ").split("  ")[0].split()  # what follows two blanks explains
+        if len(words) < 3 or words[0] != "cdem" or words[1] == "check":
+            continue
+        words[2] = str(folder / words[2])
+        if words[1] != "mesh":
+            yield " ".join(words)
+            return
+        yield f"{' '.join(words)} -o {Path(words[2]).with_suffix('.msh')}"
 
 
 def check(
@@ -63,12 +107,14 @@ def check(
         raise typer.BadParameter(f"--picture writes PNG: name a .png file, not {picture}")
     allow_own_laws(case_file, allow_code)
     from cdem.case.case import Case
+    from cdem.run.progress import busy
 
     case = Case.load(case_file, settings or [])
     from cdem.run.simulation import Simulation
 
     try:
-        simulation = Simulation(case, threads=threads)
+        with busy("building the model"):
+            simulation = Simulation(case, threads=threads)
     except BodyError as refused:
         if picture:
             from cdem.output import model_picture, render
@@ -83,7 +129,8 @@ def check(
         render.write_image(picture, model_picture.draw_model(simulation))
     from cdem.run.estimate import estimate
 
-    cost = estimate(simulation)
+    with busy("measuring the speed"):
+        cost = estimate(simulation)
     facts = audit.as_dict() | cost.as_dict()
     assumed = _assumed(case_file)
     if as_json:
@@ -120,9 +167,11 @@ def mesh(
 ) -> None:
     """Mesh a landslide from terrain, a sliding surface and bodies outlined in plan."""
     from cdem import terrain
+    from cdem.run.progress import busy
 
     path = output or Path(f"{landslide_file.stem}.msh")
-    solid = terrain.make_mesh(terrain.Landslide.load(landslide_file, settings or []))
+    with busy("meshing"):
+        solid = terrain.make_mesh(terrain.Landslide.load(landslide_file, settings or []))
     terrain.write(solid, path)
     facts = terrain.measure(solid)
     print(json.dumps(facts, indent=2) if as_json else f"{path}: {terrain.text(facts)}")

@@ -7,9 +7,10 @@ import os
 import sys
 import webbrowser
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
+from typer.core import TyperCommand
 
 from cdem.cli.options import print_paths
 from cdem.errors import BackendError, CaseError, CdemError
@@ -31,15 +32,55 @@ def plot(folder: ResultFolder) -> None:
     print_paths(figures.plot(_results(folder)))
 
 
+def _fields() -> list[str]:
+    from cdem.output.shown import SHOWN
+
+    return list(SHOWN)
+
+
+class Fields(TyperCommand):
+    """The verb render, whose help ends with the fields."""
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        from cdem.output.shown import SHOWN
+
+        with formatter.section("Fields, of which a run has some"):
+            formatter.write_dl([(shown.name, shown.meaning) for shown in SHOWN.values()])
+
+
 def render(
     folder: ResultFolder,
-    field: Annotated[str, typer.Option(help="Field that colours the picture.")] = "displacement",
-    movie: Annotated[bool, typer.Option("--movie", help="Make an animation.")] = False,
+    field: Annotated[
+        str,
+        typer.Option(
+            help="Field that colours the picture, of those below.", autocompletion=_fields
+        ),
+    ] = "displacement",
+    time: Annotated[
+        float | None, typer.Option(help="Only the frame next to this time [s].")
+    ] = None,
+    cut: Annotated[
+        str | None,
+        typer.Option(
+            "--slice",
+            metavar="PLANE",
+            help="Cut through the rock: x=VALUE, y=VALUE, z=VALUE, or upright over X0,Y0,X1,Y1.",
+        ),
+    ] = None,
+    before_after: Annotated[
+        bool, typer.Option("--before-after", help="Only the first and last frame, side by side.")
+    ] = False,
+    movie: Annotated[bool, typer.Option("--movie", help="Also make an animation.")] = False,
 ) -> None:
     """Draw the model as pictures or an animation."""
+    if before_after and time is not None:
+        raise typer.BadParameter("--time and --before-after exclude one another")
     from cdem.output import render as drawing
 
-    print_paths(drawing.render(_results(folder), field=field, movie=movie))
+    paths = drawing.render(
+        _results(folder), field=field, time=time, cut=cut, before_after=before_after, movie=movie
+    )
+    print_paths(paths)
 
 
 def view(

@@ -55,21 +55,23 @@ def run(
     folder = output or Path(f"{case_file.stem}.results")
     with stop_on_signal() as stop:
         allow_own_laws(case_file, allow_code)
-        from cdem.case.case import Case
+        from cdem.run.progress import busy
 
-        case = Case.load(case_file, settings or [])
-        from cdem.run.simulation import Simulation
+        silent = quiet or (as_json and not sys.stderr.isatty())
+        with busy("building the model", silent=silent):
+            from cdem.case.case import Case
+            from cdem.run.simulation import Simulation
 
-        simulation = Simulation(
-            case,
-            threads=threads,
-            output=folder,
-            overwrite=overwrite,
-            resume=resume,
-            force=force,
-            device=device,
-            strict=strict,
-        )
+            simulation = Simulation(
+                Case.load(case_file, settings or []),
+                threads=threads,
+                output=folder,
+                overwrite=overwrite,
+                resume=resume,
+                force=force,
+                device=device,
+                strict=strict,
+            )
         status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)
     summary = folder / "summary.json"
     if as_json:
@@ -110,7 +112,10 @@ def _run(
             write_report(folder)  # it shows where
             raise
     if status != "stopped" and not _is_reported(folder):
-        write_report(folder)
+        from cdem.run.progress import busy
+
+        with busy("writing report.html", silent=silent):
+            write_report(folder)
     return status
 
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.interfaces import interfaces_of
-from cdem.output.render import color, load_pyvista, snapshot
-from cdem.output.scene import MATTE, View, add_rock, labels, new_plotter, take
+from cdem.output.render import load_pyvista, snapshot
+from cdem.output.scene import MATTE, View, add_rock, color, labels, new_plotter, take
 
 if TYPE_CHECKING:
     from cdem.errors import BodyError

@@ -62,11 +62,13 @@ class Surface:
     Attributes:
         time: [s].
         points: [m], shape (points, 3).
-        polygons: Point ids, shape (faces, 4), with -1 last in a triangle.
+        polygons: Point ids, shape (faces, corners), with -1 last where a face has fewer: (faces, 4) of
+            a surface, of a cut through it up to (faces, 6).
         point_data: By name.
         cell_data: By name.
         group_names: By the numbers of the field "group"; empty where the file does not tell.
         bolts: Ends of the bars of bolts, shape (bars, 2, 3) [m].
+        bolt_forces: Axial force of each bar, tension positive [N].
     """
 
     time: float
@@ -76,6 +78,7 @@ class Surface:
     cell_data: dict[str, NDArray]
     group_names: list[str]
     bolts: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2, 3)))
+    bolt_forces: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
 
     @property
     def faces(self) -> NDArray[np.int64]:
@@ -145,12 +148,18 @@ class SurfaceSeries(_Frames):
         super().__init__(surface, numbers)
         self._bolts = _Frames(bolts, numbers) if known else None
 
-    def _bars(self, frame: int) -> NDArray[np.float64]:
-        """Ends of the bars of bolts [m], shape (bars, 2, 3)."""
+    @property
+    def has_bolts(self) -> bool:
+        """Whether the case has bolts, which may not all be installed."""
+        return self._bolts is not None
+
+    def _bars(self, frame: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Ends of the bars of bolts [m], shape (bars, 2, 3), and their axial forces [N]."""
         if self._bolts is None:
-            return np.zeros((0, 2, 3))
-        points, ends = self._bolts.read(frame, ["Points", "Connectivity"])
-        return points[ends].reshape(-1, 2, 3)
+            return np.zeros((0, 2, 3)), np.zeros(0)
+        names = ["Points", "Connectivity", "CellData/axial_force"]
+        points, ends, forces = self._bolts.read(frame, names)
+        return points[ends].reshape(-1, 2, 3), forces
 
     def __getitem__(self, frame: int) -> Surface:
         frame = range(len(self))[frame]
@@ -165,7 +174,7 @@ class SurfaceSeries(_Frames):
                 {name: data[()] for name, data in root["PointData"].items()},
                 {name: data[()] for name, data in root["CellData"].items()},
                 _group_names(root),
-                self._bars(frame),
+                *self._bars(frame),
             )
 
 

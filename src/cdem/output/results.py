@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
-from cdem.mesh.element_shapes import NODES
+from cdem.output.meshes import surface_mesh, volume_mesh
 from cdem.output.reader import FrameSeries, SurfaceSeries, read_histories, read_summary
 from cdem.output.report import info
 from cdem.output.web_page import RunPage
-from cdem.run.frame_files import VTK_TYPES
 
 NOTEBOOK = 3_000_000
 """Size at most of the page that a notebook keeps [bytes]."""
@@ -107,11 +106,7 @@ class Results:
             CdemError: pyvista is not installed, or there is no such frame.
         """
         self._check(frame)
-        surface = self._surfaces[frame]
-        mesh = _pyvista().PolyData(surface.points, faces=surface.faces)
-        mesh.point_data.update(surface.point_data)
-        mesh.cell_data.update(surface.cell_data)
-        return _told(mesh, surface.time, surface.group_names)
+        return surface_mesh(self._surfaces[frame])
 
     def volume(self, frame: int = -1) -> Any:
         """All elements of a frame, an UnstructuredGrid of pyvista with the fields of `output.fields`.
@@ -120,18 +115,7 @@ class Results:
             CdemError: pyvista is not installed, or there is no such frame.
         """
         self._check(frame)
-        series = self._volumes
-        place = range(len(series))[frame]
-        cells = [np.column_stack([np.full(len(ids), NODES[shape]), ids]).ravel()
-                 for shape, ids in series.cells.items()]  # fmt: skip
-        types = [np.full(len(ids), VTK_TYPES[shape]) for shape, ids in series.cells.items()]
-        mesh = _pyvista().UnstructuredGrid(
-            np.concatenate(cells), np.concatenate(types).astype(np.uint8), series.points(place)
-        )
-        for kind, data in (("PointData", mesh.point_data), ("CellData", mesh.cell_data)):
-            for name in series.names[kind]:
-                data[name] = series.field(kind, name, place)
-        return _told(mesh, float(series.times[place]), series.group_names)
+        return volume_mesh(self._volumes, range(len(self._volumes))[frame])
 
     def _check(self, frame: int) -> None:
         if not -len(self) <= frame < len(self):
@@ -151,17 +135,3 @@ class Results:
             'style="width:100%;height:720px;border:0"></iframe>'
         )
 
-
-def _pyvista() -> Any:
-    try:
-        import pyvista
-    except ImportError:
-        raise CdemError("meshes need pyvista; pip install 'cdem[viz]'") from None
-    return pyvista
-
-
-def _told(mesh: Any, time: float, group_names: list[str]) -> Any:
-    """A mesh that knows its time and the names of its groups."""
-    mesh.field_data["time"] = [time]
-    mesh.field_data["group_names"] = group_names
-    return mesh

@@ -14,12 +14,21 @@ Image = NDArray[np.uint8]
 
 SIZE = (1100, 760)
 """Width and height of a view, without the strip below it [pixels]."""
+LOWEST = 300
+"""A view is at least so high [pixels]."""
 MARGIN = 1.06
 """The view is so much wider or higher than what it frames."""
 NEUTRAL = "#e2dccf"
 """Rock where an amount is next to nothing."""
 NOTHING = 0.004
 """So much of the range is next to nothing."""
+BLEND = 0.08
+"""From there to this much of the range, the colour of rock goes over into those of the map."""
+PALE = "#efece6"
+"""Rock round bolts that are coloured."""
+REACH, BIAS = 0.03, 0.1
+"""Corners and gaps of a still are darkened within this radius, in heights of the picture; what is
+nearer than this part of it does not count."""
 SHARP = 25.0
 """Edges between faces that meet at a larger angle are drawn [deg]."""
 LIFT = 1e-3
@@ -28,8 +37,14 @@ MOST_LINES = 20_000
 """Faces of a mesh whose lines are drawn, at most."""
 MATTE = {"ambient": 0.45, "diffuse": 0.65, "specular": 0.0}
 """How surfaces take light: so little shading that colours stay those of the legend."""
+TITLE = 44
+"""Height of the row of a title [pixels]."""
 ROW = 28
 """Height of a row of the strip [pixels]."""
+END = 24
+"""Room at the ends of a colour bar [pixels]."""
+ARROW = 30
+"""Length of an axis in the strip, where it lies in the picture [pixels]."""
 PREFIXES = {-3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
@@ -42,35 +57,67 @@ class View:
         back: Unit vector from there to the camera.
         height: Of the picture [m].
         far: Distance of the camera [m].
+        size: Width and height of the picture [pixels].
     """
 
     focus: Floats
     back: Floats
     height: float
     far: float
+    size: tuple[int, int]
+
+    @property
+    def right(self) -> Floats:
+        """Unit vector to the right of the picture."""
+        return _right(self.back)
+
+    @property
+    def up(self) -> Floats:
+        """Unit vector upwards in the picture."""
+        return np.cross(self.back, self.right)
+
+    @property
+    def metres(self) -> float:
+        """That a pixel stands for [m]."""
+        return self.height / self.size[1]
+
+    @classmethod
+    def fitting(cls, points: Floats, back: Floats) -> View:
+        """The same as wide as `SIZE`, and at most as high: a low one shows what is low."""
+        view = cls.framing(points, back)
+        places = points @ view.right, points @ view.up
+        width, height = (max(float(np.ptp(place)), 1e-9) for place in places)
+        pixels = int(np.clip(SIZE[0] * height / width, LOWEST, SIZE[1]))
+        return cls.framing(points, back, (SIZE[0], pixels))
 
     @classmethod
     def framing(cls, points: Floats, back: Floats, size: tuple[int, int] = SIZE) -> View:
         """The view of a picture of this size [pixels] that shows all points, shape (points, 3)."""
         back = back / np.linalg.norm(back)
-        right = np.cross([0.0, 0.0, 1.0], back)
-        right /= np.linalg.norm(right)
+        right = _right(back)
         up = np.cross(back, right)
         places = np.stack([points @ right, points @ up, points @ back], axis=1)
         low, high = places.min(axis=0), places.max(axis=0)
         middle = 0.5 * (low + high)
         height = max(high[1] - low[1], (high[0] - low[0]) * size[1] / size[0], 1e-9) * MARGIN
         far = 2.0 * float(np.linalg.norm(high - low)) + 1e-9
-        return cls(middle @ np.stack([right, up, back]), back, float(height), far)
+        return cls(middle @ np.stack([right, up, back]), back, float(height), far, size)
 
     def aim(self, plotter: Any) -> None:
         """Point the camera of a plotter."""
         camera = plotter.camera
         camera.position, camera.focal_point = self.focus + self.far * self.back, self.focus
-        camera.up = (0, 0, 1)
+        camera.up = self.up
         camera.parallel_projection = True
         camera.parallel_scale = 0.5 * self.height
         plotter.renderer.ResetCameraClippingRange()
+
+
+def _right(back: Floats) -> Floats:
+    """What is right for one who looks against this unit vector: along x for a plan."""
+    right = np.cross([0.0, 0.0, 1.0], back)
+    length = np.linalg.norm(right)
+    return np.array([1.0, 0.0, 0.0]) if length < 1e-6 else right / length
 
 
 def new_plotter(pyvista: Any, size: tuple[int, int] = SIZE) -> Any:
@@ -94,6 +141,20 @@ def add_rock(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
             "line_width": 0.5,
         }
     plotter.add_mesh(mesh, show_scalar_bar=False, smooth_shading=False, **MATTE, **lines, **look)
+    _add_edges(plotter, mesh, view)
+
+
+def add_ground(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
+    """Draw faces of rock that stays, smooth between its sharp edges, without the lines of its mesh."""
+    whole = mesh.clean(tolerance=1e-6 * view.height, absolute=True)
+    smooth = whole.compute_normals(
+        cell_normals=False, split_vertices=True, feature_angle=SHARP, consistent_normals=False
+    )
+    plotter.add_mesh(smooth, show_scalar_bar=False, smooth_shading=True, **MATTE, **look)
+    _add_edges(plotter, whole, view)
+
+
+def _add_edges(plotter: Any, mesh: Any, view: View) -> None:
     edges = mesh.triangulate().extract_feature_edges(
         feature_angle=SHARP, boundary_edges=True, manifold_edges=False, non_manifold_edges=False
     )
@@ -102,23 +163,42 @@ def add_rock(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
         plotter.add_mesh(edges, color="#222222", line_width=1.3, lighting=False)
 
 
-def take(plotter: Any, view: View) -> Image:
-    """The picture of a plotter, which is closed, shape (height, width, 3)."""
+def take(plotter: Any, view: View, *, occlusion: bool = False) -> Image:
+    """The picture of a plotter, which is closed, shape (height, width, 3).
+
+    Args:
+        plotter: What to draw.
+        view: Where from.
+        occlusion: Whether corners and gaps are darkened, which takes a second or more.
+    """
     view.aim(plotter)
+    if occlusion:
+        radius = REACH * view.height
+        plotter.enable_ssao(radius=radius, bias=BIAS * radius, kernel_size=32, blur=True)
     plotter.enable_anti_aliasing("ssaa")
     image = plotter.screenshot(return_img=True)
     plotter.close()
     return image
 
 
+def color(index: int) -> str:
+    """One of twelve colours that are easy to tell apart, also without red or green (Tol), again and
+    again."""
+    colors = ("4477aa", "ee6677", "228833", "ccbb44", "66ccee", "aa3377", "bbbbbb", "332288",
+              "ddcc77", "44aa99", "882255", "999933")  # fmt: skip
+    return "#" + colors[index % len(colors)]
+
+
 def color_map(name: str) -> Any:
-    """A colour map of amounts, in which next to nothing is neutral."""
+    """A colour map of amounts, in which next to nothing is neutral and little is nearly so."""
     import matplotlib
     from matplotlib.colors import ListedColormap, to_rgba
 
-    colors = matplotlib.colormaps[name](np.linspace(0, 1, 500))
-    colors[: round(NOTHING * len(colors))] = to_rgba(NEUTRAL)
-    return ListedColormap(colors)
+    place = np.linspace(0, 1, 500)
+    colors = matplotlib.colormaps[name](place)
+    part = np.clip((place - NOTHING) / (BLEND - NOTHING), 0, 1)[:, None]
+    part = part * part * (3 - 2 * part)
+    return ListedColormap((1 - part) * np.array(to_rgba(NEUTRAL)) + part * colors)
 
 
 def _font(size: int) -> Any:
@@ -128,47 +208,70 @@ def _font(size: int) -> Any:
     return ImageFont.truetype(f"{matplotlib.get_data_path()}/fonts/ttf/DejaVuSans.ttf", size)
 
 
-def write_title(image: Image, title: str) -> Image:
-    """A picture with a title in its upper left corner."""
+def with_title(image: Image, title: str) -> Image:
+    """A picture with a title above it, shape (height + TITLE, width, 3)."""
     from PIL import Image as Pictures
     from PIL import ImageDraw
 
-    picture = Pictures.fromarray(image)
-    ImageDraw.Draw(picture).text((16, 10), title, fill="black", font=_font(24))
+    picture = Pictures.new("RGB", (image.shape[1], len(image) + TITLE), "white")
+    picture.paste(Pictures.fromarray(image), (0, TITLE))
+    ImageDraw.Draw(picture).text((16, 8), title, fill="black", font=_font(24))
     return np.asarray(picture)
 
 
-def bar(name: str, unit: str, colors: Any, high: float, metres: float, width: int) -> Image:
-    """A strip with a colour bar from 0 to `high`, and a scale, shape (3 ROW, width, 3).
+def bar(name: str, unit: str, colors: Any, span: tuple[float, float], width: int) -> Image:
+    """A colour bar, shape (3 ROW, width, 3).
 
     Args:
         name: Of what is coloured.
         unit: Of its values; a prefix is put before it where that makes them shorter.
         colors: Colour map of matplotlib.
-        high: Largest value.
-        metres: That a pixel stands for [m].
-        width: Of the strip [pixels].
+        span: Values at its two ends.
+        width: Of the picture [pixels].
     """
     from matplotlib.ticker import MaxNLocator
     from PIL import Image as Pictures
     from PIL import ImageDraw
 
-    power = 3 * int(np.floor(np.log10(high) / 3)) if high > 0 and unit not in ("", "1") else 0
+    largest = max(abs(value) for value in span)
+    power = 3 * int(np.floor(np.log10(largest) / 3)) if largest > 0 and unit not in ("", "1") else 0
     power = power if power in PREFIXES and (abs(power) >= 3 and unit != "m") else 0
     label = name.replace("_", " ") + (f" [{PREFIXES[power]}{unit}]" if unit else "")
-    left, length = width // 2, width // 2 - 60
+    left, length = END, width - 2 * END
     ramp = (255 * colors(np.linspace(0, 1, length))[:, :3]).astype(np.uint8)
     strip = np.full((3 * ROW, width, 3), 255, np.uint8)
     strip[ROW + 2 : 2 * ROW - 6, left : left + length] = ramp
     picture = Pictures.fromarray(strip)
     draw, font = ImageDraw.Draw(picture), _font(18)
     draw.text((left, 2), label, fill="black", font=font)
-    for tick in MaxNLocator(4).tick_values(0, high / 10**power):
-        place = left + length * tick / (high / 10**power)
-        if left <= place <= left + length:
+    low, high = (value / 10.0**power for value in span)
+    for tick in MaxNLocator(4).tick_values(low, high):
+        place = left + length * (tick - low) / (high - low)
+        if left - 0.5 <= place <= left + length + 0.5:
             draw.line((place, 2 * ROW - 6, place, 2 * ROW), fill="black")
-            draw.text((place, 2 * ROW + 2), f"{tick:g}", fill="black", font=font, anchor="ma")
-    _draw_scale(draw, metres, width)
+            text = f"{tick:g}".replace("-", "\N{MINUS SIGN}")
+            draw.text((place, 2 * ROW + 2), text, fill="black", font=font, anchor="ma")
+    return np.asarray(picture)
+
+
+def foot(legend: Image, view: View, width: int, *, north: bool) -> Image:
+    """What stands below a picture: a scale and directions at the left, a legend in the right half.
+
+    Args:
+        legend: At most half as wide.
+        view: Of the picture.
+        width: Of the picture [pixels].
+        north: Whether y is north: there is an arrow to it, else the three axes.
+    """
+    from PIL import Image as Pictures
+    from PIL import ImageDraw
+
+    picture = Pictures.new("RGB", (width, max(len(legend), 3 * ROW)), "white")
+    picture.paste(Pictures.fromarray(legend), (width // 2, 0))
+    draw = ImageDraw.Draw(picture)
+    single = min(width, SIZE[0])  # of several side by side, the first
+    _draw_scale(draw, view.metres, single)
+    _draw_directions(draw, view, (0.36 * single, 1.7 * ROW), north=north)
     return np.asarray(picture)
 
 
@@ -184,6 +287,24 @@ def _draw_scale(draw: Any, metres: float, width: int) -> None:
     for end in (x, x + pixels):
         draw.line((end, y - 6, end, y + 6), fill="black", width=2)
     draw.text((x + pixels / 2, y + 8), text, fill="black", font=_font(18), anchor="ma")
+
+
+def _draw_directions(draw: Any, view: View, place: tuple[float, float], *, north: bool) -> None:
+    """An arrow to the north, or arrows along the axes, as they lie in the picture."""
+    arrows = [("N", np.array([0.0, 1.0, 0.0]))] if north else zip("xyz", np.eye(3), strict=True)
+    for name, way in arrows:
+        flat = np.array([way @ view.right, -(way @ view.up)])
+        length = float(np.linalg.norm(flat))
+        if length < 0.15:  # towards the reader
+            continue
+        ahead = flat / length
+        side = np.array([-ahead[1], ahead[0]])
+        start = np.array(place) - (0.7 * ARROW * ahead if north else 0)
+        tip = start + (1.4 * ahead if north else flat) * ARROW
+        draw.line((*start, *(tip - 4 * ahead)), fill="black", width=2)
+        head = [tip, tip - 9 * ahead + 4 * side, tip - 9 * ahead - 4 * side]
+        draw.polygon([tuple(point) for point in head], fill="black")
+        draw.text(tuple(tip + 10 * ahead), name, fill="black", font=_font(16), anchor="mm")
 
 
 def labels(entries: Sequence[tuple[str, str]], rows: int, width: int) -> Image:

@@ -151,6 +151,42 @@ def damage_of(sim: RunState) -> NDArray[np.float64]:
     return broken / np.maximum(total, 1)
 
 
+@output_field("slip")
+def slip_of(sim: RunState) -> NDArray[np.float64]:
+    """How far faces that met at the start have slid along one another [m], the most of each element."""
+    return _largest_of_elements(sim, _apart(sim)[0])
+
+
+@output_field("opening")
+def opening_of(sim: RunState) -> NDArray[np.float64]:
+    """How far faces that met at the start have parted [m], the most of each element."""
+    return _largest_of_elements(sim, _apart(sim)[1])
+
+
+def _apart(sim: RunState) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Slip and opening of each pair of faces whose vertices met at the start [m]; the most of them."""
+    t, at = sim.build.topology, sim.motion[:, :3]
+    first, second = t.face_nodes[t.pair_faces[:, 0]], t.face_nodes[t.pair_faces[:, 1]]
+    corners = (first >= 0).sum(axis=1, keepdims=True)
+    place = (t.pair_shift[:, None] - np.arange(first.shape[1])) % corners
+    other = np.take_along_axis(second, place, axis=1)
+    way = at[other] - at[first]
+    normal = np.cross(at[first[:, 1]] - at[first[:, 0]], at[first[:, 2]] - at[first[:, 0]])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    across = np.einsum("pkx,px->pk", way, normal)
+    along = np.linalg.norm(way - across[:, :, None] * normal[:, None], axis=2)
+    real = first >= 0
+    return np.where(real, along, 0.0).max(axis=1), np.where(real, across, 0.0).max(axis=1)
+
+
+def _largest_of_elements(sim: RunState, of_pairs: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The largest value of the pairs of faces of each element, at least 0."""
+    t, largest = sim.build.topology, np.zeros(len(group_of(sim)))
+    for side in range(2):
+        np.maximum.at(largest, t.face_element[t.pair_faces[:, side]], of_pairs)
+    return largest
+
+
 @output_field("piece")
 def pieces_of(sim: RunState) -> NDArray[np.int32]:
     """Piece of each element, shapes one after the other: the least block that it hangs together with.

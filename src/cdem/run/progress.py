@@ -1,4 +1,4 @@
-"""How far a run is, and the line that shows it: live on a terminal, now and then in a log file."""
+"""How far a run is: one display on a terminal, a line a minute in a log file."""
 
 from __future__ import annotations
 
@@ -7,9 +7,18 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from threading import Event, Thread
+from typing import Any
 
-LINE_SECONDS = 5.0  # wall time between lines where nothing can be redrawn
-BAR_WIDTH = 20  # characters
+LINE_SECONDS = 60.0
+"""Wall time between lines where nothing can be redrawn [s]."""
+SILENT_SECONDS = {True: 3.0, False: 20.0}
+"""Work that takes longer says what it is, by whether there is a terminal [s]."""
+BAR_WIDTH = 20
+"""Of the bar on a terminal [characters]."""
+
+Show = Callable[[str, str, float | None], None]
+"""Shows (topic, text, part that is done)."""
 
 
 @dataclass
@@ -55,34 +64,77 @@ def watch(*, silent: bool, tty: bool) -> Iterator[Callable[[Progress], None] | N
 
 
 @contextmanager
-def line(*, silent: bool, tty: bool) -> Iterator[Callable[[str, str, float | None], None] | None]:
-    """Give the function that shows (topic, text, part that is done) on stderr.
+def line(*, silent: bool, tty: bool) -> Iterator[Show | None]:
+    """Give the function that shows how far something is on stderr.
 
     Args:
         silent: Show nothing.
-        tty: Whether stderr is a terminal, whose line can be redrawn; else there is a line every
-            few seconds and at each new topic.
+        tty: Whether stderr is a terminal, which can be redrawn; else there is a line at each new
+            topic and one a minute.
     """
     if silent:
         yield None
     elif tty:
-        with _live_line() as show:
-            yield show
+        with _display() as display:
+            task = display.add_task("", total=None)
+            yield lambda topic, text, part: display.update(
+                task, description=text, completed=part or 0.0, total=None if part is None else 1.0
+            )
     else:
         yield _plain_lines()
 
 
 @contextmanager
-def _live_line() -> Iterator[Callable[[str, str, float | None], None]]:
+def busy(what: str, *, silent: bool = False) -> Iterator[None]:
+    """Say on stderr what takes so long, once it does: live on a terminal, else a line a minute.
+
+    Args:
+        what: Is done within the block, e.g. "building the model".
+        silent: Say nothing.
+    """
+    if silent:
+        yield
+        return
+    done = Event()
+    teller = Thread(target=_tell, args=(what, done, sys.stderr.isatty()), daemon=True, name="told")
+    teller.start()
+    try:
+        yield
+    finally:
+        done.set()
+        teller.join()
+
+
+def _tell(what: str, done: Event, tty: bool) -> None:
+    began = time.monotonic()
+    if done.wait(SILENT_SECONDS[tty]):
+        return
+    if tty:
+        with _display(timed=True) as display:
+            display.add_task(what, total=None)
+            done.wait()
+        return
+    while True:
+        print(f"{what}: {clock(time.monotonic() - began)}", file=sys.stderr, flush=True)
+        if done.wait(LINE_SECONDS):
+            return
+
+
+@contextmanager
+def _display(*, timed: bool = False) -> Iterator[Any]:
+    """A bar and a text, with the time that has passed for work of which no more is known."""
     from rich.console import Console
-    from rich.live import Live
-    from rich.text import Text
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.table import Column
 
-    with Live(console=Console(stderr=True), auto_refresh=False) as live:
-        yield lambda topic, text, part: live.update(Text(f"{_bar(part)}{text}"), refresh=True)
+    text = TextColumn("{task.description}", markup=False, table_column=Column(ratio=1))
+    last = TimeElapsedColumn() if timed else TaskProgressColumn()
+    columns = (BarColumn(BAR_WIDTH), last, text)
+    with Progress(*columns, console=Console(stderr=True), transient=timed, expand=True) as display:
+        yield display
 
 
-def _plain_lines() -> Callable[[str, str, float | None], None]:
+def _plain_lines() -> Show:
     last_time, last_topic = -LINE_SECONDS, ""
 
     def show(topic: str, text: str, part: float | None) -> None:
@@ -106,13 +158,6 @@ def describe(p: Progress) -> str:
         f"unbalance {p.unbalance_ratio:.2g}, energy error {p.energy_error:.1e}, "
         f"broken {p.broken:,}, {p.steps_per_second:,.0f} steps/s{left}{note}"
     )
-
-
-def _bar(part: float | None) -> str:
-    if part is None:
-        return ""
-    done = round(BAR_WIDTH * min(max(part, 0.0), 1.0))
-    return f"[{'=' * done}{' ' * (BAR_WIDTH - done)}] {part:4.0%} "
 
 
 def clock(seconds: float) -> str:

@@ -266,11 +266,13 @@ class Results:
 
 def _kept_in_frames(sim: RunState) -> list[OutputField]:
     """Fields that change and that each frame of the volume has."""
-    wanted, bounded = wanted_fields(sim.case), sim.case.model.domain is not None
+    case = sim.case
+    wanted = wanted_fields(case)
+    leave = case.model.domain is not None or any(s.remove or s.add for s in case.stages)
     return [
         f
         for f in OUTPUT_FIELDS
-        if (f.frames == "chosen" and f.name in wanted) or (f.frames == "domain" and bounded)
+        if (f.frames == "chosen" and f.name in wanted) or (f.frames == "leaving" and leave)
     ]
 
 

@@ -13,7 +13,7 @@ import sys
 
 from cdem._version import __version__
 
-DEVELOPER_EXTRAS = {"dev", "test", "docs"}
+DEVELOPER_EXTRAS = {"dev", "docs", "test", "webtest"}
 RENDER_TIMEOUT = 60.0  # a broken driver can hang [s]
 RENDER = """
 import pyvista

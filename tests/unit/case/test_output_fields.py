@@ -6,7 +6,6 @@ from pathlib import Path
 
 from cdem import Case
 from cdem.case.output_fields import CHOICE, OUTPUT_FIELDS
-from cdem.output.render import DRAWN
 
 ROOT = Path(__file__).parents[3]
 
@@ -15,17 +14,8 @@ def test_the_case_offers_the_fields_of_frames():
     output = Case.schema()["$defs"]["Output"]["properties"]["fields"]
     assert output["items"]["enum"] == output["default"] == CHOICE
     assert CHOICE == [
-        "displacement", "velocity", "stress", "effective_stress", "pore_pressure", "damage", "piece",
+        "displacement", "velocity", "stress", "effective_stress", "pore_pressure", "damage", "slip", "opening", "piece",
         "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
-        "joint_slip", "joint_damage", "joint_opening", "joint_reversal", "joint_unloads"
-    ]  # fmt: skip
-
-
-def test_pictures_show_what_the_surface_holds():
-    assert {name for name, field in DRAWN.items() if field.surface == "never"} == set()
-    assert list(DRAWN) == [
-        "displacement", "velocity", "pore_pressure", "damage", "group", "block", "piece", "joint",
-        "water_pressure", "yielded", "plastic_shear", "plastic_tension", "joint_plastic_shear", "joint_plastic_tension",
         "joint_slip", "joint_damage", "joint_opening", "joint_reversal", "joint_unloads"
     ]  # fmt: skip
 

@@ -24,22 +24,27 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     assert status == 0
     names = [line.split()[0] for line in out.splitlines()]
     assert names == [
+        "arch",
         "bedded_slope",
         "dam",
         "foliated",
         "incline",
         "landslide",
+        "landslide_dem",
+        "rockfall",
         "safety",
         "slope",
+        "toppling",
         "tunnel",
         "tunnel_bolts",
         "wall",
+        "wedge",
     ]
     for name in names:
         assert run_cli("new", name, "cases")[0] == 0
-        case = Case.load(cube_folder / "cases" / f"{name}.yaml")
-        assert case.title
-    assert (cube_folder / "cases/slope.msh").exists()
+        if name != "landslide_dem":  # is to be meshed first
+            assert Case.load(cube_folder / "cases" / f"{name}.yaml").title
+    assert all((cube_folder / "cases" / file).exists() for file in ("slope.msh", "valley.asc"))
     status, _, err = run_cli("new", "incline", "cases")
     assert status == 1
     assert "cases/incline.yaml: exists already; use --force" in err
@@ -60,10 +65,21 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
         "dam",
         "foliated",
         "bedded_slope",
+        "arch",
+        "rockfall",
+        "toppling",
+        "wedge",
+        "landslide_dem",
     ],
 )
 def test_templates_check(run_cli, name):
-    run_cli("new", name)
+    """The commands that `cdem new` names work, in another folder than that of the case."""
+    _, said, _ = run_cli("new", name, "cases")
+    commands = [line.split()[2:] for line in said.splitlines() if line.startswith("next: cdem")]
+    for meshing in commands[:-1]:
+        assert run_cli(*meshing)[0] == 0
+    assert commands[-1][:2] in (["run", f"cases/{name}.yaml"], ["critical", f"cases/{name}.yaml"])
+    name = f"cases/{name}"
     status, out, err = run_cli("check", f"{name}.yaml")
     assert (status, err) == (0, "")
     assert "warning" not in out

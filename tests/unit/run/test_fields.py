@@ -56,3 +56,21 @@ def test_every_field_of_nodes_and_elements_has_a_row_for_each():
     assert set(points) | set(cells) == {field.name for field in OUTPUT_FIELDS} - {"water_pressure"}
     element = t.face_element[visible_faces(sim)[0]]
     assert (cells["block"] == values["block"][element]).all() and len(faces) == len(element)
+
+
+@pytest.mark.parametrize("shape", ["hex8", "tet4"])
+def test_faces_that_met_slide_and_part(shape):
+    """The upper of two boxes is moved along x and up; the lower one's other elements know nothing."""
+    box = {"size": [1, 1, 1], "divisions": [1, 1, 2], "shape": shape}
+    blocks = [{"group": "a", "box": box}, {"group": "b", "box": box, "translate": [0, 0, 2 - 1]}]
+    sim = simulate(blocks, {"a": {}, "b": {}}, interfaces={"default": {"friction_angle": 30}})
+    values = values_of(sim, [f for f in OUTPUT_FIELDS if f.name in ("slip", "opening")])
+    assert max(values["slip"].max(), values["opening"].max()) < 1e-12
+    t = sim.build.topology
+    sim.motion[np.unique(t.element_nodes[shape][t.element_group[shape] == 1]), :3] += [0.3, 0, 0.1]
+    values = values_of(sim, [f for f in OUTPUT_FIELDS if f.name in ("slip", "opening")])
+    z = t.node_position[t.element_nodes[shape]][:, :, 2]
+    touch = np.isclose(z, 1).sum(axis=1) >= 3
+    assert touch.sum() >= 2
+    assert values["slip"] == pytest.approx(0.3 * touch)
+    assert values["opening"] == pytest.approx(0.1 * touch)

@@ -1,0 +1,133 @@
+"""What pictures can show: recorded fields, and what follows from them (components, principal stress)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
+
+Looks = Literal["amount", "signed", "whole range", "label", "scattered label"]
+"""How a field is coloured: as `Colors` says, or "signed", between two ends of which one may be below
+zero."""
+Recorded = NDArray
+Values = Callable[[Recorded], NDArray]
+
+AXES = ("x", "y", "z")
+TENSOR = ("xx", "yy", "zz", "xy", "yz", "zx")
+YIELDED = ("never", "shear before", "tension before", "shear now", "tension now")
+"""Names of the numbers that `yield_class` gives."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a picture may show.
+
+    Attributes:
+        name: On the command line.
+        meaning: One line.
+        unit: Of the values.
+        looks: How they are coloured.
+        of: The recorded field that they follow from.
+        values: Takes the rows of that field, gives one value each.
+        labels: Names of the values 0, 1, ... of a label.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    looks: Looks
+    of: str
+    values: Values
+    labels: tuple[str, ...] = ()
+
+
+def size_of(vectors: NDArray) -> NDArray:
+    """Lengths of vectors, shape (rows, 3)."""
+    return np.linalg.norm(vectors, axis=1)
+
+
+def principal(stress: NDArray, place: int) -> NDArray:
+    """The principal value in this place, 0 for the largest, of rows xx yy zz xy yz zx."""
+    xx, yy, zz, xy, yz, zx = np.asarray(stress, float).T
+    tensors = np.stack([xx, xy, zx, xy, yy, yz, zx, yz, zz], axis=1).reshape(-1, 3, 3)
+    return np.linalg.eigvalsh(tensors)[:, 2 - place]
+
+
+def von_mises(stress: NDArray) -> NDArray:
+    """sqrt(3 J2) of rows xx yy zz xy yz zx."""
+    s = np.asarray(stress, float)
+    deviator = s[:, :3] - s[:, :3].mean(axis=1, keepdims=True)
+    return np.sqrt(1.5 * ((deviator**2).sum(axis=1) + 2 * (s[:, 3:] ** 2).sum(axis=1)))
+
+
+def yield_class(bits: NDArray) -> NDArray:
+    """Place in `YIELDED` of each row of the field "yielded", rock and weak plane taken together."""
+    bits = np.asarray(bits).astype(int)
+    bits = (bits | bits >> 4) & 15
+    cases = [(bits & 2) > 0, (bits & 1) > 0, (bits & 8) > 0, (bits & 4) > 0]
+    return np.select(cases, [4, 3, 2, 1], 0)
+
+
+def _column(rows: NDArray, place: int) -> NDArray:
+    return rows[:, place]
+
+
+def _itself(rows: NDArray) -> NDArray:
+    return rows
+
+
+def _of_field(field: OutputField) -> list[Shown]:
+    """What can be shown of a recorded field."""
+    if field.name in ("displacement", "velocity"):
+        parts = [
+            Shown(f"{field.name}_{a}", f"{field.meaning} along {a}", field.unit, "signed", field.name,
+                  partial(_column, place=k))
+            for k, a in enumerate(AXES)
+        ]  # fmt: skip
+        return [Shown(field.name, field.meaning, field.unit, "amount", field.name, size_of), *parts]
+    if field.name == "stress":
+        return _of_stress("", field) + [
+            Shown(
+                "von_mises", "Von Mises stress, sqrt(3 J2)", "Pa", "amount", field.name, von_mises
+            )
+        ]
+    if field.name == "effective_stress":
+        return _of_stress("effective_", field)
+    if field.name == "yielded":
+        meaning = "What flows in the element now, or has flowed"
+        return [Shown(field.name, meaning, "", "label", field.name, yield_class, YIELDED)]
+    if field.colors is None:
+        return []
+    return [Shown(field.name, field.meaning, field.unit, field.colors, field.name, _itself)]
+
+
+def _of_stress(prefix: str, field: OutputField) -> list[Shown]:
+    what = "effective stress" if prefix else "stress"
+    parts = [
+        Shown(f"{prefix}stress_{c}", f"{what.capitalize()} {c}, tension positive", "Pa", "signed",
+              field.name, partial(_column, place=k))
+        for k, c in enumerate(TENSOR)
+    ]  # fmt: skip
+    for number, which in ((1, "largest"), (2, "middle"), (3, "smallest")):
+        meaning = f"{which.capitalize()} principal {what}, tension positive"
+        most = {1: ": the most tensile", 2: "", 3: ": the most compressive"}[number]
+        parts.append(
+            Shown(f"{prefix}sigma_{number}", meaning + most, "Pa", "signed", field.name,
+                  partial(principal, place=number - 1))
+        )  # fmt: skip
+    return parts
+
+
+AXIAL_FORCE = Shown(
+    "axial_force", "Axial force of bolts, tension positive", "N", "signed", "axial_force", _itself
+)
+"""The one that bolts are coloured by; the rock is then pale."""
+SHOWN = {shown.name: shown for field in OUTPUT_FIELDS for shown in _of_field(field)}
+SHOWN[AXIAL_FORCE.name] = AXIAL_FORCE
+"""All by name, in the order of the list of fields."""
