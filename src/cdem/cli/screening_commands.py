@@ -1,0 +1,114 @@
+"""Verbs that look at a slope before anything is run: joints."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cdem.cli.options import print_paths
+from cdem.errors import CaseError, CdemError
+
+if TYPE_CHECKING:
+    from cdem.joints.kinematics import Slope
+    from cdem.joints.survey import Survey
+
+
+def joints(
+    table: Annotated[Path, typer.Argument(metavar="TABLE.csv", help="dip, dip direction, ...")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Sets for a case; a picture beside it. Default TABLE.yaml, here."
+        ),
+    ] = None,
+    slope: Annotated[
+        str | None,
+        typer.Option(metavar="DIP/DIRECTION", help="Also tell what may fail on it: 60/090."),
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Friction angle of joints on the slope.")
+    ] = None,
+    lateral: Annotated[
+        float, typer.Option(metavar="DEG", help="Planes fail within this of its direction.")
+    ] = 20.0,
+    sets: Annotated[
+        int | None, typer.Option(min=1, max=12, help="So many; default by BIC, or as the table.")
+    ] = None,
+    scanline: Annotated[
+        str | None,
+        typer.Option(metavar="PLUNGE/TREND", help="All joints were measured along it: 05/120."),
+    ] = None,
+    length: Annotated[
+        float | None, typer.Option(metavar="M", help="Length of all scanlines; default by joints.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace sets that exist.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Find the sets among measured joints, and what may slide or topple on a slope."""
+    from cdem.joints.measured import read_measured
+    from cdem.joints.survey import Survey
+
+    face = _slope(slope, friction, lateral)
+    along = None if scanline is None else _plane("--scanline", scanline)[::-1]
+    if length is not None:
+        _within("--length", length, 1e-6, 1e6)
+    path = output or Path(f"{table.stem}.yaml")
+    if path.suffix not in (".yaml", ".yml"):
+        raise typer.BadParameter(f"the sets are written as YAML: name a .yaml file, not {path}")
+    if path.exists() and not force:  # strengths in it may have been edited
+        raise CaseError(f"{path}: exists already; use --force or name another file with -o")
+    measured = read_measured(table, along)
+    survey = Survey.of(table, measured, count=sets, length=length, slope=face)
+    print(json.dumps(survey.as_dict(), indent=2) if as_json else survey.text())
+    written = _write_survey(survey, path)
+    if not as_json:
+        print_paths(written)
+
+
+def _slope(face: str | None, friction: float | None, lateral: float) -> Slope | None:
+    if (face is None) != (friction is None):
+        raise typer.BadParameter("give both --slope DIP/DIRECTION and --friction DEG, or neither")
+    if face is None or friction is None:
+        return None
+    from cdem.joints.kinematics import Slope
+
+    dip, direction = _plane("--slope", face)
+    _within("--friction", friction, 0, 90)
+    _within("--lateral", lateral, 0, 90)
+    return Slope(dip, direction, friction, lateral)
+
+
+def _write_survey(survey: Survey, path: Path) -> list[Path]:
+    """Write the sets and, beside them, their picture; without matplotlib that is only said."""
+    from cdem.output import stereonet
+    from cdem.whole_files import write_text
+
+    write_text(path, survey.yaml())
+    try:
+        return [path, stereonet.draw(survey, path.with_suffix(".png"))]
+    except CdemError as error:
+        print(f"no picture: {error}", file=sys.stderr)
+        return [path]
+
+
+def _plane(option: str, text: str) -> tuple[float, float]:
+    """Two angles parted by a slash: dip and dip direction, or plunge and trend [deg]."""
+    first, slash, second = text.partition("/")
+    try:
+        dip, direction = float(first), float(second)
+    except ValueError:
+        dip, direction = -1.0, -1.0
+    if not slash or not (0 <= dip <= 90 and 0 <= direction <= 360):
+        raise typer.BadParameter(
+            f"{option} takes an angle below the horizontal and an azimuth, e.g. 60/090; got {text}"
+        )
+    return dip, direction
+
+
+def _within(option: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise typer.BadParameter(f"{option} must lie in {low:g} to {high:g}, got {value:g}")
