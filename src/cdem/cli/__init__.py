@@ -15,7 +15,7 @@ from cdem.cli.messages import Messages
 from cdem.cli.model_commands import check, mesh, new, schema
 from cdem.cli.result_commands import export, info, plot, render, runout
 from cdem.cli.run_commands import run
-from cdem.cli.screening_commands import joints
+from cdem.cli.screening_commands import joints, screen
 from cdem.cli.study_commands import critical, sweep
 from cdem.errors import CdemError
 
@@ -75,7 +75,7 @@ def _top(
     pass
 
 
-for _verb in (new, check, mesh, joints, schema, critical, sweep, verify, benchmark, run,
+for _verb in (new, check, mesh, joints, screen, schema, critical, sweep, verify, benchmark, run,
               info, plot, render, runout, export, doctor):  # fmt: skip
     app.command()(_verb)
 app.add_typer(law, name="law")

@@ -1,4 +1,4 @@
-"""Verbs that look at a slope before anything is run: joints."""
+"""Verbs that look at a slope before anything is run: joints, screen."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import typer
 
 from cdem.cli.options import print_paths
 from cdem.errors import CaseError, CdemError
+
+GRAVITY = 9.81
 
 if TYPE_CHECKING:
     from cdem.joints.kinematics import Slope
@@ -93,6 +95,74 @@ def _write_survey(survey: Survey, path: Path) -> list[Path]:
     except CdemError as error:
         print(f"no picture: {error}", file=sys.stderr)
         return [path]
+
+
+def screen(
+    ground: Annotated[
+        Path, typer.Argument(metavar="GROUND", help="A grid (.tif, .asc), or LANDSLIDE.yaml.")
+    ],
+    sets: Annotated[
+        Path, typer.Option("--joints", metavar="JOINTS.yaml", help="Of cdem joints, or a case.")
+    ],
+    volume: Annotated[
+        tuple[str, str],
+        typer.Option(metavar="FROM TO", help="Volumes that count [m3]: --volume 500 2e5."),
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder; default GROUND.screen, here.")
+    ] = None,
+    density: Annotated[
+        str, typer.Option(metavar="KG/M3", help="Of the rock; matters with cohesion.")
+    ] = "2650",
+    cell: Annotated[
+        float | None, typer.Option(metavar="M", help="Cells of the map; default the grid's.")
+    ] = None,
+    stride: Annotated[
+        int, typer.Option(min=1, help="Cells between points of the first search.")
+    ] = 4,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Map the factor of safety over terrain: wedges and planes of joints, by closed forms."""
+    from cdem.run.progress import line
+    from cdem.screening import fos_map, products
+    from cdem.screening.bodies import Ground, Limits
+    from cdem.screening.ground import read_ground
+    from cdem.screening.planes import read_planes
+
+    smallest, largest = (_number("--volume", word, "m3") for word in volume)
+    limits = Limits(smallest, largest, GRAVITY * _number("--density", density, "kg/m3"))
+    planes, notes = read_planes(sets)
+    grid, system = read_ground(ground, cell)
+    tty = sys.stderr.isatty()
+    with line(silent=not tty, tty=tty) as show:
+        report = None if show is None else lambda words, part: show("", words, part)
+        found = fos_map.screen(Ground(grid), planes, limits, stride, report)
+    folder = output or Path(f"{ground.stem}.screen")
+    folder.mkdir(parents=True, exist_ok=True)
+    written = products.write_maps(found, folder, system)
+    written.append(products.write_bodies(found, folder / "bodies.gpkg", system))
+    try:
+        written.append(products.draw(found, folder / "fos.png"))
+    except CdemError as error:
+        print(f"no picture: {error}", file=sys.stderr)
+    if as_json:
+        print(json.dumps(products.facts(found), indent=2))
+    else:
+        print(products.text(found, planes, notes, system))
+        print_paths(written)
+
+
+def _number(option: str, text: str, unit: str) -> float:
+    """A number above zero, with a unit or without."""
+    from cdem.units import to_number
+
+    try:
+        value = to_number(text, unit)
+    except ValueError as error:
+        raise typer.BadParameter(f"{option}: {error}") from None
+    if not value > 0:
+        raise typer.BadParameter(f"{option} must be above 0, got {text}")
+    return value
 
 
 def _plane(option: str, text: str) -> tuple[float, float]:
