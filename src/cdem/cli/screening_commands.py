@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cdem.cli.options import print_paths
+from cdem.cli.options import print_paths, stop_on_signal
 from cdem.errors import CaseError, CdemError
 
 GRAVITY = 9.81
@@ -17,6 +17,8 @@ GRAVITY = 9.81
 if TYPE_CHECKING:
     from cdem.joints.kinematics import Slope
     from cdem.joints.survey import Survey
+    from cdem.screening.confirm import Confirmed
+    from cdem.screening.fos_map import FosMap
 
 
 def joints(
@@ -120,9 +122,18 @@ def screen(
     stride: Annotated[
         int, typer.Option(min=1, help="Cells between points of the first search.")
     ] = 4,
+    confirm: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Compute the N worst bodies, as cdem critical.")
+    ] = 0,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Local processes for them; default all cores.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Map the factor of safety over terrain: wedges and planes of joints, by closed forms."""
+    """Map the factor of safety over terrain: wedges and planes of joints, by closed forms.
+
+    With --confirm a case is written for each of the worst bodies, and both factors are listed.
+    """
     from cdem.run.progress import line
     from cdem.screening import fos_map, products
     from cdem.screening.bodies import Ground, Limits
@@ -139,17 +150,56 @@ def screen(
         found = fos_map.screen(Ground(grid), planes, limits, stride, report)
     folder = output or Path(f"{ground.stem}.screen")
     folder.mkdir(parents=True, exist_ok=True)
+    written = _write_maps(found, folder, system)
+    if not as_json:
+        print(products.text(found, planes, notes, system))
+    both = _confirm(found, confirm, folder, workers)
+    if both:
+        factors = [one.computed for one in both]
+        products.write_bodies(found, folder / products.BODIES, system, factors)
+    if as_json:
+        print(json.dumps(products.facts(found) | {"confirmed": [vars(c) for c in both]}, indent=2))
+    else:
+        print_paths(written)
+        if both:
+            print("factors of safety, closed form and computed (cdem critical):")
+            print(*(one.text() for one in both), sep="\n")
+
+
+def _write_maps(found: FosMap, folder: Path, system: Any) -> list[Path]:
+    """Write maps, bodies and picture; without matplotlib that is only said."""
+    from cdem.screening import products
+
     written = products.write_maps(found, folder, system)
-    written.append(products.write_bodies(found, folder / "bodies.gpkg", system))
+    written.append(products.write_bodies(found, folder / products.BODIES, system))
     try:
-        written.append(products.draw(found, folder / "fos.png"))
+        return [*written, products.draw(found, folder / "fos.png")]
     except CdemError as error:
         print(f"no picture: {error}", file=sys.stderr)
-    if as_json:
-        print(json.dumps(products.facts(found), indent=2))
-    else:
-        print(products.text(found, planes, notes, system))
-        print_paths(written)
+        return written
+
+
+def _confirm(found: FosMap, count: int, folder: Path, workers: int | None) -> list[Confirmed]:
+    """Compute the worst bodies, with a line of progress."""
+    if not count or not found.bodies:
+        return []
+    from cdem.run.progress import line
+    from cdem.screening.confirm import confirm
+    from cdem.study.sweep import describe
+
+    tty = sys.stderr.isatty()
+    with (
+        stop_on_signal("stopping, finished bodies are kept") as stop,
+        line(silent=not tty, tty=tty) as show,
+    ):
+        return confirm(
+            found,
+            count,
+            folder / "confirm",
+            workers=workers,
+            progress=None if show is None else lambda p: show("", *describe(p)),
+            should_stop=lambda: bool(stop),
+        )
 
 
 def _number(option: str, text: str, unit: str) -> float:

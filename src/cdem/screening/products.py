@@ -26,6 +26,7 @@ WORDS = {
     "second": "slides on one of two planes",
     "plane": "slides on a single plane",
 }
+BODIES = "bodies.gpkg"
 SHOWN = 10
 """Bodies that the report lists."""
 LEVELS = (0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 3.0)

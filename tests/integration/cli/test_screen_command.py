@@ -77,3 +77,14 @@ def test_nothing_found_is_said(run_cli, hill):
     status, out, err = run_cli(*words)
     assert (status, err) == (0, "") and "0 bodies at" in out
     assert len(raw.read("hill.screen/bodies.gpkg")[2]) == 0
+
+
+@pytest.mark.slow
+def test_confirmed_factors_are_those_of_the_closed_form(run_cli, hill):
+    pytest.importorskip("distributed")
+    words = ("--joints", "joints.yaml", "--volume", "50", "1e5", "--confirm", "1", "--json")
+    status, out, _ = run_cli("screen", "hill.tif", *words)
+    one = json.loads(out)["confirmed"][0]
+    assert status == 0 and one["computed"] == pytest.approx(one["closed"], rel=0.03)
+    meta, _, _, values = raw.read("hill.screen/bodies.gpkg")
+    assert values[list(meta["fields"]).index("fos_critical")][0] == one["computed"]
