@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -166,7 +166,7 @@ def screen(
             print(*(one.text() for one in both), sep="\n")
 
 
-def _write_maps(found: FosMap, folder: Path, system: Any) -> list[Path]:
+def _write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
     """Write maps, bodies and picture; without matplotlib that is only said."""
     from cdem.screening import products
 

@@ -113,7 +113,7 @@ def _lift(
     """
     used = [np.unique(plan.triangles[plan.body == k]) for k in range(len(planes))]
     if len(planes) == 2:
-        both, side = np.intersect1d(*used), _side(body)
+        both, side = np.intersect1d(used[0], used[1]), _side(body)
         plan.points[both] -= ((plan.points[both] - body.point[:2]) @ side)[:, None] * side
     plan.bed = np.full(len(plan.points), np.nan)
     for number, some in zip(planes, used, strict=True):

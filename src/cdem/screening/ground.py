@@ -17,7 +17,7 @@ from cdem.units import coordinates
 MOST_CELLS = 25_000_000
 
 
-def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, Any]:
+def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None]:
     """Read the heights to screen.
 
     Args:
@@ -26,7 +26,7 @@ def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, Any]:
             there is none.
 
     Returns:
-        The heights, and their map projection as rasterio knows it, or None.
+        The heights, and their map projection: EPSG code or WKT, or None.
 
     Raises:
         CaseError: A file cannot be read, or the cells are too many.
@@ -77,16 +77,16 @@ def _sampled(heights: Heights, low: Any, high: Any, cell: float) -> Grid:
     return Grid(x[0], y[0], (cell, cell), heights(xy).reshape(rows, columns))
 
 
-def _system(path: Path) -> Any:
-    """Map projection of a grid: of a GeoTIFF, or of the `.prj` beside an ASCII grid."""
+def _system(path: Path) -> str | None:
+    """Map projection of a grid as WKT: of a GeoTIFF, or of the `.prj` beside an ASCII grid."""
+    rasterio = extra("rasterio")
     if path.suffix.lower() in (".tif", ".tiff"):
-        with extra("rasterio").open(path, driver="GTiff") as file:
-            return file.crs
+        with rasterio.open(path, driver="GTiff") as file:
+            return file.crs and file.crs.to_wkt()
     beside = path.with_suffix(".prj")
     if not is_file(beside):
         return None
-    rasterio = extra("rasterio")
     try:
-        return rasterio.crs.CRS.from_wkt(beside.read_text())
+        return rasterio.crs.CRS.from_wkt(beside.read_text()).to_wkt()
     except (OSError, ValueError, rasterio.errors.CRSError):
         raise CaseError(f"{beside}: is no map projection (WKT); mend it or take it away") from None

@@ -49,13 +49,13 @@ def outline(body: Body, ground: Ground) -> Any:
     return max(parts[shapely.get_type_id(parts) == 3], key=lambda part: part.area)
 
 
-def write_maps(found: FosMap, folder: Path, system: Any) -> list[Path]:
+def write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
     """Write the maps as GeoTIFF; returns their paths.
 
     Args:
         found: The maps.
         folder: Where.
-        system: Map projection, as rasterio knows it; None for none.
+        system: Map projection, EPSG code or WKT; None for none.
     """
     rasterio = extra("rasterio")
     grid = found.ground.grid
@@ -93,14 +93,14 @@ def write_maps(found: FosMap, folder: Path, system: Any) -> list[Path]:
 
 
 def write_bodies(
-    found: FosMap, path: Path, system: Any, confirmed: list[float] | None = None
+    found: FosMap, path: Path, system: str | None, confirmed: list[float] | None = None
 ) -> Path:
     """Write the outlines of the listed bodies as a GeoPackage; returns its path.
 
     Args:
         found: The bodies.
         path: The file.
-        system: Map projection, as rasterio knows it; None for none.
+        system: Map projection, EPSG code or WKT; None for none.
         confirmed: Factor of safety by `cdem critical` of the first bodies, nan for none.
     """
     raw, shapely = extra("pyogrio.raw"), extra("shapely")
@@ -129,7 +129,7 @@ def write_bodies(
             field_data=list(columns.values()),
             fields=list(columns),
             geometry_type="Polygon",
-            crs=None if system is None else system.to_wkt(),
+            crs=system,
             layer="bodies",
             driver="GPKG",
         )
@@ -190,7 +190,9 @@ def _draw_map(axes: Any, ground: Ground, values: Floats, title: str) -> Any:
     return shown
 
 
-def text(found: FosMap, planes: Sequence[JointPlane], notes: Sequence[str], system: Any) -> str:
+def text(
+    found: FosMap, planes: Sequence[JointPlane], notes: Sequence[str], system: str | None
+) -> str:
     """What was found, for people."""
     limits, grid = found.limits, found.ground.grid
     rows, columns = grid.values.shape

@@ -44,7 +44,7 @@ def test_the_map_projection_beside_an_ascii_grid(tmp_path):
 
     path = grid_file(tmp_path / "g.asc", np.arange(0, 31, 10.0), np.arange(0, 31, 10.0), 10)
     (tmp_path / "g.prj").write_text(CRS.from_epsg(32632).to_wkt())
-    assert read_ground(path)[1].to_epsg() == 32632
+    assert CRS.from_wkt(read_ground(path)[1]).to_epsg() == 32632
     (tmp_path / "g.prj").write_text("nonsense")
     with pytest.raises(CaseError, match="is no map projection"):
         read_ground(path)
