@@ -17,8 +17,11 @@ GRAVITY = 9.81
 if TYPE_CHECKING:
     from cdem.joints.kinematics import Slope
     from cdem.joints.survey import Survey
+    from cdem.screening.bodies import Limits
     from cdem.screening.confirm import Confirmed
     from cdem.screening.fos_map import FosMap
+    from cdem.screening.planes import JointPlane
+    from cdem.terrain.heights import Grid
 
 
 def joints(
@@ -134,9 +137,8 @@ def screen(
 
     With --confirm a case is written for each of the worst bodies, and both factors are listed.
     """
-    from cdem.run.progress import line
-    from cdem.screening import fos_map, products
-    from cdem.screening.bodies import Ground, Limits
+    from cdem.screening import products
+    from cdem.screening.bodies import Limits
     from cdem.screening.ground import read_ground
     from cdem.screening.planes import read_planes
 
@@ -144,10 +146,7 @@ def screen(
     limits = Limits(smallest, largest, GRAVITY * _number("--density", density, "kg/m3"))
     planes, notes = read_planes(sets)
     grid, system = read_ground(ground, cell)
-    tty = sys.stderr.isatty()
-    with line(silent=not tty, tty=tty) as show:
-        report = None if show is None else lambda words, part: show("", words, part)
-        found = fos_map.screen(Ground(grid), planes, limits, stride, report)
+    found = _screen(grid, planes, limits, stride)
     folder = output or Path(f"{ground.stem}.screen")
     folder.mkdir(parents=True, exist_ok=True)
     written = _write_maps(found, folder, system)
@@ -164,6 +163,18 @@ def screen(
         if both:
             print("factors of safety, closed form and computed (cdem critical):")
             print(*(one.text() for one in both), sep="\n")
+
+
+def _screen(grid: Grid, planes: list[JointPlane], limits: Limits, stride: int) -> FosMap:
+    """Seek the bodies, with a line of progress."""
+    from cdem.run.progress import line
+    from cdem.screening import fos_map
+    from cdem.screening.bodies import Ground
+
+    tty = sys.stderr.isatty()
+    with line(silent=not tty, tty=tty) as show:
+        report = None if show is None else lambda words, part: show("", words, part)
+        return fos_map.screen(Ground(grid), planes, limits, stride, report)
 
 
 def _write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
