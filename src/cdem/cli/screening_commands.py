@@ -154,8 +154,7 @@ def screen(
         print(products.text(found, planes, notes, system))
     both = _confirm(found, confirm, folder, workers)
     if both:
-        factors = [one.computed for one in both]
-        products.write_bodies(found, folder / products.BODIES, system, factors)
+        products.write_bodies(found, folder / products.BODIES, system, [c.computed for c in both])
     if as_json:
         print(json.dumps(products.facts(found) | {"confirmed": [vars(c) for c in both]}, indent=2))
     else:
