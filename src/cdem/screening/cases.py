@@ -160,9 +160,7 @@ def write_case(body: Body, number: int, found: FosMap, folder: Path) -> Path:
     beds = [(f"bed{k + 1}", body.planes[k]) for k in planes]
     lines = [
         f"# Body {number} of cdem screen: {body.name}, {body.volume:.0f} m3, F = {body.factor:.3f} by",
-        "# closed form. To compute it:",
-        f"#   cdem critical {name}.yaml --factor --between {BETWEEN[0] * body.factor:.3f} "
-        f"{BETWEEN[1] * body.factor:.3f} --criterion far={FAR}",
+        f"# closed form. To compute it: cdem critical {name}.yaml --factor --criterion far={FAR}",
         "cdem: 2",
         f"title: Body {number} of a screening",
         "model:",
