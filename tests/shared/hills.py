@@ -13,13 +13,13 @@ HEIGHT, TOP, SLOPE, FOOT = 60.0, 60.0, 65.0, 200.0  # [m] [m] [deg] [m]
 HALF = TOP + HEIGHT / np.tan(np.radians(SLOPE))  # half the side of the foot [m]
 
 
-def frustum(cell):
+def frustum(cell, slope=SLOPE):
     """Heights [m] of the hill and 20 m of flat ground around it."""
-    half = HALF + 20
-    count = round(2 * half / cell) + 1
+    half = TOP + HEIGHT / np.tan(np.radians(slope))
+    count = round(2 * (half + 20) / cell) + 1
     x = (np.arange(count) - (count - 1) / 2) * cell
     away = np.maximum(np.abs(x[None]), np.abs(x[:, None]))
-    rise = (HALF - away) * np.tan(np.radians(SLOPE))
+    rise = (half - away) * np.tan(np.radians(slope))
     return Grid(x[0], x[0], (cell, cell), FOOT + np.clip(rise, 0, HEIGHT))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from shared.hills import frustum, joint, on_ground, place_on_face, tetrahedron
 
-from cdem.screening.bodies import Ground, Limits
+from cdem.screening.bodies import Ground, Limits, height_of
 from cdem.screening.sliding import on_one, on_two
 from cdem.terrain.heights import Grid
 
@@ -17,6 +17,14 @@ FACES = {
     "east": ((joint("J1", 60, 40, 25, 10e3), joint("J2", 50, 130, 35, 40e3)), (1, 0)),
     "west": ((joint("J1", 45, 245, 32, 15e3), joint("J2", 75, 310, 30, 15e3)), (-1, 0)),
 }
+
+
+def center_of_mass(ground, body):
+    """In plan [m]."""
+    rows, columns = body.window
+    x, y = np.meshgrid(ground.x[columns], ground.y[rows])
+    t = np.where(body.cells, ground.grid.values[body.window] - body.bed(x, y), 0)
+    return (t * x).sum() / t.sum(), (t * y).sum() / t.sum()
 
 
 def exact_factor(sliding, planes, volume, areas):
@@ -120,3 +128,22 @@ def test_a_plane_that_daylights_all_round():
     plan = np.pi * apex**2 * m / (m**2 - k**2) ** 1.5
     assert body.areas[0] == pytest.approx(plan / np.cos(np.radians(20)), rel=0.02)
     assert (body.sliding.kind, body.name) == ("plane", "a")
+
+
+def test_a_body_that_would_turn_about_the_edge_of_its_plane_is_left_out():
+    # at corners of a steep hill bodies lean on the steep plane, beside the one they slide on
+    ground = Ground(frustum(1.0, slope=82))
+    planes = (joint("a", 45, 100, 30), joint("b", 70, 60, 30))
+    sliding = on_two(*planes)
+    assert sliding.kind == "first"
+    found = [
+        ground.body(planes, sliding, (i, j), ALL)
+        for i in range(143, 159, 3)
+        for j in range(143, 159, 3)
+    ]
+    bodies = [body for body in found if body is not None]
+    assert len(bodies) > 5
+    for body in bodies:
+        x, y = center_of_mass(ground, body)
+        first, second = (height_of(plane, body.point, x, y) for plane in planes)
+        assert first >= second
