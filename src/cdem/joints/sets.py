@@ -145,7 +145,7 @@ def _improve(state: _State, normals: Floats, weights: Floats, passes: int) -> No
         likelihood = float((weights * np.log(total)).sum())
         grown = likelihood - state.likelihood
         state.likelihood = likelihood
-        if grown < 1e-9 * len(normals):
+        if grown < 1e-7 * len(normals):
             return
         part = membership * weights[:, None]
         state.share = part.sum(axis=0) / weights.sum()

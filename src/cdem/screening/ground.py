@@ -66,6 +66,8 @@ def _cropped(grid: Grid, low: Any, high: Any) -> Grid:
 
 def _sampled(heights: Heights, low: Any, high: Any, cell: float) -> Grid:
     """Heights at the centres of cells in a rectangle."""
+    if not (np.isfinite(cell) and cell > 0):
+        raise CaseError(f"cells must be larger than 0 m, got {cell:g}")
     columns, rows = np.floor((high - low) / cell * (1 + 1e-12)).astype(int)
     if min(rows, columns) < 2 or rows * columns > MOST_CELLS:
         raise CaseError(

@@ -63,6 +63,8 @@ def test_mistakes_are_one_message(run_cli, hill):
     assert status == 2 and "--volume" in err
     status, _, err = run_cli(*words, "--volume", "50", "0")
     assert status == 2 and "--volume must be above 0, got 0" in err
+    status, _, err = run_cli(*words, "--volume", "50", "400", "--cell", "nan")
+    assert status == 1 and err == "cells must be larger than 0 m, got nan\n"
     status, _, err = run_cli(*words, "--volume", "50", "40")
     assert status == 1 and err.startswith("volumes from 50 to 40 m3")
     status, _, err = run_cli("screen", "no.tif", "--joints", "joints.yaml", "--volume", "50", "400")
