@@ -70,8 +70,8 @@ def joints(
         raise CaseError(f"{path}: exists already; use --force or name another file with -o")
     measured = read_measured(table, along)
     survey = Survey.of(table, measured, count=sets, length=length, slope=face)
-    print(json.dumps(survey.as_dict(), indent=2) if as_json else survey.text())
     written = _write_survey(survey, path)
+    print(json.dumps(survey.as_dict(), indent=2) if as_json else survey.text())
     if not as_json:
         print_paths(written)
 
