@@ -23,6 +23,7 @@ FOLDERS = [
     "run",
     "output",
     "study",
+    "screening",
     "verification",
     "tools",
     "cli",

@@ -4,6 +4,7 @@ import numpy as np
 
 import cdem
 from cdem.case.bodies_schema import Model
+from cdem.joints.directions import fisher, pole
 from cdem.mesh.blocks import build_topology
 
 
@@ -39,3 +40,22 @@ def jointed_case(changes):
         part, key = path.split(".")
         data[part][key] = value
     return cdem.Case.from_dict(data)
+
+
+def drawn_joints(sets, uniform=0, seed=4):
+    """Unit normals of joints drawn from Fisher sets, and of some without any order.
+
+    Args:
+        sets: Dip, dip direction [deg], kappa and number of joints of each.
+        uniform: Number of joints without order.
+        seed: Another one draws others.
+    """
+    random = np.random.default_rng(seed)
+    drawn = [
+        fisher(pole(dip, direction), kappa, random)
+        for dip, direction, kappa, count in sets
+        for _ in range(count)
+    ]
+    others = random.normal(size=(uniform, 3))
+    others /= np.linalg.norm(others, axis=1)[:, None]
+    return np.concatenate([np.array(drawn).reshape(-1, 3), others])

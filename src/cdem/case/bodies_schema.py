@@ -158,8 +158,8 @@ class Discs(Part):
 
     file: Line | None = Field(
         None,
-        description="CSV file, relative to the case file: columns x, y, z [m] of the centre, dip, "
-        "dip direction [deg], radius [m]",
+        description="File, relative to the case file: CSV with columns x, y, z [m] of the centre, dip, "
+        "dip direction [deg], radius [m]; or FracMan .fab, whose polygons become discs of their area",
     )
     density: Annotated[float, Quantity("1/m3", above=0)] | None = Field(
         None, description="Centres per volume, beyond the bodies too as far as discs reach [1/m3]"

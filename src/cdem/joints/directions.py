@@ -28,6 +28,27 @@ def pole(dip: float, dip_direction: float) -> Floats:
     return np.array([across * math.sin(azimuth), across * math.cos(azimuth), math.cos(dip)])
 
 
+def poles(dip: Floats, dip_direction: Floats) -> Floats:
+    """Upward unit normals, shape (planes, 3), of dips and dip directions [deg], shape (planes,)."""
+    dip, azimuth = np.radians(dip), np.radians(dip_direction)
+    across = np.sin(dip)
+    return np.stack([across * np.sin(azimuth), across * np.cos(azimuth), np.cos(dip)], axis=-1)
+
+
+def line(trend: Floats, plunge: Floats) -> Floats:
+    """Unit vectors, shape (lines, 3), along lines of trend and plunge [deg], shape (lines,)."""
+    trend, plunge = np.radians(trend), np.radians(plunge)
+    across = np.cos(plunge)
+    return np.stack([across * np.sin(trend), across * np.cos(trend), -np.sin(plunge)], axis=-1)
+
+
+def dips(normals: Floats) -> tuple[Floats, Floats]:
+    """Dip and dip direction [deg] of planes by their normals, shape (..., 3), up or down."""
+    up = normals * np.where(normals[..., 2:] < 0, -1.0, 1.0)
+    dip = np.degrees(np.arccos(np.clip(up[..., 2], -1, 1)))
+    return dip, np.degrees(np.arctan2(up[..., 0], up[..., 1])) % 360
+
+
 def fisher(mean: Floats, concentration: float, random: np.random.Generator) -> Floats:
     """A unit vector of the Fisher distribution around a mean direction (Fisher 1953).
 

@@ -15,6 +15,7 @@ from cdem.errors import CaseError
 from cdem.joints.convex_cells import Cells, Floats, Ints
 from cdem.joints.cutting import cut
 from cdem.joints.directions import fisher, mean_normal, pole
+from cdem.joints.fracman import read_polygons
 from cdem.mesh.arrays import along, lengths
 
 COLUMNS = ("x", "y", "z", "dip", "dip_direction", "radius")
@@ -31,11 +32,15 @@ class Disc:
 
 
 def read_discs(path: Path) -> list[Disc]:
-    """Read a CSV file of discs.
+    """Read discs from a CSV file, or from the polygons of a FracMan file (`.fab`).
+
+    A polygon becomes the disc of its area about its centre.
 
     Raises:
         CaseError: It cannot be read, or a value is missing or out of range.
     """
+    if path.suffix.lower() == ".fab":
+        return [_disc_like(path, k, x) for k, x in enumerate(read_polygons(path), 1)]
     try:
         rows = np.genfromtxt(path, delimiter=",", names=True, dtype=float, encoding="utf-8")
         table = np.stack([np.atleast_1d(rows[name]) for name in COLUMNS], axis=1)
@@ -54,6 +59,20 @@ def read_discs(path: Path) -> list[Disc]:
             f"{allowed[max(column - 2, 0)]}"
         )
     return [Disc(row[:3], pole(row[3], row[4]), float(row[5])) for row in table]
+
+
+def _disc_like(path: Path, number: int, x: Floats) -> Disc:
+    """The disc of the area, centre and plane of a polygon."""
+    a, b = x[1:-1] - x[0], x[2:] - x[0]
+    halves = np.cross(a, b) / 2
+    area = float(np.linalg.norm(halves.sum(axis=0)))
+    if area <= 1e-12 * float(np.ptp(x, axis=0).max()) ** 2:
+        raise CaseError(f"{path}: fracture {number} has no area")
+    normal = halves.sum(axis=0) / area
+    part = along(halves, normal) / area
+    center = x[0] + (part[:, None] * (a + b)).sum(axis=0) / 3
+    upward = normal if normal[2] >= 0 else -normal
+    return Disc(center, upward, math.sqrt(area / math.pi))
 
 
 def draw_discs(joint: Joint, discs: Discs, points: Floats) -> list[Disc]:

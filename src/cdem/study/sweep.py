@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -79,21 +79,46 @@ def run_study(
         BackendError: Dask is missing, or its scheduler cannot be reached any more.
     """
     study = study if isinstance(study, Study) else Study.load(study)
-    folder = Path(folder)
-    runs = plan(study, folder)
-    _open(folder, study)
-    table = Table(study, runs)
-    for run in runs:
-        run.result = finished(run.task)
-        check_results(study, run)
+    how: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    how |= {"progress": progress, "should_stop": should_stop}
+    return run_studies([(study, Path(folder))], **how)[0]
+
+
+def run_studies(
+    studies: Sequence[tuple[Study, Path]],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Callable[[SweepProgress], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> list[Table]:
+    """Execute the runs of several studies on the same workers; see `run_study`.
+
+    Args:
+        studies: Each with the folder of its results.
+
+    Returns:
+        A table for each study.
+    """
+    tables = [Table(study, plan(study, folder)) for study, folder in studies]
+    runs = [run for table in tables for run in table.runs]
     waiting: dict[str, list[Run]] = {}  # runs of the same case are executed once
-    for run in runs:
-        if run.status == "waiting":
-            waiting.setdefault(run.identity, []).append(run)
+    for (study, folder), table in zip(studies, tables, strict=True):
+        _open(folder, study)
+        for run in table.runs:
+            run.result = finished(run.task)
+            check_results(study, run)
+            if run.status == "waiting":
+                waiting.setdefault(run.identity, []).append(run)
+    owner = {run.identity: table.study for table in tables for run in table.runs}
+
+    def check(run: Run) -> None:
+        check_results(owner[run.identity], run)
+
     if waiting:
         with _cluster(workers, scheduler) as client:
-            _execute_all(study, runs, waiting, client, progress, should_stop)
-    return table
+            _execute_all(check, runs, waiting, client, progress, should_stop)
+    return tables
 
 
 def _open(folder: Path, study: Study) -> None:
@@ -145,13 +170,15 @@ class _Execution:
     """Runs on a cluster, as many at a time as it has threads.
 
     Args:
-        study: The study.
+        check: Looks at the result of a run, and raises if its study asks for what is not there.
         waiting: Runs to execute; those of the same case, by its identity, are executed once.
         client: Of the cluster.
     """
 
-    def __init__(self, study: Study, waiting: dict[str, list[Run]], client: Any) -> None:
-        self._study, self._client = study, client
+    def __init__(
+        self, check: Callable[[Run], None], waiting: dict[str, list[Run]], client: Any
+    ) -> None:
+        self._check, self._client = check, client
         self._left, self._count = list(waiting.values()), len(waiting)
         self._under_way: dict[Any, list[Run]] = {}
         self._began = time.perf_counter()
@@ -179,7 +206,7 @@ class _Execution:
                 continue
             for run in (same := self._under_way.pop(future)):
                 _settle(run, future, status)
-            check_results(self._study, same[0])
+            self._check(same[0])
 
     def cancel(self) -> None:
         """Give up what is under way."""
@@ -194,7 +221,7 @@ class _Execution:
 
 
 def _execute_all(
-    study: Study,
+    check: Callable[[Run], None],
     runs: list[Run],
     waiting: dict[str, list[Run]],
     client: Any,
@@ -202,7 +229,7 @@ def _execute_all(
     should_stop: Callable[[], bool] | None,
 ) -> None:
     """Keep every thread of the cluster busy until all runs are done or the user wants to stop."""
-    execution = _Execution(study, waiting, client)
+    execution = _Execution(check, waiting, client)
     looked, threads = time.perf_counter(), _threads(client)
     while execution.going:
         execution.submit(threads)

@@ -57,7 +57,7 @@ def make_plan(landslide: Landslide) -> Plan:
     notes: list[str] = []
     outlines = _outlines(landslide)
     bodies = _cut_at_outcrop(landslide, outlines, ground, surface, notes)
-    pieces = _pieces(bodies, outlines, landslide.sizes.body) if bodies else []
+    pieces = pieces_of(bodies, outlines, landslide.sizes.body) if bodies else []
     points, triangles, body, outcrop = _triangulate(landslide, pieces)
     unknown = np.full(len(points), np.nan)
     plan = Plan(points, triangles, body, unknown, unknown, _rim(points), notes)
@@ -243,7 +243,7 @@ class Piece:
     outcrop: bool
 
 
-def _pieces(bodies: list[Any], outlines: list[Any], size: float) -> list[Piece]:
+def pieces_of(bodies: list[Any], outlines: list[Any], size: float) -> list[Piece]:
     """Divide the boundaries of the bodies into edges of about one size."""
     shapely = extra("shapely")
     near = 1e-3 * size
@@ -395,7 +395,7 @@ def _lift(
     edge[plan.triangles[plan.body < 0]] = True
     zero |= in_body & edge & ~(plan.ground - plan.bed >= thin)
     plan.body[zero[plan.triangles].all(axis=1)] = -1  # without volume
-    _split_pinched(plan, zero)
+    split_pinched(plan, zero)
     _look_up(landslide, plan, ground, surface)
     zero = np.concatenate([zero, np.zeros(len(plan.points) - len(zero), bool)])
     in_body = np.isfinite(plan.bed)
@@ -411,7 +411,7 @@ def _look_up(landslide: Landslide, plan: Plan, ground: Heights, surface: Heights
     plan.bed[of_body] = _known(landslide, "surface", surface, plan.points[of_body])
 
 
-def _split_pinched(plan: Plan, zero: NDArray[np.bool_]) -> None:
+def split_pinched(plan: Plan, zero: NDArray[np.bool_]) -> None:
     """Divide edges inside a body whose ends have no thickness: ground and bed would be one there.
 
     A triangle has at most one such edge, for those with three ends of no thickness are bedrock.

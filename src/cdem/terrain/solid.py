@@ -43,7 +43,7 @@ class Solid:
     crs: str | None
 
 
-class _Columns:
+class Columns:
     """Points stacked over the plan: each column from low to high, with its heights as parts of 1."""
 
     def __init__(self) -> None:
@@ -87,8 +87,8 @@ def make_solid(landslide: Landslide, plan: Plan) -> Solid:
         MeshError: A shell does not close, or the bedrock cannot be filled.
     """
     points = [np.column_stack([plan.points, plan.ground])]
-    columns = _body_columns(plan, landslide.sizes.body, points)
-    tets, group = _stack(plan, columns)
+    columns = body_columns(plan, landslide.sizes.body, points)
+    tets, group = stack(plan, columns)
     body_skin = _skin(tets)
     tops = {tuple(sorted(t)) for t in plan.triangles[plan.body >= 0].tolist()}
     under = np.array(
@@ -115,9 +115,9 @@ def make_solid(landslide: Landslide, plan: Plan) -> Solid:
     return solid
 
 
-def _body_columns(plan: Plan, size: float, points: list[Floats]) -> _Columns:
+def body_columns(plan: Plan, size: float, points: list[Floats]) -> Columns:
     """Divide the height between bed and ground into parts of about one size."""
-    columns = _Columns()
+    columns = Columns()
     count = len(plan.points)
     for at in np.unique(plan.triangles[plan.body >= 0]).tolist():
         low, high = plan.bed[at], plan.ground[at]
@@ -132,7 +132,7 @@ def _body_columns(plan: Plan, size: float, points: list[Floats]) -> _Columns:
     return columns
 
 
-def _stack(plan: Plan, columns: _Columns) -> tuple[Ints, Ints]:
+def stack(plan: Plan, columns: Columns) -> tuple[Ints, Ints]:
     """Tets of the bodies and their groups."""
     tets, group = [], []
     for triangle, body in zip(plan.triangles.tolist(), plan.body.tolist(), strict=True):
@@ -167,7 +167,7 @@ def _outside(
     count += len(base_xy)
     edge = np.hypot(*(np.roll(xy, -1, axis=0) - xy).T)
     edge = (edge + np.roll(edge, 1)) / 2
-    columns = _Columns()
+    columns = Columns()
     for k, at in enumerate(rim.tolist()):
         high = plan.ground[at]
         parts = max(1, round((high - base_z) / edge[k]))
@@ -337,7 +337,7 @@ def _sound(triangles: Floats) -> bool:
     return bool((normal[:, 2] > 0.01 * doubled).all() and (doubled > FLAT * longest**2).all())
 
 
-def _name_surfaces(solid: Solid, plan: Plan, columns: _Columns) -> None:
+def _name_surfaces(solid: Solid, plan: Plan, columns: Columns) -> None:
     """Name the ground and the bed by group, and the walls by the two groups they part."""
     names = solid.groups
     feet = np.full(len(solid.points), -1)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 from shared.cases import STUDY, SWEPT
 
+from cdem.study.results_table import check_results
 from cdem.study.run import Run
 from cdem.study.study import Study
 from cdem.study.sweep import _Execution
@@ -44,7 +47,7 @@ class Scheduler:
 def test_a_result_that_was_lost_with_its_worker_is_waited_for(folder):
     run = Run("a", "a", {}, {})
     study = Study(case="cube.yaml", parameters={"groups.cube.velocity.0": [0]})
-    execution = _Execution(study, {"a": [run]}, Scheduler())
+    execution = _Execution(partial(check_results, study), {"a": [run]}, Scheduler())
     execution.submit(threads=1)
     for _ in range(4):
         assert execution.going

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cdem.terrain.plan import Plan, _at, _split_pinched
+from cdem.terrain.plan import Plan, _at, split_pinched
 
 pytest.importorskip("scipy", reason="needs the extra 'terrain'")
 pytest.importorskip("netgen", reason="needs the extra 'terrain'")
@@ -14,7 +14,7 @@ def test_an_edge_without_thickness_across_a_body_is_divided():
     none = np.full(4, np.nan)
     triangles = np.array([[0, 1, 2], [0, 2, 3]])
     plan = Plan(points, triangles, np.array([0, 0]), none, none, np.arange(4), [])
-    _split_pinched(plan, np.array([True, False, True, False]))
+    split_pinched(plan, np.array([True, False, True, False]))
     assert plan.points[4].tolist() == [2, 2]
     assert sorted(map(sorted, plan.triangles.tolist())) == [
         [0, 1, 4],

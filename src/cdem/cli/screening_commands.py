@@ -1,0 +1,244 @@
+"""Verbs that look at a slope before anything is run: joints, screen."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cdem.cli.options import print_paths, stop_on_signal
+from cdem.errors import CaseError, CdemError
+
+GRAVITY = 9.81
+
+if TYPE_CHECKING:
+    from cdem.joints.kinematics import Slope
+    from cdem.joints.survey import Survey
+    from cdem.screening.bodies import Limits
+    from cdem.screening.confirm import Confirmed
+    from cdem.screening.fos_map import FosMap
+    from cdem.screening.planes import JointPlane
+    from cdem.terrain.heights import Grid
+
+
+def joints(
+    table: Annotated[Path, typer.Argument(metavar="TABLE.csv", help="dip, dip direction, ...")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Sets for a case; a picture beside it. Default TABLE.yaml, here."
+        ),
+    ] = None,
+    slope: Annotated[
+        str | None,
+        typer.Option(metavar="DIP/DIRECTION", help="Also tell what may fail on it: 60/090."),
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Friction angle of joints on the slope.")
+    ] = None,
+    lateral: Annotated[
+        float, typer.Option(metavar="DEG", help="Planes fail within this of its direction.")
+    ] = 20.0,
+    sets: Annotated[
+        int | None, typer.Option(min=1, max=12, help="So many; default by BIC, or as the table.")
+    ] = None,
+    scanline: Annotated[
+        str | None,
+        typer.Option(metavar="PLUNGE/TREND", help="All joints were measured along it: 05/120."),
+    ] = None,
+    length: Annotated[
+        float | None, typer.Option(metavar="M", help="Length of all scanlines; default by joints.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace sets that exist.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Find the sets among measured joints, and what may slide or topple on a slope."""
+    from cdem.joints.measured import read_measured
+    from cdem.joints.survey import Survey
+
+    face = _slope(slope, friction, lateral)
+    along = None if scanline is None else _plane("--scanline", scanline)[::-1]
+    if length is not None:
+        _within("--length", length, 1e-6, 1e6)
+    path = output or Path(f"{table.stem}.yaml")
+    if path.suffix not in (".yaml", ".yml"):
+        raise typer.BadParameter(f"the sets are written as YAML: name a .yaml file, not {path}")
+    if path.exists() and not force:  # strengths in it may have been edited
+        raise CaseError(f"{path}: exists already; use --force or name another file with -o")
+    measured = read_measured(table, along)
+    survey = Survey.of(table, measured, count=sets, length=length, slope=face)
+    written = _write_survey(survey, path)
+    print(json.dumps(survey.as_dict(), indent=2) if as_json else survey.text())
+    if not as_json:
+        print_paths(written)
+
+
+def _slope(face: str | None, friction: float | None, lateral: float) -> Slope | None:
+    if (face is None) != (friction is None):
+        raise typer.BadParameter("give both --slope DIP/DIRECTION and --friction DEG, or neither")
+    if face is None or friction is None:
+        return None
+    from cdem.joints.kinematics import Slope
+
+    dip, direction = _plane("--slope", face)
+    _within("--friction", friction, 0, 90)
+    _within("--lateral", lateral, 0, 90)
+    return Slope(dip, direction, friction, lateral)
+
+
+def _write_survey(survey: Survey, path: Path) -> list[Path]:
+    """Write the sets and, beside them, their picture; without matplotlib that is only said."""
+    from cdem.output import stereonet
+    from cdem.whole_files import write_text
+
+    write_text(path, survey.yaml())
+    try:
+        return [path, stereonet.draw(survey, path.with_suffix(".png"))]
+    except CdemError as error:
+        print(f"no picture: {error}", file=sys.stderr)
+        return [path]
+
+
+def screen(
+    ground: Annotated[
+        Path, typer.Argument(metavar="GROUND", help="A grid (.tif, .asc), or LANDSLIDE.yaml.")
+    ],
+    sets: Annotated[
+        Path, typer.Option("--joints", metavar="JOINTS.yaml", help="Of cdem joints, or a case.")
+    ],
+    volume: Annotated[
+        tuple[str, str],
+        typer.Option(metavar="FROM TO", help="Volumes that count [m3]: --volume 500 2e5."),
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder; default GROUND.screen, here.")
+    ] = None,
+    density: Annotated[
+        str, typer.Option(metavar="KG/M3", help="Of the rock; matters with cohesion.")
+    ] = "2650",
+    cell: Annotated[
+        float | None, typer.Option(metavar="M", help="Cells of the map; default the grid's.")
+    ] = None,
+    stride: Annotated[
+        int, typer.Option(min=1, help="Cells between points of the first search.")
+    ] = 4,
+    confirm: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Compute the N worst bodies, as cdem critical.")
+    ] = 0,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Local processes for them; default all cores.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Map the factor of safety over terrain: wedges and planes of joints, by closed forms.
+
+    With --confirm a case is written for each of the worst bodies, and both factors are listed.
+    """
+    from cdem.screening import products
+    from cdem.screening.bodies import Limits
+    from cdem.screening.ground import read_ground
+    from cdem.screening.planes import read_planes
+
+    smallest, largest = (_number("--volume", word, "m3") for word in volume)
+    limits = Limits(smallest, largest, GRAVITY * _number("--density", density, "kg/m3"))
+    planes, notes = read_planes(sets)
+    grid, system = read_ground(ground, cell)
+    found = _screen(grid, planes, limits, stride)
+    folder = output or Path(f"{ground.stem}.screen")
+    folder.mkdir(parents=True, exist_ok=True)
+    written = _write_maps(found, folder, system)
+    if not as_json:
+        print(products.text(found, planes, notes, system))
+    both = _confirm(found, confirm, folder, workers)
+    if both:
+        products.write_bodies(found, folder / products.BODIES, system, [c.computed for c in both])
+    if as_json:
+        print(json.dumps(products.facts(found) | {"confirmed": [vars(c) for c in both]}, indent=2))
+    else:
+        print_paths(written)
+        if both:
+            print("factors of safety, closed form and computed (cdem critical):")
+            print(*(one.text() for one in both), sep="\n")
+
+
+def _screen(grid: Grid, planes: list[JointPlane], limits: Limits, stride: int) -> FosMap:
+    """Seek the bodies, with a line of progress."""
+    from cdem.run.progress import line
+    from cdem.screening import fos_map
+    from cdem.screening.bodies import Ground
+
+    tty = sys.stderr.isatty()
+    with line(silent=not tty, tty=tty) as show:
+        report = None if show is None else lambda words, part: show("", words, part)
+        return fos_map.screen(Ground(grid), planes, limits, stride, report)
+
+
+def _write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
+    """Write maps, bodies and picture; without matplotlib that is only said."""
+    from cdem.screening import products
+
+    written = products.write_maps(found, folder, system)
+    written.append(products.write_bodies(found, folder / products.BODIES, system))
+    try:
+        return [*written, products.draw(found, folder / "fos.png")]
+    except CdemError as error:
+        print(f"no picture: {error}", file=sys.stderr)
+        return written
+
+
+def _confirm(found: FosMap, count: int, folder: Path, workers: int | None) -> list[Confirmed]:
+    """Compute the worst bodies, with a line of progress."""
+    if not count or not found.bodies:
+        return []
+    from cdem.run.progress import line
+    from cdem.screening.confirm import confirm
+    from cdem.study.sweep import describe
+
+    tty = sys.stderr.isatty()
+    with (
+        stop_on_signal("stopping, finished bodies are kept") as stop,
+        line(silent=not tty, tty=tty) as show,
+    ):
+        return confirm(
+            found,
+            count,
+            folder / "confirm",
+            workers=workers,
+            progress=None if show is None else lambda p: show("", *describe(p)),
+            should_stop=lambda: bool(stop),
+        )
+
+
+def _number(option: str, text: str, unit: str) -> float:
+    """A number above zero, with a unit or without."""
+    from cdem.units import to_number
+
+    try:
+        value = to_number(text, unit)
+    except ValueError as error:
+        raise typer.BadParameter(f"{option}: {error}") from None
+    if not value > 0:
+        raise typer.BadParameter(f"{option} must be above 0, got {text}")
+    return value
+
+
+def _plane(option: str, text: str) -> tuple[float, float]:
+    """Two angles parted by a slash: dip and dip direction, or plunge and trend [deg]."""
+    first, slash, second = text.partition("/")
+    try:
+        dip, direction = float(first), float(second)
+    except ValueError:
+        dip, direction = -1.0, -1.0
+    if not slash or not (0 <= dip <= 90 and 0 <= direction <= 360):
+        raise typer.BadParameter(
+            f"{option} takes an angle below the horizontal and an azimuth, e.g. 60/090; got {text}"
+        )
+    return dip, direction
+
+
+def _within(option: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise typer.BadParameter(f"{option} must lie in {low:g} to {high:g}, got {value:g}")

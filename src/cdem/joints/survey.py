@@ -1,0 +1,189 @@
+"""What a table of measured joints says: its sets, their spacing, and what may fail on a slope."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cdem.errors import CaseError
+from cdem.joints.kinematics import Shares, Slope, shares
+from cdem.joints.measured import Measured
+from cdem.joints.scanlines import LEAST_SINE, Frequency, frequencies, terzaghi
+from cdem.joints.sets import Fit, fit_sets, given_sets
+
+ASSUMED_FRICTION = 30.0
+
+
+@dataclass(frozen=True)
+class Survey:
+    """A table of joints, understood.
+
+    Attributes:
+        source: Name of its file.
+        measured: The joints.
+        fit: Their sets.
+        frequencies: Spacing of each set; None without scanlines.
+        slope: The slope, if one is given.
+        shares: What may fail on it.
+    """
+
+    source: str
+    measured: Measured
+    fit: Fit
+    frequencies: list[Frequency] | None
+    slope: Slope | None
+    shares: Shares | None
+
+    @classmethod
+    def of(
+        cls,
+        path: Path,
+        measured: Measured,
+        *,
+        count: int | None = None,
+        length: float | None = None,
+        slope: Slope | None = None,
+    ) -> Survey:
+        """Find the sets, their spacing, and what may fail.
+
+        Args:
+            path: File of the table.
+            measured: Its joints.
+            count: Number of sets; None for the one of the least BIC, or those of the table.
+            length: Of all scanlines together [m].
+            slope: A slope to look at.
+
+        Raises:
+            CaseError: There is no such number of sets, or scanlines have no length.
+        """
+        weights = terzaghi(measured)
+        if length is not None and weights is None:
+            raise CaseError(f"{path}: a length needs scanlines: give their trend and plunge")
+        try:
+            if measured.set_of is not None and count is None:
+                fit = given_sets(measured.normals, measured.set_of, weights)
+            else:
+                fit = fit_sets(measured.normals, count, weights)
+            means = np.array([s.normal for s in fit.sets])
+            dense = frequencies(measured, means, fit.membership, length)
+        except CaseError as error:
+            raise CaseError(f"{path}: {error}") from None
+        fail = None if slope is None else shares(slope, measured.normals, means, fit.membership)
+        return cls(path.name, measured, fit, dense, slope, fail)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything but the joints, ready for JSON."""
+        sets = []
+        for k, s in enumerate(self.fit.sets):
+            facts: dict[str, Any] = {"name": s.name, "dip": s.dip, "dip_direction": s.dip_direction}
+            facts |= {"kappa": s.kappa, "a95": s.a95, "share": s.share}
+            sets.append(facts | (asdict(self.frequencies[k]) if self.frequencies else {}))
+        out: dict[str, Any] = {"joints": len(self.measured.dip), "sets": sets}
+        out |= {"background": self.fit.background, "bic": self.fit.bic}
+        out["slope"] = asdict(self.slope) if self.slope else None
+        return out | {"shares": asdict(self.shares) if self.shares else None}
+
+    def text(self) -> str:
+        """The sets, and what may fail, for people."""
+        lines = [f"note: {note}" for note in self.measured.notes]
+        lines += [self._headline(), *self._table(), *self._kinematics()]
+        return "\n".join(lines)
+
+    def _headline(self) -> str:
+        number, count = len(self.measured.dip), len(self.fit.sets)
+        kind = f"{count} set{'s' * (count != 1)}"
+        rest = f"{100 * self.fit.background:.0f} % in none"
+        if not self.fit.bic:
+            return f"{number} joints, {kind} as the table names them, {rest}"
+        bic = ", ".join(f"{n}: {value:.0f}" for n, value in self.fit.bic.items())
+        return f"{number} joints, {kind}, {rest} (BIC by number of sets: {bic})"
+
+    def _table(self) -> list[str]:
+        sets = self.fit.sets
+        width = max(4, *(len(s.name) for s in sets))
+        head = f"  {'set':<{width}}  dip/direction  share   kappa    a95"
+        lines = [head + ("   spacing     P32  joints" if self.frequencies else "")]
+        for k, s in enumerate(sets):
+            row = f"  {s.name:<{width}}  {plane_text(s.dip, s.dip_direction):>13}  "
+            row += f"{100 * s.share:3.0f} %  {s.kappa:6.1f}  {s.a95:5.1f}"
+            if self.frequencies:
+                f = self.frequencies[k]
+                row += f"  {f.spacing:6.3g} m  {f.p32:6.3g}  {f.count:6.0f}"
+            lines.append(row)
+        for s, f in zip(sets, self.frequencies or [], strict=False):
+            if f.blind:
+                angle = np.degrees(np.arcsin(LEAST_SINE))
+                lines.append(
+                    f"note: {s.name} lies within {angle:.1f} deg of the scanlines, which hardly see it: "
+                    "its spacing is a guess"
+                )
+        return lines
+
+    def _kinematics(self) -> list[str]:
+        if self.slope is None or self.shares is None:
+            return []
+        slope, fail, sets = self.slope, self.shares, self.fit.sets
+        lines = [
+            f"slope {plane_text(slope.dip, slope.dip_direction)}, friction {slope.friction:g} deg, "
+            f"lateral limit {slope.lateral:g} deg:"
+        ]
+        for kind, whole, parts in (
+            ("planar", fail.planar, fail.planar_of),
+            ("toppling", fail.toppling, fail.toppling_of),
+        ):
+            of = ", ".join(f"{s.name} {100 * p:.0f} %" for s, p in zip(sets, parts, strict=True))
+            lines.append(f"  {kind:<9} {100 * whole:3.0f} % of joints ({of})")
+        lines.append(f"  {'wedge':<9} {100 * fail.wedge:3.0f} % of the intersections of all pairs")
+        for i, j, plunge, trend, slides in fail.wedges:
+            lines.append(
+                f"    {sets[i].name} and {sets[j].name} meet along "
+                f"{plane_text(plunge, trend)}: {'may slide' if slides else 'no'}"
+            )
+        return lines
+
+    def yaml(self) -> str:
+        """The part of a case that holds these sets: `model.joints` and `interfaces.pairs`."""
+        friction = self.slope.friction if self.slope else ASSUMED_FRICTION
+        lines = [
+            f"# {self._headline()}",
+            f"# from {self.source}. A case takes these lines as they are; cdem screen reads them.",
+            "model:",
+            "  joints:",
+        ]
+        for k, s in enumerate(self.fit.sets):
+            row = f"name: {_quoted(s.name)}, dip: {s.dip:.1f}, dip_direction: {s.dip_direction:.1f}"
+            if self.frequencies:
+                row += f", spacing: {self.frequencies[k].spacing:.4g}"
+            row += f", scatter: {{fisher: {s.kappa:.4g}}}"
+            lines.append(
+                f"    - {{{row}}}   # a95 {s.a95:.1f} deg, {100 * s.share:.0f} % of joints"
+            )
+        if not self.frequencies:
+            lines.append("    # without a spacing each set is one plane through its origin")
+        lines += ["interfaces:", "  pairs:"]
+        assumed = "cohesion" if self.slope else "friction and cohesion"
+        for s in self.fit.sets:
+            strength = f"friction_angle: {friction:g}, cohesion: 0, tensile_strength: 0"
+            name = f"joint: {_quoted(s.name)}"
+            lines.append(f"    - {{{name}, {strength}}}   # ASSUMED: {assumed}")
+        return "\n".join(lines) + "\n"
+
+
+def plane_text(dip: float, direction: float) -> str:
+    """Dip and dip direction, or plunge and trend, as geologists write them.
+
+    Example:
+        >>> plane_text(33.44, 9.26)
+        '33.4/009.3'
+    """
+    return f"{dip:.1f}/{round(direction, 1) % 360:05.1f}"
+
+
+def _quoted(name: str) -> str:
+    """A name as YAML reads it back: as text, also if it looks like a number or a truth."""
+    return name if re.fullmatch(r"set\d+", name) else json.dumps(name, ensure_ascii=False)

@@ -1,0 +1,108 @@
+"""The worst bodies of a screening, each computed: factors of safety by `cdem critical`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from cdem.case.source import Source
+from cdem.errors import MeshError
+from cdem.screening.cases import BETWEEN, FAR, GRAVITY, write_case
+from cdem.screening.fos_map import FosMap
+from cdem.study.criterion import Criterion
+from cdem.study.schema import CriticalSearch
+from cdem.study.study import Study
+from cdem.study.sweep import SweepProgress, run_studies
+
+TOLERANCE = 0.01
+"""Width of the bracket, over the factor of the closed form."""
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """One body, computed.
+
+    Attributes:
+        number: Of the body in the list, from 1.
+        closed: Factor of safety by the closed form.
+        computed: By `cdem critical`; nan if there is none.
+        why: Why there is none, or nothing.
+    """
+
+    number: int
+    closed: float
+    computed: float
+    why: str
+
+    def text(self) -> str:
+        """Both numbers in one line."""
+        if self.why:
+            return f"  {self.number:3}  closed form {self.closed:.3f}, none computed: {self.why}"
+        apart = 100 * (self.computed / self.closed - 1)
+        return (
+            f"  {self.number:3}  closed form {self.closed:.3f}, computed {self.computed:.3f} "
+            f"({apart:+.1f} %)"
+        )
+
+
+def confirm(
+    found: FosMap,
+    count: int,
+    folder: Path,
+    *,
+    workers: int | None = None,
+    progress: Callable[[SweepProgress], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> list[Confirmed]:
+    """Write a case for each of the worst bodies, and find its factor of safety by strength reduction.
+
+    Args:
+        found: The bodies.
+        count: How many.
+        folder: Where cases, meshes and results go; finished results of the same cases are used.
+        workers: Local processes, each of one thread; None for one per core.
+        progress: Called a few times per second.
+        should_stop: Asked as often; True ends it with the results so far.
+
+    Raises:
+        BackendError: Dask is missing.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    studies: dict[int, tuple[Study, Path]] = {}
+    refused: dict[int, str] = {}
+    density = found.limits.unit_weight / GRAVITY
+    for number, body in enumerate(found.bodies[:count], 1):
+        try:
+            path = write_case(body, number, found, folder)
+        except MeshError as error:
+            refused[number] = str(error)
+            continue
+        search = CriticalSearch(
+            factor=True,
+            between=[part * body.factor for part in BETWEEN],
+            tolerance=TOLERANCE * body.factor,
+            criterion=Criterion(far=FAR),
+        )
+        source = Source(file=str(folder / "study.yaml"))
+        study = Study(
+            _source=source,
+            case=path.name,
+            parameters={"materials.rock.density": [density]},
+            critical=search.model_dump(),
+        )
+        studies[number] = (study, folder / "runs" / path.stem)
+    tables = run_studies(
+        list(studies.values()), workers=workers, progress=progress, should_stop=should_stop
+    )
+    out = []
+    for number, body in enumerate(found.bodies[:count], 1):
+        computed, why = np.nan, refused.get(number, "")
+        if number in studies:
+            table = tables[list(studies).index(number)]
+            computed = float(table.column("value")[0])
+            why = table.runs[0].why or ("stopped" if np.isnan(computed) else "")
+        out.append(Confirmed(number, body.factor, computed, why))
+    return out
