@@ -145,14 +145,14 @@ def screen(
     smallest, largest = (_number("--volume", word, "m3") for word in volume)
     limits = Limits(smallest, largest, GRAVITY * _number("--density", density, "kg/m3"))
     planes, notes = read_planes(sets)
-    grid, system = read_ground(ground, cell)
+    grid, system, more = read_ground(ground, cell)
     found = _screen(grid, planes, limits, stride)
     folder = output or Path(f"{ground.stem}.screen")
     folder.mkdir(parents=True, exist_ok=True)
     written = _write_maps(found, folder, system)
     if not as_json:
-        print(products.text(found, planes, notes, system))
-    both = _confirm(found, confirm, folder, workers)
+        print(products.text(found, planes, notes + more, system))
+    both = _confirm(found, confirm, folder, system, workers)
     if both:
         products.write_bodies(found, folder / products.BODIES, system, [c.computed for c in both])
     if as_json:
@@ -189,7 +189,9 @@ def _write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
         return written
 
 
-def _confirm(found: FosMap, count: int, folder: Path, workers: int | None) -> list[Confirmed]:
+def _confirm(
+    found: FosMap, count: int, folder: Path, system: str | None, workers: int | None
+) -> list[Confirmed]:
     """Compute the worst bodies, with a line of progress."""
     if not count or not found.bodies:
         return []
@@ -206,6 +208,7 @@ def _confirm(found: FosMap, count: int, folder: Path, workers: int | None) -> li
             found,
             count,
             folder / "confirm",
+            system=system,
             workers=workers,
             progress=None if show is None else lambda p: show("", *describe(p)),
             should_stop=lambda: bool(stop),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -136,10 +137,12 @@ def _solid(plan: Plan, body: Body, size: float, planes: list[int]) -> Solid:
     bed, part = stack(plan, below)
     names = [BODY, *(f"bed{k + 1}" for k in planes)]
     group = np.concatenate([np.zeros(len(tets), np.int64), part])
-    return Solid(np.concatenate(points), np.concatenate([tets, bed]), group, names, {}, [])
+    return Solid(np.concatenate(points), np.concatenate([tets, bed]), group, names, {}, [], None)
 
 
-def write_case(body: Body, number: int, found: FosMap, folder: Path) -> Path:
+def write_case(
+    body: Body, number: int, found: FosMap, folder: Path, system: str | None = None
+) -> Path:
     """Write the mesh and the case of a listed body; returns the path of the case.
 
     Args:
@@ -147,14 +150,23 @@ def write_case(body: Body, number: int, found: FosMap, folder: Path) -> Path:
         number: Of the body in the list, from 1.
         found: The map that it is from.
         folder: Where.
+        system: Map projection, EPSG code or WKT; None for none.
 
     Raises:
         MeshError: It cannot be meshed.
     """
     solid, planes = body_mesh(body, found.ground)
-    name = f"body{number}"
-    write(solid, folder / f"{name}.msh")
+    path = folder / f"body{number}.yaml"
+    write(solid, path.with_suffix(".msh"))
     density = found.limits.unit_weight / GRAVITY
+    write_text(path, _case_text(body, number, density, planes, system))
+    return path
+
+
+def _case_text(
+    body: Body, number: int, density: float, planes: list[int], system: str | None
+) -> str:
+    name = f"body{number}"
     held = "friction_angle: 75, cohesion: 1 GPa, tensile_strength: 1 GPa"
     held += ", residual_friction_angle: 75, residual_cohesion: 1 GPa"
     beds = [(f"bed{k + 1}", body.planes[k]) for k in planes]
@@ -163,6 +175,7 @@ def write_case(body: Body, number: int, found: FosMap, folder: Path) -> Path:
         f"# closed form. To compute it: cdem critical {name}.yaml --factor --criterion far={FAR}",
         "cdem: 2",
         f"title: Body {number} of a screening",
+        *([] if system is None else [f"crs: {json.dumps(system)}"]),
         "model:",
         f"  mesh: {name}.msh",
         "materials:",
@@ -193,6 +206,4 @@ def write_case(body: Body, number: int, found: FosMap, folder: Path) -> Path:
             f"      interfaces.{bed}.residual_friction_angle: {plane.friction!r}",
             f"      interfaces.{bed}.residual_cohesion: {plane.cohesion!r}",
         ]
-    path = folder / f"{name}.yaml"
-    write_text(path, "\n".join(lines) + "\n")
-    return path
+    return "\n".join(lines) + "\n"

@@ -53,6 +53,7 @@ def confirm(
     count: int,
     folder: Path,
     *,
+    system: str | None = None,
     workers: int | None = None,
     progress: Callable[[SweepProgress], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
@@ -63,6 +64,7 @@ def confirm(
         found: The bodies.
         count: How many.
         folder: Where cases, meshes and results go; finished results of the same cases are used.
+        system: Map projection of the ground, EPSG code or WKT; None for none.
         workers: Local processes, each of one thread; None for one per core.
         progress: Called a few times per second.
         should_stop: Asked as often; True ends it with the results so far.
@@ -76,7 +78,7 @@ def confirm(
     density = found.limits.unit_weight / GRAVITY
     for number, body in enumerate(found.bodies[:count], 1):
         try:
-            path = write_case(body, number, found, folder)
+            path = write_case(body, number, found, folder, system)
         except MeshError as error:
             refused[number] = str(error)
             continue

@@ -7,17 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from cdem.case.input_file import is_file
+from cdem.case.map_system import look_up
 from cdem.errors import CaseError
 from cdem.terrain import Landslide
-from cdem.terrain.files import read_grid
-from cdem.terrain.heights import Grid, Heights, extra
+from cdem.terrain.heights import Grid, Heights
+from cdem.terrain.projection import name_of
+from cdem.terrain.rasters import read_grid, read_label
 from cdem.units import coordinates
 
 MOST_CELLS = 25_000_000
 
 
-def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None]:
+def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None, list[str]]:
     """Read the heights to screen.
 
     Args:
@@ -26,14 +27,16 @@ def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None
             there is none.
 
     Returns:
-        The heights, and their map projection: EPSG code or WKT, or None.
+        The heights; their map projection, EPSG code or WKT, or None; and what a user should know.
 
     Raises:
         CaseError: A file cannot be read, or the cells are too many.
     """
     if path.suffix.lower() not in (".yaml", ".yml"):
-        grid = read_grid(path)
-        return (grid if cell is None else _sampled(grid, grid.low, grid.high, cell)), _system(path)
+        grid, label = read_grid(path), read_label(path)
+        if cell is not None:
+            grid = _sampled(grid, grid.low, grid.high, cell)
+        return grid, None if label is None else name_of(look_up(label)), []
     landslide = Landslide.load(path)
     ground, extent = landslide.ground(), landslide.extent
     low, high = np.array([extent.x[0], extent.y[0]]), np.array([extent.x[1], extent.y[1]])
@@ -43,13 +46,11 @@ def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None
             f"reaches beyond the terrain, which is known from ({coordinates(ground.low)}) to "
             f"({coordinates(ground.high)})",
         )
-    file = landslide.terrain.grid
-    system = None if file is None else _system(path.parent / file)
     if cell is None and isinstance(ground, Grid):
-        return _cropped(ground, low, high), system
-    if cell is None:
-        cell = landslide.sizes.body / 2
-    return _sampled(ground, low, high, cell), system
+        grid = _cropped(ground, low, high)
+    else:
+        grid = _sampled(ground, low, high, cell or landslide.sizes.body / 2)
+    return grid, landslide.system, list(landslide.projection.notes)
 
 
 def _cropped(grid: Grid, low: Any, high: Any) -> Grid:
@@ -77,18 +78,3 @@ def _sampled(heights: Heights, low: Any, high: Any, cell: float) -> Grid:
     y = low[1] + cell * (np.arange(rows) + 0.5)
     xy = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     return Grid(x[0], y[0], (cell, cell), heights(xy).reshape(rows, columns))
-
-
-def _system(path: Path) -> str | None:
-    """Map projection of a grid as WKT: of a GeoTIFF, or of the `.prj` beside an ASCII grid."""
-    rasterio = extra("rasterio")
-    if path.suffix.lower() in (".tif", ".tiff"):
-        with rasterio.open(path, driver="GTiff") as file:
-            return file.crs and file.crs.to_wkt()
-    beside = path.with_suffix(".prj")
-    if not is_file(beside):
-        return None
-    try:
-        return rasterio.crs.CRS.from_wkt(beside.read_text()).to_wkt()
-    except (OSError, ValueError, rasterio.errors.CRSError):
-        raise CaseError(f"{beside}: is no map projection (WKT); mend it or take it away") from None
