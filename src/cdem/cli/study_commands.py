@@ -60,13 +60,11 @@ def critical(
 ) -> None:
     """Find the value at which a case fails, by bisection of its last, static stage.
 
-    A trial is stable when it comes to rest. It has failed when a node has moved 2 % (travel) of the
-    mean face size while the kinetic energy grew, or the whole of it (far), or goes on moving at no
-    lower rate, or found no rest in a million steps. Trials start from the last stable state, unless
-    the parameter makes another model (model.*, materials.*).
+    A trial fails when a node moved 2 % (travel) of the mean face size while the kinetic energy grew,
+    or all of it (far), or goes on at no lower rate, or finds no rest in a million steps. Trials start
+    from the last stable state, unless the parameter makes another model (model.*, materials.*).
 
-    Writes CASE.factor.json, or CASE.PATH.json, after each trial, and with the extra viz the model as
-    it failed nearest to the critical value as PNG of the same name.
+    Writes CASE.factor.json, or CASE.PATH.json, after each trial, and the failed model as PNG.
     """
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")

@@ -134,4 +134,3 @@ class Results:
             f'<iframe srcdoc="{page}" sandbox="allow-scripts allow-downloads" '
             'style="width:100%;height:720px;border:0"></iframe>'
         )
-
