@@ -48,7 +48,7 @@ def test_energy_closes_while_rock_flows(law, shape):
 def test_flow_keeps_linear_and_angular_momentum(law):
     sim = simulate(box(), {"rock": {}}, rock=ELASTIC | law)
     x = sim.fields["position"] - [0.5, 0.5, 0.5]
-    sim.fields["velocity"][:] = (
+    sim.motion[:, 4:7] = (
         np.cross([3.0, 5.0, -4.0], x) + x @ np.diag([-8.0, 3.0, 5.0]) + x[:, [1, 2, 0]] * [4, -6, 2]
     )
     p, spin = momentum(sim)
@@ -74,8 +74,8 @@ def test_the_weak_plane_turns_with_the_rock():
         x = sim.fields["position"]
         middle = x.mean(axis=0)
         own = x - middle
-        sim.fields["position"][:] = own @ r.T + middle
-        sim.fields["velocity"][:] = (own @ np.array([[0, 0, 8.0], [0, 0, 3], [2, 0, -6]]).T) @ r.T
+        sim.motion[:, :3] = own @ r.T + middle
+        sim.motion[:, 4:7] = (own @ np.array([[0, 0, 8.0], [0, 0, 3], [2, 0, -6]]).T) @ r.T
         sim.step(300)
         slips.append(state_of(sim, "joint_plastic_shear")[0])
     assert slips[0] > 1e-3

@@ -240,7 +240,7 @@ def test_open_bond_that_breaks_transfers_no_force():
     )
     state, second = sim.core.fields(), sim.build.topology.node_block == 1
     x, y, z = sim.fields["position"][second].T
-    sim.fields["position"][second] = np.column_stack([0.95 - y, x - 1e-4, z])
+    sim.motion[second, :3] = np.column_stack([0.95 - y, x - 1e-4, z])
     for name, value in {"bond": 0, "jump": 1, "jump_at_break": 0}.items():
         state[f"quads.{name}"][:] = value
     sim.step(5)
@@ -332,7 +332,7 @@ def test_contact_search_finds_the_faces_of_an_open_hinge():
     )
     state, lid = sim.core.fields(), sim.build.nodes_of("lid")
     x, y, z = sim.fields["position"][lid].T
-    sim.fields["position"][lid] = np.column_stack([-z, y, x])
+    sim.motion[lid, :3] = np.column_stack([-z, y, x])
     nodes = np.reshape(sim.build.arrays["quads.nodes"], (8, -1))[:, 0]
     jump = sim.fields["position"][nodes[4:]] - sim.fields["position"][nodes[:4]]
     apart = np.linalg.norm(jump, axis=1) > 0.5
@@ -371,7 +371,7 @@ def test_a_lid_turned_aside_on_its_last_bond_point_falls_or_is_borne(base):
     )
     lid, topology = sim.build.nodes_of("lid"), sim.build.topology
     x, y, z = sim.fields["position"][lid].T
-    sim.fields["position"][lid] = np.column_stack([-y, x, z])
+    sim.motion[lid, :3] = np.column_stack([-y, x, z])
     corners = topology.node_position[topology.face_nodes[topology.overlap_faces[0, 0]]]
     points = topology.overlap_weights_a @ corners
     state = sim.core.fields()

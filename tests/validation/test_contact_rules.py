@@ -37,8 +37,8 @@ class Scene:
     def put(self, tet):
         """Compute one step with the tet here, at rest."""
         now = (np.asarray(tet)[self.order]) @ self.turned.T
-        self.sim.fields["position"][self.nodes] = now
-        self.sim.fields["velocity"][self.nodes] = 0
+        self.sim.motion[self.nodes, :3] = now
+        self.sim.motion[self.nodes, 4:7] = 0
         self.sim.step(1)
 
     def springs(self):

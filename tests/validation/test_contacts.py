@@ -259,8 +259,8 @@ def test_contact_force_rotates_with_a_loaded_pair(axis):
 
     def impose(now, before):
         dt = sim.core.scalars()["dt_last"]
-        sim.fields["position"][:] = now
-        sim.fields["velocity"][:] = (now - before) / dt
+        sim.motion[:, :3] = now
+        sim.motion[:, 4:7] = (now - before) / dt
         sim.step(1)
 
     def contact_force():

@@ -102,7 +102,7 @@ def test_hourglass_control_resists_and_conserves_energy():
         elements={"hexahedra": "one-point"},
         time={"safety": 0.4},
     )
-    sim.fields["velocity"][:] += np.random.default_rng(0).normal(size=(8, 3))
+    sim.motion[:, 4:7] += np.random.default_rng(0).normal(size=(8, 3))
     edges = sim.fields["position"][1] - sim.fields["position"][0]
     turned = 2 * np.pi / np.linalg.norm([1, 20, 3])
     while sim.time < 10 * turned:

@@ -45,7 +45,7 @@ def test_initial_stress_stays_in_equilibrium(water):
 def test_a_spinning_block_that_flows_keeps_its_momentum_and_energy():
     sim = simulate(box((3, 3, 3)), {"rock": {}}, rock=ROCK)
     x = sim.fields["position"] - 0.5
-    sim.fields["velocity"][:] = (
+    sim.motion[:, 4:7] = (
         np.cross([3.0, 5.0, -4.0], x) + x @ np.diag([-8.0, 3.0, 5.0]) + x[:, [1, 2, 0]] * [4, -6, 2]
     )
     p, spin = momentum(sim)
@@ -62,7 +62,7 @@ def test_the_whole_stable_step_is_stable():
     """Rock far below its strength shakes for 3,000 steps of the bound: averaged tets are softer."""
     sim = simulate(box((3, 3, 3)), {"rock": {}}, rock=ROCK | {"cohesion": "1 GPa"},
                    time={"safety": 1.0})  # fmt: skip
-    sim.fields["velocity"][:] = np.random.default_rng(1).uniform(-1e-3, 1e-3, (64, 3))
+    sim.motion[:, 4:7] = np.random.default_rng(1).uniform(-1e-3, 1e-3, (64, 3))
     sim.step(3000)
     e = sim.energies
     assert e["plastic"] == 0
@@ -91,7 +91,7 @@ def test_rock_that_cannot_flow_and_blocks_of_one_tet_keep_their_bits():
             interfaces={"default": {"friction_angle": 40, "cohesion": 9e6, "tensile_strength": 9e6}},
             elements={"tetrahedra": tetrahedra},
         )  # fmt: skip
-        sim.fields["velocity"][:, 2] = -30 * sim.fields["position"][:, 2]
+        sim.motion[:, 6] = -30 * sim.fields["position"][:, 2]
         sim.step(100)
         assert sim.energies["plastic"] > 0
         digests.append(digest(sim))
@@ -108,7 +108,7 @@ def test_sampling_changes_nothing():
              "translate": [2 + 2 * i, 0, 0]} for i in range(5)
         ]  # fmt: skip
         sim = simulate(blocks, {"rock": {}}, rock=ROCK)
-        sim.fields["velocity"][:, 2] = -60 * sim.fields["position"][:, 2]
+        sim.motion[:, 6] = -60 * sim.fields["position"][:, 2]
         for _ in range(60 // steps):
             sim.step(steps)
             assert sim.energies

@@ -77,7 +77,7 @@ def test_pores_turn_with_the_rock():
     """Turned by 50 degrees, every node of a cube full of pores is lifted by its eighth, and not pushed."""
     sim = start([box("rock")], water={"reservoir": {"level": 10}}, rock={"biot": 1})
     c, s = np.cos(np.radians(50)), np.sin(np.radians(50))
-    x = sim.fields["position"]
+    x = sim.motion[:, :3]
     x[:] = x @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
     sim.core.find_water()
     force = sim.core.fields()["node.water"].reshape(-1, 4)[:, :3]

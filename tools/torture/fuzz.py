@@ -142,8 +142,9 @@ def read_file(path: Path) -> None:
     from cdem.mesh.blocks import build_topology
     from cdem.mesh.mesh_files import read_mesh
     from cdem.model.body_files import read_bodies
-    from cdem.terrain.files import read_grid, read_lines, read_outline
+    from cdem.terrain.files import read_lines, read_outline
     from cdem.terrain.heights import Lines
+    from cdem.terrain.rasters import read_grid
 
     kind = path.name.split("-")[0]
     if kind == "mesh":

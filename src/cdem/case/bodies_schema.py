@@ -78,12 +78,19 @@ class Block(Part):
         description="Convex bodies from a file, relative to the case file: each closed surface of an "
         ".obj or .stl, each cell of a .vtu or .vtk, polyhedra too",
     )
+    size: Annotated[float, Quantity("m", above=0)] | None = Field(
+        None,
+        description="Of a file: fill closed surfaces, convex or not, with tets up to this edge length "
+        "(extra terrain); each is a block of several elements [m]",
+    )
     rotate: Rotate | None = Field(None, description="Rotation of the body")
     translate: Length3 | None = Field(None, description="Shift of the body after its rotation [m]")
 
     @model_validator(mode="after")
     def _one_shape(self) -> Block:
         exactly_one(self, ("box", "polyhedron", "file"))
+        if self.size is not None and self.file is None:
+            raise ValueError("size is for bodies of a file; a box has divisions")
         return self
 
 

@@ -13,7 +13,7 @@ from cdem import _native
 from cdem.case import checks, plausible
 from cdem.case.explain import explain, problems_of
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
-from cdem.case.schema import CaseParts
+from cdem.case.schema import CaseParts, Stage
 from cdem.case.source import Source
 from cdem.case.types import Part
 from cdem.errors import CaseError
@@ -144,6 +144,20 @@ class Case(CaseParts):
         except ValidationError as error:
             raise explain(error, self._source, Case, within=keys[:keep]) from None
         self.interfaces.inherit()
+
+    def try_setting(self, path: str, value: Any) -> None:
+        """Check a value that is to change while the case runs, as the `set` of a stage is checked.
+
+        Raises:
+            CaseError: There is no such value, it is not allowed, or it holds from the start.
+        """
+        trial = self.model_copy(deep=True)
+        trial._source = Source()
+        none: dict[str, Any] = {"set": {path: value}, "add": [], "remove": []}
+        trial.__dict__["stages"] = [Stage(name="now", mode="static").model_copy(update=none)]
+        problems, _ = checks.stage_settings(trial, trial.set, self._unusual)
+        if problems:
+            raise CaseError(f"{path}: {problems[0][1]}")
 
     def dump(self) -> str:
         """Write the resolved case as YAML: defaults filled in, mesh path absolute."""

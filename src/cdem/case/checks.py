@@ -10,6 +10,7 @@ from typing import Any
 
 from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, block_contradiction
+from cdem.case.map_system import why_not
 from cdem.case.plausible import doubts
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.softening import softening_problems
@@ -35,7 +36,12 @@ def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
         case: The case.
         folder: Folder that relative paths in it start at.
     """
-    return [*_mesh_file(case, folder), *_names(case)]
+    return [*_mesh_file(case, folder), *_projection(case), *_names(case)]
+
+
+def _projection(case: CaseParts) -> Iterator[Problem]:
+    if case.crs is not None and (why := why_not(case.crs)):
+        yield ("crs",), why
 
 
 def _names(case: CaseParts) -> Iterator[Problem]:

@@ -12,6 +12,7 @@ from cdem.case.bolts_schema import Bolts, BoltType
 from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
+from cdem.case.map_system import MapSystem
 from cdem.case.output_fields import CHOICE
 from cdem.case.softening import Softening
 from cdem.case.stress_schema import InitialStress
@@ -356,6 +357,10 @@ class CaseParts(Part):
     )
     title: Line = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
+    crs: MapSystem | None = Field(
+        None,
+        description="Map projection of all coordinates, e.g. EPSG:32632; goes to rasters and maps",
+    )
     own_laws: list[str] = Field(
         [], description="Headers with laws of users, as given to cdem law build; needs --allow-code"
     )

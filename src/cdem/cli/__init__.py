@@ -15,6 +15,7 @@ from cdem.cli.messages import Messages
 from cdem.cli.model_commands import check, mesh, new, schema
 from cdem.cli.result_commands import export, info, plot, render, runout, view
 from cdem.cli.run_commands import run
+from cdem.cli.site_commands import site
 from cdem.cli.study_commands import critical, sweep
 from cdem.errors import CdemError
 
@@ -74,7 +75,7 @@ def _top(
     pass
 
 
-for _verb in (new, check, mesh, schema, critical, sweep, verify, benchmark, run,
+for _verb in (new, check, site, mesh, schema, critical, sweep, verify, benchmark, run,
               info, plot, render, view, runout, export, doctor):  # fmt: skip
     app.command()(_verb)
 app.add_typer(law, name="law")

@@ -85,9 +85,25 @@ def check(
 
     cost = estimate(simulation)
     facts = audit.as_dict() | cost.as_dict()
-    print(json.dumps(facts, indent=2) if as_json else audit.text(cost.text()).rstrip())
+    assumed = _assumed(case_file)
+    if as_json:
+        print(json.dumps(facts | {"assumed": assumed}, indent=2))
+    else:
+        print("\n".join([audit.text(cost.text()).rstrip(), *assumed]))
     if strict:
         audit.refuse_warnings()
+
+
+def _assumed(case_file: Path) -> list[str]:
+    """Lines of a case with the mark ASSUMED: values that nobody measured."""
+    from cdem.case.input_file import read_text
+
+    lines = read_text(case_file, "case file").splitlines()
+    return [
+        f"  assumed: {case_file}:{number}: {line.partition('#')[0].strip()}"
+        for number, line in enumerate(lines, start=1)
+        if line.partition("#")[2].strip().startswith("ASSUMED") and line.partition("#")[0].strip()
+    ]
 
 
 def mesh(

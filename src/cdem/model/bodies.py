@@ -12,7 +12,7 @@ from cdem.joints.joints import cut_model
 from cdem.mesh.mesh import Mesh, merge, place
 from cdem.mesh.mesh_files import read_mesh
 from cdem.mesh.primitives import box, outward_faces, polyhedron
-from cdem.model.body_files import read_bodies
+from cdem.model.body_files import fill_bodies, read_bodies
 
 
 def read_model(case: Case) -> Mesh:
@@ -42,7 +42,9 @@ def read_model(case: Case) -> Mesh:
 
 
 def _block(case: Case, block: Block) -> Mesh:
-    if block.file is not None:
+    if block.file is not None and block.size is not None:
+        piece = fill_bodies(case.path_of(block.file), block.group, block.size)
+    elif block.file is not None:
         piece = read_bodies(case.path_of(block.file), block.group)
     elif block.box is not None:
         b = block.box

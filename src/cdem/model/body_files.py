@@ -1,8 +1,9 @@
-"""Convex bodies from files: closed surfaces (OBJ, STL) and polyhedral cells (VTK)."""
+"""Bodies from files: closed surfaces (OBJ, STL), convex or filled with tets; polyhedral cells (VTK)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,16 +14,23 @@ from cdem.errors import BodyError, MeshError
 from cdem.joints.cell_mesh import to_mesh
 from cdem.joints.convex_cells import from_polyhedron, join
 from cdem.mesh.arrays import components
-from cdem.mesh.mesh import Mesh
+from cdem.mesh.mesh import Mesh, merge
 from cdem.mesh.mesh_files import MEND, read_raw
 from cdem.mesh.primitives import outward_faces
 from cdem.model import vtk_cells
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Loops = list[list[int]]
 Body = tuple[str, Floats, Loops]  # what to call it, its corners, its faces
 
+SHELLS = (".obj", ".stl")
+"""Endings of the formats that hold closed surfaces."""
+GROWTH = 0.3  # of the edge length of tets per distance from the surface
+CROSSES = (
+    "its surface cannot be filled with tets: it crosses itself, or has needles or a double wall"
+)
 SHOWN = 4
 """So many open edges are named."""
 ROUNDED = 1e-6
@@ -41,6 +49,93 @@ def read_bodies(path: Path, group: str) -> Mesh:
         MeshError: The file cannot be read.
         BodyError: A body is open or not convex; says where.
     """
+    parts = []
+    for name, points, faces in _bodies(path):
+        try:
+            _refuse_open(points, faces)
+            near = ROUNDED * float(np.abs(points).max())
+            parts.append(from_polyhedron(points, outward_faces(points, faces, near), 0))
+        except MeshError as error:
+            hint = (
+                "; with 'size' beside the file it is filled with tets"
+                if path.suffix.lower() in SHELLS
+                else ""
+            )
+            closed = "not closed" not in str(error)
+            error.args = (f"{path}: {name}: {error}{hint if closed else ''}",)
+            raise
+    # meshed like what joints cut: bodies that share a face divide it alike
+    return to_mesh(join(parts), [group], [], [])
+
+
+def fill_bodies(path: Path, group: str, size: float) -> Mesh:
+    """Read closed surfaces, convex or not, and fill each with tets.
+
+    Args:
+        path: ``.obj`` or ``.stl``: every connected closed surface is a body.
+        group: Group of the bodies.
+        size: Largest edge of the tets inside [m]; the triangles of the surface stay as they are.
+
+    Raises:
+        MeshError: The file cannot be read, or a surface crosses itself.
+        BodyError: A surface is open.
+        BackendError: The extra `terrain` is not installed.
+    """
+    from cdem.terrain.solid import fill
+
+    if path.suffix.lower() not in SHELLS:
+        raise MeshError(f"{path}: size is for surfaces, {' and '.join(SHELLS)}")
+    meshes = []
+    for name, points, faces in _bodies(path):
+        try:
+            _refuse_open(points, faces)
+            shell = _outward([(f[0], a, b) for f in faces for a, b in pairwise(f[1:])], points)
+            inside = _volume(points[shell]) if len(shell) else 0.0
+            xyz, tets = fill(points, shell, size, GROWTH)
+        except BodyError as error:
+            error.args = (f"{path}: {name}: {error}",)
+            raise
+        except MeshError:
+            raise MeshError(f"{path}: {name}: {CROSSES}") from None
+        corners = xyz[tets]
+        filled = np.linalg.det(corners[:, 1:] - corners[:, :1]).sum() / 6
+        if not abs(filled - inside) <= 1e-6 * inside:
+            raise MeshError(f"{path}: {name}: {CROSSES}")
+        of_group = np.zeros(len(tets), np.int32)
+        meshes.append(Mesh(xyz, {"tet4": tets}, {"tet4": of_group}, [group]))
+    return merge(meshes)
+
+
+def _volume(shell: Floats) -> float:
+    """Volume inside of outward triangles, shape (triangles, 3, 3)."""
+    return float(np.linalg.det(shell - shell.mean(axis=(0, 1))).sum() / 6)
+
+
+def _outward(triangles: list[tuple[int, int, int]], points: Floats) -> Ints:
+    """The triangles of a closed surface, all turned outwards."""
+    faces = np.array(triangles, np.int64)
+    of_edge: dict[tuple[int, int], list[int]] = {}
+    for number, (a, b, c) in enumerate(triangles):
+        for p, q in ((a, b), (b, c), (c, a)):
+            of_edge.setdefault((min(p, q), max(p, q)), []).append(number)
+    seen, waiting = {0}, [0]
+    while waiting:
+        number = waiting.pop()
+        a, b, c = faces[number].tolist()
+        for p, q in ((a, b), (b, c), (c, a)):
+            for other in of_edge[min(p, q), max(p, q)]:
+                if other in seen:
+                    continue
+                ring = faces[other].tolist()
+                if (p, q) in zip(ring, ring[1:] + ring[:1], strict=True):  # it runs the same way
+                    faces[other] = ring[::-1]
+                seen.add(other)
+                waiting.append(other)
+    return faces if _volume(points[faces]) > 0 else faces[:, ::-1]
+
+
+def _bodies(path: Path) -> list[Body]:
+    """All bodies of a file."""
     if not is_file(path):
         raise MeshError(f"{path}: no such file; give a path relative to the case file")
     kind = path.suffix.lower()
@@ -54,17 +149,7 @@ def read_bodies(path: Path, group: str) -> Mesh:
             bodies = list(readers[kind](path))
     if not bodies:
         raise MeshError(f"{path}: holds no bodies")
-    parts = []
-    for name, points, faces in bodies:
-        try:
-            _refuse_open(points, faces)
-            near = ROUNDED * float(np.abs(points).max())
-            parts.append(from_polyhedron(points, outward_faces(points, faces, near), 0))
-        except MeshError as error:
-            error.args = (f"{path}: {name}: {error}",)
-            raise
-    # meshed like what joints cut: bodies that share a face divide it alike
-    return to_mesh(join(parts), [group], [], [])
+    return bodies
 
 
 def _refuse_open(points: Floats, faces: Loops) -> None:

@@ -200,7 +200,7 @@ class WaterTables:
         return _Field(row, (curve, factor))
 
     def _heights(self, file: str) -> Callable[[Floats], Floats]:
-        from cdem.terrain.files import read_grid
+        from cdem.terrain.rasters import read_grid
 
         return read_grid(self._case.path_of(file))
 

@@ -20,7 +20,7 @@ FILES = (
     "water.fields.*.table",
 )
 """Values that may differ because the files themselves are compared."""
-FREE = ("title", "output.every", "output.checkpoint_every", "time.energy_error")
+FREE = ("title", "crs", "output.every", "output.checkpoint_every", "time.energy_error")
 """Values that a resumed run may change."""
 ENDS = ("duration", "until", "tolerance", "max_steps")
 """Values of the last stage that has begun which a resumed run may change."""

@@ -23,13 +23,14 @@ from cdem.model.fill import nodes_of_groups
 from cdem.model.overlaps import adopt_overlaps
 from cdem.model.ruling_step import ruling_step
 from cdem.run import restored, stages
+from cdem.run.actions import Act, Action
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
 from cdem.run.fast_weakening import FastWeakening, fast_weakenings
 from cdem.run.law_fields import STRAIN_THAT_ENDS, large_strains, yielded_counts
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
-from cdem.run.state import Attributes, RunState, StageState
+from cdem.run.state import Attributes, RunState, Setting, StageState
 
 CHUNK_SECONDS = 0.25
 """The loop comes back about this often to look for signals and report progress [s of wall time]."""
@@ -92,6 +93,7 @@ class Simulation(RunState):
         native.set_threads(threads)
         self.results: Results | None = None
         self._fast_weakening: dict[str, FastWeakening] = {}
+        self._actions: list[Action] = []
         if output is not None:
             self.results = Results(
                 Path(output), case.path_of("."), overwrite=overwrite, resume=resume
@@ -143,7 +145,7 @@ class Simulation(RunState):
 
         Returns:
             How the last stage ended: "converged" (it was static and reached its tolerance), "at
-            rest" (it had `until: rest`), "finished", or "stopped".
+            rest" (it had `until: rest`), "ended" (by an action), "finished", or "stopped".
 
         Raises:
             UnstableError: The computation failed; the last checkpoint is kept.
@@ -207,6 +209,51 @@ class Simulation(RunState):
             status = self._run_stage(None, None, until=time)
         return status
 
+    def set(self, path: str, value: Any) -> None:
+        """Change a value now, in the middle of the run, as the `set` of a stage does at its beginning.
+
+        It stays until a later stage sets it. A result folder keeps it: `run.log`, `summary.json`, and
+        the checkpoint, from which a resumed run goes on with it.
+
+        Args:
+            path: As in a stage's `set`: ``"interfaces.bed.friction_angle"``, ``"loads.gravity"``.
+            value: In SI, or with a unit: ``"10 kPa"``.
+
+        Raises:
+            CaseError: There is no such value, it is not allowed, or it holds from the start.
+        """
+        self.check_case()
+        self.case.try_setting(path, value)
+        setting = Setting(self.begun, self.time, path, value)
+        stages.change_value(self, setting)
+        if self.step_count:
+            self.core.renew_step()
+        self.settings.append(setting)
+        if self.results:
+            self.results.log(f"t = {self.time:.6g} s: {path} set to {value}")
+
+    def every(self, interval: float, action: Act) -> None:
+        """Call a function with this simulation at each multiple of an interval, while it runs.
+
+        The call comes at the first step at or after that time; steps, and so results, do not depend
+        on it. Use it to look, to write files of one's own, to `set` values, or to end a stage.
+
+        Args:
+            interval: Of simulated time [s].
+            action: Takes the simulation. Where it returns True, the stage ends as "ended".
+
+        Raises:
+            CdemError: The interval is not above 0.
+
+        Example:
+            >>> def slow(simulation):
+            ...     return abs(simulation.fields["velocity"]).max() < 1e-3
+            >>> simulation.every(0.1, slow)
+        """
+        action_of = Action(float(interval), action)
+        action_of.skip_to(self.time)
+        self._actions.append(action_of)
+
     def advance(self, stage: StageState, steps: int, until: float = np.inf) -> str:
         """Run towards the next event of a stage, at most `steps` steps; returns the outcome."""
         self.check_case()
@@ -258,20 +305,22 @@ class Simulation(RunState):
         while True:
             steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
             before, clock = self.step_count, time.perf_counter()
-            outcome = self.advance(stage, steps, until)
+            due = min((action.due for action in self._actions), default=np.inf)
+            outcome = self.advance(stage, steps, min(until, due))
             now = time.perf_counter()
             done = self.step_count - before
             speed = done / max(now - clock, 1e-9)
             self.wall_time += now - clock
             stage.wall_time += now - clock
-            if stages.record_is_due(self, stage, outcome):
+            ended = any([action.call(self) for action in self._actions])
+            if stages.record_is_due(self, stage, outcome) or ended:
                 self._log_departures()
                 stages.look_for_rest(self, stage)
-                self._record(frame=stages.frame_is_due(self, stage, outcome))
+                self._record(frame=ended or stages.frame_is_due(self, stage, outcome))
                 self._check_energy()
                 self._check_strain()
                 self._check_weakening()
-            status = stages.status(self, stage, outcome)
+            status = stages.status(self, stage, outcome) or ("ended" if ended else None)
             known, note = (
                 note,
                 stage.note(self.step_count - stage.start_step, self.core.unbalance_ratio()),
@@ -460,8 +509,13 @@ class Simulation(RunState):
         self.ended_stage, self.finished_stages = attributes.ended_stage, attributes.finished_stages
         self.wall_time, self.departures = attributes.wall_time, attributes.departures
         stages.change_end(self, longer=changes.longer)
-        for done in range(self.begun):
-            stages.apply_settings(self, done)
+        self.settings = attributes.settings
+        for done in range(self.begun + 1):
+            if done:
+                stages.apply_settings(self, done - 1)
+            for setting in self.settings:
+                if setting.begun == done:
+                    stages.change_value(self, setting)
         added = {name for stage in self.case.stages[: self.begun] for name in stage.add}
         if added:
             self.core.update_model(stages.renewed(self, sorted(added)))

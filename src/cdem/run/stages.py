@@ -16,7 +16,7 @@ from cdem.model.fill import folded, nodes_of_groups, places
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.stiffness import interface_entries
 from cdem.model.supports import held_components, supports_of
-from cdem.run.state import RunState, StageState
+from cdem.run.state import RunState, Setting, StageState
 
 STATIC_RECORD_STEPS = 200
 """Steps between history rows of a static stage, which has no meaningful time."""
@@ -58,6 +58,12 @@ def apply_settings(sim: RunState, index: int) -> None:
         update_core(sim, index)
     sim.core.set_damping(*damping_of(stage))
     sim.core.set_lumped(is_lumped(stage))
+
+
+def change_value(sim: RunState, setting: Setting) -> None:
+    """Change one value of the case and of the core."""
+    sim.case.set(setting.path, setting.value)
+    update_core(sim, max(setting.begun - 1, 0))
 
 
 def update_core(sim: RunState, index: int) -> None:

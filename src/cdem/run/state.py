@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, NonNegativeInt, field_validator
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, field_validator
 
 from cdem._native import digests
 from cdem._native import name as native_name
@@ -18,6 +19,7 @@ from cdem.model.audit import Audit
 from cdem.model.build import Build, build
 from cdem.model.domain import leaving
 from cdem.run.changes import differences
+from cdem.run.groups import Group, groups_of
 from cdem.run.rest import Departure, Motion, Quiet, fallen, middles, rigid_motion
 
 STALL_STEPS = 10_000
@@ -80,6 +82,23 @@ class StageState:
         return self.start_time + (self.rows + 1) * self.row_every
 
 
+@dataclass
+class Setting:
+    """A value that a script has set in the middle of a run.
+
+    Attributes:
+        begun: Stages that had begun.
+        time: [s].
+        path: In the case.
+        value: As it was given.
+    """
+
+    begun: int
+    time: float
+    path: str
+    value: Any
+
+
 class Attributes(BaseModel):
     """What a checkpoint keeps besides arrays.
 
@@ -90,7 +109,7 @@ class Attributes(BaseModel):
         nodes: Fingerprint of the model.
         core: Scalars of the core.
         overlap, stage_index, stage, ended_stage, finished_stages, wall_time,
-        departures: As in `RunState`.
+        departures, settings: As in `RunState`.
         rows: Rows of the histories.
         frames: Frames recorded.
     """
@@ -109,6 +128,7 @@ class Attributes(BaseModel):
     finished_stages: list[dict[str, Any]]
     wall_time: float
     departures: list[Departure]
+    settings: list[Setting] = Field(default_factory=list)
     rows: NonNegativeInt
     frames: NonNegativeInt
 
@@ -145,6 +165,7 @@ class RunState:
         departures: The first block of each group that fell past the edge of the model, and that left
             its domain.
         wall_time: Wall time spent in stages [s].
+        settings: Values that a script has set while it ran.
     """
 
     audit: Audit
@@ -164,6 +185,7 @@ class RunState:
         self.reference = self.build.start_position
         self.departures: list[Departure] = []
         self.wall_time = 0.0
+        self.settings: list[Setting] = []
 
     def keep_case(self) -> None:
         """Remember the case that the core has now."""
@@ -179,8 +201,8 @@ class RunState:
             now, was = (case.model_dump(mode="json") for case in (self.case, self._case))
             raise CaseError(
                 f"simulation.case.{next(differences(was, now))[0]}: was changed after the model was "
-                "made from it, which would do nothing. Change the case before Simulation(case), or "
-                "give the stage a 'set'"
+                "made from it, which would do nothing. Use simulation.set(path, value), or give a stage "
+                "a 'set'"
             )
 
     @property
@@ -200,21 +222,29 @@ class RunState:
 
     @property
     def fields(self) -> dict[str, NDArray[np.float64]]:
-        """Fields on nodes: views or fresh arrays.
+        """Fields on nodes, read-only: views of the core, which change as the run goes on, or fresh arrays.
 
         "position", "velocity" [m, m/s] are views, shape (nodes, 3); "displacement" [m] is counted
         from the last reset; "force" [N] is the last unbalanced force, "reaction" [N] that of
-        supports; "mass" [kg].
+        supports; "mass" [kg]. To move nodes on purpose, write into `motion`.
         """
         state, motion = self.core.fields(), self.motion
-        return {
+        found = {
             "position": motion[:, :3],
             "velocity": motion[:, 4:7],
             "displacement": motion[:, :3] - self.reference,
             "force": self.core.node_force().reshape(-1, 4)[:, :3],
             "reaction": state["node.reaction"].reshape(-1, 4)[:, :3],
-            "mass": self.build.arrays["node.mass"],
+            "mass": self.build.arrays["node.mass"].view(),
         }
+        for values in found.values():
+            values.flags.writeable = False
+        return found
+
+    @cached_property
+    def groups(self) -> dict[str, Group]:
+        """Nodes, elements and blocks of each group, by its name."""
+        return groups_of(self.build)
 
     @property
     def contacts(self) -> dict[str, NDArray]:
@@ -383,6 +413,7 @@ class RunState:
             finished_stages=self.finished_stages,
             wall_time=self.wall_time,
             departures=self.departures,
+            settings=self.settings,
             rows=rows,
             frames=frames,
         )
@@ -430,4 +461,5 @@ class RunState:
             "groups": groups,
             "taken_out": self.taken_out,
             "departures": [departure.text() for departure in self.departures],
+            "settings": [asdict(setting) for setting in self.settings],
         }

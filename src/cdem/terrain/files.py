@@ -1,12 +1,11 @@
-"""Readers of terrain: contour lines (GeoJSON, CSV), grids (ESRI ASCII, GeoTIFF), outlines (GeoJSON)."""
+"""Readers of terrain: lines of known height (GIS files, CSV), outlines of bodies."""
 
 from __future__ import annotations
 
 import csv
-import json
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -15,44 +14,58 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import is_file, read_text, reading
+from cdem.case.input_file import read_text, reading
 from cdem.errors import CaseError
-from cdem.terrain.heights import Grid, extra
+from cdem.terrain.features import BY_GDAL, GEOJSON, Features, read_features
+from cdem.terrain.heights import extra, refuse_degrees
+from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
+Bring = Callable[[str | None, Floats], Floats]  # from a label and points to points in metres
 ELEVATION = re.compile(r"(elev|height|alt|contour|level|z$|h$|hoehe|quota)", re.IGNORECASE)
 COLUMNS = {
     "x": re.compile(r"(x|east)", re.IGNORECASE),
     "y": re.compile(r"(y|north)", re.IGNORECASE),
     "z": ELEVATION,
 }
-GEOJSON = (".geojson", ".json")
-CONVERT = "convert others with ogr2ogr -f GeoJSON NEW.geojson OLD"
 WHAT = "terrain file"
 LINE = re.compile(r"(line|id|contour_?id)", re.IGNORECASE)
+OPEN = 0.05  # gap between the ends of a line over its length, up to which it is closed
 
 
-def read_lines(path: Path, elevation: str | None = None) -> list[Floats]:
+def as_it_is(label: str | None, points: Floats) -> Floats:
+    """Points of a file that is in metres already."""
+    return points
+
+
+def read_lines(path: Path, elevation: str | None = None, bring: Bring = as_it_is) -> list[Floats]:
     """Read lines of known height, each an array of points [m], shape (points, 3).
 
     Args:
-        path: GeoJSON (``.geojson``, ``.json``) of lines with a height among their properties or in
+        path: GIS file (`read_features`) of lines with a height among their properties or in
             their coordinates, or CSV (``.csv``, ``.txt``) with columns x, y, z and, where lines
             follow one another, one with the number of the line.
         elevation: Name of the property or column that holds the height; found by itself if None.
+        bring: Moves all points to metres.
 
     Raises:
         CaseError: The file is missing, of another kind, has no heights, or is in degrees.
     """
     kind = path.suffix.lower()
-    if kind not in (*GEOJSON, ".csv", ".txt"):
+    label = None
+    if kind in (".csv", ".txt"):
+        with reading(path, CaseError, "contours are GIS files or CSV"):
+            lines = list(_csv_lines(path, read_text(path, WHAT), elevation))
+    elif kind in (*GEOJSON, *BY_GDAL):
+        with reading(path, CaseError, "contours are GIS files or CSV"):
+            found = read_features(path)
+            label, lines = found.label, list(_lines(path, found, elevation))
+    else:
         raise CaseError(
-            f"{path}: contours are read from .geojson or .csv ({CONVERT}); a grid goes to 'grid'"
+            f"{path}: contours are read from .geojson, .shp, .gpkg and their like, or .csv; a grid goes "
+            "to 'grid'"
         )
-    with reading(path, CaseError, "contours are GeoJSON or CSV"):
-        text = read_text(path, WHAT)
-        read = _geojson_lines if kind in GEOJSON else _csv_lines
-        lines = [line for line in read(path, text, elevation) if len(line)]
+    lines = [line for line in lines if len(line)]
     if not lines:
         raise CaseError(f"{path}: holds no lines")
     if len({float(z) for line in lines for z in line[:, 2]}) < 2:
@@ -60,93 +73,105 @@ def read_lines(path: Path, elevation: str | None = None) -> list[Floats]:
             f"{path}: all points have the same height {lines[0][0, 2]:g}; if the heights stand in "
             "another property or column, name it with 'elevation'"
         )
-    _refuse_degrees(path, np.concatenate(lines))
-    return lines
+    points = bring(label, np.concatenate(lines))
+    refuse_degrees(path, points)
+    return np.split(points, np.cumsum([len(line) for line in lines])[:-1])
 
 
-def read_outline(path: Path) -> Floats:
-    """Read the first polygon or closed line of a GeoJSON file: its corners [m], shape (corners, 2).
+def read_outline(
+    path: Path,
+    layer: str | None = None,
+    where: dict[str, Any] | None = None,
+    bring: Bring = as_it_is,
+) -> tuple[Floats, list[str]]:
+    """Read the outline of a body: the largest polygon of all polygons and closed lines of a file.
+
+    Args:
+        path: GIS file, see `read_features`.
+        layer: Its layer.
+        where: Values of properties.
+        bring: Moves the corners to metres.
+
+    Returns:
+        Its corners [m], shape (corners, 2), and what was done to it.
 
     Raises:
         CaseError: The file holds no polygon, or its outline is open.
     """
-    if path.suffix.lower() not in GEOJSON:
-        raise CaseError(f"{path}: outlines are read from .geojson ({CONVERT})")
-    with reading(path, CaseError, "an outline is a polygon or closed line in GeoJSON"):
-        return _outline(path)
+    found = read_features(path, layer, where)
+    with reading(path, CaseError, "an outline is a polygon or a closed line"):
+        rings, notes = _rings(path, found)
+    if not rings:
+        raise CaseError(f"{path}: holds no polygon")
+    points = bring(found.label, np.concatenate(rings))
+    rings = np.split(points, np.cumsum([len(ring) for ring in rings])[:-1])
+    corners, more = _largest(path, rings)
+    return corners, notes + more
 
 
-def _outline(path: Path) -> Floats:
-    for geometry, _ in _geometries(path, read_text(path, WHAT)):
-        kind, points = geometry.get("type"), geometry.get("coordinates", [])
-        if kind == "Polygon":
-            points = points[0] if points else []
-        elif kind != "LineString":
+def _rings(path: Path, found: Features) -> tuple[list[Floats], list[str]]:
+    """Outer rings of all polygons and lines, closed."""
+    rings, notes = [], []
+    for geometry, _ in found.items:
+        kind, parts = geometry.get("type"), geometry.get("coordinates", [])
+        if kind in ("LineString", "Polygon"):
+            parts = [parts]
+        elif kind not in ("MultiLineString", "MultiPolygon"):
             continue
-        ring = np.array([p[:2] for p in points], float)
-        if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
-            raise CaseError(f"{path}: its {kind} is not a list of points [x, y]")
-        if len(ring) < 4 or (ring[0] != ring[-1]).any():
-            raise CaseError(
-                f"{path}: the outline is open: it starts at {ring[0].tolist()} and ends at "
-                f"{ring[-1].tolist()}; end it where it starts"
-            )
-        return ring[:-1]
-    raise CaseError(f"{path}: holds no polygon")
+        for part in parts:
+            if "Polygon" in str(kind):
+                if len(part) > 1:
+                    notes.append(f"{path.name}: holes of the outline are rock like the rest")
+                part = part[0] if part else []
+            ring = np.array([p[:2] for p in part], float)
+            if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
+                raise CaseError(f"{path}: its {kind} is not a list of points [x, y]")
+            rings.append(_closed(path, ring, notes))
+    return rings, notes
 
 
-def read_grid(path: Path) -> Grid:
-    """Read a grid of heights: ESRI ASCII (``.asc``) or GeoTIFF (``.tif``).
-
-    Raises:
-        CaseError: The file is missing, not such a grid, or in degrees.
-    """
-    kind = path.suffix.lower()
-    if kind in (".asc", ".grd", ".txt"):
-        with reading(path, CaseError, "a grid is ESRI ASCII or GeoTIFF"):
-            return _ascii_grid(path, read_text(path, WHAT))
-    if kind in (".tif", ".tiff"):
-        rasterio = extra("rasterio")
-        with reading(path, CaseError, "a grid is ESRI ASCII or GeoTIFF"):
-            return _geotiff(path, rasterio)
-    raise CaseError(
-        f"{path}: grids are read from .asc (ESRI ASCII) or .tif (GeoTIFF); gdal_translate makes them"
-    )
-
-
-def _refuse_degrees(path: Path, points: Floats) -> None:
-    """Longitudes and latitudes lie within a few units of one another; terrain does not."""
-    x, y = points[:, 0], points[:, 1]
-    size = max(np.ptp(x), np.ptp(y))
-    if np.abs(x).max() <= 180 and np.abs(y).max() <= 90 and np.ptp(points[:, 2]) > 20 * size:
+def _closed(path: Path, ring: Floats, notes: list[str]) -> Floats:
+    gap = float(np.hypot(*(ring[-1] - ring[0])))
+    length = float(np.hypot(*np.diff(ring, axis=0).T).sum())
+    if len(ring) < 3 or gap > OPEN * length or (len(ring) == 3 and not gap):
         raise CaseError(
-            f"{path}: looks like longitude and latitude in degrees ({size:.3g} wide, "
-            f"{np.ptp(points[:, 2]):.3g} high); project it to metres first, e.g. with ogr2ogr -t_srs"
+            f"{path}: the outline is open: it starts at ({coordinates(ring[0])}) and ends at "
+            f"({coordinates(ring[-1])}); end it where it starts"
         )
+    if gap:
+        notes.append(f"{path.name}: an open line is closed, over {gap / length:.1%} of its length")
+        return np.concatenate([ring, ring[:1]])
+    return ring
 
 
-# ------------------------------------------------------------------ GeoJSON and CSV
+def _largest(path: Path, rings: list[Floats]) -> tuple[Floats, list[str]]:
+    """Corners of the largest part of all polygons together."""
+    shapely = extra("shapely")
+    polygons = [shapely.Polygon(ring) for ring in rings]
+    notes: list[str] = []
+    if len(rings) == 1 and polygons[0].is_valid:
+        return rings[0][:-1], notes
+    if not all(polygon.is_valid for polygon in polygons):
+        notes.append(f"{path.name}: the outline crosses itself and was mended")
+    whole = shapely.union_all([shapely.make_valid(polygon) for polygon in polygons])
+    parts = [part for part in shapely.get_parts(whole) if part.area > 0]
+    if not parts:
+        raise CaseError(f"{path}: the outline has no area")
+    largest = max(parts, key=lambda part: part.area)
+    if len(parts) > 1:
+        lost = 1 - largest.area / sum(part.area for part in parts)
+        notes.append(
+            f"{path.name}: the largest of {len(parts)} parts is taken; the others have {lost:.1%} of "
+            "the area"
+        )
+    return shapely.get_coordinates(largest.exterior)[:-1], notes
 
 
-def _geometries(path: Path, text: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    if text.lstrip().startswith("<"):
-        raise CaseError(f"{path}: is KML or another XML, not GeoJSON; {CONVERT}")
-    try:
-        data = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise CaseError(f"{path}:{error.lineno}:{error.colno}: not JSON: {error.msg}") from None
-    features = data.get("features", [data]) if isinstance(data, dict) else None
-    if not isinstance(features, list) or not all(isinstance(f, dict) for f in features):
-        raise CaseError(f"{path}: not GeoJSON: no features in it")
-    for feature in features:
-        geometry, properties = feature.get("geometry") or feature, feature.get("properties") or {}
-        if not isinstance(geometry, dict) or not isinstance(properties, dict):
-            raise CaseError(f"{path}: not GeoJSON: a geometry or properties are no {{...}}")
-        yield geometry, properties
+# ------------------------------------------------------------------ lines of known height
 
 
-def _geojson_lines(path: Path, text: str, elevation: str | None) -> Iterator[Floats]:
-    for number, (geometry, properties) in enumerate(_geometries(path, text)):
+def _lines(path: Path, found: Features, elevation: str | None) -> Iterator[Floats]:
+    for number, (geometry, properties) in enumerate(found.items):
         kind, points = geometry.get("type"), geometry.get("coordinates", [])
         if kind not in ("LineString", "MultiLineString"):
             continue
@@ -218,90 +243,3 @@ def _point(path: Path, number: int, row: list[str], at: dict[str, int]) -> list[
     if not all(map(math.isfinite, point)):
         raise CaseError(f"{path}: row {number} has no numbers x, y, z: {','.join(row)}")
     return point
-
-
-# ------------------------------------------------------------------ grids
-
-
-def _ascii_grid(path: Path, text: str) -> Grid:
-    lines = text.splitlines()
-    head, count = _grid_head(path, lines)
-    corner = "xllcorner" in head
-    needed = ["ncols", "nrows", "cellsize"]
-    needed += ["xllcorner", "yllcorner"] if corner else ["xllcenter", "yllcenter"]
-    missing = [key for key in needed if key not in head]
-    if missing:
-        raise CaseError(f"{path}: not an ESRI ASCII grid: its head has no {', '.join(missing)}")
-    if not all(math.isfinite(head[key]) for key in needed) or head["cellsize"] <= 0:
-        raise CaseError(f"{path}: its head has a number that is not finite, or no cellsize above 0")
-    columns, rows, step = int(head["ncols"]), int(head["nrows"]), head["cellsize"]
-    try:
-        values = np.array(" ".join(lines[count:]).split(), float)
-    except ValueError as error:
-        raise CaseError(f"{path}: {error}") from None
-    if len(values) != rows * columns:
-        raise CaseError(
-            f"{path}: holds {len(values)} heights, but its head says {rows} x {columns}"
-        )
-    values[values == head.get("nodata_value", -9999.0)] = np.nan
-    shift = step / 2 if corner else 0.0
-    west = head["xllcorner" if corner else "xllcenter"] + shift
-    south = head["yllcorner" if corner else "yllcenter"] + shift
-    return _checked(path, Grid(west, south, (step, step), values.reshape(rows, columns)[::-1]))
-
-
-def _grid_head(path: Path, lines: list[str]) -> tuple[dict[str, float], int]:
-    """Numbers of the head by their names, and the number of its lines."""
-    head: dict[str, float] = {}
-    for count, line in enumerate(lines):
-        words = line.split()
-        if len(words) != 2 or not words[0][0].isalpha():
-            return head, count
-        try:
-            head[words[0].lower()] = float(words[1])
-        except ValueError:
-            raise CaseError(f"{path}:{count + 1}: '{words[1]}' is not a number") from None
-    return head, len(lines)
-
-
-def _geotiff(path: Path, rasterio: Any) -> Grid:
-    if not is_file(path):
-        raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
-    try:
-        # other drivers of GDAL would follow links to other files, and into the net
-        with rasterio.open(path, driver="GTiff") as file:
-            values = file.read(1, masked=True).astype(float).filled(np.nan)
-            place, system = file.transform, file.crs
-    except rasterio.errors.RasterioError as error:
-        raise CaseError(f"{path}: not a GeoTIFF: {error}") from None
-    if system is not None and system.is_geographic:
-        raise CaseError(
-            f"{path}: is in degrees ({system.to_string()}); project it to metres first, e.g. with "
-            "gdalwarp -t_srs"
-        )
-    if system is not None and abs(system.linear_units_factor[1] - 1) > 1e-9:
-        raise CaseError(
-            f"{path}: is in {system.linear_units_factor[0]} ({system.to_string()}), not in metres; "
-            "project it first, e.g. with gdalwarp -t_srs"
-        )
-    if place.b or place.d or place.a <= 0 or place.e >= 0:
-        raise CaseError(f"{path}: its rows do not run from west to east, north to south")
-    west, north = place.c + place.a / 2, place.f + place.e / 2
-    south = north + place.e * (len(values) - 1)
-    return _checked(path, Grid(west, south, (place.a, -place.e), values[::-1]))
-
-
-def _checked(path: Path, grid: Grid) -> Grid:
-    if min(grid.values.shape) < 2:
-        raise CaseError(f"{path}: a grid needs at least two rows and two columns")
-    known = np.isfinite(grid.values)
-    if not known.any():
-        raise CaseError(f"{path}: holds no heights, all cells are without data")
-    rows, columns = grid.values.shape
-    x = grid.west + grid.step[0] * np.arange(columns)
-    y = grid.south + grid.step[1] * np.arange(rows)
-    corners = np.array(
-        [[x[0], y[0], grid.values[known].min()], [x[-1], y[-1], grid.values[known].max()]]
-    )
-    _refuse_degrees(path, corners)
-    return grid

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -41,6 +42,26 @@ def extra(module: str) -> Any:
         raise BackendError(
             f"meshing terrain needs {module.split('.')[0]}: pip install 'cdem[terrain]' ({error})"
         ) from None
+
+
+def refuse_degrees(path: Path, points: Floats) -> None:
+    """Longitudes and latitudes lie within a few units of one another; terrain does not.
+
+    Args:
+        path: File of the points.
+        points: In metres if all is well, shape (points, 3).
+
+    Raises:
+        CaseError: They are degrees.
+    """
+    x, y = points[:, 0], points[:, 1]
+    size = max(np.ptp(x), np.ptp(y))
+    if np.abs(x).max() <= 180 and np.abs(y).max() <= 90 and np.ptp(points[:, 2]) > 20 * size:
+        raise CaseError(
+            f"{path}: looks like longitude and latitude in degrees ({size:.3g} wide, "
+            f"{np.ptp(points[:, 2]):.3g} high); write the projection in metres as crs at the top, or "
+            "project it first, e.g. with ogr2ogr -t_srs"
+        )
 
 
 @dataclass

@@ -4,128 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import PrivateAttr, ValidationError
 
 from cdem.case.explain import explain
+from cdem.case.map_system import look_up, unfit
 from cdem.case.reader import load_case_data, plain
 from cdem.case.source import Source
-from cdem.case.types import Angle, Length3, Line, Listed, Name, Part, Quantity
 from cdem.errors import CaseError
-from cdem.terrain import files
-from cdem.terrain.heights import Heights, Lines, Plane, Smooth
+from cdem.terrain import files, surfaces
+from cdem.terrain.features import read_features
+from cdem.terrain.heights import Grid, Heights, Lines, Plane, Smooth
+from cdem.terrain.projection import Projection, horizontal, name_of, short_name, utm_zone
+from cdem.terrain.rasters import read_raster
+from cdem.terrain.resample import Wanted, filled, label_of, read_heights
+from cdem.terrain.schema import HeightsBy, LandslideParts, OutlineFile, PlaneBy, PlaneThrough
 
-Length = Annotated[float, Quantity("m")]
-Size = Annotated[float, Quantity("m", above=0)]
-Point2 = Annotated[list[Length], Field(min_length=2, max_length=2), Listed]
-Span = Annotated[list[Length], Field(min_length=2, max_length=2)]
-SOURCES = ("contours", "grid", "lines", "plane")
-
-
-class PlaneBy(Part):
-    """A plane by its dip."""
-
-    dip: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
-        description="Angle to the horizontal [deg]"
-    )
-    dip_direction: Angle = Field(description="Azimuth in which it falls, north (y) over east [deg]")
-    through: Length3 = Field(description="A point on it [m]")
+Floats = NDArray[np.float64]
 
 
-class HeightsBy(Part):
-    """Heights from one of: contours, grid, lines, plane."""
-
-    contours: Name | None = Field(None, description="Contour lines: .geojson or .csv [m]")
-    grid: Name | None = Field(None, description="Grid: ESRI ASCII .asc or GeoTIFF .tif [m]")
-    lines: list[Annotated[list[Length3], Field(min_length=2)]] | None = Field(
-        None, min_length=1, description="Polylines of points [x, y, z] [m]"
-    )
-    plane: PlaneBy | None = Field(None, description="A plane")
-    elevation: Name | None = Field(
-        None, description="Property or column of the contours that holds the height"
-    )
-
-    @model_validator(mode="after")
-    def _one_source(self) -> HeightsBy:
-        given = [key for key in SOURCES if getattr(self, key) is not None]
-        if len(given) != 1:
-            raise ValueError(
-                f"needs exactly one of {', '.join(SOURCES)}; "
-                + (f"got {' and '.join(given)}" if given else "got none")
-            )
-        return self
-
-
-class Terrain(HeightsBy):
-    """The ground."""
-
-    smooth: Annotated[float, Quantity("m", at_least=0)] = Field(
-        0.0,
-        description="Standard deviation of a normal distribution in plan over which heights are "
-        "averaged; half a body's element takes off what the mesh could not follow [m]",
-    )
-
-
-class Extent(Part):
-    """The rectangle that is meshed."""
-
-    x: Span = Field(description="From west to east [m]")
-    y: Span = Field(description="From south to north [m]")
-    base: Length = Field(description="Height of the flat base [m]")
-
-    @model_validator(mode="after")
-    def _has_an_area(self) -> Extent:
-        for axis, (low, high) in (("x", self.x), ("y", self.y)):
-            if low >= high:
-                raise ValueError(f"{axis} must rise, got [{low:g}, {high:g}]")
-        return self
-
-
-class Body(Part):
-    """A part of the rock above the sliding surface, seen in plan."""
-
-    group: Name = Field(description="Group of its elements")
-    outline: Annotated[list[Point2], Field(min_length=3), Listed] | Name = Field(
-        description="Corners [x, y] in turn, or a GeoJSON file; may reach beyond the outcrop of the "
-        "sliding surface, where the body ends [m]"
-    )
-
-
-class Sizes(Part):
-    """Edge lengths of the elements."""
-
-    body: Size = Field(description="In the bodies [m]")
-    far: Size = Field(description="Largest, far from the bodies [m]")
-    growth: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
-        0.3, description="Growth of the edge length per distance from the bodies [1]"
-    )
-
-    @model_validator(mode="after")
-    def _far_is_not_finer(self) -> Sizes:
-        if self.far < self.body:
-            raise ValueError(f"far must be at least body, got {self.far:g} < {self.body:g}")
-        return self
-
-
-class Landslide(Part):
+class Landslide(LandslideParts):
     """What `cdem mesh` reads: terrain, sliding surface, bodies, sizes.
 
     Raises:
         CaseError: Every problem found, one line each: file:line:column: path: what.
     """
 
-    title: Line = Field("", description="One line for people")
-    terrain: Terrain = Field(description="The ground")
-    extent: Extent = Field(description="The rectangle that is meshed")
-    surface: HeightsBy = Field(description="The sliding surface")
-    bodies: list[Body] = Field(min_length=1, description="Where they overlap the first one counts")
-    bedrock: Name = Field("bedrock", description="Group of everything below and around the bodies")
-    sizes: Sizes = Field(description="Edge lengths of the elements")
-
     _source: Source = PrivateAttr(default_factory=Source)
+    _projection: Projection | None = PrivateAttr(None)
 
     def __init__(self, _source: Source | None = None, **data: Any) -> None:
         source = _source or Source()
@@ -157,34 +66,140 @@ class Landslide(Part):
         """An error about a value, with its place in the file."""
         return CaseError(f"{self._source.where(path)}: {path}: {what}")
 
+    @property
+    def projection(self) -> Projection:
+        """The projection that everything is brought to; its notes say what was done.
+
+        Raises:
+            CaseError: The terrain is in degrees or feet, and no other projection is given.
+        """
+        if self._projection is None:
+            self._projection = Projection(self._target())
+        return self._projection
+
+    @property
+    def system(self) -> str | None:
+        """The projection as text for the case, e.g. ``EPSG:32632``; None if no file says one."""
+        target = self.projection.target
+        return None if target is None else name_of(target)
+
     def ground(self) -> Heights:
         """The ground, smoothed if that is asked for."""
         heights = self._heights("terrain", self.terrain)
         return Smooth(heights, self.terrain.smooth) if self.terrain.smooth else heights
 
-    def sliding_surface(self) -> Heights:
-        """The surface that the bodies slide on."""
-        return self._heights("surface", self.surface)
+    def sliding_surface(self) -> Heights | None:
+        """The surface that the bodies slide on; None if it follows from ground and outlines."""
+        by = self.surface
+        if by is None or by.slbl is not None:
+            return None
+        if by.ellipsoid is not None:
+            e = by.ellipsoid
+            return surfaces.Ellipsoid(np.array(e.centre), np.array(e.axes), e.azimuth, e.tilt)
+        if by.planes is not None:
+            with self._source.blame("surface.planes"):
+                return surfaces.Highest([self._plane(plane) for plane in by.planes])
+        if by.points is not None:
+            with self._source.blame("surface.points"):
+                path = self._source.folder / by.points
+                return surfaces.through_points(path, by.columns, self._bring(path, by.crs))
+        return self._heights("surface", by)
 
-    def outline(self, index: int) -> NDArray[np.float64]:
+    def planes(self, planes: Iterable[PlaneBy]) -> list[Plane]:
+        """Planes by their dips."""
+        return [self._plane(plane) for plane in planes]
+
+    def outline(self, index: int) -> Floats:
         """Corners [m] of a body's outline, shape (corners, 2)."""
         given = self.bodies[index].outline
-        if not isinstance(given, str):
+        if isinstance(given, list):
             return np.array(given)
+        by = given if isinstance(given, OutlineFile) else OutlineFile(file=given)
         with self._source.blame(f"bodies.{index}.outline"):
-            return files.read_outline(self._source.folder / given)
+            path = self._source.folder / by.file
+            bring = self._bring(path, by.crs)
+            corners, notes = files.read_outline(path, by.layer, by.where, bring)
+        self.projection.tell(*notes)
+        return corners
+
+    def _bring(self, path: Path, told: str | None) -> files.Bring:
+        """How points of a file come to metres."""
+        return lambda label, xy: self.projection.bring(path, label, told, xy)
+
+    def _target(self) -> Any | None:
+        """What all is brought to: as told, or as the terrain's file says."""
+        if self.crs is not None:
+            with self._source.blame("crs"):
+                system = look_up(self.crs)
+            if why := unfit(system):
+                raise self.error("crs", why)
+            return system
+        key = f"terrain.{self.terrain.source()}"
+        with self._source.blame(key):
+            label = self._label_of_terrain()
+            system = None if label is None else look_up(label)
+        if system is None:
+            return None
+        if not (why := unfit(system)):
+            return horizontal(system)
+        raise self.error(
+            key, f"{why}; write the projection in metres as crs at the top{self._advice(system)}"
+        )
+
+    def _advice(self, system: Any) -> str:
+        """The UTM zone of a terrain in degrees, for the words of an error."""
+        if not horizontal(system).is_geographic or self.terrain.grid is None:
+            return ""
+        try:
+            grid = read_raster(self._source.folder / self.terrain.grid).grid
+            zone = utm_zone(*((grid.low + grid.high) / 2).tolist())
+        except CaseError:
+            return ""
+        return f"; its UTM zone is {short_name(zone)}"
+
+    def _label_of_terrain(self) -> str | None:
+        by = self.terrain
+        if by.crs is not None:
+            return by.crs
+        if by.grid is not None:
+            return label_of(self._source.folder / by.grid)
+        if by.contours is not None and not by.contours.lower().endswith((".csv", ".txt")):
+            return read_features(self._source.folder / by.contours).label
+        return None
+
+    def _plane(self, by: PlaneBy | PlaneThrough) -> Plane:
+        if isinstance(by, PlaneBy):
+            return Plane(by.dip, by.dip_direction, tuple(by.through))  # type: ignore[arg-type]
+        path = self._source.folder / by.through_lines
+        lines = files.read_lines(path, None, self._bring(path, None))
+        plane, notes = surfaces.fit_plane(np.concatenate(lines), path.name)
+        self.projection.tell(*notes)
+        return plane
 
     def _heights(self, key: str, given: HeightsBy) -> Heights:
-        if given.plane is not None:
-            plane = given.plane
-            return Plane(plane.dip, plane.dip_direction, tuple(plane.through))  # type: ignore[arg-type]
-        kind = next(k for k in SOURCES if getattr(given, k) is not None)
+        kind = given.source()
         with self._source.blame(f"{key}.{kind}"):
+            if kind == "plane":
+                return self._plane(given.plane)  # type: ignore[attr-defined]
             if given.grid is not None:
-                return files.read_grid(self._source.folder / given.grid)
+                return self._grid(key, given)
             if given.contours is not None:
                 path = self._source.folder / given.contours
-                lines = files.read_lines(path, given.elevation)
+                lines = files.read_lines(path, given.elevation, self._bring(path, given.crs))
             else:
                 lines = [np.array(line) for line in given.lines or []]
             return Lines(lines, self.sizes.body / 4)
+
+    def _grid(self, key: str, given: HeightsBy) -> Grid:
+        path = self._source.folder / str(given.grid)
+        x, y = self.extent.x, self.extent.y
+        margin = 4 * self.terrain.smooth if key == "terrain" else 0.0
+        box = np.array([x[0], y[0]]) - margin, np.array([x[1], y[1]]) + margin
+        wanted = Wanted(box, given.crs, given.cell, given.unit, given.nodata, given.classes)
+        grid = read_heights(path, self.projection, wanted)
+        if given.fill is None:
+            return grid
+        outlines = [self.outline(index) for index in range(len(self.bodies))]
+        grid, notes = filled(path, grid, given.fill, outlines)
+        self.projection.tell(*notes)
+        return grid

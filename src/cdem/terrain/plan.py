@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from cdem.errors import MeshError
 from cdem.terrain.heights import Heights, extra
 from cdem.terrain.landslide import Landslide
+from cdem.terrain.slbl import Membrane, OnTriangles, base_level
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
@@ -50,18 +51,38 @@ def make_plan(landslide: Landslide) -> Plan:
         CaseError: An outline crosses itself, leaves the extent, or holds no rock above the surface.
         MeshError: The plan cannot be triangulated.
     """
+    projection = landslide.projection
     ground, surface = landslide.ground(), landslide.sliding_surface()
     _check_extent(landslide, ground)
     notes: list[str] = []
     outlines = _outlines(landslide)
     bodies = _cut_at_outcrop(landslide, outlines, ground, surface, notes)
-    pieces = _pieces(bodies, outlines, landslide.sizes.body)
+    pieces = _pieces(bodies, outlines, landslide.sizes.body) if bodies else []
     points, triangles, body, outcrop = _triangulate(landslide, pieces)
     unknown = np.full(len(points), np.nan)
     plan = Plan(points, triangles, body, unknown, unknown, _rim(points), notes)
-    _lift(landslide, plan, ground, surface, outcrop)
+    if surface is None and bodies:
+        surface, outcrop = _base_level(landslide, plan, ground)
+    if surface is None:
+        plan.ground = _known(landslide, "terrain", ground, plan.points)
+    else:
+        _lift(landslide, plan, ground, surface, outcrop)
     _check_base(landslide, plan)
+    plan.notes = projection.notes + plan.notes
     return plan
+
+
+def _base_level(landslide: Landslide, plan: Plan, ground: Heights) -> tuple[Heights, Ints]:
+    """The sloping local base level under the bodies, and the points where it meets the ground."""
+    used, local = np.unique(plan.triangles[plan.body >= 0], return_inverse=True)
+    points, triangles = plan.points[used], local.reshape(-1, 3)
+    z = _known(landslide, "terrain", ground, points)
+    around = np.zeros(len(plan.points), bool)
+    around[plan.triangles[plan.body < 0]] = True
+    thin = THIN * landslide.sizes.body
+    bed, notes = base_level(landslide, Membrane(points, triangles, z, around[used]), thin)
+    plan.notes += notes
+    return OnTriangles(points, triangles, bed), used[bed == z]
 
 
 def _check_base(landslide: Landslide, plan: Plan) -> None:
@@ -132,12 +153,18 @@ def _outlines(landslide: Landslide) -> list[Any]:
 
 
 def _cut_at_outcrop(
-    landslide: Landslide, outlines: list[Any], ground: Heights, surface: Heights, notes: list[str]
+    landslide: Landslide,
+    outlines: list[Any],
+    ground: Heights,
+    surface: Heights | None,
+    notes: list[str],
 ) -> list[Any]:
     """Polygons of the bodies: inside their outline, not in an earlier one, rock above the surface."""
     shapely = extra("shapely")
     size = landslide.sizes.body
-    above = _above(landslide, shapely.union_all(outlines), ground, surface)
+    above = shapely.union_all(outlines)
+    if surface is not None:
+        above = _above(landslide, above, ground, surface)
     taken = shapely.Polygon()
     bodies = []
     for index, outline in enumerate(outlines):
@@ -289,7 +316,9 @@ def _triangulate(landslide: Landslide, pieces: list[Piece]) -> tuple[Floats, Int
     for piece in pieces:
         for ends in zip(piece.points[:-1], piece.points[1:], strict=True):
             lines.append((np.array(ends), piece.left + 2, piece.right + 2))
-    domain_size = [sizes.far] + [sizes.body] * len(landslide.bodies)
+    # bare ground is what blocks fall on: fine, above rock that grows coarser
+    around = sizes.far if landslide.bodies else sizes.body
+    domain_size = [around] + [sizes.body] * len(landslide.bodies)
     points, triangles, domain = flat_mesh(lines, domain_size, sizes.growth)
     bare = {tuple(p) for piece in pieces if piece.outcrop for p in piece.points.tolist()}
     outcrop = np.array([i for i, p in enumerate(points.tolist()) if tuple(p) in bare], np.int64)

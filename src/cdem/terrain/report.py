@@ -36,12 +36,13 @@ def measure(solid: Solid) -> dict[str, Any]:
         "points": len(solid.points),
         "tets": len(solid.tets),
         "groups": groups,
-        "bed": _bed(solid),
+        "bed": _bed(solid) if len(solid.groups) > 1 else None,
         "smallest_height": float(height.min()),
         "smallest_height_ratio": float(ratio.min()),
         "smallest_dihedral_angle": float(angle.min()),
         "slivers": int((ratio < SLIVER).sum()),
         "surfaces": {name: len(faces) for name, faces in solid.surfaces.items()},
+        "crs": solid.crs,
         "notes": solid.notes,
     }
 
@@ -75,15 +76,19 @@ def text(facts: dict[str, Any]) -> str:
             f"  {name:<{width}}  {group['tets']:>9,} tets  {group['volume'] / 1e6:>12,.4f} Mm3  "
             f"smallest height {group['smallest_height']:.3g} m"
         )
-    bed = facts["bed"]
+    if bed := facts["bed"]:
+        lines.append(
+            f"bed: dip {bed['dip']:.3f} deg towards {bed['dip_direction']:.3f} deg, "
+            f"within {bed['farthest']:.2g} m of that plane"
+        )
     lines += [
-        f"bed: dip {bed['dip']:.3f} deg towards {bed['dip_direction']:.3f} deg, "
-        f"within {bed['farthest']:.2g} m of that plane",
         f"worst tets: height {facts['smallest_height']:.3g} m, height / longest edge "
         f"{facts['smallest_height_ratio']:.3g}, dihedral angle "
         f"{facts['smallest_dihedral_angle']:.3g} deg; {facts['slivers']} slivers (below {SLIVER})",
         "surfaces: " + ", ".join(facts["surfaces"]),
     ]
+    if facts["crs"]:
+        lines.append(f"projection: write into the case  crs: {facts['crs']}")
     return "\n".join(lines + [f"note: {note}" for note in facts["notes"]])
 
 

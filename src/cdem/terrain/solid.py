@@ -31,6 +31,7 @@ class Solid:
         groups: The bedrock, then the bodies.
         surfaces: By name, point ids of triangles, shape (faces, 3).
         notes: What a user should know.
+        crs: Projection of the points as text for a case; None if no file says one.
     """
 
     points: Floats
@@ -39,6 +40,7 @@ class Solid:
     groups: list[str]
     surfaces: dict[str, Ints]
     notes: list[str]
+    crs: str | None
 
 
 class _Columns:
@@ -89,7 +91,9 @@ def make_solid(landslide: Landslide, plan: Plan) -> Solid:
     tets, group = _stack(plan, columns)
     body_skin = _skin(tets)
     tops = {tuple(sorted(t)) for t in plan.triangles[plan.body >= 0].tolist()}
-    under = np.array([t for t in body_skin.tolist() if tuple(sorted(t)) not in tops])
+    under = np.array(
+        [t for t in body_skin.tolist() if tuple(sorted(t)) not in tops], np.int64
+    ).reshape(-1, 3)
     ground = plan.triangles[plan.body < 0]
     sides, base = _outside(landslide, plan, points)
     shell = np.concatenate([ground, under[:, ::-1], *sides.values(), base])
@@ -104,6 +108,7 @@ def make_solid(landslide: Landslide, plan: Plan) -> Solid:
         [landslide.bedrock, *(body.group for body in landslide.bodies)],
         {"fix_base": base} | {f"fix_side_{name}": faces for name, faces in sides.items()},
         list(plan.notes),
+        landslide.system,
     )
     _name_surfaces(solid, plan, columns)
     _check_conforming(solid, np.concatenate([plan.triangles, base, *sides.values()]))
@@ -136,7 +141,7 @@ def _stack(plan: Plan, columns: _Columns) -> tuple[Ints, Ints]:
         for stand, _, to in columns.climb(triangle):
             tets.append([*stand, to])
             group.append(body + 1)
-    return np.array(tets), np.array(group)
+    return np.array(tets, np.int64).reshape(-1, 4), np.array(group, np.int64)
 
 
 def _skin(tets: Ints) -> Ints:

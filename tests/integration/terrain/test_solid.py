@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
+from shared.maps import height, write_raster, write_shape
 from shared.slopes import slope
 
 from cdem.errors import CaseError
@@ -163,3 +164,48 @@ def test_jiweishan_from_its_contours():
     assert facts["bed"]["dip_direction"] == pytest.approx(345, abs=0.1)
     assert facts["tets"] == pytest.approx(46600, rel=0.05)
     assert facts["slivers"] == 0 and facts["smallest_height"] > 1.0
+
+
+def test_a_dem_in_degrees_and_a_kml_line_become_a_mesh(tmp_path: Path):
+    pytest.importorskip("rasterio", reason="needs the extra 'terrain'")
+    write_raster(tmp_path / "dem.tif", "EPSG:4326")
+    write_shape(tmp_path / "outline.kml", crs="EPSG:4326", line=True)
+    file = tmp_path / "landslide.yaml"
+    file.write_text(
+        "crs: EPSG:32632\n"
+        "terrain: {grid: dem.tif, cell: 20}\n"
+        "extent: {x: [591100, 591900], y: [5193100, 5193900], base: 1200}\n"
+        'surface: {slbl: {volume: "2e6 m3"}}\n'
+        "bodies: [{group: slide, outline: {file: outline.kml}}]\n"
+        "sizes: {body: 40, far: 150}\n"
+    )
+    solid = make_mesh(Landslide.load(file))
+    check_conforming(solid)
+    facts = measure(solid)
+    assert facts["crs"] == "EPSG:32632"
+    assert "crs: EPSG:32632" in text(facts)
+    # surface and mesh have the same triangles; at the rim tets have a least thickness
+    assert facts["groups"]["slide"]["volume"] == pytest.approx(2e6, rel=1e-6)
+    ground = solid.points[np.unique(solid.surfaces["ground_slide"])]
+    assert np.abs(ground[:, 2] - height(ground[:, :2])).max() < 0.1
+    for key, words in (("crs", r"crs: there is no projection"), ("terrain.crs", "terrain.grid: ")):
+        with pytest.raises(CaseError, match=words):
+            make_mesh(Landslide.load(file, [f"{key}=EPSG:99999"]))
+    with pytest.raises(CaseError, match=r"crs at the top; its UTM zone is EPSG:32632"):
+        make_mesh(Landslide.load(file, ["crs="]))
+
+
+def test_bare_ground_is_meshed_without_bodies():
+    data = slope(sizes={"body": 10, "far": 20})
+    del data["surface"], data["bodies"]
+    solid = make_mesh(Landslide(**data))
+    check_conforming(solid)
+    facts = measure(solid)
+    assert solid.groups == ["bedrock"]
+    mean_height = 100 - 50 * math.tan(math.radians(30))
+    assert facts["groups"]["bedrock"]["volume"] == pytest.approx(1e4 * mean_height, rel=1e-12)
+    assert "bed:" not in text(facts)
+    with pytest.raises(CaseError, match="bodies need a surface that they slide on"):
+        Landslide(**{k: v for k, v in slope().items() if k != "surface"})
+    with pytest.raises(CaseError, match="a surface without bodies has no meaning"):
+        Landslide(**{k: v for k, v in slope().items() if k != "bodies"})

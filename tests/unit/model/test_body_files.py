@@ -9,7 +9,7 @@ import cdem
 from cdem.joints import convex_cells, cutting
 from cdem.mesh import primitives
 from cdem.mesh.blocks import block_labels, build_topology
-from cdem.model.body_files import read_bodies
+from cdem.model.body_files import fill_bodies, read_bodies
 
 CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 
@@ -154,3 +154,51 @@ def test_a_case_with_bodies_from_a_file(run_cli, tmp_path, monkeypatch):
     assert run_cli("check", "case.yaml")[0] == 0
     status, _, err = run_cli("check", "case.yaml", "--set", "model.blocks.0.file=cub.obj")
     assert status == 1 and "model.blocks.0: " in err and "no such file" in err
+
+
+def ell(turned=False):
+    """An L of three unit cubes: corners and faces, and one face the wrong way round."""
+    outline = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
+    points = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in outline])
+    low = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)]
+    faces = [f[::-1] for f in low] + [tuple(v + 6 for v in f) for f in low]
+    for a in range(6):
+        b = (a + 1) % 6
+        faces += [(a, b, b + 6), (a, b + 6, a + 6)]
+    if turned:
+        faces[5] = faces[5][::-1]
+    return points, [list(f) for f in faces]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_body_that_is_not_convex_is_filled_with_tets(tmp_path, turned):
+    pytest.importorskip("netgen", reason="needs the extra 'terrain'")
+    points, faces = ell(turned)
+    path = tmp_path / "a.obj"
+    write_obj(
+        path,
+        np.concatenate([points, points + [5, 0, 0]]),
+        [*faces, *[[v + 12 for v in f] for f in faces]],
+    )
+    made = fill_bodies(path, "rock", 0.7)
+    assert volume(made) == pytest.approx(6, rel=1e-12)
+    assert np.linalg.det(np.diff(made.points[made.cells["tet4"]], axis=1)).min() > 0
+    assert len(build_topology(made, {}).block_group) == 2
+    with pytest.raises(
+        cdem.MeshError, match=r"not convex.*; with 'size' beside the file it is filled"
+    ):
+        read_bodies(path, "rock")
+
+
+def test_what_cannot_be_filled_is_refused(tmp_path):
+    pytest.importorskip("netgen", reason="needs the extra 'terrain'")
+    points, faces = ell()
+    write_obj(tmp_path / "open.obj", points, faces[:-1])
+    with pytest.raises(cdem.MeshError, match=r"body 0: the surface is not closed"):
+        fill_bodies(tmp_path / "open.obj", "rock", 0.7)
+    points[0] = [3, 0.5, 0.5]  # a corner pushed through the walls
+    write_obj(tmp_path / "crossed.obj", points, faces)
+    with pytest.raises(cdem.MeshError, match=r"body 0: its surface cannot be filled with tets"):
+        fill_bodies(tmp_path / "crossed.obj", "rock", 0.7)
+    with pytest.raises(cdem.MeshError, match=r"size is for surfaces, \.obj and \.stl"):
+        fill_bodies(tmp_path / "a.vtu", "rock", 0.7)

@@ -50,7 +50,10 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
             {"surface": {"lines": [[[20, 20, 50], [80, 20, 50]]]}},
             r"surface\.lines: the points lie on one straight line",
         ),
-        ({"surface": {}}, r"surface: needs exactly one of contours, grid, lines, plane; got none"),
+        (
+            {"surface": {}},
+            r"surface: needs exactly one of contours, grid, lines, plane, planes, ellipsoid, points, slbl",
+        ),
         (
             {"bodies": [{"group": "bedrock", "outline": SQUARE}]},
             r"bodies\.0\.group: the name 'bedrock' is taken",

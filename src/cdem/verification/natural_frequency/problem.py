@@ -68,7 +68,7 @@ def shape(kind, x):
 def frequency(simulation, kind):
     """From the zero crossings of what moves as the mode does, over `PERIODS` [Hz]."""
     motion = shape(kind, simulation.build.start_position)
-    simulation.fields["velocity"][:] = SPEED * motion
+    simulation.motion[:, 4:7] = SPEED * motion
     weight = simulation.fields["mass"][:, None] * motion
     period = 1 / theory(kind, simulation.case.materials["rock"])
     steps = max(1, int(period / 64 / simulation.core.scalars()["dt"]))  # about 64 rows a period

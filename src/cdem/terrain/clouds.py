@@ -1,0 +1,113 @@
+"""Point clouds (LAS, LAZ) as grids of heights: the mean of the ground points of a cell."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.input_file import is_file
+from cdem.errors import BackendError, CaseError
+from cdem.terrain.heights import Grid
+from cdem.terrain.projection import Projection, moved
+from cdem.terrain.rasters import WHAT, Box
+
+Floats = NDArray[np.float64]
+KINDS = (".las", ".laz")
+CHUNK = 1_000_000  # points that are held at a time
+GROUND = 2  # class of ground points (ASPRS)
+MOST_CELLS = 50_000_000
+
+
+def read_cloud_label(path: Path) -> str | None:
+    """What a point cloud says of its projection; None if it says nothing."""
+    with _opened(path) as file:
+        return _label(file)
+
+
+def read_cloud(
+    path: Path, projection: Projection, told: str | None, box: Box, cell: float | None, classes: str
+) -> Grid:
+    """Read a point cloud as a grid on lines at multiples of the cell.
+
+    Args:
+        path: ``.las`` or ``.laz``; it is read in parts.
+        projection: Where it is brought to.
+        told: Its projection as the user says, or None.
+        box: The part that is needed, in the target [m].
+        cell: Cell of the grid [m].
+        classes: "ground" for points of class 2, "all" for all.
+
+    Returns:
+        The grid: mean heights, in the unit of the file; NaN where no point is.
+
+    Raises:
+        CaseError: No cell is given, the file cannot be read, or holds no such points there.
+        BackendError: The extra `lidar` is not installed.
+    """
+    if cell is None:
+        raise CaseError(f"{path}: a point cloud needs the cell of the grid that it becomes")
+    low = np.floor(box[0] / cell) * cell
+    columns, rows = np.round((np.ceil(box[1] / cell) * cell - low) / cell).astype(int).tolist()
+    if columns * rows > MOST_CELLS:
+        raise CaseError(f"{path}: {columns} x {rows} cells are too many; give a larger cell")
+    total, count = np.zeros(rows * columns), np.zeros(rows * columns)
+    taken = 0
+    with _opened(path) as file:
+        head = file.header
+        own = projection.own(path, _label(file), told, head.mins, head.maxs)
+        for part in file.chunk_iterator(CHUNK):
+            kept = np.asarray(part.classification) == GROUND if classes == "ground" else slice(None)
+            xyz = np.column_stack([part.x, part.y, part.z]).astype(float)[kept]
+            taken += len(xyz)
+            xy = xyz[:, :2] if own is None else moved(xyz, own, projection.target)
+            at = np.floor((xy - low) / cell).astype(int)
+            inside = ((at >= 0) & (at < [columns, rows])).all(axis=1)
+            index = at[inside, 1] * columns + at[inside, 0]
+            total += np.bincount(index, xyz[inside, 2], rows * columns)
+            count += np.bincount(index, minlength=rows * columns)
+        if not taken and head.point_count:
+            raise CaseError(
+                f"{path}: none of its {head.point_count:,} points has class 2 (ground); write classes: "
+                "all (--all-points) to take all, trees and houses too"
+            )
+    if not count.any():
+        raise CaseError(f"{path}: has no points where they are needed")
+    empty = int((count == 0).sum())
+    projection.tell(
+        f"{path.name}: {int(count.sum()):,} points to {columns} x {rows} cells of {cell:g} m, {empty} "
+        "of them empty"
+    )
+    with np.errstate(invalid="ignore"):
+        mean = np.where(count > 0, total / count, np.nan).reshape(rows, columns)
+    return Grid(low[0] + cell / 2, low[1] + cell / 2, (cell, cell), mean)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    if not is_file(path):
+        raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
+    try:
+        laspy = importlib.import_module("laspy")
+        importlib.import_module("lazrs")
+    except ImportError as error:
+        raise BackendError(
+            f"point clouds need laspy: pip install 'cdem[lidar]' ({error})"
+        ) from None
+    try:
+        with laspy.open(path) as file:
+            yield file
+    except (CaseError, BackendError, OSError):
+        raise
+    except Exception as error:  # of laspy and lazrs: many kinds
+        raise CaseError(f"{path}: not a sound point cloud: {error}") from None
+
+
+def _label(file: Any) -> str | None:
+    system = file.header.parse_crs()
+    return None if system is None else str(system.to_wkt())

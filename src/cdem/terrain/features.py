@@ -1,0 +1,141 @@
+"""Lines and polygons with their properties: GeoJSON by itself; GeoPackage, Shapefile, KML, DXF by GDAL."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cdem.case.input_file import is_file, read_text, reading
+from cdem.errors import CaseError
+from cdem.terrain.heights import extra
+
+GEOJSON = (".geojson", ".json")
+BY_GDAL = (".gpkg", ".shp", ".kml", ".kmz", ".fgb", ".dxf")
+KINDS = f"{', '.join((GEOJSON[0], *BY_GDAL[:-1]))} or {BY_GDAL[-1]}"
+MEND = f"lines and polygons are read from {KINDS}"
+WHAT = "terrain file"
+
+
+@dataclass
+class Features:
+    """What a file of lines and polygons holds.
+
+    Attributes:
+        items: Geometry as in GeoJSON (``type``, ``coordinates``), and properties, of each feature.
+        label: What the file says of its projection, for `look_up`; None if it says nothing.
+    """
+
+    items: list[tuple[dict[str, Any], dict[str, Any]]]
+    label: str | None
+
+
+def read_features(
+    path: Path, layer: str | None = None, where: dict[str, Any] | None = None
+) -> Features:
+    """Read the features of a file.
+
+    Args:
+        path: ``.geojson``, or what GDAL reads with the extra `terrain`.
+        layer: Which layer; needed where there are several, except in KML, whose folders are.
+        where: Only features whose properties have these values.
+
+    Raises:
+        CaseError: The file is missing, of another kind, or has no such layer or features.
+    """
+    kind = path.suffix.lower()
+    if kind in GEOJSON:
+        found = _geojson(path, read_text(path, WHAT))
+    elif kind in BY_GDAL:
+        if not is_file(path):
+            raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
+        extra("pyogrio.raw")
+        extra("shapely")
+        with reading(path, CaseError, MEND):
+            found = _by_gdal(path, layer)
+    else:
+        raise CaseError(f"{path}: {MEND}")
+    return _chosen(path, found, where) if where else found
+
+
+def _chosen(path: Path, found: Features, where: dict[str, Any]) -> Features:
+    names = sorted({name for _, properties in found.items for name in properties})
+    for key in where:
+        if key not in names:
+            raise CaseError(f"{path}: no feature has a property '{key}'; there are: {names}")
+    kept = [
+        (geometry, properties)
+        for geometry, properties in found.items
+        if all(str(properties.get(key)) == str(value) for key, value in where.items())
+    ]
+    if not kept:
+        key = next(iter(where))
+        values = sorted({str(properties.get(key)) for _, properties in found.items})[:10]
+        raise CaseError(f"{path}: no feature has {where}; of {key} there are: {values}")
+    return Features(kept, found.label)
+
+
+def _geojson(path: Path, text: str) -> Features:
+    if text.lstrip().startswith("<"):
+        raise CaseError(f"{path}: is XML, not GeoJSON; a KML file ends in .kml")
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise CaseError(f"{path}:{error.lineno}:{error.colno}: not JSON: {error.msg}") from None
+    features = data.get("features", [data]) if isinstance(data, dict) else None
+    if not isinstance(features, list) or not all(isinstance(f, dict) for f in features):
+        raise CaseError(f"{path}: not GeoJSON: no features in it")
+    items = []
+    for feature in features:
+        geometry, properties = feature.get("geometry") or feature, feature.get("properties") or {}
+        if not isinstance(geometry, dict) or not isinstance(properties, dict):
+            raise CaseError(f"{path}: not GeoJSON: a geometry or properties are no {{...}}")
+        items.append((geometry, properties))
+    return Features(items, _geojson_label(data))
+
+
+def _geojson_label(data: dict[str, Any]) -> str | None:
+    """The name of the member `crs`, which older files have."""
+    member = data.get("crs")
+    properties = member.get("properties") if isinstance(member, dict) else None
+    name = properties.get("name") if isinstance(properties, dict) else None
+    return name if isinstance(name, str) else None
+
+
+def _by_gdal(path: Path, layer: str | None) -> Features:
+    with path.open("rb") as file:
+        if b"VRTData" in file.read(4096):
+            raise CaseError(f"{path}: is a link to other files (VRT), not what its name says")
+    import pyogrio
+    import shapely
+
+    items, label = [], None
+    for name in _layers(path, layer):
+        meta, _, shapes, columns = pyogrio.raw.read(path, layer=name)
+        label = meta["crs"] or label
+        fields = [str(field) for field in meta["fields"]]
+        for row, shape in enumerate(shapely.from_wkb(shapes)):
+            if shape is not None:
+                properties = {f: c[row] for f, c in zip(fields, columns, strict=True)}
+                items += [(part, properties) for part in _parts(shapely.geometry.mapping(shape))]
+    return Features(items, label)
+
+
+def _layers(path: Path, layer: str | None) -> list[str]:
+    """Names of the layers that are read."""
+    import pyogrio
+
+    layers = [str(name) for name in pyogrio.list_layers(path)[:, 0]]
+    if layer is not None and layer not in layers:
+        raise CaseError(f"{path}: has no layer '{layer}'; there are: {', '.join(layers)}")
+    if layer is None and len(layers) > 1 and path.suffix.lower() not in (".kml", ".kmz"):
+        raise CaseError(f"{path}: has several layers; choose with 'layer': {', '.join(layers)}")
+    return layers if layer is None else [layer]
+
+
+def _parts(geometry: dict[str, Any]) -> list[dict[str, Any]]:
+    """The geometries of a collection, which KML makes of lines and points together."""
+    if geometry["type"] != "GeometryCollection":
+        return [geometry]
+    return [part for inner in geometry["geometries"] for part in _parts(inner)]

@@ -1,0 +1,74 @@
+"""Point clouds become grids of their ground points; what has none is refused."""
+
+import numpy as np
+import pytest
+from shared.maps import SOUTH, UTM32, WEST, height, moved
+
+from cdem.case.map_system import look_up
+from cdem.errors import CaseError
+from cdem.terrain.projection import Projection
+from cdem.terrain.resample import Wanted, read_heights
+
+laspy = pytest.importorskip("laspy", reason="needs the extra 'lidar'")
+pytest.importorskip("lazrs", reason="needs the extra 'lidar'")
+
+BOX = np.array([WEST, SOUTH]), np.array([WEST + 300, SOUTH + 300])
+COUNT = 60_000
+
+
+def write_cloud(path, crs=UTM32, ground=2):
+    """0.5 points per m2 of ground, and trees 15 m above it on a third of them."""
+    import pyproj
+
+    rng = np.random.default_rng(0)
+    xy = rng.uniform(BOX[0] - 20, BOX[1] + 20, (COUNT, 2))
+    tree = rng.random(COUNT) < 0.3
+    there = moved(xy, UTM32, crs) if crs != UTM32 else xy
+    head = laspy.LasHeader(point_format=6, version="1.4")
+    head.offsets, head.scales = [*np.floor(there.min(axis=0)), 0], [1e-3, 1e-3, 1e-3]
+    head.add_crs(pyproj.CRS(crs))
+    cloud = laspy.LasData(head)
+    cloud.x, cloud.y = there.T
+    cloud.z = height(xy) + 15 * tree
+    cloud.classification = np.where(tree, 5, ground).astype(np.uint8)
+    cloud.write(path)
+    return path
+
+
+def heights(path, **wanted):
+    projection = Projection(look_up(UTM32))
+    return read_heights(path, projection, Wanted(BOX, cell=10.0, **wanted)), projection.notes
+
+
+def rms(grid):
+    at = np.random.default_rng(1).uniform(BOX[0] + 10, BOX[1] - 10, (500, 2))
+    return np.sqrt(np.mean((grid(at) - height(at)) ** 2))
+
+
+@pytest.mark.parametrize(
+    ("name", "crs"), [("a.laz", UTM32), ("a.las", UTM32), ("a.laz", "EPSG:31254")]
+)
+def test_the_ground_of_a_cloud(tmp_path, name, crs):
+    grid, notes = heights(write_cloud(tmp_path / name, crs))
+    # a cell holds some 40 points anywhere in 10 m on a slope of 30 deg: 1.7 m / sqrt(40)
+    assert rms(grid) < 0.4
+    assert (grid.low <= BOX[0]).all() and (grid.high >= BOX[1]).all()
+    assert "points to 30 x 30 cells of 10 m, 0 of them empty" in notes[-1]
+    with_trees, _ = heights(tmp_path / name, classes="all")
+    assert rms(with_trees) > 4
+
+
+def test_what_is_no_ground_is_refused(tmp_path):
+    path = write_cloud(tmp_path / "a.laz", ground=1)
+    with pytest.raises(CaseError, match=r"none of its 60,000 points has class 2 \(ground\)"):
+        heights(path)
+    with pytest.raises(CaseError, match="a point cloud needs the cell"):
+        read_heights(path, Projection(look_up(UTM32)), Wanted(BOX))
+    with pytest.raises(CaseError, match=r"a\.las: cannot read the terrain file"):
+        heights(tmp_path / "a.las")
+    (tmp_path / "b.laz").write_bytes(path.read_bytes()[:3000])
+    with pytest.raises(CaseError, match=r"b\.laz: not a sound point cloud"):
+        heights(tmp_path / "b.laz", classes="all")
+    (tmp_path / "c.laz").write_text("nothing")
+    with pytest.raises(CaseError, match=r"c\.laz: not a sound point cloud"):
+        heights(tmp_path / "c.laz")
