@@ -64,8 +64,7 @@ def critical(
     or all of it (far), or goes on at no lower rate, or finds no rest in a million steps. Trials start
     from the last stable state, unless the parameter makes another model (model.*, materials.*).
 
-    Writes CASE.factor.json, or CASE.PATH.json, after each trial, and the failed model as PNG.
-    """
+    Writes CASE.factor.json, or CASE.PATH.json, after each trial; the failed model as PNG."""
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
     if parameter and not between:

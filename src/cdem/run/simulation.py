@@ -306,23 +306,13 @@ class Simulation(RunState):
         while True:
             steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
             before, clock = self.step_count, time.perf_counter()
-            due = min((action.due for action in self._actions), default=np.inf)
-            outcome = self.advance(stage, steps, min(until, due))
+            outcome = self.advance(stage, steps, min([until, *(a.due for a in self._actions)]))
             now = time.perf_counter()
             done = self.step_count - before
             speed = done / max(now - clock, 1e-9)
             self.wall_time += now - clock
             stage.wall_time += now - clock
-            self._look_at_flow()
-            ended = any([action.call(self) for action in self._actions])
-            if stages.record_is_due(self, stage, outcome) or ended:
-                self._log_departures()
-                stages.look_for_rest(self, stage)
-                self._record(frame=ended or stages.frame_is_due(self, stage, outcome))
-                self._check_energy()
-                self._check_strain()
-                self._check_weakening()
-            status = stages.status(self, stage, outcome) or ("ended" if ended else None)
+            status = self._look(stage, outcome)
             known, note = (
                 note,
                 stage.note(self.step_count - stage.start_step, self.core.unbalance_ratio()),
@@ -342,6 +332,19 @@ class Simulation(RunState):
             if self.results and now - began > self.case.output.checkpoint_every:
                 began = now
                 self.checkpoint()
+
+    def _look(self, stage: StageState, outcome: str) -> str | None:
+        """Do what is due after some steps: follow, act, record, check; how the stage ended, or None."""
+        self._look_at_flow()
+        ended = any([action.call(self) for action in self._actions])
+        if stages.record_is_due(self, stage, outcome) or ended:
+            self._log_departures()
+            stages.look_for_rest(self, stage)
+            self._record(frame=ended or stages.frame_is_due(self, stage, outcome))
+            self._check_energy()
+            self._check_strain()
+            self._check_weakening()
+        return stages.status(self, stage, outcome) or ("ended" if ended else None)
 
     def _begin_stage(self) -> StageState:
         self.stage, self.ended_stage = stages.begin(self), None

@@ -38,7 +38,7 @@ def test_the_cap_of_an_ellipsoid():
 
 
 def test_a_wedge_stands_above_both_planes():
-    """Planes of dip d that face each other, their line level: a trough whose depth is tan d |y|."""
+    """Planes of dip d that face each other, their line level: a valley whose depth is tan d |y|."""
     both = Highest([Plane(40, 0, (0, 10, 0)), Plane(40, 180, (0, 10, 0))])
     at = np.array([[0, 10], [5, 30], [5, -10.0]])
     assert both(at) == pytest.approx([0, 20 * np.tan(np.radians(40)), 20 * np.tan(np.radians(40))])
