@@ -53,7 +53,7 @@ def test_critical_friction_angle_is_the_slope():
     assert found.failed <= SLOPE <= found.stable
     assert found.stable - found.failed <= 0.01
     failed = [t for t in found.trials if not t.stable]
-    assert all(t.saw == "sliding" and t.steps == 10_000 for t in failed)  # relaxation brakes a lot
+    assert all(t.saw == "sliding" and t.steps <= 10_000 for t in failed)
     assert [t.value for t in found.trials] == reported
 
 
