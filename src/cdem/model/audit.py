@@ -399,7 +399,9 @@ class Audit:
                 f"{row['height']:.3g} m of rock, {100 * row['overlap_at_speed']:.2g} % at "
                 f"{row['speed']:.3g} m/s"
             )
-            if row["curve_end"] is not None:
+            if row["curve_end"] == 0:
+                lines[-1] += "; joints close by no curve: k_n is below their initial stiffness"
+            elif row["curve_end"] is not None:
                 lines[-1] += (
                     f"; joints close by a curve up to {row['curve_end']:.3g} Pa, from where on they "
                     "are as stiff as k_n, for which the step is found"
