@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import is_file
+from cdem.case.input_file import is_file, reading
 from cdem.errors import BackendError, CaseError
 from cdem.terrain.heights import Grid
 from cdem.terrain.projection import Projection, moved
@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 KINDS = (".las", ".laz")
 CHUNK = 1_000_000  # points that are held at a time
 GROUND = 2  # class of ground points (ASPRS)
-MOST_CELLS = 50_000_000
+MOST_CELLS = 10_000_000
 
 
 def read_cloud_label(path: Path) -> str | None:
@@ -100,11 +100,11 @@ def _opened(path: Path) -> Iterator[Any]:
             f"point clouds need laspy: pip install 'cdem[lidar]' ({error})"
         ) from None
     try:
-        with laspy.open(path) as file:
+        with reading(path, CaseError, "a point cloud is LAS or LAZ"), laspy.open(path) as file:
             yield file
-    except (CaseError, BackendError, OSError):
-        raise
-    except Exception as error:  # of laspy and lazrs: many kinds
+    except BaseException as error:
+        if type(error).__name__ != "PanicException":  # of lazrs, which is no Exception
+            raise
         raise CaseError(f"{path}: not a sound point cloud: {error}") from None
 
 

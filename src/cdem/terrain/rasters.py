@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.input_file import is_file, read_text, reading
-from cdem.errors import CaseError
+from cdem.case.map_system import look_up
+from cdem.errors import BackendError, CaseError
 from cdem.terrain.heights import Grid, extra, refuse_degrees
 from cdem.units import coordinates
 
@@ -157,16 +158,20 @@ def _window(path: Path, file: Any, box: Box) -> Any:
 def _refuse_other_units(path: Path, label: str | None) -> None:
     if label is None:
         return
-    system = extra("rasterio.crs").CRS.from_user_input(label)
+    try:
+        system = look_up(label)
+    except BackendError:  # without the extra a .prj beside ESRI ASCII is not understood
+        return
+    name = ":".join(system.to_authority() or [f"'{system.name}'"])
     if system.is_geographic:
         raise CaseError(
-            f"{path}: is in degrees ({system.to_string()}); project it to metres first, e.g. with "
-            "gdalwarp -t_srs"
+            f"{path}: is in degrees ({name}); project it to metres first, e.g. with gdalwarp -t_srs"
         )
-    if abs(system.linear_units_factor[1] - 1) > 1e-9:
+    factor = system.axis_info[0].unit_conversion_factor
+    if abs(factor - 1) > 1e-9:
         raise CaseError(
-            f"{path}: is in {system.linear_units_factor[0]} ({system.to_string()}), not in metres; "
-            "project it first, e.g. with gdalwarp -t_srs"
+            f"{path}: is in {system.axis_info[0].unit_name} ({name}), not in metres; project it first, "
+            "e.g. with gdalwarp -t_srs"
         )
 
 
