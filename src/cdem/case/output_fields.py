@@ -105,18 +105,6 @@ OUTPUT_FIELDS = [
         frames="never", surface="always", colors=None,
     ),
     OutputField(
-        "node", "Number of the node: its row in frames.vtkhdf", "", "nodes",
-        frames="never", surface="always", colors=None,
-    ),
-    OutputField(
-        "element", "Number of the element that the face belongs to: its row in frames.vtkhdf", "",
-        "elements", frames="never", surface="always", colors=None,
-    ),
-    OutputField(
-        "face", "Number of the face, the same in all frames", "", "faces",
-        frames="never", surface="always", colors=None,
-    ),
-    OutputField(
         "joint", "Number of the set of joints that made the face, from 1; else 0", "", "faces",
         frames="never", surface="always", colors="label",
     ),

@@ -33,7 +33,7 @@ def plot(folder: ResultFolder) -> None:
 
 
 def _fields() -> list[str]:
-    from cdem.output.shown import SHOWN
+    from cdem.case.shown_fields import SHOWN
 
     return list(SHOWN)
 
@@ -42,7 +42,7 @@ class Fields(TyperCommand):
     """The verb render, whose help ends with the fields."""
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
-        from cdem.output.shown import SHOWN
+        from cdem.case.shown_fields import SHOWN
 
         with formatter.section("Fields, of which a run has some"):
             formatter.write_dl([(shown.name, shown.meaning) for shown in SHOWN.values()])

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.shown_fields import AXIAL_FORCE, SHOWN, Shown, size_of
 from cdem.errors import CdemError
 from cdem.output.cuts import Cuts, outlines
 from cdem.output.reader import Surface
@@ -29,7 +30,6 @@ from cdem.output.scene import (
     take,
     with_title,
 )
-from cdem.output.shown import AXIAL_FORCE, SHOWN, Shown, size_of
 
 AMOUNTS, DIVERGING = "viridis", "RdBu_r"
 """Maps of colours, also without red or green: of amounts, and of values below and above zero."""

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.output_fields import CARRIED
+from cdem.case.shown_fields import AXIAL_FORCE, SHOWN
 from cdem.errors import CdemError
 from cdem.output.cuts import Cuts, Plane
 from cdem.output.painter import Frames, Painter
 from cdem.output.reader import FrameSeries, Surface, SurfaceSeries
-from cdem.output.shown import AXIAL_FORCE, SHOWN
 
 if TYPE_CHECKING:
     from cdem.run.state import RunState

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from cdem.case.output_fields import OUTPUT_FIELDS
+from cdem.case.shown_fields import SHOWN
 from cdem.errors import CdemError
 from cdem.whole_files import ASIDE, write_text
 
@@ -22,6 +22,10 @@ FOLDERS = {
     "maps": ["*.tif", "*.qml", "*.tif.aux.xml"],  # cdem runout, and what GIS put beside them
 }
 """Folders inside a result folder, and patterns of the names of their files."""
+CUTS = ("", "-[xyz]=*", "-*,*,*,*")
+"""What follows a field in the name of a picture: nothing, or the plane of a cut."""
+PICTURES = ("-[0-9][0-9][0-9][0-9].png", "-overview.png", "-before-after.png", ".gif")
+"""What ends it."""
 WRITTEN = {
     # cdem run
     MARKER, LOCK, "case.yaml", "run.log", "summary.json", "checkpoint.h5", "checkpoint-before.h5",
@@ -29,8 +33,7 @@ WRITTEN = {
     "report.html", "maxima.h5",
     # cdem plot, render, export
     "energies.png", "unbalance.png", "history-*.png", "frames.pvd",
-    *(f"{field.name}-{part}.png" for field in OUTPUT_FIELDS for part in ("[0-9]" * 4, "overview")),
-    *(f"{field.name}.gif" for field in OUTPUT_FIELDS),
+    *(f"{name}{cut}{end}" for name in SHOWN for cut in CUTS for end in PICTURES),
     # cdem runout
     "runout.json", "runout.csv", "fragments.csv", "sections.csv", "deposit.asc", "deposit.tif",
     "deposit.png", "maps.png", "energy_line.png", "grain_sizes.csv", "grain_sizes.png", "runout.gpkg", "runout.gpkg-shm", "runout.gpkg-wal",

@@ -13,6 +13,8 @@ COMMANDS = (
     ("export",),
     ("runout", "--direction", "90", "--section", "0.5,-1,0.5,2"),
     ("render", "--movie"),
+    ("render", "--field", "velocity_z", "--slice", "y=0.4", "--before-after", "--movie"),
+    ("render", "--slice", "0,0.4,1,0.6", "--time", "0"),
 )
 
 

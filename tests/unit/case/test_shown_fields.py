@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cdem.case.output_fields import OUTPUT_FIELDS
-from cdem.output.shown import SHOWN, YIELDED
+from cdem.case.shown_fields import SHOWN, YIELDED
 
 STRESS = np.array([[-3e6, -1e6, 2e6, 0, 0, 0], [0, 0, 0, 1e6, 0, 0]])
 """Principal stresses in the axes; pure shear in x, y. Tension positive."""
