@@ -18,10 +18,18 @@ def test_a_frame_counts_when_its_bolts_are_there_too(tmp_path):
         surfaces.append(frame, s.time, s.points, s.polygons, s.point_data, s.cell_data)
         if frame < 2:  # the third is being written
             bar = np.array([[0, 1]], np.int32)
-            bolts.append(frame, s.time, np.array([[0, 0, 0], [0, 0, 1.0 + frame]]), bar, {}, {})
+            bolts.append(
+                frame,
+                s.time,
+                np.array([[0, 0, 0], [0, 0, 1.0 + frame]]),
+                bar,
+                {},
+                {"axial_force": np.array([5.0])},
+            )
     series = SurfaceSeries(tmp_path)
     assert series.times.tolist() == [0, 0.5]
     assert series[-1].bolts.tolist() == [[[0, 0, 0], [0, 0, 2]]]
+    assert series[-1].bolt_forces.tolist() == [5]
     read, written = series[1], surface(1)
     assert (read.polygons == written.polygons).all() and (read.points == written.points).all()
     assert read.faces.tolist()[:5] == [4, *written.polygons[0]]
