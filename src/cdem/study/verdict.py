@@ -12,6 +12,7 @@ from cdem.errors import UnstableError
 from cdem.run import stages
 from cdem.run.simulation import CHECK_INTERVAL, Simulation
 from cdem.study.criterion import Criterion
+from cdem.units import coordinates
 
 LOOK = 10 * CHECK_INTERVAL
 """Steps between two looks at a stage."""
@@ -67,7 +68,10 @@ def rests(
             return Verdict(False, "unstable", str(error))
         done = sim.step_count - stage.start_step
         if outcome == "converged":
-            return Verdict(True, "at rest", f"unbalance ratio {sim.core.unbalance_ratio():.2g}")
+            left = sim.core.unbalance_ratio()  # 0 below the round-off of the coordinates
+            return Verdict(
+                True, "at rest", f"unbalance ratio {left:.2g}" if left else "to round-off"
+            )
         if verdict := watch.look(done):
             return verdict
     return Verdict(
@@ -128,6 +132,6 @@ class _Watch:
         farthest = int(ways.argmax())
         t = self.sim.build.topology
         group = self.sim.build.group_names[t.block_group[t.node_block[farthest]]]
-        place = ", ".join(f"{x:.6g}" for x in self.sim.fields["position"][farthest])
+        place = coordinates(self.sim.fields["position"][farthest])
         speed = np.linalg.norm(self.sim.fields["velocity"], axis=1).max()
         return f"{group} has moved {ways[farthest]:.3g} m at ({place}), {speed:.2g} m/s"
