@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case import aside
 from cdem.case.input_file import is_file, reading
 from cdem.errors import BackendError, CaseError
+from cdem.terrain.cloud_sums import MEND, cell_sums
 from cdem.terrain.heights import Grid
-from cdem.terrain.projection import Projection, moved
+from cdem.terrain.projection import Projection
 from cdem.terrain.rasters import WHAT, Box
 
 Floats = NDArray[np.float64]
 KINDS = (".las", ".laz")
-CHUNK = 1_000_000  # points that are held at a time
-GROUND = 2  # class of ground points (ASPRS)
 MOST_CELLS = 10_000_000
 
 
@@ -36,7 +36,7 @@ def read_cloud(
     """Read a point cloud as a grid on lines at multiples of the cell.
 
     Args:
-        path: ``.las`` or ``.laz``; it is read in parts.
+        path: ``.las`` or ``.laz``; it is read in parts, packed points by another process.
         projection: Where it is brought to.
         told: Its projection as the user says, or None.
         box: The part that is needed, in the target [m].
@@ -56,26 +56,27 @@ def read_cloud(
     columns, rows = np.round((np.ceil(box[1] / cell) * cell - low) / cell).astype(int).tolist()
     if columns * rows > MOST_CELLS:
         raise CaseError(f"{path}: {columns} x {rows} cells are too many; give a larger cell")
-    total, count = np.zeros(rows * columns), np.zeros(rows * columns)
-    taken = 0
     with _opened(path) as file:
         head = file.header
         own = projection.own(path, _label(file), told, head.mins, head.maxs)
-        for part in file.chunk_iterator(CHUNK):
-            kept = np.asarray(part.classification) == GROUND if classes == "ground" else slice(None)
-            xyz = np.column_stack([part.x, part.y, part.z]).astype(float)[kept]
-            taken += len(xyz)
-            xy = xyz[:, :2] if own is None else moved(xyz, own, projection.target)
-            at = np.floor((xy - low) / cell).astype(int)
-            inside = ((at >= 0) & (at < [columns, rows])).all(axis=1)
-            index = at[inside, 1] * columns + at[inside, 0]
-            total += np.bincount(index, xyz[inside, 2], rows * columns)
-            count += np.bincount(index, minlength=rows * columns)
-        if not taken and head.point_count:
-            raise CaseError(
-                f"{path}: none of its {head.point_count:,} points has class 2 (ground); write classes: "
-                "all (--all-points) to take all, trees and houses too"
-            )
+        asked = {
+            "low": low.tolist(),
+            "cell": cell,
+            "columns": columns,
+            "rows": rows,
+            "classes": classes,
+            "own": own and own.to_wkt(),
+            "target": projection.target and projection.target.to_wkt(),
+        }
+        sums = None if head.are_points_compressed else cell_sums(path, file, asked)
+    if sums is None:
+        sums = aside.read("cdem.terrain.cloud_sums", path, MEND, kind=CaseError, asked=asked)
+    total, count = sums["total"], sums["count"]
+    if not sums["taken"] and head.point_count:
+        raise CaseError(
+            f"{path}: none of its {head.point_count:,} points has class 2 (ground); write classes: "
+            "all (--all-points) to take all, trees and houses too"
+        )
     if not count.any():
         raise CaseError(f"{path}: has no points where they are needed")
     empty = int((count == 0).sum())
@@ -99,13 +100,8 @@ def _opened(path: Path) -> Iterator[Any]:
         raise BackendError(
             f"point clouds need laspy: pip install 'cdem[lidar]' ({error})"
         ) from None
-    try:
-        with reading(path, CaseError, "a point cloud is LAS or LAZ"), laspy.open(path) as file:
-            yield file
-    except BaseException as error:
-        if type(error).__name__ != "PanicException":  # of lazrs, which is no Exception
-            raise
-        raise CaseError(f"{path}: not a sound point cloud: {error}") from None
+    with reading(path, CaseError, MEND), laspy.open(path) as file:
+        yield file
 
 
 def _label(file: Any) -> str | None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cdem.case import aside
-from cdem.errors import MeshError
+from cdem.errors import CaseError, MeshError
 
 READER = """
 import os, re
@@ -13,7 +13,7 @@ from cdem.case import aside
 from cdem.errors import MeshError
 aside.LEAST_SECONDS = 0.2
 
-def act(path):
+def act(path, asked):
     text = path.read_text()
     if text == "die":
         os.abort()
@@ -25,6 +25,8 @@ def act(path):
         raise MeshError(f"{path}: is not good")
     if text == "raise":
         raise ValueError("bad bytes")
+    if text == "tell":
+        return {"told": np.array(asked)}
     return {"read": np.frombuffer(text.encode(), np.uint8)}
 
 if __name__ == "__main__":
@@ -38,16 +40,17 @@ def ask(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "reader_of_a_test.py").write_text(READER)
 
-    def ask(text):
+    def ask(text, **more):
         path = tmp_path / "a.bin"
         path.write_text(text)
-        return aside.read("reader_of_a_test", path.relative_to(tmp_path), "mend it")
+        return aside.read("reader_of_a_test", path.relative_to(tmp_path), "mend it", **more)
 
     return ask
 
 
 def test_arrays_come_back(ask):
     assert np.array_equal(ask("abc")["read"], [97, 98, 99])
+    assert np.array_equal(ask("tell", asked=[1.5, 2])["told"], [1.5, 2])
 
 
 @pytest.mark.parametrize(
@@ -64,3 +67,5 @@ def test_what_goes_wrong_is_one_message(ask, text, message):
     with pytest.raises(MeshError) as caught:
         ask(text)
     assert str(caught.value) == message
+    with pytest.raises(CaseError):
+        ask(text, kind=CaseError)

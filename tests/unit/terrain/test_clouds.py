@@ -1,4 +1,6 @@
-"""Point clouds become grids of their ground points; what has none is refused."""
+"""Point clouds become grids of their ground points; what has none, or is damaged, is refused."""
+
+import struct
 
 import numpy as np
 import pytest
@@ -16,13 +18,13 @@ BOX = np.array([WEST, SOUTH]), np.array([WEST + 300, SOUTH + 300])
 COUNT = 60_000
 
 
-def write_cloud(path, crs=UTM32, ground=2):
+def write_cloud(path, crs=UTM32, ground=2, points=COUNT):
     """0.5 points per m2 of ground, and trees 15 m above it on a third of them."""
     import pyproj
 
     rng = np.random.default_rng(0)
-    xy = rng.uniform(BOX[0] - 20, BOX[1] + 20, (COUNT, 2))
-    tree = rng.random(COUNT) < 0.3
+    xy = rng.uniform(BOX[0] - 20, BOX[1] + 20, (points, 2))
+    tree = rng.random(points) < 0.3
     there = moved(xy, UTM32, crs) if crs != UTM32 else xy
     head = laspy.LasHeader(point_format=6, version="1.4")
     head.offsets, head.scales = [*np.floor(there.min(axis=0)), 0], [1e-3, 1e-3, 1e-3]
@@ -72,3 +74,52 @@ def test_what_is_no_ground_is_refused(tmp_path):
     (tmp_path / "c.laz").write_text("nothing")
     with pytest.raises(CaseError, match=r"c\.laz: cannot be read .*a point cloud is LAS"):
         heights(tmp_path / "c.laz")
+
+
+def chunk_count(raw, start):
+    """Number of chunks in the table whose place stands where the points start."""
+    (table,) = struct.unpack_from("<q", raw, start)
+    return table + 7
+
+
+def chunk_size(raw, start):
+    """Points in a chunk, of what the packing says of itself (VLR of laszip)."""
+    return raw.index(b"laszip encoded") + 52 + 15
+
+
+@pytest.mark.parametrize("place", [chunk_count, chunk_size])
+def test_a_cloud_that_ends_its_reader_is_refused(tmp_path, place):
+    """Their highest bit asks for so much memory that the decompressor aborts its process."""
+    path = write_cloud(tmp_path / "a.laz", points=500)
+    raw = bytearray(path.read_bytes())
+    with laspy.open(path) as file:
+        raw[place(raw, file.header.offset_to_point_data)] ^= 0x80
+    path.write_bytes(raw)
+    with pytest.raises(CaseError, match=r"a\.laz: reading it ends its reader; .* fetch it again"):
+        heights(path)
+
+
+def test_damaged_clouds_are_read_or_refused_in_one_line(tmp_path):
+    """36 bits flipped, three a file: in what comes before the points, the points, their table."""
+    path = write_cloud(tmp_path / "a.laz", points=500)
+    raw = path.read_bytes()
+    with laspy.open(path) as file:
+        start = file.header.offset_to_point_data
+    rng = np.random.default_rng(1)
+    for _ in range(12):
+        damaged = bytearray(raw)
+        for place in rng.integers([start - 60, start, len(raw) - 20], [start, len(raw), len(raw)]):
+            damaged[place] ^= 1 << rng.integers(8)
+        path.write_bytes(damaged)
+        try:
+            grid, _ = heights(path)
+        except CaseError as error:
+            assert str(error).startswith(str(path)) and "\n" not in str(error)
+        else:
+            assert isinstance(grid.values, np.ndarray)
+
+
+def test_plain_points_are_read_without_another_process(tmp_path, monkeypatch):
+    path = write_cloud(tmp_path / "a.las")
+    monkeypatch.setattr("cdem.case.aside.read", None)
+    assert rms(heights(path)[0]) < 0.4
