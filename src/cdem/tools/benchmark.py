@@ -40,6 +40,8 @@ RUBBLE = 4
 """Cells in the width of the bar that is broken to rubble: 3,072 tets."""
 RUBBLE_STEPS = 100
 """Steps of a timed run of rubble: its lists last about 25, and making them takes half the time."""
+MOMENTS = (5, 20, 50)
+"""When rubble is timed: its tets meet, then part [ms after release]."""
 SHAKEN = 4
 """Cells in the width of the irregular bar: 3,072 tets whose corners are moved by up to a quarter."""
 CUBE = 6
@@ -335,18 +337,21 @@ def rubble(m: int, threads: int) -> Iterator[Row]:
     sim, start = _start(case, threads)
     tets = sim.audit.groups["bar"]["elements"]
     bonds = 3 * sim.audit.counts["bonded_pairs"]
-    sim.run_until(0.005)
-    refreshes, steps = int(sim.core.scalars()["rebuilds"]), sim.step_count
-    row = _time("P3 tets, broken, in motion", f"{tets:,}", "tets/s", sim, tets, RUBBLE_STEPS)
-    done = sim.step_count - steps
-    row.more["broken [%]"] = 100 * sum(sim.broken.values()) / bonds
-    row.more["refreshes per 1000 steps"] = (
-        1000 * (int(sim.core.scalars()["rebuilds"]) - refreshes) / done
-    )
-    row.more["B/tet of model and state"] = sim.audit.memory / tets
-    row.more["start-up [s]"] = start
-    yield row
-    yield _search(row, refreshes, done, sim)
+    for moment in MOMENTS:
+        sim.run_until(moment / 1e3)
+        refreshes, steps, began = int(sim.core.scalars()["rebuilds"]), sim.step_count, sim.time
+        name = f"P3 tets, broken, at {moment} ms"
+        row = _time(name, f"{tets:,}", "tets/s", sim, tets, RUBBLE_STEPS)
+        done = sim.step_count - steps
+        row.more["from [ms]"], row.more["to [ms]"] = 1e3 * began, 1e3 * sim.time
+        row.more["broken [%]"] = 100 * sum(sim.broken.values()) / bonds
+        row.more["refreshes per 1000 steps"] = (
+            1000 * (int(sim.core.scalars()["rebuilds"]) - refreshes) / done
+        )
+        row.more["B/tet of model and state"] = sim.audit.memory / tets
+        row.more["start-up [s]"] = start
+        yield row
+        yield _search(row, refreshes, done, sim)
 
 
 def _search(row: Row, refreshes: int, steps: int, sim: Simulation) -> Row:
@@ -438,16 +443,20 @@ def _time(
     name: str, size: str, unit: str, sim: Simulation, items: int, steps: int | None = None
 ) -> Row:
     """Time runs of so many steps, or of as many as take `SECONDS`; rates are items times steps per
-    second of wall time."""
+    second of wall time. CPU time is that of all threads, of user and system."""
     steps = steps or _steps_for(lambda n: sim.step(n))
     before = np.array(sim.core.seconds())
-    rates = []
+    walls, cpus = [], []
     for _ in range(REPEATS):
-        began = time.perf_counter()
+        began, worked = time.perf_counter(), time.process_time()
         sim.step(steps)
-        rates.append(items * steps / (time.perf_counter() - began))
+        walls.append((time.perf_counter() - began) / steps)
+        cpus.append((time.process_time() - worked) / steps)
     spent = np.array(sim.core.seconds()) - before
+    rates = [items / wall for wall in walls]
     row = Row(name, size, unit, statistics.median(rates), min(rates), max(rates), sim.threads)
+    row.more["wall [us/step]"] = 1e6 * statistics.median(walls)
+    row.more["CPU [us/step]"] = 1e6 * statistics.median(cpus)
     for phase, part in zip(PHASES, spent / spent.sum(), strict=True):
         row.more[f"{phase} [%]"] = 100 * part
     return row

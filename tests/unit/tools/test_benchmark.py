@@ -10,12 +10,18 @@ def test_benchmark_rows_say_what_was_measured(monkeypatch):
 
     monkeypatch.setattr(benchmark, "SECONDS", 1e-4)
     monkeypatch.setattr(benchmark, "TRIAD_BYTES", 3_000_000)
-    rubble, search = benchmark.rubble(1, 1)
+    monkeypatch.setattr(benchmark, "MOMENTS", (5, 20))
+    rubble, search, later, _ = benchmark.rubble(1, 1)
+    assert [rubble.name, later.name] == [f"P3 tets, broken, at {n} ms" for n in (5, 20)]
+    assert 5 <= rubble.more["from [ms]"] < 5.1 < rubble.more["to [ms]"] < 20
+    assert 20 <= later.more["from [ms]"] < 20.1 < later.more["to [ms]"]
     broken = benchmark.tets_broken(2, 1)
     assert broken.more["broken [%]"] > 0
     shared, bonded = benchmark.tets_shared(2, 1), benchmark.tets_bonded(2, 1)
-    for row in (shared, bonded, broken, benchmark.mixed(1, 1), rubble):
+    for row in (shared, bonded, broken, benchmark.mixed(1, 1), rubble, later):
         assert 0 < row.least <= row.rate <= row.most
+        # one thread works as long as the clock runs, or less where others work too; 10 ms is a tick
+        assert 0 < row.more["CPU [us/step]"] < 1.5 * row.more["wall [us/step]"] + 250
         assert sum(v for k, v in row.more.items() if k.split()[0] in benchmark.PHASES) == (
             pytest.approx(100)
         )
