@@ -148,7 +148,7 @@ def test_command_line_prints_the_bracket(tmp_path, monkeypatch):
     assert found["failed"] < SLOPE < found["stable"]
     name = "slope.interfaces.default.friction_angle"
     assert json.loads((tmp_path / f"{name}.json").read_text()) == found
-    assert (tmp_path / f"{name}.png").stat().st_size > 1000
+    assert (tmp_path / f"{name}.failed.png").stat().st_size > 1000
     assert "stable: at rest (" in done.stderr and "steps, block has moved" in done.stderr
     assert "a trial fails when a node has moved 2 % of the mean face size" in done.stderr
     wrong = CliRunner().invoke(app, [*words, "--parameter", "materials.rock.densty"])

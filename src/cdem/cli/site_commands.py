@@ -153,7 +153,7 @@ def _text(found: Any, folder: Path) -> str:
         [
             *lines,
             f"  cdem mesh {folder}/landslide.yaml -o {folder}/landslide.msh",
-            f"  cdem critical {folder}/factor.yaml --factor --between {between}",
+            f"  cdem critical {folder}/safety.yaml --factor --between {between}",
             f"  cdem run {folder}/case.yaml -o {folder}/case.results",
         ]
     )

@@ -64,7 +64,8 @@ def critical(
     or all of it (far), or goes on at no lower rate, or finds no rest in a million steps. Trials start
     from the last stable state, unless the parameter makes another model (model.*, materials.*).
 
-    Writes CASE.factor.json, or CASE.PATH.json, after each trial; the failed model as PNG."""
+    Writes CASE.factor.json, or CASE.PATH.json, after each trial; the failed model as
+    CASE.failed.png, or CASE.PATH.failed.png."""
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
     if parameter and not between:
@@ -80,11 +81,12 @@ def critical(
     name = parameter or "factor"
     criterion = Criterion.read(limits or [])
     print(f"a trial {criterion.text()}", file=sys.stderr)
-    report = partial(_tell_trial, name, file := Path(f"{case_file.stem}.{name}.json"))
+    report = partial(_tell_trial, name, Path(f"{case_file.stem}.{name}.json"))
     found = search.find_critical(
         case, vary, ends, tolerance=tolerance, criterion=criterion, threads=threads, report=report
     )
-    _draw_failure(found, f"{name} = {found.failed:.6g}", file.with_suffix(".png"))
+    stem = f"{case_file.stem}.{parameter}" if parameter else case_file.stem
+    _draw_failure(found, f"{name} = {found.failed:.6g}", Path(f"{stem}.failed.png"))
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +48,29 @@ def dips(normals: Floats) -> tuple[Floats, Floats]:
     up = normals * np.where(normals[..., 2:] < 0, -1.0, 1.0)
     dip = np.degrees(np.arccos(np.clip(up[..., 2], -1, 1)))
     return dip, np.degrees(np.arctan2(up[..., 0], up[..., 1])) % 360
+
+
+@dataclass(frozen=True)
+class NamedPlane:
+    """A plane, or the mean of a set of planes.
+
+    Attributes:
+        name: Of the set.
+        normal: Upward unit normal.
+    """
+
+    name: str
+    normal: Floats
+
+    @property
+    def dip(self) -> float:
+        """Steepest angle below the horizontal [deg]."""
+        return float(dips(self.normal)[0])
+
+    @property
+    def dip_direction(self) -> float:
+        """Where that steepest line points, clockwise from north [deg]."""
+        return float(dips(self.normal)[1])
 
 
 def fisher(mean: Floats, concentration: float, random: np.random.Generator) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CaseError
-from cdem.joints.directions import dips
+from cdem.joints.directions import NamedPlane
 
 Floats = NDArray[np.float64]
 
@@ -25,32 +25,18 @@ SAMPLE = 1000
 
 
 @dataclass(frozen=True)
-class JointSet:
-    """One set.
+class JointSet(NamedPlane):
+    """One set, by its mean plane.
 
     Attributes:
-        name: Name of the set.
-        normal: Upward unit normal of the mean plane.
         kappa: Concentration of Fisher's distribution [1].
         a95: Half angle of the cone that holds the true mean with 95 % [deg].
         share: Part of all joints that belong to it [1].
     """
 
-    name: str
-    normal: Floats
     kappa: float
     a95: float
     share: float
-
-    @property
-    def dip(self) -> float:
-        """Of the mean plane [deg]."""
-        return float(dips(self.normal)[0])
-
-    @property
-    def dip_direction(self) -> float:
-        """Of the mean plane [deg]."""
-        return float(dips(self.normal)[1])
 
 
 @dataclass(frozen=True)
@@ -88,6 +74,7 @@ def mean_axis(normals: Floats, weights: Floats | None = None) -> tuple[Floats, f
         Upward unit vector, kappa [1] (at most 2000), a95 [deg].
 
     Example:
+        >>> from cdem.joints.directions import dips
         >>> axes = poles(np.array([28.0, 32.0]), np.array([90.0, 90.0]))
         >>> axis, kappa, _ = mean_axis(axes)
         >>> float(dips(axis)[0].round(9)), round(kappa, 2)  # 1 / (2 - 2 cos 2 deg)

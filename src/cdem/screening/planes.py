@@ -17,7 +17,7 @@ from cdem.case.reader import load_case_data
 from cdem.case.source import Source
 from cdem.case.types import Part
 from cdem.errors import CaseError
-from cdem.joints.directions import dips, mean_normal, pole
+from cdem.joints.directions import NamedPlane, mean_normal, pole
 
 Floats = NDArray[np.float64]
 
@@ -37,19 +37,15 @@ class _JointedRock(Part):
 
 
 @dataclass(frozen=True)
-class JointPlane:
+class JointPlane(NamedPlane):
     """A set of joints, each of its planes as long as a body asks.
 
     Attributes:
-        name: Of the set.
-        normal: Upward unit normal.
         friction: Friction angle of joint and rock bridges together [deg].
         cohesion: Of joint and rock bridges together [Pa].
         persistence: Part of the area that is joint, not rock bridge [1].
     """
 
-    name: str
-    normal: Floats
     friction: float
     cohesion: float
     persistence: float = 1.0
@@ -58,16 +54,6 @@ class JointPlane:
     def tangent(self) -> float:
         """Of the friction angle [1]."""
         return float(np.tan(np.radians(self.friction)))
-
-    @property
-    def dip(self) -> float:
-        """Of the plane [deg]."""
-        return float(dips(self.normal)[0])
-
-    @property
-    def dip_direction(self) -> float:
-        """Of the plane [deg]."""
-        return float(dips(self.normal)[1])
 
 
 def read_planes(path: Path) -> tuple[list[JointPlane], list[str]]:

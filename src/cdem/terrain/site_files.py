@@ -140,7 +140,7 @@ STAGES = {
     reset_displacement: true
     damping: {contact: 0.1, stiffness: 0.1}   # ASSUMED
 """,
-    "factor": """  - name: decide
+    "safety": """  - name: decide
     mode: static
     reset_displacement: true
 """,
@@ -152,7 +152,7 @@ def case_text(kind: str, title: str, landslide: Landslide, facts: dict[str, Any]
     """A case in which the body is one block on its bed.
 
     Args:
-        kind: "case" to let it slide, "factor" for `cdem critical`.
+        kind: "case" to let it slide, "safety" for `cdem critical`.
         title: One line.
         landslide: Names and extent.
         facts: Factor of safety by columns.
@@ -162,7 +162,7 @@ def case_text(kind: str, title: str, landslide: Landslide, facts: dict[str, Any]
     between = between_text(facts["factor"])
     how = {
         "case": "cdem check case.yaml; cdem run case.yaml; cdem runout case.results",
-        "factor": f"cdem critical factor.yaml --factor --between {between}",
+        "safety": f"cdem critical safety.yaml --factor --between {between}",
     }[kind]
     crs = f"crs: {_quoted(landslide.system)}\n" if landslide.system else ""
     rock = landslide.bedrock

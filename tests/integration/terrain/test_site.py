@@ -58,7 +58,7 @@ def test_two_files_in_degrees_become_a_case_that_runs(maps, run_cli):
     status, out, err = run_cli("run", "site/case.yaml", "-o", "r", "--threads", "1", *short)
     assert status == 0, err
     assert Case.load("r/case.yaml").crs == UTM32
-    assert Case.load("site/factor.yaml").stages[-1].mode == "static"
+    assert Case.load("site/safety.yaml").stages[-1].mode == "static"
     assert run_cli(*words)[0] == 1  # does not write over it
 
 
