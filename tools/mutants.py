@@ -1,4 +1,4 @@
-"""Plant the faults of mutant_list.py one by one; each must fail a test.
+"""Plant the faults of mutant_list one by one; each must fail a test.
 
 Works on a copy of the tracked files in build/mutants, with its own build folder. For each fault it
 builds what changed and runs the quickest test that should fail; a fault that passes it meets the

@@ -1,0 +1,49 @@
+"""The faults that `tools/mutants.py` plants: a file for each room of the code."""
+
+from mutant_list import (
+    bindings,
+    case,
+    core_base,
+    core_bolts,
+    core_bonds,
+    core_contact,
+    core_diagnostics,
+    core_elements,
+    core_interfaces,
+    core_materials,
+    core_model,
+    core_nodes,
+    core_records,
+    core_run,
+    core_water,
+    joints,
+    mesh,
+    model,
+    output,
+    package,
+    run,
+    screening,
+    study,
+)
+from mutant_list.mutant import Mutant
+
+PYTHON = [package, case, mesh, joints, model, run, output, study, screening]
+CORE = [
+    bindings,
+    core_water,
+    core_diagnostics,
+    core_contact,
+    core_nodes,
+    core_model,
+    core_bolts,
+    core_bonds,
+    core_run,
+    core_interfaces,
+    core_base,
+    core_records,
+    core_elements,
+    core_materials,
+]
+"""Rooms whose headers many files include come last."""
+
+MUTANTS: list[Mutant] = [fault for room in PYTHON + CORE for fault in room.FAULTS]

@@ -1,0 +1,30 @@
+"""Faults in `core/base`."""
+
+from mutant_list.mutant import Mutant
+
+FAULTS = [
+    Mutant(
+        "ordered_sum",
+        "sums whose order depends on the number of threads",
+        "core/base/reduce.hpp",
+        "constexpr Index chunk = 1024;",
+        "const Index chunk = runs_alone() ? 1024 : 512;",
+        "tests/core/base/test_reduce.cpp",
+    ),
+    Mutant(
+        "polar",
+        "polar rotation with one Newton step fewer",
+        "core/base/math.hpp",
+        "for (int step = 0; step < 3; ++step)",
+        "for (int step = 0; step < 2; ++step)",
+        "tests/core/base/test_math.cpp",
+    ),
+    Mutant(
+        "three sweeps",
+        "principal axes after three sweeps",
+        "core/base/math.hpp",
+        "turn < 12",
+        "turn < 9",
+        "tests/core/base/test_math.cpp",
+    ),
+]

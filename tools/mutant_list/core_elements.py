@@ -1,0 +1,95 @@
+"""Faults in `core/elements`."""
+
+from mutant_list.mutant import Mutant
+
+FAULTS = [
+    Mutant(
+        "lame",
+        "Lame constants swapped",
+        "core/elements/views.hpp",
+        ".materials = {.lambda = m.material_lambda.data(),\n"
+        "                        .mu = m.material_mu.data(),",
+        ".materials = {.lambda = m.material_mu.data(), .mu = m.material_lambda.data(),",
+        "tests/validation/test_elements.py::test_patch_test_gives_uniform_stress",
+    ),
+    Mutant(
+        "mean_dilatation",
+        "B-bar left out",
+        "core/elements/corotational.hpp",
+        "    use_mean_dilatation<Shape>(c, e, strain);",
+        "",
+        "tests/core/elements/test_corotational.cpp",
+    ),
+    Mutant(
+        "fourth step",
+        "rotations of three steps where rock flows",
+        "core/elements/corotational.hpp",
+        "if (flows) rotation[q] = Rotation::nearer(rotation[q]);",
+        "(void)flows;",
+        "tests/core/elements/test_corotational.cpp",
+    ),
+    Mutant(
+        "nodal weights",
+        "all tets of a node count alike, whatever their volume",
+        "core/elements/nodal_dilatation.hpp",
+        "sum += volume[tet] * own[tet];",
+        "sum += 0.1 * own[tet];",
+        "tests/core/elements/test_nodal_mean.cpp",
+    ),
+    Mutant(
+        "flow of neighbours",
+        "the dilatation that flows is not averaged",
+        "core/elements/nodal_dilatation.hpp",
+        "own.set(0, e, own.at(0, e) - dilatation);",
+        "own.set(0, e, own.at(0, e));",
+        "tests/core/elements/test_nodal_mean.cpp",
+    ),
+    Mutant(
+        "initial dilatation",
+        "initial stress is averaged too",
+        "core/elements/nodal_mean.cpp",
+        "s.nodal.start.assign(s.nodal.own.data(), m.tet4.stride);",
+        "",
+        "tests/core/elements/test_nodal_mean.cpp",
+    ),
+    Mutant(
+        "averaged twice",
+        "blocks with averaged tets run the other kernels too",
+        "core/elements/elements.cpp",
+        "if (e.nodal_mean.size() > 0 && !some.id) some = other_tets(s);",
+        "",
+        "tests/core/elements/test_nodal_mean.cpp",
+    ),
+    Mutant(
+        "yielded before",
+        "what has yielded is not told",
+        "core/elements/corotational.hpp",
+        "(now[k] + T(4.0) * ever[k])",
+        "now[k]",
+        "tests/validation/test_block_laws.py::test_yielded_tells_now_from_ever",
+    ),
+    Mutant(
+        "moment of flow",
+        "elements that flowed turn themselves",
+        "core/elements/corotational.hpp",
+        "(full(stress) + balancing(stress, full(stretch) + identity<T>()))",
+        "full(stress)",
+        "tests/core/elements/test_corotational.cpp",
+    ),
+    Mutant(
+        "told late",
+        "the stress told is that before the flow",
+        "core/elements/corotational.hpp",
+        "shown = flow.after_flow(columns, e, strains, bits);",
+        "flow.after_flow(columns, e, strains, bits);",
+        "tests/validation/test_mohr_coulomb.py::test_stress_that_is_told_lies_on_the_yield_surface",
+    ),
+    Mutant(
+        "plastic gain",
+        "energy that a long step makes is hidden in the plastic work",
+        "core/elements/corotational.hpp",
+        "max_of(spent, T(0.0))",
+        "spent",
+        "tests/core/elements/test_corotational.cpp",
+    ),
+]

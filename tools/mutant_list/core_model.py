@@ -1,0 +1,23 @@
+"""Faults in `core/model`."""
+
+from mutant_list.mutant import Mutant
+
+FAULTS = [
+    Mutant(
+        "checkpoint",
+        "a checkpoint leaves out a number",
+        "core/model/describe_scalars.hpp",
+        'visit(ScalarInfo{.name = "dt_stable", .unit = "s", .meaning = "step that dt grows towards"},'
+        "\n        s.dt_stable);",
+        "",
+        "tests/regression/test_bits.py::test_restored_state_continues_the_growth_of_the_time_step",
+    ),
+    Mutant(
+        "bolt step",
+        "bolts do not count in the stable step",
+        "core/model/force_sets.hpp",
+        "visit(b.hosts[k], b.stiffness[p] * std::abs(b.weights[k]));",
+        "visit(b.hosts[k], 0 * b.stiffness[p] * std::abs(b.weights[k]));",
+        "tests/validation/test_bolts.py::test_bolts_shorten_the_step",
+    ),
+]
