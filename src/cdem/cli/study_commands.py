@@ -64,8 +64,7 @@ def critical(
     or all of it (far), or goes on at no lower rate, or finds no rest in a million steps. Trials start
     from the last stable state, unless the parameter makes another model (model.*, materials.*).
 
-    Writes CASE.factor.json, or CASE.PATH.json, after each trial; the failed model as
-    CASE.failed.png, or CASE.PATH.failed.png."""
+    Writes CASE.factor.json, or CASE.PATH.json, after each trial; draws CASE[.PATH].failed.png."""
     if (parameter is None) == (not factor):
         raise typer.BadParameter("give either --parameter PATH or --factor")
     if parameter and not between:
@@ -85,8 +84,7 @@ def critical(
     found = search.find_critical(
         case, vary, ends, tolerance=tolerance, criterion=criterion, threads=threads, report=report
     )
-    stem = f"{case_file.stem}.{parameter}" if parameter else case_file.stem
-    _draw_failure(found, f"{name} = {found.failed:.6g}", Path(f"{stem}.failed.png"))
+    _draw_failure(found, name, case_file.stem + (f".{parameter}" if parameter else ""))
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:
@@ -123,12 +121,13 @@ def _tell_trial(name: str, file: Path, found: Critical) -> None:
     write_json(file, {"parameter": name} | found.as_dict())
 
 
-def _draw_failure(found: Critical, title: str, file: Path) -> None:
+def _draw_failure(found: Critical, name: str, stem: str) -> None:
     from cdem.output.render import picture, write_image
 
+    file = Path(f"{stem}.failed.png")
     assert found.body is not None  # a search ends with a trial that failed
     try:
-        write_image(file, picture([found.body], "displacement", [title]))
+        write_image(file, picture([found.body], "displacement", [f"{name} = {found.failed:.6g}"]))
         print(f"the model as it failed: {file}", file=sys.stderr)
     except CdemError as error:
         print(f"no picture of the failure: {error}", file=sys.stderr)
