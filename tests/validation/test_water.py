@@ -406,3 +406,18 @@ def test_mistakes_are_told(water, says):
 def test_water_that_acts_nowhere_is_told():
     sim = start([box("rock")], water={"fields": [{"level": 1, "wet": "never"}]})
     assert any("water presses nowhere" in warning for warning in sim.audit.warnings)
+
+
+@pytest.mark.parametrize(("change", "middle"), [("add", 1.5), ("remove", 2)])
+def test_water_that_waits_for_a_stage_is_not_told(change, middle):
+    """A lake beside which there is nothing yet, or whose bed is buried yet."""
+    blocks = [box("rock", [0, 0, 2], [1, 1, 1]), box("dam", [0, 0, 1], [1, 1, 1])]
+    around = {"min": [-1, -1, middle - 0.1], "max": [2, 2, middle + 0.1]}
+    lake = {"reservoir": {"level": middle + 0.1, "box": around}}
+    stages = [
+        {"name": "dry", "mode": "dynamic", "duration": 0.01},
+        {"name": "wet", "mode": "dynamic", "duration": 0.01, change: ["dam"]},
+    ]
+    bonded = {"default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}}
+    sim = start(blocks, water=lake, stages=stages, interfaces=bonded)
+    assert not any("water presses nowhere" in warning for warning in sim.audit.warnings)

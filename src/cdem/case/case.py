@@ -12,6 +12,7 @@ from pydantic import PrivateAttr, ValidationError
 from cdem import _native
 from cdem.case import checks, plausible
 from cdem.case.explain import explain, problems_of
+from cdem.case.named_files import files_of
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.source import Source
@@ -160,27 +161,14 @@ class Case(CaseParts):
             raise CaseError(f"{path}: {problems[0][1]}")
 
     def dump(self) -> str:
-        """Write the resolved case as YAML: defaults filled in, mesh path absolute."""
+        """Write the resolved case as YAML: defaults filled in, paths of files absolute."""
         from io import StringIO
 
         from ruamel.yaml import YAML
 
         data = self.model_dump(mode="json", exclude_none=True)
-        if self.model.mesh is not None:
-            data["model"]["mesh"] = str(self.path_of(self.model.mesh).resolve())
-        for block, data_of_block in zip(self.model.blocks, data["model"]["blocks"], strict=True):
-            if block.file is not None:
-                data_of_block["file"] = str(self.path_of(block.file).resolve())
-        for joint, written in zip(self.model.joints, data["model"]["joints"], strict=True):
-            if joint.discs is not None and joint.discs.file is not None:
-                written["discs"]["file"] = str(self.path_of(joint.discs.file).resolve())
-        data["own_laws"] = [str(self.path_of(file).resolve()) for file in self.own_laws]
-        of_water = data["water"]["fields"] if self.water else []
-        for entry, plain_entry in zip(
-            self.water.fields if self.water else [], of_water, strict=True
-        ):
-            for key in {"surface", "table"} & plain_entry.keys():
-                plain_entry[key] = str(self.path_of(getattr(entry, key)).resolve())
+        for holder, key in files_of(data):
+            holder[key] = str(self.path_of(holder[key]).resolve())
         if self.interfaces.default is not None:
             # A pair's inherited values follow the default when a stage sets it, so leave them out.
             for pair, written in zip(

@@ -83,7 +83,8 @@ def idle_water(build: Build, water: dict[str, Any] | None) -> list[str]:
     if water is None or water["highest_pressure"] or water["porous_groups"]:
         return []
     sets = any(path.startswith("water.") for stage in build.case.stages for path in stage.set)
-    if sets or build.arrays["water.field_curve"].any():  # it may come later
+    bares = any(stage.add or stage.remove for stage in build.case.stages)  # other faces
+    if sets or bares or build.arrays["water.field_curve"].any():  # it may come later
         return []
     return [
         f"{build.case.where('water')}: water presses nowhere at the start: no rock has pores (biot), and "

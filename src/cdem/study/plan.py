@@ -13,6 +13,7 @@ from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.case.formula import Formula, is_formula
 from cdem.case.input_file import is_file
+from cdem.case.named_files import files_of
 from cdem.case.reader import load_case_data, put
 from cdem.case.source import Source
 from cdem.errors import CaseError
@@ -31,8 +32,6 @@ def plan(study: Study, folder: Path) -> list[Run]:
         CaseError: The case is wrong, or all runs are.
     """
     data, source = load_case_data(study.case_file)
-    for holder, key in files_of(data):
-        holder[key] = str((source.folder / holder[key]).resolve())
     drawn = study.sampling is not None
     runs, first_error = [], None
     for row in sampling.rows(study):
@@ -63,6 +62,8 @@ def _make(
     for path, value in study.set.items():
         where = study._source.where(("set", path))
         put(data, path, _computed(study, ("set", path), value, row), own, f"{where}: {path}")
+    for holder, key in files_of(data):  # workers start in other folders
+        holder[key] = str((source.folder / holder[key]).resolve())
     case = Case(_source=own, **deepcopy(data))
     search = None
     if study.critical:
@@ -110,7 +111,7 @@ def _computed(study: Study, keys: tuple[str | int, ...], value: Any, row: dict[s
 
 
 def _identity(case: Case, search: dict[str, Any] | None) -> str:
-    """Hash of all that a result depends on; a file of the model counts by what it holds."""
+    """Hash of all that a result depends on; a file counts by what it holds."""
     data = case.model_dump(mode="json")
     for holder, key in files_of(data):
         path = case.path_of(holder[key])
@@ -119,26 +120,7 @@ def _identity(case: Case, search: dict[str, Any] | None) -> str:
     return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
 
 
-def files_of(data: dict[str, Any]) -> list[tuple[Any, str | int]]:
-    """Where the data of a case name a file: the dictionary and its key, or the list and its index."""
-    laws = data.get("own_laws")
-    of_laws = [(laws, k) for k in range(len(laws))] if isinstance(laws, list) else []
-    found: list[tuple[Any, str | int]] = [(a, k) for a, k in of_laws if isinstance(a[k], str)]
-    model = data.get("model")
-    if not isinstance(model, dict):
-        return found
-    discs = [joint.get("discs") for joint in _mappings(model.get("joints"))]
-    named = [(model, "mesh")]
-    named += [(holder, "file") for holder in [*_mappings(model.get("blocks")), *_mappings(discs)]]
-    return found + [(holder, key) for holder, key in named if isinstance(holder.get(key), str)]
-
-
-def _mappings(value: Any) -> list[dict[str, Any]]:
-    """The mappings in a list; none if it is no list."""
-    return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
-
-
 @lru_cache(maxsize=64)
 def _digest(path: Path, changed: int) -> str:
-    """Hash of a file of the model; read once, not for every run."""
+    """Hash of a file; read once, not for every run."""
     return hashlib.sha256(path.read_bytes()).hexdigest()

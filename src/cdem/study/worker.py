@@ -9,9 +9,9 @@ from typing import Any
 
 from cdem._version import __version__
 from cdem.case.case import Case
+from cdem.case.named_files import files_of
 from cdem.errors import BackendError, CdemError
 from cdem.study.criterion import Criterion
-from cdem.study.plan import files_of
 from cdem.whole_files import write_json
 
 RESULT_FILE, RESULT_FOLDER = "result.json", "results"

@@ -10,7 +10,7 @@ from shared.cases import STATIC_FALL
 
 import cdem
 from cdem.errors import CaseError
-from cdem.study.plan import files_of, plan
+from cdem.study.plan import plan
 from cdem.study.study import Study
 
 FRICTION = "interfaces.default.friction_angle"
@@ -103,16 +103,3 @@ def test_a_mesh_counts_by_what_it_holds(tmp_path):
         return plan(study, tmp_path)[0].identity
 
     assert identity("a", "") == identity("b", "") != identity("c", "\n")
-
-
-def test_all_files_of_a_case_are_found():
-    discs, body = {"file": "discs.csv"}, {"group": "rock", "file": "rock.obj"}
-    data = {
-        "own_laws": ["clay.hpp"],
-        "model": {"mesh": "a.msh", "blocks": [body], "joints": [{"name": "d", "discs": discs}, 3]},
-    }
-    found = files_of(data)
-    assert [holder[key] for holder, key in found] == [
-        "clay.hpp", "a.msh", "rock.obj", "discs.csv"
-    ]  # fmt: skip
-    assert files_of({"model": 3, "own_laws": 3}) == []

@@ -1,0 +1,40 @@
+"""The files that a case names: what must be there, and count, wherever it is run."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+OF_WATER = ("surface", "table")
+SET_OF_WATER = re.compile(rf"water\.fields\.[^.]+\.(?:{'|'.join(OF_WATER)})")
+
+Places = list[tuple[Any, str | int]]
+
+
+def files_of(data: dict[str, Any]) -> Places:
+    """Where the data of a case name a file: the mapping and its key, or the list and its index.
+
+    Args:
+        data: Plain data of a case; parts that are not as they should be are passed over.
+    """
+    laws, model, water = data.get("own_laws"), data.get("model"), data.get("water")
+    places: Places = [(laws, k) for k in range(len(laws))] if isinstance(laws, list) else []
+    if isinstance(model, dict):
+        discs = [joint.get("discs") for joint in _mappings(model.get("joints"))]
+        places.append((model, "mesh"))
+        places += [(one, "file") for one in [*_mappings(model.get("blocks")), *_mappings(discs)]]
+    if isinstance(water, dict):
+        places += [(one, key) for one in _mappings(water.get("fields")) for key in OF_WATER]
+    for changes in _mappings([stage.get("set") for stage in _mappings(data.get("stages"))]):
+        places += [(changes, path) for path in changes if SET_OF_WATER.fullmatch(str(path))]
+    return [(holder, key) for holder, key in places if _names_one(holder, key)]
+
+
+def _names_one(holder: Any, key: str | int) -> bool:
+    value = holder.get(key) if isinstance(holder, dict) else holder[key]
+    return isinstance(value, str)
+
+
+def _mappings(value: Any) -> list[dict[str, Any]]:
+    """The mappings in a list; none if it is no list."""
+    return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
