@@ -86,7 +86,7 @@ FAULTS = [
     Mutant(
         "energy limit",
         "energy that does not balance ends no run",
-        "src/cdem/run/simulation.py",
+        "src/cdem/run/failures.py",
         'if limit == "any" or abs(error) <= limit:',
         "if limit:",
         "tests/integration/cli/test_run_commands.py::"

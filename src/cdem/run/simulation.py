@@ -22,13 +22,13 @@ from cdem.model.audit import Audit
 from cdem.model.fill import nodes_of_groups
 from cdem.model.overlaps import adopt_overlaps
 from cdem.model.ruling_step import ruling_step
-from cdem.run import restored, stages
+from cdem.run import failures, restored, stages
 from cdem.run.actions import Act, Action
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
 from cdem.run.fast_weakening import FastWeakening, fast_weakenings
 from cdem.run.flow_recorder import PREFIX, FlowRecorder
-from cdem.run.law_fields import STRAIN_THAT_ENDS, large_strains, yielded_counts
+from cdem.run.law_fields import large_strains, yielded_counts
 from cdem.run.progress import Progress
 from cdem.run.result_folder import Results
 from cdem.run.state import Attributes, RunState, Setting, StageState
@@ -341,9 +341,8 @@ class Simulation(RunState):
             self._log_departures()
             stages.look_for_rest(self, stage)
             self._record(frame=ended or stages.frame_is_due(self, stage, outcome))
-            self._check_energy()
-            self._check_strain()
-            self._check_weakening()
+            self._check()
+            self._look_at_weakening()
         return stages.status(self, stage, outcome) or ("ended" if ended else None)
 
     def _begin_stage(self) -> StageState:
@@ -391,19 +390,12 @@ class Simulation(RunState):
         if self.results:
             self.results.record(self, frame)
 
-    def _check_energy(self) -> None:
-        """End a run whose energy balance is too far from closing for its results to be trusted."""
-        error, limit = self.energies["error"], self.case.time.energy_error
-        if limit == "any" or abs(error) <= limit:
-            return
-        smaller = "time.safety" if self.case.time.step == "auto" else "time.step"
-        raise self._failed(
-            f"the energy balance is off by {100 * error:.3g} % of its largest term, more than "
-            f"time.energy_error allows ({100 * limit:.3g} %), so that the results are not to be "
-            f"trusted. Use a smaller {smaller}; time.energy_error: any goes on whatever it is."
-        )
+    def _check(self) -> None:
+        """End a run whose results are not to be trusted any more."""
+        if why := failures.of_energy(self) or failures.of_strain(self):
+            raise self._failed(why)
 
-    def _check_weakening(self) -> None:
+    def _look_at_weakening(self) -> None:
         """Tell once of an interface whose friction falls faster than a step can follow."""
         for worst in fast_weakenings(self):
             known = self._fast_weakening.get(worst.interface)
@@ -411,12 +403,6 @@ class Simulation(RunState):
                 self.results.log(f"warning: {worst.text()}")
             if known is None or worst.ratio > known.ratio:
                 self._fast_weakening[worst.interface] = worst
-
-    def _check_strain(self) -> None:
-        """End a run in which rock flows further than its stress is right."""
-        for strain in large_strains(self):
-            if strain.value > STRAIN_THAT_ENDS:
-                raise self._failed(f"{strain.text()}; above {STRAIN_THAT_ENDS:g} a run ends")
 
     def _failed(self, why: str) -> UnstableError:
         """The error that says where a run failed and why; the result folder says so, too."""
@@ -461,49 +447,13 @@ class Simulation(RunState):
 
     def _guard(self, advance: Callable[[], tuple[str, int, float]]) -> str:
         """Turn a failed outcome of the core into an error that says what, where and when."""
-        failure = ""
         try:
             outcome, culprit, value = advance()
         except RuntimeError as error:  # the core cannot go on: no room left for contacts
-            outcome, culprit, value, failure = "full", -1, 0.0, str(error)
+            raise self._failed(f"{error}. A smaller time.safety may help too.") from None
         if outcome in ("steps_done", "time_reached", "converged"):
             return outcome
-        topology, names = self.build.topology, self.build.group_names
-        if failure:
-            raise self._failed(f"{failure}. A smaller time.safety may help too.")
-        dt = float(self.core.scalars()["dt"])
-        smaller = "time.safety" if self.case.time.step == "auto" else "time.step"
-        if outcome == "lost_contact":
-            face = int(self.core.fields()["search.exposed_face"][culprit])
-            block = int(topology.face_block[face])
-            group = names[topology.block_group[block]]
-            raise self._failed(
-                f"a loaded contact of block {block} (group {group}) penetrated too deep to be "
-                f"followed. Raise contact_stiffness of its interface, or lower the impact speed."
-            )
-        if outcome == "missed_contact":
-            raise self._failed(
-                f"the all-pairs search of contact.check found {int(value)} contact(s) that the "
-                f"lists had missed. Please report this case."
-            )
-        block = int(topology.node_block[culprit])
-        group = names[topology.block_group[block]]
-        where = f"node {culprit} of block {block} (group {group})"
-        if outcome == "not_finite":
-            raise self._failed(
-                f"{where} has no finite position or velocity any more; dt = {dt:.3g} s. "
-                f"Use a smaller {smaller}, or look for a bad element there."
-            )
-        if block in self.fallen and any(d.group == group for d in self.departures):
-            raise self._failed(
-                f"{where} fell past the edge of the model and now falls at {value:.3g} m/s, "
-                "faster than the P wave of the rock. Make the ground larger, end the stage before that "
-                "(until: rest), or let model.domain take such blocks out."
-            )
-        raise self._failed(
-            f"{where} moves at {value:.3g} m/s, faster than the P wave of the rock; "
-            f"dt = {dt:.3g} s. Use a smaller {smaller}, or a lower stiffness_n or contact_stiffness."
-        )
+        raise self._failed(failures.of_outcome(self, outcome, culprit, value))
 
     # ------------------------------------------------------------------ keeping
 
