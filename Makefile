@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants torture sanitize nightly verify lint format demo docs cuda clean
+.PHONY: setup build dev check test validate coverage mutants torture sanitize package nightly verify lint format demo docs cuda clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -66,6 +66,10 @@ sanitize: setup
 	$(BIN)/python tools/build.py --sanitize thread
 	OMP_NUM_THREADS=3 OMP_TOOL_LIBRARIES=$$(clang++ -print-resource-dir)/../../libarcher.so \
 	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 build/thread/core_tests
+
+# The sdist, from it the wheel, installed where no clone is: sizes, a run, problems, a law built.
+package: setup
+	$(BIN)/python tools/try_package.py
 
 nightly: test validate coverage mutants
 	$(BIN)/cdem verify --full

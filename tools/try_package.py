@@ -1,0 +1,90 @@
+"""Make the sdist, from it the wheel, install that where no clone is, and do what a user does first.
+
+`python tools/try_package.py` builds; `python tools/try_package.py WHEEL` tries a wheel that is there.
+Prints what the light install takes on disk, package by package. Ends at the first command that fails.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BUILD_SDIST = (
+    "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
+)
+SIZES = """
+import os
+from importlib.metadata import distributions
+rows = []
+for package in distributions():
+    paths = [str(file.locate()) for file in package.files or []]
+    sizes = [(p, os.path.getsize(p)) for p in paths if "__pycache__" not in p and os.path.exists(p)]
+    rows.append((sum(n for _, n in sizes), sum(-(-n // 4096) * 4096 for _, n in sizes),
+                 package.name, package.version))
+rows = [row for row in rows if row[2] not in ("pip", "setuptools")]
+print(f"{'package':<20} {'version':<10} {'MB':>6} {'MB in blocks of 4 kB':>20}")
+for size, blocks, name, version in sorted(rows, reverse=True):
+    print(f"{name:<20} {version:<10} {size / 1e6:>6.1f} {blocks / 1e6:>20.1f}")
+print(f"{'all':<31} {sum(r[0] for r in rows) / 1e6:>6.1f} {sum(r[1] for r in rows) / 1e6:>20.1f}")
+"""
+FIRST = [
+    "cdem doctor",
+    "cdem new landslide",
+    "cdem run landslide.yaml --threads 1 --quiet",
+    "cdem info landslide.results",
+    "cdem verify bar_waves bonded_bar sliding --threads 1",
+]
+LAWS = [
+    "cdem law new my-clay --kind block",
+    "cdem law build my_clay.hpp",
+    'cdem law test my_clay.hpp --allow-code --path "triaxial 5 MPa" --set yield_stress="20 MPa"',
+]
+
+
+def run(command: list[str] | str, **more: object) -> None:
+    """Run a command, or end with its status."""
+    shown = command if isinstance(command, str) else " ".join(command).split("\n")[0]
+    print(f"$ {shown}", flush=True)
+    began = time.perf_counter()
+    status = subprocess.run(command, check=False, **more).returncode
+    if status:
+        sys.exit(f"{shown}: status {status}")
+    print(f"  {time.perf_counter() - began:.0f} s", flush=True)
+
+
+def make_wheel(folder: Path) -> Path:
+    """The wheel that the sdist gives."""
+    run([sys.executable, "-c", BUILD_SDIST, str(folder)], cwd=ROOT)
+    tools = Path(sys.executable).parent
+    env = os.environ | {"PATH": f"{tools}:{os.environ['PATH']}"}
+    pip = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation"]
+    run([*pip, "-w", str(folder), str(next(folder.glob("*.tar.gz")))], env=env)
+    return next(folder.glob("*.whl"))
+
+
+def main() -> None:
+    """Build, install, print sizes, run."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        wheel = Path(sys.argv[1]).resolve() if sys.argv[1:] else make_wheel(folder)
+        print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB")
+        run([sys.executable, "-m", "venv", str(folder / "bare")])
+        tools = folder / "bare" / "bin"
+        env = {name: text for name, text in os.environ.items() if not name.startswith("PYTHON")}
+        env["PATH"] = f"{tools}:/usr/local/bin:/usr/bin:/bin"
+        work = {"cwd": folder, "env": env}
+        install = [str(tools / "python"), "-m", "pip", "install", "-q"]
+        run([*install, str(wheel)], **work)
+        run([str(tools / "python"), "-c", SIZES], **work)
+        for command in FIRST:
+            run(command, shell=True, **work)
+        run([*install, f"{wheel}[laws]"], **work)
+        for command in LAWS:
+            run(command, shell=True, **work)
+
+
+if __name__ == "__main__":
+    main()
