@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.output.figures import pyplot
+from cdem.output.scene import color
 from cdem.study.results_table import Table
 from cdem.study.schema import Plot
 from cdem.study.study import Study
@@ -70,13 +71,13 @@ def _lines(table: Table, plot: Plot, axes: Any) -> None:
     for number, key in enumerate(dict.fromkeys(keys)):
         here = np.flatnonzero((groups == key) & np.isfinite(x) & np.isfinite(z))
         here = here[np.argsort(x[here], kind="stable")]
-        color = f"C{number % 10}"
+        shade = color(number)
         single = len(np.unique(x[here])) == len(here)  # one value of y for each x: a line
         name = key.removesuffix(".0") if plot.by else None
         if beside is not None:
-            axes.plot(x[here], beside[here], "-" if single else "x", color=color, lw=0.9, alpha=0.7)
+            axes.plot(x[here], beside[here], "-" if single else "x", color=shade, lw=0.9, alpha=0.7)
         style = "o" if beside is not None or not single else "o-"
-        axes.plot(x[here], z[here], style, color=color, ms=4, lw=1.4, label=name)
+        axes.plot(x[here], z[here], style, color=shade, ms=4, lw=1.4, label=name)
     if beside is not None:
         axes.plot([], [], "-", color="gray", lw=0.9, label=plot.beside)
     axes.set(xlabel=label_of(table.study, plot.x), ylabel=plot.label or plot.result)
@@ -112,7 +113,7 @@ def _tornado(table: Table, plot: Plot, axes: Any) -> None:
         raise ValueError("no parameter with numbers varies")
     ranked = sorted(bars.items(), key=lambda bar: abs(bar[1][1] - bar[1][0]))[-MOST_BARS:]
     for place, (_, (low, high)) in enumerate(ranked):
-        axes.barh(place, high - low, left=low, height=0.6, color="C0" if high > low else "C3")
+        axes.barh(place, high - low, left=low, height=0.6, color=color(int(high <= low)))
     axes.set_yticks(range(len(ranked)), [label_of(table.study, name) for name, _ in ranked])
     name = plot.label or plot.result
     if table.study.sampling:
@@ -122,8 +123,8 @@ def _tornado(table: Table, plot: Plot, axes: Any) -> None:
     axes.use_sticky_edges = False  # or the longest bar would touch the frame
     axes.autoscale_view()
     axes.set(xlabel=name)
-    for color, word in (("C0", "grows"), ("C3", "falls")):
-        axes.bar(0, 0, color=color, label=f"{word} with the parameter")
+    for number, word in enumerate(("grows", "falls")):
+        axes.bar(0, 0, color=color(number), label=f"{word} with the parameter")
     axes.legend(frameon=False, fontsize=8, loc="lower right")
 
 
