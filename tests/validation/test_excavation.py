@@ -1,5 +1,7 @@
 """Rock that is dug out: what it bore is kept, and let go at once, in parts or over time."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scenes import digest
@@ -190,3 +192,16 @@ def test_nothing_is_dug_out_in_the_first_stage():
     case = column().case
     with pytest.raises(cdem.CaseError, match="nothing bears before the first stage"):
         cdem.Case.from_dict({**case.model_dump(mode="json", exclude_unset=True), "stages": [dig()]})
+
+
+@pytest.mark.slow
+def test_the_wedge_of_the_templates_falls_unless_bolts_hold_it():
+    """Free fall once the face lets go, from 0.12 s on: g t^2 / 2; bolts: millimetres."""
+    home = Path(cdem.__file__).parent / "templates"
+    drops = {}
+    for name in ("tunnel", "tunnel_bolts"):
+        sim = cdem.Simulation(home / f"{name}.yaml", threads=1)
+        sim.run_until(0.5)
+        drops[name] = -float(sim.fields["displacement"][:, 2].min())
+    assert drops["tunnel"] == pytest.approx(9.81 * 0.38**2 / 2, rel=0.2)
+    assert drops["tunnel_bolts"] < 0.01
