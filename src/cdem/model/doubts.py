@@ -132,9 +132,9 @@ def uneven_tiles(build: Build) -> Iterator[str]:
     exposed, first = core["search.exposed_face"], core["outer.slot_first"]
     mother = exposed[np.repeat(np.arange(len(first) - 1) // 4, np.diff(first))]
     target = exposed[core["outer.slot_faces"]]
-    normal = _normals(t)
-    lie = np.einsum("ij,ij->i", normal[mother], normal[target]) < FACING
-    lie &= t.face_group[mother] != t.face_group[target]
+    others = t.face_group[mother] != t.face_group[target]
+    mother, target = mother[others], target[others]
+    lie = np.einsum("ij,ij->i", _normals(t, mother), _normals(t, target)) < FACING
     mother, target = mother[lie], target[lie]
     share = build.arrays["face.area"] / (t.face_nodes >= 0).sum(axis=1)
     part = np.minimum(1, share[target] / share[mother])
@@ -151,9 +151,10 @@ def uneven_tiles(build: Build) -> Iterator[str]:
         )
 
 
-def _normals(t: Topology) -> Floats:
-    """Unit normals of all faces."""
-    nodes = np.where(t.face_nodes < 0, t.face_nodes[:, 2:3], t.face_nodes)
+def _normals(t: Topology, faces: NDArray) -> Floats:
+    """Unit normals of faces."""
+    nodes = t.face_nodes[faces]
+    nodes = np.where(nodes < 0, nodes[:, 2:3], nodes)
     x = t.node_position[nodes]
     normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
     return normal / lengths(normal)[:, None]

@@ -7,8 +7,6 @@ below it counts, M >= diag(least).
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,7 +19,7 @@ from cdem.model.masses import one_element_blocks
 OFFER = 0.001
 """Share of the mass that is not held, of which the audit says what it would buy."""
 ROUNDS = 60
-"""Halvings of the range in which the step lies that a share of the mass buys."""
+"""Halvings, at most, of the range in which the step lies that a share of the mass buys."""
 
 
 class Scaling:
@@ -58,12 +56,28 @@ class Scaling:
     def limit(self, share: float) -> float:
         """The longest stable step [s] for which no more than a share of what is not held is added."""
         largest = max(state.largest for state in self._states)
-        return _longest(largest, lambda t: bool(self.added(t).sum() <= share * self.free_mass))
+        if not largest > 0:
+            return np.inf
+        low, high = _steps(largest)
+        needing, total = np.arange(len(self._states[0].mass)), np.zeros(len(self._states[0].mass))
+        for _ in range(ROUNDS):
+            middle = 0.5 * (low + high)
+            here = [state.added(middle, needing) for state in self._states]
+            total[needing] = np.maximum.reduce(here)
+            if total.sum() <= share * self.free_mass:
+                low = middle
+            else:  # what needs none now needs none for shorter steps
+                high, needing = middle, needing[total[needing] > 0]
+            if same_everywhere(np.array(low)) == same_everywhere(np.array(high)):
+                break
+        return float(same_everywhere(np.array(low)))
 
     def limit_at_the_start(self, added: Floats) -> float:
         """The longest stable step [s] with bonds intact and this mass added, shape (nodes,)."""
         intact = self._states[0]
-        return _longest(intact.largest, lambda t: bool((intact.added(t) <= added).all()))
+        if not intact.largest > 0:
+            return np.inf
+        return float(same_everywhere(np.clip(intact.limit(added), *_steps(intact.largest))))
 
     def wanted(self, asked: MassScaling, safety: float) -> Floats:
         """What a case asks for, when this share of the stable step is used: as `added`."""
@@ -73,21 +87,16 @@ class Scaling:
         return self.added(limit)
 
 
-def _longest(largest: float, fits: Callable[[float], bool]) -> float:
-    """The longest stable step [s] that fits, from that of the largest squared frequency on."""
-    if not largest > 0:
-        return np.inf
-    low, high = 2 / np.sqrt(largest), 200 / np.sqrt(largest)
-    for _ in range(ROUNDS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if fits(middle) else (low, middle)
-    return float(same_everywhere(np.array(low)))
+def _steps(largest: float) -> tuple[float, float]:
+    """The stable step of the largest squared frequency, and the longest that mass may buy [s]."""
+    return 2 / np.sqrt(largest), 200 / np.sqrt(largest)
 
 
 class _Needs:
     """What mass each node needs in one state of the bonds.
 
     Attributes:
+        mass: Without more [kg], shape (nodes,).
         largest: Squared frequency that bounds the step without more mass [1/s2].
 
     Args:
@@ -100,7 +109,7 @@ class _Needs:
         self, t: Topology, p: Properties, out: Assembly, stiffness: Floats, bonded: bool
     ) -> None:
         arrays = out.arrays
-        self._mass = arrays["node.mass"]
+        self.mass = arrays["node.mass"]
         dense = arrays["node.mass_row_first"] >= 0
         alone = one_element_blocks(t)
         as_bonded = np.zeros(len(alone), bool)
@@ -109,9 +118,9 @@ class _Needs:
         lumped = ~dense | as_bonded[t.node_block]
         held = p.supported.all(axis=1)  # cannot become unstable
         springs = 2 * stiffness
-        load = arrays["node.lumped_frequency_squared"] * self._mass + springs
+        load = arrays["node.lumped_frequency_squared"] * self.mass + springs
         self._load = np.where(held, 0.0, load)
-        self._least = np.where(lumped, self._mass, out.least_mass)
+        self._least = np.where(lumped, self.mass, out.least_mass)
         # of blocks with a matrix, as the core has it: whatever the step, less need not be
         square = arrays["node.frequency_squared"] + _most_of_block(
             springs * arrays["node.inverse_mass_bound"], t
@@ -125,12 +134,22 @@ class _Needs:
         one_by_one = np.minimum(self._square, self._load / self._least)
         self.largest = np.where(self._alone, self._factor_square, one_by_one).max(initial=0.0)
 
-    def added(self, limit: float) -> Floats:
-        """As `Scaling.added`."""
+    def added(self, limit: float, nodes: NDArray | slice = slice(None)) -> Floats:
+        """As `Scaling.added`, for some nodes."""
         quarter = limit**2 / 4
-        needs = np.where(self._square * quarter > 1, quarter * self._load - self._least, 0.0)
-        factor = np.maximum(1.0, quarter * self._factor_square)
-        return np.where(self._alone, (factor - 1) * self._mass, np.maximum(needs, 0.0))
+        load, least = self._load[nodes], self._least[nodes]
+        needs = np.where(self._square[nodes] * quarter > 1, quarter * load - least, 0.0)
+        factor = np.maximum(1.0, quarter * self._factor_square[nodes])
+        return np.where(
+            self._alone[nodes], (factor - 1) * self.mass[nodes], np.maximum(needs, 0.0)
+        )
+
+    def limit(self, added: Floats) -> float:
+        """The longest stable step [s] with this mass added [kg], shape (nodes,)."""
+        with np.errstate(divide="ignore"):
+            alone = (1 + added / self.mass) / self._factor_square
+            others = np.maximum(1 / self._square, (self._least + added) / self._load)
+        return float(2 * np.sqrt(np.where(self._alone, alone, others).min()))
 
 
 def bond_stiffness(t: Topology, out: Assembly, broken: NDArray[np.bool_] | None = None) -> Floats:
