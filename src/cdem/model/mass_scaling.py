@@ -140,9 +140,7 @@ class _Needs:
         load, least = self._load[nodes], self._least[nodes]
         needs = np.where(self._square[nodes] * quarter > 1, quarter * load - least, 0.0)
         factor = np.maximum(1.0, quarter * self._factor_square[nodes])
-        return np.where(
-            self._alone[nodes], (factor - 1) * self.mass[nodes], np.maximum(needs, 0.0)
-        )
+        return np.where(self._alone[nodes], (factor - 1) * self.mass[nodes], np.maximum(needs, 0.0))
 
     def limit(self, added: Floats) -> float:
         """The longest stable step [s] with this mass added [kg], shape (nodes,)."""
