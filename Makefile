@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants torture sanitize package nightly verify lint format demo docs cuda clean
+.PHONY: setup build dev check test validate coverage mutants torture sanitize package nightly verify lint format demo docs cuda emulated devices clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -72,6 +72,7 @@ package: setup
 	$(BIN)/python tools/try_package.py
 
 nightly: test validate coverage mutants
+	$(MAKE) emulated T=tests
 	$(BIN)/cdem verify --full
 
 verify: build
@@ -111,8 +112,22 @@ docs: build
 	$(BIN)/python -m sphinx -q -E -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 
+# The core for a GPU: registers, spills and loads of its kernels; needs nvcc, no GPU.
 cuda: setup
-	tools/cuda.sh
+	$(BIN)/python tools/cuda.py
+
+# What a GPU would not forgive, looked for on the CPU: the tests of the core, and the golden scenes
+# that take a second or two, or with T=path those tests in Python.
+QUICK := tests/regression/test_golden.py -k "pinned and not (3 or landslide or rubble or version_2)"
+emulated: setup
+	$(BIN)/python tools/build.py --emulated
+	build/emulated/core_tests
+	CDEM_ISA=emulated OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto $(or $(T),$(QUICK))
+
+# What the host does between the launches of a step.
+devices: setup
+	$(BIN)/python tools/build.py --emulated
+	CDEM_ISA=emulated CDEM_EMULATED_HOST=count OMP_NUM_THREADS=1 $(BIN)/python tools/devices.py
 
 clean:
 	rm -rf .venv build demo

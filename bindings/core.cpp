@@ -9,6 +9,7 @@
 #include "bindings/arrays.hpp"
 #include "bindings/laws.hpp"
 #include "core/base/device.hpp"
+#include "core/base/emulated.hpp"
 #include "core/base/machine_limits.hpp"
 #include "core/bonds/initial_tractions.hpp"
 #include "core/contact/pair_list/deep_overlaps.hpp"
@@ -345,6 +346,23 @@ void bind_diagnostics(nb::class_<Core>& core) {
       });
 }
 
+#if defined(CDEM_EMULATED)
+/// What the emulated device has seen.
+void bind_emulated(nb::module_& module) {
+  module.def("forget", &forget);
+  module.def("seen", [] {
+    const Seen all = seen();
+    nb::list host;
+    for (const HostAccess& one : all.host)
+      host.append(std::make_tuple(one.place, one.reads, one.writes));
+    nb::dict told;
+    told["launches"] = all.launches, told["waits"] = all.waits;
+    told["transfers"] = all.transfers, told["host"] = host;
+    return told;
+  });
+}
+#endif
+
 }  // namespace
 }  // namespace cdem
 
@@ -379,4 +397,7 @@ NB_MODULE(CDEM_MODULE, module) {
   bind_run(core);
   bind_views(core);
   bind_diagnostics(core);
+#if defined(CDEM_EMULATED)
+  bind_emulated(module);
+#endif
 }

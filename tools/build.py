@@ -28,33 +28,41 @@ def native() -> str:
     return module.native()
 
 
-def run(command: list[str]) -> None:
-    """Run a command with the tools of this Python; end with its status if it fails."""
+def run(command: list[str], quiet: bool = False) -> str:
+    """Run a command with the tools of this Python; end with its status if it fails.
+
+    Returns:
+        What a quiet command has printed; it is shown if the command fails.
+    """
     tools = Path(sys.executable).parent
     env = os.environ | {"PATH": f"{tools}:{os.environ['PATH']}"}
-    status = subprocess.run(command, env=env, check=False).returncode
-    if status:
-        sys.exit(status)
+    pipe = subprocess.PIPE if quiet else None
+    done = subprocess.run(
+        command, env=env, check=False, text=True, stdout=pipe, stderr=pipe and subprocess.STDOUT
+    )
+    if done.returncode:
+        print(done.stdout or "", file=sys.stderr)
+        sys.exit(done.returncode)
+    return done.stdout or ""
 
 
-def build(folder: Path, settings: dict[str, str], targets: list[str]) -> None:
-    """Configure where a setting is new, and build."""
+def configure(folder: Path, settings: dict[str, str]) -> None:
+    """Configure a build folder where a setting is new."""
     cache = folder / "CMakeCache.txt"
     known = cache.read_text().splitlines() if (folder / "build.ninja").exists() else []
     wanted = [f"{name}:STRING={value}" for name, value in settings.items()]
     if not known or not set(wanted) <= set(known):
-        configure = ["cmake", "-S", str(ROOT), "-B", str(folder), "-G", "Ninja"]
-        configure += [f"-DPython_EXECUTABLE={sys.executable}", *(f"-D{one}" for one in wanted)]
-        run(configure)
-    run(["ninja", "-C", str(folder), *targets])
+        command = ["cmake", "-S", str(ROOT), "-B", str(folder), "-G", "Ninja"]
+        command += [f"-DPython_EXECUTABLE={sys.executable}", *(f"-D{one}" for one in wanted)]
+        run(command)
 
 
-def place(folder: Path, module: str) -> None:
-    """Copy modules that are not those in place; old ones of other instruction sets leave."""
+def place(folder: Path, module: str, beside: bool = False) -> None:
+    """Copy modules that are not those in place; the others leave, but for those `beside` it."""
     PLACE.mkdir(parents=True, exist_ok=True)
     built = {p.name: p for p in folder.glob(f"{module}.*.so") if "own_laws" not in p.name}
     for old in PLACE.glob("_core_*.so"):
-        if old.name not in built:
+        if old.name not in built and not beside:
             old.unlink()
     for name, new in built.items():
         old = PLACE / name
@@ -78,6 +86,13 @@ def options() -> argparse.Namespace:
         help="module and tests that count executed lines",
     )
     parser.add_argument(
+        "--emulated",
+        dest="special",
+        action="store_const",
+        const="emulated",
+        help="module and tests for the emulated device",
+    )
+    parser.add_argument(
         "--sanitize",
         dest="special",
         choices=["address", "thread"],
@@ -89,20 +104,25 @@ def options() -> argparse.Namespace:
 def main() -> None:
     """Build what the options ask for."""
     wants = options()
-    one, tests = wants.native or wants.special, wants.tests or wants.special
-    sanitized = wants.special in ("address", "thread")
-    module = f"_core_{native()}" if one else "_core_*"
+    special = wants.special
+    one, tests = wants.native or special, wants.tests or special
+    core = "emulated" if special == "emulated" else native()
+    module = f"_core_{core}" if one else "_core_*"
     targets = [module if one else "all"]
     targets += ["core_tests"] * bool(tests) + ["_core_own_laws"] * wants.own_laws
-    settings = {"CDEM_TESTS": native()} if tests or wants.own_laws else {}
-    if wants.special:
-        settings["CMAKE_BUILD_TYPE"] = wants.special.capitalize()
+    settings = {"CDEM_TESTS": core} if tests or wants.own_laws else {}
+    if special == "emulated":
+        settings["CDEM_EMULATED"] = "ON"
+    elif special:
+        settings["CMAKE_BUILD_TYPE"] = special.capitalize()
+    sanitized = special in ("address", "thread")
     if sanitized:
         settings["CMAKE_CXX_COMPILER"] = "clang++"
-    folder = ROOT / "build" / (wants.special or "core")
-    build(folder, settings, targets)
+    folder = ROOT / "build" / (special or "core")
+    configure(folder, settings)
+    run(["ninja", "-C", str(folder), *targets])
     if not sanitized:  # Python loads such a module only with the library of the sanitizer
-        place(folder, module)
+        place(folder, module, beside=special == "emulated")
 
 
 if __name__ == "__main__":

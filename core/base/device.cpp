@@ -9,9 +9,13 @@
 #include <stdexcept>
 
 namespace cdem {
+inline namespace CDEM_DEVICE {
 
-#if defined(__CUDACC__)
+#if defined(CDEM_CUDA)
 
+void check(cudaError_t error) {
+  if (error != cudaSuccess) throw std::runtime_error(cudaGetErrorString(error));
+}
 void* allocate(std::size_t bytes) {
   void* memory = nullptr;
   if (cudaMallocManaged(&memory, bytes) != cudaSuccess) throw std::bad_alloc();
@@ -20,18 +24,14 @@ void* allocate(std::size_t bytes) {
 }
 void release(void* memory) { cudaFree(memory); }
 bool runs_alone() { return false; }
-void finish(Queue queue) {
-  const cudaError_t error = cudaStreamSynchronize(queue.stream);
-  if (error != cudaSuccess) throw std::runtime_error(cudaGetErrorString(error));
-}
+void finish(Queue queue) { check(cudaStreamSynchronize(static_cast<cudaStream_t>(queue.stream))); }
 const char* device_name() {
   static cudaDeviceProp properties;
-  if (cudaGetDeviceProperties(&properties, 0) != cudaSuccess)
-    throw std::runtime_error("no CUDA device that works was found");
+  check(cudaGetDeviceProperties(&properties, 0));
   return properties.name;
 }
 
-#else
+#elif defined(CDEM_CPU)
 
 void* allocate(std::size_t bytes) {
   const std::size_t whole = (bytes + 63) / 64 * 64;
@@ -47,4 +47,5 @@ const char* device_name() { return "cpu"; }
 
 #endif
 
+}  // namespace CDEM_DEVICE
 }  // namespace cdem

@@ -5,28 +5,62 @@
 
 #include "core/base/lanes.hpp"
 
+// What a core is built for; a mix does not link, for the device is part of the names of symbols.
+#if defined(CDEM_CUDA)
+#define CDEM_DEVICE cuda
+#elif defined(CDEM_EMULATED)
+#define CDEM_DEVICE emulated
+#else
+#define CDEM_CPU
+#define CDEM_DEVICE cpu
+#endif
+
 namespace cdem {
+inline namespace CDEM_DEVICE {
 
 /// Where launches are put: a CUDA stream, or nothing on the CPU.
 struct Queue {
-#if defined(__CUDACC__)
-  cudaStream_t stream = nullptr;
-#else
   void* stream = nullptr;
-#endif
 };
 
-/// Zeroed, 64-byte aligned memory that the kernels can reach (managed memory on CUDA).
+/// Zeroed, 64-byte aligned memory that the kernels can reach (managed memory on CUDA, an arena of
+/// emulated.hpp).
 void* allocate(std::size_t bytes);
 void release(void* memory);
 
 /// Wait until all launches are done; host code may read their columns then.
 void finish(Queue queue);
 
+/// While one lives the arrays are the device's: the host touches them in a Transfer, which is
+/// waited for and told of. The emulated device finds where it does not; others take no notice.
+struct RunOnDevice {
+#if defined(CDEM_EMULATED)
+  RunOnDevice();
+  ~RunOnDevice();
+#else
+  RunOnDevice() {}
+#endif
+};
+/// While one lives host code may touch arrays in a run.
+struct Transfer {
+#if defined(CDEM_EMULATED)
+  Transfer();
+  ~Transfer();
+#else
+  Transfer() {}
+#endif
+};
+
 /// Is there one thread for all items of a loop?
 bool runs_alone();
 
-/// "cpu", or the name of the GPU; throws std::runtime_error when there is none.
+/// "cpu", "emulated", or the name of the GPU; throws std::runtime_error when there is none.
 const char* device_name();
 
+#if defined(__CUDACC__)
+/// Throw std::runtime_error with the words of CUDA, if this is an error.
+void check(cudaError_t error);
+#endif
+
+}  // namespace CDEM_DEVICE
 }  // namespace cdem

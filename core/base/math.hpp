@@ -52,7 +52,7 @@ CDEM_HD inline Vec3<T> unit(const Vec3<T>& a) {
 /// Four numbers that lie together in memory: x y z and one more. The arithmetic is that of Real,
 /// number by number, in one register where there is one.
 struct Row {
-#if defined(__CUDACC__)
+#if defined(CDEM_CUDA)
   struct Numbers {
     Real n[4];
     CDEM_HD Real& operator[](int k) { return n[k]; }
@@ -65,16 +65,31 @@ struct Row {
 
   CDEM_HD static Row of(Real x, Real y, Real z) { return {Numbers{x, y, z, 0.0}}; }
   CDEM_HD static Row zero() { return of(0.0, 0.0, 0.0); }
+  /// Rows begin at a multiple of 16 bytes.
   CDEM_HD static Row at(const Real* memory) {
+#if defined(__CUDA_ARCH__)
+    const double2* halves = reinterpret_cast<const double2*>(memory);
+    const double2 a = halves[0], b = halves[1];
+    return {Numbers{a.x, a.y, b.x, b.y}};
+#else
     Row r;
     std::memcpy(&r.n, memory, sizeof r.n);
     return r;
+#endif
   }
-  CDEM_HD void store(Real* memory) const { std::memcpy(memory, &n, sizeof n); }
+  CDEM_HD void store(Real* memory) const {
+#if defined(__CUDA_ARCH__)
+    double2* halves = reinterpret_cast<double2*>(memory);
+    halves[0] = {n[0], n[1]};
+    halves[1] = {n[2], n[3]};
+#else
+    std::memcpy(memory, &n, sizeof n);
+#endif
+  }
   CDEM_HD Vec3<Real> vector() const { return {n[0], n[1], n[2]}; }
   /// The same without the sign of the fourth.
   CDEM_HD Row with_size_of_last() const {
-#if defined(__CUDACC__)
+#if defined(CDEM_CUDA)
     return {Numbers{n[0], n[1], n[2], n[3] < 0 ? -n[3] : n[3]}};
 #else
     using Bits = std::int64_t __attribute__((vector_size(32)));
@@ -83,7 +98,7 @@ struct Row {
   }
   /// The same with 0 in the fourth place.
   CDEM_HD Row xyz() const {
-#if defined(__CUDACC__)
+#if defined(CDEM_CUDA)
     return of(n[0], n[1], n[2]);
 #else
     using Bits = std::int64_t __attribute__((vector_size(32)));
@@ -92,7 +107,7 @@ struct Row {
   }
 };
 
-#if defined(__CUDACC__)
+#if defined(CDEM_CUDA)
 CDEM_HD inline Row operator+(const Row& a, const Row& b) {
   return {{a.n[0] + b.n[0], a.n[1] + b.n[1], a.n[2] + b.n[2], a.n[3] + b.n[3]}};
 }

@@ -4,12 +4,25 @@
 // stage, as C++ for the CPU or as CUDA for a GPU.
 #pragma once
 
+#include <typeinfo>
+
+#include "core/base/emulated.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/prefetch.hpp"
 
 namespace cdem {
 
-#if defined(__CUDACC__)
+#if defined(CDEM_CUDA)
+
+/// Put a launch of a thread for each of `count` items into the queue.
+template <class Run, class... Arguments>
+void launch(Queue queue, Index count, Run* run, const Arguments&... arguments) {
+  if (count <= 0) return;
+  constexpr Index together = 128;
+  const Index groups = count / together + (count % together > 0);
+  run<<<groups, together, 0, static_cast<cudaStream_t>(queue.stream)>>>(arguments...);
+  check(cudaGetLastError());
+}
 
 template <class Kernel>
 __global__ void run_on_gpu(Index count, Kernel kernel) {
@@ -20,7 +33,7 @@ __global__ void run_on_gpu(Index count, Kernel kernel) {
 /// Run a kernel for every item, one GPU thread each.
 template <class Kernel>
 void for_each_lane(Queue queue, Index count, const Kernel& kernel) {
-  if (count > 0) run_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
+  launch(queue, count, run_on_gpu<Kernel>, count, kernel);
 }
 template <class Kernel>
 void for_each_item(Queue queue, Index count, const Kernel& kernel) {
@@ -37,7 +50,7 @@ __global__ void run_selected_on_gpu(Index count, Kernel kernel) {
 }
 template <class Kernel>
 void for_each_selected(Queue queue, Index count, const Kernel& kernel) {
-  if (count > 0) run_selected_on_gpu<<<(count + 127) / 128, 128, 0, queue.stream>>>(count, kernel);
+  launch(queue, count, run_selected_on_gpu<Kernel>, count, kernel);
 }
 
 template <class Kernel>
@@ -50,8 +63,47 @@ __global__ void run_blocks_on_gpu(Index count, Blocks blocks, Kernel kernel) {
 template <class Kernel>
 void for_each_lane(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
   const Index threads = blocks.count_in(count) * block_size;
-  if (threads > 0)
-    run_blocks_on_gpu<<<(threads + 127) / 128, 128, 0, queue.stream>>>(count, blocks, kernel);
+  launch(queue, threads, run_blocks_on_gpu<Kernel>, count, blocks, kernel);
+}
+template <class Kernel>
+void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {
+  for_each_lane(queue, count, blocks, kernel);
+}
+
+#elif defined(CDEM_EMULATED)
+
+/// Launch the work of a copy of a kernel, which is all that a device has of it.
+template <class Kernel, class Work>
+void launch(Index count, const Kernel kernel, const Work& work) {
+  const auto own = [&](Index i) { work(kernel, i); };
+  const auto run = [](const void* of, Index i) { (*static_cast<decltype(own)*>(of))(i); };
+  if (count > 0) launch(count, typeid(Kernel).name(), run, &own);
+}
+
+template <class Kernel>
+void for_each_lane(Queue, Index count, const Kernel& kernel) {
+  launch(count, kernel, [](const Kernel& own, Index i) { own(One{i}); });
+}
+template <class Kernel>
+void for_each_item(Queue queue, Index count, const Kernel& kernel) {
+  for_each_lane(queue, count, kernel);
+}
+
+template <class Kernel>
+void for_each_selected(Queue, Index count, const Kernel& kernel) {
+  launch(count, kernel, [](const Kernel& own, Index row) {
+    const Range all = own.items(row);
+    for (Index id = all.first; id < all.last; ++id)
+      if (own.selects(row, id)) own(Selected{row, id});
+  });
+}
+
+template <class Kernel>
+void for_each_lane(Queue, Index count, Blocks blocks, const Kernel& kernel) {
+  launch(blocks.count_in(count) * block_size, kernel, [&](const Kernel& own, Index place) {
+    const Index i = blocks.first(place / block_size) + place % block_size;
+    if (i < count) own(One{i});
+  });
 }
 template <class Kernel>
 void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel) {

@@ -4,7 +4,7 @@
 
 namespace cdem {
 
-#if defined(__CUDACC__)
+#if !defined(CDEM_CPU)
 template void for_each_item(Queue, Index, const SolveBolt&);
 #else
 /// A bolt is as much work as its nodes are: a few are worth threads.

@@ -87,6 +87,7 @@ Report report_of(const Model& m, const State& s, const Goal& goal, const Place& 
 }  // namespace
 
 Report run(const Model& m, State& s, const Goal& goal) {
+  const RunOnDevice on_device;
   begin_run(s, goal);
   for (std::int64_t n = 1; n <= goal.steps; ++n) {
     if (goal.relaxation == Relaxation::adaptive) scale_masses_if_due(m, s);

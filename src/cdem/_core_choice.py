@@ -9,6 +9,9 @@ from pathlib import Path
 from cdem._instruction_sets import NEEDS, cpu_flags
 from cdem.errors import BackendError
 
+DEVICES = ("cuda", "emulated")
+"""Cores that are used only where CDEM_ISA names them: for a GPU, and to look for faults of one."""
+
 
 def _is_built(isa: str) -> bool:
     spec = importlib.util.find_spec(f"cdem._core_{isa}")
@@ -21,13 +24,17 @@ def built() -> list[str]:
 
 
 def choose() -> str:
-    """The instruction set of the core to load.
+    """The instruction set, or device, of the core to load.
 
     Raises:
         BackendError: None runs here, or CDEM_ISA names one that does not.
     """
     there, flags = built(), cpu_flags()
     wanted = os.environ.get("CDEM_ISA")
+    if wanted in DEVICES:
+        if not _is_built(wanted):
+            raise BackendError(f"CDEM_ISA={wanted}: no such compiled core; make it: make {wanted}")
+        return wanted
     if wanted is not None:
         if wanted not in there:
             raise BackendError(

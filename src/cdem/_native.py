@@ -7,6 +7,7 @@ import os
 
 from cdem import own_laws
 from cdem._core_choice import built, choose
+from cdem.errors import BackendError
 
 # Threads that wait by spinning make a busy machine a hundred times slower; a short spin is enough.
 os.environ.setdefault("GOMP_SPINCOUNT", "20000")
@@ -22,3 +23,8 @@ core = (
     if headers
     else importlib.import_module(f"cdem._core_{name}")
 )
+try:
+    device = core.device_name()
+    """"cpu", "emulated", or the name of the GPU."""
+except RuntimeError as error:
+    raise BackendError(f"CDEM_ISA={name}: no CUDA device that works: {error}") from None

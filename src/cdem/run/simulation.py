@@ -88,7 +88,9 @@ class Simulation(RunState):
         strict: bool = False,
     ) -> None:
         if device != "cpu":
-            raise CdemError(f"device {device!r}: only cpu can run cases; leave --device out")
+            raise CdemError(
+                f"device {device!r}: only cpu can be named; CDEM_ISA=cuda chooses a GPU"
+            )
         case = case if isinstance(case, Case) else Case.load(case)
         threads = threads or os.cpu_count() or 1
         native.set_threads(threads)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, field_validator
 
-from cdem._native import digests
+from cdem._native import device, digests
 from cdem._native import name as native_name
 from cdem._version import __version__
 from cdem.case.case import Case
@@ -446,7 +446,7 @@ class RunState:
             "title": self.case.title,
             "version": __version__,
             "own_laws": digests,
-            "device": f"cpu ({native_name})",
+            "device": f"{device} ({native_name})",
             "threads": self.threads,
             "counts": counts,
             "steps": self.step_count,

@@ -60,7 +60,7 @@ def _memory() -> str:
 
 
 def _cuda() -> str:
-    module = importlib.util.find_spec("cdem._cuda")
+    module = importlib.util.find_spec("cdem._core_cuda")
     try:
         driver = ctypes.CDLL("libcuda.so.1")
     except OSError:

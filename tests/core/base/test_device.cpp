@@ -17,6 +17,7 @@ TEST_CASE("memory begins as zeros at a cache line") {
   }
 }
 
+#if defined(CDEM_CPU)
 TEST_CASE("the CPU is the device, alone if it has one thread") {
   CHECK(std::string(device_name()) == "cpu");
   const int threads = omp_get_max_threads();
@@ -26,5 +27,6 @@ TEST_CASE("the CPU is the device, alone if it has one thread") {
   CHECK(!runs_alone());
   omp_set_num_threads(threads);
 }
+#endif
 
 }  // namespace cdem::test

@@ -53,6 +53,12 @@ struct Scale {
   }
 };
 
+#if defined(CDEM_CPU)
+constexpr bool runs_lanes = true;
+#else
+constexpr bool runs_lanes = false;
+#endif
+
 /// Counts that threads need not wait for, below and above the number that is worth them.
 const Index counts[] = {0,
                         1,
@@ -83,7 +89,8 @@ TEST_CASE("for_each_lane runs every item once, all but the remainder in lanes") 
     std::vector<Index> visits(count), in_lanes(count);
     for_each_lane({}, count, CountVisits{visits.data(), in_lanes.data()});
     CHECK(visits == ones(count));
-    CHECK(std::count(in_lanes.begin(), in_lanes.end(), 1) == count - count % lanes);
+    CHECK(std::count(in_lanes.begin(), in_lanes.end(), 1) ==
+          (runs_lanes ? count - count % lanes : 0));
   });
 }
 
@@ -141,7 +148,8 @@ TEST_CASE("for_each_selected runs what the kernel selects once, with its row") {
       }
     const Index whole = Index(std::count(in_lanes.begin(), in_lanes.end(), 1));
     CHECK(whole % lanes == 0);
-    if (omp_get_max_threads() == 1 || count < worth_threads) CHECK(selected - whole < lanes);
+    if (runs_lanes && (omp_get_max_threads() == 1 || count < worth_threads))
+      CHECK(selected - whole < lanes);
   });
 }
 

@@ -92,7 +92,8 @@ TEST_CASE_TEMPLATE("pairs give the same bits one by one and in lanes, broken or 
       pairs.pairs().status[p] = p % 4 == 3 ? 0 : p % 3 == 2 ? 2 : 1;
   };
   Random random(3), again(3);
-  Scene in_lanes(2 * lanes + 3, random, 0.005), one_by_one(2 * lanes + 3, again, 0.005);
+  constexpr Index several = 8 + 2 * lanes + 3;
+  Scene in_lanes(several, random, 0.005), one_by_one(several, again, 0.005);
   fill(in_lanes);
   fill(one_by_one);
   const Index count = in_lanes.set().count;

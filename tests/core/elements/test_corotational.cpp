@@ -278,7 +278,7 @@ TEST_CASE_TEMPLATE("the dashpot feels the spin of a strained body by strain squa
 TEST_CASE_TEMPLATE("flow one by one and in lanes: the same bits, also of elastic rock between",
                    Shape, ALL_SHAPES) {
   Random random(11);
-  Flowing<Shape> elements(3 * lanes + 1, random);
+  Flowing<Shape> elements(8 + 2 * lanes + 1, random);
   elements.deform(random, 0.01);
   const auto rest = elements.history;
   for_each_lane({}, elements.count, Blocks{}, elements.flow_kernel());

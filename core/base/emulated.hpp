@@ -1,0 +1,49 @@
+// emulated.hpp - a device on the CPU that finds what a GPU would not forgive, and counts.
+//
+// Arrays lie in an arena that host code cannot reach while a run goes on, except in a Transfer: the
+// pages that it touches are counted by instruction. Kernels run item by item, in another order at
+// every launch. The compiler tells of their accesses to memory (`-fsanitize=thread`, with functions
+// of our own in place of its library), so items that need each other's order are found whatever the
+// order was. Only the emulated core has this.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/device.hpp"
+
+namespace cdem {
+inline namespace CDEM_DEVICE {
+
+/// Host code that touched arrays in a run, outside of transfers: by its place in the library, how
+/// many pages it was the first to touch, and the first to write after that.
+struct HostAccess {
+  std::uintptr_t place;
+  std::int64_t reads, writes;
+};
+
+/// What the device has seen.
+struct Seen {
+  std::int64_t launches, waits, transfers;
+  std::vector<HostAccess> host;
+};
+
+/// What it has seen since `forget`.
+Seen seen();
+void forget();
+
+/// What happens to host code that touches arrays in a run: nothing, it is counted, or it ends the
+/// program with status 70. Begins as CDEM_EMULATED_HOST, which is none, count or strict.
+enum class HostWatch { none, count, strict };
+void watch_host(HostWatch watch);
+
+/// Launch a kernel: `run(work, i)` for each of `count` items, in an order of this launch alone,
+/// which CDEM_EMULATED_SEED changes. `work` lies on the stack.
+///
+/// Throws std::logic_error if an item needs what another one does, or touches in a run memory that
+/// is no array.
+void launch(Index count, const char* kernel, void (*run)(const void* work, Index i),
+            const void* work);
+
+}  // namespace CDEM_DEVICE
+}  // namespace cdem

@@ -1,0 +1,115 @@
+"""What the host does between the launches of a step, counted by the emulated device: `make devices`.
+
+Prints a table of launches, waits, transfers, and pages of arrays (4 kB) that host code touches in a
+step outside of transfers, with the functions that touch them. docs/contributing/devices.md has it.
+With CDEM_EMULATED_HOST=strict, P1 and P2 run 1,000 steps and end at the first such page.
+"""
+
+import os
+import re
+import subprocess
+from collections import Counter
+from importlib.resources import files
+
+import cdem
+from cdem import _native
+from cdem.case.case import Case
+from cdem.tools import benchmark
+
+STEPS = 100
+MOST = 6
+"""Functions that are named; the others are summed up."""
+
+
+def bonded() -> dict:
+    """P2: a bar of bonded tets."""
+    return benchmark._bar(6, "tet4", **benchmark._breakable("1 GPa"))
+
+
+def landslide() -> Case:
+    """The template without its first stage: a body of bonded tets that slides on its bed."""
+    case = Case.load(str(files("cdem") / "templates" / "landslide.yaml"))
+    del case.stages[0]
+    return case
+
+
+# Name, case, and steps before those that are counted.
+SCENES = {
+    "P1, tets that share nodes": (lambda: benchmark._bar(6, "tet4"), 20),
+    "P2, bonded tets": (bonded, 20),
+    "P3, rubble": (lambda: benchmark._rubble(2), 200),
+    "P4, wall of cubes": (lambda: benchmark._wall(benchmark.WALL), 200),
+    "landslide, template": (landslide, 200),
+}
+
+
+def start(case: Case | dict, steps: int) -> cdem.Simulation:
+    """A simulation after some steps; its first run has what no other step has."""
+    sim = cdem.Simulation(case if isinstance(case, Case) else Case.from_dict(case), threads=1)
+    sim.step(steps)
+    return sim
+
+
+def causes(host: list[tuple[int, int, int]]) -> Counter[str]:
+    """Pages that were touched, by function of the core."""
+    pages: Counter[str] = Counter()
+    if not host:
+        return pages
+    command = ["addr2line", "-aCfie", _native.core.__file__, *(hex(place) for place, _, _ in host)]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    frames = [part.splitlines()[1:] for part in re.split(r"^(?=0x)", text, flags=re.M)[1:]]
+    for (_, reads, writes), lines in zip(host, frames, strict=True):
+        pages[function(lines)] += reads + writes
+    return pages
+
+
+def function(frames: list[str]) -> str:
+    """Name of the innermost function that is not of the base, of frames: a name and a place each.
+
+    "views" where the compiler has left those out of line.
+    """
+    for name, place in zip(frames[::2], frames[1::2], strict=True):
+        if "/core/" in place and "/base/" not in place and not name.startswith("operator"):
+            return short(name)
+    return "views"
+
+
+def short(name: str) -> str:
+    """Name of a function without namespaces, arguments and what the compiler made of it."""
+    name = re.sub(r"\(anonymous namespace\)::|cdem::|emulated::", "", name)
+    name = re.sub(r"::\{lambda.*|\(.*|\[.*|\._omp.*", "", name)
+    while (less := re.sub(r"<[^<>]*>", "", name)) != name:
+        name = less
+    return name.split()[-1]
+
+
+def row(name: str, case: Case | dict, before: int) -> str:
+    """A line of the table."""
+    sim = start(case, before)
+    _native.core.forget()
+    sim.step(STEPS)
+    seen, pages = _native.core.seen(), causes(_native.core.seen()["host"])
+    total, named = sum(pages.values()), pages.most_common(MOST)
+    by = [f"`{function}` {count / STEPS:.3g}" for function, count in named]
+    rest = total - sum(count for _, count in named)
+    by += [f"others {rest / STEPS:.3g}"] * (rest > 0)
+    numbers = [seen[key] / STEPS for key in ("launches", "waits", "transfers")]
+    counts = " | ".join(f"{number:.1f}" for number in [*numbers, total / STEPS])
+    return f"| {name}, {sim.audit.counts['elements']:,} elements | {counts} | {', '.join(by)} |"
+
+
+def main() -> None:
+    """Print the table, or run strict."""
+    if os.environ["CDEM_EMULATED_HOST"] == "strict":
+        for name in list(SCENES)[:2]:
+            start(SCENES[name][0](), 1000)
+            print(f"{name}: 1,000 steps, no page touched")
+        return
+    print("| a step of | launches | waits | transfers | pages | by |")
+    print("|---|---|---|---|---|---|")
+    for name, (case, before) in SCENES.items():
+        print(row(name, case(), before), flush=True)
+
+
+if __name__ == "__main__":
+    main()
