@@ -6,6 +6,7 @@
 
 #include <typeinfo>
 
+#include "core/base/any_item.hpp"
 #include "core/base/emulated.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/prefetch.hpp"
@@ -112,6 +113,16 @@ void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel
 
 #else
 
+template <class Kernel>
+bool any_item(Queue, Index count, const Kernel& kernel) {
+  const Index whole = count - count % lanes;
+  bool found = false;
+#pragma omp parallel for schedule(static) reduction(|| : found) if (count >= worth_threads)
+  for (Index i = 0; i < whole; i += lanes) found = any_of(kernel(Lane{i})) || found;
+  for (Index i = whole; i < count; ++i) found = any_of(kernel(One{i})) || found;
+  return found;
+}
+
 /// Run a straight-line kernel for every item: whole lanes, then the remainder one by one.
 template <class Kernel>
 void for_each_lane(Queue, Index count, const Kernel& kernel) {
@@ -192,6 +203,30 @@ void for_each_item(Queue, Index count, Blocks blocks, const Kernel& kernel) {
     const Index first = blocks.first(b);
     for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
   }
+}
+
+#endif
+
+#if !defined(CDEM_CPU)
+
+/// Sets a flag where a kernel holds.
+template <class Kernel>
+struct SetWhere {
+  Kernel holds;
+  Flag* found;
+  CDEM_HD void operator()(One item) const {
+    if (holds(item)) set(*found);
+  }
+};
+
+template <class Kernel>
+bool any_item(Queue queue, Index count, const Kernel& kernel) {
+  static thread_local Flag* const found = static_cast<Flag*>(allocate(sizeof(Flag)));
+  const Transfer transfer;
+  *found = 0;
+  for_each_item(queue, count, SetWhere<Kernel>{kernel, found});
+  finish(queue);
+  return *found != 0;
 }
 
 #endif

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/any_item.hpp"
 #include "core/base/parallel.hpp"
+#include "core/bonds/has_jumped.hpp"
 #include "core/bonds/transfer_to_contact.hpp"
 #include "core/bonds/views.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
@@ -44,6 +46,7 @@ bool lets_go(const Model& m, const PairSet& p, const PairState& s, Index i, Real
 }
 
 bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
+  if (!any_item({}, p.count, HasJumped{{s.jump.data(), 0}})) return false;
   bool due = false;
 #pragma omp parallel for schedule(static) reduction(|| : due) if (p.count >= worth_threads)
   for (Index i = 0; i < p.count; ++i)

@@ -95,6 +95,7 @@ void keep_energy_scale(const Model& m, State& s) {
 }
 
 void open_ledger(const Model& m, State& s) {
+  const Transfer transfer;
   s.ledger_started = true;
   // the first sample may come later than the first step: count what has been lost and done by then
   s.energy_start = balance(sum_terms(m, s));

@@ -1,9 +1,11 @@
 // bonds.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
 #include "core/base/parallel_loops.hpp"
 #include "core/bonds/bonded_pairs.hpp"
+#include "core/bonds/has_jumped.hpp"
 
 namespace cdem {
 
+template bool any_item(Queue, Index, const HasJumped&);
 template void for_each_lane(Queue, Index, Blocks,
                             const WithLaws<ConformingBonds<3>, BrittleAlone>&);
 template void for_each_lane(Queue, Index, Blocks,

@@ -1,9 +1,11 @@
 // pair_list.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
 #include "core/base/parallel_loops.hpp"
+#include "core/contact/broad_phase/exceeds_skin.hpp"
 #include "core/contact/pair_list/prune.hpp"
 
 namespace cdem {
 
+template bool any_item(Queue, Index, const ExceedsSkin&);
 template void for_each_lane(Queue, Index, const MarkNearFaces&);
 template void for_each_selected(Queue, Index, const MarkInnerFaces&);
 template void for_each_item(Queue, Index, const CountInnerFaces&);

@@ -28,6 +28,7 @@ void evaluate_at(const Model& m, Real time, Column<Real>& values) {
 }  // namespace
 
 void set_loads_and_supports(const Model& m, State& s) {
+  const Transfer transfer;
   evaluate_at(m, s.time, s.load_factor);
   s.relief.part = s.relief.at(s.time);
   evaluate_at(m, s.time + 0.5 * s.dt, s.velocity_factor);

@@ -35,6 +35,7 @@ void leave_averaged(const State& s, Column<Index>& awake) {
 }  // namespace
 
 void find_awake(const Model& m, State& s) {
+  const Transfer transfer;
   std::vector<Flag> fixed(m.node_count), pulled(m.node_count);
   for (Index i = 0; i < m.node_count; ++i) fixed[i] = is_fixed(m, s, i);
   for_each_set(m, s, [&](auto, const auto& set, auto& state) {

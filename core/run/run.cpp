@@ -76,6 +76,7 @@ void end_step(const Model& m, State& s, const Goal& goal, const StepPlan& plan) 
 Report report_of(const Model& m, const State& s, const Goal& goal, const Place& place) {
   if (s.missed > 0) return {Outcome::missed_contact, -1, Real(s.missed)};
   if (!place.last && !place.scheduled) return {};
+  const Transfer transfer;
   const Report health = check_health(m, s);
   if (health.outcome != Outcome::steps_done) return health;
   if (s.time >= goal.end_time) return {Outcome::time_reached, -1, s.time};

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/any_item.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/views.hpp"
+#include "core/contact/broad_phase/exceeds_skin.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -151,23 +153,12 @@ void predict_motion(const Model& m, State& s) {
 
 bool any_exceeds_skin(const State& s, const Column<Real>& predicted, Real from,
                       Real lookahead_time) {
-  const InMotion nodes{s.nodes.motion.data()};
-  const InRows rows{predicted.data()};
-  const Index count = Index(s.search.outer.predicted_nodes.size()), whole = count - count % lanes;
-  const InIndices nodes_of{s.search.outer.predicted_nodes.data(), count};
-  const Real after = std::min(s.time - from, lookahead_time);
-  const auto exceeds_skin = [&](auto item) {
-    using T = Number<decltype(item)>;
-    const Four<T> then = rows.at(item, 0), way = rows.at(item, 4);
-    const Vec3<T> now = nodes.position(nodes_of.at(0, item));
-    const Vec3<T> off = now - then.vector() - T(after) * way.vector();
-    return any_of(dot(off, off) > then.w);
-  };
-  bool found = false;
-#pragma omp parallel for schedule(static) reduction(|| : found) if (count >= worth_threads)
-  for (Index w = 0; w < whole; w += lanes) found = exceeds_skin(Lane{w}) || found;
-  for (Index w = whole; w < count; ++w) found = exceeds_skin(One{w}) || found;
-  return found;
+  const Index count = Index(s.search.outer.predicted_nodes.size());
+  return any_item({}, count,
+                  ExceedsSkin{.nodes = {s.nodes.motion.data()},
+                              .nodes_of = {s.search.outer.predicted_nodes.data(), count},
+                              .predicted = {predicted.data()},
+                              .after = std::min(s.time - from, lookahead_time)});
 }
 
 }  // namespace cdem
