@@ -2,10 +2,8 @@
 
 Prints a table of launches, waits, transfers, and pages of arrays (4 kB) that host code touches in a
 step outside of transfers, with the functions that touch them. docs/contributing/devices.md has it.
-With CDEM_EMULATED_HOST=strict, P1 and P2 run 1,000 steps and end at the first such page.
 """
 
-import os
 import re
 import subprocess
 from collections import Counter
@@ -99,12 +97,7 @@ def row(name: str, case: Case | dict, before: int) -> str:
 
 
 def main() -> None:
-    """Print the table, or run strict."""
-    if os.environ["CDEM_EMULATED_HOST"] == "strict":
-        for name in list(SCENES)[:2]:
-            start(SCENES[name][0](), 1000)
-            print(f"{name}: 1,000 steps, no page touched")
-        return
+    """Print the table."""
     print("| a step of | launches | waits | transfers | pages | by |")
     print("|---|---|---|---|---|---|")
     for name, (case, before) in SCENES.items():
