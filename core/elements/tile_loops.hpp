@@ -87,11 +87,13 @@ void run_blocks(Index count, Blocks blocks, Range some, const TileNodes& nodes,
   }
 }
 
-/// Tiles are dealt to the threads in turn: those that have nothing to do may lie together.
+/// Tiles are dealt to the threads in short runs: neighbours share nodes, and those that have
+/// nothing to do may lie together.
 template <class Kernel>
 void for_each_tile(Queue, Index count, Blocks blocks, const Tiles& tiles, const Kernel& kernel) {
-#pragma omp parallel for schedule(static, \
-                                      1) if (blocks.count_in(count) * block_size >= worth_threads)
+  const Index run = tiles.count / 64 + 1;
+  const bool several = blocks.count_in(count) * block_size >= worth_threads;
+#pragma omp parallel for schedule(static, run) if (several)
   for (Index tile = 0; tile < tiles.count; ++tile) {
     const Range some = blocks.between(tiles.block_first[tile], tiles.block_first[tile + 1]);
     if (some.first == some.last) continue;

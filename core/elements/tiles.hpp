@@ -45,7 +45,7 @@ struct TileNodes {
     for_lanes(e, [&](Index lane, Index element) {
       const Real* of_corner = rows + 4 * Shape::nodes * lane;
       for (Index k = 0; k < Shape::nodes; ++k, of_corner += 4) {
-        Real* sum = force + 4 * tiles.place.at(k, One{element});
+        Real* sum = force + std::size_t(tiles.place.at(k, One{element})) * 4;
         (Row::at(sum) + Row::at(of_corner)).store(sum);
       }
     });
