@@ -1,6 +1,7 @@
 // parallel.hpp - run a kernel for many items: lane by lane, one by one, or for those it selects.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 
 #include "core/base/device.hpp"
@@ -29,6 +30,12 @@ struct Blocks {
   }
   /// First item of the b-th of them.
   CDEM_HD Index first(Index b) const { return (id ? id[b] : b) * block_size; }
+  /// Which of them have numbers from `begin` to before `end`.
+  CDEM_HD Range between(Index begin, Index end) const {
+    if (!id) return {begin, end};
+    return {Index(std::lower_bound(id, id + count, begin) - id),
+            Index(std::lower_bound(id, id + count, end) - id)};
+  }
 };
 
 /// Raise a count that several threads may raise at once, and return what it was. Which of them

@@ -10,15 +10,10 @@ struct Fetching {
   Index ahead;  // so many blocks
   Index worth;  // if there are as many blocks; fewer leave it in the caches from step to step
 };
-/// Ask for memory that will be read soon; or written.
+/// Ask for memory that will be read soon.
 CDEM_HD inline void fetch(const void* memory) {
 #if !defined(__CUDA_ARCH__)
   __builtin_prefetch(memory);
-#endif
-}
-CDEM_HD inline void fetch_to_write(const void* memory) {
-#if !defined(__CUDA_ARCH__)
-  __builtin_prefetch(memory, 1);
 #endif
 }
 

@@ -82,6 +82,9 @@ struct InIndices {
   const Index* data;
   Index stride;
   CDEM_HD Index at(Index row, One item) const { return data[std::size_t(row) * stride + item.i]; }
+  CDEM_HD void fetch(Index row, One item) const {
+    cdem::fetch(data + std::size_t(row) * stride + item.i);
+  }
 #if !defined(__CUDACC__)
   IndexPack at(Index row, Lane item) const {
     IndexPack p;
@@ -293,15 +296,12 @@ struct InMotion {
 /// Forces on corners, one 32-byte row each: x y z, pad. Gathered by nodes in a fixed order.
 struct OutForces {
   Real* rows;
-  CDEM_HD void fetch(One item, Index corners_per_item) const {
-    const Real* first = rows + std::size_t(item.i) * corners_per_item * 4;
-    for (Index line = 0; line < corners_per_item * 4; line += 8) fetch_to_write(first + line);
-  }
   CDEM_HD void set(One item, Index corners_per_item, Index corner, const Vec3<Real>& f) const {
     Real* r = rows + (std::size_t(item.i) * corners_per_item + corner) * 4;
     r[0] = f.x;
     r[1] = f.y;
     r[2] = f.z;
+    r[3] = 0;
   }
 #if !defined(__CUDACC__)
   void set(Lane item, Index corners_per_item, Index corner, const Vec3<Pack>& f) const {

@@ -279,14 +279,14 @@ struct PointFlow {
 /// no derivative of an energy: it differs by terms of the size of the strain.)
 ///
 /// `damping_time` adds the stress of a Rayleigh dashpot, S(damping_time * rate of E) [s].
-template <class Shape, class Rotation, class Flow = NoFlow>
+template <class OfShape, class Rotation, class Flow = NoFlow>
 struct CorotationalForce {
+  using Shape = OfShape;
   ElementColumns<Shape> columns;
   Real damping_time;        // [s]
   Real dt;                  // [s]
   InOutTable damping_work;  // [1][element]  [J], taken out by the dashpot so far
   Flow flow;                // NoFlow, or PointFlow<Shape>
-  OutForces corner_force;   // [N]
 
   static constexpr Fetching fetching{4, 4096};
   /// Not of hexahedra: with their 170 columns of gradients it costs more than it gains.
@@ -294,13 +294,9 @@ struct CorotationalForce {
     requires(Shape::nodes == 4)
   {
     columns.fetch(e);
-    corner_force.fetch(e, Shape::nodes);
   }
 
-  template <class I>
-  CDEM_HD void operator()(I e) const {
-    forces(e).store(corner_force, e);
-  }
+  /// Forces on the corners of an element  [N].
   template <class I>
   CDEM_HD CornerForces<Shape, Number<I>> forces(I e) const {
     using T = Number<I>;

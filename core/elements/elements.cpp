@@ -18,26 +18,22 @@ template <class Shape>
 void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es,
                      Blocks some) {
   const ElementColumns<Shape> columns = element_columns<Shape>(m, s, e);
-  const OutForces out{s.corner_force.data() + std::size_t(e.corner_first) * 4};
+  const Tiles tiles = tiles_of(e, es, s);
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
   const Real damping_time = m.stiffness_damping * s.dt;
   const auto total = [&]<class Rotation, class Flow>(const Flow& flow) {
-    for_each_lane(q, e.count, some,
+    for_each_tile(q, e.count, some, tiles,
                   CorotationalForce<Shape, Rotation, Flow>{.columns = columns,
                                                            .damping_time = damping_time,
                                                            .dt = s.dt,
                                                            .damping_work = work,
-                                                           .flow = flow,
-                                                           .corner_force = out});
+                                                           .flow = flow});
   };
   const auto incremental = [&]<class Turning>() {
-    for_each_lane(q, e.count, some,
-                  IncrementalForce<Shape, Turning>{.columns = columns,
-                                                   .dt = s.dt_last,
-                                                   .stress = stress,
-                                                   .energy = energy,
-                                                   .corner_force = out});
+    for_each_tile(q, e.count, some, tiles,
+                  IncrementalForce<Shape, Turning>{
+                      .columns = columns, .dt = s.dt_last, .stress = stress, .energy = energy});
   };
   switch (m.formulation) {
     case Formulation::corotational:

@@ -55,16 +55,17 @@ struct NeverTurn {
 };
 
 /// Element forces of the incremental form, Feng et al. (2014), Eq. 2; stress is the state.
-template <class Shape, class Turning>
+template <class OfShape, class Turning>
 struct IncrementalForce {
+  using Shape = OfShape;
   ElementColumns<Shape> columns;
-  Real dt;                 // [s]
-  InOutTable stress;       // Cauchy, [point * 6 + component][element]  [Pa]
-  InOutTable energy;       // [1][element]  [J], work done on the element so far
-  OutForces corner_force;  // [N]
+  Real dt;            // [s]
+  InOutTable stress;  // Cauchy, [point * 6 + component][element]  [Pa]
+  InOutTable energy;  // [1][element]  [J], work done on the element so far
 
+  /// Forces on the corners of an element  [N].
   template <class I>
-  CDEM_HD void operator()(I e) const {
+  CDEM_HD CornerForces<Shape, Number<I>> forces(I e) const {
     using T = Number<I>;
     const auto elastic = columns.elastic(e);
     const Arms<Shape, T> arms = position_arms<Shape>(columns, e);
@@ -101,7 +102,7 @@ struct IncrementalForce {
       work += T(dt) * modes.stiffness * power;
     }
     energy.set(0, e, energy.at(0, e) + work);
-    force.store(corner_force, e);
+    return force;
   }
 
  private:

@@ -11,24 +11,25 @@ namespace cdem {
 /// tets of node n. Its derivative is the pressure K (mean of theta_n over the four nodes), so
 /// energy, momentum and frame invariance are exact; see docs/theory/elements.md.
 struct NodalDilatation {
+  InIndices tet_nodes;   // [4][tet]
   InFlags averaged;      // [tet] 1: it is averaged
   InTable start;         // [1][tet] elastic dilatation at the start, not averaged
   const Real* at_nodes;  // [node] theta_n
 
   /// Mean of a number of the four nodes; where all are the same, it is that to the bit.
   template <class I, class Of>
-  CDEM_HD static Number<I> mean(const ElementColumns<Tet4>& c, I e, const Of& of) {
-    const auto at = [&](Index k) { return of(c.element_nodes.at(k, e)); };
+  CDEM_HD Number<I> mean(I e, const Of& of) const {
+    const auto at = [&](Index k) { return of(tet_nodes.at(k, e)); };
     return Number<I>(0.25) * ((at(0) + at(1)) + (at(2) + at(3)));
   }
   template <class I>
-  CDEM_HD Number<I> mean(const ElementColumns<Tet4>& c, I e) const {
-    return mean(c, e, [&](const auto& node) { return look_up(at_nodes, node); });
+  CDEM_HD Number<I> mean(I e) const {
+    return mean(e, [&](const auto& node) { return look_up(at_nodes, node); });
   }
   /// The elastic strain of a tet with the dilatation that its nodes give it.
   template <class I, class T = Number<I>>
-  CDEM_HD Sym3<T> of(const ElementColumns<Tet4>& c, I e, const Sym3<T>& strain) const {
-    return select(averaged.equal(1, e), with_trace(strain, start.at(0, e) + mean(c, e)), strain);
+  CDEM_HD Sym3<T> of(I e, const Sym3<T>& strain) const {
+    return select(averaged.equal(1, e), with_trace(strain, start.at(0, e) + mean(e)), strain);
   }
 };
 
@@ -46,18 +47,16 @@ struct FindDilatation {
   }
 };
 
-/// After passes 1 and 2: the mean at the nodes, in the order in which a node sums its forces.
+/// After passes 1 and 2: the mean at the nodes, in the order of their tets.
 struct AverageAtNodes {
-  const Index *first, *corner;  // rows that a node sums
-  Range rows;                   // of the tets among them
-  const Real *volume, *own;     // [tet]
-  Real* at_nodes;               // [node]
+  const Index *first, *tets;  // of a node
+  const Real *volume, *own;   // [tet]
+  Real* at_nodes;             // [node]
 
   CDEM_HD void operator()(One node) const {
     Real sum = 0, whole = 0;
     for (Index c = first[node.i]; c < first[node.i + 1]; ++c) {
-      if (corner[c] < rows.first || corner[c] >= rows.last) continue;
-      const Index tet = (corner[c] - rows.first) / 4;
+      const Index tet = tets[c];
       sum += volume[tet] * own[tet];
       whole += volume[tet];
     }
@@ -79,7 +78,7 @@ struct FlowOfTets {
     using T = Number<I>;
     const PointStrains<Tet4, FollowRotation, T> p(columns, e, flow.may_flow());
     ElasticStrains<Tet4, T> strains = flow.elastic_part(columns, e, p);
-    strains.part[0] = trial.of(columns, e, strains.part[0]);
+    strains.part[0] = trial.of(e, strains.part[0]);
     Sym3<T> increment[1];
     const T none(0.0);
     T dilatation = none;
@@ -97,8 +96,8 @@ struct FlowOfTets {
   CDEM_HD void book(I e, const Truth<T>& averaged, const Sym3<T>& strain,
                     const Sym3<T>& increment) const {
     const ElasticConstants<T> elastic = columns.elastic(e);
-    const Sym3<T> was = before.of(
-        columns, e, flow.template elastic_part_before<FollowRotation>(columns, e).part[0]);
+    const Sym3<T> was =
+        before.of(e, flow.template elastic_part_before<FollowRotation>(columns, e).part[0]);
     Sym3<T> is = elastic.stress(strain);
     is = select(averaged, with_trace(is, T(0.0)), is);
     const T spent =
@@ -122,7 +121,7 @@ struct NodalFlow {
   CDEM_HD ElasticStrains<Tet4, T> move_on(const ElementColumns<Tet4>& c, I e,
                                           const PointStrains<Tet4, Rotation, T>& p) const {
     ElasticStrains<Tet4, T> strains = flow.elastic_part(c, e, p);
-    strains.part[0] = after.of(c, e, strains.part[0]);
+    strains.part[0] = after.of(e, strains.part[0]);
     const T dilatation = flowed.at(0, e), none(0.0);
     if (any_of((dilatation < none) | (dilatation > none))) {
       const T pressure = trace(c.elastic(e).stress(strains.part[0])) / T(3.0);
@@ -145,7 +144,7 @@ struct NodalReport {
   CDEM_HD ElasticStrains<Tet4, T> elastic_part(const ElementColumns<Tet4>& c, I e,
                                                const PointStrains<Tet4, Rotation, T>& p) const {
     ElasticStrains<Tet4, T> strains = flow.elastic_part(c, e, p);
-    strains.part[0] = now.of(c, e, strains.part[0]);
+    strains.part[0] = now.of(e, strains.part[0]);
     return strains;
   }
   template <class I, class T = Number<I>>
@@ -158,8 +157,8 @@ struct NodalReport {
   template <class I, class T = Number<I>>
   CDEM_HD T more_energy(const ElementColumns<Tet4>& c, I e) const {
     const ElasticConstants<T> elastic = c.elastic(e);
-    const T bulk = elastic.lambda + T(2.0 / 3.0) * elastic.mu, mean = now.mean(c, e);
-    const T squares = NodalDilatation::mean(c, e, [&](const auto& node) {
+    const T bulk = elastic.lambda + T(2.0 / 3.0) * elastic.mu, mean = now.mean(e);
+    const T squares = now.mean(e, [&](const auto& node) {
       const T theta = look_up(now.at_nodes, node);
       return theta * theta;
     });

@@ -1,9 +1,11 @@
 // nodal_mean.cpp - see nodal_mean.hpp.
 #include "core/elements/nodal_mean.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/elements/nodal_dilatation.hpp"
+#include "core/elements/tiles.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/phase_timer.hpp"
@@ -20,7 +22,8 @@ Blocks blocks_of(const Column<Index>& list) {
 Blocks averaged_tets(const State& s) { return blocks_of(s.nodal.blocks); }
 
 NodalDilatation dilatation(const Model& m, const State& s, const Column<Real>& at_nodes) {
-  return {.averaged = {m.tet4.nodal_mean.data()},
+  return {.tet_nodes = {m.tet4.nodes.data(), m.tet4.stride},
+          .averaged = {m.tet4.nodal_mean.data()},
           .start = {s.nodal.start.data(), m.tet4.stride},
           .at_nodes = at_nodes.data()};
 }
@@ -38,11 +41,9 @@ void find_dilatation(const Model& m, State& s, Queue q) {
 }
 
 void average(const Model& m, State& s, Queue q, Column<Real>& at_nodes) {
-  const Index first = m.tet4.corner_first;
   for_each_item(q, m.node_count, blocks_of(s.nodal.node_blocks),
-                AverageAtNodes{.first = s.nodes.corner_first.data(),
-                               .corner = s.nodes.corner.data(),
-                               .rows = {first, first + 4 * m.tet4.count},
+                AverageAtNodes{.first = s.nodal.tet_first.data(),
+                               .tets = s.nodal.tet.data(),
                                .volume = m.tet4.volume.data(),
                                .own = s.nodal.own.data(),
                                .at_nodes = at_nodes.data()});
@@ -57,29 +58,51 @@ void begin(const Model& m, State& s, Queue q) {
   s.nodal.after.resize(m.node_count);
 }
 
+/// Tiles of which one tet is averaged, block by block, and the others.
+void list_tets(const ElementSet& e, const ElementTiles& tiles, NodalMeans& n) {
+  n.blocks.resize(0);
+  n.other_blocks.resize(0);
+  for (std::size_t tile = 0; tile + 1 < tiles.block_first.size(); ++tile) {
+    const Index begin = tiles.block_first[tile], end = tiles.block_first[tile + 1];
+    const Flag *first = e.nodal_mean.data() + begin * block_size,
+               *last = e.nodal_mean.data() + std::min(end * block_size, e.count);
+    const bool averaged = std::find(first, last, 1) != last;
+    for (Index b = begin; b < end; ++b) (averaged ? n.blocks : n.other_blocks).push(b);
+  }
+}
+
+/// Blocks of nodes with one of an averaged tet, and the tets of all nodes.
+void list_nodes(const Model& m, NodalMeans& n) {
+  const ElementSet& e = m.tet4;
+  std::vector<Flag> averages(m.node_count);
+  n.tet_first.resize(m.node_count + 1);
+  n.tet_first.fill(0);
+  const auto visit = [&](auto&& act) {
+    for (Index i = 0; i < e.count; ++i)
+      for (Index k = 0; k < 4; ++k) act(e.nodes[std::size_t(k) * e.stride + i], i);
+  };
+  visit([&](Index node, Index tet) {
+    ++n.tet_first[node + 1];
+    averages[node] |= e.nodal_mean[tet];
+  });
+  for (Index i = 0; i < m.node_count; ++i) n.tet_first[i + 1] += n.tet_first[i];
+  n.tet.resize(4 * std::size_t(e.count));
+  std::vector<Index> next(n.tet_first.data(), n.tet_first.data() + m.node_count);
+  visit([&](Index node, Index tet) { n.tet[next[node]++] = tet; });
+  list_blocks(m.node_count, n.node_blocks, [&](Index i) { return averages[i] != 0; });
+}
+
 }  // namespace
 
 Blocks other_tets(const State& s) { return blocks_of(s.nodal.other_blocks); }
 
 void list_nodal_means(const Model& m, State& s) {
   if (!has_nodal_means(m)) return;
-  const ElementSet& e = m.tet4;
   NodalMeans& n = s.nodal;
-  std::vector<Flag> averages(m.node_count);
-  for (Index i = 0; i < e.count; ++i)
-    for (Index k = 0; e.nodal_mean[i] && k < 4; ++k)
-      averages[e.nodes[std::size_t(k) * e.stride + i]] = 1;
-  list_blocks(e.count, n.blocks, [&](Index i) { return e.nodal_mean[i] != 0; });
-  list_blocks(m.node_count, n.node_blocks, [&](Index i) { return averages[i] != 0; });
-  n.other_blocks.resize(0);
-  std::size_t next = 0;
-  for (Index b = 0; b < Blocks{}.count_in(e.count); ++b)
-    if (next < n.blocks.size() && n.blocks[next] == b)
-      ++next;
-    else
-      n.other_blocks.push(b);
-  n.own.resize(e.stride);
-  n.flowed.resize(e.stride);
+  list_tets(m.tet4, s.tet4.tiles, n);
+  list_nodes(m, n);
+  n.own.resize(m.tet4.stride);
+  n.flowed.resize(m.tet4.stride);
   n.trial.resize(m.node_count);
 }
 
@@ -104,14 +127,13 @@ void update_averaged_tets(const Model& m, State& s, Queue q) {
   const NodalFlow flow{.flow = flow_of_tets(m, s),
                        .after = dilatation(m, s, s.nodal.after),
                        .flowed = {s.nodal.flowed.data(), e.stride}};
-  for_each_lane(q, e.count, averaged_tets(s),
+  for_each_tile(q, e.count, averaged_tets(s), tiles_of(e, s.tet4, s),
                 CorotationalForce<Tet4, FollowRotation, NodalFlow>{
                     .columns = element_columns<Tet4>(m, s, e),
                     .damping_time = m.stiffness_damping * s.dt,
                     .dt = s.dt,
                     .damping_work = {s.tet4.damping_work.data(), e.stride},
-                    .flow = flow,
-                    .corner_force = {s.corner_force.data() + std::size_t(e.corner_first) * 4}});
+                    .flow = flow});
 }
 
 bool report_averaged_tets(const Model& m, State& s, Queue q) {

@@ -59,10 +59,10 @@ struct ElementColumns {
     const Index row = (point * (Shape::nodes - 1) + node - 1) * 3;
     return {gradient.at(row, e), gradient.at(row + 1, e), gradient.at(row + 2, e)};
   }
-  /// Ask for the nodes of an element, and with the first of a block for the block's columns.
+  /// Ask for the columns of a block, with its first element.
   CDEM_HD void fetch(One e) const {
-    for (Index k = 0; k < Shape::nodes; ++k) nodes.fetch(element_nodes.at(k, e));
     if (e.i % block_size != 0) return;
+    for (Index k = 0; k < Shape::nodes; ++k) element_nodes.fetch(k, e);
     point_volume.fetch(0, e);
     for (Index row = 0; row < Shape::points * (Shape::nodes - 1) * 3; ++row) gradient.fetch(row, e);
   }

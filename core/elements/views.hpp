@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/elements/corotational.hpp"
+#include "core/elements/tiles.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 
@@ -19,6 +20,19 @@ ElementColumns<Shape> element_columns(const Model& m, const State& s, const Elem
                         .law = m.material_law.data(),
                         .parameters = m.material_parameters.data()},
           .hourglass = {e.hourglass.data(), e.stride}};
+}
+
+/// Tiles of a set.
+inline Tiles tiles_of(const ElementSet& e, const ElementState& es, State& s) {
+  const ElementTiles& t = es.tiles;
+  return {.count = Index(t.block_first.size()) - 1,
+          .block_first = t.block_first.data(),
+          .node_first = t.node_first.data(),
+          .node = t.node.data(),
+          .row = t.row.data(),
+          .place = {t.place.data(), e.stride},
+          .motion = s.nodes.motion.data(),
+          .force = s.tile_force.data()};
 }
 
 /// Inelastic strains of a set; empty where it has none.

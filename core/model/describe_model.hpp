@@ -78,7 +78,7 @@ void describe_node_rows(Model& m, Visit&& given) {
          .rows = "mass_entries"},
         m.mass_matrix);
   given({.name = "corner.first",
-         .meaning = "corner rows of all elements and pairs at a node",
+         .meaning = "corner rows of all pairs and bolts at a node",
          .rows = "nodes",
          .layout = Layout::starts,
          .refers_to = {"node_corners"}},

@@ -13,6 +13,10 @@ static_assert(block_size == 8);
 /// Kind of rows for what the nodes of fused elements sum, see FusedRows.
 inline std::string fused_rows_of(const std::string& rows) { return rows + ".fused_rows"; }
 
+/// Kinds of rows for tiles of elements, and for their nodes.
+inline std::string tiles_of(const std::string& rows) { return rows + ".tiles"; }
+inline std::string tile_nodes_of(const std::string& rows) { return rows + ".tile_nodes"; }
+
 /// Visit the rows that the model has: part of `describe_rows`.
 template <class Visit>
 void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
@@ -23,7 +27,8 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   const auto total = [](const auto& column) { return Index(column.size()); };
   visit(RowKind{"nodes", "nodes of all blocks"}, m.node_count);
   visit(RowKind{blocks_of("nodes"), "eight nodes after each other"}, blocks(m.node_count));
-  visit(RowKind{"node_corners", "corner rows that a node sums"}, last(m.corner_first));
+  visit(RowKind{"node_corners", "corner rows of all pairs and bolts that a node sums"},
+        last(m.corner_first));
   visit(RowKind{"mass_entries", "entries of mass matrices"}, total(m.mass_inverse));
   visit(RowKind{"materials", "elastic materials"}, total(m.material_lambda));
   for_each_set(m, s, [&](const auto& kind, const auto& set, const auto&) {
@@ -33,7 +38,12 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   for_each_element_set(m, s, [&](const auto& kind, const auto&, const ElementState& e) {
     visit(RowKind{fused_rows_of(kind.name), "corner rows of bonds by fused block"},
           last(e.fused.row_first));
+    visit(RowKind{tiles_of(kind.name), "tiles of elements"}, total(e.tiles.block_first) - 1);
+    visit(RowKind{tile_nodes_of(kind.name), "nodes of tiles"}, total(e.tiles.node));
   });
+  visit(RowKind{"tile_rows", "forces of tiles on nodes"}, last(s.nodes.tile_first));
+  visit(RowKind{"node_tets", "tets of a node, where their dilatation is averaged"},
+        total(s.nodal.tet));
   visit(RowKind{"overlap_points", "bond points of overlaps"}, last(m.overlaps.point_first));
   visit(RowKind{"bolt_nodes", "nodes of bolts; bars lead to the next"}, bolt_node_count(m.bolts));
   visit(RowKind{"bolt_crossings", "joints that bolts cross"}, total(m.bolts.crossing_bar));
@@ -57,7 +67,7 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
         last(m.water.quads.pair_first));
   visit(RowKind{"water_fields", "pressure fields; the last one is dry"}, total(m.water.fields) / 8);
   visit(RowKind{"water_rows", "forces of water on faces and in elements"},
-        m.water.pore_row_first + (m.water.biot.size() > 0 ? element_row_count(m, s) : 0));
+        m.water.pore_row_first + (m.water.biot.size() > 0 ? element_corner_count(m, s) : 0));
   visit(RowKind{"node_water", "rows of water that a node sums"}, last(m.water.node_first));
   visit(RowKind{"curves", "histories of loads and supports"}, Index(m.curve_time.size()));
 }
@@ -72,7 +82,7 @@ void describe_search_rows(const State& s, Visit&& visit) {
   const OuterList& outer = s.search.outer;
   const InnerList& inner = s.search.inner;
   const Index exposed = total(s.search.exposed_face);
-  visit(RowKind{"live_corners", "corner rows of elements and live pairs that a node sums"},
+  visit(RowKind{"live_corners", "corner rows of live pairs and bolts that a node sums"},
         last(s.nodes.corner_first));
   visit(RowKind{"exposed", "faces that can be touched"}, exposed);
   visit(RowKind{"slots", "vertex or side k of exposed face x: 4 x + k"}, 4 * exposed);

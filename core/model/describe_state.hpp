@@ -206,9 +206,16 @@ void describe_node_lists(State& s, Rebuilt&& rebuilt) {
 template <class Rebuilt>
 void describe_node_sums(State& s, Rebuilt&& rebuilt) {
   NodeState& n = s.nodes;
+  rebuilt("list_tiles",
+          {.name = "node.tile_first",
+           .meaning = "rows of tiles at a node",
+           .rows = "nodes",
+           .layout = Layout::starts,
+           .refers_to = {"tile_rows"}},
+          n.tile_first);
   rebuilt("list_corners",
           {.name = "node.corner_first",
-           .meaning = "corner rows of elements and live pairs at a node",
+           .meaning = "corner rows of live pairs and bolts at a node",
            .rows = "nodes",
            .layout = Layout::starts,
            .refers_to = {"live_corners"}},
@@ -246,6 +253,46 @@ void describe_node_sums(State& s, Rebuilt&& rebuilt) {
            .meaning = "factor in the middle of the coming step",
            .rows = "curves"},
           s.velocity_factor);
+}
+
+/// Tiles of elements: part of `describe_state`.
+template <class Rebuilt>
+void describe_tiles(const char* rows, const ElementSet& set, ElementTiles& tiles,
+                    Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".";
+  rebuilt("list_tiles",
+          {.name = name + "tile.blocks",
+           .meaning = "blocks of elements of a tile",
+           .rows = tiles_of(rows),
+           .layout = Layout::starts,
+           .refers_to = {blocks_of(rows)}},
+          tiles.block_first);
+  rebuilt("list_tiles",
+          {.name = name + "tile.nodes",
+           .meaning = "nodes that come to the tile with a block",
+           .rows = blocks_of(rows),
+           .layout = Layout::starts,
+           .refers_to = {tile_nodes_of(rows)}},
+          tiles.node_first);
+  rebuilt("list_tiles",
+          {.name = name + "tile.node",
+           .meaning = "node of a tile",
+           .rows = tile_nodes_of(rows),
+           .refers_to = {"nodes"}},
+          tiles.node);
+  rebuilt("list_tiles",
+          {.name = name + "tile.row",
+           .meaning = "row of the tile's force on the node",
+           .rows = tile_nodes_of(rows),
+           .refers_to = {"tile_rows"}},
+          tiles.row);
+  rebuilt("list_tiles",
+          {.name = name + "tile.place",
+           .meaning = "place of a node of an element among those of its tile",
+           .rows = rows,
+           .numbers = set.corners,
+           .layout = Layout::columns},
+          tiles.place);
 }
 
 /// Blocks of elements that the fused kernel moves: part of `describe_state`.
@@ -499,10 +546,25 @@ void describe_nodal_means(NodalMeans& n, Stored&& stored, Rebuilt&& rebuilt) {
     rebuilt("list_nodal_means", {.name = name, .meaning = meaning, .refers_to = {blocks_of(rows)}},
             column);
   };
-  of_blocks("tet4.averaged", "blocks of tets with one that is averaged", "tet4", n.blocks);
+  of_blocks("tet4.averaged", "blocks of tiles with a tet that is averaged", "tet4", n.blocks);
   of_blocks("tet4.not_averaged", "the other ones", "tet4", n.other_blocks);
   of_blocks("node.averaging", "blocks of nodes with one of an averaged tet", "nodes",
             n.node_blocks);
+  rebuilt("list_nodal_means",
+          {.name = "node.tet_first",
+           .meaning = "tets at a node",
+           .rows = "nodes",
+           .layout = Layout::starts,
+           .refers_to = {"node_tets"},
+           .optional = true},
+          n.tet_first);
+  rebuilt("list_nodal_means",
+          {.name = "node.tet",
+           .meaning = "tet at a node",
+           .rows = "node_tets",
+           .refers_to = {"tet4"},
+           .optional = true},
+          n.tet);
 }
 
 /// Call stored(info, column) or rebuilt(by, info, column) for every array of nodes and force sets.
@@ -518,11 +580,21 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
   for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {
     describe_set(kind.name, set, state, stored, rebuilt);
   });
+  for_each_element_set(m, s, [&](const auto& kind, const ElementSet& e, ElementState& es) {
+    describe_tiles(kind.name, e, es.tiles, rebuilt);
+  });
   describe_nodal_means(s.nodal, stored, rebuilt);
   rebuilt("update_element_forces",
+          {.name = "tile.force",
+           .unit = "N",
+           .meaning = "force of the elements of a tile on a node, and a pad",
+           .rows = "tile_rows",
+           .numbers = 4},
+          s.tile_force);
+  rebuilt("update_bond_forces",
           {.name = "corner.force",
            .unit = "N",
-           .meaning = "force of an element or a pair on a node, and a pad",
+           .meaning = "force of a pair or a bolt on a node, and a pad",
            .rows = "corner_rows",
            .numbers = 4},
           s.corner_force);

@@ -1,8 +1,9 @@
 // force_sets.hpp - the sets of elements, bonded pairs and bolts, each once, and what loops ask of
 // them.
 //
-// Whatever puts forces on nodes through corner rows is a set. All loops over sets come from here:
-// a new set is named here, with overloads of what is asked of it below, and has its kernels.
+// Whatever puts forces on nodes through tiles or corner rows is a set. All loops over sets come
+// from here: a new set is named here, with overloads of what is asked of it below, and has its
+// kernels.
 #pragma once
 
 #include <algorithm>
@@ -69,12 +70,18 @@ void for_each_pair_set(M& m, S& s, Visit&& visit) {
         s.overlaps);
 }
 
-/// The same for all sets, in the order of their corner rows.
+/// The same for the sets that put forces on nodes through corner rows, in the order of these.
+template <class M, class S, class Visit>
+void for_each_row_set(M& m, S& s, Visit&& visit) {
+  for_each_pair_set(m, s, visit);
+  visit(BoltKind{.name = "bolts", .points = 0, .corners = 8}, m.bolts, s.bolts);
+}
+
+/// The same for all sets: elements put their forces on nodes through tiles.
 template <class M, class S, class Visit>
 void for_each_set(M& m, S& s, Visit&& visit) {
   for_each_element_set(m, s, visit);
-  for_each_pair_set(m, s, visit);
-  visit(BoltKind{.name = "bolts", .points = 0, .corners = 8}, m.bolts, s.bolts);
+  for_each_row_set(m, s, visit);
 }
 
 /// Nodes, and points, of all bolts.
@@ -87,7 +94,6 @@ inline Index bolt_point_count(const BoltSet& b) { return Index(b.stiffness.size(
 inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
 
 /// Does an item act on its nodes? Pairs do until they are released.
-inline bool is_active(const ElementState&, Index) { return true; }
 inline bool is_active(const PairState& s, Index pair) {
   return is_live(PairStatus(s.status[pair]));
 }
@@ -120,8 +126,8 @@ void for_each_corner_row(const BoltSet& b, Index bolt, Visit&& visit) {
   });
 }
 
-/// Corner rows of all elements together; those of pairs follow.
-inline Index element_row_count(const Model& m, const State& s) {
+/// Corners of all elements together.
+inline Index element_corner_count(const Model& m, const State& s) {
   Index count = 0;
   for_each_element_set(
       m, s, [&](auto, const ElementSet& e, const ElementState&) { count += e.count * e.corners; });
@@ -155,8 +161,6 @@ void for_each_node(const Model&, const BoltSet& b, Index bolt, Visit&& visit) {
 
 /// Call visit(node, stiffness [N/m]) for what an item stiffens its nodes by at most: from it comes
 /// the bound of their frequencies. That of elements is in the model already.
-template <class Visit>
-void for_each_stiffness(const Model&, const ElementSet&, Index, Visit&&) {}
 template <class Visit>
 void for_each_stiffness(const Model& m, const PairSet& p, Index pair, Visit&& visit) {
   const Real k = std::max(p.stiffness[pair], p.stiffness[std::size_t(p.stride) + pair]);

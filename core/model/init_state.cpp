@@ -4,6 +4,7 @@
 #include "core/materials/laws.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/interface_table.hpp"
+#include "core/model/tiles.hpp"
 
 namespace cdem {
 
@@ -109,6 +110,7 @@ void init_state(const Model& m, State& s, const Real* position) {
     history->width = interface_table(m).remembers ? InterfaceLaws::most_state : 0;
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   make_room_for_rises(m, s);
+  list_tiles(m, s);
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
   // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero

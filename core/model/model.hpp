@@ -16,7 +16,7 @@ enum class Formulation { corotational, incremental, paper_incremental, paper_tot
 struct ElementSet {
   Index count = 0, stride = 0;
   Index corners = 0, points = 0;  // nodes and Gauss points of an element
-  Index corner_first = 0;         // first of its rows among the corner forces
+  Index corner_first = 0;         // corners of the sets before
   Column<Index> nodes, material;
   Column<Real> gradient, volume;
   Column<Real> hourglass;   // of hexahedra with one point, else empty
@@ -114,7 +114,8 @@ struct Model {
 
   BoltSet bolts;
 
-  // corner rows of each node; ~row where it takes the opposite of what stands there
+  // corner rows of pairs and bolts at each node; ~row where it takes the opposite of what stands
+  // there
   Index corner_rows = 0;
   Column<Index> corner_first, corner;
 

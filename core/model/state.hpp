@@ -25,10 +25,11 @@ struct NodeState {
   Column<Flag> out;                 // 1: taken out, see run/take_out.hpp; empty: none is
   Column<Real> relief;              // rows of 4, see run/excavate.hpp; empty: none
   Column<Real> water, work_water;   // rows of 4; see water/; empty: there is none
-  Column<Flag> fused;     // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
-  Column<Index> general;  // awake blocks of nodes but those of which all are fused
-  bool damped = false;    // in the last step, else damping_force does not count
-  Column<Index> corner_first, corner;  // rows of elements and live pairs that a node sums
+  Column<Flag> fused;        // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
+  Column<Index> general;     // awake blocks of nodes but those of which all are fused
+  bool damped = false;       // in the last step, else damping_force does not count
+  Column<Index> tile_first;  // rows of tiles that a node sums, see ElementTiles
+  Column<Index> corner_first, corner;  // rows of live pairs and bolts that it sums then
 };
 
 /// Blocks of elements of which all are fused and have full mass matrices, see
@@ -39,7 +40,17 @@ struct FusedBlocks {
   Column<Index> row_first, row;  // see FusedRows
 };
 
+/// Tiles of a set: consecutive blocks of elements that have few nodes together. A tile sums the
+/// forces of its elements on each of its nodes and puts them into a row, see elements/tiles.hpp.
+struct ElementTiles {
+  Column<Index> block_first;  // [tile + 1] blocks of elements
+  Column<Index> node_first;   // [block + 1] nodes that come to the tile with a block
+  Column<Index> node, row;    // these nodes, and their rows: those of a node lie together
+  Column<Index> place;        // [corner][element] of its node among those of the tile
+};
+
 struct ElementState {
+  ElementTiles tiles;
   Column<Real> stress;        // mean, for output: [6][element]
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
@@ -58,6 +69,7 @@ struct NodalMeans {
   Column<Real> own, flowed;  // [tet] made in every step
   Column<Real> trial;        // [node] the same
   Column<Index> blocks, other_blocks, node_blocks;
+  Column<Index> tet_first, tet;  // tets of a node
 };
 
 /// What walls of contacts remember for the laws of their interfaces, see interfaces/history.hpp.
@@ -226,7 +238,8 @@ struct State {
   ContactsByTargetState contacts_by_target;
   SearchState search;
   WaterState water;
-  Column<Real> face_geometry, corner_force, contact_force;  // rows of 8, 4, 4
+  Column<Real> tile_force, corner_force;      // rows of 4: of tiles; of pairs and bolts
+  Column<Real> face_geometry, contact_force;  // rows of 8, 4
   Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]
   Column<Real> load_factor, velocity_factor;  // of the curves in this step
 };

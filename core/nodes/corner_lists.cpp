@@ -10,7 +10,7 @@ namespace cdem {
 
 void list_corners(const Model& m, State& s) {
   std::vector<Flag> released(m.corner_rows);
-  for_each_set(m, s, [&](auto, const auto& set, const auto& state) {
+  for_each_row_set(m, s, [&](auto, const auto& set, const auto& state) {
     for (Index i = 0; i < set.count; ++i) {
       if (!is_active(state, i)) for_each_corner_row(set, i, [&](Index row) { released[row] = 1; });
     }

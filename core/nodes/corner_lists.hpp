@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// Node -> rows of its elements and of its pairs that are not released.
+/// Node -> rows of its pairs that are not released, and of its bolts.
 void list_corners(const Model& model, State& state);
 
 /// Node -> contact rows of its exposed faces that are not idle.

@@ -92,6 +92,7 @@ struct AdvanceFused {
   {
     element.columns.fetch(e);
     const Index first = element.columns.element_nodes.at(0, e);
+    for (Index k = 0; k < count; ++k) InMotion{motion}.fetch(first + k);
     if (e.i % 2 == 0)  // a line of numbers serves two tets
       for (const Real* list : {loads.gravity_mass, mass.mass, (const Real*)work_external})
         cdem::fetch(list + first);

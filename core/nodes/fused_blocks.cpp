@@ -20,12 +20,11 @@ struct Elements {
   const ElementSet& e;
   MassColumns mass = mass_columns(m, s);
   Index corners = e.corners;
-  Index rows_of_elements = element_row_count(m, s);  // those of bonds follow
 
   Index first_node(Index i) const { return e.nodes[i]; }
-  /// The rows of bonds that a node sums: all after the one of its element.
+  /// The rows that a node sums after those of its element.
   Range bond_rows(Index node) const {
-    return {s.nodes.corner_first[node] + 1, s.nodes.corner_first[node + 1]};
+    return {s.nodes.corner_first[node], s.nodes.corner_first[node + 1]};
   }
   /// Does any load but gravity act on nodes from `first` to before `last`?
   bool is_loaded(Index first, Index last) const {
@@ -43,12 +42,8 @@ struct Elements {
       return false;
     for (Index k = 0; k < corners; ++k) {
       const Index node = first + k;
-      const Range bonds = bond_rows(node);
-      const Index own = e.corner_first + corners * i + k;
       if (e.nodes[std::size_t(k) * e.stride + i] != node || m.support[node] >= 0 ||
-          mass.row(node) != (row < 0 ? row : row + corners * k) || mass.held(node) ||
-          bonds.first > bonds.last || s.nodes.corner[bonds.first - 1] != own ||
-          (bonds.first < bonds.last && is_of_element(s.nodes.corner[bonds.first])))
+          mass.row(node) != (row < 0 ? row : row + corners * k) || mass.held(node))
         return false;
     }
     return true;
@@ -66,9 +61,6 @@ struct Elements {
     for (Index i = begin; i < end; ++i)
       for (Index k = 0; k < corners; ++k) visit(i - begin, k, first_node(i) + k);
   }
-
- private:
-  bool is_of_element(Index row) const { return row >= 0 && row < rows_of_elements; }
 };
 
 /// List the rows that the nodes of fused blocks sum, see FusedRows.

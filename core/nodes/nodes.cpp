@@ -38,8 +38,7 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
       .damping_time = m.stiffness_damping * s.dt,
       .dt = s.dt,
       .damping_work = {es.damping_work.data(), e.stride},
-      .flow = flow,
-      .corner_force = {}};
+      .flow = flow};
   for_each_lane(
       q, e.count, awake(plan, blocks),
       AdvanceFused<Shape, lumped, Flow>{.element = element,

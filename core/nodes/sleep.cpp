@@ -32,6 +32,16 @@ void leave_averaged(const State& s, Column<Index>& awake) {
   awake.resize(kept);
 }
 
+/// A tile sums the forces of all its elements: if one moves, the others are awake.
+void wake_tiles(const ElementTiles& tiles, std::vector<Flag>& moves) {
+  for (std::size_t tile = 0; tile + 1 < tiles.block_first.size(); ++tile) {
+    const Index count = Index(moves.size()), last = tiles.block_first[tile + 1] * block_size;
+    const auto begin = moves.begin() + tiles.block_first[tile] * block_size;
+    const auto end = moves.begin() + std::min(last, count);
+    if (std::find(begin, end, 1) != end) std::fill(begin, end, Flag(1));
+  }
+}
+
 }  // namespace
 
 void find_awake(const Model& m, State& s) {
@@ -44,6 +54,7 @@ void find_awake(const Model& m, State& s) {
       for_each_node(m, set, i, [&](Index node) { moves[i] |= !fixed[node]; });
       if (moves[i]) for_each_node(m, set, i, [&](Index node) { pulled[node] = 1; });
     }
+    if constexpr (requires { state.tiles; }) wake_tiles(state.tiles, moves);
     list_blocks(set.count, state.awake, [&](Index i) { return moves[i] != 0; });
   });
   leave_averaged(s, s.tet4.awake);

@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// List the blocks of elements, bonded pairs and nodes that are awake. Asleep are elements and
+/// List the blocks of elements, bonded pairs and nodes that are awake. Asleep are tiles and
 /// pairs of which all nodes are fixed, and fixed nodes at which nothing awake pulls and that no
 /// pair list has: the results of the last step hold for them until the model changes. Computing
 /// them again would give the same bits. (Faces that a broken bond exposes are no reason to wake:

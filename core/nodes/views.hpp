@@ -53,7 +53,9 @@ inline LoadColumns load_columns(const Model& m, const State& s) {
 }
 
 inline CornerLists corner_lists(const State& s) {
-  return {.first = s.nodes.corner_first.data(),
+  return {.tile_first = s.nodes.tile_first.data(),
+          .tile_force = {s.tile_force.data()},
+          .first = s.nodes.corner_first.data(),
           .corner = s.nodes.corner.data(),
           .corner_force = {s.corner_force.data()},
           .contact_first = s.search.contact_first.data(),

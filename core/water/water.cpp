@@ -63,7 +63,7 @@ void find_forces(const Model& m, State& s, Queue q) {
   const Water& w = m.water;
   const bool porous = w.biot.size() > 0;
   s.water.force.resize(4 *
-                       (std::size_t(w.pore_row_first) + (porous ? element_row_count(m, s) : 0)));
+                       (std::size_t(w.pore_row_first) + (porous ? element_corner_count(m, s) : 0)));
   evaluate_fields(m, s);
   find_wet_faces(m, s);
   press<3>(s, q, w.triangles, s.water.triangle_field);

@@ -167,8 +167,6 @@ void Scene::build_shape(ElementSet& e, Index nodes, Index points) {
   e.points = points;
   e.count = Index(some.size());
   e.stride = padded_stride(e.count);
-  e.corner_first = model.corner_rows;
-  model.corner_rows += nodes * e.count;
   e.nodes.resize(std::size_t(nodes) * e.stride);
   e.material.resize(e.stride);
   e.gradient.resize(std::size_t(points) * (nodes - 1) * 3 * e.stride);
@@ -311,10 +309,6 @@ void Scene::build_pair_set(PairSet& p, Index points,
 void Scene::build_corners() {
   Model& m = model;
   std::vector<std::vector<Index>> rows(m.node_count);
-  for (const ElementSet* e : {&m.tet4, &m.pyramid5, &m.wedge6, &m.hex8})
-    for (Index i = 0; i < e->count; ++i)
-      for (Index k = 0; k < e->corners; ++k)
-        rows[e->nodes[k * e->stride + i]].push_back(e->corner_first + i * e->corners + k);
   for (const PairSet* p : {&m.triangles, &m.quads})
     for (Index i = 0; i < p->count; ++i)
       for (Index k = 0; k < p->points; ++k) {

@@ -20,4 +20,12 @@ FAULTS = [
         "visit(b.hosts[k], 0 * b.stiffness[p] * std::abs(b.weights[k]));",
         "tests/validation/test_bolts.py::test_bolts_shorten_the_step",
     ),
+    Mutant(
+        "tile places",
+        "a tile lists a node again for each of its elements",
+        "core/model/tiles.cpp",
+        "if (place < first) {",
+        "if (place < Index(tiles.node.size())) {",
+        "tests/core/model/test_tiles.cpp",
+    ),
 ]

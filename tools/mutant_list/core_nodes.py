@@ -108,4 +108,12 @@ FAULTS = [
         "if (xi >= 0) return 1;",
         "tests/core/nodes/test_time_step.cpp",
     ),
+    Mutant(
+        "tile sleep",
+        "elements of a tile of which one moves go on sleeping",
+        "core/nodes/sleep.cpp",
+        "if (std::find(begin, end, 1) != end) std::fill",
+        "if (count < 0) std::fill",
+        "tests/core/nodes/test_sleep.cpp",
+    ),
 ]

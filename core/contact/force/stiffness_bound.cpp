@@ -28,7 +28,7 @@ void raise_to(Real& most, Real value) {
 void sum_stiffness(const Model& m, State& s) {
   s.node_bonds.resize(m.node_count);
   s.node_bonds.fill(0);
-  for_each_set(m, s, [&](auto, const auto& set, const auto& state) {
+  for_each_row_set(m, s, [&](auto, const auto& set, const auto& state) {
     for (Index i = 0; i < set.count; ++i)
       if (is_active(state, i))
         for_each_stiffness(m, set, i, [&](Index node, Real k) { s.node_bonds[node] += k; });

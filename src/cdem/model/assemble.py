@@ -95,7 +95,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
         row += count * nodes
         out.element_volume[shape] = volume.sum(axis=1)
         out.element_mass[shape] = matrices.sum(axis=(1, 2))
-    out.counts["corner_rows"] = row
+    out.counts["corner_rows"] = 0  # elements have tiles
     out.arrays["node.gravity_mass"] = gravity_mass
     out.arrays["node.block"] = t.node_block
     out.arrays["node.place"] = t.node_place
@@ -262,10 +262,6 @@ def _strength(faces: Ints, interface: Ints, p: Properties, stride: int) -> Float
 
 def _corners(t: Topology, bolt_hosts: Ints, out: Assembly) -> None:
     owner, row = [], []
-    for shape in element_shapes.NODES:
-        nodes = t.element_nodes[shape].ravel()
-        owner.append(nodes)
-        row.append(out.counts[f"{shape}.corner_first"] + np.arange(len(nodes)))
     for kind, n in (("triangles", 3), ("quads", 4)):
         count = out.counts[f"{kind}.count"]
         nodes = out.arrays[f"{kind}.nodes"].reshape(2, n, -1)[..., :count]

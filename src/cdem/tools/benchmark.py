@@ -262,10 +262,12 @@ def tets_shared(m: int, threads: int) -> Row:
     sim, start = _start(_bar(m, "tet4"), threads)
     tets = sim.audit.counts["elements"]
     row = _time("P1 tets, shared nodes", f"{tets:,}", "tets/s", sim, tets)
-    # gradients, volume, node numbers, material; positions read and forces written at four corners
-    moved: float = 9 * 8 + 8 + 4 * 4 + 4 + 4 * 24 + 4 * 32
-    # a node sums about 24 corners (24 numbers of 4 bytes, 32 bytes of force each), and moves
-    moved += len(sim.fields["mass"]) / tets * (24 * (4 + 32) + 2 * 64 + 3 * 32)
+    # gradients, volume, places of nodes, material
+    moved: float = 9 * 8 + 8 + 4 * 4 + 4
+    # a tile finds its nodes and their rows, reads motion and writes rows; nodes read these
+    moved += len(sim.core.rebuilt()["tile.force"]) / 4 / tets * (2 * 4 + 64 + 2 * 32)
+    # a node reads six lists and two masses, books work and force, and moves
+    moved += len(sim.fields["mass"]) / tets * (6 * 4 + 2 * 8 + 2 * 8 + 32 + 2 * 64)
     row.more["B/tet moved"] = moved
     row.more["of bandwidth"] = row.rate * moved / bandwidth(threads)
     row.more["start-up [s]"] = start

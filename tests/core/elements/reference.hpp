@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/column.hpp"
-#include "core/elements/shapes.hpp"
+#include "core/elements/tiles.hpp"
 #include "tests/core/support.hpp"
 
 namespace cdem::test {
@@ -222,6 +222,34 @@ struct Elements {
             {gradient.data(), stride}, {volume.data(), stride},
             {material.data(), stride}, {lambda.data(), mu.data(), law.data(), nullptr},
             {hourglass.data(), stride}};
+  }
+  /// Run a kernel for all elements, in tiles of one block; rows by element and corner  [N].
+  template <class Kernel>
+  void run(const Kernel& kernel, std::vector<Real>& corner_force) const {
+    std::vector<Index> first, node_first, own, place(node.size());
+    for (Index e = 0; e < count; ++e) {
+      if (e % block_size == 0) {
+        first.push_back(e / block_size);
+        node_first.push_back(e * nodes);
+      }
+      for (Index k = 0; k < nodes; ++k) {
+        own.push_back(e * nodes + k);
+        place[k * stride + e] = e % block_size * nodes + k;
+      }
+    }
+    const Index tiles = Index(first.size());
+    first.push_back(tiles);
+    node_first.push_back(count * nodes);
+    for_each_tile({}, count, Blocks{},
+                  Tiles{.count = tiles,
+                        .block_first = first.data(),
+                        .node_first = node_first.data(),
+                        .node = own.data(),
+                        .row = own.data(),
+                        .place = {place.data(), stride},
+                        .motion = motion.data(),
+                        .force = corner_force.data()},
+                  kernel);
   }
 };
 

@@ -20,14 +20,13 @@ struct Loaded : Elements<Shape> {
   Real damping_time = 0, dt = 1;
 
   CorotationalForce<Shape, Rotation> force_kernel() {
-    return {this->columns(),      damping_time, dt, {damping_work.data(), this->stride}, {},
-            {corner_force.data()}};
+    return {this->columns(), damping_time, dt, {damping_work.data(), this->stride}, {}};
   }
   CorotationalReport<Shape, Rotation> report_kernel() {
     return {this->columns(), {stress.data(), this->stride}, {energy.data(), this->stride}, {}, {}};
   }
   void update() {
-    for_each_lane({}, this->count, Blocks{}, force_kernel());
+    this->run(force_kernel(), corner_force);
     for_each_lane({}, this->count, Blocks{}, report_kernel());
   }
   Vec force(Index e, Index k) const {
@@ -82,9 +81,7 @@ struct Flowing : Loaded<Shape> {
   CorotationalForce<Shape, FollowRotation, PointFlow<Shape>> flow_kernel() {
     auto columns = this->columns();
     columns.materials = {lambda, mu, law, parameters.data()};
-    return {columns,  0,
-            this->dt, {this->damping_work.data(), this->stride},
-            flow(),   {this->corner_force.data()}};
+    return {columns, 0, this->dt, {this->damping_work.data(), this->stride}, flow()};
   }
   PointFlow<Shape> flow() {
     return {{history.data(), this->stride}, {work.data(), this->stride}, this->dt};
@@ -203,7 +200,7 @@ TEST_CASE_TEMPLATE("one by one and in lanes the bits are the same", Shape, ALL_S
              work = elements.damping_work;
   std::fill(elements.damping_work.begin(), elements.damping_work.end(), 0);
   for (Index e = 0; e < elements.count; ++e) {
-    elements.force_kernel()(One{e});
+    elements.force_kernel().forces(One{e}).store({elements.corner_force.data()}, One{e});
     elements.report_kernel()(One{e});
   }
   CHECK(elements.corner_force == force);
@@ -281,13 +278,13 @@ TEST_CASE_TEMPLATE("flow one by one and in lanes: the same bits, also of elastic
   Flowing<Shape> elements(8 + 2 * lanes + 1, random);
   elements.deform(random, 0.01);
   const auto rest = elements.history;
-  for_each_lane({}, elements.count, Blocks{}, elements.flow_kernel());
+  elements.run(elements.flow_kernel(), elements.corner_force);
   const auto force = elements.corner_force, history = elements.history, work = elements.work;
   elements.history = rest;
   std::fill(elements.work.begin(), elements.work.end(), 0);
   int flowed = 0;
   for (Index e = 0; e < elements.count; ++e) {
-    elements.flow_kernel()(One{e});
+    elements.flow_kernel().forces(One{e}).store({elements.corner_force.data()}, One{e});
     for (const Index row : {6, 7}) flowed += elements.history[row * elements.stride + e] > 0;
     CHECK(elements.work[e] >= 0);  // also where a step strains by far too much
     if (elements.material[e] == 0) CHECK(elements.work[e] == 0);
@@ -305,7 +302,7 @@ TEST_CASE_TEMPLATE("forces of an element that flowed sum to no force and no mome
   Real worst_f = 0, worst_m = 0;
   for (int k = 0; k < 3; ++k) {  // so that stress and strain have other axes
     elements.deform(random, 0.02);
-    for_each_lane({}, elements.count, Blocks{}, elements.flow_kernel());
+    elements.run(elements.flow_kernel(), elements.corner_force);
   }
   for (Index e = 0; e < elements.count; ++e) {
     Vec sum{0, 0, 0}, moment{0, 0, 0};
@@ -337,7 +334,7 @@ TEST_CASE_TEMPLATE("what the mean force of each step supplies is stored or plast
         elements.place(0, k, elements.rest(0, k) + elements.dt * step * way[k]);
         elements.move(0, k, way[k]);
       }
-      elements.flow_kernel()(One{0});
+      elements.flow_kernel().forces(One{0}).store({elements.corner_force.data()}, One{0});
       Real force = 0;
       for (Index k = 0; k < Shape::nodes; ++k) force -= dot(elements.force(0, k), way[k]);
       supplied += 0.5 * elements.dt * (force_before + force);

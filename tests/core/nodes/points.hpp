@@ -13,8 +13,8 @@ struct Points {
   Index count;
   std::vector<Real> motion, mass, force, damping_force, unbalance, reaction, work_external,
       work_damping, step_change;
-  std::vector<Index> corner_first, corner, contact_first, contact_corner;
-  std::vector<Real> corner_force, contact_force;
+  std::vector<Index> tile_first, corner_first, corner, contact_first, contact_corner;
+  std::vector<Real> tile_force, corner_force, contact_force;
   std::vector<Index> load_first, load_curve;
   std::vector<Real> load_force, curve{1.0};
   std::vector<Index> support, support_curve{0, 0, 0};
@@ -37,6 +37,7 @@ struct Points {
         work_external(nodes),
         work_damping(nodes),
         step_change(nodes),
+        tile_first(nodes + 1),
         corner_first(nodes + 1),
         contact_first(nodes + 1),
         load_first(nodes + 1),
@@ -92,7 +93,9 @@ struct Points {
   bool damps() const { return damping.local > 0 || damping.mass > 0; }
   SumNodeForces sum_kernel() {
     return {{motion.data()},
-            {corner_first.data(),
+            {tile_first.data(),
+             {tile_force.data()},
+             corner_first.data(),
              corner.data(),
              {corner_force.data()},
              contact_first.data(),

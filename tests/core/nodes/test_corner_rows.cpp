@@ -4,13 +4,14 @@
 
 namespace cdem::test {
 
-TEST_CASE("rows of elements come first, then those of bonds with their sign") {
-  const Real rows[] = {1, 2, 3, 0, 10, 20, 30, 0, 100, 200, 300, 0};
-  const Index first[] = {0, 3, 3, 4}, corner[] = {1, ~0, 2, ~2};
-  const CornerLists lists{first, corner, {rows}, nullptr, nullptr, {nullptr}};
-  CHECK(distance(lists.sum(0, Row::zero()).vector(), Vec{109, 218, 327}) == 0);
+TEST_CASE("rows of tiles come first, then those of bonds with their sign") {
+  const Real tiles[] = {1e20, 0, 0, 0, 5, 6, 7, 0}, rows[] = {1, 2, 3, 0, 1e20, 20, 30, 0};
+  const Index tile_first[] = {0, 1, 1, 2};
+  const Index first[] = {0, 2, 2, 3}, corner[] = {~1, 0, ~0};
+  const CornerLists lists{tile_first, {tiles}, first, corner, {rows}, nullptr, nullptr, {nullptr}};
+  CHECK(distance(lists.sum(0, Row::zero()).vector(), Vec{1, -18, -27}) == 0);
   CHECK(distance(lists.sum(1, Row::of(4, 5, 6)).vector(), Vec{4, 5, 6}) == 0);
-  CHECK(distance(lists.sum(2, Row::zero()).vector(), Vec{-100, -200, -300}) == 0);
+  CHECK(distance(lists.sum(2, Row::zero()).vector(), Vec{4, 4, 4}) == 0);
 }
 
 }  // namespace cdem::test

@@ -12,8 +12,10 @@ bool lists(const Column<Index>& blocks, Index item) {
 
 /// Fixed boxes in a row, far apart; the last is free where asked for.
 struct Boxes : Scene {
+  static constexpr Index count = 64;
   explicit Boxes(bool last_is_free) {
-    for (Index b = 0; b < 24; ++b) add_box({2.0 * b, 0, 0}, {1, 1, 1}, b < 23 || !last_is_free);
+    for (Index b = 0; b < count; ++b)
+      add_box({2.0 * b, 0, 0}, {1, 1, 1}, b + 1 < count || !last_is_free);
     build();
     start();
     find_awake(model, state);
@@ -26,11 +28,14 @@ TEST_CASE("elements and nodes of which all are fixed sleep") {
   const Boxes all(false);
   CHECK(all.state.hex8.awake.size() == 0);
   const Boxes boxes(true);
-  for (Index b = 0; b < 16; ++b) CHECK(!lists(boxes.state.hex8.awake, b));
-  CHECK(lists(boxes.state.hex8.awake, 23));
+  const Index tile = boxes.state.hex8.tiles.block_first[1] * block_size;  // the last one: all awake
+  REQUIRE(tile < Boxes::count - block_size);
+  for (Index b = 0; b < Boxes::count; ++b) CHECK(lists(boxes.state.hex8.awake, b) == (b >= tile));
+  const Index last = 8 * (Boxes::count - 1);
   CHECK(boxes.state.nodes.sleeps[0]);
-  CHECK(!boxes.state.nodes.sleeps[8 * 23]);
-  CHECK(lists(boxes.state.nodes.awake, 8 * 23));
+  CHECK(boxes.state.nodes.sleeps[last - 8]);
+  CHECK(!boxes.state.nodes.sleeps[last]);
+  CHECK(lists(boxes.state.nodes.awake, last));
   CHECK(!lists(boxes.state.nodes.awake, 0));
 }
 

@@ -1,0 +1,13 @@
+// tiles.hpp - divides elements into tiles. Host code.
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
+namespace cdem {
+
+/// Divide the elements of every set into tiles, and give each node a row for each of its tiles, in
+/// the order of the sets and of their elements.
+void list_tiles(const Model& model, State& state);
+
+}  // namespace cdem
