@@ -46,9 +46,9 @@ FAULTS = [
     Mutant(
         "skin",
         "skin of the lists watched at ten times its width",
-        "core/contact/broad_phase/predicted_motion.cpp",
-        "dot(off, off) > then.w",
-        "dot(off, off) > T(100.0) * then.w",
+        "core/contact/broad_phase/exceeds_skin.hpp",
+        "return dot(off, off) > then.w;",
+        "return dot(off, off) > T(100.0) * then.w;",
         "tests/core/contact/pair_list/test_rebuild.cpp",
     ),
     Mutant(
