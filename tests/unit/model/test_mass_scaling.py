@@ -8,7 +8,7 @@ from scenes import case, irregular_tets
 
 import cdem
 from cdem.errors import CaseError
-from cdem.model import mass_scaling
+from cdem.model import assemble, mass_scaling
 from cdem.model.interfaces import that_may_break
 from cdem.model.masses import one_element_blocks
 
@@ -158,6 +158,23 @@ def test_bonds_break_that_any_stage_weakens():
     assert breaks() == [False, False]
     assert breaks(set={"interfaces.default.cohesion": "1 MPa"}) == [False, True]
     assert breaks(set={"interfaces.pairs.0.tensile_strength": "99 MPa"}) == [True, False]
+
+
+@pytest.mark.parametrize("of", ["single elements", "blocks of several"])
+def test_a_step_that_mass_allows_is_the_longest_for_which_it_suffices(monkeypatch, tmp_path, of):
+    found = []
+    monkeypatch.setattr(
+        assemble, "Scaling", lambda *of: found.append(mass_scaling.Scaling(*of)) or found[-1]
+    )
+    made = shaken(tmp_path, cdem=2) if of == "single elements" else jointed()
+    sim = cdem.Simulation(made, threads=1)
+    scaling, intact = found[0], found[0]._states[0]
+    for mass in (0.0, 1.0):  # of what 1.3 times the step needs
+        added = mass * scaling.added(1.3 * sim.build.assembly.limits[0])
+        limit = scaling.limit_at_the_start(added)
+        assert (intact.added(0.9999999 * limit) <= added).all()
+        assert not (intact.added(1.0000001 * limit) <= added).all()
+    assert limit > 1.2 * sim.build.assembly.limits[0]
 
 
 def test_no_more_mass_is_added_than_was_allowed(tmp_path):
