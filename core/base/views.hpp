@@ -81,7 +81,8 @@ struct InFlags {
 struct InIndices {
   const Index* data;
   Index stride;
-  CDEM_HD Index at(Index row, One item) const { return data[std::size_t(row) * stride + item.i]; }
+  CDEM_HD Index at(Index row, Index item) const { return data[std::size_t(row) * stride + item]; }
+  CDEM_HD Index at(Index row, One item) const { return at(row, item.i); }
   CDEM_HD void fetch(Index row, One item) const {
     cdem::fetch(data + std::size_t(row) * stride + item.i);
   }
@@ -89,6 +90,11 @@ struct InIndices {
   IndexPack at(Index row, Lane item) const {
     IndexPack p;
     std::memcpy(p.id, data + std::size_t(row) * stride + item.i, sizeof p.id);
+    return p;
+  }
+  IndexPack at(Index row, const IndexPack& item) const {
+    IndexPack p;
+    for (Index j = 0; j < lanes; ++j) p.id[j] = at(row, item.id[j]);
     return p;
   }
 #endif
@@ -208,9 +214,19 @@ struct InRows {
     return {r[0], r[1], r[2], r[3]};
   }
   CDEM_HD Four<Real> at(One item, Index from) const { return at(item.i, from); }
+  /// The same of `none` where there is no row (-1).
+  CDEM_HD Four<Real> at(Index row, Index from, const Real* none) const {
+    return row < 0 ? InRows{none}.at(0, from) : at(row, from);
+  }
 #if !defined(__CUDACC__)
   Four<Pack> at(const IndexPack& row, Index from) const {
     return load_fours([&](Index j) { return rows + std::size_t(row.id[j]) * 8 + from; });
+  }
+  Four<Pack> at(const IndexPack& row, Index from, const Real* none) const {
+    const Real* of[lanes];
+    for (Index j = 0; j < lanes; ++j)
+      of[j] = (row.id[j] < 0 ? none : rows + std::size_t(row.id[j]) * 8) + from;
+    return load_fours([&](Index j) { return of[j]; });
   }
   Four<Pack> at(Lane item, Index from) const {
     return load_fours([&](Index j) { return rows + std::size_t(item.i + j) * 8 + from; });

@@ -10,7 +10,9 @@ template void for_each_item(Queue, Index, const BeginTargets&);
 template void for_each_selected(Queue, Index, const UpdateHeldTargets&);
 template void for_each_selected(Queue, Index, const FilterNewTargets&);
 template void for_each_item(Queue, Index, const ResolveTargets&);
+template void for_each_selected(Queue, Index, const FindHeldEdges&);
 template void for_each_lane(Queue, Index, const FilterEdgePairs&);
+template void for_each_item(Queue, Index, const ForgetHeldEdges&);
 template void for_each_selected(Queue, Index, const ResolveTargetEdges&);
 template void for_each_item(Queue, Index, const ListEdgeContacts&);
 

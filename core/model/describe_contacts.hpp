@@ -146,9 +146,9 @@ void describe_found_edges(EdgeState& e, Rebuilt&& rebuilt) {
           e.found_count);
   rebuilt("find_target_edges",
           {.name = "edge.found",
-           .meaning = "mother side, target side, place one step ago or -1; the rest is unused",
+           .meaning = "mother side, target side, place one step ago or -1, place in inner.held",
            .rows = "found_edges",
-           .numbers = 3},
+           .numbers = 4},
           e.found);
 }
 
@@ -192,12 +192,12 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
   rebuilt("update_contact_forces",
           {.name = "contacts_by_target.count",
            .meaning = "contacts that act on a face",
-           .rows = "exposed"},
+           .rows = "acting_rows"},
           acting.count);
   rebuilt("update_contact_forces",
           {.name = "contacts_by_target.first",
            .meaning = "contacts that act on a face",
-           .rows = "exposed",
+           .rows = "acting_rows",
            .layout = Layout::starts,
            .refers_to = {"acting_contacts"}},
           acting.first);

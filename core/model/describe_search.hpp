@@ -261,15 +261,31 @@ void describe_inner_edges(InnerList& inner, Rebuilt&& rebuilt) {
           inner.edge_sides);
   rebuilt("prune_pair_list",
           {.name = "inner.edge_codes",
-           .meaning = "outer.ee_codes of the pair",
+           .meaning = "outer.ee_codes of the pair, and at which edges its faces are neighbours",
            .rows = "inner_edge_pairs",
            .layout = Layout::columns},
           inner.edge_codes);
+  rebuilt("prune_pair_list",
+          {.name = "inner.edge_of",
+           .meaning = "the first edge, and the second",
+           .rows = "inner_edge_pairs",
+           .numbers = 2,
+           .layout = Layout::columns,
+           .refers_to = {"edges"}},
+          inner.edge_of);
   rebuilt("find_target_edges",
           {.name = "inner.open",
            .meaning = "ways in which the edges may touch in this step, as bits",
            .rows = "inner_edge_pairs"},
           inner.open);
+  rebuilt("find_target_edges",
+          {.name = "inner.held",
+           .meaning = "place of the contact of a side as the mother, or -1",
+           .rows = "inner_edge_pairs",
+           .numbers = 4,
+           .layout = Layout::columns,
+           .refers_to = {"edge_contacts"}},
+          inner.held);
 }
 
 /// Call stored(info, column) or rebuilt(by, info, column) for every array of exposed faces and pair

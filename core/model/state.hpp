@@ -169,8 +169,10 @@ struct InnerList {
   Column<Flag> rises;            // [candidate] may the surface rise at a side of it?
   Column<Flag> may_begin;        // [candidate] see FilterNewTargets; made in every step
   Column<Index> near_edges;      // outer pairs of edges
-  Column<Index> edge_ends, edge_sides, edge_codes;  // of the inner pairs of edges, see EdgePairs
-  Column<Flag> open;  // [inner pair] see FilterEdgePairs; made in every step
+  Column<Index> edge_ends, edge_sides, edge_codes, edge_of;  // of its pairs of edges, see EdgePairs
+  Column<Flag> open;        // [inner pair] see FilterEdgePairs; made in every step
+  Column<Index> held;       // of its pairs of edges, see EdgePairs
+  bool held_known = false;  // in the last step, and neither pairs nor contacts were moved since
 };
 
 /// Exposed faces, the surface that they make, and the pair lists.

@@ -110,9 +110,9 @@ FAULTS = [
     Mutant(
         "edge_cone",
         "edge contacts whose normal lies outside the cones of the edges",
-        "core/contact/narrow_phase/target_edge.hpp",
-        "return !(rises(nm, dm, -n)",
-        "return (rises(nm, dm, -n)",
+        "core/contact/narrow_phase/touching_edges.hpp",
+        "!((turned & (a.rises | b.falls))",
+        "((turned & (a.rises | b.falls))",
         "tests/core/contact/narrow_phase/test_target_edge.cpp",
     ),
     Mutant(
@@ -132,11 +132,19 @@ FAULTS = [
         "tests/core/contact/force/test_contact_force.cpp",
     ),
     Mutant(
+        "held edges",
+        "pairs of edges do not look for what they held where contacts were moved",
+        "core/contact/narrow_phase/edge_pair.hpp",
+        "return !known || EdgeWays::have_others",
+        "return EdgeWays::have_others",
+        "tests/core/contact/narrow_phase/test_target_edge.cpp",
+    ),
+    Mutant(
         "lifted edge",
         "edges that have dilated are lost above zero gap",
-        "core/contact/narrow_phase/target_edge.hpp",
-        "!(edges.gap > lifted)",
-        "!(edges.gap > zero)",
+        "core/contact/narrow_phase/touching_edges.hpp",
+        "!(gap > highest_gap(before))",
+        "!(gap > none)",
         "tests/core/contact/narrow_phase/test_target_edge.cpp",
     ),
 ]

@@ -96,9 +96,8 @@ class AllPairs {
   bool touch(Index x, Index k, Index t, Index j) const {
     SidePair pair;
     if (!pair_sides(edges.faces, face(x), k, face(t), j, pair)) return false;
-    const Index before = edges.held_place(x, k, m.face_edges[4 * face(t) + j]);
-    return edges.test(TwoSides<Index>{.m = x, .t = t, .sides = pair.code(), .before = before})
-        .touches;
+    const Index before = edges.held.place_of(4 * x + k, m.face_edges[4 * face(t) + j]);
+    return edges.touch(4 * x + k, 4 * t + j, pair.shared, before);
   }
   /// Has the step found that they do?
   bool is_found(Index x, Index k, Index t, Index j) const {

@@ -8,11 +8,15 @@
 
 namespace cdem {
 
-/// Contacts that have an exposed face as target: ragged rows. A semi-spring is its slot; a
-/// semi-edge comes after all of them by its place in its list.
+/// Contacts that have an exposed face as target: two ragged rows a face, its semi-springs and its
+/// semi-edges. A semi-spring is its slot; a semi-edge comes after all of them by its place in its
+/// list.
 struct ContactsByTarget {
-  const Index* first;  // [exposed + 1]
+  const Index* first;  // [2 * exposed + 1]
   Index* contact;      // in any order, see AccumulateFaceForces
+
+  CDEM_HD Range springs_on(Index face) const { return {first[2 * face], first[2 * face + 1]}; }
+  CDEM_HD Range edges_on(Index face) const { return {first[2 * face + 1], first[2 * face + 2]}; }
 };
 
 /// The contacts of an exposed face and their targets.
@@ -21,22 +25,23 @@ struct ContactsOf {
   EdgeColumns edges;
   Index exposed;  // how many faces there are
 
+  /// Call act(row, contact) with the row that it has in ContactsByTarget.
   template <class Do>
   CDEM_HD void visit(Index m, const Do& act) const {
     for (Index slot = 4 * m; slot < 4 * m + 4; ++slot)
-      if (springs.target[slot] >= 0) act(springs.target[slot], slot);
+      if (springs.target[slot] >= 0) act(2 * springs.target[slot], slot);
     for (Index c = edges.first[m]; c < edges.first[m + 1]; ++c)
-      act(EdgeContact::at(edges.contact, c).face, 4 * exposed + c);
+      act(2 * EdgeContact::at(edges.contact, c).face + 1, 4 * exposed + c);
   }
 };
 
 /// Count the contacts that act on every exposed face; each learns its place among them.
 struct CountContactsByTarget : ContactsOf {
-  Index* count;  // [exposed]
+  Index* count;  // [2 * exposed]
   Index* place;  // [contact]
   bool alone;    // see raise
   CDEM_HD void operator()(One m) const {
-    visit(m.i, [&](Index target, Index contact) { place[contact] = raise(count[target], alone); });
+    visit(m.i, [&](Index row, Index contact) { place[contact] = raise(count[row], alone); });
   }
 };
 
@@ -45,8 +50,8 @@ struct ListContactsByTarget : ContactsOf {
   const Index* place;  // [contact]
   ContactsByTarget acting;
   CDEM_HD void operator()(One m) const {
-    visit(m.i, [&](Index target, Index contact) {
-      acting.contact[acting.first[target] + place[contact]] = contact;
+    visit(m.i, [&](Index row, Index contact) {
+      acting.contact[acting.first[row] + place[contact]] = contact;
     });
   }
 };
@@ -68,15 +73,29 @@ struct AccumulateFaceForces : ContactsOf {
   CDEM_HD void operator()(One m) const {
     if (!listed[m.i]) return;
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
+    const Range of_springs = acting.springs_on(m.i), of_edges = acting.edges_on(m.i);
+    for (Index c = of_springs.first; c < of_springs.last; ++c) fetch(spring(acting.contact[c]));
+    for (Index c = of_edges.first; c < of_edges.last; ++c) fetch(edge(acting.contact[c]));
     Row sum[4] = {Row::zero(), Row::zero(), Row::zero(), Row::zero()};
     own(m.i, count, sum);
-    const Index first = acting.first[m.i], last = acting.first[m.i + 1];
-    sort(acting.contact + first, last - first);
-    for (Index c = first; c < last; ++c) react(face, count, acting.contact[c], sum);
+    sort(acting.contact, of_springs);
+    sort(acting.contact, of_edges);
+    for (Index c = of_springs.first; c < of_springs.last; ++c)
+      for (Index j = 0; j < count; ++j) {
+        const Real* row = spring(acting.contact[c]);
+        add(sum[j], -row[4 + j], row);
+      }
+    for (Index c = of_edges.first; c < of_edges.last; ++c)
+      react(face, count, acting.contact[c], sum);
     for (Index k = 0; k < count; ++k) sum[k].store(corner_force + (std::size_t(m.i) * 4 + k) * 4);
   }
 
  private:
+  /// Reactions of contacts.
+  CDEM_HD const Real* spring(Index slot) const { return springs.reaction + std::size_t(slot) * 8; }
+  CDEM_HD const Real* edge(Index contact) const {
+    return edges.reaction + std::size_t(contact - 4 * exposed) * 8;
+  }
   /// The force with its weight, the stiffness with the size of that.
   CDEM_HD static void add(Row& corner, Real weight, const Real* row) {
     corner = corner + (weight * Row::at(row)).with_size_of_last();
@@ -99,21 +118,17 @@ struct AccumulateFaceForces : ContactsOf {
       edge_dashpot[m] += row[7];
     }
   }
-  /// What a contact that has this face as target does to it.
+  /// What a semi-edge that crosses a side of this face does to it.
   CDEM_HD void react(Index face, Index count, Index contact, Row sum[4]) const {
-    if (contact < 4 * exposed) {
-      const Real* row = springs.reaction + std::size_t(contact) * 8;
-      for (Index j = 0; j < count; ++j) add(sum[j], -row[4 + j], row);
-      return;
-    }
-    const Index c = contact - 4 * exposed;
-    const Real* row = edges.reaction + std::size_t(c) * 8;
-    const Index k = faces.side_on(face, EdgeContact::at(edges.contact, c).edge);
+    const Real* row = edge(contact);
+    const Index k = faces.side_on(face, EdgeContact::at(edges.contact, contact - 4 * exposed).edge);
     add(sum[k], row[5] - 1.0, row);
     add(sum[k + 1 == count ? 0 : k + 1], -row[5], row);
   }
-  /// Shell's sort: rows are short and almost in order, but for a large face under much rubble.
-  CDEM_HD static void sort(Index* row, Index count) {
+  /// Shell's sort: rows are in order already where one thread listed them, else almost.
+  CDEM_HD static void sort(Index* contact, Range range) {
+    Index* row = contact + range.first;
+    const Index count = range.last - range.first;
     Index gap = 1;
     while (gap < count / 3) gap = 3 * gap + 1;
     for (; gap > 0; gap /= 3)

@@ -15,7 +15,6 @@ template <template <class> class Unloading>
 struct UpdateEdgeForces {
   FaceColumns faces;
   FaceGeometry geometry;
-  const Index* exposed_face;
   ContactLaws laws;
   const Real* state_before;  // rows of ContactState, one step ago
   EdgeColumns edges;
@@ -98,20 +97,18 @@ struct UpdateEdgeForces {
   };
   template <class Ids, class T = Number<Ids>>
   CDEM_HD Before<T> before(const Ids& place) const {
-    const auto was = [&](auto of) {
-      const auto one = [&](Index b) {
-        return of(b >= 0 ? ContactState::at(state_before, b) : ContactState::none());
-      };
-      return numbers_of(one, place);
-    };
-    const T zero(0.0), penetration = was([](const ContactState& s) { return s.penetration; });
-    return {.force = {.force_n = was([](const ContactState& s) { return s.force_n; }),
-                      .penetration = max_of(penetration, zero),
-                      .shear1 = was([](const ContactState& s) { return s.shear1; }),
-                      .shear2 = was([](const ContactState& s) { return s.shear2; }),
-                      .approach = was([](const ContactState& s) { return s.approach; })},
-            .stress_free_gap = was([](const ContactState& s) { return s.stress_free_gap; }),
-            .begins = penetration < zero};
+    Real none[8];
+    ContactState::none().store(none, 0);
+    const Four<T> forces = InRows{state_before}.at(place, 0, none);
+    const Four<T> rest = InRows{state_before}.at(place, 4, none);
+    const T zero(0.0);
+    return {.force = {.force_n = forces.x,
+                      .penetration = max_of(forces.y, zero),
+                      .shear1 = forces.z,
+                      .shear2 = forces.w,
+                      .approach = rest.w},
+            .stress_free_gap = rest.x,
+            .begins = forces.y < zero};
   }
 
   /// How the two edges move against each other in the step.
@@ -173,11 +170,12 @@ struct UpdateEdgeForces {
     const T on_m = select(pressed, line.s, pair.crossing.s);
     const T on_t = select(pressed, line.t, pair.crossing.t);
     // does the target face's side go the way of the edge?
-    const auto same_way = [&](Index x, Index e, Index start) {
-      const Index face = exposed_face[x];
-      return faces.vertex(face, faces.side_on(face, e)) == start;
+    const auto same_way = [&](Index x, Index start, Index end) {
+      const Index* v = geometry.table[x].corner;
+      const auto side = [&](Index a, Index b) { return int(v[a] == start) & int(v[b] == end); };
+      return side(0, 1) | side(1, 2) | side(2, 3) | side(3, 0);  // of a triangle v[3] is v[2]
     };
-    const T forward = numbers_of(same_way, contact.target_face, contact.target_edge, contact.t0);
+    const T forward = numbers_of(same_way, contact.target_face, contact.t0, contact.t1);
     const T reaction[8] = {force.x,    force.y,
                            force.z,    select(pressed, stiffness, zero),
                            on_m,       select(forward > zero, on_t, one - on_t),

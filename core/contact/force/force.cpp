@@ -49,7 +49,6 @@ void update_edge_forces(const Model& m, State& s, Queue q) {
   with_laws(interface_table(m),
             UpdateEdgeForces<Unloading>{.faces = face_columns(m, s),
                                         .geometry = face_geometry(s),
-                                        .exposed_face = s.search.exposed_face.data(),
                                         .laws = contact_laws(m, s),
                                         .state_before = s.edges.old_state.data(),
                                         .edges = edge_columns(s),
@@ -72,7 +71,7 @@ void accumulate_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
   const ContactsOf contacts{spring_columns(s), edge_columns(s), count};
   ContactsByTargetState& acting = s.contacts_by_target;
-  acting.count.resize(count);
+  acting.count.resize(2 * std::size_t(count));
   acting.count.fill(0);
   acting.place.resize(s.springs.target.size() + s.edges.contact.size() / 4);
   for_each_item(

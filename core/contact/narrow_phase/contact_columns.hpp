@@ -34,6 +34,15 @@ struct EdgesBefore {
   const Index* first;
   const Index* contact;
   const Real* state;
+
+  /// Place of the contact that a side (4 * exposed face + side) had with an edge, or -1.
+  CDEM_HD Index place_of(Index side, Index edge) const {
+    for (Index c = first[side / 4]; c < first[side / 4 + 1]; ++c) {
+      const EdgeContact held = EdgeContact::at(contact, c);
+      if (held.edge == edge && held.mother == side) return c;
+    }
+    return -1;
+  }
 };
 
 }  // namespace cdem

@@ -19,7 +19,7 @@ void swap_with_old(EdgeState& e) {
 void make_places(EdgeState& e, std::size_t count) {
   e.found_count.resize(count);
   e.found_count.fill(0);
-  e.found.resize(3 * std::size_t(e.slots) * count);
+  e.found.resize(FoundEdge::numbers * std::size_t(e.slots) * count);
 }
 
 }  // namespace
@@ -59,6 +59,7 @@ bool make_room_for_edges(State& s) {
 
 void add_edges(State& s, const std::vector<EdgeContact>& contacts, const ContactState& as) {
   if (contacts.empty()) return;
+  s.search.inner.held_known = false;
   const std::size_t count = s.search.exposed_face.size();
   EdgeState& e = s.edges;
   std::vector<EdgeContact> list;
@@ -97,6 +98,7 @@ void add_edges(State& s, const std::vector<EdgeContact>& contacts, const Contact
 
 void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Index>& to) {
   begin_edges(s);
+  s.search.inner.held_known = false;
   EdgeState& e = s.edges;
   const std::vector<Real> reaction(e.reaction.data(), e.reaction.data() + e.reaction.size());
   e.first.resize(from.size() + 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/contact/geometry/face_geometry.hpp"
+#include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/records/rules.hpp"
 
 namespace cdem {
@@ -10,17 +11,11 @@ namespace cdem {
 /// b of the other began at the same place in the mesh.
 struct SidePair {
   Index k, j, shared;
-  CDEM_HD Index code() const { return shared << 4 | k << 2 | j; }
-  CDEM_HD static SidePair of(Index code) { return {code >> 2 & 3, code & 3, code >> 4}; }
   /// `shared` where the one, or the other, is run through backwards.
   CDEM_HD static Index turned(Index shared, bool one, bool other) {
     if (one) shared = (shared & 3) << 2 | shared >> 2;
     if (other) shared = (shared & 5) << 1 | (shared & 10) >> 1;
     return shared;
-  }
-  /// `shared` with the two in each other's place.
-  CDEM_HD static Index swapped(Index shared) {
-    return (shared & 9) | (shared & 2) << 1 | (shared & 4) >> 1;
   }
 };
 
@@ -31,6 +26,10 @@ struct EdgeWays {
   /// Is the mother's edge the second one?
   CDEM_HD static bool is_reverse(Index way) { return way & 4; }
   CDEM_HD static Index way(bool reverse, Index i, Index j) { return reverse << 2 | i << 1 | j; }
+  /// The mother's side and the target's, of the four: 0 and 1 at the first edge, 2 and 3 at the
+  /// second.
+  CDEM_HD static Index mother(Index way) { return is_reverse(way) ? 2 + (way & 1) : way >> 1 & 1; }
+  CDEM_HD static Index target(Index way) { return is_reverse(way) ? way >> 1 & 1 : 2 + (way & 1); }
   /// The ways in which two edges may touch, as bits; which of their ends are shared; which of the
   /// four sides (those of the first edge, then of the second) run against the edges; which of the
   /// edges begin where their first side ends.
@@ -38,6 +37,27 @@ struct EdgeWays {
     return some | shared << count | against << (count + 4) | turned << (count + 8);
   }
   CDEM_HD static bool is_turned(Index code, Index edge) { return code >> (count + 8 + edge) & 1; }
+  /// Bit 2 a + b: end a of the one and end b of the other began at the same place in the mesh.
+  CDEM_HD static Index shared_ends(Index code) { return code >> count & 15; }
+  /// +1 where side i of edge e goes the way of the edge, -1 where it runs against it.
+  CDEM_HD static Real sense(Index code, Index e, Index i) {
+    return code >> (count + 4 + 2 * e + i) & 1 ? -1.0 : 1.0;
+  }
+  /// Are the two faces at edge e on either side of it: is each the other's ExposedRow::beside?
+  CDEM_HD static Index with_neighbours(Index code, Index e) { return code | 1 << (count + 10 + e); }
+  CDEM_HD static bool are_neighbours(Index code, Index e) { return code >> (count + 10 + e) & 1; }
+  /// Are there other faces at the edges, so that their contacts may be found through other pairs?
+  CDEM_HD static Index with_others(Index code) { return code | 1 << (count + 12); }
+  CDEM_HD static bool have_others(Index code) { return code >> (count + 12) & 1; }
+};
+
+/// Two edges, or such a pair a lane: edge e with its ends, and with the (at most two) faces at it.
+template <class Ids>
+struct TwoEdges {
+  Ids end[2][2];   // nodes
+  Ids side[2][2];  // 4 * exposed face + side; the same twice where there is one face
+  Ids code;        // see EdgeWays
+  Ids before[4];   // by side as the mother: place of its contact one step ago, or -1
 };
 
 /// Pairs of edges of the inner list, see pair_list/prune.hpp.
@@ -47,20 +67,52 @@ struct EdgePairs {
   InIndices sides;  // [4][pair]: 4 * exposed face + side, of the faces at the one, and at the
                     // other; the same twice where there is one
   InIndices code;   // [1][pair]: see EdgeWays
+  InIndices edges;  // [2][pair]: the one, and the other
   Flag* open;       // [pair] ways in which they may touch in this step, see FilterEdgePairs
+  Index* held;      // [4][pair]: place of the contact of a side as the mother with the other edge,
+                    // among those of one step ago, or -1
+  Index stride;     // of them all
 
-  /// The mother's side and the target's, 4 * exposed face + side.
-  struct Sides {
-    Index mother, target, shared;
-  };
-  CDEM_HD Sides sides_of(Index p, Index way) const {
-    const Index i = way >> 1 & 1, j = way & 1, bits = code.at(0, One{p});
-    const Index against = bits >> (EdgeWays::count + 4);
-    const Index a = sides.at(i, One{p}), b = sides.at(2 + j, One{p});
-    const Index shared =
-        SidePair::turned(bits >> EdgeWays::count & 15, against >> i & 1, against >> (2 + j) & 1);
-    if (EdgeWays::is_reverse(way)) return {b, a, SidePair::swapped(shared)};
-    return {a, b, shared};
+  template <class Ids>
+  CDEM_HD TwoEdges<Ids> at(const Ids& p) const {
+    TwoEdges<Ids> pair;
+    for (Index e = 0; e < 2; ++e)
+      for (Index i = 0; i < 2; ++i) {
+        pair.end[e][i] = ends.at(2 * e + i, p);
+        pair.side[e][i] = sides.at(2 * e + i, p);
+      }
+    pair.code = code.at(0, p);
+    for (Index side = 0; side < 4; ++side) pair.before[side] = InIndices{held, stride}.at(side, p);
+    return pair;
+  }
+  CDEM_HD Index& held_at(Index side, Index p) const { return held[std::size_t(side) * stride + p]; }
+};
+
+/// Find what pairs of edges held one step ago, where they do not know it from that step.
+struct FindHeldEdges {
+  EdgePairs pairs;
+  EdgesBefore held;
+  bool known;
+
+  CDEM_HD Range items(Index p) const { return {p, p + 1}; }
+  CDEM_HD bool selects(Index, Index p) const {
+    return !known || EdgeWays::have_others(pairs.code.at(0, p));
+  }
+  template <class I>
+  CDEM_HD void operator()(const I& item) const {
+    for_lanes(item, [&](Index, Index, Index p) {
+      for (Index side = 0; side < 4; ++side)
+        pairs.held_at(side, p) =
+            held.place_of(pairs.sides.at(side, p), pairs.edges.at(1 - side / 2, p));
+    });
+  }
+};
+
+/// Forget it when it has been used: ListEdgeContacts tells what they hold now.
+struct ForgetHeldEdges {
+  EdgePairs pairs;
+  CDEM_HD void operator()(One p) const {
+    for (Index side = 0; side < 4; ++side) pairs.held_at(side, p.i) = -1;
   }
 };
 
@@ -91,7 +143,6 @@ struct FilterEdgePairs {
   FaceGeometry geometry;
   EdgePairs pairs;
   SearchRules rules;
-  const Index* held;  // [exposed + 1] where the contacts of one step ago begin, by mother face
 
   template <class I>
   CDEM_HD void operator()(I p) const {
@@ -103,39 +154,88 @@ struct FilterEdgePairs {
     // of a gap, times |c| twice: below it ResolveTargetEdges decides on which side it is
     const T round_off = T(1e-12) * c2 * (abs_of(d[0].x) + abs_of(d[0].y) + abs_of(d[0].z));
     const T room = round_off + T(2.0 * rules.lifted) * c2;  // the normals differ by 2 at most
-    const T slack(1.000001 * crossing_slack(rules.indentation)), none(0.0);
+    const T none(0.0);
+    const auto code = pairs.code.at(0, p);
+    const T steepest(1.000001 * rules.cone * rules.cone);
     Vec3<T> normal[2][2];
-    T along[2][2];  // c
+    T along[2][2], length[2][2];  // along c; L  [m]
     Truth<T> far[2][2];
-    for (Index e = 0; e < 2; ++e)
+    Truth<T> rises[2][2], falls[2][2], neighbours[2];
+    for (Index e = 0; e < 2; ++e) {
       for (Index i = 0; i < 2; ++i) {
         const auto side = pairs.sides.at(2 * e + i, p);
         const auto face = indices_of([](Index s) { return s / 4; }, side);
         const auto of = geometry.row(face);
-        const auto may_go_on =
-            numbers_of([&](Index m) { return held[m + 1] - held[m]; }, face) > none;
         normal[e][i] = of.normal;
+        length[e][i] = abs_of(of.length);
         along[e][i] = dot(c, of.normal);
         const Vec3<T> start = x[e] + T(rules.indentation) * (of.center - x[e]);
-        far[e][i] = crosses_beyond(start, d[e], x[1 - e], d[1 - e], e == 0 ? c : -c, c2, rules,
-                                   select(may_go_on, slack, none) + T(1e-9));
+        const auto beyond = [&](const T& slack) {
+          return crosses_beyond(start, d[e], x[1 - e], d[1 - e], e == 0 ? c : -c, c2, rules,
+                                slack + T(1e-9));
+        };
+        const auto goes_on =
+            numbers_of([](Index c) { return c >= 0; },
+                       InIndices{pairs.held, pairs.stride}.at(2 * e + i, p)) > none;
+        far[e][i] = beyond(select(goes_on, T(1.000001 * crossing_slack(rules.indentation)), none));
+        // does the face rise along c, along -c, by more than the slack of the cones?
+        const Vec3<T> into = cross(of.normal, d[e]);
+        const T up =
+            dot(c, into) * numbers_of([&](Index of) { return EdgeWays::sense(of, e, i); }, code);
+        const auto steep = up * up > steepest * dot(into, into) * c2;
+        rises[e][i] = steep & (up > none), falls[e][i] = steep & (up < none);
       }
+      neighbours[e] =
+          numbers_of([&](Index of) { return EdgeWays::are_neighbours(of, e); }, code) > none;
+      for (auto* of : {rises[e], falls[e]}) {
+        const Truth<T> both = neighbours[e] & (of[0] | of[1]);
+        of[0] = of[0] | both, of[1] = of[1] | both;
+      }
+    }
     const auto parallel =
         c2 < T(parallel_edges * parallel_edges) * dot(d[0], d[0]) * dot(d[1], d[1]);
+    const T together2 = distance_of_shared_ends(x, d, code);
+    T opposed[2][2];
+    for (Index i = 0; i < 2; ++i)
+      for (Index j = 0; j < 2; ++j) opposed[i][j] = dot(normal[0][i], normal[1][j]);
     unsigned open[EdgeWays::count];  // lane by lane, as bits
     for (Index i = 0; i < 2; ++i)
       for (Index j = 0; j < 2; ++j) {
-        const auto wrong = parallel | (apart * (along[1][j] - along[0][i]) < -room) |
-                           !(dot(normal[0][i], normal[1][j]) < T(-rules.opposing));
-        open[EdgeWays::way(false, i, j)] = lane_bits(!(wrong | far[0][i]));
-        open[EdgeWays::way(true, i, j)] = lane_bits(!(wrong | far[1][j]));
+        const T here = opposed[i][j] - T(1e-9), out = along[1][j] - along[0][i];
+        const T flat = T(1e-9) * (abs_of(along[1][j]) + abs_of(along[0][i]));
+        const T near = T(0.999999 * rules.indentation) * min_of(length[0][i], length[1][j]);
+        const auto wrong = parallel | (together2 < near * near) | (apart * out < -room) |
+                           !(here < T(-rules.opposing)) |
+                           ((out > flat) & (falls[0][i] | rises[1][j])) |
+                           ((out < -flat) & (rises[0][i] | falls[1][j]));
+        // of two faces at a target edge that which opposes the mother less is not the right one
+        const auto left_a = neighbours[0] & (here > opposed[1 - i][j]);
+        const auto left_b = neighbours[1] & (here > opposed[i][1 - j]);
+        open[EdgeWays::way(false, i, j)] = lane_bits(!(wrong | far[0][i] | left_b));
+        open[EdgeWays::way(true, i, j)] = lane_bits(!(wrong | far[1][j] | left_a));
       }
-    const auto code = pairs.code.at(0, p);
     for_lanes(p, [&](Index lane, Index pair) {
       Index some = 0;
       for (Index way = 0; way < EdgeWays::count; ++way) some |= (open[way] >> lane & 1) << way;
       pairs.open[pair] = Flag(some & of_lane(code, lane));
     });
+  }
+
+ private:
+  /// Squared distance of the ends that began at one place, or very far: both first ones, or both
+  /// last ones, as nearly all are.
+  template <class T, class Ids>
+  CDEM_HD static T distance_of_shared_ends(const Vec3<T> (&x)[2], const Vec3<T> (&d)[2],
+                                           const Ids& code) {
+    const T far(1e300), none(0.0);
+    T least = far;
+    for (const Index ends : {0, 3}) {
+      const auto share =
+          numbers_of([&](Index of) { return EdgeWays::shared_ends(of) >> ends & 1; }, code) > none;
+      const Vec3<T> apart = ends == 0 ? x[1] - x[0] : (x[1] + d[1]) - (x[0] + d[0]);
+      least = min_of(least, select(share, dot(apart, apart), far));
+    }
+    return least;
   }
 };
 

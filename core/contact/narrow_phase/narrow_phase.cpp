@@ -23,17 +23,20 @@ void find_target_edges(const Model& m, State& s, Queue q) {
   if (!m.semi_edges) return;
   const PhaseTimer timer(s, Phase::search);
   begin_edges(s);
-  const Index pairs = Index(s.search.inner.near_edges.size());
+  InnerList& inner = s.search.inner;
+  const Index pairs = Index(inner.near_edges.size());
+  for_each_selected(q, pairs, FindHeldEdges{edge_pairs(s), edges_before(s), inner.held_known});
   for_each_lane(q, pairs,
                 FilterEdgePairs{.nodes = {s.nodes.motion.data()},
                                 .geometry = face_geometry(s),
                                 .pairs = edge_pairs(s),
-                                .rules = m.rules,
-                                .held = s.edges.old_first.data()});
+                                .rules = m.rules});
   do {
     for_each_selected(q, pairs, edge_search(m, s));
     finish(q);
   } while (!make_room_for_edges(s));
+  for_each_item(q, pairs, ForgetHeldEdges{edge_pairs(s)});
+  inner.held_known = true;
   for_each_item(q, Index(s.search.exposed_face.size()),
                 ListEdgeContacts{.touch = edge_search(m, s),
                                  .interfaces = face_interfaces(m),

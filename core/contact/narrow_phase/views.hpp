@@ -21,7 +21,10 @@ inline EdgePairs edge_pairs(State& s) {
   return {.ends = {inner.edge_ends.data(), stride},
           .sides = {inner.edge_sides.data(), stride},
           .code = {inner.edge_codes.data(), stride},
-          .open = inner.open.data()};
+          .edges = {inner.edge_of.data(), stride},
+          .open = inner.open.data(),
+          .held = inner.held.data(),
+          .stride = stride};
 }
 
 inline SpringColumns spring_columns(State& s) {
@@ -67,14 +70,14 @@ inline FoundEdges found_edges(State& s) {
 }
 
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {
-  return {.faces = face_columns(m, s),
-          .geometry = face_geometry(s),
-          .exposed_face = s.search.exposed_face.data(),
-          .pairs = edge_pairs(s),
-          .rules = m.rules,
-          .held = edges_before(s),
-          .lost = s.edges.lost.data(),
-          .found = found_edges(s)};
+  return {{.faces = face_columns(m, s),
+           .geometry = face_geometry(s),
+           .rules = m.rules,
+           .held = edges_before(s)},
+          s.search.exposed_face.data(),
+          edge_pairs(s),
+          s.edges.lost.data(),
+          found_edges(s)};
 }
 
 }  // namespace cdem

@@ -326,7 +326,7 @@ class Overlaps {
       for (Index j = 0; j < edges.faces.vertex_count(target); ++j) {
         SidePair pair;
         if (pair_sides(edges.faces, mother, k, target, j, pair) &&
-            edges.test(TwoSides<Index>{.m = x, .t = t, .sides = pair.code(), .before = -1}).touches)
+            edges.touch(4 * x + k, 4 * t + j, pair.shared, -1))
           return true;
       }
     return false;

@@ -152,13 +152,19 @@ void prune_edges(const Model& m, State& s, Queue q) {
   inner.edge_ends.resize(4 * std::size_t(near_stride));
   inner.edge_sides.resize(4 * std::size_t(near_stride));
   inner.edge_codes.resize(near_stride);
+  inner.edge_of.resize(2 * std::size_t(near_stride));
   inner.open.resize(count);
+  inner.held.resize(4 * std::size_t(near_stride));
+  inner.held_known = false;
   for_each_item(q, count,
                 CopyInnerEdges{.near = inner.near_edges.data(),
                                .listed = listed,
+                               .exposed_face = search.exposed_face.data(),
+                               .face_edges = m.face_edges.data(),
                                .ends = inner.edge_ends.data(),
                                .sides = inner.edge_sides.data(),
                                .codes = inner.edge_codes.data(),
+                               .edges = inner.edge_of.data(),
                                .stride = near_stride});
 }
 

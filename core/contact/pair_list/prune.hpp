@@ -282,21 +282,31 @@ struct MarkHeldEdges {
 struct CopyInnerEdges {
   const Index* near;  // [pair]
   ListedEdges listed;
-  Index *ends, *sides, *codes;  // of EdgePairs
+  const Index* exposed_face;
+  const Index* face_edges;              // see FaceColumns
+  Index *ends, *sides, *codes, *edges;  // of EdgePairs
   Index stride;
 
   CDEM_HD void operator()(One pair) const {
     const One from{near[pair.i]};
     for (Index k = 0; k < 4; ++k) ends[place(k, pair)] = listed.end(k, from);
+    Index code = listed.code[from.i];
     for (Index e = 0; e < 2; ++e) {
       const Index* of_edge = listed.sides + 2 * listed.of.at(e, from);
       sides[place(2 * e, pair)] = of_edge[0];
+      if (of_edge[1] >= 0 && beside(of_edge[0]) == of_edge[1] / 4 &&
+          beside(of_edge[1]) == of_edge[0] / 4)
+        code = EdgeWays::with_neighbours(code, e);
+      else if (beside(of_edge[0]) >= 0 || of_edge[1] >= 0)
+        code = EdgeWays::with_others(code);
+      edges[place(e, pair)] = face_edges[4 * exposed_face[of_edge[0] / 4] + of_edge[0] % 4];
       sides[place(2 * e + 1, pair)] = of_edge[1] >= 0 ? of_edge[1] : of_edge[0];
     }
-    codes[pair.i] = listed.code[from.i];
+    codes[pair.i] = code;
   }
 
  private:
+  CDEM_HD Index beside(Index side) const { return listed.table[side / 4].beside[side % 4]; }
   CDEM_HD std::size_t place(Index row, One pair) const {
     return std::size_t(row) * stride + pair.i;
   }

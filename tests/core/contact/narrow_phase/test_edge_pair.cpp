@@ -4,18 +4,7 @@
 
 namespace cdem::test {
 
-TEST_CASE("a pair of sides is read back from its code") {
-  for (Index k = 0; k < 4; ++k)
-    for (Index j = 0; j < 4; ++j)
-      for (Index shared = 0; shared < 16; ++shared) {
-        const SidePair back = SidePair::of(SidePair{k, j, shared}.code());
-        CHECK(back.k == k);
-        CHECK(back.j == j);
-        CHECK(back.shared == shared);
-      }
-}
-
-TEST_CASE("shared ends follow when a side is run through backwards, or both change places") {
+TEST_CASE("shared ends follow when a side is run through backwards") {
   const auto bit = [](Index a, Index b) { return 1 << (2 * a + b); };
   for (Index a = 0; a < 2; ++a)
     for (Index b = 0; b < 2; ++b) {
@@ -23,7 +12,6 @@ TEST_CASE("shared ends follow when a side is run through backwards, or both chan
       CHECK(SidePair::turned(bit(a, b), true, false) == bit(1 - a, b));
       CHECK(SidePair::turned(bit(a, b), false, true) == bit(a, 1 - b));
       CHECK(SidePair::turned(bit(a, b), true, true) == bit(1 - a, 1 - b));
-      CHECK(SidePair::swapped(bit(a, b)) == bit(b, a));
     }
 }
 
@@ -35,6 +23,21 @@ TEST_CASE("the code of a pair of edges holds ways, shared ends and directions ap
     CHECK((code >> (EdgeWays::count + 4) & 15) == 0x6);
     CHECK(EdgeWays::is_turned(code, 0) == (turned & 1));
     CHECK(EdgeWays::is_turned(code, 1) == (turned >> 1 & 1));
+    CHECK(EdgeWays::shared_ends(code) == 0x9);
+    for (Index side = 0; side < 4; ++side)
+      CHECK(EdgeWays::sense(code, side / 2, side % 2) == (0x6 >> side & 1 ? -1.0 : 1.0));
+    CHECK(!EdgeWays::are_neighbours(code, 0));
+    CHECK(!EdgeWays::have_others(code));
+    CHECK(EdgeWays::are_neighbours(EdgeWays::with_neighbours(code, 1), 1));
+    CHECK(!EdgeWays::are_neighbours(EdgeWays::with_neighbours(code, 1), 0));
+    CHECK(EdgeWays::have_others(EdgeWays::with_others(code)));
+    CHECK((EdgeWays::with_others(EdgeWays::with_neighbours(code, 0)) & 0x3ffff) == code);
+  }
+  for (Index way = 0; way < EdgeWays::count; ++way) {
+    CHECK(EdgeWays::mother(way) / 2 == EdgeWays::is_reverse(way));
+    CHECK(EdgeWays::target(way) / 2 == !EdgeWays::is_reverse(way));
+    const Index first = EdgeWays::is_reverse(way) ? EdgeWays::target(way) : EdgeWays::mother(way);
+    CHECK(first % 2 == (way >> 1 & 1));
   }
   CHECK(EdgeWays::is_reverse(EdgeWays::way(true, 0, 1)));
   CHECK(!EdgeWays::is_reverse(EdgeWays::way(false, 1, 1)));

@@ -61,16 +61,17 @@ TEST_CASE("ridges that are apart, or parallel, do not touch") {
 }
 
 TEST_CASE("a found contact is read back, and sorted by target face, mother side, target side") {
-  Index rows[6];
-  FoundEdge{4, 9, 2}.store(rows, 1);
+  Index rows[2 * FoundEdge::numbers];
+  FoundEdge{4, 9, 2, 7}.store(rows, 1);
   const FoundEdge back = FoundEdge::at(rows, 1);
   CHECK(back.mother == 4);
   CHECK(back.target == 9);
   CHECK(back.before == 2);
-  CHECK(FoundEdge{5, 8, -1}.is_before({4, 12, -1}));
-  CHECK(FoundEdge{4, 9, -1}.is_before({5, 8, -1}));
-  CHECK(FoundEdge{4, 8, -1}.is_before({4, 9, -1}));
-  CHECK(!FoundEdge{4, 9, -1}.is_before({4, 9, -1}));
+  CHECK(back.seen == 7);
+  CHECK(FoundEdge{5, 8, -1, 0}.is_before({4, 12, -1, 0}));
+  CHECK(FoundEdge{4, 9, -1, 0}.is_before({5, 8, -1, 0}));
+  CHECK(FoundEdge{4, 8, -1, 0}.is_before({4, 9, -1, 0}));
+  CHECK(!FoundEdge{4, 9, -1, 0}.is_before({4, 9, -1, 0}));
 }
 
 TEST_CASE("contacts go on from step to step, each with its own history") {
@@ -95,31 +96,76 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("sides are tested in lanes as one by one") {
+TEST_CASE("pairs of edges know what they hold, and find it anew when contacts were moved") {
+  Ridges ridges(-0.001);
+  State& s = ridges.state;
+  const auto held = [&] {
+    std::vector<Index> places;
+    for (Index p = 0; p < Index(s.search.inner.near_edges.size()); ++p)
+      for (Index side = 0; side < 4; ++side)
+        if (const Index place = edge_pairs(s).held_at(side, p); place >= 0) places.push_back(place);
+    std::sort(places.begin(), places.end());
+    return places;
+  };
+  CHECK(s.search.inner.held_known);
+  CHECK(held() == std::vector<Index>{0, 1, 2, 3});
+  s.search.inner.held_known = false;
+  for (Index i = 0; i < Index(s.search.inner.held.size()); ++i) s.search.inner.held[i] = -1;
+  ridges.step(1);
+  CHECK(ridges.found().size() == 4);
+  for (std::size_t c = 0; c < 4; ++c)
+    CHECK(EdgeContact::at(s.edges.contact.data(), c).before == Index(c));
+}
+
+TEST_CASE("edges are judged in lanes as one by one, and as sides") {
   const Ridges ridges(-0.001);
   State& s = const_cast<State&>(ridges.state);
   const ResolveTargetEdges search = edge_search(ridges.model, s);
-  Random random(1);
-  Index touching = 0;
+  struct Sides {
+    Index mother, target;
+  };
+  std::vector<Sides> all;
   const Index exposed = Index(s.search.exposed_face.size());
-  std::vector<TwoSides<Index>> all;
   for (Index m = 0; m < exposed; ++m)
     for (Index t = 0; t < exposed; ++t)
       for (Index k = 0; k < s.search.exposed[m].count(); ++k)
         for (Index j = 0; j < s.search.exposed[t].count(); ++j)
-          if (m / 5 != t / 5) all.push_back({m, t, SidePair{k, j, 0}.code(), -1});
+          if (m / 5 != t / 5) all.push_back({4 * m + k, 4 * t + j});
+  const auto edges_of = [&](const Sides& sides) {
+    const ExposedRow &m = s.search.exposed[sides.mother / 4],
+                     &t = s.search.exposed[sides.target / 4];
+    return TwoEdges<Index>{.end = {{m.corner[sides.mother % 4], m.end(sides.mother % 4)},
+                                   {t.corner[sides.target % 4], t.end(sides.target % 4)}},
+                           .side = {{sides.mother, sides.mother}, {sides.target, sides.target}},
+                           .code = EdgeWays::code_of(0xff, 0, 0, 0),
+                           .before = {-1, -1, -1, -1}};
+  };
+  Index touching = 0;
   for (std::size_t from = 0; from + lanes <= all.size(); from += lanes) {
-    TwoSides<IndexPack> pack;
-    for (Index j = 0; j < lanes; ++j) {
-      pack.m.id[j] = all[from + j].m, pack.t.id[j] = all[from + j].t;
-      pack.sides.id[j] = all[from + j].sides, pack.before.id[j] = -1;
+    TwoEdges<IndexPack> pack;
+    for (Index lane = 0; lane < lanes; ++lane) {
+      const TwoEdges<Index> one = edges_of(all[from + lane]);
+      for (Index e = 0; e < 2; ++e)
+        for (Index i = 0; i < 2; ++i) {
+          pack.end[e][i].id[lane] = one.end[e][i];
+          pack.side[e][i].id[lane] = one.side[e][i];
+          pack.before[2 * e + i].id[lane] = -1;
+        }
+      pack.code.id[lane] = one.code;
     }
-    const auto in_lanes = search.test(pack);
-    for (Index j = 0; j < lanes; ++j) {
-      const auto alone = search.test(all[from + j]);
-      CHECK(holds(in_lanes.touches, j) == alone.touches);
-      CHECK(holds(in_lanes.too_deep, j) == alone.too_deep);
-      touching += alone.touches;
+    const Touching in_lanes = search.judge(pack);
+    for (Index lane = 0; lane < lanes; ++lane) {
+      const Sides& sides = all[from + lane];
+      const Touching alone = search.judge(edges_of(sides));
+      for (Index way = 0; way < EdgeWays::count; ++way) {
+        CHECK((in_lanes.touches[way] >> lane & 1) == alone.touches[way]);
+        CHECK((in_lanes.too_deep[way] >> lane & 1) == alone.too_deep[way]);
+        const bool reverse = EdgeWays::is_reverse(way);
+        CHECK(bool(alone.touches[way]) == search.touch(reverse ? sides.target : sides.mother,
+                                                       reverse ? sides.mother : sides.target, 0,
+                                                       -1));
+      }
+      touching += alone.touches[0];
     }
   }
   CHECK(touching == 4);
