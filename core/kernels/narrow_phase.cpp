@@ -1,6 +1,6 @@
 // narrow_phase.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as
 // CUDA.
-#include "core/base/parallel_loops.hpp"
+#include "core/base/primitive_loops.hpp"
 #include "core/contact/narrow_phase/target_edge.hpp"
 #include "core/contact/narrow_phase/target_face.hpp"
 
@@ -12,6 +12,7 @@ template void for_each_selected(Queue, Index, const FilterNewTargets&);
 template void for_each_item(Queue, Index, const ResolveTargets&);
 template void for_each_lane(Queue, Index, const FilterEdgePairs&);
 template void for_each_selected(Queue, Index, const ResolveTargetEdges&);
+template Most most(Queue, Index, const FoundOnFace&);
 template void for_each_item(Queue, Index, const ListEdgeContacts&);
 
 }  // namespace cdem

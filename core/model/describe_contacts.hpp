@@ -190,22 +190,12 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
            .numbers = 4},
           s.contact_force);
   rebuilt("update_contact_forces",
-          {.name = "contacts_by_target.count",
-           .meaning = "contacts that act on a face",
-           .rows = "exposed"},
-          acting.count);
-  rebuilt("update_contact_forces",
           {.name = "contacts_by_target.first",
            .meaning = "contacts that act on a face",
            .rows = "exposed",
            .layout = Layout::starts,
            .refers_to = {"acting_contacts"}},
           acting.first);
-  rebuilt("update_contact_forces",
-          {.name = "contacts_by_target.place",
-           .meaning = "place of a contact among those of its target",
-           .rows = "contacts"},
-          acting.place);
   rebuilt("update_contact_forces",
           {.name = "contacts_by_target.contact",
            .meaning = "contact that acts on the face",

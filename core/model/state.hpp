@@ -130,8 +130,7 @@ struct EdgeState {
 /// Contacts by the exposed face that they act on, see contact/force/accumulate.hpp; made in every
 /// step.
 struct ContactsByTargetState {
-  Column<Index> count, first;    // by target
-  Column<Index> place, contact;  // by contact; the list
+  Column<Index> first, contact;
 };
 
 /// Outer pair list: what may touch before the next rebuild, see contact/pair_list/outer_list.hpp.

@@ -1,7 +1,7 @@
 // accumulate.hpp - forces of all contacts, summed by the faces that they act on.
 #pragma once
 
-#include "core/base/parallel.hpp"
+#include "core/base/views.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/records/rules.hpp"
@@ -11,43 +11,22 @@ namespace cdem {
 /// Contacts that have an exposed face as target: ragged rows. A semi-spring is its slot; a
 /// semi-edge comes after all of them by its place in its list.
 struct ContactsByTarget {
-  const Index* first;  // [exposed + 1]
-  Index* contact;      // in any order, see AccumulateFaceForces
+  const Index* first;    // [exposed + 1]
+  const Index* contact;  // ascending
 };
 
-/// The contacts of an exposed face and their targets.
+/// The contacts of an exposed face and their targets, see list_rows.
 struct ContactsOf {
   SpringColumns springs;
   EdgeColumns edges;
   Index exposed;  // how many faces there are
 
   template <class Do>
-  CDEM_HD void visit(Index m, const Do& act) const {
-    for (Index slot = 4 * m; slot < 4 * m + 4; ++slot)
+  CDEM_HD void visit(One m, const Do& act) const {
+    for (Index slot = 4 * m.i; slot < 4 * m.i + 4; ++slot)
       if (springs.target[slot] >= 0) act(springs.target[slot], slot);
-    for (Index c = edges.first[m]; c < edges.first[m + 1]; ++c)
+    for (Index c = edges.first[m.i]; c < edges.first[m.i + 1]; ++c)
       act(EdgeContact::at(edges.contact, c).face, 4 * exposed + c);
-  }
-};
-
-/// Count the contacts that act on every exposed face; each learns its place among them.
-struct CountContactsByTarget : ContactsOf {
-  Index* count;  // [exposed]
-  Index* place;  // [contact]
-  bool alone;    // see raise
-  CDEM_HD void operator()(One m) const {
-    visit(m.i, [&](Index target, Index contact) { place[contact] = raise(count[target], alone); });
-  }
-};
-
-/// List the contacts that act on every exposed face.
-struct ListContactsByTarget : ContactsOf {
-  const Index* place;  // [contact]
-  ContactsByTarget acting;
-  CDEM_HD void operator()(One m) const {
-    visit(m.i, [&](Index target, Index contact) {
-      acting.contact[acting.first[target] + place[contact]] = contact;
-    });
   }
 };
 
@@ -71,7 +50,6 @@ struct AccumulateFaceForces : ContactsOf {
     Row sum[4] = {Row::zero(), Row::zero(), Row::zero(), Row::zero()};
     own(m.i, count, sum);
     const Index first = acting.first[m.i], last = acting.first[m.i + 1];
-    sort(acting.contact + first, last - first);
     for (Index c = first; c < last; ++c) react(face, count, acting.contact[c], sum);
     for (Index k = 0; k < count; ++k) sum[k].store(corner_force + (std::size_t(m.i) * 4 + k) * 4);
   }
@@ -111,19 +89,6 @@ struct AccumulateFaceForces : ContactsOf {
     const Index k = faces.side_on(face, EdgeContact::at(edges.contact, c).edge);
     add(sum[k], row[5] - 1.0, row);
     add(sum[k + 1 == count ? 0 : k + 1], -row[5], row);
-  }
-  /// Shell's sort: rows are short and almost in order, but for a large face under much rubble.
-  CDEM_HD static void sort(Index* row, Index count) {
-    Index gap = 1;
-    while (gap < count / 3) gap = 3 * gap + 1;
-    for (; gap > 0; gap /= 3)
-      for (Index j = gap; j < count; ++j) {
-        const Index contact = row[j];
-        Index place = j;
-        for (; place >= gap && row[place - gap] > contact; place -= gap)
-          row[place] = row[place - gap];
-        row[place] = contact;
-      }
   }
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/base/primitives.hpp"
 #include "core/contact/narrow_phase/target_edge.hpp"
 
 namespace cdem {
@@ -17,9 +18,9 @@ void swap_with_old(EdgeState& e) {
 }
 
 void make_places(EdgeState& e, std::size_t count) {
-  e.found_count.resize(count);
-  e.found_count.fill(0);
-  e.found.resize(3 * std::size_t(e.slots) * count);
+  e.found_count.renew(count);
+  set_all({}, Index(count), e.found_count.data(), Index(0));
+  e.found.renew(3 * std::size_t(e.slots) * count);
 }
 
 }  // namespace
@@ -28,32 +29,28 @@ void begin_edges(State& s) {
   EdgeState& e = s.edges;
   const std::size_t count = s.search.exposed_face.size();
   swap_with_old(e);
-  e.first.resize(count + 1);
+  e.first.renew(count + 1);
   make_places(e, count);
 }
 
 bool make_room_for_edges(State& s) {
   EdgeState& e = s.edges;
   const std::size_t count = s.search.exposed_face.size();
-  Index most = 0;
-  e.first[0] = 0;
-  for (std::size_t x = 0; x < count; ++x) {
-    most = std::max(most, e.found_count[x]);
-    e.first[x + 1] = e.first[x] + e.found_count[x];
-  }
-  if (most > ResolveTargetEdges::most_slots) {
+  const Real largest = most({}, Index(count), FoundOnFace{e.found_count.data()}).value;
+  const Index needed = largest > 0 ? Index(largest) : 0;
+  if (needed > ResolveTargetEdges::most_slots) {
     swap_with_old(e);  // the run reports the contacts of the step before
     throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
   }
-  if (most > e.slots) {
-    e.slots = most;
+  if (needed > e.slots) {
+    e.slots = needed;
     make_places(e, count);
     return false;
   }
-  const std::size_t contacts = e.first[count];
-  e.contact.resize(4 * contacts);
-  e.state.resize(8 * contacts);
-  e.reaction.resize(8 * contacts);
+  const std::size_t contacts = scan({}, Index(count), e.found_count.data(), e.first.data());
+  e.contact.renew(4 * contacts);
+  e.state.renew(8 * contacts);
+  e.reaction.renew(8 * contacts);
   return true;
 }
 

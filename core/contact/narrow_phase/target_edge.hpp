@@ -21,6 +21,12 @@ struct FoundEdges {
   bool alone;    // see raise
 };
 
+/// How many an exposed face has.
+struct FoundOnFace {
+  const Index* count;
+  CDEM_HD Real operator()(One m) const { return count[m.i]; }
+};
+
 /// A contact of a semi-edge as it is found: a row of 3.
 struct FoundEdge {
   Index mother, target;  // 4 * exposed face + side
