@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "core/base/device.hpp"
 
@@ -25,8 +26,17 @@ class Column {
 
   /// Set the length; items that are new are `fill`.
   void resize(std::size_t size, T fill = T{}) {
-    if (size > capacity_) reserve(size > 2 * capacity_ ? size : 2 * capacity_);
+    if (size > capacity_) reserve(grown(size));
     for (std::size_t i = size_; i < size; ++i) data_[i] = fill;
+    size_ = size;
+  }
+  /// Set the length and forget the items: for kernels to write all of them.
+  void renew(std::size_t size) {
+    if (size > capacity_) {
+      const std::size_t capacity = grown(size);
+      Column().swap(*this);
+      take(capacity);
+    }
     size_ = size;
   }
   void assign(const T* from, std::size_t size) {
@@ -52,16 +62,27 @@ class Column {
   }
 
  private:
-  void reserve(std::size_t capacity) {
-    T* memory = static_cast<T*>(allocate((capacity + 16) * sizeof(T)));
-    if (size_) std::memcpy(memory, data_, size_ * sizeof(T));
-    release(data_);
-    data_ = memory;
+  std::size_t grown(std::size_t size) const { return size > 2 * capacity_ ? size : 2 * capacity_; }
+  void take(std::size_t capacity) {
+    data_ = static_cast<T*>(allocate((capacity + 16) * sizeof(T)));
     capacity_ = capacity;
+  }
+  void reserve(std::size_t capacity) {
+    const Column before(std::move(*this));
+    take(capacity);
+    size_ = before.size_;
+    if (size_) std::memcpy(data_, before.data_, size_ * sizeof(T));
   }
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
 };
+
+/// What stands in an array, on its way to the host.
+template <class T>
+std::vector<T> fetch(const Column<T>& column) {
+  const Transfer transfer;
+  return {column.data(), column.data() + column.size()};
+}
 
 /// Rows of several numbers per item, stored row after row: number r of item i is data[r*stride +
 /// i]. The stride avoids multiples of 4096 bytes, at which all rows fall into one cache set.

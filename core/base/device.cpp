@@ -19,7 +19,7 @@ void check(cudaError_t error) {
 void* allocate(std::size_t bytes) {
   void* memory = nullptr;
   if (cudaMallocManaged(&memory, bytes) != cudaSuccess) throw std::bad_alloc();
-  std::memset(memory, 0, bytes);
+  check(cudaMemset(memory, 0, bytes));
   return memory;
 }
 void release(void* memory) { cudaFree(memory); }

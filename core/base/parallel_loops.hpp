@@ -115,10 +115,14 @@ void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel
 
 template <class Kernel>
 bool any_item(Queue, Index count, const Kernel& kernel) {
-  const Index whole = count - count % lanes;
+  Index whole = 0;
   bool found = false;
+  if constexpr (requires { kernel(Lane{0}); }) {
+    whole = count - count % lanes;
 #pragma omp parallel for schedule(static) reduction(|| : found) if (count >= worth_threads)
-  for (Index i = 0; i < whole; i += lanes) found = any_of(kernel(Lane{i})) || found;
+    for (Index i = 0; i < whole; i += lanes) found = any_of(kernel(Lane{i})) || found;
+  }
+#pragma omp parallel for schedule(static) reduction(|| : found) if (count - whole >= worth_threads)
   for (Index i = whole; i < count; ++i) found = any_of(kernel(One{i})) || found;
   return found;
 }

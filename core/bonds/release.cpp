@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/base/any_item.hpp"
-#include "core/base/parallel.hpp"
+#include "core/base/primitives.hpp"
 #include "core/bonds/has_jumped.hpp"
+#include "core/bonds/lets_go.hpp"
 #include "core/bonds/transfer_to_contact.hpp"
 #include "core/bonds/views.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -21,49 +22,40 @@ PairStatus status_of(const PairState& s, Index pair) { return PairStatus(s.statu
 /// each other by this part of the indentation; by the whole indentation, at once.
 constexpr Real release_part = 0.1;
 
-/// Contacts have no cohesion: a pair whose broken bonds have some left is not released while it is
-/// pressed, until it has slid by this part of its length.
-constexpr Real slide_part = 0.3;
-
-/// Cohesion that broken bonds of an interface have left  [Pa].
-Real residual_cohesion(const Model& m, Index interface) {
-  Real left = 0;
-  InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-    if constexpr (requires { &Law<Real>::broken_cohesion; })
-      if (m.interfaces[interface].law == number)
-        left = Law<Real>::broken_cohesion(m.interface_parameters.data() +
-                                          std::size_t(interface) * parameter_row);
-  });
-  return left;
-}
-
-/// Has a broken pair moved by more than this part of its length, and does nothing keep it?
-bool lets_go(const Model& m, const PairSet& p, const PairState& s, Index i, Real part) {
-  if (!(s.jump[i] > part * pair_length(m, p, i))) return false;
-  const bool pressed = s.stored[i] > 0;
-  return !pressed || !(residual_cohesion(m, p.interface[i]) > 0) ||
-         s.jump[i] > slide_part * pair_length(m, p, i);
+LetsGo lets_go(const Model& m, const PairSet& p, const PairState& s, Real part) {
+  return {.part = part,
+          .status = s.status.data(),
+          .jump = s.jump.data(),
+          .stored = s.stored.data(),
+          .faces = p.faces.data(),
+          .interface = p.interface.data(),
+          .face_length = m.face_length.data(),
+          .interfaces = interface_table(m)};
 }
 
 bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
-  if (!any_item({}, p.count, HasJumped{{s.jump.data(), 0}})) return false;
-  bool due = false;
-#pragma omp parallel for schedule(static) reduction(|| : due) if (p.count >= worth_threads)
-  for (Index i = 0; i < p.count; ++i)
-    due = due || (s.jump[i] > 0 && lets_go(m, p, s, i, m.rules.indentation));
-  return due;
+  return any_item({}, p.count, HasJumped{{s.jump.data(), 0}}) &&
+         any_item({}, p.count, lets_go(m, p, s, m.rules.indentation));
+}
+
+/// The pairs for which a kernel holds, ascending.
+template <class Kernel>
+std::vector<Index> pairs_where(const PairSet& p, const Kernel& kernel) {
+  Column<Index> list;
+  select_items({}, p.count, kernel, list);
+  return fetch(list);
 }
 
 /// A pair that holds by some of its points and is this part of its length apart at another is a
 /// hinge: what comes between its faces touches them.
 constexpr Real hinge_part = 0.05;
 
-/// Is a pair bonded by some of its points, of which `place` gives the places in the point tables?
-template <class Place>
-bool holds_in_part(const PairState& ps, Index i, Index count, Place&& place) {
-  Index holding = 0;
-  for (Index k = 0; k < count; ++k) holding += ps.bond[place(k)] > 0;
-  return status_of(ps, i) == PairStatus::bonded && holding > 0 && holding < count;
+HoldsInPart holds_in_part(const PairSet& p, const PairState& s) {
+  return {.status = s.status.data(),
+          .bond = s.bond.data(),
+          .point_first = conforms(p) ? nullptr : p.point_first.data(),
+          .points = p.points,
+          .stride = p.point_stride};
 }
 
 /// A broken point of a pair that may be a hinge.
@@ -106,9 +98,8 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
                                      .sampled = false,
                                      .corner_force = {}};
   std::vector<BrokenPoint> broken;
-  for (Index i = 0; i < p.count; ++i) {
+  for (const Index i : pairs_where(p, holds_in_part(p, ps))) {
     const auto place = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
-    if (!holds_in_part(ps, i, count, place)) continue;
     Vec3<Real> jump[count];
     const Frame<Real> frame = bonds.gather_jumps(One{i}, jump);
     broken.clear();
@@ -126,9 +117,8 @@ void open_overlap_hinges(const Model& m, State& s) {
   PairState& ps = s.overlaps;
   const OverlapBonds bonds = overlap_bonds(m, s);
   std::vector<BrokenPoint> broken;
-  for (Index i = 0; i < p.count; ++i) {
+  for (const Index i : pairs_where(p, holds_in_part(p, ps))) {
     const Index first = p.point_first[i], count = p.point_first[i + 1] - first;
-    if (!holds_in_part(ps, i, count, [&](Index k) { return std::size_t(first + k); })) continue;
     const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
     const Frame<Real> frame = bonds.frame_of(a, b);
     broken.clear();
@@ -146,10 +136,9 @@ void open_overlap_hinges(const Model& m, State& s) {
 
 /// Returns whether any was released.
 bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
-  bool any = false;
-  for (Index i = 0; i < p.count; ++i) {
-    if (!is_live(status_of(ps, i))) continue;
-    if (!lets_go(m, p, ps, i, release_part * m.rules.indentation)) continue;
+  const std::vector<Index> released =
+      pairs_where(p, lets_go(m, p, ps, release_part * m.rules.indentation));
+  for (const Index i : released) {
     expose(s, p.faces[2 * i]);
     expose(s, p.faces[2 * i + 1]);
     give_history(m, s, p, ps, i);
@@ -164,9 +153,8 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     ps.status[i] = Flag(PairStatus::released);
     ps.jump[i] = 0;
     ps.jump_at_break[i] = -1;
-    any = true;
   }
-  return any;
+  return !released.empty();
 }
 
 }  // namespace

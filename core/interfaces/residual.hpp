@@ -43,7 +43,7 @@ struct Residual {
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
   /// What broken bonds keep while they are pressed  [Pa].
-  static Real broken_cohesion(const Real* parameter) { return parameter[6]; }
+  CDEM_HD static Real broken_cohesion(const Real* parameter) { return parameter[6]; }
 
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T* state) const {
     return bonded.bears(in, state);

@@ -85,7 +85,7 @@ struct Softening {
     return nullptr;
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
-  static Real broken_cohesion(const Real* parameter) { return parameter[7]; }
+  CDEM_HD static Real broken_cohesion(const Real* parameter) { return parameter[7]; }
   /// Of a softer bond strength would fall by more than the bond unloads: A / k_n + B / k_s must be
   /// below 1 for these A and B, in any mix of modes  [Pa/m].
   static std::array<Real, 2> steepest_fall(const Real* parameter) {

@@ -1,11 +1,15 @@
 // bonds.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
-#include "core/base/parallel_loops.hpp"
+#include "core/base/primitive_loops.hpp"
 #include "core/bonds/bonded_pairs.hpp"
 #include "core/bonds/has_jumped.hpp"
+#include "core/bonds/lets_go.hpp"
 
 namespace cdem {
 
 template bool any_item(Queue, Index, const HasJumped&);
+template bool any_item(Queue, Index, const LetsGo&);
+template void select_items(Queue, Index, const LetsGo&, Column<Index>&);
+template void select_items(Queue, Index, const HoldsInPart&, Column<Index>&);
 template void for_each_lane(Queue, Index, Blocks,
                             const WithLaws<ConformingBonds<3>, BrittleAlone>&);
 template void for_each_lane(Queue, Index, Blocks,

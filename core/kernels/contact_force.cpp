@@ -1,6 +1,6 @@
 // contact_force.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as
 // CUDA.
-#include "core/base/parallel_loops.hpp"
+#include "core/base/primitive_loops.hpp"
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/force/change_of_target.hpp"
 #include "core/contact/force/edge_force.hpp"
@@ -27,8 +27,7 @@ template void for_each_lane(Queue, Index,
 template void for_each_lane(Queue, Index,
                             const WithLaws<UpdateEdgeForces<HystereticUnloading>, InterfaceLaws>&);
 template void for_each_item(Queue, Index, const MergeSideHistories&);
-template void for_each_item(Queue, Index, const CountContactsByTarget&);
-template void for_each_item(Queue, Index, const ListContactsByTarget&);
+template void list_rows(Queue, Index, Index, const ContactsOf&, Column<Index>&, Column<Index>&);
 template void for_each_item(Queue, Index, const AccumulateFaceForces&);
 template void for_each_item(Queue, Index, const UpdateRollingCouples&);
 template void for_each_item(Queue, Index, const AddRollingCouples&);

@@ -1,6 +1,6 @@
 // narrow_phase.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as
 // CUDA.
-#include "core/base/parallel_loops.hpp"
+#include "core/base/primitive_loops.hpp"
 #include "core/contact/narrow_phase/target_edge.hpp"
 #include "core/contact/narrow_phase/target_face.hpp"
 
@@ -12,8 +12,9 @@ template void for_each_selected(Queue, Index, const FilterNewTargets&);
 template void for_each_item(Queue, Index, const ResolveTargets&);
 template void for_each_selected(Queue, Index, const FindHeldEdges&);
 template void for_each_lane(Queue, Index, const FilterEdgePairs&);
-template void for_each_item(Queue, Index, const ForgetHeldEdges&);
+template void for_each_item(Queue, Index, const RecallHeldEdges&);
 template void for_each_selected(Queue, Index, const ResolveTargetEdges&);
+template void list_rows(Queue, Index, Index, const FoundEdges&, Column<Index>&, Column<Index>&);
 template void for_each_item(Queue, Index, const ListEdgeContacts&);
 
 }  // namespace cdem

@@ -1,7 +1,9 @@
 // nodes.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
-#include "core/base/parallel_loops.hpp"
+#include "core/base/primitive_loops.hpp"
 #include "core/nodes/central_difference.hpp"
+#include "core/nodes/contact_corners.hpp"
 #include "core/nodes/node_energy.hpp"
+#include "core/nodes/node_frequency.hpp"
 
 namespace cdem {
 
@@ -9,6 +11,8 @@ template void for_each_item(Queue, Index, Blocks, const SumNodeForces&);
 template void for_each_item(Queue, Index, Blocks, const MoveNodes&);
 template void for_each_item(Queue, Index, Blocks, const AdvanceNodes&);
 template void for_each_item(Queue, Index, const NodeMomentum&);
+template Most most(Queue, Index, const NodeFrequency&);
+template void list_rows(Queue, Index, Index, const ContactCorners&, Column<Index>&, Column<Index>&);
 template void for_each_item(Queue, Index, const SampleNodes&);
 
 }  // namespace cdem

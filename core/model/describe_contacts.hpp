@@ -139,17 +139,14 @@ void describe_found_edges(EdgeState& e, Rebuilt&& rebuilt) {
            .rows = "old_edge_states",
            .numbers = 8},
           e.old_state);
+  rebuilt(
+      "find_target_edges",
+      {.name = "edge.found",
+       .meaning = "8 times the pair of edges of the inner list, and the way in which they touch",
+       .rows = "edge_contacts"},
+      e.found);
   rebuilt("find_target_edges",
-          {.name = "edge.found_count",
-           .meaning = "contacts of a mother face that the step has found",
-           .rows = "exposed"},
-          e.found_count);
-  rebuilt("find_target_edges",
-          {.name = "edge.found",
-           .meaning = "mother side, target side, place one step ago or -1, place in inner.held",
-           .rows = "found_edges",
-           .numbers = 4},
-          e.found);
+          {.name = "edge.seen", .meaning = "place in inner.held", .rows = "edge_contacts"}, e.seen);
 }
 
 /// Histories that contacts of one side write, before the side takes the largest: part of
@@ -190,22 +187,12 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
            .numbers = 4},
           s.contact_force);
   rebuilt("update_contact_forces",
-          {.name = "contacts_by_target.count",
-           .meaning = "contacts that act on a face",
-           .rows = "acting_rows"},
-          acting.count);
-  rebuilt("update_contact_forces",
           {.name = "contacts_by_target.first",
            .meaning = "contacts that act on a face",
            .rows = "acting_rows",
            .layout = Layout::starts,
            .refers_to = {"acting_contacts"}},
           acting.first);
-  rebuilt("update_contact_forces",
-          {.name = "contacts_by_target.place",
-           .meaning = "place of a contact among those of its target",
-           .rows = "contacts"},
-          acting.place);
   rebuilt("update_contact_forces",
           {.name = "contacts_by_target.contact",
            .meaning = "contact that acts on the face",

@@ -93,8 +93,6 @@ void describe_search_rows(const State& s, Visit&& visit) {
   visit(RowKind{"old_edge_contacts", "those of one step ago"}, last(s.edges.old_first));
   visit(RowKind{"old_edge_states", "their states, then what released overlaps handed over"},
         total(s.edges.old_state) / 8);
-  visit(RowKind{"found_edges", "places for contacts of semi-edges that a step finds"},
-        s.edges.slots * total(s.edges.found_count));
   visit(RowKind{"contacts", "slots, then contacts of semi-edges"},
         4 * exposed + last(s.edges.first));
   visit(RowKind{"acting_rows", "semi-springs on exposed face x: 2 x; semi-edges: 2 x + 1"},

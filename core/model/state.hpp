@@ -123,15 +123,13 @@ struct EdgeState {
   HistoryColumns contact_history;  // [contact], made in every step
   Column<Index> old_first, old_contact;
   Column<Real> old_state;
-  Index slots = 8;  // of the search in a step: places a face, see FoundEdges
-  Column<Index> found_count, found;
+  Column<Index> found, seen;  // [contact] see FoundEdges, ListEdgeContacts
 };
 
 /// Contacts by the exposed face that they act on, see contact/force/accumulate.hpp; made in every
 /// step.
 struct ContactsByTargetState {
-  Column<Index> count, first;    // by target
-  Column<Index> place, contact;  // by contact; the list
+  Column<Index> first, contact;
 };
 
 /// Outer pair list: what may touch before the next rebuild, see contact/pair_list/outer_list.hpp.

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/primitives.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/nodes/contact_corners.hpp"
 
 namespace cdem {
 
@@ -27,22 +29,11 @@ void list_corners(const Model& m, State& s) {
 }
 
 void list_contact_corners(const Model& m, State& s) {
-  Column<Index>&first = s.search.contact_first, &corner = s.search.contact_corner;
-  first.resize(m.node_count + 1);
-  first.fill(0);
-  const auto visit = [&](auto&& at) {
-    for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x) {
-      if (!s.search.outer.face_listed[x]) continue;
-      const Index face = s.search.exposed_face[x];
-      for (Index k = 0; k < 4; ++k)
-        if (m.face_nodes[4 * face + k] >= 0) at(m.face_nodes[4 * face + k], 4 * x + k);
-    }
-  };
-  visit([&](Index node, Index) { ++first[node + 1]; });
-  for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
-  corner.resize(first[m.node_count]);
-  std::vector<Index> next(first.data(), first.data() + m.node_count);
-  visit([&](Index node, Index row) { corner[next[node]++] = row; });
+  list_rows({}, Index(s.search.exposed_face.size()), m.node_count,
+            ContactCorners{.exposed_face = s.search.exposed_face.data(),
+                           .face_nodes = m.face_nodes.data(),
+                           .listed = s.search.outer.face_listed.data()},
+            s.search.contact_first, s.search.contact_corner);
 }
 
 }  // namespace cdem

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/primitives.hpp"
 #include "core/model/phase_timer.hpp"
 #include "core/nodes/masses.hpp"
+#include "core/nodes/node_frequency.hpp"
 #include "core/nodes/views.hpp"
 
 namespace cdem {
@@ -23,71 +25,33 @@ Real strongly_damped(Real xi) {
   return sure_contact_damping * damped(sure_contact_damping) * undamped / xi;
 }
 
-/// Stiffness of bonds and contacts, those that may begin included, on a node  [N/m].
-Real stiffness_at(const State& s, Index i) {
-  return std::max(s.nodes.force[std::size_t(i) * 4 + 3], s.node_potential[i]) + s.node_bonds[i];
+NodeFrequency node_frequency(const Model& m, const State& s, bool held) {
+  return {.mass = mass_columns(m, s),
+          .supports = support_columns(m, s),
+          .model_mass = m.mass.data(),
+          .least_mass = m.least_mass.size() > 0 ? m.least_mass.data() : nullptr,
+          .inverse_mass_bound = m.inverse_mass_bound.data(),
+          .frequency_squared = m.frequency_squared.data(),
+          .lumped_frequency_squared = m.lumped_frequency_squared.data(),
+          .force = s.nodes.force.data(),
+          .potential = s.node_potential.data(),
+          .bonds = s.node_bonds.data(),
+          .held = held};
 }
 
-bool is_held(const SupportColumns& supports, Index node) {
-  return supports.given(node, 0) && supports.given(node, 1) && supports.given(node, 2);
-}
-
-/// What part of a bound of the squared frequency of a block with a mass matrix its nodes leave, one
-/// by one: K <= diag(S + 2 k), M >= diag(least). All of it where no such diagonal is known.
-Real part_of_bound(const Model& m, const State& s, Range block, Real bound) {
-  if (m.least_mass.size() == 0) return 1;
-  const SupportColumns supports = support_columns(m, s);
-  Real largest = 0;
-  for (Index j = block.first; j < block.last; ++j) {
-    if (is_held(supports, j)) continue;
-    const Real elements = m.mass[j] * m.lumped_frequency_squared[j];
-    largest = std::max(largest, (elements + 2 * stiffness_at(s, j)) / m.least_mass[j]);
-  }
-  return largest < bound ? largest / bound : 1;
-}
-
-/// Node with the highest frequency; `held` counts those that are held or driven in all directions.
+/// The highest frequency, squared, and the node that has it.
 Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLimit& limit) {
-  Real largest = -1;
-  const MassColumns mass = mass_columns(m, s);
-  const SupportColumns supports = support_columns(m, s);
-  for (Index i = 0; i < m.node_count; ++i) {
-    Real stiffness = 0;
-    const bool dense = mass.row(i) >= 0;
-    const Index first = dense ? m.block_first[i] : i;
-    const Index last = dense ? first + m.block_count[i] : i + 1;
-    if (dense && i != first) continue;
-    Real element_frequency_squared = 0;
-    Index stiffest = i;  // of the nodes of a block with a mass matrix
-    bool free = held;
-    for (Index j = first; j < last; ++j) {
-      free = free || !is_held(supports, j);
-      if (const Real here = stiffness_at(s, j); here > stiffness) {
-        stiffness = here;
-        stiffest = j;
-      }
-      element_frequency_squared =
-          std::max(element_frequency_squared,
-                   mass.is_lumped(j) ? m.lumped_frequency_squared[j] : m.frequency_squared[j]);
-    }
-    if (!free) continue;
-    // Gershgorin: a spring between two points adds at most twice its stiffness to a row
-    Real contact_frequency_squared =
-        2 * stiffness * (mass.is_lumped(i) ? 1 / m.mass[i] : m.inverse_mass_bound[i]);
-    const Real part = dense ? part_of_bound(m, s, {first, last},
-                                            element_frequency_squared + contact_frequency_squared)
-                            : 1;
-    element_frequency_squared *= part;
-    contact_frequency_squared *= part;
-    if (element_frequency_squared + contact_frequency_squared > largest) {
-      largest = element_frequency_squared + contact_frequency_squared;
-      limit.node = stiffest;
-      limit.element_frequency_squared = element_frequency_squared;
-      limit.contact_frequency_squared = contact_frequency_squared;
-      limit.bond_part = stiffness > 0 ? s.node_bonds[stiffest] / stiffness : 0;
-    }
-  }
-  return largest;
+  const NodeFrequency nodes = node_frequency(m, s, held);
+  const Most highest = most({}, m.node_count, nodes);
+  if (highest.item < 0) return -1;
+  const Transfer transfer;  // of what stands at one node
+  const Frequency at = nodes.of(highest.item);
+  const Real stiffness = nodes.stiffness_at(at.stiffest);
+  limit.node = at.stiffest;
+  limit.element_frequency_squared = at.element;
+  limit.contact_frequency_squared = at.contact;
+  limit.bond_part = stiffness > 0 ? s.node_bonds[at.stiffest] / stiffness : 0;
+  return highest.value;
 }
 
 }  // namespace
@@ -133,8 +97,6 @@ void advance_clock(const Model& m, State& s) {
   // more contacts may press on a node than the pair list expects; scaled masses follow later, when
   // a sample of this step has been taken
   if (s.nodes.relax_mass.size() > 0 || !step_is_due(s)) return;
-  if (has_contact_pairs(s)) return renew_step(m, s);
-  const Transfer transfer;  // a check at long intervals
   renew_step(m, s);
 }
 
@@ -143,12 +105,13 @@ void scale_masses(const Model& m, State& s) {
   const Real part = s.dt / (relax_safety * limit.dt);
   const Real squared =
       (limit.element_frequency_squared + limit.contact_frequency_squared) / (part * part);
+  const NodeFrequency nodes = node_frequency(m, s, false);
   const Real before = energy_of_motion(m, s);
   s.nodes.relax_mass.assign(lumped_masses(m, s).data(), m.node_count);
   for (Index i = 0; i < m.node_count; ++i) {
     Real& mass = s.nodes.relax_mass[i];
     const Real needed =
-        (m.mass[i] * m.lumped_frequency_squared[i] + 2 * stiffness_at(s, i)) / squared;
+        (m.mass[i] * m.lumped_frequency_squared[i] + 2 * nodes.stiffness_at(i)) / squared;
     if (needed > mass && s.nodes.relax.size() > 0)
       s.nodes.relax[8 * std::size_t(i) + 3] *= mass / needed;
     mass = needed;

@@ -76,12 +76,12 @@ void end_step(const Model& m, State& s, const Goal& goal, const StepPlan& plan) 
 Report report_of(const Model& m, const State& s, const Goal& goal, const Place& place) {
   if (s.missed > 0) return {Outcome::missed_contact, -1, Real(s.missed)};
   if (!place.last && !place.scheduled) return {};
-  const Transfer transfer;
   const Report health = check_health(m, s);
   if (health.outcome != Outcome::steps_done) return health;
   if (s.time >= goal.end_time) return {Outcome::time_reached, -1, s.time};
-  if (place.scheduled && goal.unbalance_limit > 0 && unbalance_ratio(m, s) < goal.unbalance_limit)
-    return {Outcome::converged, -1, s.time};
+  if (!place.scheduled || !(goal.unbalance_limit > 0)) return {};
+  const Transfer transfer;
+  if (unbalance_ratio(m, s) < goal.unbalance_limit) return {Outcome::converged, -1, s.time};
   return {};
 }
 

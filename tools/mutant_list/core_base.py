@@ -12,6 +12,22 @@ FAULTS = [
         "tests/core/base/test_reduce.cpp",
     ),
     Mutant(
+        "first of the most",
+        "of equal numbers the most is any",
+        "core/base/primitives.hpp",
+        "other == value && of < item",
+        "other == value && of > item",
+        "tests/core/base/test_primitives.cpp",
+    ),
+    Mutant(
+        "rows",
+        "numbers stay in their rows as threads put them there",
+        "core/base/primitive_loops.hpp",
+        "while (gap < count / 3) gap = 3 * gap + 1;",
+        "gap = 0;",
+        "tests/core/base/test_primitives.cpp",
+    ),
+    Mutant(
         "polar",
         "polar rotation with one Newton step fewer",
         "core/base/math.hpp",

@@ -64,7 +64,7 @@ FAULTS = [
     Mutant(
         "kept pairs",
         "pairs with residual cohesion are released like those without",
-        "core/bonds/release.cpp",
+        "core/bonds/lets_go.hpp",
         "return !pressed ||",
         "return pressed ||",
         "tests/validation/test_interface_laws.py::test_residual_strength_after_the_peak",

@@ -14,7 +14,7 @@ FAULTS = [
     Mutant(
         "step_bound",
         "bound of the time step without contacts and bonds",
-        "core/nodes/time_step.cpp",
+        "core/nodes/node_frequency.hpp",
         "2 * stiffness * (mass.is_lumped",
         "0 * stiffness * (mass.is_lumped",
         "tests/core/nodes/test_time_step.cpp",
@@ -22,8 +22,8 @@ FAULTS = [
     Mutant(
         "held nodes",
         "held nodes bound the step of blocks with added mass",
-        "core/nodes/time_step.cpp",
-        "    if (is_held(supports, j)) continue;\n",
+        "core/nodes/node_frequency.hpp",
+        "      if (is_held(j)) continue;\n",
         "",
         "tests/core/nodes/test_time_step.cpp",
     ),

@@ -1,7 +1,7 @@
 // accumulate.hpp - forces of all contacts, summed by the faces that they act on.
 #pragma once
 
-#include "core/base/parallel.hpp"
+#include "core/base/views.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/records/rules.hpp"
@@ -12,14 +12,14 @@ namespace cdem {
 /// semi-edges. A semi-spring is its slot; a semi-edge comes after all of them by its place in its
 /// list.
 struct ContactsByTarget {
-  const Index* first;  // [2 * exposed + 1]
-  Index* contact;      // in any order, see AccumulateFaceForces
+  const Index* first;    // [2 * exposed + 1]
+  const Index* contact;  // ascending in a row
 
   CDEM_HD Range springs_on(Index face) const { return {first[2 * face], first[2 * face + 1]}; }
   CDEM_HD Range edges_on(Index face) const { return {first[2 * face + 1], first[2 * face + 2]}; }
 };
 
-/// The contacts of an exposed face and their targets.
+/// The contacts of an exposed face and their targets, see list_rows.
 struct ContactsOf {
   SpringColumns springs;
   EdgeColumns edges;
@@ -27,32 +27,11 @@ struct ContactsOf {
 
   /// Call act(row, contact) with the row that it has in ContactsByTarget.
   template <class Do>
-  CDEM_HD void visit(Index m, const Do& act) const {
-    for (Index slot = 4 * m; slot < 4 * m + 4; ++slot)
+  CDEM_HD void visit(One m, const Do& act) const {
+    for (Index slot = 4 * m.i; slot < 4 * m.i + 4; ++slot)
       if (springs.target[slot] >= 0) act(2 * springs.target[slot], slot);
-    for (Index c = edges.first[m]; c < edges.first[m + 1]; ++c)
+    for (Index c = edges.first[m.i]; c < edges.first[m.i + 1]; ++c)
       act(2 * EdgeContact::at(edges.contact, c).face + 1, 4 * exposed + c);
-  }
-};
-
-/// Count the contacts that act on every exposed face; each learns its place among them.
-struct CountContactsByTarget : ContactsOf {
-  Index* count;  // [2 * exposed]
-  Index* place;  // [contact]
-  bool alone;    // see raise
-  CDEM_HD void operator()(One m) const {
-    visit(m.i, [&](Index row, Index contact) { place[contact] = raise(count[row], alone); });
-  }
-};
-
-/// List the contacts that act on every exposed face.
-struct ListContactsByTarget : ContactsOf {
-  const Index* place;  // [contact]
-  ContactsByTarget acting;
-  CDEM_HD void operator()(One m) const {
-    visit(m.i, [&](Index row, Index contact) {
-      acting.contact[acting.first[row] + place[contact]] = contact;
-    });
   }
 };
 
@@ -78,8 +57,6 @@ struct AccumulateFaceForces : ContactsOf {
     for (Index c = of_edges.first; c < of_edges.last; ++c) fetch(edge(acting.contact[c]));
     Row sum[4] = {Row::zero(), Row::zero(), Row::zero(), Row::zero()};
     own(m.i, count, sum);
-    sort(acting.contact, of_springs);
-    sort(acting.contact, of_edges);
     for (Index c = of_springs.first; c < of_springs.last; ++c)
       for (Index j = 0; j < count; ++j) {
         const Real* row = spring(acting.contact[c]);
@@ -124,21 +101,6 @@ struct AccumulateFaceForces : ContactsOf {
     const Index k = faces.side_on(face, EdgeContact::at(edges.contact, contact - 4 * exposed).edge);
     add(sum[k], row[5] - 1.0, row);
     add(sum[k + 1 == count ? 0 : k + 1], -row[5], row);
-  }
-  /// Shell's sort: rows are in order already where one thread listed them, else almost.
-  CDEM_HD static void sort(Index* contact, Range range) {
-    Index* row = contact + range.first;
-    const Index count = range.last - range.first;
-    Index gap = 1;
-    while (gap < count / 3) gap = 3 * gap + 1;
-    for (; gap > 0; gap /= 3)
-      for (Index j = gap; j < count; ++j) {
-        const Index contact = row[j];
-        Index place = j;
-        for (; place >= gap && row[place - gap] > contact; place -= gap)
-          row[place] = row[place - gap];
-        row[place] = contact;
-      }
   }
 };
 

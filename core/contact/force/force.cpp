@@ -1,7 +1,7 @@
 // force.cpp - see force.hpp.
 #include "core/contact/force/force.hpp"
 
-#include "core/base/parallel.hpp"
+#include "core/base/primitives.hpp"
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/force/change_of_target.hpp"
 #include "core/contact/force/edge_force.hpp"
@@ -42,8 +42,8 @@ template <template <class> class Unloading>
 void update_edge_forces(const Model& m, State& s, Queue q) {
   const Index contacts = Index(s.edges.contact.size() / 4);
   const Index width = s.edges.side_history.width;
-  s.edges.contact_history.rows.resize(width * std::size_t(contacts));
-  s.edges.contact_history.law.resize(width > 0 ? contacts : 0);
+  s.edges.contact_history.rows.renew(width * std::size_t(contacts));
+  s.edges.contact_history.law.renew(width > 0 ? contacts : 0);
   const HistoryRows sides = history_rows(s.edges.side_history),
                     own = history_rows(s.edges.contact_history);
   with_laws(interface_table(m),
@@ -60,27 +60,12 @@ void update_edge_forces(const Model& m, State& s, Queue q) {
                   MergeSideHistories{edge_columns(s), sides, own});
 }
 
-void make_rows(ContactsByTargetState& acting) {
-  const std::size_t count = acting.count.size();
-  acting.first.resize(count + 1);
-  for (std::size_t i = 0; i < count; ++i) acting.first[i + 1] = acting.first[i] + acting.count[i];
-  acting.contact.resize(acting.first[count]);
-}
-
 void accumulate_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
   const ContactsOf contacts{spring_columns(s), edge_columns(s), count};
   ContactsByTargetState& acting = s.contacts_by_target;
-  acting.count.resize(2 * std::size_t(count));
-  acting.count.fill(0);
-  acting.place.resize(s.springs.target.size() + s.edges.contact.size() / 4);
-  for_each_item(
-      q, count,
-      CountContactsByTarget{contacts, acting.count.data(), acting.place.data(), runs_alone()});
-  finish(q);
-  make_rows(acting);
+  list_rows(q, count, 2 * count, contacts, acting.first, acting.contact);
   const ContactsByTarget rows{acting.first.data(), acting.contact.data()};
-  for_each_item(q, count, ListContactsByTarget{contacts, acting.place.data(), rows});
   for_each_item(q, count,
                 AccumulateFaceForces{contacts, face_columns(m, s), s.search.exposed_face.data(),
                                      s.search.outer.face_listed.data(), rows, m.rules,

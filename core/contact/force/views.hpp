@@ -21,6 +21,7 @@ inline ContactLaws contact_laws(const Model& m, const State& s) {
 
 /// Does any interface ask for restitution, or close by a curve?
 inline bool any_hysteretic(const Model& m) {
+  const Transfer transfer;
   const Interface* first = m.interfaces.data();
   return interface_table(m).curved != 0 ||
          std::any_of(first, first + m.interfaces.size(),
@@ -29,6 +30,7 @@ inline bool any_hysteretic(const Model& m) {
 
 /// Does any interface resist rolling?
 inline bool any_resists_rolling(const Model& m) {
+  const Transfer transfer;
   const Interface* first = m.interfaces.data();
   return std::any_of(first, first + m.interfaces.size(),
                      [](const Interface& i) { return i.rolling_resistance > 0; });

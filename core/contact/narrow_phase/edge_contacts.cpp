@@ -2,9 +2,6 @@
 #include "core/contact/narrow_phase/edge_contacts.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-
-#include "core/contact/narrow_phase/target_edge.hpp"
 
 namespace cdem {
 
@@ -16,45 +13,17 @@ void swap_with_old(EdgeState& e) {
   e.state.swap(e.old_state);
 }
 
-void make_places(EdgeState& e, std::size_t count) {
-  e.found_count.resize(count);
-  e.found_count.fill(0);
-  e.found.resize(FoundEdge::numbers * std::size_t(e.slots) * count);
-}
-
 }  // namespace
 
-void begin_edges(State& s) {
-  EdgeState& e = s.edges;
-  const std::size_t count = s.search.exposed_face.size();
-  swap_with_old(e);
-  e.first.resize(count + 1);
-  make_places(e, count);
-}
+void begin_edges(State& s) { swap_with_old(s.edges); }
 
-bool make_room_for_edges(State& s) {
+void make_room_for_edges(State& s) {
   EdgeState& e = s.edges;
-  const std::size_t count = s.search.exposed_face.size();
-  Index most = 0;
-  e.first[0] = 0;
-  for (std::size_t x = 0; x < count; ++x) {
-    most = std::max(most, e.found_count[x]);
-    e.first[x + 1] = e.first[x] + e.found_count[x];
-  }
-  if (most > ResolveTargetEdges::most_slots) {
-    swap_with_old(e);  // the run reports the contacts of the step before
-    throw std::runtime_error("one face crosses more than 64 edges; mesh the larger block finer");
-  }
-  if (most > e.slots) {
-    e.slots = most;
-    make_places(e, count);
-    return false;
-  }
-  const std::size_t contacts = e.first[count];
-  e.contact.resize(4 * contacts);
-  e.state.resize(8 * contacts);
-  e.reaction.resize(8 * contacts);
-  return true;
+  const std::size_t contacts = e.found.size();
+  e.contact.renew(4 * contacts);
+  e.state.renew(8 * contacts);
+  e.reaction.renew(8 * contacts);
+  e.seen.renew(contacts);
 }
 
 void add_edges(State& s, const std::vector<EdgeContact>& contacts, const ContactState& as) {

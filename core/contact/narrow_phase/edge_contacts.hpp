@@ -10,9 +10,8 @@ namespace cdem {
 /// Before a step's search: the list becomes that of one step ago.
 void begin_edges(State& state);
 
-/// After it: give every face its part of the new list. False where the search found more contacts
-/// on a face than it had places for: there are more places now, search again.
-bool make_room_for_edges(State& state);
+/// After it: room for the contacts found.
+void make_room_for_edges(State& state);
 
 /// Add contacts to the list in this state; those that it has already stay as they are.
 void add_edges(State& state, const std::vector<EdgeContact>& contacts, const ContactState& as);

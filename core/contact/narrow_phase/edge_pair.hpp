@@ -26,6 +26,12 @@ struct EdgeWays {
   /// Is the mother's edge the second one?
   CDEM_HD static bool is_reverse(Index way) { return way & 4; }
   CDEM_HD static Index way(bool reverse, Index i, Index j) { return reverse << 2 | i << 1 | j; }
+  /// Call act(way) for ways given as bits.
+  template <class Do>
+  CDEM_HD static void visit(Flag ways, const Do& act) {
+    for (Index way = 0; way < count; ++way)
+      if (ways >> way & 1) act(way);
+  }
   /// The mother's side and the target's, of the four: 0 and 1 at the first edge, 2 and 3 at the
   /// second.
   CDEM_HD static Index mother(Index way) { return is_reverse(way) ? 2 + (way & 1) : way >> 1 & 1; }
@@ -85,7 +91,10 @@ struct EdgePairs {
     for (Index side = 0; side < 4; ++side) pair.before[side] = InIndices{held, stride}.at(side, p);
     return pair;
   }
-  CDEM_HD Index& held_at(Index side, Index p) const { return held[std::size_t(side) * stride + p]; }
+  CDEM_HD Index place_held(Index side, Index p) const { return side * stride + p; }
+  /// The mother's side and the target's: 4 * exposed face + side.
+  CDEM_HD Index mother(Index p, Index way) const { return sides.at(EdgeWays::mother(way), p); }
+  CDEM_HD Index target(Index p, Index way) const { return sides.at(EdgeWays::target(way), p); }
 };
 
 /// Find what pairs of edges held one step ago, where they do not know it from that step.
@@ -102,18 +111,17 @@ struct FindHeldEdges {
   CDEM_HD void operator()(const I& item) const {
     for_lanes(item, [&](Index, Index, Index p) {
       for (Index side = 0; side < 4; ++side)
-        pairs.held_at(side, p) =
+        pairs.held[pairs.place_held(side, p)] =
             held.place_of(pairs.sides.at(side, p), pairs.edges.at(1 - side / 2, p));
     });
   }
 };
 
-/// Forget it when it has been used: ListEdgeContacts tells what they hold now.
-struct ForgetHeldEdges {
-  EdgePairs pairs;
-  CDEM_HD void operator()(One p) const {
-    for (Index side = 0; side < 4; ++side) pairs.held_at(side, p.i) = -1;
-  }
+/// Recall it where they do.
+struct RecallHeldEdges {
+  const Index* seen;  // [contact of one step ago], see ListEdgeContacts
+  Index* held;        // of EdgePairs; -1 in all places
+  CDEM_HD void operator()(One c) const { held[seen[c.i]] = c.i; }
 };
 
 /// Sine of the angle between edges that never touch.

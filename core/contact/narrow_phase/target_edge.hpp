@@ -1,8 +1,6 @@
 // target_edge.hpp - which edges a semi-edge crosses. Feng et al. (2014), Eq. 10-12.
 #pragma once
 
-#include <bit>
-
 #include "core/base/parallel.hpp"
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/face_interfaces.hpp"
@@ -11,65 +9,25 @@
 
 namespace cdem {
 
-/// Contacts that the search finds in a step, by mother face and in any order: `slots` places a
-/// face. A face may cross more edges than that; its count says so, and the caller makes room.
-struct FoundEdges {
-  Index slots;
-  Index* count;  // [exposed]
-  Index* rows;   // [exposed][slots] of FoundEdge
-  bool alone;    // see raise
-};
-
-/// A contact of a semi-edge as it is found: a row of 4.
-struct FoundEdge {
-  static constexpr Index numbers = 4;
-  Index mother, target;  // 4 * exposed face + side
-  Index before;          // place of this contact one step ago, or -1
-  Index seen;            // 4 * pair of edges + mother side, see EdgePairs::held
-
-  CDEM_HD static FoundEdge at(const Index* rows, std::size_t place) {
-    const Index* r = rows + numbers * place;
-    return {r[0], r[1], r[2], r[3]};
-  }
-  CDEM_HD void store(Index* rows, std::size_t place) const {
-    Index* r = rows + numbers * place;
-    r[0] = mother, r[1] = target, r[2] = before, r[3] = seen;
-  }
-  /// In the order of the target faces, of the mother's sides and of the target's.
-  CDEM_HD bool is_before(const FoundEdge& other) const {
-    if (target / 4 != other.target / 4) return target < other.target;
-    return mother != other.mother ? mother < other.mother : target < other.target;
-  }
-};
-
 /// Find which semi-edges touch: judge all ways of two edges that may.
 struct ResolveTargetEdges : TouchingEdges {
   const Index* exposed_face;
   EdgePairs pairs;
   Flag* lost;  // [exposed] 1: a loaded contact was lost because it penetrated too deep
-  FoundEdges found;
-
-  /// More contacts than this on one face stop the run.
-  static constexpr Index most_slots = 64;
 
   CDEM_HD Range items(Index p) const { return {p, p + 1}; }
   CDEM_HD bool selects(Index, Index p) const { return pairs.open[p] != 0; }
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
-    const auto edges = pairs.at(item.id);
-    const Touching touching = judge(edges);
+    const Touching touching = judge(pairs.at(item.id));
     for_lanes(item, [&](Index lane, Index, Index p) {
-      for (unsigned ways = std::uint8_t(pairs.open[p]); ways; ways &= ways - 1) {
-        const Index way = std::countr_zero(ways), side = EdgeWays::mother(way);
-        const Index mother = pairs.sides.at(side, p), m = mother / 4;
-        if (touching.too_deep[way] >> lane & 1) set(lost[m]);
-        if (!(touching.touches[way] >> lane & 1)) continue;
-        const FoundEdge contact{mother, pairs.sides.at(EdgeWays::target(way), p),
-                                of_lane(edges.before[side], lane), 4 * p + side};
-        const Index place = raise(found.count[m], found.alone);
-        if (place < found.slots) contact.store(found.rows, std::size_t(m) * found.slots + place);
-      }
+      Index touch = 0;
+      EdgeWays::visit(pairs.open[p], [&](Index way) {
+        touch |= (touching.touches[way] >> lane & 1) << way;
+        if (touching.too_deep[way] >> lane & 1) set(lost[pairs.mother(p, way) / 4]);
+      });
+      pairs.open[p] = Flag(touch);
     });
   }
 
@@ -94,50 +52,79 @@ struct ResolveTargetEdges : TouchingEdges {
   }
 };
 
+/// The ways in which pairs of edges touch, by the mother's exposed face, see list_rows.
+struct FoundEdges {
+  EdgePairs pairs;
+
+  template <class Do>
+  CDEM_HD void visit(One p, const Do& act) const {
+    EdgeWays::visit(pairs.open[p.i], [&](Index way) {
+      act(pairs.mother(p.i, way) / 4, EdgeWays::count * p.i + way);
+    });
+  }
+};
+
 /// List the contacts found for one exposed face, in order: they go on or begin. Energy that the
 /// springs of ended contacts did not give back is lost to friction and dashpot.
 struct ListEdgeContacts {
   ResolveTargetEdges touch;
   FaceInterfaces interfaces;
   const Index* first;  // [exposed + 1] of the list
+  Index* found;        // FoundEdges
   Index* contact;      // rows of EdgeContact
+  Index* seen;         // where EdgePairs::held holds a contact
   Real* friction;      // [exposed] lost so far  [J]
   Real* dashpot;       // [exposed] lost so far  [J]
 
   CDEM_HD void operator()(One m) const {
     const EdgesBefore& held = touch.held;
-    const FoundEdges& found = touch.found;
-    Index* row = found.rows + FoundEdge::numbers * std::size_t(m.i) * found.slots;
-    sort(row, found.count[m.i]);
-    for (Index j = 0; j < found.count[m.i]; ++j) {
-      const FoundEdge edge = FoundEdge::at(row, j);
-      EdgeContact{.mother = edge.mother,
-                  .face = edge.target / 4,
-                  .edge = touch.edge_of(edge.target),
-                  .before = edge.before}
-          .store(contact, first[m.i] + j);
-      touch.pairs.held_at(edge.seen % 4, edge.seen / 4) = first[m.i] + j;
+    const Index from = first[m.i], to = first[m.i + 1];
+    sort(found + from, to - from);
+    for (Index c = from; c < to; ++c) {
+      const Index p = found[c] / EdgeWays::count, way = found[c] % EdgeWays::count;
+      const Index target = touch.pairs.target(p, way);
+      seen[c] = touch.pairs.place_held(EdgeWays::mother(way), p);
+      EdgeContact{.mother = touch.pairs.mother(p, way),
+                  .face = target / 4,
+                  .edge = touch.edge_of(target),
+                  .before = touch.pairs.held[seen[c]]}
+          .store(contact, c);
     }
-    for (Index c = held.first[m.i]; c < held.first[m.i + 1]; ++c) {
+    for (Index old = held.first[m.i]; old < held.first[m.i + 1]; ++old) {
       bool goes_on = false;
-      for (Index j = 0; j < found.count[m.i]; ++j)
-        goes_on = goes_on || FoundEdge::at(row, j).before == c;
+      for (Index c = from; c < to; ++c)
+        goes_on = goes_on || EdgeContact::at(contact, c).before == old;
       if (goes_on) continue;
-      const DissipatedAtEnd lost = lost_at_end(c);
+      const DissipatedAtEnd lost = lost_at_end(old);
       friction[m.i] += lost.friction;
       dashpot[m.i] += lost.dashpot;
     }
   }
 
  private:
-  CDEM_HD static void sort(Index* row, Index count) {
-    for (Index j = 1; j < count; ++j) {
-      const FoundEdge edge = FoundEdge::at(row, j);
-      Index place = j;
-      for (; place > 0 && edge.is_before(FoundEdge::at(row, place - 1)); --place)
-        FoundEdge::at(row, place - 1).store(row, place);
-      edge.store(row, place);
-    }
+  /// In the order of the target faces, of the mother's sides and of the target's.
+  CDEM_HD bool is_before(Index one, Index other) const {
+    const Index p = one / EdgeWays::count, way = one % EdgeWays::count;
+    const Index q = other / EdgeWays::count, other_way = other % EdgeWays::count;
+    const Index target = touch.pairs.target(p, way),
+                other_target = touch.pairs.target(q, other_way);
+    if (target / 4 != other_target / 4) return target < other_target;
+    const Index mother = touch.pairs.mother(p, way),
+                other_mother = touch.pairs.mother(q, other_way);
+    return mother != other_mother ? mother < other_mother : target < other_target;
+  }
+  /// Shell's sort: rows are short, but for a large face under many edges.
+  CDEM_HD void sort(Index* row, Index count) const {
+    Index gap = 1;
+    while (gap < count / 3) gap = 3 * gap + 1;
+    for (; gap > 0; gap /= 3)
+      for (Index j = gap; j < count; ++j) {
+        const Index one = row[j];
+        Index place = j;
+        for (; place >= gap && is_before(one, row[place - gap]); place -= gap)
+          row[place] = row[place - gap];
+        row[place] = one;
+      }
   }
   CDEM_HD DissipatedAtEnd lost_at_end(Index c) const {
     const FaceColumns& faces = touch.faces;

@@ -62,13 +62,6 @@ inline FaceSearch face_search(const Model& m, State& s) {
           .springs = spring_columns(s)};
 }
 
-inline FoundEdges found_edges(State& s) {
-  return {.slots = s.edges.slots,
-          .count = s.edges.found_count.data(),
-          .rows = s.edges.found.data(),
-          .alone = runs_alone()};
-}
-
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {
   return {{.faces = face_columns(m, s),
            .geometry = face_geometry(s),
@@ -76,8 +69,7 @@ inline ResolveTargetEdges edge_search(const Model& m, State& s) {
            .held = edges_before(s)},
           s.search.exposed_face.data(),
           edge_pairs(s),
-          s.edges.lost.data(),
-          found_edges(s)};
+          s.edges.lost.data()};
 }
 
 }  // namespace cdem

@@ -1,6 +1,5 @@
 // Forces of all contacts, summed by the faces that they act on in a fixed order.
-#include <numeric>
-
+#include "core/base/primitives.hpp"
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/geometry/views.hpp"
 #include "core/contact/narrow_phase/views.hpp"
@@ -73,32 +72,6 @@ TEST_CASE("a vertex gets the force of its semi-spring, the target the opposite b
   }
 }
 
-TEST_CASE("the order in which contacts were listed changes no bit") {
-  Pressed pressed, other;
-  std::swap(other.acting[0], other.acting[2]);
-  pressed.kernel()(One{1});
-  other.kernel()(One{1});
-  for (Index j = 0; j < 4; ++j)
-    for (Index n = 0; n < 4; ++n) CHECK(same_bits(pressed.row(1, j).n[n], other.row(1, j).n[n]));
-  CHECK(other.acting == pressed.acting);  // sorted
-}
-
-TEST_CASE("long rows are sorted, whatever their order") {
-  Random random(2);
-  for (const Index count : {0, 1, 2, 50, 1000}) {
-    Pressed pressed;
-    // contacts of slots without force: only the order shows
-    const Index slots = Index(pressed.state.springs.target.size());
-    pressed.acting.resize(count);
-    for (Index& slot : pressed.acting) slot = random.below(slots);
-    std::vector<Index> sorted = pressed.acting;
-    std::sort(sorted.begin(), sorted.end());
-    for (Index row = 3; row <= 20; ++row) pressed.first[row] = count;
-    pressed.kernel()(One{1});
-    CHECK(pressed.acting == sorted);
-  }
-}
-
 TEST_CASE("the action coefficient shares a force among the corners of its face") {
   Pressed pressed;
   pressed.model.rules.action = 0.3;
@@ -123,19 +96,15 @@ TEST_CASE("an idle face keeps what it has") {
   CHECK(pressed.state.contact_force[4 * 24] == 42);
 }
 
-TEST_CASE("contacts are counted and listed by their targets") {
+TEST_CASE("contacts are listed by their targets") {
   Pressed pressed;
   pressed.state.springs.target[0] = 7;
-  std::vector<Index> count(20), place(40), first(21), contact(4);
   const ContactsOf all{spring_columns(pressed.state), edge_columns(pressed.state), 10};
-  for_each_item({}, 10, CountContactsByTarget{all, count.data(), place.data(), true});
-  std::vector<Index> expected(20);
-  expected[2 * 1] = 3, expected[2 * 7] = 1;
-  CHECK(count == expected);
-  std::partial_sum(count.begin(), count.end(), first.begin() + 1);
-  for_each_item({}, 10, ListContactsByTarget{all, place.data(), {first.data(), contact.data()}});
-  std::sort(contact.begin(), contact.begin() + 3);
-  CHECK(contact == std::vector<Index>{24, 25, 26, 0});
+  Column<Index> first, contact;
+  list_rows({}, 10, 20, all, first, contact);
+  for (Index row = 0; row <= 20; ++row)
+    CHECK(first[row] == (row > 2 * 1 ? 3 : 0) + (row > 2 * 7 ? 1 : 0));
+  CHECK(fetch(contact) == std::vector<Index>{24, 25, 26, 0});
 }
 
 namespace {

@@ -1,8 +1,5 @@
 // The list of semi-edge contacts, which every step makes again.
-#include <stdexcept>
-
 #include "core/contact/narrow_phase/edge_contacts.hpp"
-#include "core/contact/narrow_phase/target_edge.hpp"
 #include "tests/core/support.hpp"
 
 namespace cdem::test {
@@ -28,20 +25,18 @@ TEST_CASE("the list of a step begins empty; the last one is kept for its history
   CHECK(s.edges.old_first[2] == 2);
   CHECK(EdgeContact::at(s.edges.old_contact.data(), 1).edge == 7);
   CHECK(s.edges.old_state.size() == 16);
-  for (Index x = 0; x < 3; ++x) CHECK(s.edges.found_count[x] == 0);
 }
 
-TEST_CASE("faces get their part of the list by how many contacts they have") {
+TEST_CASE("there is room for as many contacts as were found") {
   State s;
   fill(s);
   begin_edges(s);
-  const Index counts[] = {2, 0, 3};
-  s.edges.found_count.assign(counts, 3);
-  CHECK(make_room_for_edges(s));
-  const Index first[] = {0, 2, 2, 5};
-  for (Index x = 0; x < 4; ++x) CHECK(s.edges.first[x] == first[x]);
+  s.edges.found.resize(5);
+  make_room_for_edges(s);
   CHECK(s.edges.contact.size() == 4 * 5);
   CHECK(s.edges.state.size() == 8 * 5);
+  CHECK(s.edges.reaction.size() == 8 * 5);
+  CHECK(s.edges.seen.size() == 5);
 }
 
 TEST_CASE("contacts are added to their faces in the state given; those there stay as they are") {
@@ -53,6 +48,7 @@ TEST_CASE("contacts are added to their faces in the state given; those there sta
   s.edges.reaction.resize(16);
   ContactState awaited = ContactState::none();
   awaited.stress_free_gap = 1e-3;
+  s.search.inner.held_known = true;
   add_edges(s, {{9, 0, 4, -1}, {5, 0, 7, -1}, {2, 1, 4, -1}}, awaited);
   const Index first[] = {0, 1, 3, 4};
   for (Index x = 0; x < 4; ++x) CHECK(s.edges.first[x] == first[x]);
@@ -61,20 +57,7 @@ TEST_CASE("contacts are added to their faces in the state given; those there sta
   CHECK(ContactState::at(s.edges.state.data(), 2).force_n == 3);
   CHECK(ContactState::at(s.edges.state.data(), 3).stress_free_gap == 1e-3);
   CHECK(s.edges.reaction.size() == 8 * 4);
-}
-
-TEST_CASE("more contacts on a face than places call for another search, too many for an end") {
-  State s;
-  fill(s);
-  begin_edges(s);
-  s.edges.found_count[1] = s.edges.slots + 1;
-  CHECK(!make_room_for_edges(s));
-  CHECK(s.edges.slots == 9);
-  CHECK(s.edges.found.size() == 3 * 9 * 3);
-  CHECK(s.edges.found_count[1] == 0);
-  s.edges.found_count[1] = ResolveTargetEdges::most_slots + 1;
-  CHECK_THROWS_AS(make_room_for_edges(s), std::runtime_error);
-  CHECK(EdgeContact::at(s.edges.contact.data(), 1).edge == 7);  // as the step before left it
+  CHECK(!s.search.inner.held_known);
 }
 
 }  // namespace cdem::test

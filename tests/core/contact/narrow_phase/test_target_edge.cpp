@@ -60,18 +60,15 @@ TEST_CASE("ridges that are apart, or parallel, do not touch") {
   CHECK(Ridges(-0.001, 0.01).found().empty());
 }
 
-TEST_CASE("a found contact is read back, and sorted by target face, mother side, target side") {
-  Index rows[2 * FoundEdge::numbers];
-  FoundEdge{4, 9, 2, 7}.store(rows, 1);
-  const FoundEdge back = FoundEdge::at(rows, 1);
-  CHECK(back.mother == 4);
-  CHECK(back.target == 9);
-  CHECK(back.before == 2);
-  CHECK(back.seen == 7);
-  CHECK(FoundEdge{5, 8, -1, 0}.is_before({4, 12, -1, 0}));
-  CHECK(FoundEdge{4, 9, -1, 0}.is_before({5, 8, -1, 0}));
-  CHECK(FoundEdge{4, 8, -1, 0}.is_before({4, 9, -1, 0}));
-  CHECK(!FoundEdge{4, 9, -1, 0}.is_before({4, 9, -1, 0}));
+TEST_CASE("contacts are in the order of target face, mother side and target side") {
+  const Ridges ridges(-0.001);
+  const State& s = ridges.state;
+  const auto at = [&](Index c) { return EdgeContact::at(s.edges.contact.data(), c); };
+  for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x)
+    for (Index c = s.edges.first[x]; c + 1 < s.edges.first[x + 1]; ++c) {
+      CHECK(at(c).face <= at(c + 1).face);
+      if (at(c).face == at(c + 1).face) CHECK(at(c).mother <= at(c + 1).mother);
+    }
 }
 
 TEST_CASE("contacts go on from step to step, each with its own history") {
@@ -107,6 +104,7 @@ TEST_CASE("pairs of edges know what they hold, and find it anew when contacts we
     std::sort(places.begin(), places.end());
     return places;
   };
+  ridges.step(1);
   CHECK(s.search.inner.held_known);
   CHECK(held() == std::vector<Index>{0, 1, 2, 3});
   s.search.inner.held_known = false;
@@ -115,6 +113,28 @@ TEST_CASE("pairs of edges know what they hold, and find it anew when contacts we
   CHECK(ridges.found().size() == 4);
   for (std::size_t c = 0; c < 4; ++c)
     CHECK(EdgeContact::at(s.edges.contact.data(), c).before == Index(c));
+}
+
+TEST_CASE("a ridge may cross any number of edges") {
+  // one long ridge, and 80 small ones across it, upside down
+  Scene scene;
+  scene.add<Wedge6>(
+      {{{1, -50, -1}, {-1, -50, -1}, {0, -50, 0}, {1, 50, -1}, {-1, 50, -1}, {0, 50, 0}}});
+  for (Index k = 0; k < 80; ++k) {
+    const Real y = k - 40, w = 0.3, low = -0.001;
+    scene.add<Wedge6>({{{-2, y - w, 1 + low},
+                        {-2, y + w, 1 + low},
+                        {-2, y, low},
+                        {2, y - w, 1 + low},
+                        {2, y + w, 1 + low},
+                        {2, y, low}}});
+  }
+  scene.build();
+  scene.start();
+  scene.step(2);
+  CHECK(scene.state.edges.contact.size() / 4 == 80 * 4);
+  for (std::size_t c = 0; c < 80 * 4; ++c)
+    CHECK(EdgeContact::at(scene.state.edges.contact.data(), c).before == Index(c));
 }
 
 TEST_CASE("edges are judged in lanes as one by one, and as sides") {

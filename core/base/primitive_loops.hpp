@@ -1,0 +1,196 @@
+// primitive_loops.hpp - the templates behind primitives.hpp. Only the files of core/kernels include
+// it.
+#pragma once
+
+#if !defined(CDEM_CUDA)
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <vector>
+
+#include "core/base/parallel_loops.hpp"
+#include "core/base/primitives.hpp"
+
+namespace cdem {
+
+#if !defined(CDEM_CUDA)
+
+/// Parts of some items, in order and of about one size.
+struct Parts {
+  Index items, count;
+
+  Range at(Index part) const { return {start(part), start(part + 1)}; }
+  /// Call run(part, range) for each, on a thread of its own.
+  template <class Run>
+  void for_each(const Run& run) const {
+#pragma omp parallel for schedule(static, 1) if (count > 1)
+    for (Index part = 0; part < count; ++part) run(part, at(part));
+  }
+
+ private:
+  Index start(Index part) const { return Index(std::int64_t(items) * part / count); }
+};
+/// One for each thread where there are at least so many items.
+inline Parts parts_of(Index items, Index worth) {
+  return {items, items >= worth ? Index(omp_get_max_threads()) : 1};
+}
+
+#endif
+
+/// Memory for what a primitive makes on its way; one of a kind for each thread of the host. It is
+/// never released: the device may be gone by then.
+template <class T>
+T* scratch(std::size_t size) {
+  static thread_local Column<T>& column = *new Column<T>;
+  column.renew(size);
+  return column.data();
+}
+
+template <class T>
+struct SetItem {
+  T* items;
+  T value;
+  CDEM_HD void operator()(One item) const { items[item.i] = value; }
+};
+template <class T>
+void set_all(Queue queue, Index count, T* items, T value) {
+  for_each_item(queue, count, SetItem<T>{items, value});
+}
+
+#if defined(CDEM_CPU)
+
+template <class Kernel>
+Most most(Queue, Index count, const Kernel& kernel) {
+  Most all;
+#pragma omp parallel if (count >= worth_threads)
+  {
+    Most own;
+#pragma omp for schedule(static) nowait
+    for (Index i = 0; i < count; ++i) own.meet(kernel(One{i}), i);
+#pragma omp critical(cdem_most)
+    all.meet(own.value, own.item);
+  }
+  return all;
+}
+
+template <class Kernel>
+void select_items(Queue, Index count, const Kernel& kernel, Column<Index>& list) {
+  const Parts parts = parts_of(count, worth_threads);
+  std::vector<Index> found(parts.count);
+  list.renew(count);
+  Index* const items = list.data();
+  parts.for_each([&](Index p, Range part) {
+    Index next = part.first;
+    for (Index i = part.first; i < part.last; ++i) {
+      items[next] = i;  // no branch, for the processor could not predict it
+      next += kernel(One{i}) ? 1 : 0;
+    }
+    found[p] = next - part.first;
+  });
+  Index all = found[0];
+  for (Index p = 1; p < parts.count; all += found[p++])
+    std::copy_n(items + parts.at(p).first, found[p], items + all);
+  list.renew(all);
+}
+
+#else
+
+/// The same of numbers.
+Most most_of(Queue queue, Index count, const Real* values);
+
+template <class Kernel>
+struct SetValue {
+  Kernel kernel;
+  Real* values;
+  CDEM_HD void operator()(One item) const { values[item.i] = kernel(item); }
+};
+template <class Kernel>
+Most most(Queue queue, Index count, const Kernel& kernel) {
+  if (count == 0) return {};
+  Real* const values = scratch<Real>(count);
+  for_each_item(queue, count, SetValue<Kernel>{kernel, values});
+  return most_of(queue, count, values);
+}
+
+template <class Kernel>
+struct CountItem {
+  Kernel holds;
+  Index* count;
+  CDEM_HD void operator()(One item) const { count[item.i] = holds(item) ? 1 : 0; }
+};
+struct PutCounted {
+  const Index* first;
+  Index* list;
+  CDEM_HD void operator()(One item) const {
+    if (first[item.i] < first[item.i + 1]) list[first[item.i]] = item.i;
+  }
+};
+template <class Kernel>
+void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list) {
+  Index* const first = scratch<Index>(std::size_t(count) + 1);
+  for_each_item(queue, count, CountItem<Kernel>{kernel, first + 1});
+  list.renew(scan(queue, count, first + 1, first));
+  for_each_item(queue, count, PutCounted{first, list.data()});
+}
+
+#endif
+
+/// Count what every row gets.
+template <class Kernel>
+struct CountInRows {
+  Kernel kernel;
+  Index* count;
+  bool alone;  // see raise
+  CDEM_HD void operator()(One item) const {
+    kernel.visit(item, [&](Index row, Index) { raise(count[row], alone); });
+  }
+};
+/// Put it there, in any order; the start of a row moves on to its end.
+template <class Kernel>
+struct PutInRows {
+  Kernel kernel;
+  Index *start, *number;
+  bool alone;
+  CDEM_HD void operator()(One item) const {
+    kernel.visit(item, [&](Index row, Index what) { number[raise(start[row], alone)] = what; });
+  }
+};
+/// Sort every row.
+struct SortRow {
+  const Index* first;
+  Index* number;
+  CDEM_HD void operator()(One row) const {
+    sort(number + first[row.i], first[row.i + 1] - first[row.i]);
+  }
+
+ private:
+  /// Shell's sort: rows are short and almost in order, but for a few long ones.
+  CDEM_HD static void sort(Index* row, Index count) {
+    Index gap = 1;
+    while (gap < count / 3) gap = 3 * gap + 1;
+    for (; gap > 0; gap /= 3)
+      for (Index j = gap; j < count; ++j) {
+        const Index one = row[j];
+        Index place = j;
+        for (; place >= gap && row[place - gap] > one; place -= gap) row[place] = row[place - gap];
+        row[place] = one;
+      }
+  }
+};
+
+template <class Kernel>
+void list_rows(Queue queue, Index items, Index rows, const Kernel& kernel, Column<Index>& first,
+               Column<Index>& number) {
+  first.renew(std::size_t(rows) + 2);
+  Index* const start = first.data() + 1;  // of rows; their ends at last, which are starts again
+  const bool alone = runs_alone();
+  set_all(queue, rows + 2, first.data(), Index(0));
+  for_each_item(queue, items, CountInRows<Kernel>{kernel, start + 1, alone});
+  number.renew(scan(queue, rows, start + 1, start));
+  for_each_item(queue, items, PutInRows<Kernel>{kernel, start, number.data(), alone});
+  first.renew(std::size_t(rows) + 1);
+  for_each_item(queue, rows, SortRow{first.data(), number.data()});
+}
+
+}  // namespace cdem

@@ -1,0 +1,56 @@
+// primitives.hpp - what is done with whole arrays: set, add up, find the most, select, sort, bring
+// into rows.
+//
+// Integers and comparisons alone, so every device and every number of threads give the same. The
+// bodies of templates are in primitive_loops.hpp and are instantiated in core/kernels, where the
+// other bodies are, too.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "core/base/any_item.hpp"
+#include "core/base/column.hpp"
+#include "core/base/parallel.hpp"
+
+namespace cdem {
+
+/// Set `count` items to a value. T is Flag, Index or Real.
+template <class T>
+void set_all(Queue queue, Index count, T* items, T value);
+
+/// Starts of rows: first[i] becomes the sum of the counts before row i, first[count] the sum of
+/// all, which is returned. Waits for that. `counts` may be first + 1.
+Index scan(Queue queue, Index count, const Index* counts, Index* first);
+
+/// The largest of some numbers, and the first item that has it.
+struct Most {
+  Real value = -std::numeric_limits<Real>::infinity();
+  Index item = -1;  // where there is no number above -infinity
+
+  CDEM_HD void meet(Real other, Index of) {
+    if (!(other > value || (other == value && of < item))) return;
+    value = other;
+    item = of;
+  }
+};
+
+/// The largest `kernel(item)`; what is no number does not count. Waits for the answer.
+template <class Kernel>
+Most most(Queue queue, Index count, const Kernel& kernel);
+
+/// List the items for which `kernel(item)` holds, ascending. Waits for how many they are.
+template <class Kernel>
+void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list);
+
+/// Sort pairs by their keys; those of one key stay in order.
+void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values);
+
+/// Bring numbers into rows, ascending in each: `kernel.visit(item, act)` calls act(row, number) for
+/// what an item has. Those of a row stand from first[row] on, before first[row + 1]. Waits for how
+/// many they are.
+template <class Kernel>
+void list_rows(Queue queue, Index items, Index rows, const Kernel& kernel, Column<Index>& first,
+               Column<Index>& number);
+
+}  // namespace cdem
