@@ -100,7 +100,8 @@ TEST_CASE("pairs of edges know what they hold, and find it anew when contacts we
     std::vector<Index> places;
     for (Index p = 0; p < Index(s.search.inner.near_edges.size()); ++p)
       for (Index side = 0; side < 4; ++side)
-        if (const Index place = edge_pairs(s).held_at(side, p); place >= 0) places.push_back(place);
+        if (const EdgePairs pairs = edge_pairs(s); pairs.held[pairs.place_held(side, p)] >= 0)
+          places.push_back(pairs.held[pairs.place_held(side, p)]);
     std::sort(places.begin(), places.end());
     return places;
   };
@@ -122,11 +123,11 @@ TEST_CASE("a ridge may cross any number of edges") {
       {{{1, -50, -1}, {-1, -50, -1}, {0, -50, 0}, {1, 50, -1}, {-1, 50, -1}, {0, 50, 0}}});
   for (Index k = 0; k < 80; ++k) {
     const Real y = k - 40, w = 0.3, low = -0.001;
-    scene.add<Wedge6>({{{-2, y - w, 1 + low},
-                        {-2, y + w, 1 + low},
+    scene.add<Wedge6>({{{-2, y + w, 1 + low},
+                        {-2, y - w, 1 + low},
                         {-2, y, low},
-                        {2, y - w, 1 + low},
                         {2, y + w, 1 + low},
+                        {2, y - w, 1 + low},
                         {2, y, low}}});
   }
   scene.build();
