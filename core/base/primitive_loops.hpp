@@ -136,32 +136,31 @@ void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>&
 
 #endif
 
-/// Count what every row gets.
+/// Count what every row gets; each number learns its place there, in any order.
 template <class Kernel>
 struct CountInRows {
   Kernel kernel;
-  Index* count;
+  Index *count, *place;
   bool alone;  // see raise
   CDEM_HD void operator()(One item) const {
-    kernel.visit(item, [&](Index row, Index) { raise(count[row], alone); });
+    kernel.visit(item, [&](Index row, Index number) { place[number] = raise(count[row], alone); });
   }
 };
-/// Put it there, in any order; the start of a row moves on to its end.
 template <class Kernel>
 struct PutInRows {
   Kernel kernel;
-  Index *start, *number;
-  bool alone;
+  const Index *place, *first;
+  Index* list;
   CDEM_HD void operator()(One item) const {
-    kernel.visit(item, [&](Index row, Index what) { number[raise(start[row], alone)] = what; });
+    kernel.visit(item, [&](Index row, Index number) { list[first[row] + place[number]] = number; });
   }
 };
 /// Sort every row.
 struct SortRow {
   const Index* first;
-  Index* number;
+  Index* list;
   CDEM_HD void operator()(One row) const {
-    sort(number + first[row.i], first[row.i + 1] - first[row.i]);
+    sort(list + first[row.i], first[row.i + 1] - first[row.i]);
   }
 
  private:
@@ -180,17 +179,19 @@ struct SortRow {
 };
 
 template <class Kernel>
-void list_rows(Queue queue, Index items, Index rows, const Kernel& kernel, Column<Index>& first,
-               Column<Index>& number) {
-  first.renew(std::size_t(rows) + 2);
-  Index* const start = first.data() + 1;  // of rows; their ends at last, which are starts again
-  const bool alone = runs_alone();
-  set_all(queue, rows + 2, first.data(), Index(0));
-  for_each_item(queue, items, CountInRows<Kernel>{kernel, start + 1, alone});
-  number.renew(scan(queue, rows, start + 1, start));
-  for_each_item(queue, items, PutInRows<Kernel>{kernel, start, number.data(), alone});
+void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
+               Column<Index>& first, Column<Index>& list) {
   first.renew(std::size_t(rows) + 1);
-  for_each_item(queue, rows, SortRow{first.data(), number.data()});
+  Index *const starts = first.data(), *const place = scratch<Index>(numbers);
+  set_all(queue, rows + 1, starts, Index(0));
+  for_each_item(queue, items,
+                CountInRows<Kernel>{
+                    .kernel = kernel, .count = starts + 1, .place = place, .alone = runs_alone()});
+  list.renew(scan(queue, rows, starts + 1, starts));
+  for_each_item(
+      queue, items,
+      PutInRows<Kernel>{.kernel = kernel, .place = place, .first = starts, .list = list.data()});
+  for_each_item(queue, rows, SortRow{starts, list.data()});
 }
 
 }  // namespace cdem

@@ -47,10 +47,10 @@ void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>&
 void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values);
 
 /// Bring numbers into rows, ascending in each: `kernel.visit(item, act)` calls act(row, number) for
-/// what an item has. Those of a row stand from first[row] on, before first[row + 1]. Waits for how
-/// many they are.
+/// what an item has, which are numbers below `numbers`, each once. Those of a row stand in the list
+/// from first[row] on, before first[row + 1]. Waits for how many they are.
 template <class Kernel>
-void list_rows(Queue queue, Index items, Index rows, const Kernel& kernel, Column<Index>& first,
-               Column<Index>& number);
+void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
+               Column<Index>& first, Column<Index>& list);
 
 }  // namespace cdem

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/base/reduce.hpp"
+#include "core/base/exact_sum.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -152,7 +152,7 @@ void find_across(const Model& m, State& s) {
 Real bonded_points(const Model& m, const State& s) {
   Real sum = 0;
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
-    if (conforms(p)) sum += ordered_sum(Index(ps.bond.size()), [&](Index i) { return ps.bond[i]; });
+    if (conforms(p)) sum += exact_sum(Index(ps.bond.size()), [&](Index i) { return ps.bond[i]; });
   });
   return sum;
 }

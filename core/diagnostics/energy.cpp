@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/reduce.hpp"
+#include "core/base/exact_sum.hpp"
 #include "core/diagnostics/round_off.hpp"
 #include "core/model/force_sets.hpp"
 
@@ -40,8 +40,7 @@ Real balance(const Energies& e) {
 /// The terms without start and error.
 Energies sum_terms(const Model& m, const State& s) {
   const auto sample = [&](int k) {
-    return ordered_sum(m.node_count,
-                       [&](Index i) { return s.nodes.sample[4 * std::size_t(i) + k]; });
+    return exact_sum(m.node_count, [&](Index i) { return s.nodes.sample[4 * std::size_t(i) + k]; });
   };
   Energies e;
   Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];
@@ -55,12 +54,12 @@ Energies sum_terms(const Model& m, const State& s) {
                                     column_sum(s.edges.dashpot) + s.taken_out_dashpot;
   const Index exposed = Index(s.search.exposed_face.size());
   const auto spring = [&](Index slot) { return ContactState::at(s.springs.state.data(), slot); };
-  contact = ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_n; }) +
-            ordered_sum(4 * exposed, [&](Index i) { return spring(i).energy_s; });
+  contact = exact_sum(4 * exposed, [&](Index i) { return spring(i).energy_n; }) +
+            exact_sum(4 * exposed, [&](Index i) { return spring(i).energy_s; });
   if (s.springs.rolling.size() > 0)
-    contact += ordered_sum(
+    contact += exact_sum(
         4 * exposed, [&](Index i) { return RollingState::at(s.springs.rolling.data(), i).energy; });
-  contact += ordered_sum(exposed, [&](Index i) {
+  contact += exact_sum(exposed, [&](Index i) {
     Real sum = 0;
     for (Index c = s.edges.first[i]; c < s.edges.first[i + 1]; ++c) {
       const ContactState edge = ContactState::at(s.edges.state.data(), c);

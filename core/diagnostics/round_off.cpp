@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/reduce.hpp"
+#include "core/base/exact_sum.hpp"
 
 namespace cdem {
 
@@ -15,8 +15,8 @@ RoundOff::RoundOff(const Model& m, const State& s) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       farthest = std::max(farthest, std::abs(s.nodes.motion[8 * std::size_t(i) + axis]));
   shift = std::numeric_limits<Real>::epsilon() * farthest;
-  force = shift * ordered_sum(m.node_count,
-                              [&](Index i) { return m.mass[i] * m.lumped_frequency_squared[i]; });
+  force = shift * exact_sum(m.node_count,
+                            [&](Index i) { return m.mass[i] * m.lumped_frequency_squared[i]; });
 }
 
 }  // namespace cdem

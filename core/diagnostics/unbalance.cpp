@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/base/reduce.hpp"
+#include "core/base/exact_sum.hpp"
 #include "core/diagnostics/round_off.hpp"
 #include "core/nodes/views.hpp"
 
@@ -14,13 +14,13 @@ Real unbalance_ratio(const Model& m, const State& s) {
   const LoadColumns loads = load_columns(m, s);
   const SupportColumns supports = support_columns(m, s);
   // what acts on supports needs no balance: a heavy fixed bed must not hide a block that slides
-  Real applied = ordered_sum(m.node_count, [&](Index i) {
+  Real applied = exact_sum(m.node_count, [&](Index i) {
     const Vec3<Real> f = loads.at(i).vector();
     return (supports.given(i, 0) ? 0 : std::abs(f.x)) + (supports.given(i, 1) ? 0 : std::abs(f.y)) +
            (supports.given(i, 2) ? 0 : std::abs(f.z));
   });
   if (applied == 0)  // moved by its supports alone: compare with what they carry
-    applied = ordered_sum(m.node_count, [&](Index i) {
+    applied = exact_sum(m.node_count, [&](Index i) {
       const Real* r = s.nodes.reaction.data() + std::size_t(i) * 4;
       return std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]);
     });

@@ -14,7 +14,8 @@ template void for_each_selected(Queue, Index, const FindHeldEdges&);
 template void for_each_lane(Queue, Index, const FilterEdgePairs&);
 template void for_each_item(Queue, Index, const RecallHeldEdges&);
 template void for_each_selected(Queue, Index, const ResolveTargetEdges&);
-template void list_rows(Queue, Index, Index, const FoundEdges&, Column<Index>&, Column<Index>&);
+template void list_rows(Queue, Index, Index, Index, const FoundEdges&, Column<Index>&,
+                        Column<Index>&);
 template void for_each_item(Queue, Index, const ListEdgeContacts&);
 
 }  // namespace cdem

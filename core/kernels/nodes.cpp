@@ -12,7 +12,8 @@ template void for_each_item(Queue, Index, Blocks, const MoveNodes&);
 template void for_each_item(Queue, Index, Blocks, const AdvanceNodes&);
 template void for_each_item(Queue, Index, const NodeMomentum&);
 template Most most(Queue, Index, const NodeFrequency&);
-template void list_rows(Queue, Index, Index, const ContactCorners&, Column<Index>&, Column<Index>&);
+template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Column<Index>&,
+                        Column<Index>&);
 template void for_each_item(Queue, Index, const SampleNodes&);
 
 }  // namespace cdem

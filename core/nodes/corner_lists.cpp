@@ -29,7 +29,8 @@ void list_corners(const Model& m, State& s) {
 }
 
 void list_contact_corners(const Model& m, State& s) {
-  list_rows({}, Index(s.search.exposed_face.size()), m.node_count,
+  const Index exposed = Index(s.search.exposed_face.size());
+  list_rows({}, exposed, 4 * exposed, m.node_count,
             ContactCorners{.exposed_face = s.search.exposed_face.data(),
                            .face_nodes = m.face_nodes.data(),
                            .listed = s.search.outer.face_listed.data()},

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/base/reduce.hpp"
+#include "core/base/exact_sum.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/views.hpp"
 
@@ -22,7 +22,7 @@ Real energy_of_node(const MassColumns& mass, const State& s, Index i) {
 
 Real energy_of_motion(const Model& m, const State& s) {
   const MassColumns mass = mass_columns(m, s);
-  return ordered_sum(m.node_count, [&](Index i) { return energy_of_node(mass, s, i); });
+  return exact_sum(m.node_count, [&](Index i) { return energy_of_node(mass, s, i); });
 }
 
 namespace {
@@ -88,7 +88,7 @@ void stop_motion(const Model& m, State& s) {
   const Real* damping = damping_forces(s);
   s.stopped_energy += energy_of_motion(m, s);
   // the forces of this moment have worked since the middle of the last step
-  s.stopped_energy += ordered_sum(m.node_count, [&](Index i) {
+  s.stopped_energy += exact_sum(m.node_count, [&](Index i) {
     Real* v = s.nodes.motion.data() + std::size_t(i) * 8 + 4;
     const Vec3<Real> way = 0.5 * s.dt_last * Vec3<Real>{v[0], v[1], v[2]};
     s.nodes.work_external[i] += dot(loads.at(i).vector(), way);

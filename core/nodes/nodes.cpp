@@ -1,8 +1,8 @@
 // nodes.cpp - see nodes.hpp.
 #include "core/nodes/nodes.hpp"
 
+#include "core/base/exact_sum.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/reduce.hpp"
 #include "core/elements/report.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
@@ -156,7 +156,7 @@ bool damps_nodes(const Model& m, const State& s) {
 }
 
 Real kinetic_energy(const Model& m, const State& s) {
-  return ordered_sum(m.node_count, [&](Index i) { return s.nodes.sample[4 * std::size_t(i)]; });
+  return exact_sum(m.node_count, [&](Index i) { return s.nodes.sample[4 * std::size_t(i)]; });
 }
 
 }  // namespace cdem

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/exact_sum.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/reduce.hpp"
 #include "core/nodes/nodes.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/nodes/views.hpp"
@@ -51,7 +51,7 @@ void book_slowed(const Model& m, State& s) {
   const Undamped undamped(s);
   const LoadColumns loads = load_columns(m, s);
   const SupportColumns supports = support_columns(m, s);
-  s.stopped_energy += ordered_sum(m.node_count, [&](Index i) {
+  s.stopped_energy += exact_sum(m.node_count, [&](Index i) {
     const Real* before = s.nodes.relax.data() + 8 * std::size_t(i);
     const Row way = supports.without_given(
         i, (0.5 * s.dt_last * (1 - before[3])) * Row::of(before[4], before[5], before[6]));
@@ -79,14 +79,14 @@ void relax_adaptively(const Model& m, State& s) {
   book_slowed(m, s);
   const Undamped undamped(s);
   const Real* before = s.nodes.relax.data();
-  const Real stiff = ordered_sum(m.node_count, [&](std::size_t i) {
+  const Real stiff = exact_sum(m.node_count, [&](std::size_t i) {
     Real sum = 0;
     for (std::size_t k = 0; k < 3; ++k)
       sum -= before[8 * i + 4 + k] * (undamped(i, k) - before[8 * i + k]);
     return sum;
   });
   const Column<Real>& mass = lumped_masses(m, s);
-  const Real heavy = ordered_sum(m.node_count, [&](std::size_t i) {
+  const Real heavy = exact_sum(m.node_count, [&](std::size_t i) {
     const Real* v = before + 8 * i + 4;
     return mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   });

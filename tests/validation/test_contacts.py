@@ -285,8 +285,8 @@ def test_contact_force_rotates_with_a_loaded_pair(axis):
     )
 
 
-def test_too_many_edge_crossings_stop_the_run_with_a_reason(tmp_path):
-    """A blade comes down across 40 small blocks, 80 edges. The run stops and keeps its results."""
+def test_an_edge_may_cross_any_number_of_others():
+    """A blade comes down across 40 small blocks, 80 edges, all of which it touches."""
     blade = [[x, y, z + 0.002] for x in (0, 4.2) for y, z in ((0, 0), (-0.3, 0.5), (0.3, 0.5))]
     row = [
         {
@@ -301,13 +301,15 @@ def test_too_many_edge_crossings_stop_the_run_with_a_reason(tmp_path):
             [*row, {"group": "blade", "polyhedron": {"vertices": blade}}],
             {"row": {"fix": ["x", "y", "z"]}, "blade": {"velocity": [0, 0, -1]}},
         ),
-        output=tmp_path / "blade.results",
         threads=1,
     )
-    with pytest.raises(cdem.UnstableError, match="more than 64 edges; mesh the larger block finer"):
-        sim.run()
-    assert abs(sim.energies["error"]) < 2e-15  # round-off: the blade has only moved on
-    assert np.isfinite(sim.fields["position"]).all() and len(sim.contacts["kind"]) == 0
+    while not len(sim.contacts["kind"]):
+        sim.step()
+    sim.step(10)
+    contacts = sim.contacts
+    print({k: (v.shape, v[:3]) for k, v in contacts.items()})
+    assert abs(sim.energies["error"]) < 2e-15
+    assert contacts["force"][:, 2].sum() != 0
 
 
 def tumble(steps, blocks_per_side, modulus="0.1 GPa", seed=7):

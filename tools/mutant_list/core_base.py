@@ -4,12 +4,12 @@ from mutant_list.mutant import Mutant
 
 FAULTS = [
     Mutant(
-        "ordered_sum",
-        "sums whose order depends on the number of threads",
-        "core/base/reduce.hpp",
-        "constexpr Index chunk = 1024;",
-        "const Index chunk = runs_alone() ? 1024 : 512;",
-        "tests/core/base/test_reduce.cpp",
+        "exact sum",
+        "sums lose half a unit of a digit",
+        "core/base/exact_sum.cpp",
+        "std::ldexp(1.5, unit + 52)",
+        "std::ldexp(1.5, unit + 51)",
+        "tests/core/base/test_exact_sum.cpp",
     ),
     Mutant(
         "first of the most",

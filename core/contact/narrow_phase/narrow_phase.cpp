@@ -51,7 +51,8 @@ void find_target_edges(const Model& m, State& s, Queue q) {
                                 .pairs = pairs,
                                 .rules = m.rules});
   for_each_selected(q, pair_count, edge_search(m, s));
-  list_rows(q, pair_count, count, FoundEdges{pairs}, s.edges.first, s.edges.found);
+  list_rows(q, pair_count, EdgeWays::count * pair_count, count, FoundEdges{pairs}, s.edges.first,
+            s.edges.found);
   make_room_for_edges(s);
   for_each_item(q, count,
                 ListEdgeContacts{.touch = edge_search(m, s),

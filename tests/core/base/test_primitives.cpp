@@ -167,7 +167,7 @@ TEST_CASE("list_rows brings numbers into their rows, short and long ones, ascend
       if (row[k / 2 * 2] >= 0) expected[row[k]].push_back(k);
     const Column<Index> given = column_of(row);
     Column<Index> first, number;
-    list_rows({}, items, rows, ToRows{given.data()}, first, number);
+    list_rows({}, items, 2 * items, rows, ToRows{given.data()}, first, number);
     REQUIRE(first.size() == std::size_t(rows) + 1);
     CHECK(first[0] == 0);
     CHECK(std::size_t(first[rows]) == number.size());

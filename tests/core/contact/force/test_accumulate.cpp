@@ -101,7 +101,7 @@ TEST_CASE("contacts are listed by their targets") {
   pressed.state.springs.target[0] = 7;
   const ContactsOf all{spring_columns(pressed.state), edge_columns(pressed.state), 10};
   Column<Index> first, contact;
-  list_rows({}, 10, 20, all, first, contact);
+  list_rows({}, 10, 40, 20, all, first, contact);
   for (Index row = 0; row <= 20; ++row)
     CHECK(first[row] == (row > 2 * 1 ? 3 : 0) + (row > 2 * 7 ? 1 : 0));
   CHECK(fetch(contact) == std::vector<Index>{24, 25, 26, 0});
