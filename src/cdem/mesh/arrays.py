@@ -112,6 +112,20 @@ def determinant(m: Floats) -> Floats:
     )
 
 
+def in_order(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Whole numbers from 0 up in a stable order, and the place that each of them had.
+
+    Where both fit into 63 bits they are sorted as one number, many times faster than by argsort.
+    """
+    bits = len(keys).bit_length()
+    if int(keys.max(initial=0)).bit_length() + bits > 63:
+        order = np.argsort(keys, kind="stable")
+        return keys[order], order
+    packed = (keys << bits) | np.arange(len(keys))
+    packed.sort()
+    return packed >> bits, packed & ((1 << bits) - 1)
+
+
 def order_of_rows(rows: NDArray) -> NDArray[np.intp]:
     """Order of rows of whole numbers from -1 up: by the first column, then the second and so on."""
     bits = int(rows.max(initial=0) + 1).bit_length()
