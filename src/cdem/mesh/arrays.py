@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,14 @@ def first_of_each(owner: NDArray, count: int) -> NDArray[np.int32]:
     first = np.zeros(count + 1, np.int32)
     np.cumsum(np.bincount(owner, minlength=count), out=first[1:])
     return first
+
+
+def found_in(numbers: Iterable[NDArray], count: int) -> NDArray[np.intp]:
+    """Which of so many numbers lists have, ascending; many times faster than `np.unique`."""
+    found = np.zeros(count, bool)
+    for some in numbers:
+        found[some] = True
+    return np.flatnonzero(found)
 
 
 def lengths(vectors: Floats) -> Floats:
