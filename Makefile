@@ -76,7 +76,7 @@ nightly: test validate coverage mutants
 	$(BIN)/cdem verify --full
 
 verify: build
-	$(BIN)/cdem verify
+	$(BIN)/cdem verify --threads 1
 
 lint: setup
 	$(BIN)/ruff check src tests tools docs/_ext docs/conf.py

@@ -39,6 +39,14 @@ def no_report(monkeypatch):
 
 
 @pytest.fixture
+def short_estimate(monkeypatch):
+    """`cdem check` measures the speed by few steps: the test looks at something else."""
+    from cdem.run import estimate
+
+    monkeypatch.setattr(estimate, "SECONDS", 0.02)
+
+
+@pytest.fixture
 def cube_folder(tmp_path: Path, monkeypatch, no_report) -> Path:
     """A working folder with cube.yaml, a cube that falls."""
     monkeypatch.chdir(tmp_path)

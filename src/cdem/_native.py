@@ -10,7 +10,9 @@ from cdem._core_choice import built, choose
 from cdem.errors import BackendError
 
 # Threads that wait by spinning make a busy machine a hundred times slower; a short spin is enough.
-os.environ.setdefault("GOMP_SPINCOUNT", "20000")
+# It would take the place of a policy that the user asks for.
+if "OMP_WAIT_POLICY" not in os.environ:
+    os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 
 available = built()
 name = choose()

@@ -1,8 +1,11 @@
 """Which compiled core is chosen."""
 
+import importlib
+import os
+
 import pytest
 
-from cdem import _core_choice
+from cdem import _core_choice, _native
 from cdem.errors import BackendError
 
 
@@ -22,3 +25,14 @@ def test_a_device_without_a_core_is_told_of(monkeypatch, device):
     monkeypatch.setenv("CDEM_ISA", device)
     with pytest.raises(BackendError, match=f"no such compiled core; make it: make {device}"):
         _core_choice.choose()
+
+
+@pytest.mark.parametrize("policy", ["passive", None])
+def test_threads_wait_as_the_user_asks(monkeypatch, policy):
+    monkeypatch.setenv("GOMP_SPINCOUNT", "")  # so that it is put back
+    monkeypatch.delenv("GOMP_SPINCOUNT")
+    monkeypatch.delenv("OMP_WAIT_POLICY", raising=False)
+    if policy:
+        monkeypatch.setenv("OMP_WAIT_POLICY", policy)
+    importlib.reload(_native)
+    assert ("GOMP_SPINCOUNT" in os.environ) == (policy is None)

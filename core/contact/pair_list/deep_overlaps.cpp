@@ -50,6 +50,15 @@ struct Body {
   const FaceTable* faces;
   Vec3<Real> normal[6], center[6];
 
+  void find_normals() {
+    for (std::size_t f = 0; f < faces->size(); ++f) {
+      const auto& k = (*faces)[f];
+      const bool quad = k[2] != k[3];
+      normal[f] = unit(cross(x[k[2]] - x[k[0]], x[k[3]] - x[k[1]]));
+      const Vec3<Real> three = x[k[0]] + x[k[1]] + x[k[2]];
+      center[f] = quad ? Real(0.25) * (three + x[k[3]]) : Real(1.0 / 3) * three;
+    }
+  }
   Extent along(const Vec3<Real>& n) const {
     Extent e;
     for (Index k = 0; k < count; ++k) e.include(dot(n, x[k]));
@@ -156,28 +165,22 @@ class Overlaps {
   }
 
   Body body(Index element) const {
+    Body b = corners(element);
+    b.find_normals();
+    return b;
+  }
+  /// A body without normals.
+  Body corners(Index element) const {
     std::size_t set = 0;
     while (set + 1 < sets_.size() && element >= first_[set + 1]) ++set;
-    Body b{.element = element,
-           .count = 0,
-           .node = {},
-           .x = {},
-           .faces = nullptr,
-           .normal = {},
-           .center = {}};
+    Body b;
+    b.element = element, b.count = 0;
     const InMotion nodes{s.nodes.motion.data()};
     for_each_node(m, *sets_[set], element - first_[set], [&](Index node) {
       b.node[b.count] = node;
       b.x[b.count++] = nodes.position(node);
     });
     b.faces = &faces_of_shape(b.count);
-    for (std::size_t f = 0; f < b.faces->size(); ++f) {
-      const auto& k = (*b.faces)[f];
-      const bool quad = k[2] != k[3];
-      b.normal[f] = unit(cross(b.x[k[2]] - b.x[k[0]], b.x[k[3]] - b.x[k[1]]));
-      const Vec3<Real> three = b.x[k[0]] + b.x[k[1]] + b.x[k[2]];
-      b.center[f] = quad ? Real(0.25) * (three + b.x[k[3]]) : Real(1.0 / 3) * three;
-    }
     return b;
   }
   void list_elements() {
@@ -242,7 +245,8 @@ class Overlaps {
     return std::min(entry_[a], entry_[b]) + warpage_[a] + warpage_[b];
   }
   void search_around(Index a, const BoxTree& tree, std::vector<Found>& found) const {
-    const Body of_a = body(a);
+    Body of_a;
+    of_a.count = 0;  // until there is a neighbour
     std::vector<Vec3<Real>> directions;
     tree.query(boxes_[a], [&](Index b) {
       if (block_[a] == block_[b] || (b < a && movable(b))) return;
@@ -251,25 +255,32 @@ class Overlaps {
         if (std::min(boxes_[a].high[d] - boxes_[b].low[d], boxes_[b].high[d] - boxes_[a].low[d]) <=
             limit)
           return;
-      const Body of_b = body(b);
-      if (directions.empty()) directions = of_a.edge_directions();
+      if (of_a.count == 0) of_a = body(a);
+      Body of_b = corners(b);
       const Real depth = overlap(of_a, of_b, directions, limit);
       if (depth > limit && !is_held(of_a, of_b, depth, limit))
         found.push_back({a, b, depth, limit});
     });
   }
   /// Separating axes of two convex bodies: the least way to move them apart, or anything up to
-  /// `limit` as soon as it is no more.
-  static Real overlap(const Body& a, const Body& b, const std::vector<Vec3<Real>>& directions_of_a,
+  /// `limit` as soon as it is no more. Most bodies are apart along a normal of the first, so those
+  /// of the second and directions of edges are found where they are needed.
+  static Real overlap(const Body& a, Body& b, std::vector<Vec3<Real>>& directions_of_a,
                       Real limit) {
     Real least = 1e300;
     const auto try_along = [&](const Vec3<Real>& n) {
       least = std::min(least, overlap_of(a.along(n), b.along(n)));
       return least > limit;
     };
-    for (const Body* p : {&a, &b})
-      for (std::size_t f = 0; f < p->faces->size(); ++f)
-        if (!try_along(p->normal[f])) return least;
+    const auto try_faces = [&](const Body& of) {
+      for (std::size_t f = 0; f < of.faces->size(); ++f)
+        if (!try_along(of.normal[f])) return false;
+      return true;
+    };
+    if (!try_faces(a)) return least;
+    b.find_normals();
+    if (!try_faces(b)) return least;
+    if (directions_of_a.empty()) directions_of_a = a.edge_directions();
     for (const Vec3<Real>& v : b.edge_directions())
       for (const Vec3<Real>& u : directions_of_a) {
         const Vec3<Real> n = cross(u, v);

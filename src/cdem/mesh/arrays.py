@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,14 @@ def first_of_each(owner: NDArray, count: int) -> NDArray[np.int32]:
     first = np.zeros(count + 1, np.int32)
     np.cumsum(np.bincount(owner, minlength=count), out=first[1:])
     return first
+
+
+def found_in(numbers: Iterable[NDArray], count: int) -> NDArray[np.intp]:
+    """Which of so many numbers lists have, ascending; many times faster than `np.unique`."""
+    found = np.zeros(count, bool)
+    for some in numbers:
+        found[some] = True
+    return np.flatnonzero(found)
 
 
 def lengths(vectors: Floats) -> Floats:
@@ -110,6 +118,20 @@ def determinant(m: Floats) -> Floats:
         + a[..., 1] * (b[..., 2] * c[..., 0] - b[..., 0] * c[..., 2])
         + a[..., 2] * (b[..., 0] * c[..., 1] - b[..., 1] * c[..., 0])
     )
+
+
+def in_order(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Whole numbers from 0 up in a stable order, and the place that each of them had.
+
+    Where both fit into 63 bits they are sorted as one number, many times faster than by argsort.
+    """
+    bits = len(keys).bit_length()
+    if int(keys.max(initial=0)).bit_length() + bits > 63:
+        order = np.argsort(keys, kind="stable")
+        return keys[order], order
+    packed = (keys << bits) | np.arange(len(keys))
+    packed.sort()
+    return packed >> bits, packed & ((1 << bits) - 1)
 
 
 def order_of_rows(rows: NDArray) -> NDArray[np.intp]:

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import MeshError
-from cdem.mesh.arrays import components, first_of_each, in_pieces, order_of_rows, same_rows
+from cdem.mesh.arrays import (
+    PIECE,
+    components,
+    in_order,
+    in_pieces,
+    order_of_rows,
+    same_rows,
+)
 from cdem.mesh.element_shapes import FACES, NODES, volumes
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.overlap import Overlaps, find_overlaps
@@ -325,35 +333,73 @@ def _check_inner_faces(t: Topology, faces: Ints, number: NDArray[np.int64]) -> N
 
 
 def _edges(t: Topology) -> None:
-    start, nodes = t.face_nodes, len(t.node_position)
+    """Find edges and rings of nodes; blocks share none, so some of them at a time, in a cache."""
+    count = len(t.face_nodes)
+    starts = np.append(np.flatnonzero(np.diff(t.face_block, prepend=-1)), count)
+    some = np.arange(0, count + PIECE, PIECE).clip(max=count)
+    cuts = np.unique(starts[np.searchsorted(starts, some)])
+    t.face_edges = np.empty((count, 4), np.int32)
+    ring_size = np.zeros(len(t.node_position), np.int32)
+    nodes, faces, rings, found = [], [], [], 0
+    for first, last in pairwise(cuts):
+        start = t.block_first_node[t.face_block[first]]
+        end = t.block_first_node[t.face_block[last - 1] + 1]
+        local = t.face_nodes[first:last]
+        e = _edges_of(np.where(local < 0, -1, local - start), end - start)
+        t.face_edges[first:last] = np.where(local < 0, -1, e.of_face + found)
+        nodes.append(e.nodes + start)
+        faces.append(np.where(e.faces < 0, -1, e.faces + np.int32(first)))
+        ring_size[start:end] = e.ring_size
+        rings.append(e.ring + start)
+        found += len(e.nodes)
+    t.edge_nodes, t.edge_faces = np.concatenate(nodes), np.concatenate(faces)
+    t.node_ring_first = np.zeros(len(ring_size) + 1, np.int32)
+    np.cumsum(ring_size, out=t.node_ring_first[1:])
+    t.node_ring = np.concatenate(rings)
+
+
+@dataclass
+class _EdgesOf:
+    """Edges of some faces, see `Topology`; `ring_size` is how many start at each node."""
+
+    of_face: Ints
+    nodes: Ints
+    faces: Ints
+    ring_size: NDArray[np.intp]
+    ring: Ints
+
+
+def _edges_of(start: Ints, count: int) -> _EdgesOf:
+    """Edges of faces with these nodes, (faces, 4), of so many."""
     end = np.roll(start, -1, axis=1)
     end[:, 3] = start[:, 0]
     end[:, 2] = np.where(start[:, 3] < 0, start[:, 0], start[:, 3])
     used = start >= 0
-    a, b = start[used].astype(np.int64), end[used]  # sides, face by face
-    key = np.minimum(a, b) * nodes + np.maximum(a, b)
-    order = np.argsort(key, kind="stable")
-    key = key[order]
+    a, b = start[used], end[used]  # sides, face by face
+    bits = int(a.max()).bit_length()
+    key, order = in_order((np.minimum(a, b).astype(np.int64) << bits) | np.maximum(a, b))
     new = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
-    edge = np.repeat(np.arange(len(new)), np.diff(new, append=len(key)))
-    ends = key[new]
-    t.edge_nodes = np.stack([ends // nodes, ends % nodes], axis=1).astype(np.int32)
+    members = np.diff(new, append=len(key))
+    low, high = key[new] >> bits, key[new] & ((1 << bits) - 1)
     number = np.empty(len(key), np.int32)
-    number[order] = edge
-    t.face_edges = np.full(start.shape, -1, np.int32)
-    t.face_edges[used] = number
-    t.edge_faces = np.full((len(new), 2), -1, np.int32)
-    face = np.nonzero(used)[0][order]
-    rank = np.arange(len(key)) - new[edge]
+    number[order] = np.repeat(np.arange(len(new), dtype=np.int32), members)
+    of_face = np.full(start.shape, -1, np.int32)
+    of_face[used] = number
+    side_face = np.nonzero(used)[0]
     # where more than two faces of a block meet at an edge, the first two stand for it
-    use = rank < 2
-    t.edge_faces[edge[use], rank[use]] = face[use]
-
-    low, high = t.edge_nodes.T.astype(np.int64)
-    ring = np.sort(np.concatenate([low * nodes + high, high * nodes + low]))
-    owner = ring // nodes
-    t.node_ring_first = first_of_each(owner, nodes)
-    t.node_ring = (ring % nodes).astype(np.int32)
+    faces = np.full((len(new), 2), -1, np.int32)
+    faces[:, 0] = side_face[order[new]]
+    two = members > 1
+    faces[two, 1] = side_face[order[new[two] + 1]]
+    ring = np.concatenate([(low << bits) | high, (high << bits) | low])
+    ring.sort()
+    return _EdgesOf(
+        of_face,
+        np.stack([low, high], axis=1).astype(np.int32),
+        faces,
+        np.bincount(ring >> bits, minlength=count),
+        (ring & ((1 << bits) - 1)).astype(np.int32),
+    )
 
 
 def _places(mesh: Mesh) -> NDArray:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.bodies_schema import Rotate
-from cdem.mesh.arrays import matrix_product
+from cdem.mesh.arrays import found_in, matrix_product
 from cdem.mesh.element_shapes import NODES
 
 Floats = NDArray[np.float64]
@@ -41,7 +41,7 @@ class Mesh:
 
 def drop_unused(mesh: Mesh) -> Mesh:
     """Leave out points that no volume element uses."""
-    used = np.unique(np.concatenate([c.ravel() for c in mesh.cells.values()]))
+    used = found_in(mesh.cells.values(), len(mesh.points))
     number = np.full(len(mesh.points), -1)
     number[used] = np.arange(len(used))
     mesh.points = mesh.points[used]

@@ -23,7 +23,7 @@ from cdem.case.interface_schema import Interface
 from cdem.case.types import AUTO
 from cdem.errors import CaseError
 from cdem.mesh import element_shapes
-from cdem.mesh.arrays import in_pieces, inverses, same_everywhere
+from cdem.mesh.arrays import found_in, in_pieces, inverses, same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.homogenize import (
@@ -251,7 +251,7 @@ def around_the_middle(
     t: Topology, pairs: NDArray[np.intp], inner: NDArray[np.bool_]
 ) -> NDArray[np.integer]:
     """Tets of pairs around the middle of those inside, `MOST_TETS` at most."""
-    used = np.unique(t.face_element[t.pair_faces[pairs]])
+    used = found_in([t.face_element[t.pair_faces[pairs]]], len(inner))
     center = t.node_position[t.element_nodes["tet4"][used]].mean(axis=1)
     inside = center[inner[used]]
     start = inside[np.argmin(((inside - inside.mean(axis=0)) ** 2).sum(axis=1))]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.mesh.arrays import components, lengths
+from cdem.mesh.arrays import components, found_in, in_pieces, lengths
 from cdem.model.build import Build
 
 Floats = NDArray[np.float64]
@@ -46,7 +46,7 @@ def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
         joint = (t.face_kind // groups)[faces]
         joint = np.where(joint[:, 0] == joint[:, 1], joint[:, 0], 0)
         where = (joint.astype(np.int64) * groups + group[:, 0]) * groups + group[:, 1]
-        for number in np.unique(where):
+        for number in np.flatnonzero(np.bincount(where)):
             some = where == number
             k, i, j = number // groups**2, number // groups % groups, number % groups
             key = (build.group_names[i], build.group_names[j], sets[k])
@@ -63,7 +63,7 @@ def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
 
 
 def _row(key: tuple, row: dict[str, Any], volume: Floats) -> dict[str, Any]:
-    percent = 100 * row["soft"] / volume[np.unique(np.concatenate(row["e"]))].sum()
+    percent = 100 * row["soft"] / volume[found_in(row["e"], len(volume))].sum()
     return {
         "between": list(key[:2]),
         "joint": key[2],
@@ -94,15 +94,21 @@ def _softness(build: Build, kind: str) -> Floats:
     young = np.array([m.young_modulus for m in rock])
     shear = young / (2 + 2 * np.array([m.poisson_ratio for m in rock]))
     young, shear = (of[t.face_group[faces]].mean(axis=1)[:, None] for of in (young, shear))
-    nodes = t.face_nodes[faces[:, 0]]
-    x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
-    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
-    square = (normal / lengths(normal)[:, None]) ** 2
-    first, second = (square[:, [plane[side] for plane in PLANES]] for side in (0, 1))
-    both = 4 * first * second
-    along = young * area * (square**2 / k_n + square * (1 - square) / k_s)
-    across = shear * area * (both / k_n + (first + second - both) / k_s)
-    return np.concatenate([along, across], axis=1)
+
+    def of_pairs(
+        faces: NDArray, k_n: Floats, k_s: Floats, area: Floats, young: Floats, shear: Floats
+    ) -> Floats:
+        nodes = t.face_nodes[faces[:, 0]]
+        x = t.node_position[np.where(nodes < 0, nodes[:, 2:3], nodes)]
+        normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+        square = (normal / lengths(normal)[:, None]) ** 2
+        first, second = (square[:, [plane[side] for plane in PLANES]] for side in (0, 1))
+        both = 4 * first * second
+        along = young * area * (square**2 / k_n + square * (1 - square) / k_s)
+        across = shear * area * (both / k_n + (first + second - both) / k_s)
+        return np.concatenate([along, across], axis=1)
+
+    return in_pieces(of_pairs, faces, k_n, k_s, area, young, shear)
 
 
 def coarse_beams(build: Build) -> Iterator[str]:

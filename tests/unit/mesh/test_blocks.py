@@ -1,10 +1,12 @@
 """Blocks of meshes: their faces, edges and pairs."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from cdem.errors import MeshError
-from cdem.mesh import mesh, primitives
+from cdem.mesh import blocks, mesh, primitives
 from cdem.mesh.blocks import build_topology
 
 SPRINGS = {"hex8": 24, "wedge6": 18, "pyramid5": 16, "tet4": 12}
@@ -26,6 +28,22 @@ def test_semi_springs_of_one_element(shape):
     assert (t.edge_faces >= 0).all()
     faces, edges, nodes = len(t.face_nodes), len(t.edge_nodes), len(t.node_position)
     assert nodes - edges + faces == 2  # Euler
+
+
+@pytest.mark.parametrize("shape", ["tet4", "wedge6"])
+@pytest.mark.parametrize("piece", [1, 40])
+def test_edges_found_in_pieces_are_those_found_at_once(monkeypatch, shape, piece):
+    """Blocks larger than a piece, and several in one."""
+    both = mesh.merge(
+        [
+            primitives.box("whole", (1, 1, 1), (2, 2, 2), shape=shape),
+            primitives.box("cut", (1, 1, 1), (2, 2, 2), shape=shape),
+        ]
+    )
+    at_once = build_topology(both, {"cut": "elements"})
+    monkeypatch.setattr(blocks, "PIECE", piece)
+    for name, array in dataclasses.asdict(build_topology(both, {"cut": "elements"})).items():
+        np.testing.assert_equal(array, getattr(at_once, name), name)
 
 
 def test_a_fully_split_box_pairs_every_inner_face_once():
