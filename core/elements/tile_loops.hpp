@@ -95,6 +95,12 @@ void for_each_tile(Queue, Index count, Blocks blocks, const Tiles& tiles, const 
 
 #else
 
+/// The same as in parallel_loops.hpp.
+template <class Kernel>
+[[gnu::cold, gnu::noinline]] void run_one(TileNodes nodes, Kernel kernel, Index i) {
+  nodes.add(One{i}, kernel.forces(One{i}));
+}
+
 /// Blocks of one tile, lane by lane.
 template <class Kernel>
 void run_blocks(Index count, Blocks blocks, Range some, const TileNodes& nodes,
@@ -106,7 +112,7 @@ void run_blocks(Index count, Blocks blocks, Range some, const TileNodes& nodes,
     fetch_ahead(kernel, blocks, b);
     Index i = first;
     for (; i < last && i < whole; i += lanes) nodes.add(Lane{i}, kernel.forces(Lane{i}));
-    for (; i < last; ++i) nodes.add(One{i}, kernel.forces(One{i}));
+    for (; i < last; ++i) run_one(nodes, kernel, i);
   }
 }
 
