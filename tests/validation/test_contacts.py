@@ -287,7 +287,7 @@ def test_contact_force_rotates_with_a_loaded_pair(axis):
 
 def test_an_edge_may_cross_any_number_of_others():
     """A blade comes down across 40 small blocks, 80 edges, all of which it touches."""
-    blade = [[x, y, z + 0.002] for x in (0, 4.2) for y, z in ((0, 0), (-0.3, 0.5), (0.3, 0.5))]
+    blade = [[x, y, z + 1e-4] for x in (0, 4.2) for y, z in ((0, 0), (-0.3, 0.5), (0.3, 0.5))]
     row = [
         {
             "group": "row",
@@ -299,17 +299,18 @@ def test_an_edge_may_cross_any_number_of_others():
     sim = cdem.Simulation(
         case(
             [*row, {"group": "blade", "polyhedron": {"vertices": blade}}],
-            {"row": {"fix": ["x", "y", "z"]}, "blade": {"velocity": [0, 0, -1]}},
+            {"row": {"fix": ["x", "y", "z"]}, "blade": {"velocity": [0, 0, -0.05]}},
         ),
         threads=1,
     )
-    while not len(sim.contacts["kind"]):
+    most = 0
+    while sim.step_count < 200:
         sim.step()
-    sim.step(10)
-    contacts = sim.contacts
-    print({k: (v.shape, v[:3]) for k, v in contacts.items()})
-    assert abs(sim.energies["error"]) < 2e-15
-    assert contacts["force"][:, 2].sum() != 0
+        edges = sim.contacts["mother_face"][sim.contacts["kind"] == 1]
+        most = max(most, np.bincount(edges).max() if len(edges) else 0)
+    assert most == 80
+    assert abs(sim.energies["error"]) < 0.2  # it is thrown back within a few steps
+    assert sim.fields["velocity"][-6:, 2].mean() > 0.03
 
 
 def tumble(steps, blocks_per_side, modulus="0.1 GPa", seed=7):
