@@ -48,7 +48,7 @@ class AllPairs {
       : m(model),
         s(state),
         springs{face_search(model, state)},
-        edges(edge_search(model, state)),
+        edges(touching_edges(model, state)),
         bonded(live_overlaps(model, state)),
         sides(side_boxes(model, state)) {}
 
@@ -123,7 +123,7 @@ class AllPairs {
   const Model& m;
   const State& s;
   const ResolveTargets springs;
-  const ResolveTargetEdges edges;
+  const TouchingEdges edges;
   const Bonded bonded;
   const std::vector<Box> sides;
 };

@@ -55,7 +55,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {
             s.edges.found);
   make_room_for_edges(s);
   for_each_item(q, count,
-                ListEdgeContacts{.touch = edge_search(m, s),
+                ListEdgeContacts{.search = edge_search(m, s),
                                  .interfaces = face_interfaces(m),
                                  .first = s.edges.first.data(),
                                  .found = s.edges.found.data(),

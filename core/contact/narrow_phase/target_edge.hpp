@@ -5,12 +5,14 @@
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/face_interfaces.hpp"
 #include "core/contact/narrow_phase/closed_contact.hpp"
+#include "core/contact/narrow_phase/edge_pair.hpp"
 #include "core/contact/narrow_phase/touching_edges.hpp"
 
 namespace cdem {
 
 /// Find which semi-edges touch: judge all ways of two edges that may.
-struct ResolveTargetEdges : TouchingEdges {
+struct ResolveTargetEdges {
+  TouchingEdges touching;
   const Index* exposed_face;
   EdgePairs pairs;
   Flag* lost;  // [exposed] 1: a loaded contact was lost because it penetrated too deep
@@ -20,35 +22,19 @@ struct ResolveTargetEdges : TouchingEdges {
 
   template <class I>
   CDEM_HD void operator()(const I& item) const {
-    const Touching touching = judge(pairs.at(item.id));
+    const Touching found = touching.judge(pairs.at(item.id));
     for_lanes(item, [&](Index lane, Index, Index p) {
       Index touch = 0;
       EdgeWays::visit(pairs.open[p], [&](Index way) {
-        touch |= (touching.touches[way] >> lane & 1) << way;
-        if (touching.too_deep[way] >> lane & 1) set(lost[pairs.mother(p, way) / 4]);
+        touch |= (found.touches[way] >> lane & 1) << way;
+        if (found.too_deep[way] >> lane & 1) set(lost[pairs.mother(p, way) / 4]);
       });
       pairs.open[p] = Flag(touch);
     });
   }
 
-  /// Do two sides (4 * exposed face + side) touch? `shared` tells which of their ends began at the
-  /// same place in the mesh, see SidePair; `before` is the place of their contact one step ago, or
-  /// -1.
-  CDEM_HD bool touch(Index mother, Index target, Index shared, Index before) const {
-    const auto end = [&](Index side, Index which) {
-      const ExposedRow& row = geometry.table[side / 4];
-      return which ? row.end(side % 4) : row.corner[side % 4];
-    };
-    return judge(TwoEdges<Index>{
-                     .end = {{end(mother, 0), end(mother, 1)}, {end(target, 0), end(target, 1)}},
-                     .side = {{mother, mother}, {target, target}},
-                     .code = EdgeWays::code_of(1, shared, 0, 0),
-                     .before = {before, -1, -1, -1}})
-        .touches[0];
-  }
-
   CDEM_HD Index edge_of(Index side) const {
-    return faces.face_edges[4 * exposed_face[side / 4] + side % 4];
+    return touching.faces.face_edges[4 * exposed_face[side / 4] + side % 4];
   }
 };
 
@@ -67,7 +53,7 @@ struct FoundEdges {
 /// List the contacts found for one exposed face, in order: they go on or begin. Energy that the
 /// springs of ended contacts did not give back is lost to friction and dashpot.
 struct ListEdgeContacts {
-  ResolveTargetEdges touch;
+  ResolveTargetEdges search;
   FaceInterfaces interfaces;
   const Index* first;  // [exposed + 1] of the list
   Index* found;        // FoundEdges
@@ -77,17 +63,17 @@ struct ListEdgeContacts {
   Real* dashpot;       // [exposed] lost so far  [J]
 
   CDEM_HD void operator()(One m) const {
-    const EdgesBefore& held = touch.held;
+    const EdgesBefore& held = search.touching.held;
     const Index from = first[m.i], to = first[m.i + 1];
     sort(found + from, to - from);
     for (Index c = from; c < to; ++c) {
       const Index p = found[c] / EdgeWays::count, way = found[c] % EdgeWays::count;
-      const Index target = touch.pairs.target(p, way);
-      seen[c] = touch.pairs.place_held(EdgeWays::mother(way), p);
-      EdgeContact{.mother = touch.pairs.mother(p, way),
+      const Index target = search.pairs.target(p, way);
+      seen[c] = search.pairs.place_held(EdgeWays::mother(way), p);
+      EdgeContact{.mother = search.pairs.mother(p, way),
                   .face = target / 4,
-                  .edge = touch.edge_of(target),
-                  .before = touch.pairs.held[seen[c]]}
+                  .edge = search.edge_of(target),
+                  .before = search.pairs.held[seen[c]]}
           .store(contact, c);
     }
     for (Index old = held.first[m.i]; old < held.first[m.i + 1]; ++old) {
@@ -106,11 +92,11 @@ struct ListEdgeContacts {
   CDEM_HD bool is_before(Index one, Index other) const {
     const Index p = one / EdgeWays::count, way = one % EdgeWays::count;
     const Index q = other / EdgeWays::count, other_way = other % EdgeWays::count;
-    const Index target = touch.pairs.target(p, way),
-                other_target = touch.pairs.target(q, other_way);
+    const Index target = search.pairs.target(p, way),
+                other_target = search.pairs.target(q, other_way);
     if (target / 4 != other_target / 4) return target < other_target;
-    const Index mother = touch.pairs.mother(p, way),
-                other_mother = touch.pairs.mother(q, other_way);
+    const Index mother = search.pairs.mother(p, way),
+                other_mother = search.pairs.mother(q, other_way);
     return mother != other_mother ? mother < other_mother : target < other_target;
   }
   /// Shell's sort: rows are short, but for a large face under many edges.
@@ -127,9 +113,9 @@ struct ListEdgeContacts {
       }
   }
   CDEM_HD DissipatedAtEnd lost_at_end(Index c) const {
-    const FaceColumns& faces = touch.faces;
-    const FaceGeometry& geometry = touch.geometry;
-    const EdgeContact contact = EdgeContact::at(touch.held.contact, c);
+    const FaceColumns& faces = search.touching.faces;
+    const FaceGeometry& geometry = search.touching.geometry;
+    const EdgeContact contact = EdgeContact::at(search.touching.held.contact, c);
     const Index m = contact.mother / 4, k = contact.mother % 4;
     const Vec3<Real> out = geometry.normal(contact.face) - geometry.normal(m);
     const Index* target = faces.edge_nodes + 2 * contact.edge;
@@ -139,7 +125,7 @@ struct ListEdgeContacts {
     const Crossing<Real> at = cross_edges(mother.x, mother.along, crossed.x, crossed.along, n);
     const Real returned =
         interfaces.returned_n(interfaces.between(geometry.table, m, contact.face));
-    return {ContactState::at(touch.held.state, c), returned, edge_frame(n, crossed.along),
+    return {ContactState::at(search.touching.held.state, c), returned, edge_frame(n, crossed.along),
             mother.way(at.s) - crossed.way(at.t)};
   }
   /// An edge one step ago, and how its ends have moved since.
@@ -148,7 +134,7 @@ struct ListEdgeContacts {
     CDEM_HD Vec3<Real> way(Real s) const { return way0 + s * (way1 - way0); }
   };
   CDEM_HD Side side(Index a, Index b) const {
-    const FaceColumns& faces = touch.faces;
+    const FaceColumns& faces = search.touching.faces;
     const Vec3<Real> x = faces.position_before(a);
     return {.x = x,
             .along = faces.position_before(b) - x,

@@ -3,7 +3,8 @@
 
 #include "core/contact/geometry/face_geometry.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
-#include "core/contact/narrow_phase/edge_pair.hpp"
+#include "core/contact/narrow_phase/edge_ways.hpp"
+#include "core/records/rules.hpp"
 
 namespace cdem {
 
@@ -36,6 +37,22 @@ struct TouchingEdges {
     for (Index i = 0; i < 2; ++i)
       for (Index j = 0; j < 2; ++j) judge(pair, edges, at[0][i], at[1][j], i, j, out);
     return out;
+  }
+
+  /// Do two sides (4 * exposed face + side) touch? `shared` tells which of their ends began at the
+  /// same place in the mesh, see SidePair; `before` is the place of their contact one step ago, or
+  /// -1.
+  CDEM_HD bool touch(Index mother, Index target, Index shared, Index before) const {
+    const auto end = [&](Index side, Index which) {
+      const ExposedRow& row = geometry.table[side / 4];
+      return which ? row.end(side % 4) : row.corner[side % 4];
+    };
+    return judge(TwoEdges<Index>{
+                     .end = {{end(mother, 0), end(mother, 1)}, {end(target, 0), end(target, 1)}},
+                     .side = {{mother, mother}, {target, target}},
+                     .code = EdgeWays::code_of(1, shared, 0, 0),
+                     .before = {before, -1, -1, -1}})
+        .touches[0];
   }
 
  private:

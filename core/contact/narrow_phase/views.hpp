@@ -62,14 +62,18 @@ inline FaceSearch face_search(const Model& m, State& s) {
           .springs = spring_columns(s)};
 }
 
+inline TouchingEdges touching_edges(const Model& m, const State& s) {
+  return {.faces = face_columns(m, s),
+          .geometry = face_geometry(s),
+          .rules = m.rules,
+          .held = edges_before(s)};
+}
+
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {
-  return {{.faces = face_columns(m, s),
-           .geometry = face_geometry(s),
-           .rules = m.rules,
-           .held = edges_before(s)},
-          s.search.exposed_face.data(),
-          edge_pairs(s),
-          s.edges.lost.data()};
+  return {.touching = touching_edges(m, s),
+          .exposed_face = s.search.exposed_face.data(),
+          .pairs = edge_pairs(s),
+          .lost = s.edges.lost.data()};
 }
 
 }  // namespace cdem

@@ -94,7 +94,7 @@ struct Body {
 /// Looks for overlaps of elements.
 class Overlaps {
  public:
-  Overlaps(const Model& model, State& state) : m(model), s(state), edges(edge_search(m, s)) {
+  Overlaps(const Model& model, State& state) : m(model), s(state), edges(touching_edges(m, s)) {
     for_each_element_set(m, s, [&](auto, const ElementSet& e, const ElementState&) {
       sets_.push_back(&e);
       first_.push_back(element_count_);
@@ -362,7 +362,7 @@ class Overlaps {
 
   const Model& m;
   State& s;
-  const ResolveTargetEdges edges;
+  const TouchingEdges edges;
   std::vector<const ElementSet*> sets_;
   std::vector<Index> first_;  // [set] number of its first element among all
   Index element_count_ = 0;

@@ -141,7 +141,7 @@ TEST_CASE("a ridge may cross any number of edges") {
 TEST_CASE("edges are judged in lanes as one by one, and as sides") {
   const Ridges ridges(-0.001);
   State& s = const_cast<State&>(ridges.state);
-  const ResolveTargetEdges search = edge_search(ridges.model, s);
+  const TouchingEdges search = touching_edges(ridges.model, s);
   struct Sides {
     Index mother, target;
   };
