@@ -91,72 +91,33 @@ struct FilterEdgePairs {
   template <class I>
   CDEM_HD void operator()(I p) const {
     using T = Number<I>;
-    const auto end = [&](Index k) { return nodes.position(pairs.ends.at(k, p)); };
-    const Vec3<T> x[2] = {end(0), end(2)}, d[2] = {end(1) - x[0], end(3) - x[1]};
-    const Vec3<T> c = cross(d[0], d[1]);
-    const T c2 = dot(c, c), apart = dot(x[1] - x[0], c);
-    // of a gap, times |c| twice: below it ResolveTargetEdges decides on which side it is
-    const T round_off = T(1e-12) * c2 * (abs_of(d[0].x) + abs_of(d[0].y) + abs_of(d[0].z));
-    const T room = round_off + T(2.0 * rules.lifted) * c2;  // the normals differ by 2 at most
-    const T none(0.0);
+    const Edges<T> edges = edges_of<T>(p);
     const auto code = pairs.code.at(0, p);
-    const T steepest(1.000001 * rules.cone * rules.cone);
-    Vec3<T> normal[2][2];
-    T along[2][2], length[2][2];  // along c; L  [m]
-    Truth<T> far[2][2];
-    Truth<T> rises[2][2], falls[2][2], neighbours[2];
+    AtSide<T> at[2][2];
+    Truth<T> neighbours[2];
     for (Index e = 0; e < 2; ++e) {
-      for (Index i = 0; i < 2; ++i) {
-        const auto side = pairs.sides.at(2 * e + i, p);
-        const auto face = indices_of([](Index s) { return s / 4; }, side);
-        const auto of = geometry.row(face);
-        normal[e][i] = of.normal;
-        length[e][i] = abs_of(of.length);
-        along[e][i] = dot(c, of.normal);
-        const Vec3<T> start = x[e] + T(rules.indentation) * (of.center - x[e]);
-        const auto beyond = [&](const T& slack) {
-          return crosses_beyond(start, d[e], x[1 - e], d[1 - e], e == 0 ? c : -c, c2, rules,
-                                slack + T(1e-9));
-        };
-        const auto goes_on =
-            numbers_of([](Index c) { return c >= 0; },
-                       InIndices{pairs.held, pairs.stride}.at(2 * e + i, p)) > none;
-        far[e][i] = beyond(select(goes_on, T(1.000001 * crossing_slack(rules.indentation)), none));
-        // does the face rise along c, along -c, by more than the slack of the cones?
-        const Vec3<T> into = cross(of.normal, d[e]);
-        const T up =
-            dot(c, into) * numbers_of([&](Index of) { return EdgeWays::sense(of, e, i); }, code);
-        const auto steep = up * up > steepest * dot(into, into) * c2;
-        rises[e][i] = steep & (up > none), falls[e][i] = steep & (up < none);
-      }
+      for (Index i = 0; i < 2; ++i) at[e][i] = at_side(p, edges, code, e, i);
       neighbours[e] =
-          numbers_of([&](Index of) { return EdgeWays::are_neighbours(of, e); }, code) > none;
-      for (auto* of : {rises[e], falls[e]}) {
-        const Truth<T> both = neighbours[e] & (of[0] | of[1]);
-        of[0] = of[0] | both, of[1] = of[1] | both;
-      }
+          numbers_of([&](Index of) { return EdgeWays::are_neighbours(of, e); }, code) > T(0.0);
+      share_cones(neighbours[e], at[e][0], at[e][1]);
     }
-    const auto parallel =
-        c2 < T(parallel_edges * parallel_edges) * dot(d[0], d[0]) * dot(d[1], d[1]);
-    const T together2 = distance_of_shared_ends(x, d, code);
+    const T together2 = distance_of_shared_ends(edges, code);
     T opposed[2][2];
     for (Index i = 0; i < 2; ++i)
-      for (Index j = 0; j < 2; ++j) opposed[i][j] = dot(normal[0][i], normal[1][j]);
+      for (Index j = 0; j < 2; ++j) opposed[i][j] = dot(at[0][i].normal, at[1][j].normal);
     unsigned open[EdgeWays::count];  // lane by lane, as bits
     for (Index i = 0; i < 2; ++i)
       for (Index j = 0; j < 2; ++j) {
-        const T here = opposed[i][j] - T(1e-9), out = along[1][j] - along[0][i];
-        const T flat = T(1e-9) * (abs_of(along[1][j]) + abs_of(along[0][i]));
-        const T near = T(0.999999 * rules.indentation) * min_of(length[0][i], length[1][j]);
-        const auto wrong = parallel | (together2 < near * near) | (apart * out < -room) |
-                           !(here < T(-rules.opposing)) |
-                           ((out > flat) & (falls[0][i] | rises[1][j])) |
-                           ((out < -flat) & (rises[0][i] | falls[1][j]));
+        const AtSide<T>&a = at[0][i], &b = at[1][j];
+        const T here = opposed[i][j] - T(1e-9);
+        const T near = T(0.999999 * rules.indentation) * min_of(a.length, b.length);
+        const auto wrong = edges.parallel | (together2 < near * near) |
+                           !(here < T(-rules.opposing)) | are_apart(edges, a, b);
         // of two faces at a target edge that which opposes the mother less is not the right one
         const auto left_a = neighbours[0] & (here > opposed[1 - i][j]);
         const auto left_b = neighbours[1] & (here > opposed[i][1 - j]);
-        open[EdgeWays::way(false, i, j)] = lane_bits(!(wrong | far[0][i] | left_b));
-        open[EdgeWays::way(true, i, j)] = lane_bits(!(wrong | far[1][j] | left_a));
+        open[EdgeWays::way(false, i, j)] = lane_bits(!(wrong | a.far | left_b));
+        open[EdgeWays::way(true, i, j)] = lane_bits(!(wrong | b.far | left_a));
       }
     for_lanes(p, [&](Index lane, Index pair) {
       Index some = 0;
@@ -166,11 +127,79 @@ struct FilterEdgePairs {
   }
 
  private:
+  template <class T>
+  struct Edges {
+    Vec3<T> x[2], d[2];  // where they begin, and to where they end  [m]
+    Vec3<T> c;           // d[0] x d[1]
+    T c2, apart;         // |c|^2; from the first to the second along c, times |c|
+    T room;              // for round-off and lift of `apart` times what normals differ along c
+    Truth<T> parallel;
+  };
+  /// What a face at an edge decides.
+  template <class T>
+  struct AtSide {
+    Vec3<T> normal;
+    T along, length;        // the normal along c; L  [m]
+    Truth<T> far;           // as the mother it does not cross the other edge
+    Truth<T> rises, falls;  // by more than the slack of the cones, along c, along -c
+  };
+  template <class T, class I>
+  CDEM_HD Edges<T> edges_of(I p) const {
+    const auto end = [&](Index k) { return nodes.position(pairs.ends.at(k, p)); };
+    Edges<T> of;
+    for (Index e = 0; e < 2; ++e) of.x[e] = end(2 * e), of.d[e] = end(2 * e + 1) - of.x[e];
+    const Vec3<T>*x = of.x, *d = of.d;
+    of.c = cross(d[0], d[1]);
+    of.c2 = dot(of.c, of.c);
+    of.apart = dot(x[1] - x[0], of.c);
+    // of a gap, times |c| twice: below it ResolveTargetEdges decides on which side it is
+    const T round_off = T(1e-12) * of.c2 * (abs_of(d[0].x) + abs_of(d[0].y) + abs_of(d[0].z));
+    of.room = round_off + T(2.0 * rules.lifted) * of.c2;  // the normals differ by 2 at most
+    of.parallel = of.c2 < T(parallel_edges * parallel_edges) * dot(d[0], d[0]) * dot(d[1], d[1]);
+    return of;
+  }
+  template <class I, class T, class Ids>
+  CDEM_HD AtSide<T> at_side(I p, const Edges<T>& edges, const Ids& code, Index e, Index i) const {
+    const T none(0.0), steepest(1.000001 * rules.cone * rules.cone);
+    const auto face = indices_of([](Index side) { return side / 4; }, pairs.sides.at(2 * e + i, p));
+    const auto of = geometry.row(face);
+    const Vec3<T>&x = edges.x[e], &d = edges.d[e], c = e == 0 ? edges.c : -edges.c;
+    const auto held = InIndices{pairs.held, pairs.stride}.at(2 * e + i, p);
+    const auto goes_on = numbers_of([](Index place) { return place >= 0; }, held) > none;
+    const T slack = select(goes_on, T(1.000001 * crossing_slack(rules.indentation)), none);
+    const Vec3<T> start = x + T(rules.indentation) * (of.center - x);
+    const Vec3<T> into = cross(of.normal, d);
+    const T up = dot(edges.c, into) *
+                 numbers_of([&](Index bits) { return EdgeWays::sense(bits, e, i); }, code);
+    const auto steep = up * up > steepest * dot(into, into) * edges.c2;
+    return {.normal = of.normal,
+            .along = dot(edges.c, of.normal),
+            .length = abs_of(of.length),
+            .far = crosses_beyond(start, d, edges.x[1 - e], edges.d[1 - e], c, edges.c2, rules,
+                                  slack + T(1e-9)),
+            .rises = steep & (up > none),
+            .falls = steep & (up < none)};
+  }
+  /// Of two faces on either side of an edge none may rise.
+  template <class T>
+  CDEM_HD static void share_cones(const Truth<T>& neighbours, AtSide<T>& one, AtSide<T>& other) {
+    const Truth<T> rise = neighbours & (one.rises | other.rises);
+    const Truth<T> fall = neighbours & (one.falls | other.falls);
+    one.rises = one.rises | rise, other.rises = other.rises | rise;
+    one.falls = one.falls | fall, other.falls = other.falls | fall;
+  }
+  /// Are they on the wrong side of each other, or the normal in one of the cones not?
+  template <class T>
+  CDEM_HD static Truth<T> are_apart(const Edges<T>& edges, const AtSide<T>& a, const AtSide<T>& b) {
+    const T out = b.along - a.along, flat = T(1e-9) * (abs_of(b.along) + abs_of(a.along));
+    return (edges.apart * out < -edges.room) | ((out > flat) & (a.falls | b.rises)) |
+           ((out < -flat) & (a.rises | b.falls));
+  }
   /// Squared distance of the ends that began at one place, or very far: both first ones, or both
   /// last ones, as nearly all are.
   template <class T, class Ids>
-  CDEM_HD static T distance_of_shared_ends(const Vec3<T> (&x)[2], const Vec3<T> (&d)[2],
-                                           const Ids& code) {
+  CDEM_HD static T distance_of_shared_ends(const Edges<T>& edges, const Ids& code) {
+    const Vec3<T>*x = edges.x, *d = edges.d;
     const T far(1e300), none(0.0);
     T least = far;
     for (const Index ends : {0, 3}) {
