@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 
 #if defined(__AVX__)
@@ -242,6 +243,10 @@ CDEM_HD inline Real numbers_of(const Of& of, Index first, Rest... rest) {
   return of(first, rest...);
 }
 CDEM_HD inline bool differ(Index a, Index b) { return a != b; }
+CDEM_HD inline bool is_less(Index a, Index b) { return a < b; }
+CDEM_HD inline bool has_bit(Index bits, Index bit) { return bits >> bit & 1; }
+/// Is it no place or number, which is -1?
+CDEM_HD inline bool is_none(Index a) { return a < 0; }
 #if !defined(__CUDACC__)
 template <class Of, class... Rest>
 CDEM_HD inline IndexPack indices_of(const Of& of, const IndexPack& first, const Rest&... rest) {
@@ -259,6 +264,21 @@ template <class Of, class... Rest>
 CDEM_HD inline Pack numbers_of(const Of& of, const IndexPack& first, const Rest&... rest) {
   return pack_of([&](Index j) { return Real(of(first.id[j], rest.id[j]...)); });
 }
+/// Indices in one register, and what is 1 or 0 in its lanes as a comparison.
+using Indices = Index __attribute__((vector_size(4 * CDEM_LANES)));
+CDEM_HD inline Indices in_register(const IndexPack& pack) {
+  Indices a;
+  std::memcpy(&a, pack.id, sizeof a);
+  return a;
+}
+CDEM_HD inline Mask mask_of(Indices ones) { return {-__builtin_convertvector(ones, Mask::Bits)}; }
+CDEM_HD inline Mask is_less(const IndexPack& a, const IndexPack& b) {
+  return mask_of(-(in_register(a) < in_register(b)));
+}
+CDEM_HD inline Mask has_bit(const IndexPack& bits, Index bit) {
+  return mask_of(in_register(bits) >> bit & 1);
+}
+CDEM_HD inline Mask is_none(const IndexPack& a) { return has_bit(a, 31); }
 CDEM_HD inline Mask differ(const IndexPack& a, const IndexPack& b) {
   Mask mask;
   for (Index j = 0; j < lanes; ++j) mask.bits[j] = -std::int64_t(a.id[j] != b.id[j]);

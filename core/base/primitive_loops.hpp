@@ -160,7 +160,8 @@ struct SortRow {
   const Index* first;
   Index* list;
   CDEM_HD void operator()(One row) const {
-    sort(list + first[row.i], first[row.i + 1] - first[row.i]);
+    const Index count = first[row.i + 1] - first[row.i];
+    if (count > 1) sort(list + first[row.i], count);
   }
 
  private:

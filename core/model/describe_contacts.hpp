@@ -189,7 +189,7 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
   rebuilt("update_contact_forces",
           {.name = "contacts_by_target.first",
            .meaning = "contacts that act on a face",
-           .rows = "acting_rows",
+           .rows = "exposed",
            .layout = Layout::starts,
            .refers_to = {"acting_contacts"}},
           acting.first);

@@ -95,8 +95,6 @@ void describe_search_rows(const State& s, Visit&& visit) {
         total(s.edges.old_state) / 8);
   visit(RowKind{"contacts", "slots, then contacts of semi-edges"},
         4 * exposed + last(s.edges.first));
-  visit(RowKind{"acting_rows", "semi-springs on exposed face x: 2 x; semi-edges: 2 x + 1"},
-        2 * exposed);
   visit(RowKind{"acting_contacts", "contacts by the face that they act on"},
         last(s.contacts_by_target.first));
   visit(RowKind{"outer_faces", "faces that a vertex may touch before the next rebuild"},

@@ -8,15 +8,11 @@
 
 namespace cdem {
 
-/// Contacts that have an exposed face as target: two ragged rows a face, its semi-springs and its
-/// semi-edges. A semi-spring is its slot; a semi-edge comes after all of them by its place in its
-/// list.
+/// Contacts that have an exposed face as target: ragged rows. A semi-spring is its slot; a
+/// semi-edge comes after all of them by its place in its list.
 struct ContactsByTarget {
-  const Index* first;    // [2 * exposed + 1]
+  const Index* first;    // [exposed + 1]
   const Index* contact;  // ascending in a row
-
-  CDEM_HD Range springs_on(Index face) const { return {first[2 * face], first[2 * face + 1]}; }
-  CDEM_HD Range edges_on(Index face) const { return {first[2 * face + 1], first[2 * face + 2]}; }
 };
 
 /// The contacts of an exposed face and their targets, see list_rows.
@@ -25,13 +21,12 @@ struct ContactsOf {
   EdgeColumns edges;
   Index exposed;  // how many faces there are
 
-  /// Call act(row, contact) with the row that it has in ContactsByTarget.
   template <class Do>
   CDEM_HD void visit(One m, const Do& act) const {
     for (Index slot = 4 * m.i; slot < 4 * m.i + 4; ++slot)
-      if (springs.target[slot] >= 0) act(2 * springs.target[slot], slot);
+      if (springs.target[slot] >= 0) act(springs.target[slot], slot);
     for (Index c = edges.first[m.i]; c < edges.first[m.i + 1]; ++c)
-      act(2 * EdgeContact::at(edges.contact, c).face + 1, 4 * exposed + c);
+      act(EdgeContact::at(edges.contact, c).face, 4 * exposed + c);
   }
 };
 
@@ -52,27 +47,19 @@ struct AccumulateFaceForces : ContactsOf {
   CDEM_HD void operator()(One m) const {
     if (!listed[m.i]) return;
     const Index face = exposed_face[m.i], count = faces.vertex_count(face);
-    const Range of_springs = acting.springs_on(m.i), of_edges = acting.edges_on(m.i);
-    for (Index c = of_springs.first; c < of_springs.last; ++c) fetch(spring(acting.contact[c]));
-    for (Index c = of_edges.first; c < of_edges.last; ++c) fetch(edge(acting.contact[c]));
+    Index c = acting.first[m.i];
+    const Index last = acting.first[m.i + 1];
     Row sum[4] = {Row::zero(), Row::zero(), Row::zero(), Row::zero()};
     own(m.i, count, sum);
-    for (Index c = of_springs.first; c < of_springs.last; ++c)
-      for (Index j = 0; j < count; ++j) {
-        const Real* row = spring(acting.contact[c]);
-        add(sum[j], -row[4 + j], row);
-      }
-    for (Index c = of_edges.first; c < of_edges.last; ++c)
-      react(face, count, acting.contact[c], sum);
+    for (; c < last && acting.contact[c] < 4 * exposed; ++c) {
+      const Real* row = springs.reaction + std::size_t(acting.contact[c]) * 8;
+      for (Index j = 0; j < count; ++j) add(sum[j], -row[4 + j], row);
+    }
+    for (; c < last; ++c) react(face, count, acting.contact[c] - 4 * exposed, sum);
     for (Index k = 0; k < count; ++k) sum[k].store(corner_force + (std::size_t(m.i) * 4 + k) * 4);
   }
 
  private:
-  /// Reactions of contacts.
-  CDEM_HD const Real* spring(Index slot) const { return springs.reaction + std::size_t(slot) * 8; }
-  CDEM_HD const Real* edge(Index contact) const {
-    return edges.reaction + std::size_t(contact - 4 * exposed) * 8;
-  }
   /// The force with its weight, the stiffness with the size of that.
   CDEM_HD static void add(Row& corner, Real weight, const Real* row) {
     corner = corner + (weight * Row::at(row)).with_size_of_last();
@@ -96,9 +83,9 @@ struct AccumulateFaceForces : ContactsOf {
     }
   }
   /// What a semi-edge that crosses a side of this face does to it.
-  CDEM_HD void react(Index face, Index count, Index contact, Row sum[4]) const {
-    const Real* row = edge(contact);
-    const Index k = faces.side_on(face, EdgeContact::at(edges.contact, contact - 4 * exposed).edge);
+  CDEM_HD void react(Index face, Index count, Index c, Row sum[4]) const {
+    const Real* row = edges.reaction + std::size_t(c) * 8;
+    const Index k = faces.side_on(face, EdgeContact::at(edges.contact, c).edge);
     add(sum[k], row[5] - 1.0, row);
     add(sum[k + 1 == count ? 0 : k + 1], -row[5], row);
   }

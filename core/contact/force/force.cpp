@@ -64,8 +64,8 @@ void accumulate_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
   const ContactsOf contacts{spring_columns(s), edge_columns(s), count};
   ContactsByTargetState& acting = s.contacts_by_target;
-  list_rows(q, count, 4 * count + Index(s.edges.contact.size() / 4), 2 * count, contacts,
-            acting.first, acting.contact);
+  list_rows(q, count, 4 * count + Index(s.edges.contact.size() / 4), count, contacts, acting.first,
+            acting.contact);
   const ContactsByTarget rows{acting.first.data(), acting.contact.data()};
   for_each_item(q, count,
                 AccumulateFaceForces{contacts, face_columns(m, s), s.search.exposed_face.data(),

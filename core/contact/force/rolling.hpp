@@ -128,9 +128,10 @@ struct AddRollingCouples {
       couple = couple + s.couple;
       stiffness += s.stiffness;
     }
-    const Range acting_springs = acting.springs_on(m.i);
-    for (Index c = acting_springs.first; c < acting_springs.last; ++c) {
-      const RollingState s = RollingState::at(rows, acting.contact[c]);
+    for (Index c = acting.first[m.i]; c < acting.first[m.i + 1]; ++c) {
+      const Index slot = acting.contact[c];
+      if (slot >= 4 * contacts.exposed) break;
+      const RollingState s = RollingState::at(rows, slot);
       couple = couple - s.couple;
       stiffness += s.stiffness;
     }

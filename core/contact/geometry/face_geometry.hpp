@@ -69,6 +69,13 @@ struct FaceColumns {
   }
 };
 
+/// Geometry of an exposed face, or one a lane.
+template <class T>
+struct FaceRow {
+  Vec3<T> center, normal;
+  T length;  // L, negative for quadrilaterals  [m]
+};
+
 /// Centre, sharp sides, normal and size of exposed faces, one 64-byte row each: centre, sharp,
 /// normal, L (negative for quadrilaterals); and the rows of ExposedRow.
 struct FaceGeometry {
@@ -94,15 +101,10 @@ struct FaceGeometry {
     return InRows{rows}.at(exposed, 0).vector();
   }
   /// A row as a whole.
-  template <class T>
-  struct Face {
-    Vec3<T> center, normal;
-    T length;
-  };
   template <class Ids>
   CDEM_HD auto row(const Ids& exposed) const {
     const auto first = InRows{rows}.at(exposed, 0), last = InRows{rows}.at(exposed, 4);
-    return Face<Number<Ids>>{first.vector(), last.vector(), last.w};
+    return FaceRow<Number<Ids>>{first.vector(), last.vector(), last.w};
   }
   /// Is side k an edge, or does the block's surface go on flat beyond it?
   CDEM_HD bool sharp(Index exposed, Index k) const {

@@ -97,8 +97,7 @@ struct FilterEdgePairs {
     Truth<T> neighbours[2];
     for (Index e = 0; e < 2; ++e) {
       for (Index i = 0; i < 2; ++i) at[e][i] = at_side(p, edges, code, e, i);
-      neighbours[e] =
-          numbers_of([&](Index of) { return EdgeWays::are_neighbours(of, e); }, code) > T(0.0);
+      neighbours[e] = EdgeWays::are_neighbours(code, e);
       share_cones(neighbours[e], at[e][0], at[e][1]);
     }
     const T together2 = distance_of_shared_ends(edges, code);
@@ -165,20 +164,19 @@ struct FilterEdgePairs {
     const auto of = geometry.row(face);
     const Vec3<T>&x = edges.x[e], &d = edges.d[e], c = e == 0 ? edges.c : -edges.c;
     const auto held = InIndices{pairs.held, pairs.stride}.at(2 * e + i, p);
-    const auto goes_on = numbers_of([](Index place) { return place >= 0; }, held) > none;
-    const T slack = select(goes_on, T(1.000001 * crossing_slack(rules.indentation)), none);
+    const T slack = select(is_none(held), none, T(1.000001 * crossing_slack(rules.indentation)));
     const Vec3<T> start = x + T(rules.indentation) * (of.center - x);
     const Vec3<T> into = cross(of.normal, d);
-    const T up = dot(edges.c, into) *
-                 numbers_of([&](Index bits) { return EdgeWays::sense(bits, e, i); }, code);
+    const T forward = dot(edges.c, into);
+    const T up = select(EdgeWays::runs_against(code, e, i), -forward, forward);
     const auto steep = up * up > steepest * dot(into, into) * edges.c2;
     return {.normal = of.normal,
             .along = dot(edges.c, of.normal),
             .length = abs_of(of.length),
             .far = crosses_beyond(start, d, edges.x[1 - e], edges.d[1 - e], c, edges.c2, rules,
                                   slack + T(1e-9)),
-            .rises = steep & (up > none),
-            .falls = steep & (up < none)};
+            .rises = Truth<T>(steep & (up > none)),
+            .falls = Truth<T>(steep & (up < none))};
   }
   /// Of two faces on either side of an edge none may rise.
   template <class T>
@@ -200,12 +198,11 @@ struct FilterEdgePairs {
   template <class T, class Ids>
   CDEM_HD static T distance_of_shared_ends(const Edges<T>& edges, const Ids& code) {
     const Vec3<T>*x = edges.x, *d = edges.d;
-    const T far(1e300), none(0.0);
+    const T far(1e300);
     T least = far;
-    for (const Index ends : {0, 3}) {
-      const auto share =
-          numbers_of([&](Index of) { return EdgeWays::shared_ends(of) >> ends & 1; }, code) > none;
-      const Vec3<T> apart = ends == 0 ? x[1] - x[0] : (x[1] + d[1]) - (x[0] + d[0]);
+    for (Index end = 0; end < 2; ++end) {
+      const Vec3<T> apart = end == 0 ? x[1] - x[0] : (x[1] + d[1]) - (x[0] + d[0]);
+      const auto share = EdgeWays::share(code, end, end);
       least = min_of(least, select(share, dot(apart, apart), far));
     }
     return least;

@@ -1,6 +1,9 @@
 // edge_ways.hpp - two edges, the faces at them, and the ways in which these may touch.
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 #include "core/base/lanes.hpp"
 
 namespace cdem {
@@ -27,8 +30,8 @@ struct EdgeWays {
   /// Call act(way) for ways given as bits.
   template <class Do>
   CDEM_HD static void visit(Flag ways, const Do& act) {
-    for (Index way = 0; way < count; ++way)
-      if (ways >> way & 1) act(way);
+    for (unsigned rest = std::uint8_t(ways); rest; rest &= rest - 1)
+      act(Index(std::countr_zero(rest)));
   }
   /// The mother's side and the target's, of the four: 0 and 1 at the first edge, 2 and 3 at the
   /// second.
@@ -41,18 +44,25 @@ struct EdgeWays {
     return some | shared << count | against << (count + 4) | turned << (count + 8);
   }
   CDEM_HD static bool is_turned(Index code, Index edge) { return code >> (count + 8 + edge) & 1; }
-  /// Bit 2 a + b: end a of the one and end b of the other began at the same place in the mesh.
-  CDEM_HD static Index shared_ends(Index code) { return code >> count & 15; }
-  /// +1 where side i of edge e goes the way of the edge, -1 where it runs against it.
-  CDEM_HD static Real sense(Index code, Index e, Index i) {
-    return code >> (count + 4 + 2 * e + i) & 1 ? -1.0 : 1.0;
+  /// Did end a of the one and end b of the other begin at the same place in the mesh?
+  template <class Ids>
+  CDEM_HD static auto share(const Ids& code, Index a, Index b) {
+    return has_bit(code, count + 2 * a + b);
+  }
+  /// Does side i of edge e run against the edge?
+  template <class Ids>
+  CDEM_HD static auto runs_against(const Ids& code, Index e, Index i) {
+    return has_bit(code, count + 4 + 2 * e + i);
   }
   /// Are the two faces at edge e on either side of it: is each the other's ExposedRow::beside?
+  template <class Ids>
+  CDEM_HD static auto are_neighbours(const Ids& code, Index e) {
+    return has_bit(code, count + 10 + e);
+  }
   CDEM_HD static Index with_neighbours(Index code, Index e) { return code | 1 << (count + 10 + e); }
-  CDEM_HD static bool are_neighbours(Index code, Index e) { return code >> (count + 10 + e) & 1; }
   /// Are there other faces at the edges, so that their contacts may be found through other pairs?
+  CDEM_HD static bool have_others(Index code) { return has_bit(code, count + 12); }
   CDEM_HD static Index with_others(Index code) { return code | 1 << (count + 12); }
-  CDEM_HD static bool have_others(Index code) { return code >> (count + 12) & 1; }
 };
 
 /// Two edges, or such a pair a lane: edge e with its ends, and with the (at most two) faces at it.

@@ -31,8 +31,11 @@ struct TouchingEdges {
     using T = Number<Ids>;
     const Common<T> edges = common(pair);
     AtEdge<T> at[2][2];
-    for (Index e = 0; e < 2; ++e)
-      for (Index i = 0; i < 2; ++i) at[e][i] = at_edge(pair, edges, e, i);
+    for (Index e = 0; e < 2; ++e) {
+      Across<Ids> across[2];
+      find_across(pair, e, across);
+      for (Index i = 0; i < 2; ++i) at[e][i] = at_edge(pair, edges, across[i], e, i);
+    }
     Touching out;
     for (Index i = 0; i < 2; ++i)
       for (Index j = 0; j < 2; ++j) judge(pair, edges, at[0][i], at[1][j], i, j, out);
@@ -72,10 +75,11 @@ struct TouchingEdges {
     Vec3<T> normal, beside;  // of the face; of the exposed one across the side, or of the same
     T length;                // [m]
     Truth<T> sharp;
-    Truth<T> crosses, still_crosses;  // as a mother: the other edge, if it begins to; if it goes on
-    Truth<T> rises, falls;            // do the faces at the edge rise by more than the slack along
-                                      // c, along -c?
-    Truth<T> first;                   // is it the right face if both oppose the mother alike?
+    Truth<T> goes_on;  // has it a contact with the other edge, as the mother?
+    Truth<T> crosses;  // does it cross the other edge, as the mother?
+    Truth<T> rises,
+        falls;       // do the faces at the edge rise by more than the slack along c, along -c?
+    Truth<T> first;  // is it the right face if both oppose the mother alike?
   };
 
   template <class Ids, class T = Number<Ids>>
@@ -107,60 +111,73 @@ struct TouchingEdges {
   /// Edges that start from one place in the mesh, and are still there, do not touch each other.
   template <class T, class Ids>
   CDEM_HD T closest_shared_ends(const TwoEdges<Ids>& pair) const {
-    const T none(0.0), far(1e300);
+    const T far(1e300);
     T least = far;
-    for (Index ends = 0; ends < 4; ++ends) {
-      const auto share =
-          numbers_of([&](Index code) { return EdgeWays::shared_ends(code) >> ends & 1; },
-                     pair.code) > none;
-      if (!any_of(share)) continue;
-      const Vec3<T> d = faces.nodes.position(pair.end[0][ends >> 1]) -
-                        faces.nodes.position(pair.end[1][ends & 1]);
-      least = min_of(least, select(share, dot(d, d), far));
-    }
+    for (Index a = 0; a < 2; ++a)
+      for (Index b = 0; b < 2; ++b) {
+        const auto share = EdgeWays::share(pair.code, a, b);
+        if (!any_of(share)) continue;
+        const Vec3<T> d =
+            faces.nodes.position(pair.end[0][a]) - faces.nodes.position(pair.end[1][b]);
+        least = min_of(least, select(share, dot(d, d), far));
+      }
     return least;
   }
 
+  /// A face at an edge, and what is across its side.
+  template <class Ids>
+  struct Across {
+    Ids face, side, beside;  // the face and its side; the exposed face across, or -1
+    FaceRow<Number<Ids>> row;
+    Vec3<Number<Ids>> beyond;  // normal across; 0 where there is no face, which does not rise
+  };
+  /// Where the two faces at an edge are neighbours, each is across the other's side.
+  template <class Ids>
+  CDEM_HD void find_across(const TwoEdges<Ids>& pair, Index e, Across<Ids> (&of)[2]) const {
+    for (Index i = 0; i < 2; ++i) {
+      of[i].face = indices_of([](Index side) { return side / 4; }, pair.side[e][i]);
+      of[i].side = indices_of([](Index side) { return side % 4; }, pair.side[e][i]);
+      of[i].row = geometry.row(of[i].face);
+    }
+    const bool neighbours = !any_of(!EdgeWays::are_neighbours(pair.code, e));
+    const auto beside = [&](Index x, Index side) { return geometry.table[x].beside[side]; };
+    for (Index i = 0; i < 2; ++i) {
+      of[i].beside = neighbours ? of[1 - i].face : indices_of(beside, of[i].face, of[i].side);
+      of[i].beyond = neighbours ? of[1 - i].row.normal
+                                : normal_across(faces, geometry, of[i].face, of[i].side);
+    }
+  }
   template <class Ids, class T>
-  CDEM_HD AtEdge<T> at_edge(const TwoEdges<Ids>& pair, const Common<T>& edges, Index e,
-                            Index i) const {
+  CDEM_HD AtEdge<T> at_edge(const TwoEdges<Ids>& pair, const Common<T>& edges,
+                            const Across<Ids>& across, Index e, Index i) const {
     const T none(0.0), alpha(rules.indentation), steepest(rules.cone * rules.cone);
-    const auto face = indices_of([](Index side) { return side / 4; }, pair.side[e][i]);
-    const auto k = indices_of([](Index side) { return side % 4; }, pair.side[e][i]);
-    const auto row = geometry.row(face);
+    const auto& row = across.row;
     AtEdge<T> at;
     at.normal = row.normal;
     at.length = abs_of(row.length);
-    at.sharp =
-        numbers_of([&](Index x, Index side) { return geometry.sharp(x, side); }, face, k) > none;
-    // across the side: 0 where there is no face, which does not rise
-    const Vec3<T> beyond = normal_across(faces, geometry, face, k);
-    const auto beside = [&](Index x, Index side) { return geometry.table[x].beside[side]; };
-    at.beside = select(numbers_of(beside, face, k) < none, row.normal, beyond);
-    const auto before = [&](Index x, Index side) {
-      return beside(x, side) >= 0 && beside(x, side) < x;
-    };
-    at.first = !(numbers_of(before, face, k) > none);
+    at.sharp = numbers_of([&](Index x, Index side) { return geometry.sharp(x, side); }, across.face,
+                          across.side) > none;
+    at.beside = select(is_none(across.beside), row.normal, across.beyond);
+    at.first = is_none(across.beside) | !is_less(across.beside, across.face);
+    at.goes_on = !is_none(pair.before[2 * e + i]);
 
     const Vec3<T>&d = edges.d[e], &other = edges.d[1 - e], c = e == 0 ? edges.c : -edges.c;
     const Vec3<T> apart = edges.x[1 - e] - (edges.x[e] + alpha * (row.center - edges.x[e]));
     const T s = dot(cross(apart, other), c), t = dot(cross(apart, d), c);
-    const auto crosses = [&](Real slack) {
-      const T room = T(slack) * edges.c2, shorter = T(1.0 - rules.indentation);
-      return !((s < -shorter * room) | (s > shorter * (edges.c2 + room)) | (t < -room) |
-               (t > edges.c2 + room));
-    };
-    at.crosses = crosses(0.0);
-    at.still_crosses = crosses(crossing_slack(rules.indentation));
+    const T room = select(at.goes_on, T(crossing_slack(rules.indentation)) * edges.c2, none);
+    const T shorter(1.0 - rules.indentation);
+    at.crosses = !((s < -shorter * room) | (s > shorter * (edges.c2 + room)) | (t < -room) |
+                   (t > edges.c2 + room));
 
     // a face that leaves the side to the left of `along` rises into the normal x along
-    const T sense = numbers_of([&](Index code) { return EdgeWays::sense(code, e, i); }, pair.code);
-    const auto up_of = [&](const Vec3<T>& normal, const T& along) {
+    const auto against = EdgeWays::runs_against(pair.code, e, i);
+    const auto up_of = [&](const Vec3<T>& normal, const auto& backwards) {
       const Vec3<T> into = cross(normal, d);
-      const T up = along * dot(edges.c, into);
-      return select(up * up > steepest * dot(into, into) * edges.c2, up, none);
+      const T up = dot(edges.c, into);
+      const auto steep = up * up > steepest * dot(into, into) * edges.c2;
+      return select(steep, select(backwards, -up, up), none);
     };
-    const T here = up_of(row.normal, sense), there = up_of(beyond, -sense);
+    const T here = up_of(row.normal, against), there = up_of(across.beyond, !against);
     at.rises = (here > none) | (there > none);
     at.falls = (here < none) | (there < none);
     return at;
@@ -184,12 +201,10 @@ struct TouchingEdges {
       const Index way = EdgeWays::way(reverse, i, j);
       const Ids& before = pair.before[EdgeWays::mother(way)];
       const T there = dot(mother.normal, target.beside);
-      const auto goes_on = numbers_of([](Index c) { return c >= 0; }, before) > none;
       const Truth<T> touch = may & ((opposed < there) | (target.first & !(opposed > there))) &
-                             (mother.crosses | (goes_on & mother.still_crosses)) &
-                             !(gap > highest_gap(before));
+                             mother.crosses & !(gap > highest_gap(before));
       const T limit =
-          select(goes_on, T(rules.depth) * length, T(rules.entry) * length + edges.approach);
+          select(mother.goes_on, T(rules.depth) * length, T(rules.entry) * length + edges.approach);
       const Truth<T> deep = touch & (gap < -limit);
       out.touches[way] = lane_bits(touch & !deep);
       out.too_deep[way] = any_of(deep) ? lane_bits(deep & is_loaded(before)) : 0;

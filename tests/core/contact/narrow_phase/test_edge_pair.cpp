@@ -23,9 +23,10 @@ TEST_CASE("the code of a pair of edges holds ways, shared ends and directions ap
     CHECK((code >> (EdgeWays::count + 4) & 15) == 0x6);
     CHECK(EdgeWays::is_turned(code, 0) == (turned & 1));
     CHECK(EdgeWays::is_turned(code, 1) == (turned >> 1 & 1));
-    CHECK(EdgeWays::shared_ends(code) == 0x9);
+    for (Index a = 0; a < 2; ++a)
+      for (Index b = 0; b < 2; ++b) CHECK(EdgeWays::share(code, a, b) == (0x9 >> (2 * a + b) & 1));
     for (Index side = 0; side < 4; ++side)
-      CHECK(EdgeWays::sense(code, side / 2, side % 2) == (0x6 >> side & 1 ? -1.0 : 1.0));
+      CHECK(EdgeWays::runs_against(code, side / 2, side % 2) == (0x6 >> side & 1));
     CHECK(!EdgeWays::are_neighbours(code, 0));
     CHECK(!EdgeWays::have_others(code));
     CHECK(EdgeWays::are_neighbours(EdgeWays::with_neighbours(code, 1), 1));
