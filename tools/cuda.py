@@ -45,6 +45,7 @@ LIMITS = {
     "UpdateSpringForces<ElasticUnloading>, BrittleAlone": (168, 0),
     "UpdateSpringForces<ElasticUnloading>, InterfaceLaws": (255, 0),
 }
+LEAST_REGISTERS = 16
 KERNEL = re.compile(
     r"Compiling entry function '(\w+)'.*\n.*\n"
     r" *\d+ bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads\n"
@@ -103,7 +104,7 @@ def needs(log: str) -> dict[str, tuple[int, int]]:
 
 
 def faults(found: dict[str, tuple[int, int]]) -> list[str]:
-    """What is over its limit, and numbers that are read or written byte by byte."""
+    """What is over its limit or empty, and numbers that are read or written byte by byte."""
     lines = [f"LIMITS names {name}, which is no kernel" for name in LIMITS.keys() - found.keys()]
     for name, limits in LIMITS.items():
         for value, limit, what in zip(
@@ -111,6 +112,12 @@ def faults(found: dict[str, tuple[int, int]]) -> list[str]:
         ):
             if value > limit:
                 lines.append(f"{name}: {value} {what}, at most {limit} allowed")
+    # what the compiler takes for undefined becomes an empty kernel, without a word
+    lines += [
+        f"{name}: {found[name][0]} registers, too few to do anything"
+        for name in LIMITS.keys() & found.keys()
+        if found[name][0] < LEAST_REGISTERS
+    ]
     code = (FOLDER / "core" / "kernels" / "libkernels_cuda.a").read_bytes()
     in_bytes = sum(int(place) % 8 == 7 for place in BYTE_OF_A_NUMBER.findall(code))
     if in_bytes:

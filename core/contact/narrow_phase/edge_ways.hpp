@@ -1,7 +1,6 @@
 // edge_ways.hpp - two edges, the faces at them, and the ways in which these may touch.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
 #include "core/base/lanes.hpp"
@@ -30,8 +29,9 @@ struct EdgeWays {
   /// Call act(way) for ways given as bits.
   template <class Do>
   CDEM_HD static void visit(Flag ways, const Do& act) {
-    for (unsigned rest = std::uint8_t(ways); rest; rest &= rest - 1)
-      act(Index(std::countr_zero(rest)));
+    const unsigned rest = std::uint8_t(ways);
+    for (Index way = 0; rest >> way; ++way)
+      if (rest >> way & 1) act(way);
   }
   /// The mother's side and the target's, of the four: 0 and 1 at the first edge, 2 and 3 at the
   /// second.
