@@ -156,7 +156,9 @@ struct PutInRows {
   }
 };
 /// Sort every row.
+template <class Kernel>
 struct SortRow {
+  Kernel kernel;
   const Index* first;
   Index* list;
   CDEM_HD void operator()(One row) const {
@@ -166,16 +168,23 @@ struct SortRow {
 
  private:
   /// Shell's sort: rows are short and almost in order, but for a few long ones.
-  CDEM_HD static void sort(Index* row, Index count) {
+  CDEM_HD void sort(Index* row, Index count) const {
     Index gap = 1;
     while (gap < count / 3) gap = 3 * gap + 1;
     for (; gap > 0; gap /= 3)
       for (Index j = gap; j < count; ++j) {
         const Index one = row[j];
         Index place = j;
-        for (; place >= gap && row[place - gap] > one; place -= gap) row[place] = row[place - gap];
+        for (; place >= gap && is_before(one, row[place - gap]); place -= gap)
+          row[place] = row[place - gap];
         row[place] = one;
       }
+  }
+  CDEM_HD bool is_before(Index one, Index other) const {
+    if constexpr (requires { kernel.is_before(one, other); })
+      return kernel.is_before(one, other);
+    else
+      return one < other;
   }
 };
 
@@ -192,7 +201,7 @@ void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel
   for_each_item(
       queue, items,
       PutInRows<Kernel>{.kernel = kernel, .place = place, .first = starts, .list = list.data()});
-  for_each_item(queue, rows, SortRow{starts, list.data()});
+  for_each_item(queue, rows, SortRow<Kernel>{kernel, starts, list.data()});
 }
 
 }  // namespace cdem

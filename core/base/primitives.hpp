@@ -46,7 +46,8 @@ void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>&
 /// Sort pairs by their keys; those of one key stay in order.
 void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values);
 
-/// Bring numbers into rows, ascending in each: `kernel.visit(item, act)` calls act(row, number) for
+/// Bring numbers into rows, in each in the order of `kernel.is_before(one, other)`, or ascending
+/// where it has none: `kernel.visit(item, act)` calls act(row, number) for
 /// what an item has, which are numbers below `numbers`, each once. Those of a row stand in the list
 /// from first[row] on, before first[row + 1]. Waits for how many they are.
 template <class Kernel>

@@ -48,6 +48,15 @@ struct FoundEdges {
       act(pairs.mother(p.i, way) / 4, EdgeWays::count * p.i + way);
     });
   }
+  /// In the order of the target faces, of the mother's sides and of the target's.
+  CDEM_HD bool is_before(Index one, Index other) const {
+    const Index p = one / EdgeWays::count, way = one % EdgeWays::count;
+    const Index q = other / EdgeWays::count, other_way = other % EdgeWays::count;
+    const Index target = pairs.target(p, way), other_target = pairs.target(q, other_way);
+    if (target / 4 != other_target / 4) return target < other_target;
+    const Index mother = pairs.mother(p, way), other_mother = pairs.mother(q, other_way);
+    return mother != other_mother ? mother < other_mother : target < other_target;
+  }
 };
 
 /// List the contacts found for one exposed face, in order: they go on or begin. Energy that the
@@ -56,7 +65,7 @@ struct ListEdgeContacts {
   ResolveTargetEdges search;
   FaceInterfaces interfaces;
   const Index* first;  // [exposed + 1] of the list
-  Index* found;        // FoundEdges
+  const Index* found;  // FoundEdges
   Index* contact;      // rows of EdgeContact
   Index* seen;         // where EdgePairs::held holds a contact
   Real* friction;      // [exposed] lost so far  [J]
@@ -65,7 +74,6 @@ struct ListEdgeContacts {
   CDEM_HD void operator()(One m) const {
     const EdgesBefore& held = search.touching.held;
     const Index from = first[m.i], to = first[m.i + 1];
-    sort(found + from, to - from);
     for (Index c = from; c < to; ++c) {
       const Index p = found[c] / EdgeWays::count, way = found[c] % EdgeWays::count;
       const Index target = search.pairs.target(p, way);
@@ -88,30 +96,6 @@ struct ListEdgeContacts {
   }
 
  private:
-  /// In the order of the target faces, of the mother's sides and of the target's.
-  CDEM_HD bool is_before(Index one, Index other) const {
-    const Index p = one / EdgeWays::count, way = one % EdgeWays::count;
-    const Index q = other / EdgeWays::count, other_way = other % EdgeWays::count;
-    const Index target = search.pairs.target(p, way),
-                other_target = search.pairs.target(q, other_way);
-    if (target / 4 != other_target / 4) return target < other_target;
-    const Index mother = search.pairs.mother(p, way),
-                other_mother = search.pairs.mother(q, other_way);
-    return mother != other_mother ? mother < other_mother : target < other_target;
-  }
-  /// Shell's sort: rows are short, but for a large face under many edges.
-  CDEM_HD void sort(Index* row, Index count) const {
-    Index gap = 1;
-    while (gap < count / 3) gap = 3 * gap + 1;
-    for (; gap > 0; gap /= 3)
-      for (Index j = gap; j < count; ++j) {
-        const Index one = row[j];
-        Index place = j;
-        for (; place >= gap && is_before(one, row[place - gap]); place -= gap)
-          row[place] = row[place - gap];
-        row[place] = one;
-      }
-  }
   CDEM_HD DissipatedAtEnd lost_at_end(Index c) const {
     const FaceColumns& faces = search.touching.faces;
     const FaceGeometry& geometry = search.touching.geometry;
