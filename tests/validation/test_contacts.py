@@ -515,3 +515,36 @@ def test_contact_search_in_fragmenting_rock_agrees_with_an_all_pairs_search():
         sim.step(1)  # stops if an all-pairs search finds anything else
         edges += int((sim.contacts["kind"] == 1).sum())
     assert edges > 10_000
+
+
+def test_an_edge_contact_keeps_its_history_from_face_to_face():
+    """Two ridges of tets cross and are pressed; the upper one tips over the lower one's edge.
+
+    On either side of that edge lies a face of another element. Which of them is the target changes
+    as the ridge tips; the contact stays one, and keeps its place of one step ago.
+    """
+    ridge = [[x, y, z] for x in (-1, 1) for y, z in ((0, 0), (-0.5, 0.6), (0.5, 0.6))]
+    below = [[y, x, -z] for x, y, z in ridge]
+    sim = simulate(
+        [
+            {"group": "lower", "polyhedron": {"vertices": below}},
+            {"group": "upper", "polyhedron": {"vertices": ridge}, "translate": [0, 0, 1e-4]},
+        ],
+        {"lower": {"fix": ["x", "y", "z"]}, "upper": {}},
+    )
+    start = sim.build.start_position.copy()
+    upper = sim.build.nodes_of("upper")
+    before, targets = start, set()
+    for tip in np.linspace(-0.5, 0.5, 41):
+        now = start.copy()
+        now[upper] = (start[upper] - [0, 0, 1e-4]) @ turn([0, 1, 0], tip).T - [0, 0, 1e-4]
+        sim.motion[:, :3] = now
+        sim.motion[:, 4:7] = (now - before) / sim.core.scalars()["dt_last"]
+        sim.step(1)
+        contacts = sim.core.fields()["edge.contact"].reshape(-1, 4)
+        if before is not start:
+            assert len(contacts) == 4
+            assert (contacts[:, 3] >= 0).all()
+        targets |= {(m, e, f) for m, f, e, _ in contacts}
+        before = now
+    assert len(targets) > len({(m, e) for m, e, _ in targets})  # faces did change

@@ -140,6 +140,14 @@ FAULTS = [
         "tests/core/contact/narrow_phase/test_target_edge.cpp",
     ),
     Mutant(
+        "other faces at an edge",
+        "a contact of edges that passes to the next face of a surface forgets its history",
+        "core/contact/pair_list/prune.hpp",
+        "code = EdgeWays::with_others(code);",
+        "code = code;",
+        "tests/validation/test_contacts.py",
+    ),
+    Mutant(
         "lifted edge",
         "edges that have dilated are lost above zero gap",
         "core/contact/narrow_phase/touching_edges.hpp",
