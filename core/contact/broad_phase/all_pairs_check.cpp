@@ -94,10 +94,10 @@ class AllPairs {
   }
   /// Do side k of exposed face x and side j of t touch?
   bool touch(Index x, Index k, Index t, Index j) const {
-    SidePair pair;
-    if (!pair_sides(edges.faces, face(x), k, face(t), j, pair)) return false;
+    Index shared;
+    if (!pair_sides(edges.faces, face(x), k, face(t), j, shared)) return false;
     const Index before = edges.held.place_of(4 * x + k, m.face_edges[4 * face(t) + j]);
-    return edges.touch(4 * x + k, 4 * t + j, pair.shared, before);
+    return edges.touch(4 * x + k, 4 * t + j, shared, before);
   }
   /// Has the step found that they do?
   bool is_found(Index x, Index k, Index t, Index j) const {

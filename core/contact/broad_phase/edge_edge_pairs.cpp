@@ -263,7 +263,7 @@ PairBuffer::EdgePair near_edges(const PairContext& f, const Patch& a, Index e, c
           {1.000001 * rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
            ends.shared ? 0.999999 * rules.indentation * edges.length : 0,
            ways_part_soon(p, q) + 1e-6 * edges.length},
-          EdgeWays::code_of(ways, SidePair::turned(ends.shared, first_p, first_q), sides,
+          EdgeWays::code_of(ways, EdgeWays::turned(ends.shared, first_p, first_q), sides,
                             first_p | first_q << 1)};
 }
 

@@ -7,18 +7,6 @@
 
 namespace cdem {
 
-/// Side k of the mother and side j of the target. Bit 2 a + b of `shared`: end a of the one and end
-/// b of the other began at the same place in the mesh.
-struct SidePair {
-  Index k, j, shared;
-  /// `shared` where the one, or the other, is run through backwards.
-  CDEM_HD static Index turned(Index shared, bool one, bool other) {
-    if (one) shared = (shared & 3) << 2 | shared >> 2;
-    if (other) shared = (shared & 5) << 1 | (shared & 10) >> 1;
-    return shared;
-  }
-};
-
 /// Ways to choose the sides of two edges that may touch: of the (at most two) faces at each edge
 /// one is the mother's and one the target's.
 struct EdgeWays {
@@ -44,6 +32,13 @@ struct EdgeWays {
     return some | shared << count | against << (count + 4) | turned << (count + 8);
   }
   CDEM_HD static bool is_turned(Index code, Index edge) { return code >> (count + 8 + edge) & 1; }
+  /// Ends that are shared, bit 2 a + b for end a of the one and b of the other, where the one, or
+  /// the other, is run through backwards.
+  CDEM_HD static Index turned(Index shared, bool one, bool other) {
+    if (one) shared = (shared & 3) << 2 | shared >> 2;
+    if (other) shared = (shared & 5) << 1 | (shared & 10) >> 1;
+    return shared;
+  }
   /// Did end a of the one and end b of the other begin at the same place in the mesh?
   template <class Ids>
   CDEM_HD static auto share(const Ids& code, Index a, Index b) {

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "core/contact/geometry/face_geometry.hpp"
-#include "core/contact/narrow_phase/edge_pair.hpp"
 
 namespace cdem {
 
 /// Side k of a face and side j of another as a candidate; false where intact bonds hold them
-/// together.
+/// together. Bit 2 a + b of `shared`: end a of the one and end b of the other began at the same
+/// place in the mesh.
 bool pair_sides(const FaceColumns& faces, Index face_m, Index k, Index face_t, Index j,
-                SidePair& pair);
+                Index& shared);
 
 }  // namespace cdem

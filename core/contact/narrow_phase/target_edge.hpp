@@ -13,7 +13,6 @@ namespace cdem {
 /// Find which semi-edges touch: judge all ways of two edges that may.
 struct ResolveTargetEdges {
   TouchingEdges touching;
-  const Index* exposed_face;
   EdgePairs pairs;
   Flag* lost;  // [exposed] 1: a loaded contact was lost because it penetrated too deep
 
@@ -31,10 +30,6 @@ struct ResolveTargetEdges {
       });
       pairs.open[p] = Flag(touch);
     });
-  }
-
-  CDEM_HD Index edge_of(Index side) const {
-    return touching.faces.face_edges[4 * exposed_face[side / 4] + side % 4];
   }
 };
 
@@ -80,7 +75,7 @@ struct ListEdgeContacts {
       seen[c] = search.pairs.place_held(EdgeWays::mother(way), p);
       EdgeContact{.mother = search.pairs.mother(p, way),
                   .face = target / 4,
-                  .edge = search.edge_of(target),
+                  .edge = search.pairs.edges.at(EdgeWays::target(way) / 2, p),
                   .before = search.pairs.held[seen[c]]}
           .store(contact, c);
     }

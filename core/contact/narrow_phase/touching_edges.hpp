@@ -43,8 +43,8 @@ struct TouchingEdges {
   }
 
   /// Do two sides (4 * exposed face + side) touch? `shared` tells which of their ends began at the
-  /// same place in the mesh, see SidePair; `before` is the place of their contact one step ago, or
-  /// -1.
+  /// same place in the mesh, see pair_sides; `before` is the place of their contact one step ago,
+  /// or -1.
   CDEM_HD bool touch(Index mother, Index target, Index shared, Index before) const {
     const auto end = [&](Index side, Index which) {
       const ExposedRow& row = geometry.table[side / 4];

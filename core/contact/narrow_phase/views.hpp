@@ -70,10 +70,7 @@ inline TouchingEdges touching_edges(const Model& m, const State& s) {
 }
 
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {
-  return {.touching = touching_edges(m, s),
-          .exposed_face = s.search.exposed_face.data(),
-          .pairs = edge_pairs(s),
-          .lost = s.edges.lost.data()};
+  return {.touching = touching_edges(m, s), .pairs = edge_pairs(s), .lost = s.edges.lost.data()};
 }
 
 }  // namespace cdem

@@ -335,9 +335,9 @@ class Overlaps {
     const Index mother = s.search.exposed_face[x], target = s.search.exposed_face[t];
     for (Index k = 0; k < edges.faces.vertex_count(mother); ++k)
       for (Index j = 0; j < edges.faces.vertex_count(target); ++j) {
-        SidePair pair;
-        if (pair_sides(edges.faces, mother, k, target, j, pair) &&
-            edges.touch(4 * x + k, 4 * t + j, pair.shared, -1))
+        Index shared;
+        if (pair_sides(edges.faces, mother, k, target, j, shared) &&
+            edges.touch(4 * x + k, 4 * t + j, shared, -1))
           return true;
       }
     return false;

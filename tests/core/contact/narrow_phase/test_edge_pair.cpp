@@ -8,10 +8,10 @@ TEST_CASE("shared ends follow when a side is run through backwards") {
   const auto bit = [](Index a, Index b) { return 1 << (2 * a + b); };
   for (Index a = 0; a < 2; ++a)
     for (Index b = 0; b < 2; ++b) {
-      CHECK(SidePair::turned(bit(a, b), false, false) == bit(a, b));
-      CHECK(SidePair::turned(bit(a, b), true, false) == bit(1 - a, b));
-      CHECK(SidePair::turned(bit(a, b), false, true) == bit(a, 1 - b));
-      CHECK(SidePair::turned(bit(a, b), true, true) == bit(1 - a, 1 - b));
+      CHECK(EdgeWays::turned(bit(a, b), false, false) == bit(a, b));
+      CHECK(EdgeWays::turned(bit(a, b), true, false) == bit(1 - a, b));
+      CHECK(EdgeWays::turned(bit(a, b), false, true) == bit(a, 1 - b));
+      CHECK(EdgeWays::turned(bit(a, b), true, true) == bit(1 - a, 1 - b));
     }
 }
 
