@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.bodies_schema import Rotate
-from cdem.mesh.arrays import found_in, matrix_product
+from cdem.mesh.arrays import found_in, lengths, matrix_product
 from cdem.mesh.element_shapes import NODES
 
 Floats = NDArray[np.float64]
@@ -60,7 +60,7 @@ def place(
     """Rotate about an axis (right-hand, degrees) through its origin, then translate [m]."""
     if rotate is not None:
         axis = np.asarray(rotate.axis, float)
-        x, y, z = axis / np.linalg.norm(axis)
+        x, y, z = axis / lengths(axis)
         angle = np.radians(rotate.angle)
         k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         turn = np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * matrix_product(k, k)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.mesh.arrays import along, in_plane
+from cdem.mesh.arrays import along, in_plane, lengths
 from cdem.mesh.topology import Floats, Topology
 
 COPLANAR = 1e-6
@@ -116,8 +116,8 @@ def clip(a: Floats, b: Floats) -> Floats | None:
         b: Vertices of the other, counter-clockwise seen from outside its own block.
     """
     normal = np.cross(a[2] - a[0], a[-1] - a[1])
-    least = 0.5 * LEAST_AREA * np.linalg.norm(normal)
-    normal = normal / np.linalg.norm(normal)
+    least = 0.5 * LEAST_AREA * lengths(normal)
+    normal = normal / lengths(normal)
     polygon = b[::-1] - np.outer(along(b[::-1] - a[0], normal), normal)
     for start, end in zip(a, np.roll(a, -1, axis=0), strict=True):
         inward = np.cross(normal, end - start)
@@ -132,7 +132,7 @@ def clip(a: Floats, b: Floats) -> Floats | None:
         if len(kept) < 3:
             return None
         polygon = np.array(kept)
-    near = 1e-9 * np.linalg.norm(a[2] - a[0])
+    near = 1e-9 * lengths(a[2] - a[0])
     polygon = polygon[np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1) > near]
     if len(polygon) < 3 or point_areas(polygon).sum() < least:
         return None
@@ -149,7 +149,7 @@ def point_areas(polygon: Floats) -> Floats:
 def _weights(face: Floats, points: Floats) -> Floats:
     """Barycentric or inverse bilinear weights of points on a face, shape (points, 4)."""
     normal = np.cross(face[2] - face[0], face[-1] - face[1])
-    normal = normal / np.linalg.norm(normal)
+    normal = normal / lengths(normal)
     out = np.zeros((len(points), 4))
     if len(face) == 3:
         u, v = in_plane(face[1] - face[0], face[2] - face[0], normal, points - face[0])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.mesh import element_shapes
+from cdem.mesh.arrays import along, lengths, matrix_product
 from cdem.mesh.topology import Topology
 
 Floats = NDArray[np.float64]
@@ -46,7 +47,7 @@ def passes(t: Topology, start: Floats, end: Floats, from_: float = 0.0) -> list[
         end: Where it ends [m].
         from_: Length of the path before `start`, which the results count from [m].
     """
-    length = float(np.linalg.norm(end - start))
+    length = float(lengths(end - start))
     way = (end - start) / length
     found = []
     for shape, faces in element_shapes.FACES.items():
@@ -60,7 +61,7 @@ def passes(t: Topology, start: Floats, end: Floats, from_: float = 0.0) -> list[
             x = corners[:, face]
             normal = np.cross(x[:, 2] - x[:, 0], x[:, -1] - x[:, 1])
             outside = np.einsum("ex,ex->e", normal, start - x.mean(axis=1))
-            rate = normal @ way
+            rate = along(normal, way)
             with np.errstate(divide="ignore", invalid="ignore"):
                 at = -outside / rate
             leaves, enters = rate > 0, rate < 0
@@ -116,11 +117,17 @@ def weights_in(t: Topology, shape: str, element: int, place: Floats) -> tuple[Fl
     values = np.zeros(len(nodes))
     for _ in range(NEWTON_STEPS):
         values, slopes = (a[0] for a in element_shapes.shape_functions(shape, local[None]))
-        off = place - values @ corners
-        change = np.linalg.solve(corners.T @ slopes, off)
+        off = place - along(corners.T, values)
+        change = _solved(matrix_product(slopes.T, corners), off)
         local = local + change
         if shape == "pyramid5":
             local[2] = min(local[2], 1 - 1e-9)
         if np.abs(change).max() < 1e-14:
             break
     return nodes, values
+
+
+def _solved(rows: Floats, off: Floats) -> Floats:
+    """By how much of each of three vectors a place is off; LAPACK's bits depend on the CPU."""
+    across = np.cross(rows[[1, 2, 0]], rows[[2, 0, 1]])
+    return along(across, off) / along(rows[0], across[0])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cdem.case.bolts_schema import Pattern, Rings
 from cdem.case.case import Case
 from cdem.errors import CaseError
+from cdem.mesh.arrays import along, lengths, matrix_product
 from cdem.mesh.paths import passes, walk
 from cdem.mesh.topology import Topology
 from cdem.model.selection import select_faces
@@ -43,9 +44,7 @@ class Polyline:
     @property
     def starts(self) -> Floats:
         """Length along the bolt at each point [m]."""
-        return np.concatenate(
-            [[0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))]
-        )
+        return np.concatenate([[0], np.cumsum(lengths(np.diff(self.points, axis=0)))])
 
     @property
     def length(self) -> float:
@@ -91,19 +90,19 @@ def _on_surface(
     triangles = _triangles(t, faces)
     areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normal = areas.sum(axis=0)
-    if np.linalg.norm(normal) < 1e-3 * np.linalg.norm(areas, axis=1).sum():
+    if lengths(normal) < 1e-3 * lengths(areas).sum():
         raise CaseError(
             f"{case.where(path)}: {path}.surface: its faces look in all directions; give one side of "
             "it, or rings"
         )
-    normal /= np.linalg.norm(normal)
+    normal /= lengths(normal)
     flat = np.hypot(normal[0], normal[1])
     u = np.array([1.0, 0, 0]) if flat < 1e-6 else np.array([-normal[1], normal[0], 0]) / flat
     v = np.cross(normal, u)
-    plane = triangles @ np.stack([u, v], axis=1)  # (triangles, 3, 2)
+    plane = matrix_product(triangles, np.stack([u, v], axis=1))  # (triangles, 3, 2)
     way = -normal if pattern.direction is None else np.array(pattern.direction, float)
-    way /= np.linalg.norm(way)
-    if way @ normal >= 0:
+    way /= lengths(way)
+    if along(way, normal) >= 0:
         raise CaseError(
             f"{case.where(path)}: {path}.direction: leads out of the surface, whose outward normal "
             f"is [{', '.join(f'{x:.3g}' for x in normal)}]; turn it round"
@@ -144,7 +143,7 @@ def _in_triangles(place: Floats, plane: Floats, triangles: Floats) -> Floats | N
     if not len(inside):
         return None
     k = inside[0]
-    return np.array([1 - s[k] - r[k], s[k], r[k]]) @ triangles[k]
+    return along(triangles[k].T, np.array([1 - s[k] - r[k], s[k], r[k]]))
 
 
 def _in_rings(
@@ -152,12 +151,12 @@ def _in_rings(
 ) -> Iterator[Floats]:
     """Heads where rays from the axis enter the rock."""
     start, end = np.array(rings.axis, float)
-    length = float(np.linalg.norm(end - start))
-    along = (end - start) / length
-    up = np.array([0.0, 0, 1]) if abs(along[2]) < 0.9 else np.array([0.0, 1, 0])
-    up -= (up @ along) * along
-    up /= np.linalg.norm(up)
-    side = np.cross(along, up)
+    length = float(lengths(end - start))
+    axis = (end - start) / length
+    up = np.array([0.0, 0, 1]) if abs(axis[2]) < 0.9 else np.array([0.0, 1, 0])
+    up -= along(up, axis) * axis
+    up /= lengths(up)
+    side = np.cross(axis, up)
     if rings.inside is not None and rings.inside not in names:
         raise CaseError(
             f"{case.where(path)}: {path}.inside: no group {rings.inside!r} in the model; it has: "
@@ -168,7 +167,7 @@ def _in_rings(
     a, b = np.radians(rings.angles)
     turns = rings.count if b - a >= 2 * np.pi - 1e-9 else max(rings.count - 1, 1)
     for k in range(int(np.ceil(length / rings.spacing - 1e-9))):
-        origin = start + k * rings.spacing * along
+        origin = start + k * rings.spacing * axis
         for n in range(rings.count):
             angle = a + (b - a) * n / turns
             way = np.cos(angle) * up + np.sin(angle) * side
@@ -183,7 +182,7 @@ def _in_rings(
 
 def _enters(t: Topology, start: Floats, end: Floats, inside: int) -> float | None:
     """How far from its start a ray enters the rock, after the group that fills the opening [m]."""
-    length = float(np.linalg.norm(end - start))
+    length = float(lengths(end - start))
     for p in walk(passes(t, start, end), length, 1e-9 * length):
         if p.group != inside:
             return p.first

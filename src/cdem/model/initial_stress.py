@@ -16,6 +16,7 @@ from cdem.case.schema import Material
 from cdem.case.stress_schema import InitialStress, PrincipalStress
 from cdem.errors import CaseError
 from cdem.mesh import element_shapes
+from cdem.mesh.arrays import matrix_product
 from cdem.mesh.topology import Topology
 from cdem.model.curves import constant
 from cdem.model.options import pairs_loose_joints
@@ -245,7 +246,8 @@ class _Field:
 
 def _of_principal(principal: PrincipalStress | None) -> list[float]:
     assert principal is not None  # the schema wants one of three
-    u, _, v = np.linalg.svd(principal.directions())
-    d = u @ v  # the nearest that are at right angles
+    d = principal.directions()
+    for _ in range(6):  # to the nearest that are at right angles; LAPACK's bits depend on the CPU
+        d = 1.5 * d - 0.5 * matrix_product(d, matrix_product(d.T, d))
     tensor = np.einsum("k,ki,kj->ij", principal.values, d, d)
     return [float(tensor[i, j]) for i, j in PLACES]

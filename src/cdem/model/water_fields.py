@@ -12,6 +12,7 @@ from cdem.case.case import Case
 from cdem.case.formula import Formula
 from cdem.case.water_schema import Level, WaterField
 from cdem.errors import CaseError
+from cdem.mesh.arrays import along
 from cdem.mesh.topology import Topology
 from cdem.model.curves import Curves, add_curve
 from cdem.model.flat_arrays import Floats
@@ -43,7 +44,12 @@ class _Field:
     def pressure(self, points: Floats, curves: Curves) -> Floats:
         """Pressure [Pa] at points at time zero, shape (points,)."""
         lift, factor = (float(np.interp(0.0, *curves[c])) for c in self.curves)
-        raw = self.row[0] + points @ self.row[1:4] + self.kept(points) + self.row[5] * lift
+        raw = (
+            self.row[0]
+            + along(points, np.array(self.row[1:4]))
+            + self.kept(points)
+            + self.row[5] * lift
+        )
         return factor * np.maximum(raw, 0.0)
 
 
