@@ -81,8 +81,8 @@ inline std::vector<Real> material_numbers(const std::string& law, const nb::dict
   with_law<BlockLaws>(law, [&]<template <class> class Law, Index>() {
     const auto numbers = numbers_of_law<Law<Real>>(values);
     std::copy(numbers.begin(), numbers.end(), row.begin());
-    if constexpr (numbers_that_fall<Law>() > 0)
-      for (Index k = 0; k < numbers_that_fall<Law>(); ++k)
+    if constexpr (numbers_that_fall<Law> > 0)
+      for (Index k = 0; k < numbers_that_fall<Law>; ++k)
         if (softening.contains(Law<Real>::softening[k]))
           add_pieces(row, k, nb::cast<nb::list>(softening[Law<Real>::softening[k]]));
   });

@@ -1,9 +1,11 @@
 """Compile the core for a GPU, put it in place, import it, and check what its kernels need.
 
-CDEM_ISA=cuda uses it. Needs nvcc, 13 or later; no GPU. The kernels are compiled for one architecture:
+CDEM_ISA=cuda uses it. Needs nvcc, 13 or later; no GPU, but where there is one the tests of the core
+and the golden scenes run on it. The kernels are compiled for one architecture:
 `pip install . -C cmake.define.CDEM_CUDA=ON` compiles them for all that CMakeLists.txt names.
 """
 
+import os
 import re
 import shutil
 import subprocess
@@ -73,6 +75,7 @@ def compile_kernels() -> str:
             "CMAKE_CUDA_ARCHITECTURES": ARCHITECTURE,
             "CMAKE_CUDA_COMPILER": compiler(),
             "CMAKE_CUDA_FLAGS": "-Xptxas -v --no-compress",
+            "CDEM_TESTS": "cuda",
         },
     )
     build.run(["ninja", "-C", str(FOLDER), "-t", "clean", "kernels_cuda"])
@@ -127,8 +130,17 @@ def faults(found: dict[str, tuple[int, int]]) -> list[str]:
     return lines
 
 
+def run_on_gpu() -> None:
+    """The tests of the core, and the golden scenes, which must have the bits of the CPU."""
+    build.run(["ninja", "-C", str(FOLDER), "core_tests"], quiet=True)
+    build.run([str(FOLDER / "core_tests")])
+    os.environ |= {"CDEM_ISA": "cuda", "OMP_NUM_THREADS": "1"}
+    tests = [str(build.ROOT / "tests" / "regression" / "test_golden.py"), "-k", "pinned"]
+    build.run([sys.executable, "-m", "pytest", *tests])
+
+
 def main() -> None:
-    """Compile, check, place and import."""
+    """Compile, check, place and import; where there is a GPU, run on it."""
     found = needs(compile_kernels())
     if problems := faults(found):
         sys.exit("\n".join(problems))
@@ -137,11 +149,13 @@ def main() -> None:
     sys.path.insert(0, str(FOLDER))
     import _core_cuda  # imports without a GPU
 
+    print(f"CUDA core: {len(found)} kernels within their limits, imported")
     try:
-        device = _core_cuda.device_name()
+        print(f"device: {_core_cuda.device_name()}")
     except RuntimeError as error:
-        device = f"none ({error})"
-    print(f"CUDA core: {len(found)} kernels within their limits, imported; device: {device}")
+        print(f"device: none ({error})")
+        return
+    run_on_gpu()
 
 
 if __name__ == "__main__":

@@ -23,6 +23,12 @@ void* allocate(std::size_t bytes) {
   return memory;
 }
 void release(void* memory) { cudaFree(memory); }
+void* allocate_answer(std::size_t bytes) {
+  void* memory = nullptr;
+  check(cudaHostAlloc(&memory, bytes, cudaHostAllocMapped));
+  std::memset(memory, 0, bytes);
+  return memory;
+}
 bool runs_alone() { return false; }
 void finish(Queue queue) { check(cudaStreamSynchronize(static_cast<cudaStream_t>(queue.stream))); }
 const char* device_name() {
@@ -41,6 +47,7 @@ void* allocate(std::size_t bytes) {
   return memory;
 }
 void release(void* memory) { std::free(memory); }
+void* allocate_answer(std::size_t bytes) { return allocate(bytes); }
 bool runs_alone() { return omp_get_max_threads() == 1; }
 void finish(Queue) {}
 const char* device_name() { return "cpu"; }

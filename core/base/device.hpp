@@ -28,6 +28,10 @@ struct Queue {
 void* allocate(std::size_t bytes);
 void release(void* memory);
 
+/// Zeroed memory of a few words that kernels set and the host reads: on CUDA it is the host's, for
+/// pages that both touch travel. It is never released.
+void* allocate_answer(std::size_t bytes);
+
 /// Wait until all launches are done; host code may read their columns then.
 void finish(Queue queue);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #if defined(__AVX__)
@@ -26,6 +27,7 @@ namespace cdem {
 using Real = double;
 using Index = std::int32_t;
 using Flag = std::int8_t;
+inline constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
 #if !defined(CDEM_LANES)
 #define CDEM_LANES 4

@@ -33,8 +33,22 @@ struct Blocks {
   /// Which of them have numbers from `begin` to before `end`.
   CDEM_HD Range between(Index begin, Index end) const {
     if (!id) return {begin, end};
-    return {Index(std::lower_bound(id, id + count, begin) - id),
-            Index(std::lower_bound(id, id + count, end) - id)};
+    return {first_from(begin), first_from(end)};
+  }
+
+ private:
+  /// Place in the list of the first block that is `number` or more. Not std::lower_bound, whose
+  /// steps CUDA 13 leaves out in a kernel, without a word.
+  CDEM_HD Index first_from(Index number) const {
+    Index low = 0, high = count;
+    while (low < high) {
+      const Index middle = low + (high - low) / 2;
+      if (id[middle] < number)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low;
   }
 };
 

@@ -232,7 +232,7 @@ struct SetWhere {
 
 template <class Kernel>
 bool any_item(Queue queue, Index count, const Kernel& kernel) {
-  static thread_local Flag* const found = static_cast<Flag*>(allocate(sizeof(Flag)));
+  static thread_local Flag* const found = static_cast<Flag*>(allocate_answer(sizeof(Flag)));
   const Transfer transfer;
   *found = 0;
   for_each_item(queue, count, SetWhere<Kernel>{kernel, found});

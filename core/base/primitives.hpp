@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "core/base/any_item.hpp"
 #include "core/base/column.hpp"
@@ -25,7 +24,7 @@ Index scan(Queue queue, Index count, const Index* counts, Index* first);
 
 /// The largest of some numbers, and the first item that has it.
 struct Most {
-  Real value = -std::numeric_limits<Real>::infinity();
+  Real value = -infinity;
   Index item = -1;  // where there is no number above -infinity
 
   CDEM_HD void meet(Real other, Index of) {

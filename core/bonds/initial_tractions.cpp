@@ -77,7 +77,7 @@ JointAnswer<Real> answer_at(const Model& m, const PairColumns& pairs, const Poin
   Real state[InterfaceLaws::most_state + 1] = {};
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
     if (m.interfaces[point.interface].law == number)
-      for (std::size_t k = 0; k < Law<Real>::state.size(); ++k)
+      for (Index k = 0; k < state_count<Law>; ++k)
         state[k] = bond > 0 ? Law<Real>::state[k].intact : Law<Real>::state[k].loose;
   });
   const Vec3<Real> jump =

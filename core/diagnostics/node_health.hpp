@@ -1,8 +1,6 @@
 // node_health.hpp - how fast nodes are, and which contacts the search has lost.
 #pragma once
 
-#include <limits>
-
 #include "core/base/views.hpp"
 
 namespace cdem {
@@ -17,7 +15,7 @@ struct SquaredSpeed {
     const Real* r = motion + std::size_t(node.i) * 8;
     const Real v2 = of(node.i);
     return is_finite(v2) && is_finite(r[0] + r[1] + r[2]) ? v2
-                                                          : std::numeric_limits<Real>::infinity();
+                                                          : infinity;
   }
   /// With scaled masses, of the speed with which the true one would have as much energy.
   CDEM_HD Real of(Index i) const {

@@ -5,6 +5,10 @@
 
 namespace cdem {
 
+/// What a law's state is at a face that is loose.
+template <template <class> class Law, Index k>
+inline constexpr Real loose_value = Law<Real>::state[k].loose;
+
 /// Histories of vertices or sides of exposed faces, a row each: it belongs to the wall, so it stays
 /// when a contact ends or meets another face. Empty where no law of the model has state.
 struct HistoryRows {
@@ -30,8 +34,8 @@ struct HistoryRows {
  private:
   template <template <class> class Law, Index number, Index k, class Ids, class T>
   CDEM_HD void load_from(const Ids& row, T* state) const {
-    if constexpr (k < Index(Law<T>::state.size())) {
-      constexpr Real loose = Law<T>::state[k].loose;
+    if constexpr (k < state_count<Law>) {
+      constexpr Real loose = loose_value<Law, k>;
       const auto kept = [&](Index r) {
         return law[r] == number ? rows[std::size_t(r) * width + k] : loose;
       };
@@ -57,8 +61,7 @@ CDEM_HD inline JointAnswer<T> respond_with_history(const InterfaceTable& table,
         T own[Laws::most_state];
         before.load<Law, number>(from, own);
         const auto mine = table.has_law<number>(interface);
-        for (Index k = 0; k < Index(Law<T>::state.size()); ++k)
-          state[k] = select(mine, own[k], state[k]);
+        for (Index k = 0; k < state_count<Law>; ++k) state[k] = select(mine, own[k], state[k]);
       });
   }
   const JointAnswer<T> answer = joint_laws<Laws>(table, interface).respond(in, state);

@@ -37,11 +37,15 @@ inline InterfaceTable table_of(const Interface* interfaces, std::size_t count,
   InterfaceTable table{interfaces, parameters, 0, 0, false};
   for (std::size_t i = 0; i < count; ++i) table.laws |= 1u << interfaces[i].law;
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-    table.remembers |= Law<Real>::state.size() > 0 && table.has(number);
+    table.remembers |= state_count<Law> > 0 && table.has(number);
     if (is_curved<Law> && table.has(number)) table.curved |= 1u << number;
   });
   return table;
 }
+
+/// The power of the factor of Scatter that a parameter takes.
+template <template <class> class Law, Index parameter>
+inline constexpr int scatter_power = Law<Real>::parameters[parameter].scatter;
 
 /// By what a pair's strength differs from that of its interface.
 template <class T>
@@ -50,11 +54,10 @@ struct Scatter {
   T factor = T(1.0);
 
   /// Give the parameters of a law their powers of the factor.
-  template <template <class> class Law, std::size_t k = 0>
+  template <template <class> class Law, Index k = 0>
   CDEM_HD void scale(T* number) const {
-    if constexpr (k < Law<T>::parameters.size()) {
-      constexpr int power = Law<T>::parameters[k].scatter;
-      for (int times = 0; times < power; ++times) number[k] = factor * number[k];
+    if constexpr (k < parameter_count<Law>) {
+      for (int times = 0; times < scatter_power<Law, k>; ++times) number[k] = factor * number[k];
       scale<Law, k + 1>(number);
     }
   }
@@ -94,7 +97,7 @@ struct JointLaws {
         if (!table.has(number)) return;
         const auto mine = table.has_law<number>(interface);
         if (!any_of(mine)) return;
-        constexpr Index size = Index(Law<T>::state.size());
+        constexpr Index size = state_count<Law>;
         T own[size + 1];
         for (Index k = 0; k < size; ++k) own[k] = state[k];
         answer = select(mine, law_at<Law>(table, interface, scatter).respond(in, own), answer);
@@ -149,7 +152,7 @@ struct JointLaws {
   CDEM_HD Truth<T> remember() const {
     Truth<T> any = T(0.0) > T(0.0);
     Laws::for_each([&]<template <class> class Law, Index number>() {
-      if constexpr (Law<T>::state.size() > 0)
+      if constexpr (state_count<Law> > 0)
         if (table.has(number)) any = any | table.has_law<number>(interface);
     });
     return any;

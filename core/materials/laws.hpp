@@ -41,7 +41,7 @@ constexpr Index numbers_read() {
   if constexpr (requires { &Law<Real>::prepare; })
     return Index(std::tuple_size_v<decltype(Law<Real>::prepare(nullptr))>);
   else
-    return Index(Law<Real>::parameters.size());
+    return parameter_count<Law>;
 }
 
 /// The most of them that any law has.
@@ -61,12 +61,12 @@ inline constexpr Index point_history = 6 + BlockLaws::most_state;
 
 /// How many of a law's numbers may fall.
 template <template <class> class Law>
-constexpr Index numbers_that_fall() {
+inline constexpr Index numbers_that_fall = [] {
   if constexpr (requires { Law<Real>::softening; })
     return Index(Law<Real>::softening.size());
   else
-    return 0;
-}
+    return Index(0);
+}();
 
 /// The law of this type with the parameters of a material, or of one a lane, as strong as it is in
 /// the state of the rows.
@@ -77,7 +77,7 @@ CDEM_HD inline auto law_of(const MaterialTable& table, const Ids& material, cons
     const auto own = [&](Index i) { return table.parameters[std::size_t(i) * material_row + k]; };
     return numbers_of(own, material);
   };
-  constexpr Index falls = numbers_that_fall<Law>();
+  constexpr Index falls = numbers_that_fall<Law>;
   if constexpr (falls > 0) {
     const auto piece = [&](Index k) { return number(law_numbers + k); };
     if (any_of(piece(0) > T(0.5))) {
@@ -115,7 +115,7 @@ CDEM_OUT_OF_LINE inline void flow_by(const MaterialTable& table, const Ids& mate
     out.strain = {none, none, none, none, none, none};
     for (Index k = 0; k < BlockLaws::most_state; ++k) out.state[k] = rows.at(k);
   }
-  constexpr Index size = Index(Law<T>::state.size());
+  constexpr Index size = state_count<Law>;
   T own[size + 1];
   for (Index k = 0; k < size; ++k) own[k] = out.state[k];
   const Sym3<T> part = law.flow(table.elastic(material), trial, own);

@@ -83,7 +83,7 @@ void begin_history(const Model& m, const PairSet& p, PairState& s, Index i, std:
   const std::size_t points = std::size_t(p.points) * p.point_stride;
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
     if (m.interfaces[p.interface[i]].law != number) return;
-    for (std::size_t k = 0; k < Law<Real>::state.size(); ++k)
+    for (Index k = 0; k < state_count<Law>; ++k)
       s.history[k * points + point] = Law<Real>::state[k].intact;
   });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/base/column.hpp"
 #include "core/records/contact_records.hpp"
@@ -242,6 +243,7 @@ struct State {
   Column<Real> face_geometry, contact_force;  // rows of 8, 4
   Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]
   Column<Real> load_factor, velocity_factor;  // of the curves in this step
+  std::vector<Real> known_load_factor, known_velocity_factor;  // the same, for the host
 };
 
 /// Does the pair list name anything? Without it contacts only end, in the first step with it.

@@ -1,8 +1,6 @@
 // node_frequency.hpp - bound of the frequencies that a node has a part in.
 #pragma once
 
-#include <limits>
-
 #include "core/nodes/mass.hpp"
 
 namespace cdem {
@@ -31,7 +29,7 @@ struct NodeFrequency {
 
   CDEM_HD Real operator()(One node) const {
     const Frequency all = of(node.i);
-    return all.free ? all.element + all.contact : -std::numeric_limits<Real>::infinity();
+    return all.free ? all.element + all.contact : -infinity;
   }
   CDEM_HD Frequency of(Index i) const {
     const bool dense = mass.row(i) >= 0;

@@ -13,6 +13,12 @@ constexpr Index largest_of(Sizes... sizes) {
   return largest;
 }
 
+/// What a law declares, as constants: a kernel on a GPU may not call the functions of std::array.
+template <template <class> class Law>
+inline constexpr Index parameter_count = Index(Law<Real>::parameters.size());
+template <template <class> class Law>
+inline constexpr Index state_count = Index(Law<Real>::state.size());
+
 /// A list of laws, each a template over the number type that it computes with.
 template <template <class> class First, template <class> class... More>
 struct LawList {
@@ -26,11 +32,13 @@ struct LawList {
     visit<0, Act, First, More...>(act);
   }
   static constexpr Index most_parameters =
-      largest_of(First<Real>::parameters.size(), More<Real>::parameters.size()...);
-  static constexpr Index most_state =
-      largest_of(First<Real>::state.size(), More<Real>::state.size()...);
+      largest_of(parameter_count<First>, parameter_count<More>...);
+  static constexpr Index most_state = largest_of(state_count<First>, state_count<More>...);
 
  private:
+#if defined(__CUDACC__)
+#pragma nv_exec_check_disable  // of the host's functions the host's code calls this
+#endif
   template <Index number, class Act, template <class> class Law, template <class> class... Rest>
   CDEM_HD static constexpr void visit(const Act& act) {
     act.template operator()<Law, number>();

@@ -85,11 +85,7 @@ Report report_of(const Model& m, const State& s, const Goal& goal, const Place& 
   return {};
 }
 
-}  // namespace
-
-Report run(const Model& m, State& s, const Goal& goal) {
-  const RunOnDevice on_device;
-  begin_run(s, goal);
+Report take_steps(const Model& m, State& s, const Goal& goal) {
   for (std::int64_t n = 1; n <= goal.steps; ++n) {
     if (goal.relaxation == Relaxation::adaptive) scale_masses_if_due(m, s);
     const Place place = place_of(s, goal, n);
@@ -100,6 +96,16 @@ Report run(const Model& m, State& s, const Goal& goal) {
     if (report.outcome != Outcome::steps_done) return report;
   }
   return {};
+}
+
+}  // namespace
+
+Report run(const Model& m, State& s, const Goal& goal) {
+  const RunOnDevice on_device;
+  begin_run(s, goal);
+  const Report report = take_steps(m, s, goal);
+  finish({});
+  return report;
 }
 
 }  // namespace cdem

@@ -17,7 +17,7 @@ struct Pull {
   ElementColumns<Tet4> columns;
 
   template <class I>
-  CornerForces<Tet4, Number<I>> forces(I e) const {
+  CDEM_HD CornerForces<Tet4, Number<I>> forces(I e) const {
     CornerForces<Tet4, Number<I>> force;
     for (Index k = 0; k < 4; ++k)
       force.f[k] =
@@ -30,7 +30,7 @@ struct Pull {
 struct Web {
   Model model;
   State state;
-  std::vector<Real> motion;
+  Column<Real> motion;
 
   explicit Web(Index count) {
     Random random(3);
@@ -45,7 +45,7 @@ struct Web {
       for (Index k = 0; k < 4; ++k)
         e.nodes[k * e.stride + i] = (first + 150 * k + i / 8) % model.node_count;
     }
-    for (Index k = 0; k < 8 * model.node_count; ++k) motion.push_back(random.between(-1, 1));
+    for (Index k = 0; k < 8 * model.node_count; ++k) motion.push(random.between(-1, 1));
     list_tiles(model, state);
   }
   Tiles tiles() {
@@ -111,7 +111,9 @@ TEST_CASE("tiles without a block on the list keep their rows") {
   std::vector<Index> list;  // of the second tile
   for (Index b = t.block_first[1]; b < t.block_first[2]; ++b) list.push_back(b);
   web.state.tile_force.fill(7);
-  web.run({list.data(), Index(list.size())});
+  Column<Index> blocks;
+  blocks.assign(list.data(), list.size());
+  web.run({blocks.data(), Index(blocks.size())});
   const std::vector<Real> sum = web.expected(1);
   for (Index k = 0; k < Index(t.node.size()); ++k) {
     const Index first = t.node_first[list.front()], last = t.node_first[list.back() + 1];
