@@ -9,18 +9,19 @@ namespace {
 
 /// Factors of all curves at one time; piecewise linear, constant outside.
 void evaluate_at(const Model& m, Real time, Column<Real>& values) {
-  values.resize(m.curve_time.size());
+  values.renew(m.curve_time.size());
+  const auto factors = on_host(values);
   for (std::size_t c = 0; c < m.curve_time.size(); ++c) {
     const auto& t = m.curve_time[c];
     const auto& f = m.curve_factor[c];
     const std::size_t after = std::upper_bound(t.begin(), t.end(), time) - t.begin();
     if (after == 0) {
-      values[c] = f.front();
+      factors[c] = f.front();
     } else if (after == t.size()) {
-      values[c] = f.back();
+      factors[c] = f.back();
     } else {
       const Real part = (time - t[after - 1]) / (t[after] - t[after - 1]);
-      values[c] = f[after - 1] + part * (f[after] - f[after - 1]);
+      factors[c] = f[after - 1] + part * (f[after] - f[after - 1]);
     }
   }
 }
