@@ -52,18 +52,9 @@ class Column {
     if (size) std::memcpy(data_, from, size * sizeof(T));
   }
   void assign(const std::vector<T>& from) { assign(from.data(), from.size()); }
-  void fill(T value) {
-    for (std::size_t i = 0; i < size_; ++i) data_[i] = value;
-  }
-  void push(T value) {
-    resize(size_ + 1);
-    data_[size_ - 1] = value;
-  }
   T* data() { return data_; }
   const T* data() const { return data_; }
   std::size_t size() const { return size_; }
-  T& operator[](std::size_t i) { return data_[i]; }
-  const T& operator[](std::size_t i) const { return data_[i]; }
   void swap(Column& other) {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
