@@ -120,9 +120,8 @@ void merge_edge_stars(const Model& m, State& s) {
   s.search.edge_star.assign(star);
 }
 
-/// The face beyond a side of an exposed face: walk through the bodies that meet there, from each
-/// into the next that is bonded to it along the side, until a face is in the open.
-void find_across(const Model& m, State& s) {
+/// The face that each is bonded to, or -1.
+std::vector<Index> bonded_mates(const Model& m, const State& s) {
   std::vector<Index> mate(m.face_count, -1);
   for_live_pairs(m, s, [&](const PairSet& p, const PairState&, const std::vector<Index>& live) {
     const auto faces = on_host(p.faces);
@@ -131,6 +130,13 @@ void find_across(const Model& m, State& s) {
       mate[faces[2 * i + 1]] = faces[2 * i];
     }
   });
+  return mate;
+}
+
+/// The face beyond a side of an exposed face: walk through the bodies that meet there, from each
+/// into the next that is bonded to it along the side, until a face is in the open.
+void find_across(const Model& m, State& s) {
+  const std::vector<Index> mate = bonded_mates(m, s);
   const auto bonded_node = on_host(s.nodes.bonded_node);
   const auto face_nodes = on_host(m.face_nodes), face_edges = on_host(m.face_edges);
   const auto edge_nodes = on_host(m.edge_nodes), edge_faces = on_host(m.edge_faces);

@@ -251,70 +251,77 @@ bool is_awaited(const ContactState& state) {
   return state.penetration < 0 && state.stress_free_gap > 0;
 }
 
-/// Contacts of exposed face x with y that begin now.
-void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
-                    std::vector<Successor>& found) {
+/// A contact of exposed face x with y, but for its place; its frame is that of y.
+Successor successor(const Model& m, const State& s, Index x, Index y, bool on_b) {
   const FaceColumns faces = on_host(face_columns(m, s));
   const FaceGeometry geometry = on_host(face_geometry(s));
   const ContactLaws laws = on_host(contact_laws(m, s));
   const Index interface = laws.between(geometry, x, y);
   const auto spring = laws.spring(geometry, interface, x, y);
-  const Real returned_n = laws.faces.returned_n(interface),
-             returned_s = laws.faces.returned_s(interface);
+  return {.place = -1,
+          .is_edge = false,
+          .on_b = on_b,
+          .frame = faces.shape_before(on_host(s.search.exposed_face)[y]).frame(),
+          .depth = 0,
+          .kn = spring.n(),
+          .ks = spring.s(),
+          .returned_n = laws.faces.returned_n(interface),
+          .returned_s = laws.faces.returned_s(interface),
+          .interface = interface,
+          .k = spring.stiffness};
+}
+
+/// Semi-springs of exposed face x on y that begin now, and are like this.
+void add_springs(const Model& m, const State& s, Index x, Index y, Successor spring,
+                 std::vector<Successor>& found) {
+  const FaceColumns faces = on_host(face_columns(m, s));
   const auto exposed_face = on_host(s.search.exposed_face);
-  const FaceShape<Real> mother = faces.shape_before(exposed_face[x]),
-                        target = faces.shape_before(exposed_face[y]);
-  const Frame<Real> frame = target.frame();
-  const auto add = [&](Successor c, bool awaited) {
-    if (c.depth > 0 || awaited) found.push_back(c);
-  };
   const auto targets = on_host(s.springs.target), targets_before = on_host(s.springs.target_before);
   const auto springs = on_host(s.springs.state);
+  const FaceShape<Real> mother = faces.shape_before(exposed_face[x]),
+                        target = faces.shape_before(exposed_face[y]);
+  spring.kn *= 0.5, spring.ks *= 0.5;
   for (Index k = 0; k < mother.count(); ++k) {
-    const Index slot = 4 * x + k;
-    const bool awaited = is_awaited(ContactState::at(springs.data(), slot));
-    if (targets[slot] != y || (targets_before[slot] >= 0 && !awaited)) continue;
+    spring.place = 4 * x + k;
+    const bool awaited = is_awaited(ContactState::at(springs.data(), spring.place));
+    if (targets[spring.place] != y || (targets_before[spring.place] >= 0 && !awaited)) continue;
     const Vec3<Real> acting = mother.x[k] + m.rules.action * (mother.center() - mother.x[k]);
-    add({.place = slot,
-         .is_edge = false,
-         .on_b = on_b,
-         .frame = frame,
-         .depth = -project(target, acting, frame.n).gap,
-         .kn = 0.5 * spring.n(),
-         .ks = 0.5 * spring.s(),
-         .returned_n = returned_n,
-         .returned_s = returned_s,
-         .interface = interface,
-         .k = spring.stiffness},
-        awaited);
+    spring.depth = -project(target, acting, spring.frame.n).gap;
+    if (spring.depth > 0 || awaited) found.push_back(spring);
   }
-  const auto edge_first = on_host(s.edges.first), edges = on_host(s.edges.contact);
-  const auto edges_before = on_host(s.edges.old_state);
-  for (Index c = edge_first[x]; c < edge_first[x + 1]; ++c) {
-    const EdgeContact contact = EdgeContact::at(edges.data(), c);
+}
+
+/// The same of semi-edges.
+void add_semi_edges(const Model& m, const State& s, Index x, Index y, Successor edge,
+                    std::vector<Successor>& found) {
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const auto first = on_host(s.edges.first), contacts = on_host(s.edges.contact);
+  const auto states_before = on_host(s.edges.old_state);
+  const FaceShape<Real> mother = faces.shape_before(on_host(s.search.exposed_face)[x]);
+  const Vec3<Real> normal = edge.frame.n - mother.normal();
+  edge.is_edge = true;
+  for (edge.place = first[x]; edge.place < first[x + 1]; ++edge.place) {
+    const EdgeContact contact = EdgeContact::at(contacts.data(), edge.place);
     const bool awaited =
-        contact.before >= 0 && is_awaited(ContactState::at(edges_before.data(), contact.before));
+        contact.before >= 0 && is_awaited(ContactState::at(states_before.data(), contact.before));
     if (contact.face != y || (contact.before >= 0 && !awaited)) continue;
     const Index k = contact.mother % 4, next = k + 1 == mother.count() ? 0 : k + 1;
     const Vec3<Real> along_m = mother.x[next] - mother.x[k];
     const Vec3<Real> start = faces.position_before(faces.edge_nodes[2 * contact.edge]);
     const Vec3<Real> along_t =
         faces.position_before(faces.edge_nodes[2 * contact.edge + 1]) - start;
-    const Frame<Real> at =
-        edge_frame(edge_normal(along_m, along_t, frame.n - mother.normal()), along_t);
-    add({.place = c,
-         .is_edge = true,
-         .on_b = on_b,
-         .frame = at,
-         .depth = -cross_edges(mother.x[k], along_m, start, along_t, at.n).gap,
-         .kn = spring.n(),
-         .ks = spring.s(),
-         .returned_n = returned_n,
-         .returned_s = returned_s,
-         .interface = interface,
-         .k = spring.stiffness},
-        awaited);
+    edge.frame = edge_frame(edge_normal(along_m, along_t, normal), along_t);
+    edge.depth = -cross_edges(mother.x[k], along_m, start, along_t, edge.frame.n).gap;
+    if (edge.depth > 0 || awaited) found.push_back(edge);
   }
+}
+
+/// Contacts of exposed face x with y that begin now.
+void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
+                    std::vector<Successor>& found) {
+  const Successor like = successor(m, s, x, y, on_b);
+  add_springs(m, s, x, y, like, found);
+  add_semi_edges(m, s, x, y, like, found);
 }
 
 /// Returns the energy that the contact holds  [J].
