@@ -29,12 +29,12 @@ using Array = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
 template <class T>
 nb::object view(Column<T>& column, nb::handle owner) {
   const std::size_t shape[1] = {column.size()};
-  return nb::cast(nb::ndarray<nb::numpy, T>(column.data(), 1, shape, owner));
+  return nb::cast(nb::ndarray<nb::numpy, T>(on_host(column).data(), 1, shape, owner));
 }
 /// Rows that are no numbers, as bytes.
 inline nb::object view(Column<ExposedRow>& column, nb::handle owner) {
   const std::size_t shape[1] = {column.size() * sizeof(ExposedRow)};
-  auto* bytes = reinterpret_cast<std::uint8_t*>(column.data());
+  auto* bytes = reinterpret_cast<std::uint8_t*>(on_host(column).data());
   return nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(bytes, 1, shape, owner));
 }
 

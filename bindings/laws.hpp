@@ -174,13 +174,15 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
   constexpr std::size_t width = parameter_row;
   m.interfaces.resize(interfaces.size());
   m.interface_parameters.resize(width * interfaces.size());
+  const auto rows = on_host(m.interfaces);
+  const auto parameters = on_host(m.interface_parameters);
   Real lift = 0;
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const auto entry = nb::cast<nb::dict>(interfaces[i]);
     const auto stiffness = [&](const char* name) {
       return nb::cast<std::tuple<Real, Real>>(entry[name]);
     };
-    Interface& interface = m.interfaces[i];
+    Interface& interface = rows[i];
     interface.in_series = nb::cast<bool>(entry["in_series"]);
     std::tie(interface.stiffness_n_value, interface.stiffness_n_factor) = stiffness("stiffness_n");
     std::tie(interface.stiffness_s_value, interface.stiffness_s_factor) = stiffness("stiffness_s");
@@ -192,7 +194,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
     with_law<InterfaceLaws>(name, [&]<template <class> class Law, Index number>() {
       interface.law = number;
       const auto row = numbers_of_law<Law<Real>>(nb::cast<nb::dict>(entry["parameters"]));
-      std::copy(row.begin(), row.end(), m.interface_parameters.data() + width * i);
+      std::copy(row.begin(), row.end(), parameters.begin() + width * i);
       lift = std::max(lift, 2 * Law<Real>::rise_most(row.data()));
     });
   }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -10,7 +11,8 @@
 
 namespace cdem {
 
-/// Owned array that grows without losing content. Padded, so a lane may read past the last item.
+/// Owned array in the memory of the device, that grows without losing content. Kernels have it by
+/// `data`, host code by `on_host`. Padded, so a lane may read past the last item.
 template <class T>
 class Column {
  public:
@@ -26,8 +28,11 @@ class Column {
 
   /// Set the length; items that are new are `fill`.
   void resize(std::size_t size, T fill = T{}) {
-    if (size > capacity_) reserve(grown(size));
-    for (std::size_t i = size_; i < size; ++i) data_[i] = fill;
+    if (size > size_) {
+      if (size > capacity_) reserve(grown(size));
+      wait_for_launches();
+      for (std::size_t i = size_; i < size; ++i) data_[i] = fill;
+    }
     size_ = size;
   }
   /// Set the length and forget the items: for kernels to write all of them.
@@ -39,22 +44,17 @@ class Column {
     }
     size_ = size;
   }
+  /// Take what the host has made.
   void assign(const T* from, std::size_t size) {
-    resize(size);
-    if (size && from != data_) std::memcpy(data_, from, size * sizeof(T));  // may be its own view
+    if (from == data_) return resize(size);  // its own view
+    renew(size);
+    wait_for_launches();
+    if (size) std::memcpy(data_, from, size * sizeof(T));
   }
-  void fill(T value) {
-    for (std::size_t i = 0; i < size_; ++i) data_[i] = value;
-  }
-  void push(T value) {
-    resize(size_ + 1);
-    data_[size_ - 1] = value;
-  }
+  void assign(const std::vector<T>& from) { assign(from.data(), from.size()); }
   T* data() { return data_; }
   const T* data() const { return data_; }
   std::size_t size() const { return size_; }
-  T& operator[](std::size_t i) { return data_[i]; }
-  const T& operator[](std::size_t i) const { return data_[i]; }
   void swap(Column& other) {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
@@ -71,17 +71,54 @@ class Column {
     const Column before(std::move(*this));
     take(capacity);
     size_ = before.size_;
+    wait_for_launches();
     if (size_) std::memcpy(data_, before.data_, size_ * sizeof(T));
   }
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
 };
 
+/// Items of an array in the hands of host code, until the next launch or until the array grows.
+template <class T>
+class OnHost {
+ public:
+  OnHost(T* items, std::size_t size) : items_(items), size_(size) {}
+  T& operator[](std::size_t i) const { return items_[i]; }
+  T* begin() const { return items_; }
+  T* end() const { return items_ + size_; }
+  T* data() const { return items_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  T* items_;
+  std::size_t size_;
+};
+
+/// Give an array to host code. What was launched is done by then.
+template <class T>
+OnHost<T> on_host(Column<T>& column) {
+  wait_for_launches();
+  return {column.data(), column.size()};
+}
+template <class T>
+OnHost<const T> on_host(const Column<T>& column) {
+  wait_for_launches();
+  return {column.data(), column.size()};
+}
+/// The same with a view of arrays that kernels have, too.
+template <class View>
+  requires std::is_trivially_copyable_v<View>
+View on_host(const View& view) {
+  wait_for_launches();
+  return view;
+}
+
 /// What stands in an array, on its way to the host.
 template <class T>
 std::vector<T> fetch(const Column<T>& column) {
   const Transfer transfer;
-  return {column.data(), column.data() + column.size()};
+  const auto items = on_host(column);
+  return {items.begin(), items.end()};
 }
 
 /// Rows of several numbers per item, stored row after row: number r of item i is data[r*stride +

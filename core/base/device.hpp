@@ -34,6 +34,12 @@ void* allocate_answer(std::size_t bytes);
 
 /// Wait until all launches are done; host code may read their columns then.
 void finish(Queue queue);
+/// The same for host code that is about to touch arrays. Other devices are done when a launch ends.
+inline void wait_for_launches() {
+#if defined(CDEM_CUDA)
+  finish({});
+#endif
+}
 
 /// While one lives the arrays are the device's: the host touches them in a Transfer, which is
 /// waited for and told of. The emulated device finds where it does not; others take no notice.

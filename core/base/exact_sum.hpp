@@ -52,7 +52,8 @@ Real exact_sum(Index count, Term&& term) {
 
 /// Sum of a column.
 inline Real column_sum(const Column<Real>& c) {
-  return exact_sum(Index(c.size()), [&](Index i) { return c[i]; });
+  const auto numbers = on_host(c);
+  return exact_sum(Index(c.size()), [&](Index i) { return numbers[i]; });
 }
 
 }  // namespace cdem

@@ -14,15 +14,17 @@ void update_bolt_forces(const Model& m, State& s, Queue q) {
 }
 
 void cut_bolt(const BoltSet& b, const Flag* out, BoltState& bs, Index bolt) {
-  const Index first = b.first[bolt], last = b.first[bolt + 1];
+  const auto hosts = on_host(b.hosts);
+  const auto grout_lost = on_host(bs.grout_lost), bar_broken = on_host(bs.bar_broken);
+  const Index first = on_host(b.first)[bolt], last = on_host(b.first)[bolt + 1];
   for (Index n = first; n < last; ++n) {
     bool lost = false;
     for (std::size_t k = std::size_t(n) * bolt_hosts; k < std::size_t(n + 1) * bolt_hosts; ++k)
-      lost |= b.hosts[k] >= 0 && out[b.hosts[k]];
+      lost |= hosts[k] >= 0 && out[hosts[k]];
     if (!lost) continue;
-    bs.grout_lost[n] = 1;
+    grout_lost[n] = 1;
     for (Index j = n > first ? n - 1 : n; j <= n && j + 1 < last; ++j)
-      if (!bs.bar_broken[j]) bs.bar_broken[j] = Flag(BarState::cut);
+      if (!bar_broken[j]) bar_broken[j] = Flag(BarState::cut);
   }
 }
 

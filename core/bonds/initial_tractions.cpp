@@ -25,14 +25,15 @@ struct Point {
 template <Index count, class Visit>
 void visit_points(PairKind<ConformingBonds<count>>, const Model& m, State& s, const PairSet& p,
                   PairState& ps, Visit&& visit) {
-  const ConformingBonds<count> bonds{
+  const auto bonds = on_host(ConformingBonds<count>{
       .nodes = {s.nodes.motion.data()},
       .pair_nodes = {p.nodes.data(), p.stride},
       .pairs = pair_columns(m, p, ps),
       .indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad,
       .dt = 0,
       .sampled = false,
-      .corner_force = {}};
+      .corner_force = {}});
+  const auto faces = on_host(p.faces), interface = on_host(p.interface);
   // (1 - a) (1 - b) = 1/4 and 1/3: the mass matrix of the face is that of the points at a and b
   const Real place_of_stress = 1 - 1.0 / (count == 3 ? 4 : 3) / (1 - bonds.indentation);
   for (Index i = 0; i < p.count; ++i) {
@@ -42,12 +43,12 @@ void visit_points(PairKind<ConformingBonds<count>>, const Model& m, State& s, co
     move_inside<count>(place_of_stress, mean);
     move_inside<count>(bonds.indentation, jump);
     for (Index k = 0; k < count; ++k)
-      visit(Point{.at = {mean[k], {p.faces[2 * i], p.faces[2 * i + 1]}},
+      visit(Point{.at = {mean[k], {faces[2 * i], faces[2 * i + 1]}},
                   .jump = jump[k],
                   .frame = frame,
                   .spring = bonds.spring(One{i}),
                   .pair = i,
-                  .interface = p.interface[i],
+                  .interface = interface[i],
                   .place = std::size_t(k) * p.point_stride + i,
                   .row = std::size_t(count) * p.point_stride});
   }
@@ -56,27 +57,30 @@ void visit_points(PairKind<ConformingBonds<count>>, const Model& m, State& s, co
 template <class Visit>
 void visit_points(PairKind<OverlapBonds>, const Model& m, State& s, const PairSet& p, PairState&,
                   Visit&& visit) {
-  const OverlapBonds bonds = overlap_bonds(m, s);
+  const OverlapBonds bonds = on_host(overlap_bonds(m, s));
+  const auto faces = on_host(p.faces), interface = on_host(p.interface);
+  const auto first = on_host(p.point_first);
+  const auto area = on_host(p.point_area);
   for (Index i = 0; i < p.count; ++i) {
-    const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
-    for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
+    const Index a = faces[2 * i], b = faces[2 * i + 1];
+    for (Index c = first[i]; c < first[i + 1]; ++c)
       visit(Point{.at = {bonds.position(a, c), {a, b}},
                   .jump = bonds.distance(a, b, c),
                   .frame = bonds.frame_of(a, b),
-                  .spring = bonds.pairs.spring(One{i}, p.point_area[c]),
+                  .spring = bonds.pairs.spring(One{i}, area[c]),
                   .pair = i,
-                  .interface = p.interface[i],
+                  .interface = interface[i],
                   .place = std::size_t(c),
                   .row = std::size_t(p.point_stride)});
   }
 }
 
 /// What the law says of a bond point that is strained by minus its rest.
-JointAnswer<Real> answer_at(const Model& m, const PairColumns& pairs, const Point& point,
-                            const Vec3<Real>& rest, Real bond) {
+JointAnswer<Real> answer_at(const PairColumns& pairs, const Point& point, const Vec3<Real>& rest,
+                            Real bond) {
   Real state[InterfaceLaws::most_state + 1] = {};
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-    if (m.interfaces[point.interface].law == number)
+    if (pairs.interfaces.law_of(point.interface) == number)
       for (Index k = 0; k < state_count<Law>; ++k)
         state[k] = bond > 0 ? Law<Real>::state[k].intact : Law<Real>::state[k].loose;
   });
@@ -99,7 +103,8 @@ std::vector<BondPlace> bond_places(const Model& m, State& s) {
 CutTractions set_initial_tractions(Model& m, State& s, const Real* stress, const Flag* bonded) {
   CutTractions cut;
   Real lift = 0;
-  const auto load = [&](const PairColumns& pairs, PairState& ps, const Point& point) {
+  const auto face_stiffness = on_host(m.face_stiffness);
+  const auto load = [&](const PairColumns& pairs, const OnHost<Real>& rest, const Point& point) {
     const JointStiffness<Real>& k = point.spring.stiffness;
     const Frame<Real>& f = point.frame;
     const Sym3<Real> of_rock{.xx = stress[0],
@@ -116,27 +121,28 @@ CutTractions set_initial_tractions(Model& m, State& s, const Real* stress, const
       return depth_under(pairs.interfaces, point.interface, pressure, spring);
     };
     const JointAnswer<Real> joint =
-        answer_at(m, pairs, point, {depth(wanted.x, k), wanted.y / k.s, wanted.z / k.s}, bond);
+        answer_at(pairs, point, {depth(wanted.x, k), wanted.y / k.s, wanted.z / k.s}, bond);
     const Vec3<Real> borne{joint.elastic, joint.shear1, joint.shear2};
     const Real lost = norm(wanted - borne);
     if (lost > 1e-9 * norm(wanted)) {
       ++cut.count;
       if (lost > cut.most) cut.most = lost, cut.face = point.at.faces[0];
     }
-    ps.rest[point.place] = depth(borne.x, k);
-    ps.rest[point.place + point.row] = borne.y / k.s;
-    ps.rest[point.place + 2 * point.row] = borne.z / k.s;
-    ps.bond[point.place] = joint.bond;
-    const Interface& contact = m.interfaces[point.interface];
-    const Real side_a = m.face_stiffness[point.at.faces[0]],
-               side_b = m.face_stiffness[point.at.faces[1]];
+    rest[point.place] = depth(borne.x, k);
+    rest[point.place + point.row] = borne.y / k.s;
+    rest[point.place + 2 * point.row] = borne.z / k.s;
+    pairs.bond.data[point.place] = joint.bond;
+    const Interface& contact = pairs.interfaces.interfaces[point.interface];
+    const Real side_a = face_stiffness[point.at.faces[0]],
+               side_b = face_stiffness[point.at.faces[1]];
     lift = std::max(lift,
                     depth(borne.x, JointStiffness<Real>::of(contact.stiffness_n(side_a, side_b),
                                                             contact.stiffness_s(side_a, side_b))));
   };
   for_each_pair_set(m, s, [&](auto kind, const PairSet& p, PairState& ps) {
-    const PairColumns pairs = pair_columns(m, p, ps);
-    visit_points(kind, m, s, p, ps, [&](const Point& point) { load(pairs, ps, point); });
+    const PairColumns pairs = on_host(pair_columns(m, p, ps));
+    const auto rest = on_host(ps.rest);
+    visit_points(kind, m, s, p, ps, [&](const Point& point) { load(pairs, rest, point); });
   });
   // contacts are kept to twice their lift; those of a pair are fewer than its points, so that one
   // may have to bear what several did
@@ -151,10 +157,12 @@ namespace {
 /// Pairs of a set that are bonded again.
 std::vector<Flag> pairs_to_bond(const Model& m, const State& s, const PairSet& p,
                                 const Flag* comes) {
+  const auto faces = on_host(p.faces), face_nodes = on_host(m.face_nodes);
+  const auto out = on_host(s.nodes.out);
   std::vector<Flag> some(p.count);
   for (Index i = 0; i < p.count; ++i) {
-    const Index a = m.face_nodes[4 * p.faces[2 * i]], b = m.face_nodes[4 * p.faces[2 * i + 1]];
-    some[i] = (comes[a] || comes[b]) && !s.nodes.out[a] && !s.nodes.out[b];
+    const Index a = face_nodes[4 * faces[2 * i]], b = face_nodes[4 * faces[2 * i + 1]];
+    some[i] = (comes[a] || comes[b]) && !out[a] && !out[b];
   }
   return some;
 }
@@ -168,21 +176,26 @@ void bond_again(Model& m, State& s, const Flag* comes, const Flag* bonded) {
     visit_points(kind, m, s, p, ps, [&](const Point& point) {
       if (norm(point.jump) > near * pair_length(m, p, point.pair)) some[point.pair] = 0;
     });
+    const BeginHistory begin_history(m, p, ps);
+    const auto rest = on_host(ps.rest), rise = on_host(ps.rise), bond = on_host(ps.bond);
+    const auto slip1 = on_host(ps.slip1), slip2 = on_host(ps.slip2);
     visit_points(kind, m, s, p, ps, [&](const Point& point) {
       if (!some[point.pair]) return;
       const Vec3<Real> axes[] = {point.frame.n, point.frame.t1, point.frame.t2};
       for (std::size_t axis = 0; axis < 3; ++axis)
-        ps.rest[point.place + axis * point.row] = dot(point.jump, axes[axis]);
-      ps.bond[point.place] = bonded[point.interface] ? 1 : 0;
-      ps.slip1[point.place] = ps.slip2[point.place] = 0;
-      if (ps.rise.size() > 0) ps.rise[point.place] = 0;
-      begin_history(m, p, ps, point.pair, point.place);
+        rest[point.place + axis * point.row] = dot(point.jump, axes[axis]);
+      bond[point.place] = bonded[point.interface] ? 1 : 0;
+      slip1[point.place] = slip2[point.place] = 0;
+      if (rise.size() > 0) rise[point.place] = 0;
+      begin_history(point.pair, point.place);
     });
+    const auto status = on_host(ps.status);
+    const auto jump = on_host(ps.jump), jump_at_break = on_host(ps.jump_at_break);
     for (Index i = 0; i < p.count; ++i) {
       if (!some[i]) continue;
-      ps.status[i] = Flag(PairStatus::bonded);
-      ps.jump[i] = 0;
-      ps.jump_at_break[i] = -1;
+      status[i] = Flag(PairStatus::bonded);
+      jump[i] = 0;
+      jump_at_break[i] = -1;
     }
   });
 }

@@ -16,8 +16,6 @@ namespace cdem {
 
 namespace {
 
-PairStatus status_of(const PairState& s, Index pair) { return PairStatus(s.status[pair]); }
-
 /// A pair whose points are all broken has its faces released once they have moved apart or along
 /// each other by this part of the indentation; by the whole indentation, at once.
 constexpr Real release_part = 0.1;
@@ -73,38 +71,43 @@ void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, In
   Real widest = 0;
   for (const BrokenPoint& point : broken) widest = std::max(widest, norm(point.jump));
   if (!(widest > hinge_part * pair_length(m, p, i))) return;
-  const PairColumns pairs = pair_columns(m, p, ps);
+  const PairColumns pairs = on_host(pair_columns(m, p, ps));
+  const auto faces = on_host(p.faces);
+  const auto slip1 = on_host(ps.slip1), slip2 = on_host(ps.slip2);
+  const auto friction = on_host(ps.friction), stored = on_host(ps.stored);
   for (BrokenPoint& point : broken) {
     const JointInput<Real> in =
-        point.spring.input(frame, point.jump, {0.0, ps.slip1[point.place], ps.slip2[point.place]});
+        point.spring.input(frame, point.jump, {0.0, slip1[point.place], slip2[point.place]});
     const JointAnswer<Real> joint = pairs.laws<InterfaceLaws>(One{i}).respond(in, point.history);
     const Real held = point.spring.area * (joint.stored_n + joint.stored_s);
-    ps.friction[i] += held;
-    ps.stored[i] -= held;
+    friction[i] += held;
+    stored[i] -= held;
   }
-  ps.status[i] = Flag(PairStatus::hinge);
-  expose(s, p.faces[2 * i]);
-  expose(s, p.faces[2 * i + 1]);
+  on_host(ps.status)[i] = Flag(PairStatus::hinge);
+  expose(s, faces[2 * i]);
+  expose(s, faces[2 * i + 1]);
   give_history(m, s, p, ps, i);
 }
 
 template <Index count>
 void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real indentation) {
-  const ConformingBonds<count> bonds{.nodes = {s.nodes.motion.data()},
-                                     .pair_nodes = {p.nodes.data(), p.stride},
-                                     .pairs = pair_columns(m, p, ps),
-                                     .indentation = indentation,
-                                     .dt = 0,
-                                     .sampled = false,
-                                     .corner_force = {}};
+  const std::vector<Index> some = pairs_where(p, holds_in_part(p, ps));
+  const auto bonds = on_host(ConformingBonds<count>{.nodes = {s.nodes.motion.data()},
+                                                    .pair_nodes = {p.nodes.data(), p.stride},
+                                                    .pairs = pair_columns(m, p, ps),
+                                                    .indentation = indentation,
+                                                    .dt = 0,
+                                                    .sampled = false,
+                                                    .corner_force = {}});
+  const auto bond = on_host(ps.bond);
   std::vector<BrokenPoint> broken;
-  for (const Index i : pairs_where(p, holds_in_part(p, ps))) {
+  for (const Index i : some) {
     const auto place = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
     Vec3<Real> jump[count];
     const Frame<Real> frame = bonds.gather_jumps(One{i}, jump);
     broken.clear();
     for (Index k = 0; k < count; ++k) {
-      if (ps.bond[place(k)] > 0) continue;
+      if (bond[place(k)] > 0) continue;
       broken.push_back({place(k), jump[k], bonds.spring(One{i}), {}});
       bonds.pairs.template load_history<InterfaceLaws>(One{i}, k, count, broken.back().history);
     }
@@ -115,18 +118,22 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
 void open_overlap_hinges(const Model& m, State& s) {
   const PairSet& p = m.overlaps;
   PairState& ps = s.overlaps;
-  const OverlapBonds bonds = overlap_bonds(m, s);
+  const std::vector<Index> some = pairs_where(p, holds_in_part(p, ps));
+  const OverlapBonds bonds = on_host(overlap_bonds(m, s));
+  const auto point_first = on_host(p.point_first), faces = on_host(p.faces);
+  const auto point_area = on_host(p.point_area);
+  const auto bond = on_host(ps.bond);
   std::vector<BrokenPoint> broken;
-  for (const Index i : pairs_where(p, holds_in_part(p, ps))) {
-    const Index first = p.point_first[i], count = p.point_first[i + 1] - first;
-    const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
+  for (const Index i : some) {
+    const Index first = point_first[i], count = point_first[i + 1] - first;
+    const Index a = faces[2 * i], b = faces[2 * i + 1];
     const Frame<Real> frame = bonds.frame_of(a, b);
     broken.clear();
     for (Index c = first; c < first + count; ++c) {
-      if (ps.bond[c] > 0) continue;
+      if (bond[c] > 0) continue;
       broken.push_back({std::size_t(c),
                         bonds.jump_at(a, b, frame, c),
-                        bonds.pairs.spring(One{i}, p.point_area[c]),
+                        bonds.pairs.spring(One{i}, point_area[c]),
                         {}});
       bonds.pairs.load_history<InterfaceLaws>(One{c}, 0, 1, broken.back().history);
     }
@@ -138,21 +145,25 @@ void open_overlap_hinges(const Model& m, State& s) {
 bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
   const std::vector<Index> released =
       pairs_where(p, lets_go(m, p, ps, release_part * m.rules.indentation));
+  const auto faces = on_host(p.faces);
+  const auto status = on_host(ps.status);
+  const auto stored = on_host(ps.stored), friction = on_host(ps.friction);
+  const auto jump = on_host(ps.jump), jump_at_break = on_host(ps.jump_at_break);
   for (const Index i : released) {
-    expose(s, p.faces[2 * i]);
-    expose(s, p.faces[2 * i + 1]);
+    expose(s, faces[2 * i]);
+    expose(s, faces[2 * i + 1]);
     give_history(m, s, p, ps, i);
-    const bool hinge = status_of(ps, i) == PairStatus::hinge;
+    const bool hinge = PairStatus(status[i]) == PairStatus::hinge;
     if (p.point_first.size() > 0 && !hinge) {
-      s.released_overlaps.push(i);
+      s.released_overlaps.resize(s.released_overlaps.size() + 1, i);
     } else {
-      if (!hinge) ps.stored[i] -= transfer_to_contact(m, s, p, ps, i);
-      ps.friction[i] += ps.stored[i];
-      ps.stored[i] = 0;
+      if (!hinge) stored[i] -= transfer_to_contact(m, s, p, ps, i);
+      friction[i] += stored[i];
+      stored[i] = 0;
     }
-    ps.status[i] = Flag(PairStatus::released);
-    ps.jump[i] = 0;
-    ps.jump_at_break[i] = -1;
+    status[i] = Flag(PairStatus::released);
+    jump[i] = 0;
+    jump_at_break[i] = -1;
   }
   return !released.empty();
 }

@@ -16,7 +16,9 @@
 namespace cdem {
 
 Real pair_length(const Model& m, const PairSet& p, Index i) {
-  return std::min(m.face_length[p.faces[2 * i]], m.face_length[p.faces[2 * i + 1]]);
+  const auto length = on_host(m.face_length);
+  const auto faces = on_host(p.faces);
+  return std::min(length[faces[2 * i]], length[faces[2 * i + 1]]);
 }
 
 namespace {
@@ -41,17 +43,17 @@ Index vertex_at(const FaceColumns& faces, Index face, Index node) {
 }
 
 /// Is the indented point of a vertex of face `mother` beside face `target`?
-bool is_over(const Model& m, const FaceColumns& faces, Index mother, Index vertex, Index target) {
+bool is_over(const SearchRules& rules, const FaceColumns& faces, Index mother, Index vertex,
+             Index target) {
   const FaceShape<Real> from = faces.shape(mother), to = faces.shape(target);
-  const Vec3<Real> v = from.x[vertex], p = v + m.rules.indentation * (from.center() - v);
-  return to.inside(p, to.normal(),
-                   m.rules.tolerance * std::min(m.face_length[mother], m.face_length[target]));
+  const Vec3<Real> v = from.x[vertex], p = v + rules.indentation * (from.center() - v);
+  const Real length = std::min(faces.face_length[mother], faces.face_length[target]);
+  return to.inside(p, to.normal(), rules.tolerance * length);
 }
 
 /// Let a contact on this area, which has its force, have the depth and energy of its law.
-void press(const Model& m, Index interface, Real area, const JointStiffness<Real>& k,
+void press(const InterfaceTable& table, Index interface, Real area, const JointStiffness<Real>& k,
            ContactState& contact) {
-  const InterfaceTable table = interface_table(m);
   if (!table.closes_by_curve(interface)) return;
   const Real gap = contact.stress_free_gap - contact.approach;
   contact.approach = depth_under(table, interface, contact.force_n / area, k);
@@ -63,38 +65,39 @@ void press(const Model& m, Index interface, Real area, const JointStiffness<Real
 /// Those of a pair as they were one step ago.
 std::vector<ReleasedPoint> released_points(const Model& m, State& s, const PairSet& p,
                                            PairState& ps, Index i) {
-  const FaceColumns faces = face_columns(m, s);
-  const PairColumns pairs = pair_columns(m, p, ps);
-  const Index face[2] = {p.faces[2 * i], p.faces[2 * i + 1]};
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const PairColumns pairs = on_host(pair_columns(m, p, ps));
+  const auto pair_faces = on_host(p.faces), nodes = on_host(p.nodes);
+  const auto slip1 = on_host(ps.slip1), slip2 = on_host(ps.slip2);
+  const Index face[2] = {pair_faces[2 * i], pair_faces[2 * i + 1]};
+  const Index interface = on_host(p.interface)[i];
   const Frame<Real> frame = faces.shape_before(face[0]).frame();
-  const Real area = 0.5 * p.area[i] / p.points;
+  const Real area = 0.5 * on_host(p.area)[i] / p.points;
+  const JointStiffness<Real> of_pair = pairs.spring(One{i}, area).stiffness;
   std::vector<ReleasedPoint> found;
   for (Index k = 0; k < p.points; ++k) {
     ReleasedPoint point{};
     for (Index side : {0, 1})
-      point.node[side] = p.nodes[std::size_t(side * p.points + k) * p.stride + i];
+      point.node[side] = nodes[std::size_t(side * p.points + k) * p.stride + i];
     point.apart = faces.position_before(point.node[1]) - faces.position_before(point.node[0]);
     const Vec3<Real> jump = pairs.past_rest(One{i}, k, p.points, frame, point.apart);
     if (dot(frame.n, jump) >= 0) continue;  // open: nothing to carry over
     if (norm(point.apart) > 2 * m.rules.indentation * pair_length(m, p, i)) continue;
     const std::size_t row = std::size_t(k) * p.point_stride + i;
-    const Vec3<Real> slip = ps.slip1[row] * frame.t1 + ps.slip2[row] * frame.t2;
+    const Vec3<Real> slip = slip1[row] * frame.t1 + slip2[row] * frame.t2;
     const Vec3<Real> along = jump - dot(frame.n, jump) * frame.n;
     point.depth = -dot(frame.n, jump);
-    if (pairs.interfaces.closes_by_curve(p.interface[i])) {  // of a straight spring with its force
-      const auto k = pairs.spring(One{i}, area).stiffness;
-      point.depth = joint_laws<InterfaceLaws>(pairs.interfaces, p.interface[i])
-                        .close(point.depth, k)
-                        .pressure /
-                    k.n;
+    if (pairs.interfaces.closes_by_curve(interface)) {  // of a straight spring with its force
+      const auto laws = joint_laws<InterfaceLaws>(pairs.interfaces, interface);
+      point.depth = laws.close(point.depth, of_pair).pressure / of_pair.n;
     }
-    point.kn = area * p.stiffness[i];
-    point.ks = area * p.stiffness[std::size_t(p.stride) + i];
+    point.kn = area * of_pair.n;
+    point.ks = area * of_pair.s;
     point.strain = along - slip;
     point.lifted = pairs.lift(One{i}, k) > 0;
     for (Index side : {0, 1}) {
       const Index v = vertex_at(faces, face[side], point.node[side]);
-      const bool stays = !point.lifted || is_over(m, faces, face[side], v, face[1 - side]);
+      const bool stays = !point.lifted || is_over(m.rules, faces, face[side], v, face[1 - side]);
       point.vertex[side] = stays ? v : -1;
     }
     found.push_back(point);
@@ -122,14 +125,19 @@ void share_out(std::vector<ReleasedPoint>& points) {
 Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& ps, Index i) {
   std::vector<ReleasedPoint> points = released_points(m, s, p, ps, i);
   share_out(points);
-  const FaceColumns faces = face_columns(m, s);
-  const Index face[2] = {p.faces[2 * i], p.faces[2 * i + 1]};
-  const Index place[2] = {s.search.face_exposed[face[0]], s.search.face_exposed[face[1]]};
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const InterfaceTable table = on_host(interface_table(m));
+  const Index interface = on_host(p.interface)[i];
+  const auto target = on_host(s.springs.target), target_before = on_host(s.springs.target_before);
+  const auto springs = on_host(s.springs.state);
+  const auto face_stiffness = on_host(m.face_stiffness);
+  const Index face[2] = {on_host(p.faces)[2 * i], on_host(p.faces)[2 * i + 1]};
+  const Index place[2] = {faces.face_exposed[face[0]], faces.face_exposed[face[1]]};
   const Frame<Real> frame[2] = {faces.shape_before(face[0]).frame(),
                                 faces.shape_before(face[1]).frame()};
-  const Interface& contact = m.interfaces[p.interface[i]];
-  const Real side_a = m.face_stiffness[face[0]], side_b = m.face_stiffness[face[1]];
-  const Real area = 0.5 * p.area[i] / p.points;
+  const Interface& contact = table.interfaces[interface];
+  const Real side_a = face_stiffness[face[0]], side_b = face_stiffness[face[1]];
+  const Real area = 0.5 * on_host(p.area)[i] / p.points;
   const auto k = JointStiffness<Real>::of(contact.stiffness_n(side_a, side_b),
                                           contact.stiffness_s(side_a, side_b));
   const Real kn = area * k.n, ks = area * k.s;
@@ -143,8 +151,8 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& 
           point.share[side] * (point.lifted ? point.kn / kn : std::min(1.0, point.kn / kn));
       const Vec3<Real> force = (side == 0 ? part : -part) * point.ks * point.strain;
       const Index slot = 4 * place[side] + point.vertex[side];
-      s.springs.target[slot] = s.springs.target_before[slot] = place[1 - side];
-      ContactState spring = ContactState::at(s.springs.state.data(), slot);
+      target[slot] = target_before[slot] = place[1 - side];
+      ContactState spring = ContactState::at(springs.data(), slot);
       spring.shear1 = dot(force, frame[1 - side].t1);
       spring.shear2 = dot(force, frame[1 - side].t2);
       spring.penetration = deeper * point.depth;
@@ -152,10 +160,10 @@ Real transfer_to_contact(const Model& m, State& s, const PairSet& p, PairState& 
       spring.approach = spring.penetration;
       spring.force_n = kn * spring.penetration;
       spring.energy_n = contact.returned_n * 0.5 * kn * spring.penetration * spring.penetration;
-      press(m, p.interface[i], area, k, spring);
+      press(table, interface, area, k, spring);
       spring.energy_s = contact.returned_s * 0.5 / ks *
                         (spring.shear1 * spring.shear1 + spring.shear2 * spring.shear2);
-      spring.store(s.springs.state.data(), slot);
+      spring.store(springs.data(), slot);
       handed += spring.energy_n + spring.energy_s;
     }
   return handed;
@@ -169,37 +177,42 @@ template <class Visit>
 void for_points_at(const Model& m, const PairSet& p, Index i, Index side, Index vertex,
                    Visit&& visit) {
   if (p.point_first.size() > 0) {
-    const Column<Real>& weights = side == 0 ? p.weights_a : p.weights_b;
-    for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
-      visit(std::size_t(c), p.point_area[c] * std::abs(weights[4 * c + vertex]));
+    const auto first = on_host(p.point_first);
+    const auto weights = on_host(side == 0 ? p.weights_a : p.weights_b);
+    const auto area = on_host(p.point_area);
+    for (Index c = first[i]; c < first[i + 1]; ++c)
+      visit(std::size_t(c), area[c] * std::abs(weights[4 * c + vertex]));
     return;
   }
-  const Index node = m.face_nodes[4 * p.faces[2 * i + side] + vertex];
+  const auto nodes = on_host(p.nodes);
+  const Index node = on_host(m.face_nodes)[4 * on_host(p.faces)[2 * i + side] + vertex];
   for (Index k = 0; k < p.points; ++k)
-    if (p.nodes[std::size_t(side * p.points + k) * p.stride + i] == node)
+    if (nodes[std::size_t(side * p.points + k) * p.stride + i] == node)
       visit(std::size_t(k) * p.point_stride + i, Real(1));
 }
 
 }  // namespace
 
 void give_history(const Model& m, State& s, const PairSet& p, const PairState& ps, Index i) {
-  HistoryColumns &vertices = s.springs.history, &sides = s.edges.side_history;
-  const Index width = vertices.width;
+  const Index width = s.springs.history.width;
   if (width == 0) return;
-  const Index law = m.interfaces[p.interface[i]].law;
-  const auto row = [width](HistoryColumns& h, Index place) {
-    return h.rows.data() + std::size_t(place) * width;
+  const HistoryRows vertices = on_host(history_rows(s.springs.history)),
+                    sides = on_host(history_rows(s.edges.side_history));
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const auto remembered = on_host(ps.history);
+  const Index law = on_host(m.interfaces)[on_host(p.interface)[i]].law;
+  const auto row = [width](const HistoryRows& h, Index place) {
+    return h.rows + std::size_t(place) * width;
   };
   for (Index side = 0; side < 2; ++side) {
-    const Index face = p.faces[2 * i + side];
-    const Index first = 4 * s.search.face_exposed[face];
-    const Index count = m.face_nodes[4 * face + 3] < 0 ? 3 : 4;
+    const Index face = on_host(p.faces)[2 * i + side];
+    const Index first = 4 * faces.face_exposed[face], count = faces.vertex_count(face);
     for (Index v = 0; v < count; ++v) {
       std::vector<Real> sum(width);
       Real total = 0;
       for_points_at(m, p, i, side, v, [&](std::size_t point, Real weight) {
         const std::size_t stride = std::size_t(p.points) * p.point_stride;
-        for (Index k = 0; k < width; ++k) sum[k] += weight * ps.history[k * stride + point];
+        for (Index k = 0; k < width; ++k) sum[k] += weight * remembered[k * stride + point];
         total += weight;
       });
       for (Index k = 0; k < width && total > 0; ++k) row(vertices, first + v)[k] = sum[k] / total;
@@ -238,65 +251,77 @@ bool is_awaited(const ContactState& state) {
   return state.penetration < 0 && state.stress_free_gap > 0;
 }
 
-/// Contacts of exposed face x with y that begin now.
-void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
-                    std::vector<Successor>& found) {
-  const FaceColumns faces = face_columns(m, s);
-  const FaceGeometry geometry = face_geometry(s);
-  const ContactLaws laws = contact_laws(m, s);
+/// A contact of exposed face x with y, but for its place; its frame is that of y.
+Successor successor(const Model& m, const State& s, Index x, Index y, bool on_b) {
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const FaceGeometry geometry = on_host(face_geometry(s));
+  const ContactLaws laws = on_host(contact_laws(m, s));
   const Index interface = laws.between(geometry, x, y);
   const auto spring = laws.spring(geometry, interface, x, y);
-  const Real returned_n = laws.faces.returned_n(interface),
-             returned_s = laws.faces.returned_s(interface);
-  const FaceShape<Real> mother = faces.shape_before(s.search.exposed_face[x]),
-                        target = faces.shape_before(s.search.exposed_face[y]);
-  const Frame<Real> frame = target.frame();
-  const auto add = [&](Successor c, bool awaited) {
-    if (c.depth > 0 || awaited) found.push_back(c);
-  };
+  return {.place = -1,
+          .is_edge = false,
+          .on_b = on_b,
+          .frame = faces.shape_before(on_host(s.search.exposed_face)[y]).frame(),
+          .depth = 0,
+          .kn = spring.n(),
+          .ks = spring.s(),
+          .returned_n = laws.faces.returned_n(interface),
+          .returned_s = laws.faces.returned_s(interface),
+          .interface = interface,
+          .k = spring.stiffness};
+}
+
+/// Semi-springs of exposed face x on y that begin now, and are like this.
+void add_springs(const Model& m, const State& s, Index x, Index y, Successor spring,
+                 std::vector<Successor>& found) {
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const auto exposed_face = on_host(s.search.exposed_face);
+  const auto targets = on_host(s.springs.target), targets_before = on_host(s.springs.target_before);
+  const auto springs = on_host(s.springs.state);
+  const FaceShape<Real> mother = faces.shape_before(exposed_face[x]),
+                        target = faces.shape_before(exposed_face[y]);
+  spring.kn *= 0.5, spring.ks *= 0.5;
   for (Index k = 0; k < mother.count(); ++k) {
-    const Index slot = 4 * x + k;
-    const bool awaited = is_awaited(ContactState::at(s.springs.state.data(), slot));
-    if (s.springs.target[slot] != y || (s.springs.target_before[slot] >= 0 && !awaited)) continue;
+    spring.place = 4 * x + k;
+    const bool awaited = is_awaited(ContactState::at(springs.data(), spring.place));
+    if (targets[spring.place] != y || (targets_before[spring.place] >= 0 && !awaited)) continue;
     const Vec3<Real> acting = mother.x[k] + m.rules.action * (mother.center() - mother.x[k]);
-    add({.place = slot,
-         .is_edge = false,
-         .on_b = on_b,
-         .frame = frame,
-         .depth = -project(target, acting, frame.n).gap,
-         .kn = 0.5 * spring.n(),
-         .ks = 0.5 * spring.s(),
-         .returned_n = returned_n,
-         .returned_s = returned_s,
-         .interface = interface,
-         .k = spring.stiffness},
-        awaited);
+    spring.depth = -project(target, acting, spring.frame.n).gap;
+    if (spring.depth > 0 || awaited) found.push_back(spring);
   }
-  for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
-    const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
-    const bool awaited = contact.before >= 0 &&
-                         is_awaited(ContactState::at(s.edges.old_state.data(), contact.before));
+}
+
+/// The same of semi-edges.
+void add_semi_edges(const Model& m, const State& s, Index x, Index y, Successor edge,
+                    std::vector<Successor>& found) {
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const auto first = on_host(s.edges.first), contacts = on_host(s.edges.contact);
+  const auto states_before = on_host(s.edges.old_state);
+  const FaceShape<Real> mother = faces.shape_before(on_host(s.search.exposed_face)[x]);
+  const Vec3<Real> normal = edge.frame.n - mother.normal();
+  edge.is_edge = true;
+  for (edge.place = first[x]; edge.place < first[x + 1]; ++edge.place) {
+    const EdgeContact contact = EdgeContact::at(contacts.data(), edge.place);
+    const bool awaited =
+        contact.before >= 0 && is_awaited(ContactState::at(states_before.data(), contact.before));
     if (contact.face != y || (contact.before >= 0 && !awaited)) continue;
     const Index k = contact.mother % 4, next = k + 1 == mother.count() ? 0 : k + 1;
     const Vec3<Real> along_m = mother.x[next] - mother.x[k];
     const Vec3<Real> start = faces.position_before(faces.edge_nodes[2 * contact.edge]);
     const Vec3<Real> along_t =
         faces.position_before(faces.edge_nodes[2 * contact.edge + 1]) - start;
-    const Frame<Real> at =
-        edge_frame(edge_normal(along_m, along_t, frame.n - mother.normal()), along_t);
-    add({.place = c,
-         .is_edge = true,
-         .on_b = on_b,
-         .frame = at,
-         .depth = -cross_edges(mother.x[k], along_m, start, along_t, at.n).gap,
-         .kn = spring.n(),
-         .ks = spring.s(),
-         .returned_n = returned_n,
-         .returned_s = returned_s,
-         .interface = interface,
-         .k = spring.stiffness},
-        awaited);
+    edge.frame = edge_frame(edge_normal(along_m, along_t, normal), along_t);
+    edge.depth = -cross_edges(mother.x[k], along_m, start, along_t, edge.frame.n).gap;
+    if (edge.depth > 0 || awaited) found.push_back(edge);
   }
+}
+
+/// Contacts of exposed face x with y that begin now.
+void add_successors(const Model& m, const State& s, Index x, Index y, bool on_b,
+                    std::vector<Successor>& found) {
+  const Successor like = successor(m, s, x, y, on_b);
+  add_springs(m, s, x, y, like, found);
+  add_semi_edges(m, s, x, y, like, found);
 }
 
 /// Returns the energy that the contact holds  [J].
@@ -309,30 +334,31 @@ Real give(const Model& m, State& s, const Successor& c, Real penetration, const 
   state.shear1 = dot(shear, c.frame.t1);
   state.shear2 = dot(shear, c.frame.t2);
   state.energy_n = c.returned_n * 0.5 * state.force_n * state.penetration;
-  press(m, c.interface, c.kn / c.k.n, c.k, state);
+  press(on_host(interface_table(m)), c.interface, c.kn / c.k.n, c.k, state);
   state.energy_s =
       c.returned_s * 0.5 / c.ks * (state.shear1 * state.shear1 + state.shear2 * state.shear2);
   if (c.is_edge) {
-    EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c.place);
+    const auto edges = on_host(s.edges.contact);
+    EdgeContact contact = EdgeContact::at(edges.data(), c.place);
     if (contact.before < 0) {
       contact.before = Index(s.edges.old_state.size() / 8);
-      contact.store(s.edges.contact.data(), c.place);
+      contact.store(edges.data(), c.place);
       s.edges.old_state.resize(s.edges.old_state.size() + 8);
     }
-    state.store(s.edges.old_state.data(), contact.before);
+    state.store(on_host(s.edges.old_state).data(), contact.before);
   } else {
-    s.springs.target_before[c.place] = s.springs.target[c.place];
-    state.store(s.springs.state.data(), c.place);
+    on_host(s.springs.target_before)[c.place] = on_host(s.springs.target)[c.place];
+    state.store(on_host(s.springs.state).data(), c.place);
   }
   return state.energy_n + state.energy_s;
 }
 
 /// What the bonds of an overlap did to its second face one step ago  [N].
 Vec3<Real> force_on_second(const State& s, const PairSet& p, Index i) {
+  const auto force = on_host(s.corner_force);
   Vec3<Real> sum{0, 0, 0};
   for (std::size_t k = 4; k < 8; ++k)
-    sum = sum +
-          Row::at(s.corner_force.data() + (p.corner_first + 8 * std::size_t(i) + k) * 4).vector();
+    sum = sum + Row::at(force.data() + (p.corner_first + 8 * std::size_t(i) + k) * 4).vector();
   return sum;
 }
 
@@ -343,9 +369,10 @@ struct Carried {
   Vec3<Real> shear;
 
   Carried(const Model& m, State& s, const PairSet& p, Index i) {
-    const FaceColumns faces = face_columns(m, s);
-    const Vec3<Real> n = unit(faces.shape_before(p.faces[2 * i]).normal() -
-                              faces.shape_before(p.faces[2 * i + 1]).normal());
+    const FaceColumns faces = on_host(face_columns(m, s));
+    const auto pair_faces = on_host(p.faces);
+    const Vec3<Real> n = unit(faces.shape_before(pair_faces[2 * i]).normal() -
+                              faces.shape_before(pair_faces[2 * i + 1]).normal());
     const Vec3<Real> on_b = force_on_second(s, p, i);
     normal = dot(on_b, n);
     shear = on_b - normal * n;
@@ -355,29 +382,33 @@ struct Carried {
 /// Is a spring of a released overlap that was pressed free of stress at a gap?
 bool is_lifted(const Model& m, State& s, Index i) {
   const PairSet& p = m.overlaps;
-  const PairColumns pairs = pair_columns(m, p, s.overlaps);
+  const PairColumns pairs = on_host(pair_columns(m, p, s.overlaps));
+  const auto first = on_host(p.point_first);
   bool lifted = false;
-  for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c)
-    lifted = lifted || pairs.lift(One{c}, 0) > 0;
+  for (Index c = first[i]; c < first[i + 1]; ++c) lifted = lifted || pairs.lift(One{c}, 0) > 0;
   return lifted && Carried(m, s, p, i).normal > 0;
 }
 
 /// Vertices of exposed face x over y.
 void await_springs(const Model& m, State& s, Index x, Index y) {
-  const FaceColumns faces = face_columns(m, s);
-  const Index mother = s.search.exposed_face[x], target = s.search.exposed_face[y];
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const auto exposed_face = on_host(s.search.exposed_face);
+  const auto targets = on_host(s.springs.target), targets_before = on_host(s.springs.target_before);
+  const auto states = on_host(s.springs.state);
+  const Index mother = exposed_face[x], target = exposed_face[y];
   for (Index k = 0; k < faces.vertex_count(mother); ++k) {
     const Index slot = 4 * x + k;
-    if (s.springs.target[slot] >= 0 || !is_over(m, faces, mother, k, target)) continue;
-    s.springs.target[slot] = s.springs.target_before[slot] = y;
-    awaited_state(m).store(s.springs.state.data(), slot);
+    if (targets[slot] >= 0 || !is_over(m.rules, faces, mother, k, target)) continue;
+    targets[slot] = targets_before[slot] = y;
+    awaited_state(m).store(states.data(), slot);
   }
 }
 
 /// Sides of exposed face x that cross those of y.
 void await_edges(const Model& m, State& s, Index x, Index y, std::vector<EdgeContact>& found) {
-  const FaceColumns faces = face_columns(m, s);
-  const Index mother = s.search.exposed_face[x], target = s.search.exposed_face[y];
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const auto exposed_face = on_host(s.search.exposed_face);
+  const Index mother = exposed_face[x], target = exposed_face[y];
   const FaceShape<Real> from = faces.shape(mother), to = faces.shape(target);
   const auto along = [](const FaceShape<Real>& f, Index k) {
     return f.x[k + 1 == f.count() ? 0 : k + 1] - f.x[k];
@@ -396,12 +427,12 @@ void await_edges(const Model& m, State& s, Index x, Index y, std::vector<EdgeCon
 }  // namespace
 
 void await_contacts(const Model& m, State& s) {
+  const auto faces = on_host(m.overlaps.faces);
+  const auto place = on_host(s.search.face_exposed);
   std::vector<EdgeContact> edges;
-  for (std::size_t r = 0; r < s.released_overlaps.size(); ++r) {
-    const Index i = s.released_overlaps[r];
+  for (const Index i : on_host(s.released_overlaps)) {
     if (!is_lifted(m, s, i)) continue;
-    const Index x = s.search.face_exposed[m.overlaps.faces[2 * i]],
-                y = s.search.face_exposed[m.overlaps.faces[2 * i + 1]];
+    const Index x = place[faces[2 * i]], y = place[faces[2 * i + 1]];
     await_springs(m, s, x, y);
     await_springs(m, s, y, x);
     if (!m.semi_edges) continue;
@@ -416,12 +447,14 @@ void transfer_released_bonds(const Model& m, State& s, Queue q) {
   if (s.released_overlaps.size() == 0) return;
   finish(q);
   const PairSet& p = m.overlaps;
-  for (std::size_t r = 0; r < s.released_overlaps.size(); ++r) {
-    const Index i = s.released_overlaps[r];
-    const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
+  const auto faces = on_host(p.faces);
+  const auto place = on_host(s.search.face_exposed);
+  const auto stored = on_host(s.overlaps.stored), friction = on_host(s.overlaps.friction);
+  for (const Index i : on_host(s.released_overlaps)) {
+    const Index x = place[faces[2 * i]], y = place[faces[2 * i + 1]];
     std::vector<Successor> contacts;
-    add_successors(m, s, s.search.face_exposed[a], s.search.face_exposed[b], false, contacts);
-    add_successors(m, s, s.search.face_exposed[b], s.search.face_exposed[a], true, contacts);
+    add_successors(m, s, x, y, false, contacts);
+    add_successors(m, s, y, x, true, contacts);
     const Carried carried(m, s, p, i);
     Real pressed = 0, stiffness = 0;
     for (const Successor& c : contacts) pressed += c.kn * std::max(c.depth, 0.0), stiffness += c.kn;
@@ -431,11 +464,10 @@ void transfer_released_bonds(const Model& m, State& s, Queue q) {
       for (const Successor& c : contacts) {
         const Real penetration = part * std::max(c.depth, 0.0) + lift;
         const Real share = c.kn * penetration / carried.normal;
-        s.overlaps.stored[i] -=
-            give(m, s, c, penetration, (c.on_b ? share : -share) * carried.shear);
+        stored[i] -= give(m, s, c, penetration, (c.on_b ? share : -share) * carried.shear);
       }
-    s.overlaps.friction[i] += s.overlaps.stored[i];
-    s.overlaps.stored[i] = 0;
+    friction[i] += stored[i];
+    stored[i] = 0;
   }
   s.released_overlaps.resize(0);
 }

@@ -39,8 +39,9 @@ Real balance(const Energies& e) {
 
 /// The terms without start and error.
 Energies sum_terms(const Model& m, const State& s) {
+  const auto samples = on_host(s.nodes.sample);
   const auto sample = [&](int k) {
-    return exact_sum(m.node_count, [&](Index i) { return s.nodes.sample[4 * std::size_t(i) + k]; });
+    return exact_sum(m.node_count, [&](Index i) { return samples[4 * std::size_t(i) + k]; });
   };
   Energies e;
   Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];
@@ -53,16 +54,19 @@ Energies sum_terms(const Model& m, const State& s) {
                                     s.stopped_energy + column_sum(s.springs.dashpot) +
                                     column_sum(s.edges.dashpot) + s.taken_out_dashpot;
   const Index exposed = Index(s.search.exposed_face.size());
-  const auto spring = [&](Index slot) { return ContactState::at(s.springs.state.data(), slot); };
+  const auto springs = on_host(s.springs.state), rolling = on_host(s.springs.rolling);
+  const auto spring = [&](Index slot) { return ContactState::at(springs.data(), slot); };
   contact = exact_sum(4 * exposed, [&](Index i) { return spring(i).energy_n; }) +
             exact_sum(4 * exposed, [&](Index i) { return spring(i).energy_s; });
-  if (s.springs.rolling.size() > 0)
-    contact += exact_sum(
-        4 * exposed, [&](Index i) { return RollingState::at(s.springs.rolling.data(), i).energy; });
+  if (rolling.size() > 0)
+    contact +=
+        exact_sum(4 * exposed, [&](Index i) { return RollingState::at(rolling.data(), i).energy; });
+  const auto first = on_host(s.edges.first);
+  const auto edges = on_host(s.edges.state);
   contact += exact_sum(exposed, [&](Index i) {
     Real sum = 0;
-    for (Index c = s.edges.first[i]; c < s.edges.first[i + 1]; ++c) {
-      const ContactState edge = ContactState::at(s.edges.state.data(), c);
+    for (Index c = first[i]; c < first[i + 1]; ++c) {
+      const ContactState edge = ContactState::at(edges.data(), c);
       sum += edge.energy_n + edge.energy_s;
     }
     return sum;

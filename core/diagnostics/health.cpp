@@ -16,7 +16,7 @@ Report check_health(const Model& m, const State& s) {
   const Most fastest = most({}, m.node_count, squared_speed);
   if (std::isinf(fastest.value) && fastest.item >= 0) {
     const Transfer transfer;  // of one node
-    return {Outcome::not_finite, fastest.item, squared_speed.of(fastest.item)};
+    return {Outcome::not_finite, fastest.item, on_host(squared_speed).of(fastest.item)};
   }
   if (m.speed_limit > 0 && std::sqrt(fastest.value) > m.speed_limit)
     return {Outcome::too_fast, fastest.item, std::sqrt(fastest.value)};

@@ -60,35 +60,39 @@ void begin(const Model& m, State& s, Queue q) {
 
 /// Tiles of which one tet is averaged, block by block, and the others.
 void list_tets(const ElementSet& e, const ElementTiles& tiles, NodalMeans& n) {
-  n.blocks.resize(0);
-  n.other_blocks.resize(0);
-  for (std::size_t tile = 0; tile + 1 < tiles.block_first.size(); ++tile) {
-    const Index begin = tiles.block_first[tile], end = tiles.block_first[tile + 1];
-    const Flag *first = e.nodal_mean.data() + begin * block_size,
-               *last = e.nodal_mean.data() + std::min(end * block_size, e.count);
+  const auto block_first = on_host(tiles.block_first);
+  const auto nodal_mean = on_host(e.nodal_mean);
+  std::vector<Index> blocks, other_blocks;
+  for (std::size_t tile = 0; tile + 1 < block_first.size(); ++tile) {
+    const Index begin = block_first[tile], end = block_first[tile + 1];
+    const Flag *first = nodal_mean.begin() + begin * block_size,
+               *last = nodal_mean.begin() + std::min(end * block_size, e.count);
     const bool averaged = std::find(first, last, 1) != last;
-    for (Index b = begin; b < end; ++b) (averaged ? n.blocks : n.other_blocks).push(b);
+    for (Index b = begin; b < end; ++b) (averaged ? blocks : other_blocks).push_back(b);
   }
+  n.blocks.assign(blocks);
+  n.other_blocks.assign(other_blocks);
 }
 
 /// Blocks of nodes with one of an averaged tet, and the tets of all nodes.
 void list_nodes(const Model& m, NodalMeans& n) {
   const ElementSet& e = m.tet4;
+  const auto nodes = on_host(e.nodes);
+  const auto nodal_mean = on_host(e.nodal_mean);
   std::vector<Flag> averages(m.node_count);
-  n.tet_first.resize(m.node_count + 1);
-  n.tet_first.fill(0);
+  std::vector<Index> first(m.node_count + 1), tets(4 * std::size_t(e.count));
   const auto visit = [&](auto&& act) {
     for (Index i = 0; i < e.count; ++i)
-      for (Index k = 0; k < 4; ++k) act(e.nodes[std::size_t(k) * e.stride + i], i);
+      for (Index k = 0; k < 4; ++k) act(nodes[std::size_t(k) * e.stride + i], i);
   };
   visit([&](Index node, Index tet) {
-    ++n.tet_first[node + 1];
-    averages[node] |= e.nodal_mean[tet];
+    ++first[node + 1];
+    averages[node] |= nodal_mean[tet];
   });
-  for (Index i = 0; i < m.node_count; ++i) n.tet_first[i + 1] += n.tet_first[i];
-  n.tet.resize(4 * std::size_t(e.count));
-  std::vector<Index> next(n.tet_first.data(), n.tet_first.data() + m.node_count);
-  visit([&](Index node, Index tet) { n.tet[next[node]++] = tet; });
+  for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
+  n.tet_first.assign(first);
+  visit([&](Index node, Index tet) { tets[first[node]++] = tet; });
+  n.tet.assign(tets);
   list_blocks(m.node_count, n.node_blocks, [&](Index i) { return averages[i] != 0; });
 }
 

@@ -29,15 +29,17 @@ void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementS
 /// Mean over the Gauss points of the stress that the incremental forms keep.
 template <class Shape>
 void average_points(const ElementSet& e, ElementState& es) {
+  const auto volumes = on_host(e.volume);
+  const auto point_stress = on_host(es.point_stress), stress = on_host(es.stress);
   for (Index i = 0; i < e.count; ++i)
     for (Index row = 0; row < 6; ++row) {
       Real sum = 0, volume = 0;
       for (Index q = 0; q < Shape::points; ++q) {
-        const Real w = e.volume[std::size_t(q) * e.stride + i];
-        sum += w * es.point_stress[std::size_t(6 * q + row) * e.stride + i];
+        const Real w = volumes[std::size_t(q) * e.stride + i];
+        sum += w * point_stress[std::size_t(6 * q + row) * e.stride + i];
         volume += w;
       }
-      es.stress[std::size_t(row) * e.stride + i] = sum / volume;
+      stress[std::size_t(row) * e.stride + i] = sum / volume;
     }
 }
 
@@ -68,14 +70,12 @@ void report_stress(const Model& m, State& s) {
   // the ledger's strain energy belongs to the last sampled step, the stress to where nodes are now
   std::vector<std::vector<Real>> energy;
   for_each_element_set(m, s, [&](auto, const ElementSet&, const ElementState& es) {
-    energy.emplace_back(es.energy.data(), es.energy.data() + es.energy.size());
+    energy.push_back(fetch(es.energy));
   });
   report_elements(m, s, {});
   auto before = energy.begin();
-  for_each_element_set(m, s, [&](auto, const ElementSet&, ElementState& es) {
-    std::copy(before->begin(), before->end(), es.energy.data());
-    ++before;
-  });
+  for_each_element_set(
+      m, s, [&](auto, const ElementSet&, ElementState& es) { es.energy.assign(*before++); });
 }
 
 }  // namespace cdem

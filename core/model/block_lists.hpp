@@ -10,12 +10,13 @@ namespace cdem {
 /// Blocks with an item for which `is_awake` holds.
 template <class Test>
 void list_blocks(Index count, Column<Index>& list, Test&& is_awake) {
-  list.resize(0);
+  std::vector<Index> blocks;
   for (Index first = 0; first < count; first += block_size) {
     bool any = false;
     for (Index i = first; !any && i < first + block_size && i < count; ++i) any = is_awake(i);
-    if (any) list.push(first / block_size);
+    if (any) blocks.push_back(first / block_size);
   }
+  list.assign(blocks);
 }
 
 /// The blocks of a list, or all of them where the plan wants everything awake.

@@ -17,18 +17,21 @@ inline std::string fused_rows_of(const std::string& rows) { return rows + ".fuse
 inline std::string tiles_of(const std::string& rows) { return rows + ".tiles"; }
 inline std::string tile_nodes_of(const std::string& rows) { return rows + ".tile_nodes"; }
 
+/// How many rows there are, by their starts.
+inline Index end_of(const Column<Index>& starts) {
+  const auto items = on_host(starts);
+  return items.size() > 0 ? items[items.size() - 1] : 0;
+}
+
 /// Visit the rows that the model has: part of `describe_rows`.
 template <class Visit>
 void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   const auto blocks = [](Index count) { return (count + block_size - 1) / block_size; };
-  const auto last = [](const Column<Index>& starts) {
-    return starts.size() > 0 ? starts[starts.size() - 1] : 0;
-  };
   const auto total = [](const auto& column) { return Index(column.size()); };
   visit(RowKind{"nodes", "nodes of all blocks"}, m.node_count);
   visit(RowKind{blocks_of("nodes"), "eight nodes after each other"}, blocks(m.node_count));
   visit(RowKind{"node_corners", "corner rows of all pairs and bolts that a node sums"},
-        last(m.corner_first));
+        end_of(m.corner_first));
   visit(RowKind{"mass_entries", "entries of mass matrices"}, total(m.mass_inverse));
   visit(RowKind{"materials", "elastic materials"}, total(m.material_lambda));
   for_each_set(m, s, [&](const auto& kind, const auto& set, const auto&) {
@@ -37,14 +40,14 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   });
   for_each_element_set(m, s, [&](const auto& kind, const auto&, const ElementState& e) {
     visit(RowKind{fused_rows_of(kind.name), "corner rows of bonds by fused block"},
-          last(e.fused.row_first));
+          end_of(e.fused.row_first));
     visit(RowKind{tiles_of(kind.name), "tiles of elements"}, total(e.tiles.block_first) - 1);
     visit(RowKind{tile_nodes_of(kind.name), "nodes of tiles"}, total(e.tiles.node));
   });
-  visit(RowKind{"tile_rows", "forces of tiles on nodes"}, last(s.nodes.tile_first));
+  visit(RowKind{"tile_rows", "forces of tiles on nodes"}, end_of(s.nodes.tile_first));
   visit(RowKind{"node_tets", "tets of a node, where their dilatation is averaged"},
         total(s.nodal.tet));
-  visit(RowKind{"overlap_points", "bond points of overlaps"}, last(m.overlaps.point_first));
+  visit(RowKind{"overlap_points", "bond points of overlaps"}, end_of(m.overlaps.point_first));
   visit(RowKind{"bolt_nodes", "nodes of bolts; bars lead to the next"}, bolt_node_count(m.bolts));
   visit(RowKind{"bolt_crossings", "joints that bolts cross"}, total(m.bolts.crossing_bar));
   visit(RowKind{"bolt_points", "nodes of bolts, then two sides of each crossing"},
@@ -53,63 +56,61 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
         m.corner_rows + 1);
   visit(RowKind{"faces", "exterior faces of all blocks"}, m.face_count);
   visit(RowKind{"edges", "exterior edges of all blocks"}, m.edge_count);
-  visit(RowKind{"edge_ends", "other ends of the edges that leave a node"}, last(m.edge_star_first));
+  visit(RowKind{"edge_ends", "other ends of the edges that leave a node"},
+        end_of(m.edge_star_first));
   visit(RowKind{"class_pairs", "pairs of interface classes of faces"},
         m.class_count * m.class_count);
   visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));
-  visit(RowKind{"loads", "forces on nodes"}, last(m.load_first));
+  visit(RowKind{"loads", "forces on nodes"}, end_of(m.load_first));
   visit(RowKind{"supports", "nodes of which a component is given"}, total(m.support_component) / 3);
   visit(RowKind{"wet_triangles", "triangles that water may press on"}, m.water.triangles.count);
   visit(RowKind{"wet_quads", "quadrilaterals that water may press on"}, m.water.quads.count);
   visit(RowKind{"wet_triangles.pairs", "faces that lie on wet triangles at the start"},
-        last(m.water.triangles.pair_first));
+        end_of(m.water.triangles.pair_first));
   visit(RowKind{"wet_quads.pairs", "faces that lie on wet quadrilaterals at the start"},
-        last(m.water.quads.pair_first));
+        end_of(m.water.quads.pair_first));
   visit(RowKind{"water_fields", "pressure fields; the last one is dry"}, total(m.water.fields) / 8);
   visit(RowKind{"water_rows", "forces of water on faces and in elements"},
         m.water.pore_row_first + (m.water.biot.size() > 0 ? element_corner_count(m, s) : 0));
-  visit(RowKind{"node_water", "rows of water that a node sums"}, last(m.water.node_first));
+  visit(RowKind{"node_water", "rows of water that a node sums"}, end_of(m.water.node_first));
   visit(RowKind{"curves", "histories of loads and supports"}, Index(m.curve_time.size()));
 }
 
 /// Visit the rows that the search makes: part of `describe_rows`.
 template <class Visit>
 void describe_search_rows(const State& s, Visit&& visit) {
-  const auto last = [](const Column<Index>& starts) {
-    return starts.size() > 0 ? starts[starts.size() - 1] : 0;
-  };
   const auto total = [](const auto& column) { return Index(column.size()); };
   const OuterList& outer = s.search.outer;
   const InnerList& inner = s.search.inner;
   const Index exposed = total(s.search.exposed_face);
   visit(RowKind{"live_corners", "corner rows of live pairs and bolts that a node sums"},
-        last(s.nodes.corner_first));
+        end_of(s.nodes.corner_first));
   visit(RowKind{"exposed", "faces that can be touched"}, exposed);
   visit(RowKind{"slots", "vertex or side k of exposed face x: 4 x + k"}, 4 * exposed);
   visit(RowKind{"star_ends", "other ends of the edges that leave a bonded node"},
-        last(s.search.edge_star_first));
-  visit(RowKind{"contact_corners", "slots that a node sums"}, last(s.search.contact_first));
-  visit(RowKind{"edge_contacts", "contacts of semi-edges"}, last(s.edges.first));
-  visit(RowKind{"old_edge_contacts", "those of one step ago"}, last(s.edges.old_first));
+        end_of(s.search.edge_star_first));
+  visit(RowKind{"contact_corners", "slots that a node sums"}, end_of(s.search.contact_first));
+  visit(RowKind{"edge_contacts", "contacts of semi-edges"}, end_of(s.edges.first));
+  visit(RowKind{"old_edge_contacts", "those of one step ago"}, end_of(s.edges.old_first));
   visit(RowKind{"old_edge_states", "their states, then what released overlaps handed over"},
         total(s.edges.old_state) / 8);
   visit(RowKind{"contacts", "slots, then contacts of semi-edges"},
-        4 * exposed + last(s.edges.first));
+        4 * exposed + end_of(s.edges.first));
   visit(RowKind{"acting_contacts", "contacts by the face that they act on"},
-        last(s.contacts_by_target.first));
+        end_of(s.contacts_by_target.first));
   visit(RowKind{"outer_faces", "faces that a vertex may touch before the next rebuild"},
-        last(outer.slot_first));
+        end_of(outer.slot_first));
   visit(RowKind{"outer_vertex_faces", "pairs of vertex and face of the outer list, padded"},
         total(outer.vf_pairs) / 2);
   visit(RowKind{"outer_edge_pairs", "pairs of edges of the outer list"}, total(outer.ee_codes));
   visit(RowKind{"outer_edges", "edges of the exposed faces of one element"},
         total(outer.ee_sides) / 2);
-  visit(RowKind{"pairs_of_edges", "pairs that an edge is of"}, last(outer.edge_first));
+  visit(RowKind{"pairs_of_edges", "pairs that an edge is of"}, end_of(outer.edge_first));
   visit(RowKind{"acting_faces", "exposed faces whose contacts may act on a face"},
-        last(outer.acting_first));
+        end_of(outer.acting_first));
   visit(RowKind{"predicted", "nodes of exposed faces"}, total(outer.predicted_nodes));
   visit(RowKind{"inner_faces", "faces that a vertex may touch in the next steps"},
-        last(inner.first));
+        end_of(inner.first));
   visit(RowKind{"inner_edge_pairs", "pairs of edges of the inner list"}, total(inner.near_edges));
 }
 

@@ -85,45 +85,51 @@ void for_each_set(M& m, S& s, Visit&& visit) {
 }
 
 /// Nodes, and points, of all bolts.
-inline Index bolt_node_count(const BoltSet& b) {
-  return b.first.size() > 0 ? b.first[b.first.size() - 1] : 0;
-}
+inline Index bolt_node_count(const BoltSet& b) { return Index(b.grout.size() / 2); }
 inline Index bolt_point_count(const BoltSet& b) { return Index(b.stiffness.size()); }
 
 /// Do the faces of the pairs share their vertices? Else they overlap.
 inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
 
-/// Does an item act on its nodes? Pairs do until they are released.
-inline bool is_active(const PairState& s, Index pair) {
-  return is_live(PairStatus(s.status[pair]));
+// What host code asks of the items of a set. Each has the arrays of the set on the host, and holds
+// as long as these.
+
+/// is_active(item): does it act on its nodes? Pairs do until they are released.
+inline auto activity(const PairState& s) {
+  return [status = on_host(s.status)](Index pair) { return is_live(PairStatus(status[pair])); };
 }
 
 /// A bolt does while it is installed.
-inline bool is_active(const BoltState& s, Index bolt) {
-  const BoltPhase phase = BoltPhase(s.phase[bolt]);
-  return phase == BoltPhase::placed || phase == BoltPhase::acting;
+inline auto activity(const BoltState& s) {
+  return [phases = on_host(s.phase)](Index bolt) {
+    const BoltPhase phase = BoltPhase(phases[bolt]);
+    return phase == BoltPhase::placed || phase == BoltPhase::acting;
+  };
 }
 
-/// Call visit(point) for the points of a bolt.
-template <class Visit>
-void for_each_point(const BoltSet& b, Index bolt, Visit&& visit) {
-  for (Index n = b.first[bolt]; n < b.first[bolt + 1]; ++n) visit(n);
-  const Index nodes = bolt_node_count(b);
-  for (Index c = 2 * b.crossing_first[bolt]; c < 2 * b.crossing_first[bolt + 1]; ++c)
-    visit(nodes + c);
+/// for_each_point(bolt, visit) calls visit(point) for the points of a bolt.
+inline auto points_of(const BoltSet& b) {
+  return [first = on_host(b.first), crossing_first = on_host(b.crossing_first),
+          nodes = bolt_node_count(b)](Index bolt, auto&& visit) {
+    for (Index n = first[bolt]; n < first[bolt + 1]; ++n) visit(n);
+    for (Index c = 2 * crossing_first[bolt]; c < 2 * crossing_first[bolt + 1]; ++c)
+      visit(nodes + c);
+  };
 }
 
-/// Call visit(row) for the corner rows of an item.
-template <class Set, class Visit>
-void for_each_corner_row(const Set& set, Index item, Visit&& visit) {
-  const Index first = set.corner_first + item * set.corners;
-  for (Index row = first; row < first + set.corners; ++row) visit(row);
+/// for_each_corner_row(item, visit) calls visit(row) for the corner rows of an item.
+inline auto corner_rows_of(const PairSet& p) {
+  return [&p](Index pair, auto&& visit) {
+    const Index first = p.corner_first + pair * p.corners;
+    for (Index row = first; row < first + p.corners; ++row) visit(row);
+  };
 }
-template <class Visit>
-void for_each_corner_row(const BoltSet& b, Index bolt, Visit&& visit) {
-  for_each_point(b, bolt, [&](Index p) {
-    for (Index k = 0; k < b.corners; ++k) visit(b.corner_first + p * b.corners + k);
-  });
+inline auto corner_rows_of(const BoltSet& b) {
+  return [&b, for_each_point = points_of(b)](Index bolt, auto&& visit) {
+    for_each_point(bolt, [&](Index p) {
+      for (Index k = 0; k < b.corners; ++k) visit(b.corner_first + p * b.corners + k);
+    });
+  };
 }
 
 /// Corners of all elements together.
@@ -134,56 +140,67 @@ inline Index element_corner_count(const Model& m, const State& s) {
   return count;
 }
 
-/// Call visit(node) for the nodes of an item.
-template <class Visit>
-void for_each_node(const Model&, const ElementSet& e, Index item, Visit&& visit) {
-  for (Index k = 0; k < e.corners; ++k) visit(e.nodes[std::size_t(k) * e.stride + item]);
+/// for_each_node(item, visit) calls visit(node) for the nodes of an item.
+inline auto nodes_of(const Model&, const ElementSet& e) {
+  return [&e, nodes = on_host(e.nodes)](Index item, auto&& visit) {
+    for (Index k = 0; k < e.corners; ++k) visit(nodes[std::size_t(k) * e.stride + item]);
+  };
 }
-template <class Visit>
-void for_each_node(const Model& m, const PairSet& p, Index pair, Visit&& visit) {
-  if (conforms(p)) {
-    for (Index k = 0; k < 2 * p.points; ++k) visit(p.nodes[std::size_t(k) * p.stride + pair]);
-    return;
-  }
-  for (Index k = 0; k < 8; ++k) {
-    const Index node = m.face_nodes[4 * p.faces[2 * pair + k / 4] + k % 4];
-    if (node >= 0) visit(node);  // a triangle has no fourth
-  }
-}
-
-template <class Visit>
-void for_each_node(const Model&, const BoltSet& b, Index bolt, Visit&& visit) {
-  for_each_point(b, bolt, [&](Index p) {
-    for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
-      if (b.hosts[k] >= 0) visit(b.hosts[k]);
-  });
-}
-
-/// Call visit(node, stiffness [N/m]) for what an item stiffens its nodes by at most: from it comes
-/// the bound of their frequencies. That of elements is in the model already.
-template <class Visit>
-void for_each_stiffness(const Model& m, const PairSet& p, Index pair, Visit&& visit) {
-  const Real k = std::max(p.stiffness[pair], p.stiffness[std::size_t(p.stride) + pair]);
-  if (conforms(p)) {
-    const Real share = k * p.area[pair] / p.points;
-    for_each_node(m, p, pair, [&](Index node) { visit(node, share); });
-    return;
-  }
-  for (Index c = p.point_first[pair]; c < p.point_first[pair + 1]; ++c)
-    for (Index v = 0; v < 4; ++v) {
-      const Index a = m.face_nodes[4 * p.faces[2 * pair] + v];
-      const Index b = m.face_nodes[4 * p.faces[2 * pair + 1] + v];
-      if (a >= 0) visit(a, k * p.point_area[c] * std::abs(p.weights_a[4 * c + v]));
-      if (b >= 0) visit(b, k * p.point_area[c] * std::abs(p.weights_b[4 * c + v]));
+inline auto nodes_of(const Model& m, const PairSet& p) {
+  return [&p, nodes = on_host(p.nodes), faces = on_host(p.faces),
+          face_nodes = on_host(m.face_nodes)](Index pair, auto&& visit) {
+    if (conforms(p)) {
+      for (Index k = 0; k < 2 * p.points; ++k) visit(nodes[std::size_t(k) * p.stride + pair]);
+      return;
     }
+    for (Index k = 0; k < 8; ++k) {
+      const Index node = face_nodes[4 * faces[2 * pair + k / 4] + k % 4];
+      if (node >= 0) visit(node);  // a triangle has no fourth
+    }
+  };
+}
+inline auto nodes_of(const Model&, const BoltSet& b) {
+  return [&b, for_each_point = points_of(b), hosts = on_host(b.hosts)](Index bolt, auto&& visit) {
+    for_each_point(bolt, [&](Index p) {
+      for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
+        if (hosts[k] >= 0) visit(hosts[k]);
+    });
+  };
 }
 
-template <class Visit>
-void for_each_stiffness(const Model&, const BoltSet& b, Index bolt, Visit&& visit) {
-  for_each_point(b, bolt, [&](Index p) {
-    for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
-      if (b.hosts[k] >= 0) visit(b.hosts[k], b.stiffness[p] * std::abs(b.weights[k]));
-  });
+/// for_each_stiffness(item, visit) calls visit(node, stiffness [N/m]) for what an item stiffens its
+/// nodes by at most: from it comes the bound of their frequencies. That of elements is in the model
+/// already.
+inline auto stiffness_of(const Model& m, const PairSet& p) {
+  return
+      [&p, for_each_node = nodes_of(m, p), stiffness = on_host(p.stiffness), area = on_host(p.area),
+       first = on_host(p.point_first), faces = on_host(p.faces), face_nodes = on_host(m.face_nodes),
+       point_area = on_host(p.point_area), weights_a = on_host(p.weights_a),
+       weights_b = on_host(p.weights_b)](Index pair, auto&& visit) {
+        const Real k = std::max(stiffness[pair], stiffness[std::size_t(p.stride) + pair]);
+        if (conforms(p)) {
+          const Real share = k * area[pair] / p.points;
+          for_each_node(pair, [&](Index node) { visit(node, share); });
+          return;
+        }
+        for (Index c = first[pair]; c < first[pair + 1]; ++c)
+          for (Index v = 0; v < 4; ++v) {
+            const Index a = face_nodes[4 * faces[2 * pair] + v];
+            const Index b = face_nodes[4 * faces[2 * pair + 1] + v];
+            if (a >= 0) visit(a, k * point_area[c] * std::abs(weights_a[4 * c + v]));
+            if (b >= 0) visit(b, k * point_area[c] * std::abs(weights_b[4 * c + v]));
+          }
+      };
+}
+inline auto stiffness_of(const Model&, const BoltSet& b) {
+  return
+      [&b, for_each_point = points_of(b), hosts = on_host(b.hosts),
+       stiffness = on_host(b.stiffness), weights = on_host(b.weights)](Index bolt, auto&& visit) {
+        for_each_point(bolt, [&](Index p) {
+          for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
+            if (hosts[k] >= 0) visit(hosts[k], stiffness[p] * std::abs(weights[k]));
+        });
+      };
 }
 
 /// Call visit(term, column) for the columns that the terms of the energy ledger sum, see

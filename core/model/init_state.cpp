@@ -1,6 +1,8 @@
 // init_state.cpp - see init_state.hpp.
 #include "core/model/init_state.hpp"
 
+#include <algorithm>
+
 #include "core/materials/laws.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/interface_table.hpp"
@@ -11,10 +13,11 @@ namespace cdem {
 namespace {
 
 bool has_flowing_element(const Model& m, const ElementSet& e) {
+  const auto material = on_host(e.material), law = on_host(m.material_law);
   bool any = false;
   BlockLaws::for_each([&]<template <class> class Law, Index number>() {
     for (Index i = 0; i < e.count; ++i)
-      any = any || (Law<Real>::inelastic && m.material_law[e.material[i]] == number);
+      any = any || (Law<Real>::inelastic && law[material[i]] == number);
   });
   return any;
 }
@@ -36,12 +39,13 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
 void init_histories(const Model& m, const PairSet& p, PairState& s) {
   if (!interface_table(m).remembers) return;
   s.history.resize(InterfaceLaws::most_state * std::size_t(p.points) * p.point_stride);
+  const BeginHistory begin(m, p, s);
+  const auto first = on_host(p.point_first);
   for (Index i = 0; i < p.count; ++i)
     if (!conforms(p))
-      for (Index c = p.point_first[i]; c < p.point_first[i + 1]; ++c) begin_history(m, p, s, i, c);
+      for (Index c = first[i]; c < first[i + 1]; ++c) begin(i, c);
     else
-      for (Index k = 0; k < p.points; ++k)
-        begin_history(m, p, s, i, std::size_t(k) * p.point_stride + i);
+      for (Index k = 0; k < p.points; ++k) begin(i, std::size_t(k) * p.point_stride + i);
 }
 
 void size(const Model& m, const PairSet& p, PairState& s) {
@@ -51,7 +55,8 @@ void size(const Model& m, const PairSet& p, PairState& s) {
     column->resize(row);
   s.jump_at_break.resize(row, -1.0);
   s.status.resize(row);
-  for (Index i = 0; i < p.count; ++i) s.status[i] = Flag(PairStatus::bonded);
+  const auto status = on_host(s.status);
+  std::fill_n(status.begin(), p.count, Flag(PairStatus::bonded));
   s.bond.resize(points, 1.0);
   s.slip1.resize(points);
   s.slip2.resize(points);
@@ -62,8 +67,10 @@ void size(const Model& m, const PairSet& p, PairState& s) {
 void size(const Model&, const BoltSet& b, BoltState& s) {
   const std::size_t nodes = bolt_node_count(b);
   s.phase.resize(b.count);
+  const auto phase = on_host(s.phase);
+  const auto waits = on_host(b.waits);
   for (Index i = 0; i < b.count; ++i)
-    s.phase[i] = Flag(b.waits[i] ? BoltPhase::waiting : BoltPhase::placed);
+    phase[i] = Flag(waits[i] ? BoltPhase::waiting : BoltPhase::placed);
   for (Column<Real>* column : {&s.slip, &s.grout_free, &s.end_free, &s.grout_force, &s.end_force,
                                &s.length, &s.bar_free, &s.axial_force})
     column->resize(nodes);
@@ -78,13 +85,18 @@ void size(const Model&, const BoltSet& b, BoltState& s) {
 
 }  // namespace
 
-void begin_history(const Model& m, const PairSet& p, PairState& s, Index i, std::size_t point) {
-  if (s.history.size() == 0) return;
-  const std::size_t points = std::size_t(p.points) * p.point_stride;
+BeginHistory::BeginHistory(const Model& m, const PairSet& p, PairState& s)
+    : interfaces_(on_host(m.interfaces)),
+      interface_(on_host(p.interface)),
+      history_(on_host(s.history)),
+      points_(std::size_t(p.points) * p.point_stride) {}
+
+void BeginHistory::operator()(Index pair, std::size_t point) const {
+  if (history_.size() == 0) return;
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-    if (m.interfaces[p.interface[i]].law != number) return;
+    if (interfaces_[interface_[pair]].law != number) return;
     for (Index k = 0; k < state_count<Law>; ++k)
-      s.history[k * points + point] = Law<Real>::state[k].intact;
+      history_[k * points_ + point] = Law<Real>::state[k].intact;
   });
 }
 
@@ -98,8 +110,9 @@ void init_state(const Model& m, State& s, const Real* position) {
   const std::size_t count = m.node_count;
   NodeState& n = s.nodes;
   n.motion.resize(8 * count);
+  const auto motion = on_host(n.motion);
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis) n.motion[8 * i + axis] = position[3 * i + axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) motion[8 * i + axis] = position[3 * i + axis];
   for (Column<Real>* column : {&n.force, &n.reaction, &n.sample}) column->resize(4 * count);
   for (Column<Real>* column : {&n.work_external, &n.work_damping, &n.step_change, &n.unbalance})
     column->resize(count);
@@ -114,7 +127,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
   // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero
-  for (std::size_t k = rows; k < rows + 4; ++k) s.corner_force[k] = -0.0;
+  std::fill_n(on_host(s.corner_force).begin() + rows, 4, -0.0);
 }
 
 }  // namespace cdem

@@ -9,9 +9,18 @@ namespace cdem {
 /// Size every array of a new state and place the nodes; `position` has a row of 3 per node.
 void init_state(const Model& model, State& state, const Real* position);
 
-/// Let a bond point remember what the law of its pair says of an intact bond.
-void begin_history(const Model& model, const PairSet& pairs, PairState& state, Index pair,
-                   std::size_t point);
+/// Lets bond points remember what the law of their pair says of an intact bond.
+class BeginHistory {
+ public:
+  BeginHistory(const Model& model, const PairSet& pairs, PairState& state);
+  void operator()(Index pair, std::size_t point) const;
+
+ private:
+  OnHost<const Interface> interfaces_;
+  OnHost<const Index> interface_;
+  OnHost<Real> history_;
+  std::size_t points_;
+};
 
 /// Bond points that may rise by dilation have a place for that, also where a stage says so.
 void make_room_for_rises(const Model& model, State& state);

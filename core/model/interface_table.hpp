@@ -9,7 +9,7 @@ namespace cdem {
 
 inline InterfaceTable interface_table(const Model& m) {
   const Transfer transfer;
-  return table_of(m.interfaces.data(), m.interfaces.size(), m.interface_parameters.data());
+  return table_of(on_host(m.interfaces).data(), m.interfaces.size(), m.interface_parameters.data());
 }
 
 }  // namespace cdem

@@ -14,51 +14,54 @@ namespace {
 /// A tile ends where the nodes of another block of elements might be too many.
 static_assert(most_tile_nodes >= 8 * block_size);
 void divide(const Model& m, const ElementSet& e, ElementTiles& tiles) {
-  for (Column<Index>* list : {&tiles.block_first, &tiles.node_first, &tiles.node}) list->resize(0);
+  std::vector<Index> block_first, node_first, node;
   tiles.place.resize(std::size_t(e.corners) * e.stride);
+  const auto nodes = on_host(e.nodes);
+  const auto places = on_host(tiles.place);
   std::vector<Index> place_of(m.node_count, -1);  // in the list of nodes
   Index first = 0;
   for (Index i = 0; i < e.count; ++i) {
-    const Index size = Index(tiles.node.size());
+    const Index size = Index(node.size());
     if (i % block_size == 0) {
-      tiles.node_first.push(size);
+      node_first.push_back(size);
       if (i == 0 || size - first + 8 * block_size > most_tile_nodes) {
-        tiles.block_first.push(i / block_size);
+        block_first.push_back(i / block_size);
         first = size;
       }
     }
     for (Index k = 0; k < e.corners; ++k) {
       const std::size_t corner = std::size_t(k) * e.stride + i;
-      Index& place = place_of[e.nodes[corner]];
+      Index& place = place_of[nodes[corner]];
       if (place < first) {
-        place = Index(tiles.node.size());
-        tiles.node.push(e.nodes[corner]);
+        place = Index(node.size());
+        node.push_back(nodes[corner]);
       }
-      tiles.place[corner] = place - first;
+      places[corner] = place - first;
     }
   }
-  tiles.block_first.push(Blocks{}.count_in(e.count));
-  tiles.node_first.push(Index(tiles.node.size()));
+  block_first.push_back(Blocks{}.count_in(e.count));
+  node_first.push_back(Index(node.size()));
+  tiles.block_first.assign(block_first);
+  tiles.node_first.assign(node_first);
+  tiles.node.assign(node);
 }
 
 }  // namespace
 
 void list_tiles(const Model& m, State& s) {
-  Column<Index>& first = s.nodes.tile_first;
-  first.resize(m.node_count + 1);
-  first.fill(0);
+  std::vector<Index> first(m.node_count + 1);
   for_each_element_set(m, s, [&](auto, const ElementSet& e, ElementState& es) {
     divide(m, e, es.tiles);
-    for (std::size_t k = 0; k < es.tiles.node.size(); ++k) ++first[es.tiles.node[k] + 1];
+    for (const Index node : on_host(es.tiles.node)) ++first[node + 1];
   });
   for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
-  std::vector<Index> next(first.data(), first.data() + m.node_count);
+  s.nodes.tile_first.assign(first);
+  s.tile_force.resize(4 * std::size_t(first[m.node_count]));
   for_each_element_set(m, s, [&](auto, const ElementSet&, ElementState& es) {
     es.tiles.row.resize(es.tiles.node.size());
-    for (std::size_t k = 0; k < es.tiles.node.size(); ++k)
-      es.tiles.row[k] = next[es.tiles.node[k]]++;
+    Index* row = on_host(es.tiles.row).data();
+    for (const Index node : on_host(es.tiles.node)) *row++ = first[node]++;
   });
-  s.tile_force.resize(4 * std::size_t(first[m.node_count]));
 }
 
 }  // namespace cdem

@@ -13,19 +13,20 @@ namespace cdem {
 void list_corners(const Model& m, State& s) {
   std::vector<Flag> released(m.corner_rows);
   for_each_row_set(m, s, [&](auto, const auto& set, const auto& state) {
-    for (Index i = 0; i < set.count; ++i) {
-      if (!is_active(state, i)) for_each_corner_row(set, i, [&](Index row) { released[row] = 1; });
-    }
+    const auto is_active = activity(state);
+    const auto for_each_corner_row = corner_rows_of(set);
+    for (Index i = 0; i < set.count; ++i)
+      if (!is_active(i)) for_each_corner_row(i, [&](Index row) { released[row] = 1; });
   });
-  Column<Index>&first = s.nodes.corner_first, &corner = s.nodes.corner;
-  first.resize(m.node_count + 1);
-  corner.resize(0);
-  first[0] = 0;
+  const auto all_first = on_host(m.corner_first), all = on_host(m.corner);
+  std::vector<Index> first(m.node_count + 1), corner;
   for (Index i = 0; i < m.node_count; ++i) {
-    for (Index c = m.corner_first[i]; c < m.corner_first[i + 1]; ++c)
-      if (!released[m.corner[c] < 0 ? ~m.corner[c] : m.corner[c]]) corner.push(m.corner[c]);
+    for (Index c = all_first[i]; c < all_first[i + 1]; ++c)
+      if (!released[all[c] < 0 ? ~all[c] : all[c]]) corner.push_back(all[c]);
     first[i + 1] = Index(corner.size());
   }
+  s.nodes.corner_first.assign(first);
+  s.nodes.corner.assign(corner);
 }
 
 void list_contact_corners(const Model& m, State& s) {

@@ -28,7 +28,7 @@ void evaluate_at(const Model& m, Real time, std::vector<Real>& known, Column<Rea
   }
   if (!changes) return;
   const Transfer transfer;
-  values.assign(known.data(), known.size());
+  values.assign(known);
 }
 
 }  // namespace

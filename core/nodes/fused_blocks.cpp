@@ -18,31 +18,35 @@ struct Elements {
   const Model& m;
   const State& s;
   const ElementSet& e;
-  MassColumns mass = mass_columns(m, s);
+  MassColumns mass = on_host(mass_columns(m, s));
+  OnHost<const Index> nodes = on_host(e.nodes), support = on_host(m.support),
+                      block_first = on_host(m.block_first), block_count = on_host(m.block_count),
+                      load_first = on_host(m.load_first), water_first = on_host(m.water.node_first),
+                      corner_first = on_host(s.nodes.corner_first),
+                      contact_first = on_host(s.search.contact_first);
+  OnHost<const Real> relief = on_host(s.nodes.relief);
   Index corners = e.corners;
 
-  Index first_node(Index i) const { return e.nodes[i]; }
+  Index first_node(Index i) const { return nodes[i]; }
   /// The rows that a node sums after those of its element.
-  Range bond_rows(Index node) const {
-    return {s.nodes.corner_first[node], s.nodes.corner_first[node + 1]};
-  }
+  Range bond_rows(Index node) const { return {corner_first[node], corner_first[node + 1]}; }
   /// Does any load but gravity act on nodes from `first` to before `last`?
   bool is_loaded(Index first, Index last) const {
-    bool any = m.load_first[first] < m.load_first[last];
-    any |= m.water.node_first.size() > 0 && m.water.node_first[first] < m.water.node_first[last];
+    bool any = load_first[first] < load_first[last];
+    any |= water_first.size() > 0 && water_first[first] < water_first[last];
     for (std::size_t k = 4 * std::size_t(first); k < 4 * std::size_t(last); ++k)
-      any |= s.nodes.relief.size() > 0 && s.nodes.relief[k] != 0;
+      any |= relief.size() > 0 && relief[k] != 0;
     return any;
   }
   bool is_lumped(Index i) const { return mass.row(first_node(i)) < 0; }
   bool is_fused(Index i) const {
     const Index first = first_node(i), last = first + corners, row = mass.row(first);
-    if (m.block_first[first] != first || m.block_count[first] != corners ||
-        is_loaded(first, last) || s.search.contact_first[first] < s.search.contact_first[last])
+    if (block_first[first] != first || block_count[first] != corners || is_loaded(first, last) ||
+        contact_first[first] < contact_first[last])
       return false;
     for (Index k = 0; k < corners; ++k) {
       const Index node = first + k;
-      if (e.nodes[std::size_t(k) * e.stride + i] != node || m.support[node] >= 0 ||
+      if (nodes[std::size_t(k) * e.stride + i] != node || support[node] >= 0 ||
           mass.row(node) != (row < 0 ? row : row + corners * k) || mass.held(node))
         return false;
     }
@@ -65,10 +69,7 @@ struct Elements {
 
 /// List the rows that the nodes of fused blocks sum, see FusedRows.
 void list_rows(const Elements& of, const std::vector<Index>& blocks, FusedBlocks& fused) {
-  const State& s = of.s;
-  Column<Index>&first = fused.row_first, &rows = fused.row;
-  first.resize((of.e.count + block_size - 1) / block_size + 1);
-  first.fill(0);
+  std::vector<Index> first((of.e.count + block_size - 1) / block_size + 1);
   for (const Index block : blocks) {
     Index most = 0;
     of.visit_nodes(block, [&](Index, Index, Index node) {
@@ -78,16 +79,18 @@ void list_rows(const Elements& of, const std::vector<Index>& blocks, FusedBlocks
     first[block + 1] = most * of.corners * block_size;
   }
   for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
-  rows.resize(first[first.size() - 1]);
-  rows.fill(of.m.corner_rows);  // adds nothing
+  fused.row_first.assign(first);
+  fused.row.renew(first.back());
+  const auto rows = on_host(fused.row);
+  const auto corner = on_host(of.s.nodes.corner);
+  std::fill(rows.begin(), rows.end(), of.m.corner_rows);  // adds nothing
 #pragma omp parallel for schedule(static) if (blocks.size() * block_size >= worth_threads)
   for (const Index block : blocks) {
     const Index most = (first[block + 1] - first[block]) / (of.corners * block_size);
-    of.visit_nodes(block, [&](Index lane, Index corner, Index node) {
-      Index row = first[block] + corner * most * block_size + lane;
+    of.visit_nodes(block, [&](Index lane, Index k, Index node) {
+      Index row = first[block] + k * most * block_size + lane;
       const Range bonds = of.bond_rows(node);
-      for (Index c = bonds.first; c < bonds.last; ++c, row += block_size)
-        rows[row] = s.nodes.corner[c];
+      for (Index c = bonds.first; c < bonds.last; ++c, row += block_size) rows[row] = corner[c];
     });
   }
 }
@@ -95,28 +98,33 @@ void list_rows(const Elements& of, const std::vector<Index>& blocks, FusedBlocks
 void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementState& es) {
   FusedBlocks& fused = es.fused;
   const Elements of{m, s, e};
-  const Index count = Index(es.awake.size());
+  const auto awake = on_host(es.awake);
+  const Index count = Index(awake.size());
   std::vector<Flag> are_fused(count);
-  std::vector<Index> all;  // of either masses
+  std::vector<Index> blocks, lumped, general, all;  // the last of either masses
 #pragma omp parallel for schedule(static) if (count * block_size >= worth_threads)
-  for (Index b = 0; b < count; ++b) are_fused[b] = of.are_fused(es.awake[b]);
-  for (Column<Index>* list : {&fused.blocks, &fused.lumped, &fused.general}) list->resize(0);
+  for (Index b = 0; b < count; ++b) are_fused[b] = of.are_fused(awake[b]);
   for (Index b = 0; b < count; ++b) {
-    const Index block = es.awake[b];
+    const Index block = awake[b];
     if (!are_fused[b]) {
-      fused.general.push(block);
+      general.push_back(block);
       continue;
     }
-    (of.is_lumped(block * block_size) ? fused.lumped : fused.blocks).push(block);
+    (of.is_lumped(block * block_size) ? lumped : blocks).push_back(block);
     all.push_back(block);
   }
+  fused.blocks.assign(blocks);
+  fused.lumped.assign(lumped);
+  fused.general.assign(general);
   list_rows(of, all, fused);
   if (all.empty()) return;
   s.nodes.fused.resize(m.node_count);
+  const auto is_fused = on_host(s.nodes.fused);
+  const auto force = on_host(s.nodes.force);
   for (const Index block : all)
     of.visit_nodes(block, [&](Index, Index, Index node) {
-      s.nodes.fused[node] = 1;
-      s.nodes.force[4 * std::size_t(node) + 3] = 0;  // no contact stiffens it any more
+      is_fused[node] = 1;
+      force[4 * std::size_t(node) + 3] = 0;  // no contact stiffens it any more
     });
 }
 
@@ -134,14 +142,14 @@ void find_fused_blocks(const Model& m, State& s) {
                            es.fused.general.assign(es.awake.data(), es.awake.size());
                        });
   if (nodes.fused.size() == 0) return;
-  nodes.general.resize(0);
-  for (std::size_t b = 0; b < nodes.awake.size(); ++b) {
-    const Index begin = nodes.awake[b] * block_size;
-    const Index end = std::min(begin + block_size, m.node_count);
-    const Flag* fused = nodes.fused.data();
+  const Flag* fused = on_host(nodes.fused).data();
+  std::vector<Index> general;
+  for (const Index block : on_host(nodes.awake)) {
+    const Index begin = block * block_size, end = std::min(begin + block_size, m.node_count);
     if (!std::all_of(fused + begin, fused + end, [](Flag f) { return f == 1; }))
-      nodes.general.push(nodes.awake[b]);
+      general.push_back(block);
   }
+  nodes.general.assign(general);
 }
 
 }  // namespace cdem

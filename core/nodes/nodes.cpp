@@ -156,7 +156,8 @@ bool damps_nodes(const Model& m, const State& s) {
 }
 
 Real kinetic_energy(const Model& m, const State& s) {
-  return exact_sum(m.node_count, [&](Index i) { return s.nodes.sample[4 * std::size_t(i)]; });
+  const auto sample = on_host(s.nodes.sample);
+  return exact_sum(m.node_count, [&](Index i) { return sample[4 * std::size_t(i)]; });
 }
 
 }  // namespace cdem

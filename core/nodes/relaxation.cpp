@@ -24,7 +24,8 @@ namespace {
 /// Forces on nodes less what damping adds, one component  [N].
 struct Undamped {
   const Real *force, *damping;
-  explicit Undamped(const State& s) : force(s.nodes.force.data()), damping(damping_forces(s)) {}
+  explicit Undamped(const State& s)
+      : force(on_host(s.nodes.force).data()), damping(damping_forces(s)) {}
   Real operator()(std::size_t i, std::size_t k) const {
     return damping ? force[4 * i + k] - damping[4 * i + k] : force[4 * i + k];
   }
@@ -33,8 +34,7 @@ struct Undamped {
 /// Remember forces and velocities of a step; no node has been slowed down since.
 void remember(const Model& m, State& s) {
   const Undamped undamped(s);
-  const Real* motion = s.nodes.motion.data();
-  Real* before = s.nodes.relax.data();
+  const auto motion = on_host(s.nodes.motion), before = on_host(s.nodes.relax);
 #pragma omp parallel for schedule(static) if (m.node_count >= worth_threads)
   for (std::size_t i = 0; i < std::size_t(m.node_count); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -49,13 +49,14 @@ void remember(const Model& m, State& s) {
 /// book what the forces have done on the half step that their new velocity lacks.
 void book_slowed(const Model& m, State& s) {
   const Undamped undamped(s);
-  const LoadColumns loads = load_columns(m, s);
-  const SupportColumns supports = support_columns(m, s);
+  const LoadColumns loads = on_host(load_columns(m, s));
+  const SupportColumns supports = on_host(support_columns(m, s));
+  const auto relax = on_host(s.nodes.relax), work_external = on_host(s.nodes.work_external);
   s.stopped_energy += exact_sum(m.node_count, [&](Index i) {
-    const Real* before = s.nodes.relax.data() + 8 * std::size_t(i);
+    const Real* before = relax.data() + 8 * std::size_t(i);
     const Row way = supports.without_given(
         i, (0.5 * s.dt_last * (1 - before[3])) * Row::of(before[4], before[5], before[6]));
-    s.nodes.work_external[i] += dot(loads.at(i).vector(), way.vector());
+    work_external[i] += dot(loads.at(i).vector(), way.vector());
     return dot(Vec3<Real>{undamped(i, 0), undamped(i, 1), undamped(i, 2)}, way.vector());
   });
 }
@@ -78,16 +79,16 @@ void scale_masses_if_due(const Model& m, State& s) {
 void relax_adaptively(const Model& m, State& s) {
   book_slowed(m, s);
   const Undamped undamped(s);
-  const Real* before = s.nodes.relax.data();
+  const auto before = on_host(s.nodes.relax);
   const Real stiff = exact_sum(m.node_count, [&](std::size_t i) {
     Real sum = 0;
     for (std::size_t k = 0; k < 3; ++k)
       sum -= before[8 * i + 4 + k] * (undamped(i, k) - before[8 * i + k]);
     return sum;
   });
-  const Column<Real>& mass = lumped_masses(m, s);
+  const auto mass = on_host(lumped_masses(m, s));
   const Real heavy = exact_sum(m.node_count, [&](std::size_t i) {
-    const Real* v = before + 8 * i + 4;
+    const Real* v = before.data() + 8 * i + 4;
     return mass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   });
   // the damping force lags by half a step, so w dt < sqrt(4 - 2 c dt) must hold for the fastest

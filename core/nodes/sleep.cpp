@@ -12,31 +12,40 @@ namespace cdem {
 
 namespace {
 
-bool is_fixed(const Model& m, const State& s, Index node) {
-  const Index row = m.support[node];
-  if (row < 0) return false;
-  for (Index axis = 0; axis < 3; ++axis)
-    if (!m.support_component[3 * row + axis] || m.support_velocity[3 * row + axis] != 0 ||
-        s.nodes.motion[8 * std::size_t(node) + 4 + axis] != 0)
-      return false;
-  return true;
+std::vector<Flag> fixed_nodes(const Model& m, const State& s) {
+  const auto support = on_host(m.support);
+  const auto component = on_host(m.support_component);
+  const auto velocity = on_host(m.support_velocity), motion = on_host(s.nodes.motion);
+  const auto is_fixed = [&](Index node) {
+    const Index row = support[node];
+    if (row < 0) return false;
+    for (Index axis = 0; axis < 3; ++axis)
+      if (!component[3 * row + axis] || velocity[3 * row + axis] != 0 ||
+          motion[8 * std::size_t(node) + 4 + axis] != 0)
+        return false;
+    return true;
+  };
+  std::vector<Flag> fixed(m.node_count);
+  for (Index i = 0; i < m.node_count; ++i) fixed[i] = is_fixed(i);
+  return fixed;
 }
 
 /// Blocks of tets of which one is averaged have kernels of their own, which run in every step.
 void leave_averaged(const State& s, Column<Index>& awake) {
-  const Column<Index>& averaged = s.nodal.blocks;
-  std::size_t kept = 0;
-  for (const Index block : std::vector<Index>(awake.data(), awake.data() + awake.size()))
-    if (!std::binary_search(averaged.data(), averaged.data() + averaged.size(), block))
-      awake[kept++] = block;
-  awake.resize(kept);
+  const auto averaged = on_host(s.nodal.blocks);
+  std::vector<Index> others = fetch(awake);
+  std::erase_if(others, [&](Index block) {
+    return std::binary_search(averaged.begin(), averaged.end(), block);
+  });
+  awake.assign(others);
 }
 
 /// A tile sums the forces of all its elements: if one moves, the others are awake.
 void wake_tiles(const ElementTiles& tiles, std::vector<Flag>& moves) {
-  for (std::size_t tile = 0; tile + 1 < tiles.block_first.size(); ++tile) {
-    const Index count = Index(moves.size()), last = tiles.block_first[tile + 1] * block_size;
-    const auto begin = moves.begin() + tiles.block_first[tile] * block_size;
+  const auto first = on_host(tiles.block_first);
+  for (std::size_t tile = 0; tile + 1 < first.size(); ++tile) {
+    const Index count = Index(moves.size()), last = first[tile + 1] * block_size;
+    const auto begin = moves.begin() + first[tile] * block_size;
     const auto end = moves.begin() + std::min(last, count);
     if (std::find(begin, end, 1) != end) std::fill(begin, end, Flag(1));
   }
@@ -46,36 +55,42 @@ void wake_tiles(const ElementTiles& tiles, std::vector<Flag>& moves) {
 
 void find_awake(const Model& m, State& s) {
   const Transfer transfer;
-  std::vector<Flag> fixed(m.node_count), pulled(m.node_count);
-  for (Index i = 0; i < m.node_count; ++i) fixed[i] = is_fixed(m, s, i);
+  const std::vector<Flag> fixed = fixed_nodes(m, s);
+  std::vector<Flag> pulled(m.node_count);
   for_each_set(m, s, [&](auto, const auto& set, auto& state) {
+    const auto for_each_node = nodes_of(m, set);
     std::vector<Flag> moves(set.count);
     for (Index i = 0; i < set.count; ++i) {
-      for_each_node(m, set, i, [&](Index node) { moves[i] |= !fixed[node]; });
-      if (moves[i]) for_each_node(m, set, i, [&](Index node) { pulled[node] = 1; });
+      for_each_node(i, [&](Index node) { moves[i] |= !fixed[node]; });
+      if (moves[i]) for_each_node(i, [&](Index node) { pulled[node] = 1; });
     }
     if constexpr (requires { state.tiles; }) wake_tiles(state.tiles, moves);
     list_blocks(set.count, state.awake, [&](Index i) { return moves[i] != 0; });
   });
   leave_averaged(s, s.tet4.awake);
   s.nodes.sleeps.resize(m.node_count);
+  const auto sleeps = on_host(s.nodes.sleeps);
+  const auto load_first = on_host(m.load_first);
   for (Index i = 0; i < m.node_count; ++i)
-    s.nodes.sleeps[i] = fixed[i] && !pulled[i] && m.load_first[i] == m.load_first[i + 1];
+    sleeps[i] = fixed[i] && !pulled[i] && load_first[i] == load_first[i + 1];
   list_awake_nodes(m, s);
 }
 
 void list_awake_nodes(const Model& m, State& s) {
   s.nodes.listed.resize(m.node_count);
-  const Index* first = s.search.contact_first.data();
+  const auto listed = on_host(s.nodes.listed), sleeps = on_host(s.nodes.sleeps);
+  const auto first = on_host(s.search.contact_first);
   std::vector<Flag> wakes(m.node_count);
   for (Index i = 0; i < m.node_count; ++i) {
-    const bool was = s.nodes.listed[i], is = first[i] < first[i + 1];
-    s.nodes.listed[i] = is;
-    wakes[i] = !s.nodes.sleeps[i] || is || was;
+    const bool was = listed[i], is = first[i] < first[i + 1];
+    listed[i] = is;
+    wakes[i] = !sleeps[i] || is || was;
   }
+  const auto row_first = on_host(m.mass_row_first);
+  const auto block_first = on_host(m.block_first), block_count = on_host(m.block_count);
   for (Index i = 0; i < m.node_count; ++i) {  // nodes that share a mass matrix move together
-    if (m.lumped || m.mass_row_first[i] < 0 || m.block_first[i] != i) continue;
-    const auto begin = wakes.begin() + i, end = begin + m.block_count[i];
+    if (m.lumped || row_first[i] < 0 || block_first[i] != i) continue;
+    const auto begin = wakes.begin() + i, end = begin + block_count[i];
     if (std::any_of(begin, end, [](Flag f) { return f; })) std::fill(begin, end, Flag(1));
   }
   list_blocks(m.node_count, s.nodes.awake, [&](Index i) { return wakes[i]; });

@@ -45,12 +45,13 @@ Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLi
   const Most highest = most({}, m.node_count, nodes);
   if (highest.item < 0) return -1;
   const Transfer transfer;  // of what stands at one node
-  const Frequency at = nodes.of(highest.item);
-  const Real stiffness = nodes.stiffness_at(at.stiffest);
+  const NodeFrequency own = on_host(nodes);
+  const Frequency at = own.of(highest.item);
+  const Real stiffness = own.stiffness_at(at.stiffest);
   limit.node = at.stiffest;
   limit.element_frequency_squared = at.element;
   limit.contact_frequency_squared = at.contact;
-  limit.bond_part = stiffness > 0 ? s.node_bonds[at.stiffest] / stiffness : 0;
+  limit.bond_part = stiffness > 0 ? own.bonds[at.stiffest] / stiffness : 0;
   return highest.value;
 }
 
@@ -105,16 +106,15 @@ void scale_masses(const Model& m, State& s) {
   const Real part = s.dt / (relax_safety * limit.dt);
   const Real squared =
       (limit.element_frequency_squared + limit.contact_frequency_squared) / (part * part);
-  const NodeFrequency nodes = node_frequency(m, s, false);
+  const NodeFrequency nodes = on_host(node_frequency(m, s, false));
   const Real before = energy_of_motion(m, s);
   s.nodes.relax_mass.assign(lumped_masses(m, s).data(), m.node_count);
+  const auto masses = on_host(s.nodes.relax_mass), relax = on_host(s.nodes.relax);
   for (Index i = 0; i < m.node_count; ++i) {
-    Real& mass = s.nodes.relax_mass[i];
-    const Real needed =
-        (m.mass[i] * m.lumped_frequency_squared[i] + 2 * nodes.stiffness_at(i)) / squared;
-    if (needed > mass && s.nodes.relax.size() > 0)
-      s.nodes.relax[8 * std::size_t(i) + 3] *= mass / needed;
-    mass = needed;
+    const Real elements = nodes.model_mass[i] * nodes.lumped_frequency_squared[i];
+    const Real needed = (elements + 2 * nodes.stiffness_at(i)) / squared;
+    if (needed > masses[i] && relax.size() > 0) relax[8 * std::size_t(i) + 3] *= masses[i] / needed;
+    masses[i] = needed;
   }
   s.stopped_energy += before - energy_of_motion(m, s);
 }

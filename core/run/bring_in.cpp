@@ -19,28 +19,34 @@ namespace {
 /// Elements of these nodes forget what they have borne before; what they have lost stays.
 void renew_elements(const Model& m, State& s, const Flag* comes) {
   for_each_element_set(m, s, [&](auto, const ElementSet& e, ElementState& es) {
-    for (Index i = 0; i < e.count; ++i) {
-      if (!comes[e.nodes[i]]) continue;
-      for (Column<Real>* column : {&es.history, &es.yielded, &es.point_stress})
-        for (std::size_t k = 0; k < column->size() / e.stride; ++k) (*column)[k * e.stride + i] = 0;
+    const auto nodes = on_host(e.nodes);
+    for (Column<Real>* column : {&es.history, &es.yielded, &es.point_stress}) {
+      const auto numbers = on_host(*column);
+      for (Index i = 0; i < e.count; ++i)
+        for (std::size_t k = 0; comes[nodes[i]] && k < numbers.size() / e.stride; ++k)
+          numbers[k * e.stride + i] = 0;
     }
   });
 }
 
 /// The same of the dilatation of tets and of its means at their nodes.
 void renew_nodal_means(const Model& m, State& s, const Flag* comes) {
-  const ElementSet& e = m.tet4;
-  for (std::size_t i = 0; i < s.nodal.start.size(); ++i)
-    if (comes[e.nodes[i]]) s.nodal.start[i] = 0;
-  for (std::size_t i = 0; i < s.nodal.after.size(); ++i)
-    if (comes[i]) s.nodal.after[i] = 0;
+  const auto nodes = on_host(m.tet4.nodes);
+  const auto start = on_host(s.nodal.start), after = on_host(s.nodal.after);
+  for (std::size_t i = 0; i < start.size(); ++i)
+    if (comes[nodes[i]]) start[i] = 0;
+  for (std::size_t i = 0; i < after.size(); ++i)
+    if (comes[i]) after[i] = 0;
 }
 
 /// Bolts that are not installed yet have their grout in blocks that come in.
 void renew_bolts(const BoltSet& b, BoltState& bs, const Flag* out) {
+  const auto first = on_host(b.first);
+  const auto phase = on_host(bs.phase);
+  const auto grout_lost = on_host(bs.grout_lost), bar_broken = on_host(bs.bar_broken);
   for (Index i = 0; i < b.count; ++i) {
-    if (bs.phase[i] != Flag(BoltPhase::waiting)) continue;
-    for (Index n = b.first[i]; n < b.first[i + 1]; ++n) bs.grout_lost[n] = bs.bar_broken[n] = 0;
+    if (phase[i] != Flag(BoltPhase::waiting)) continue;
+    for (Index n = first[i]; n < first[i + 1]; ++n) grout_lost[n] = bar_broken[n] = 0;
     cut_bolt(b, out, bs, i);
   }
 }
@@ -53,17 +59,21 @@ struct Covered {
 Covered covered_faces(const Model& m, const State& s, const Flag* comes) {
   Covered found{.touched = std::vector<Flag>(m.face_count),
                 .bare = std::vector<Flag>(m.face_count)};
+  const auto face_nodes = on_host(m.face_nodes);
+  const auto initially_exposed = on_host(m.face_initially_exposed);
   for (Index f = 0; f < m.face_count; ++f) {
-    found.touched[f] = comes[m.face_nodes[4 * f]];
-    found.bare[f] = m.face_initially_exposed[f];
+    found.touched[f] = comes[face_nodes[4 * f]];
+    found.bare[f] = initially_exposed[f];
   }
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
+    const auto faces = on_host(p.faces);
+    const auto status = on_host(ps.status);
     for (Index i = 0; i < p.count; ++i) {
-      const Index a = p.faces[2 * i], b = p.faces[2 * i + 1];
-      const bool touched = comes[m.face_nodes[4 * a]] || comes[m.face_nodes[4 * b]];
+      const Index a = faces[2 * i], b = faces[2 * i + 1];
+      const bool touched = comes[face_nodes[4 * a]] || comes[face_nodes[4 * b]];
       for (const Index face : {a, b}) {
         if (touched) found.touched[face] = 1;
-        if (PairStatus(ps.status[i]) != PairStatus::bonded) found.bare[face] = 1;
+        if (PairStatus(status[i]) != PairStatus::bonded) found.bare[face] = 1;
       }
     }
   });
@@ -73,12 +83,14 @@ Covered covered_faces(const Model& m, const State& s, const Flag* comes) {
 }  // namespace
 
 void place_nodes(State& s, const Flag* comes, const Real* position) {
-  for (std::size_t i = 0; i < s.nodes.out.size(); ++i) {
+  const auto out = on_host(s.nodes.out);
+  const auto motion = on_host(s.nodes.motion);
+  for (std::size_t i = 0; i < out.size(); ++i) {
     if (!comes[i]) continue;
-    s.nodes.out[i] = 0;
+    out[i] = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      s.nodes.motion[8 * i + axis] = position[3 * i + axis];
-      s.nodes.motion[8 * i + 4 + axis] = 0;
+      motion[8 * i + axis] = position[3 * i + axis];
+      motion[8 * i + 4 + axis] = 0;
     }
   }
 }
@@ -88,11 +100,13 @@ void bring_in(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   renew_elements(m, s, comes);
   renew_nodal_means(m, s, comes);
   bond_again(m, s, comes, bonded);
-  renew_bolts(m.bolts, s.bolts, s.nodes.out.data());
+  const auto out = on_host(s.nodes.out);
+  renew_bolts(m.bolts, s.bolts, out.data());
   Covered faces = covered_faces(m, s, comes);
   std::vector<Flag> hidden(m.face_count);
+  const auto face_nodes = on_host(m.face_nodes);
   for (Index f = 0; f < m.face_count; ++f) {
-    if (!faces.touched[f] || s.nodes.out[m.face_nodes[4 * f]]) continue;
+    if (!faces.touched[f] || out[face_nodes[4 * f]]) continue;
     if (faces.bare[f]) expose(s, f);
     hidden[f] = !faces.bare[f];
   }

@@ -17,78 +17,97 @@ namespace {
 
 /// Row of a support that holds a node in all directions.
 Index holding_support(Model& m) {
-  const Index count = Index(m.support_component.size() / 3);
-  const auto holds = [&](Index k) {
-    return m.support_component[k] && m.support_curve[k] == 0 && m.support_velocity[k] == 0;
-  };
-  const Index last = 3 * (count - 1);
+  const Index count = Index(m.support_component.size() / 3), last = 3 * (count - 1);
+  const auto component = on_host(m.support_component);
+  const auto curve = on_host(m.support_curve);
+  const auto velocity = on_host(m.support_velocity);
+  const auto holds = [&](Index k) { return component[k] && curve[k] == 0 && velocity[k] == 0; };
   if (count > 0 && holds(last) && holds(last + 1) && holds(last + 2)) return count - 1;
-  for (Index axis = 0; axis < 3; ++axis) {
-    m.support_component.push(1);
-    m.support_curve.push(0);
-    m.support_velocity.push(0);
-  }
+  m.support_component.resize(3 * count + 3, 1);
+  m.support_curve.resize(3 * count + 3, 0);
+  m.support_velocity.resize(3 * count + 3, 0);
   return count;
 }
 
 /// Row of a material without stiffness: it has neither stress nor energy, however deformed.
 Index slack_material(Model& m) {
   const Index count = Index(m.material_lambda.size());
-  const bool known = count > 0 && m.material_mu[count - 1] == 0;
+  const bool known = count > 0 && on_host(m.material_mu)[count - 1] == 0;
   const Index row = known ? count - 1 : count;
-  if (!known) {
-    m.material_lambda.push(0);
-    m.material_mu.push(0);
-    m.material_law.push(0);
-  }
+  m.material_lambda.resize(row + 1);
+  m.material_mu.resize(row + 1);
+  m.material_law.resize(row + 1);
   // a stage that changes these gives them for the materials of the case alone
   m.material_parameters.resize(std::size_t(row + 1) * material_row);
   if (m.water.biot.size() > 0) m.water.biot.resize(row + 1);
   return row;
 }
 
-/// Is an item of a set out, or a side of a pair?
+/// is_out(item): is an item of a set out, or a side of a pair?
 template <class Set>
-bool is_out(const Model& m, const State& s, const Set& set, Index item) {
-  bool out = false;
-  for_each_node(m, set, item, [&](Index node) { out |= s.nodes.out[node] != 0; });
-  return out;
+auto items_out(const Model& m, const State& s, const Set& set) {
+  return [for_each_node = nodes_of(m, set), out = on_host(s.nodes.out)](Index item) {
+    bool any = false;
+    for_each_node(item, [&](Index node) { any |= out[node] != 0; });
+    return any;
+  };
 }
 
 /// What the last sample counted of the half step to come will not be.
-void stop_node(NodeState& n, std::size_t i) {
-  n.work_external[i] -= n.sample[4 * i + 1];
-  n.work_damping[i] -= n.sample[4 * i + 2];
-  n.step_change[i] -= n.sample[4 * i + 3];
-  for (Column<Real>* rows : {&n.force, &n.reaction, &n.sample})
-    for (std::size_t k = 0; k < 4; ++k) (*rows)[4 * i + k] = 0;
-  if (n.damping_force.size() > 0)
-    for (std::size_t k = 0; k < 4; ++k) n.damping_force[4 * i + k] = 0;
-  if (n.relax.size() > 0)
-    for (std::size_t k = 0; k < 8; ++k) n.relax[8 * i + k] = k == 3 ? 1 : 0;
-  for (std::size_t k = 4; k < 8; ++k) n.motion[8 * i + k] = 0;
-  n.unbalance[i] = 0;
+void stop_nodes(NodeState& n, const std::vector<Index>& which) {
+  const auto sample = on_host(n.sample), work_external = on_host(n.work_external);
+  const auto work_damping = on_host(n.work_damping), step_change = on_host(n.step_change);
+  const auto unbalance = on_host(n.unbalance);
+  for (const std::size_t i : which) {
+    work_external[i] -= sample[4 * i + 1];
+    work_damping[i] -= sample[4 * i + 2];
+    step_change[i] -= sample[4 * i + 3];
+    unbalance[i] = 0;
+  }
+  const auto zero = [&](Column<Real>& rows, std::size_t width, std::size_t from) {
+    const auto numbers = on_host(rows);
+    for (const std::size_t i : which)
+      for (std::size_t k = from; numbers.size() > 0 && k < width; ++k) numbers[width * i + k] = 0;
+  };
+  for (Column<Real>* rows : {&n.force, &n.reaction, &n.sample, &n.damping_force}) zero(*rows, 4, 0);
+  zero(n.motion, 8, 4);
+  zero(n.relax, 8, 0);
+  if (n.relax.size() == 0) return;
+  const auto relax = on_host(n.relax);
+  for (const std::size_t i : which) relax[8 * i + 3] = 1;
 }
 
-void relieve(State&, const ElementSet& e, ElementState& es, Index i) {
-  es.energy[i] = 0;
-  for (std::size_t k = 0; k < es.point_stress.size() / e.stride; ++k)
-    es.point_stress[k * e.stride + i] = 0;
+void relieve(State&, const ElementSet& e, ElementState& es, const std::vector<Index>& which) {
+  const auto energy = on_host(es.energy), point_stress = on_host(es.point_stress);
+  for (const Index i : which) {
+    energy[i] = 0;
+    for (std::size_t k = 0; k < point_stress.size() / e.stride; ++k)
+      point_stress[k * e.stride + i] = 0;
+  }
 }
 
 /// The faces of a pair can be touched then; those that are out are hidden afterwards.
-void relieve(State& s, const PairSet& p, PairState& ps, Index i) {
-  if (is_live(PairStatus(ps.status[i])))
-    for (const Index side : {0, 1}) expose(s, p.faces[2 * i + side]);
-  ps.status[i] = Flag(PairStatus::released);
-  ps.stored[i] = 0;
-  ps.jump[i] = 0;
-  ps.jump_at_break[i] = -1;
+void relieve(State& s, const PairSet& p, PairState& ps, const std::vector<Index>& which) {
+  const auto is_active = activity(ps);
+  const auto faces = on_host(p.faces);
+  for (const Index i : which)
+    for (const Index side : {0, 1})
+      if (is_active(i)) expose(s, faces[2 * i + side]);
+  const auto status = on_host(ps.status);
+  const auto stored = on_host(ps.stored), jump = on_host(ps.jump);
+  const auto jump_at_break = on_host(ps.jump_at_break);
+  for (const Index i : which) {
+    status[i] = Flag(PairStatus::released);
+    stored[i] = 0;
+    jump[i] = 0;
+    jump_at_break[i] = -1;
+  }
 }
 
 /// The rest of a bolt goes on to hold the rock that stays.
-void relieve(State& s, const BoltSet& b, BoltState& bs, Index bolt) {
-  cut_bolt(b, s.nodes.out.data(), bs, bolt);
+void relieve(State& s, const BoltSet& b, BoltState& bs, const std::vector<Index>& which) {
+  const auto out = on_host(s.nodes.out);
+  for (const Index bolt : which) cut_bolt(b, out.data(), bs, bolt);
 }
 
 }  // namespace
@@ -100,13 +119,16 @@ Real stored_energy(const Model& m, const State& s) {
 }
 
 void hide_faces(State& s, const std::vector<Flag>& hidden) {
-  for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x) {
-    if (!hidden[s.search.exposed_face[x]]) continue;
-    s.taken_out_friction += s.edges.friction[x];
-    s.taken_out_dashpot += s.edges.dashpot[x];
+  const auto exposed_face = on_host(s.search.exposed_face);
+  const auto edge_friction = on_host(s.edges.friction), edge_dashpot = on_host(s.edges.dashpot);
+  const auto friction = on_host(s.springs.friction), dashpot = on_host(s.springs.dashpot);
+  for (std::size_t x = 0; x < exposed_face.size(); ++x) {
+    if (!hidden[exposed_face[x]]) continue;
+    s.taken_out_friction += edge_friction[x];
+    s.taken_out_dashpot += edge_dashpot[x];
     for (std::size_t slot = 4 * x; slot < 4 * x + 4; ++slot) {
-      s.taken_out_friction += s.springs.friction[slot];
-      s.taken_out_dashpot += s.springs.dashpot[slot];
+      s.taken_out_friction += friction[slot];
+      s.taken_out_dashpot += dashpot[slot];
     }
   }
   hide(s, hidden);
@@ -115,17 +137,24 @@ void hide_faces(State& s, const std::vector<Flag>& hidden) {
 void take_out(Model& m, State& s, const Flag* leaves) {
   const Real before = stored_energy(m, s);
   s.nodes.out.resize(m.node_count);
+  const auto out = on_host(s.nodes.out);
+  std::vector<Index> stop;
   for (Index i = 0; i < m.node_count; ++i) {
-    if (!leaves[i] || s.nodes.out[i]) continue;
-    s.nodes.out[i] = 1;
-    stop_node(s.nodes, i);
+    if (!leaves[i] || out[i]) continue;
+    out[i] = 1;
+    stop.push_back(i);
   }
+  stop_nodes(s.nodes, stop);
   for_each_set(m, s, [&](auto, const auto& set, auto& state) {
+    const auto is_out = items_out(m, s, set);
+    std::vector<Index> which;
     for (Index i = 0; i < set.count; ++i)
-      if (is_out(m, s, set, i)) relieve(s, set, state, i);
+      if (is_out(i)) which.push_back(i);
+    relieve(s, set, state, which);
   });
   std::vector<Flag> hidden(m.face_count);
-  for (Index f = 0; f < m.face_count; ++f) hidden[f] = s.nodes.out[m.face_nodes[4 * f]];
+  const auto face_nodes = on_host(m.face_nodes);
+  for (Index f = 0; f < m.face_count; ++f) hidden[f] = out[face_nodes[4 * f]];
   hide_faces(s, hidden);
   sort_exposed(s);
   s.taken_out += before - stored_energy(m, s);
@@ -136,19 +165,25 @@ void take_out(Model& m, State& s, const Flag* leaves) {
 void hold_taken_out(Model& m, const State& s) {
   if (s.nodes.out.size() == 0) return;
   const Index support = holding_support(m), slack = slack_material(m);
+  const auto out = on_host(s.nodes.out);
+  const auto support_row = on_host(m.support), mass_row = on_host(m.mass_row_first);
+  const auto load_first = on_host(m.load_first);
+  const auto gravity_mass = on_host(m.gravity_mass), load_force = on_host(m.load_force);
   for (Index i = 0; i < m.node_count; ++i) {
-    if (!s.nodes.out[i]) continue;
-    m.support[i] = support;
-    m.mass_row_first[i] = -1;
-    m.gravity_mass[i] = 0;
-    for (Index k = 4 * m.load_first[i]; k < 4 * m.load_first[i + 1]; ++k) m.load_force[k] = 0;
+    if (!out[i]) continue;
+    support_row[i] = support;
+    mass_row[i] = -1;
+    gravity_mass[i] = 0;
+    for (Index k = 4 * load_first[i]; k < 4 * load_first[i + 1]; ++k) load_force[k] = 0;
   }
   for_each_element_set(m, s, [&](auto, ElementSet& e, const ElementState&) {
+    const auto is_out = items_out(m, s, e);
+    const auto material = on_host(e.material);
+    const auto hourglass = on_host(e.hourglass);
     for (Index i = 0; i < e.count; ++i) {
-      if (!is_out(m, s, e, i)) continue;
-      e.material[i] = slack;
-      for (std::size_t k = 0; k < e.hourglass.size() / e.stride; ++k)
-        e.hourglass[k * e.stride + i] = 0;
+      if (!is_out(i)) continue;
+      material[i] = slack;
+      for (std::size_t k = 0; k < hourglass.size() / e.stride; ++k) hourglass[k * e.stride + i] = 0;
     }
   });
 }

@@ -17,12 +17,15 @@ void evaluate_fields(const Model& m, State& s) {
   const Water& w = m.water;
   const std::size_t count = w.fields.size() / 8;
   s.water.fields.resize(8 * count);
+  const auto fields = on_host(w.fields);
+  const auto curve = on_host(w.field_curve);
+  const auto factor = on_host(s.load_factor), fields_now = on_host(s.water.fields);
   for (std::size_t i = 0; i < count; ++i) {
-    const Real *given = w.fields.data() + 8 * i, lift = s.load_factor[w.field_curve[2 * i]];
-    Real* now = s.water.fields.data() + 8 * i;
+    const Real *given = fields.data() + 8 * i, lift = factor[curve[2 * i]];
+    Real* now = fields_now.data() + 8 * i;
     now[0] = given[0] + given[5] * lift;
     for (std::size_t k = 1; k < 5; ++k) now[k] = given[k];
-    now[5] = s.load_factor[w.field_curve[2 * i + 1]];
+    now[5] = factor[curve[2 * i + 1]];
   }
 }
 
@@ -94,14 +97,14 @@ void update_water(const Model& m, State& s, Queue q) {
   sum_forces(m, s, q, s.step > 0 ? s.dt_last : 0);
 }
 
-Column<Real> change_water(const Model& m, State& s) {
-  Column<Real> change;
-  if (m.water.fields.size() == 0) return change;
+std::vector<Real> change_water(const Model& m, State& s) {
+  if (m.water.fields.size() == 0) return {};
   s.nodes.water.resize(4 * std::size_t(m.node_count));
-  change.assign(s.nodes.water.data(), s.nodes.water.size());
+  std::vector<Real> change = fetch(s.nodes.water);
   find_forces(m, s, {});
   sum_forces(m, s, {}, 0);
-  for (std::size_t k = 0; k < change.size(); ++k) change[k] = s.nodes.water[k] - change[k];
+  const auto now = on_host(s.nodes.water);
+  for (std::size_t k = 0; k < change.size(); ++k) change[k] = now[k] - change[k];
   return change;
 }
 

@@ -123,8 +123,8 @@ void Scene::build_nodes() {
   m.node_count = Index(position_.size());
   for (Index j = 0; j < 4; ++j)
     for (Index k = 0; k < 4; ++k) {
-      m.mass_inverse.push(j == k ? 4 : -1);
-      m.mass_matrix.push(j == k ? 0.4 : 0.2);
+      push(m.mass_inverse, j == k ? 4 : -1);
+      push(m.mass_matrix, j == k ? 0.4 : 0.2);
     }
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Block& block = blocks_[b];
@@ -133,17 +133,17 @@ void Scene::build_nodes() {
       const Vec& x = position_[block.first + k];
       Index place = 0;
       while (distance(position_[place], x) > 0) ++place;
-      m.node_block.push(Index(b));
-      m.node_place.push(place);
-      m.mass.push(block.mass);
-      m.gravity_mass.push(block.mass);
-      m.mass_row_first.push(exact ? 4 * k : -1);
-      m.mass_axis_stride.push(0);
-      m.block_first.push(block.first);
-      m.block_count.push(block.nodes);
-      m.inverse_mass_bound.push((exact ? 5 : 1) / block.mass);
-      m.frequency_squared.push((exact ? 5 : 1) * block.frequency_squared);
-      m.lumped_frequency_squared.push(block.frequency_squared);
+      push(m.node_block, Index(b));
+      push(m.node_place, place);
+      push(m.mass, block.mass);
+      push(m.gravity_mass, block.mass);
+      push(m.mass_row_first, exact ? 4 * k : -1);
+      push(m.mass_axis_stride, 0);
+      push(m.block_first, block.first);
+      push(m.block_count, block.nodes);
+      push(m.inverse_mass_bound, (exact ? 5 : 1) / block.mass);
+      push(m.frequency_squared, (exact ? 5 : 1) * block.frequency_squared);
+      push(m.lumped_frequency_squared, block.frequency_squared);
     }
   }
 }
@@ -153,9 +153,9 @@ void Scene::build_elements() {
   build_shape(model.pyramid5, 5, 5);
   build_shape(model.wedge6, 6, 6);
   build_shape(model.hex8, 8, 8);
-  model.material_lambda.push(rock.lambda);
-  model.material_mu.push(rock.mu);
-  model.material_law.push(0);
+  push(model.material_lambda, rock.lambda);
+  push(model.material_mu, rock.mu);
+  push(model.material_law, 0);
   model.material_parameters.resize(material_row);
 }
 
@@ -173,10 +173,11 @@ void Scene::build_shape(ElementSet& e, Index nodes, Index points) {
   e.volume.resize(std::size_t(points) * e.stride);
   for (Index i = 0; i < e.stride && e.count > 0; ++i) {
     const Block& b = *some[std::min(i, e.count - 1)];
-    for (Index k = 0; k < nodes; ++k) e.nodes[k * e.stride + i] = b.first + k;
+    for (Index k = 0; k < nodes; ++k) on_host(e.nodes)[k * e.stride + i] = b.first + k;
     for (std::size_t r = 0; r < b.gradient.size(); ++r)
-      e.gradient[r * e.stride + i] = b.gradient[r];
-    for (std::size_t r = 0; r < b.volume.size(); ++r) e.volume[r * e.stride + i] = b.volume[r];
+      on_host(e.gradient)[r * e.stride + i] = b.gradient[r];
+    for (std::size_t r = 0; r < b.volume.size(); ++r)
+      on_host(e.volume)[r * e.stride + i] = b.volume[r];
   }
 }
 
@@ -196,11 +197,11 @@ void Scene::build_faces() {
       const Index count = corners[3] < 0 ? 3 : 4;
       Vec x[4], center{0, 0, 0};
       for (Index k = 0; k < count; ++k) {
-        m.face_nodes.push(blocks_[b].first + corners[k]);
+        push(m.face_nodes, blocks_[b].first + corners[k]);
         x[k] = position_[blocks_[b].first + corners[k]];
         center = center + Real(1.0 / count) * x[k];
       }
-      if (count == 3) m.face_nodes.push(-1), x[3] = x[2];
+      if (count == 3) push(m.face_nodes, -1), x[3] = x[2];
       Real sum = 0, farthest = 0;
       for (Index k = 0; k < count; ++k) {
         sum += distance(x[k], center);
@@ -209,17 +210,17 @@ void Scene::build_faces() {
       const Real area = 0.5 * norm(cross(x[2] - x[0], x[3] - x[1]));
       const Real height =
           (count == 3 ? blocks_[b].triangle : blocks_[b].quad) * blocks_[b].whole / area;
-      m.face_interface_class.push(0);
-      m.face_block.push(Index(b));
-      m.face_element.push(element_of(b));
-      m.face_length.push(sum / count);
-      m.face_reach.push(1.5 * farthest);
-      m.face_area.push(area);
-      m.face_height.push(height);
-      m.face_stiffness.push(rock.young_modulus() / height);
-      m.face_initially_exposed.push(1);
-      m.face_movable.push(!blocks_[b].fixed);
-      m.face_radius.push(blocks_[b].fixed ? 1e300 : std::cbrt(0.75 / M_PI * blocks_[b].whole));
+      push(m.face_interface_class, 0);
+      push(m.face_block, Index(b));
+      push(m.face_element, element_of(b));
+      push(m.face_length, sum / count);
+      push(m.face_reach, 1.5 * farthest);
+      push(m.face_area, area);
+      push(m.face_height, height);
+      push(m.face_stiffness, rock.young_modulus() / height);
+      push(m.face_initially_exposed, 1);
+      push(m.face_movable, !blocks_[b].fixed);
+      push(m.face_radius, blocks_[b].fixed ? 1e300 : std::cbrt(0.75 / M_PI * blocks_[b].whole));
       ++m.face_count;
     }
 }
@@ -235,22 +236,23 @@ void Scene::build_edges() {
       const auto ends = std::minmax(nodes[k], nodes[(k + 1) % count]);
       const auto [place, is_new] = edges.insert({ends, m.edge_count});
       if (is_new) {
-        m.edge_nodes.push(ends.first), m.edge_nodes.push(ends.second);
-        m.edge_faces.push(f), m.edge_faces.push(-1);
+        push(m.edge_nodes, ends.first), push(m.edge_nodes, ends.second);
+        push(m.edge_faces, f), push(m.edge_faces, -1);
         ++m.edge_count;
       } else {
-        m.edge_faces[2 * place->second + 1] = f;
+        on_host(m.edge_faces)[2 * place->second + 1] = f;
       }
-      m.face_edges[4 * f + k] = place->second;
+      on_host(m.face_edges)[4 * f + k] = place->second;
     }
   }
   for (Index i = 0; i < m.node_count; ++i) {
-    m.edge_star_first.push(Index(m.edge_star.size()));
+    push(m.edge_star_first, Index(m.edge_star.size()));
     for (Index e = 0; e < m.edge_count; ++e)
       for (const Index end : {0, 1})
-        if (m.edge_nodes[2 * e + end] == i) m.edge_star.push(m.edge_nodes[2 * e + 1 - end]);
+        if (on_host(m.edge_nodes)[2 * e + end] == i)
+          push(m.edge_star, on_host(m.edge_nodes)[2 * e + 1 - end]);
   }
-  m.edge_star_first.push(Index(m.edge_star.size()));
+  push(m.edge_star_first, Index(m.edge_star.size()));
 }
 
 /// Conforming pairs, where the faces of two blocks have their corners at the same places.
@@ -260,23 +262,23 @@ void Scene::build_pairs() {
   const auto places = [&](Index f) {
     std::array<Index, 4> at;
     for (Index k = 0; k < 4; ++k) {
-      const Index node = m.face_nodes[4 * f + k];
-      at[k] = node < 0 ? -1 : m.node_place[node];
+      const Index node = on_host(m.face_nodes)[4 * f + k];
+      at[k] = node < 0 ? -1 : on_host(m.node_place)[node];
     }
     std::sort(at.begin(), at.end());
     return at;
   };
   for (Index a = 0; a < m.face_count && bonded; ++a)
     for (Index b = a + 1; b < m.face_count; ++b)
-      if (m.face_block[a] != m.face_block[b] && places(a) == places(b)) {
-        found[m.face_nodes[4 * a + 3] < 0 ? 0 : 1].push_back({a, b});
-        m.face_initially_exposed[a] = m.face_initially_exposed[b] = 0;
+      if (on_host(m.face_block)[a] != on_host(m.face_block)[b] && places(a) == places(b)) {
+        found[on_host(m.face_nodes)[4 * a + 3] < 0 ? 0 : 1].push_back({a, b});
+        on_host(m.face_initially_exposed)[a] = on_host(m.face_initially_exposed)[b] = 0;
       }
   build_pair_set(m.triangles, 3, found[0]);
   build_pair_set(m.quads, 4, found[1]);
   build_pair_set(m.overlaps, 1, {});
   m.overlaps.corners = 8;
-  m.overlaps.point_first.push(0);
+  push(m.overlaps.point_first, 0);
 }
 
 void Scene::build_pair_set(PairSet& p, Index points,
@@ -293,15 +295,16 @@ void Scene::build_pair_set(PairSet& p, Index points,
   p.stiffness.resize(2 * std::size_t(p.stride), 1.0);
   for (Index i = 0; i < p.count; ++i) {
     const auto [a, b] = faces[i];
-    p.faces.push(a), p.faces.push(b);
-    p.area[i] = m.face_area[a];
-    p.stiffness[i] = p.stiffness[p.stride + i] = std::max(m.face_stiffness[a], m.face_stiffness[b]);
+    push(p.faces, a), push(p.faces, b);
+    on_host(p.area)[i] = on_host(m.face_area)[a];
+    on_host(p.stiffness)[i] = on_host(p.stiffness)[p.stride + i] =
+        std::max(on_host(m.face_stiffness)[a], on_host(m.face_stiffness)[b]);
     for (Index k = 0; k < points; ++k) {
-      const Index node = m.face_nodes[4 * a + k];
-      p.nodes[k * p.stride + i] = node;
+      const Index node = on_host(m.face_nodes)[4 * a + k];
+      on_host(p.nodes)[k * p.stride + i] = node;
       for (Index j = 0; j < points; ++j)
-        if (m.node_place[m.face_nodes[4 * b + j]] == m.node_place[node])
-          p.nodes[(points + k) * p.stride + i] = m.face_nodes[4 * b + j];
+        if (on_host(m.node_place)[on_host(m.face_nodes)[4 * b + j]] == on_host(m.node_place)[node])
+          on_host(p.nodes)[(points + k) * p.stride + i] = on_host(m.face_nodes)[4 * b + j];
     }
   }
 }
@@ -313,14 +316,14 @@ void Scene::build_corners() {
     for (Index i = 0; i < p->count; ++i)
       for (Index k = 0; k < p->points; ++k) {
         const Index row = p->corner_first + i * p->points + k;
-        rows[p->nodes[k * p->stride + i]].push_back(~row);
-        rows[p->nodes[(p->points + k) * p->stride + i]].push_back(row);
+        rows[on_host(p->nodes)[k * p->stride + i]].push_back(~row);
+        rows[on_host(p->nodes)[(p->points + k) * p->stride + i]].push_back(row);
       }
   for (const auto& of_node : rows) {
-    m.corner_first.push(Index(m.corner.size()));
-    for (const Index row : of_node) m.corner.push(row);
+    push(m.corner_first, Index(m.corner.size()));
+    for (const Index row : of_node) push(m.corner, row);
   }
-  m.corner_first.push(Index(m.corner.size()));
+  push(m.corner_first, Index(m.corner.size()));
 }
 
 /// Fixed blocks are held in all directions; curve 0 is constant.
@@ -328,14 +331,14 @@ void Scene::build_loads() {
   Model& m = model;
   m.load_first.resize(m.node_count + 1);
   for (const Block& b : blocks_)
-    for (Index k = 0; k < b.nodes; ++k) m.support.push(b.fixed ? 0 : -1);
+    for (Index k = 0; k < b.nodes; ++k) push(m.support, b.fixed ? 0 : -1);
   m.support_component.resize(3, 1);
   m.support_curve.resize(3);
   m.support_velocity.resize(3);
   m.curve_time = {{0}};
   m.curve_factor = {{1}};
   m.class_count = 1;
-  m.interface_of.push(0);
+  push(m.interface_of, 0);
   set_interface({});
 }
 

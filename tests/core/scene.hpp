@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 #include <vector>
 
 #include "core/model/model.hpp"
@@ -11,6 +12,12 @@
 #include "tests/core/interfaces/joint.hpp"
 
 namespace cdem::test {
+
+/// Append an item to an array.
+template <class T>
+void push(Column<T>& column, std::type_identity_t<T> value) {
+  column.resize(column.size() + 1, value);
+}
 
 /// Blocks of one element each. Add blocks, `build`, change the model, `start`.
 class Scene {
@@ -39,9 +46,13 @@ class Scene {
 
   Index first_node(Index block) const { return blocks_[block].first; }
   Index node_count(Index block) const { return blocks_[block].nodes; }
-  Real* motion(Index node) { return state.nodes.motion.data() + 8 * std::size_t(node); }
-  Vec position(Index node) const { return vector_at(state.nodes.motion.data() + 8 * node); }
-  Vec velocity(Index node) const { return vector_at(state.nodes.motion.data() + 8 * node + 4); }
+  Real* motion(Index node) { return on_host(state.nodes.motion).data() + 8 * std::size_t(node); }
+  Vec position(Index node) const {
+    return vector_at(on_host(state.nodes.motion).data() + 8 * node);
+  }
+  Vec velocity(Index node) const {
+    return vector_at(on_host(state.nodes.motion).data() + 8 * node + 4);
+  }
   /// A block moves as a rigid body, spinning about the mean of its nodes.
   void set_motion(Index block, const Vec& velocity, const Vec& spin = {0, 0, 0});
 

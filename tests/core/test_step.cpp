@@ -14,12 +14,12 @@ struct Momentum {
   explicit Momentum(const Scene& scene) {
     const Model& m = scene.model;
     for (Index i = 0; i < m.node_count; ++i) {
-      Vec p = m.mass[i] * scene.velocity(i);
-      if (m.mass_row_first[i] >= 0) {
+      Vec p = on_host(m.mass)[i] * scene.velocity(i);
+      if (on_host(m.mass_row_first)[i] >= 0) {
         p = {0, 0, 0};
         for (Index j = 0; j < 4; ++j)
-          p = p + m.mass[i] * m.mass_matrix[m.mass_row_first[i] + j] *
-                      scene.velocity(m.block_first[i] + j);
+          p = p + on_host(m.mass)[i] * on_host(m.mass_matrix)[on_host(m.mass_row_first)[i] + j] *
+                      scene.velocity(on_host(m.block_first)[i] + j);
       }
       linear = linear + p;
       angular = angular + cross(scene.position(i), p);
@@ -77,7 +77,7 @@ TEST_CASE("a collision of blocks of all shapes keeps linear and angular momentum
   for (int n = 0; n < 300; ++n) {
     crash.step(1);
     for (std::size_t k = 0; k < crash.state.springs.target.size(); ++k)
-      touching += crash.state.springs.target[k] >= 0;
+      touching += on_host(crash.state.springs.target)[k] >= 0;
   }
   CHECK(touching > 30);
   const Momentum after(crash);

@@ -31,8 +31,8 @@ FAULTS = [
         "cut bolt",
         "a bolt keeps its grout in rock that was dug out",
         "core/bolts/bolts.cpp",
-        "bs.grout_lost[n] = 1;",
-        "bs.grout_lost[n] = 0;",
+        "    grout_lost[n] = 1;",
+        "    grout_lost[n] = 0;",
         "tests/validation/test_bolts.py::test_what_is_dug_out_takes_its_part_of_a_bolt_along",
     ),
 ]

@@ -16,8 +16,8 @@ FAULTS = [
         "bolt step",
         "bolts do not count in the stable step",
         "core/model/force_sets.hpp",
-        "visit(b.hosts[k], b.stiffness[p] * std::abs(b.weights[k]));",
-        "visit(b.hosts[k], 0 * b.stiffness[p] * std::abs(b.weights[k]));",
+        "visit(hosts[k], stiffness[p] * std::abs(weights[k]));",
+        "visit(hosts[k], 0 * stiffness[p] * std::abs(weights[k]));",
         "tests/validation/test_bolts.py::test_bolts_shorten_the_step",
     ),
     Mutant(
@@ -25,7 +25,7 @@ FAULTS = [
         "a tile lists a node again for each of its elements",
         "core/model/tiles.cpp",
         "if (place < first) {",
-        "if (place < Index(tiles.node.size())) {",
+        "if (place < Index(node.size())) {",
         "tests/core/model/test_tiles.cpp",
     ),
 ]

@@ -19,11 +19,13 @@ namespace {
 /// Boxes of the sides of exposed faces, [exposed][4], with room for any depth of contact: sides
 /// whose boxes are apart cannot touch.
 std::vector<Box> side_boxes(const Model& m, const State& s) {
-  const FaceColumns faces = face_columns(m, s);
-  const Index count = Index(s.search.exposed_face.size());
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const auto exposed_face = on_host(s.search.exposed_face);
+  const auto reach = on_host(m.face_reach);
+  const Index count = Index(exposed_face.size());
   std::vector<Box> boxes(4 * std::size_t(count), Box::nothing());
   for (Index x = 0; x < count; ++x) {
-    const Index face = s.search.exposed_face[x], corners = faces.vertex_count(face);
+    const Index face = exposed_face[x], corners = faces.vertex_count(face);
     for (Index k = 0; k < corners; ++k) {
       const Index ends[2] = {faces.vertex(face, k),
                              faces.vertex(face, k + 1 == corners ? 0 : k + 1)};
@@ -33,8 +35,8 @@ std::vector<Box> side_boxes(const Model& m, const State& s) {
         box.include(faces.nodes.position(node));
         speed = std::max(speed, norm(faces.nodes.velocity(node)));
       }
-      const Real slack = m.rules.indentation * 2 * m.face_reach[face];  // more than it is long
-      box.inflate(m.rules.depth * m.face_length[face] + slack +
+      const Real slack = m.rules.indentation * 2 * reach[face];  // more than it is long
+      box.inflate(m.rules.depth * faces.face_length[face] + slack +
                   m.rules.approach_steps * faces.dt * speed);
     }
   }
@@ -46,9 +48,13 @@ class AllPairs {
  public:
   AllPairs(const Model& model, State& state)
       : m(model),
-        s(state),
-        springs{face_search(model, state)},
-        edges(touching_edges(model, state)),
+        springs(on_host(ResolveTargets{face_search(model, state)})),
+        edges(on_host(touching_edges(model, state))),
+        found(on_host(edge_columns(state))),
+        movable(on_host(model.face_movable)),
+        block(on_host(model.face_block)),
+        reach(on_host(model.face_reach)),
+        count(Index(state.search.exposed_face.size())),
         bonded(live_overlaps(model, state)),
         sides(side_boxes(model, state)) {}
 
@@ -60,21 +66,20 @@ class AllPairs {
   }
 
  private:
-  Index face(Index x) const { return s.search.exposed_face[x]; }
-  bool is_movable(Index x) const { return m.face_movable[face(x)] != 0; }
+  Index face(Index x) const { return springs.exposed_face[x]; }
+  bool is_movable(Index x) const { return movable[face(x)] != 0; }
   /// Do spheres around two faces overlap, with room for any depth of contact?
   bool are_near(Index x, Index t) const {
     const Vec3<Real> apart = springs.geometry.center(x) - springs.geometry.center(t);
-    const Real reach = m.face_reach[face(x)] + m.face_reach[face(t)] + m.face_length[face(x)] +
-                       m.face_length[face(t)];
-    return dot(apart, apart) < reach * reach;
+    const Real* const length = springs.faces.face_length;
+    const Real near = reach[face(x)] + reach[face(t)] + length[face(x)] + length[face(t)];
+    return dot(apart, apart) < near * near;
   }
   std::vector<Index> faces_near(Index x) const {
-    const Index count = Index(s.search.exposed_face.size());
     std::vector<Index> others;
     for (Index t = 0; t < count; ++t)
-      if (m.face_block[face(t)] != m.face_block[face(x)] && (is_movable(t) || is_movable(x)) &&
-          are_near(x, t) && !Bonded::among(bonded.faces, x, t))
+      if (block[face(t)] != block[face(x)] && (is_movable(t) || is_movable(x)) && are_near(x, t) &&
+          !Bonded::among(bonded.faces, x, t))
         others.push_back(t);
     return others;
   }
@@ -88,7 +93,7 @@ class AllPairs {
       std::copy_if(others.begin(), others.end(), std::back_inserter(open),
                    [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
       const FaceList list{open.data(), nullptr, Index(open.size())};
-      missed += s.springs.target[4 * x + k] != springs.choose(x, k, list, &ignored);
+      missed += springs.springs.target[4 * x + k] != springs.choose(x, k, list, &ignored);
     }
     return missed;
   }
@@ -96,15 +101,15 @@ class AllPairs {
   bool touch(Index x, Index k, Index t, Index j) const {
     Index shared;
     if (!pair_sides(edges.faces, face(x), k, face(t), j, shared)) return false;
-    const Index before = edges.held.place_of(4 * x + k, m.face_edges[4 * face(t) + j]);
+    const Index before = edges.held.place_of(4 * x + k, edges.faces.face_edges[4 * face(t) + j]);
     return edges.touch(4 * x + k, 4 * t + j, shared, before);
   }
   /// Has the step found that they do?
   bool is_found(Index x, Index k, Index t, Index j) const {
-    for (Index c = s.edges.first[x]; c < s.edges.first[x + 1]; ++c) {
-      const EdgeContact contact = EdgeContact::at(s.edges.contact.data(), c);
+    for (Index c = found.first[x]; c < found.first[x + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(found.contact, c);
       if (contact.mother == 4 * x + k && contact.face == t &&
-          contact.edge == m.face_edges[4 * face(t) + j])
+          contact.edge == edges.faces.face_edges[4 * face(t) + j])
         return true;
     }
     return false;
@@ -117,13 +122,17 @@ class AllPairs {
           if (sides[4 * std::size_t(x) + k].overlaps(sides[4 * std::size_t(t) + j]) &&
               touch(x, k, t, j))
             is_found(x, k, t, j) ? ++known : ++missed;
-    return missed + s.edges.first[x + 1] - s.edges.first[x] - known;
+    return missed + found.first[x + 1] - found.first[x] - known;
   }
 
   const Model& m;
-  const State& s;
   const ResolveTargets springs;
   const TouchingEdges edges;
+  const EdgeColumns found;
+  const OnHost<const Flag> movable;
+  const OnHost<const Index> block;
+  const OnHost<const Real> reach;
+  const Index count;  // of exposed faces
   const Bonded bonded;
   const std::vector<Box> sides;
 };

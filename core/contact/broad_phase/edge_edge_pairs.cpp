@@ -38,7 +38,7 @@ struct MovingEdge {
       node[i] = a.vertex[edge.vertex[i]];
       bonded_node[i] = f.faces.bonded_node[node[i]];
       place[i] = f.faces.node_place[node[i]];
-      const PredictedNode predicted = PredictedNode::of(f.s, node[i]);
+      const PredictedNode predicted = f.predicted.at(node[i]);
       end[i] = predicted.position;
       path[i] = f.s.search.outer.lookahead_time * predicted.velocity;
       skin[i] = predicted.skin;
@@ -228,11 +228,10 @@ Index ways_to_touch(const PairContext& f, const Patch& a, const Patch::Edge& p, 
 
 /// Was an edge in contact with another one a step ago?
 bool in_contact(const PairContext& f, const Patch& a, const Patch::Edge& p, Index edge) {
-  const EdgeState& held = f.s.edges;
   for (Index i = 0; i < p.faces; ++i) {
     const Index x = a.face[p.face[i]];
-    for (Index c = held.first[x]; c < held.first[x + 1]; ++c) {
-      const EdgeContact contact = EdgeContact::at(held.contact.data(), c);
+    for (Index c = f.edge_first[x]; c < f.edge_first[x + 1]; ++c) {
+      const EdgeContact contact = EdgeContact::at(f.edge_contact.data(), c);
       if (contact.mother == 4 * x + p.side[i] && contact.edge == edge) return true;
     }
   }

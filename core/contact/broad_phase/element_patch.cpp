@@ -14,36 +14,50 @@ namespace cdem {
 
 namespace {
 
+/// What the lists ask of exposed faces.
+struct Surface {
+  const Model& m;
+  const State& s;
+  FaceColumns faces = on_host(face_columns(m, s));
+  PredictedNodes predicted{s};
+  OnHost<const Index> exposed_face = on_host(s.search.exposed_face),
+                      target = on_host(s.springs.target), edge_first = on_host(s.edges.first),
+                      block = on_host(m.face_block);
+  OnHost<const Flag> movable = on_host(m.face_movable);
+  OnHost<const Real> springs = on_host(s.springs.state), edges = on_host(s.edges.state),
+                     area = on_host(m.face_area), reach = on_host(m.face_reach);
+};
+
 /// Deepest contact of a face: its targets may lie this far outside its path  [m].
-Real deepest_gap(const State& s, Index place) {
+Real deepest_gap(const Surface& of, Index place) {
   Real deepest = 0;
   for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
-    if (s.springs.target[k] >= 0) {
-      const ContactState spring = ContactState::at(s.springs.state.data(), k);
+    if (of.target[k] >= 0) {
+      const ContactState spring = ContactState::at(of.springs.data(), k);
       deepest = std::max(deepest, spring.depth() - spring.stress_free_gap);
     }
-  for (Index c = s.edges.first[place]; c < s.edges.first[place + 1]; ++c) {
-    const ContactState edge = ContactState::at(s.edges.state.data(), c);
+  for (Index c = of.edge_first[place]; c < of.edge_first[place + 1]; ++c) {
+    const ContactState edge = ContactState::at(of.edges.data(), c);
     deepest = std::max(deepest, edge.depth() - edge.stress_free_gap);
   }
   return 2 * deepest;
 }
 
-ExposedFace exposed_face(const Model& m, const State& s, Index place) {
+ExposedFace exposed_face(const Surface& of, Index place) {
   ExposedFace e;
-  e.face = s.search.exposed_face[place];
-  e.block = m.face_block[e.face];
-  e.movable = m.face_movable[e.face] != 0;
-  e.length = m.face_length[e.face];
-  e.shape = face_columns(m, s).shape(e.face);
+  e.face = of.exposed_face[place];
+  e.block = of.block[e.face];
+  e.movable = of.movable[e.face] != 0;
+  e.length = of.faces.face_length[e.face];
+  e.shape = of.faces.shape(e.face);
   e.center = e.shape.center();
   e.normal = e.shape.normal();
   const Index count = e.shape.count();
   Vec3<Real> path[4], sum{0, 0, 0};
   Real node_skin[4];
   for (Index k = 0; k < count; ++k) {
-    const PredictedNode node = PredictedNode::of(s, m.face_nodes[4 * e.face + k]);
-    path[k] = s.search.outer.lookahead_time * node.velocity;
+    const PredictedNode node = of.predicted.at(of.faces.vertex(e.face, k));
+    path[k] = of.s.search.outer.lookahead_time * node.velocity;
     node_skin[k] = node.skin;
     sum = sum + path[k];
   }
@@ -63,10 +77,10 @@ ExposedFace exposed_face(const Model& m, const State& s, Index place) {
     e.box.include(e.shape.x[k] + path[k]);
   }
   e.warpage = count == 3 ? 0.0 : e.warpage + 2 * e.deviation;
-  e.deepest = deepest_gap(s, place);
-  e.box.inflate(skin + e.deepest + m.rules.lifted);
+  e.deepest = deepest_gap(of, place);
+  e.box.inflate(skin + e.deepest + of.m.rules.lifted);
   // the plane rotates by the relative motion of two vertices over the smallest height
-  const Real height = (count == 3 ? 2 : 1) * m.face_area[e.face] / longest;
+  const Real height = (count == 3 ? 2 : 1) * of.area[e.face] / longest;
   e.rotation = 2 * e.deviation / height;
   e.rotation_soon = 2 * e.deviation_soon / height;
   e.slender = longest / height;
@@ -85,38 +99,37 @@ Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
 }
 
 /// All of a patch but its faces.
-void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed, Patch& p) {
-  const FaceColumns faces = face_columns(m, s);
+void complete(const Surface& of, const Unset<ExposedFace>& exposed, Patch& p) {
   p.box = Box::nothing();
   for (Index i = 0; i < p.face_count; ++i) {
     const ExposedFace& e = exposed[p.face[i]];
     p.displacement = p.displacement + Real(1.0) / p.face_count * e.displacement;
     p.deepest = std::max(p.deepest, e.deepest);
     p.length = std::max(p.length, e.length);
-    p.reach = std::max(p.reach, m.face_reach[e.face]);
+    p.reach = std::max(p.reach, of.reach[e.face]);
     p.block = e.block;
     p.movable = e.movable;
     p.box.include(e.box);
     for (Index k = 0; k < e.shape.count(); ++k) {
       Index* end = p.vertex + p.vertex_count;
-      const Index node = faces.vertex(e.face, k);
+      const Index node = of.faces.vertex(e.face, k);
       const Index v = Index(std::find(p.vertex, end, node) - p.vertex);
       if (v == p.vertex_count) {
         p.vertex[p.vertex_count++] = node;
         std::fill_n(p.corner[v], 6, -1);
       }
       p.corner[v][i] = k;
-      const Index id = m.face_edges[4 * e.face + k];
+      const Index id = of.faces.face_edges[4 * e.face + k];
       Patch::Edge* last = p.edge + p.edge_count;
       Patch::Edge* edge = std::find_if(p.edge, last, [&](const auto& o) { return o.id == id; });
       if (edge == last) p.edge[p.edge_count++] = {.id = id};
       edge->face[edge->faces] = i;
       edge->side[edge->faces++] = k;
-      edge->indented = edge->indented.and_of(indented_at(m, e, k));
+      edge->indented = edge->indented.and_of(indented_at(of.m, e, k));
     }
   }
   p.whole = p.face_count == (p.vertex_count == 4 ? 4 : p.vertex_count == 8 ? 6 : 5);
-  if (!p.whole) p.box.inflate(m.rules.depth * p.length);  // see farthest_contact
+  if (!p.whole) p.box.inflate(of.m.rules.depth * p.length);  // see farthest_contact
   for (Index e = 0; e < p.edge_count; ++e) {
     Patch::Edge& edge = p.edge[e];
     const Index i = edge.face[0], count = exposed[p.face[i]].shape.count();
@@ -133,10 +146,11 @@ void complete(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
 }  // namespace
 
 void list_exposed_faces(const Model& m, const State& s, Unset<ExposedFace>& exposed) {
-  const Index count = Index(s.search.exposed_face.size());
+  const Surface surface{m, s};
+  const Index count = Index(surface.exposed_face.size());
   exposed.resize(count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
-  for (Index x = 0; x < count; ++x) exposed[x] = exposed_face(m, s, x);
+  for (Index x = 0; x < count; ++x) exposed[x] = exposed_face(surface, x);
 }
 
 void list_patches(const Model& m, const State& s, const Unset<ExposedFace>& exposed,
@@ -149,8 +163,9 @@ void list_patches(const Model& m, const State& s, const Unset<ExposedFace>& expo
     Index count, place[6];
   };
   std::vector<Faces> faces;
+  const auto element = on_host(m.face_element);
   for (Index x = 0; x < Index(exposed.size()); ++x) {
-    Index& patch = patch_of[m.face_element[exposed[x].face]];
+    Index& patch = patch_of[element[exposed[x].face]];
     if (patch < 0) {
       patch = Index(faces.size());
       faces.push_back({});
@@ -159,18 +174,20 @@ void list_patches(const Model& m, const State& s, const Unset<ExposedFace>& expo
   }
   const Index count = Index(faces.size());
   patches.resize(count);
+  const Surface surface{m, s};
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index p = 0; p < count; ++p) {
     Patch& patch = patches[p] = {};
     patch.face_count = faces[p].count;
     std::copy_n(faces[p].place, faces[p].count, patch.face);
-    complete(m, s, exposed, patch);
+    complete(surface, exposed, patch);
   }
 }
 
 void list_exposed_sides(const State& s, const Unset<ExposedFace>& exposed,
                         Unset<ExposedSide>& sides) {
   sides.resize(4 * exposed.size());
+  const auto beyond_sides = on_host(s.search.across), place = on_host(s.search.face_exposed);
 #pragma omp parallel for schedule(static, 128) if (exposed.size() >= worth_threads)
   for (std::size_t x = 0; x < exposed.size(); ++x) {
     const ExposedFace& e = exposed[x];
@@ -182,8 +199,8 @@ void list_exposed_sides(const State& s, const Unset<ExposedFace>& exposed,
       side.rotation = 2 * e.deviation / side.length;
       side.rotation_face = e.rotation;
       side.fall = unit(cross(e.normal, side.along));
-      const Index across = s.search.across[4 * x + k];
-      side.across = across < 0 ? -1 : s.search.face_exposed[across];
+      const Index across = beyond_sides[4 * x + k];
+      side.across = across < 0 ? -1 : place[across];
       side.sharp = true;
       if (side.across < 0) continue;  // none, or one that is not exposed
       const ExposedFace& beyond = exposed[side.across];

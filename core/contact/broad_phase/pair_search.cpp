@@ -18,10 +18,9 @@ namespace cdem {
 namespace {
 
 /// Does a plane along a face of either patch hold the two apart until the next rebuild?
-bool apart(const Model& m, const State& s, const Unset<ExposedFace>& exposed, const Patch& a,
-           const Patch& b) {
-  const InMotion nodes{s.nodes.motion.data()};
-  const Real room = farthest_contact(m.rules, a, b);
+bool apart(const PairContext& f, const Patch& a, const Patch& b) {
+  const InMotion& nodes = f.faces.nodes;
+  const Real room = farthest_contact(f.m.rules, a, b);
   const Vec3<Real> closing = last_step * (b.displacement - a.displacement);
   const auto range = [&](const Patch& p, const Vec3<Real>& n, const Vec3<Real>& c) {
     std::pair<Real, Real> r{1e300, -1e300};
@@ -32,8 +31,8 @@ bool apart(const Model& m, const State& s, const Unset<ExposedFace>& exposed, co
     return r;
   };
   for (const Patch* p : {&a, &b})
-    for (Index f = 0; f < p->face_count; ++f) {
-      const ExposedFace& face = exposed[p->face[f]];
+    for (Index i = 0; i < p->face_count; ++i) {
+      const ExposedFace& face = f.exposed[p->face[i]];
       const auto of_a = range(a, face.normal, face.center);
       const auto of_b = range(b, face.normal, face.center);
       const Real closer = dot(face.normal, closing);
@@ -85,12 +84,7 @@ void search_pairs(const Model& m, const State& s, PairSearch& search) {
   list_exposed_sides(s, exposed, sides);
   list_patches(m, s, exposed, patches);
   const Bonded bonded = live_overlaps(m, s);
-  const PairContext f{.m = m,
-                      .s = s,
-                      .faces = face_columns(m, s),
-                      .exposed = exposed,
-                      .sides = sides,
-                      .bonded = bonded};
+  const PairContext f{.m = m, .s = s, .exposed = exposed, .sides = sides, .bonded = bonded};
   const Index count = Index(patches.size());
   std::vector<Box> boxes(count);
   for (Index p = 0; p < count; ++p) boxes[p] = patches[p].box;
@@ -112,7 +106,7 @@ void search_pairs(const Model& m, const State& s, PairSearch& search) {
         others.clear();
         tree.query(boxes[p], [&](Index q) {
           if ((q > p || !patches[q].movable) && patches[p].block != patches[q].block &&
-              !apart(m, s, exposed, patches[p], patches[q]))
+              !apart(f, patches[p], patches[q]))
             others.push_back(q);
         });
         std::sort(others.begin(), others.end());

@@ -16,12 +16,14 @@ namespace {
 
 /// Mean velocity of the elements at every predicted node, as rigid bodies.
 struct RigidMotion {
-  const State& s;
+  const InMotion nodes;
+  const OnHost<const Index> node_predicted;
   std::vector<Vec3<Real>> sum;  // [predicted]
   std::vector<Real> weight;
 
-  RigidMotion(const Model& m, const State& state)
-      : s(state),
+  RigidMotion(const Model& m, const State& s)
+      : nodes(on_host(InMotion{s.nodes.motion.data()})),
+        node_predicted(on_host(s.search.outer.node_predicted)),
         sum(s.search.outer.predicted_nodes.size(), Vec3<Real>{0, 0, 0}),
         weight(sum.size()) {
     for_each_element_set(m, s, [&](auto, const ElementSet& e, const ElementState&) { add(e); });
@@ -31,13 +33,13 @@ struct RigidMotion {
  private:
   void add(const ElementSet& e) {
     const Index corners = e.corners;
-    const InMotion nodes{s.nodes.motion.data()};
+    const auto element_nodes = on_host(e.nodes);
     for (Index i = 0; i < e.count; ++i) {
       Index id[8], place[8];
       bool is_predicted = false;
       for (Index k = 0; k < corners; ++k) {
-        id[k] = e.nodes[std::size_t(k) * e.stride + i];
-        place[k] = s.search.outer.node_predicted[id[k]];
+        id[k] = element_nodes[std::size_t(k) * e.stride + i];
+        place[k] = node_predicted[id[k]];
         is_predicted = is_predicted || place[k] >= 0;
         if (place[k] >= 0) weight[place[k]] += 1;
       }
@@ -78,36 +80,36 @@ Real least_skin(const State& s, std::int64_t lasted) {
 
 /// List the nodes of exposed faces; the smallest L of their faces stands for their skins.
 void list_predicted_nodes(const Model& m, State& s) {
-  SearchState& search = s.search;
-  search.outer.node_predicted.resize(m.node_count);
-  search.outer.node_predicted.fill(-1);
-  const auto visit = [&](auto&& at) {
-    for (std::size_t x = 0; x < search.exposed_face.size(); ++x)
-      for (Index k = 0; k < 4; ++k) {
-        const Index face = search.exposed_face[x], node = m.face_nodes[4 * face + k];
-        if (node >= 0) at(node, m.face_length[face]);
-      }
-  };
-  visit([&](Index node, Real) { search.outer.node_predicted[node] = 0; });
-  search.outer.predicted_nodes.resize(0);
-  for (Index i = 0; i < m.node_count; ++i)
-    if (search.outer.node_predicted[i] >= 0) search.outer.predicted_nodes.push(i);
+  const auto face_nodes = on_host(m.face_nodes);
+  const auto face_length = on_host(m.face_length);
+  std::vector<Real> least(m.node_count);  // 0: on no exposed face
+  for (const Index face : on_host(s.search.exposed_face))
+    for (Index k = 0; k < 4; ++k) {
+      const Index node = face_nodes[4 * face + k];
+      if (node < 0) continue;
+      const Real length = face_length[face];
+      least[node] = least[node] > 0 ? std::min(least[node], length) : length;
+    }
+  std::vector<Index> nodes;
+  std::vector<Real> rows;
+  for (Index i = 0; i < m.node_count; ++i) {
+    if (!(least[i] > 0)) continue;
+    nodes.push_back(i);
+    rows.resize(rows.size() + 8);
+    rows.back() = least[i];
+  }
+  s.search.outer.predicted_nodes.assign(nodes);
+  s.search.outer.predicted.assign(rows);
   place_predicted_nodes(m, s);
-  search.outer.predicted.resize(8 * search.outer.predicted_nodes.size());
-  search.outer.predicted.fill(0);
-  visit([&](Index node, Real length) {
-    Real& least = search.outer.predicted[8 * std::size_t(search.outer.node_predicted[node]) + 7];
-    least = least > 0 ? std::min(least, length) : length;
-  });
 }
 
 }  // namespace
 
 void place_predicted_nodes(const Model& m, State& s) {
-  s.search.outer.node_predicted.resize(m.node_count);
-  s.search.outer.node_predicted.fill(-1);
-  for (std::size_t w = 0; w < s.search.outer.predicted_nodes.size(); ++w)
-    s.search.outer.node_predicted[s.search.outer.predicted_nodes[w]] = Index(w);
+  std::vector<Index> place(m.node_count, -1);
+  Index next = 0;
+  for (const Index node : on_host(s.search.outer.predicted_nodes)) place[node] = next++;
+  s.search.outer.node_predicted.assign(place);
 }
 
 void predict_motion(const Model& m, State& s) {
@@ -121,28 +123,25 @@ void predict_motion(const Model& m, State& s) {
   const Index ahead = std::clamp<std::int64_t>(2 * lasted, fewest, steps);
   s.search.outer.lookahead_time = s.dt * (m.rebuild_interval > 0 ? m.rebuild_interval : ahead);
   s.search.outer.built_time = s.time;
-  const std::vector<Real> predicted_before(
-      s.search.outer.predicted.data(),
-      s.search.outer.predicted.data() + s.search.outer.predicted.size());
-  const std::vector<Index> nodes_before(
-      s.search.outer.predicted_nodes.data(),
-      s.search.outer.predicted_nodes.data() + s.search.outer.predicted_nodes.size());
+  const std::vector<Real> predicted_before = fetch(s.search.outer.predicted);
+  const std::vector<Index> nodes_before = fetch(s.search.outer.predicted_nodes);
   list_predicted_nodes(m, s);
   const RigidMotion rigid(m, s);
-  const InMotion nodes{s.nodes.motion.data()};
-  const Index count = Index(s.search.outer.predicted_nodes.size());
+  const InMotion& nodes = rigid.nodes;
+  const auto predicted_nodes = on_host(s.search.outer.predicted_nodes);
+  const auto predicted = on_host(s.search.outer.predicted);
+  const Index count = Index(predicted_nodes.size());
   std::vector<Vec3<Real>> change(count);  // of velocity since then; of a new one, its vibration
-  for (Index w = 0; w < count; ++w)
-    change[w] = rigid.at(w) - nodes.velocity(s.search.outer.predicted_nodes[w]);
+  for (Index w = 0; w < count; ++w) change[w] = rigid.at(w) - nodes.velocity(predicted_nodes[w]);
   for (std::size_t w = 0; w < nodes_before.size(); ++w) {
     const Real* before = predicted_before.data() + 8 * w + 4;
-    const Index place = s.search.outer.node_predicted[nodes_before[w]];
+    const Index place = rigid.node_predicted[nodes_before[w]];
     if (place >= 0) change[place] = rigid.at(place) - Vec3<Real>{before[0], before[1], before[2]};
   }
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index w = 0; w < count; ++w) {
-    const Index i = s.search.outer.predicted_nodes[w];
-    Real* row = s.search.outer.predicted.data() + 8 * std::size_t(w);
+    const Index i = predicted_nodes[w];
+    Real* row = predicted.data() + 8 * std::size_t(w);
     const Vec3<Real> v = rigid.at(w);
     const Real deviation = s.search.outer.lookahead_time * norm(change[w]) +
                            period * s.dt * norm(nodes.velocity(i) - v);

@@ -14,15 +14,26 @@ struct PredictedNode {
   Vec3<Real> velocity;  // predicted  [m/s]
   Real skin;            // [m]
 
-  static PredictedNode of(const State& s, Index node) {
-    const Real* r =
-        s.search.outer.predicted.data() + 8 * std::size_t(s.search.outer.node_predicted[node]);
-    return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[7]};
-  }
+  static PredictedNode at(const Real* r) { return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[7]}; }
   void store(Real* r) const {
     r[0] = position.x, r[1] = position.y, r[2] = position.z, r[3] = skin * skin;
     r[4] = velocity.x, r[5] = velocity.y, r[6] = velocity.z, r[7] = skin;
   }
+};
+
+/// Those of the outer list, for host code.
+class PredictedNodes {
+ public:
+  explicit PredictedNodes(const State& s)
+      : place_(on_host(s.search.outer.node_predicted)), rows_(on_host(s.search.outer.predicted)) {}
+  bool has(Index node) const { return place_[node] >= 0; }
+  PredictedNode at(Index node) const {
+    return PredictedNode::at(rows_.data() + 8 * std::size_t(place_[node]));
+  }
+
+ private:
+  OnHost<const Index> place_;
+  OnHost<const Real> rows_;
 };
 
 /// The inner list looks ahead for this part of the lookahead time, and gives every vertex this part

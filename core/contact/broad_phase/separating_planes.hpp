@@ -8,7 +8,7 @@
 #include "core/contact/broad_phase/element_patch.hpp"
 #include "core/contact/broad_phase/pair_buffer.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
-#include "core/contact/geometry/face_geometry.hpp"
+#include "core/contact/geometry/views.hpp"
 
 namespace cdem {
 
@@ -16,10 +16,14 @@ namespace cdem {
 struct PairContext {
   const Model& m;
   const State& s;
-  const FaceColumns faces;
   const Unset<ExposedFace>& exposed;
   const Unset<ExposedSide>& sides;
   const Bonded& bonded;
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const PredictedNodes predicted{s};
+  const OnHost<const Real> face_reach = on_host(m.face_reach);
+  const OnHost<const Index> target = on_host(s.springs.target), edge_first = on_host(s.edges.first),
+                            edge_contact = on_host(s.edges.contact);
 };
 
 inline constexpr Real last_step = 1.05;  // the last step counts 1.5 times, see SearchRules::entry
@@ -30,15 +34,15 @@ inline Real motion_between(const ExposedFace& x, const ExposedFace& y) {
 }
 
 /// How far two predicted nodes may move apart until the next rebuild  [m].
-inline Real may_part(const State& s, Index a, Index b) {
-  const PredictedNode x = PredictedNode::of(s, a), y = PredictedNode::of(s, b);
-  return s.search.outer.lookahead_time * norm(x.velocity - y.velocity) + x.skin + y.skin;
+inline Real may_part(const PairContext& f, Index a, Index b) {
+  const PredictedNode x = f.predicted.at(a), y = f.predicted.at(b);
+  return f.s.search.outer.lookahead_time * norm(x.velocity - y.velocity) + x.skin + y.skin;
 }
 
 /// How far their predicted paths part while an inner list holds  [m].
-inline Real ways_part_soon(const State& s, Index a, Index b) {
-  return inner_horizon * s.search.outer.lookahead_time *
-         norm(PredictedNode::of(s, a).velocity - PredictedNode::of(s, b).velocity);
+inline Real ways_part_soon(const PairContext& f, Index a, Index b) {
+  return inner_horizon * f.s.search.outer.lookahead_time *
+         norm(f.predicted.at(a).velocity - f.predicted.at(b).velocity);
 }
 
 /// How much the gap between anything of x and of y along a normal of y (or of both) may change, at

@@ -32,7 +32,7 @@ bool may_go_behind(const PairContext& f, const Vec3<Real>& v, const ExposedFace&
 bool may_penetrate(const PairContext& f, const Vec3<Real>& v, const ExposedFace& x,
                    const ExposedFace& y, Index place_y, Real entry, Real length) {
   const GapRange gap(x, y, v);
-  const Real deepest = std::min(f.m.rules.depth * length, 0.5 * f.m.face_height[y.face]);
+  const Real deepest = std::min(f.m.rules.depth * length, 0.5 * f.faces.face_height[y.face]);
   if (gap.least > -entry || gap.most < -deepest) return false;
   for (Index j = 0; j < y.shape.count(); ++j) {
     const ExposedSide& side = f.sides[4 * std::size_t(place_y) + j];
@@ -87,9 +87,9 @@ bool may_touch(const PairContext& f, Index node, const ExposedFace& x, Real leng
   const Index point = f.faces.bonded_node[node];  // never the deepest vertex?
   for (Index r = f.faces.edge_star_first[point]; r < f.faces.edge_star_first[point + 1]; ++r) {
     const Index other = f.faces.edge_star[r];
-    if (f.s.search.outer.node_predicted[other] < 0) continue;
+    if (!f.predicted.has(other)) continue;
     const Vec3<Real> d = f.faces.nodes.position(other) - v;
-    const Real moved = may_part(f.s, other, node);
+    const Real moved = may_part(f, other, node);
     const Real long_d = norm(d), rotation = 2 * moved / long_d + y.rotation;
     if (dot(d, y.normal) < -(rules.cone + rotation) * long_d) return false;
   }
@@ -114,12 +114,12 @@ PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index p
   const ExposedSide* sides = f.sides.data() + 4 * std::size_t(place_y);
   Index behind = 0;  // sides, as bits
   for (Index k = 0; k <= 3; ++k) behind |= Index(sides[std::min(k, last)].rises) << k;
-  const Real reach = 1.34 * f.m.face_reach[y.face] + aside;
+  const Real reach = 1.34 * f.face_reach[y.face] + aside;
   const Real off =
       behind ? 2 * reach : std::max(2 * aside * y.slender, last == 3 ? 0.5 * reach : 0.0);
   Real parted = 0;
   for (Index k = 0; k <= last; ++k)
-    parted = std::max(parted, ways_part_soon(f.s, node, f.faces.vertex(y.face, k)));
+    parted = std::max(parted, ways_part_soon(f, node, f.faces.vertex(y.face, k)));
   const Real motion =
       parted + rules.indentation * 2 * deviation + 2 * y.rotation_soon * off + slack;
   return {{node, place_y},
@@ -156,7 +156,7 @@ struct VertexFaceSearch {
       at.first = i;
       at.least = std::min(at.least, f.exposed[a.face[i]].length);
       const std::size_t slot = 4 * std::size_t(a.face[i]) + a.corner[v][i];
-      at.touches = at.touches || f.s.springs.target[slot] == b.face[j];
+      at.touches = at.touches || f.target[slot] == b.face[j];
     }
     return at;
   }

@@ -26,36 +26,39 @@ void raise_to(Real& most, Real value) {
 }  // namespace
 
 void sum_stiffness(const Model& m, State& s) {
-  s.node_bonds.resize(m.node_count);
-  s.node_bonds.fill(0);
+  std::vector<Real> bonds(m.node_count), potential(m.node_count);
   for_each_row_set(m, s, [&](auto, const auto& set, const auto& state) {
+    const auto is_active = activity(state);
+    const auto for_each_stiffness = stiffness_of(m, set);
     for (Index i = 0; i < set.count; ++i)
-      if (is_active(state, i))
-        for_each_stiffness(m, set, i, [&](Index node, Real k) { s.node_bonds[node] += k; });
+      if (is_active(i)) for_each_stiffness(i, [&](Index node, Real k) { bonds[node] += k; });
   });
-  s.node_potential.resize(m.node_count);
-  s.node_potential.fill(0);
-  const FaceColumns faces = face_columns(m, s);
-  const ContactLaws laws = contact_laws(m, s);
-  const FaceGeometry geometry = face_geometry(s);
+  const FaceColumns faces = on_host(face_columns(m, s));
+  const ContactLaws laws = on_host(contact_laws(m, s));
+  const FaceGeometry geometry = on_host(face_geometry(s));
+  const auto acting_first = on_host(s.search.outer.acting_first);
+  const auto acting = on_host(s.search.outer.faces_acting_on);
+  const auto exposed_face = on_host(s.search.exposed_face);
   const Index exposed = Index(s.search.exposed_face.size());
   std::vector<Real> stiffest_of(exposed);  // contact that a face may have  [N/m]
 #pragma omp parallel for schedule(static, 128) if (exposed >= worth_threads)
   for (Index y = 0; y < exposed; ++y)
-    for (Index c = s.search.outer.acting_first[y]; c < s.search.outer.acting_first[y + 1]; ++c) {
-      const Index x = s.search.outer.faces_acting_on[c];
+    for (Index c = acting_first[y]; c < acting_first[y + 1]; ++c) {
+      const Index x = acting[c];
       const Index interface = laws.between(geometry, x, y);
       const auto spring = laws.spring(geometry, interface, x, y);
       Real most = HystereticUnloading<Real>::of(laws, interface).stiffness(spring);
       // the rotation springs of four vertices, see UpdateRollingCouples
-      if (m.interfaces[interface].rolling_resistance > 0) most += 2 * spring.n();
+      if (laws.interfaces.interfaces[interface].rolling_resistance > 0) most += 2 * spring.n();
       for (const Index face : {x, y}) raise_to(stiffest_of[face], most);
     }
   for (Index x = 0; x < exposed; ++x) {  // either side's semi-springs, as much again for semi-edges
-    const Index face = s.search.exposed_face[x];
+    const Index face = exposed_face[x];
     for (Index v = 0; v < faces.vertex_count(face); ++v)
-      s.node_potential[faces.vertex(face, v)] += 2 * stiffest_of[x];
+      potential[faces.vertex(face, v)] += 2 * stiffest_of[x];
   }
+  s.node_bonds.assign(bonds);
+  s.node_potential.assign(potential);
 }
 
 }  // namespace cdem

@@ -22,17 +22,16 @@ inline ContactLaws contact_laws(const Model& m, const State& s) {
 /// Does any interface ask for restitution, or close by a curve?
 inline bool any_hysteretic(const Model& m) {
   const Transfer transfer;
-  const Interface* first = m.interfaces.data();
+  const auto all = on_host(m.interfaces);
   return interface_table(m).curved != 0 ||
-         std::any_of(first, first + m.interfaces.size(),
-                     [](const Interface& i) { return i.is_hysteretic(); });
+         std::any_of(all.begin(), all.end(), [](const Interface& i) { return i.is_hysteretic(); });
 }
 
 /// Does any interface resist rolling?
 inline bool any_resists_rolling(const Model& m) {
   const Transfer transfer;
-  const Interface* first = m.interfaces.data();
-  return std::any_of(first, first + m.interfaces.size(),
+  const auto all = on_host(m.interfaces);
+  return std::any_of(all.begin(), all.end(),
                      [](const Interface& i) { return i.rolling_resistance > 0; });
 }
 

@@ -57,10 +57,11 @@ void launch_geometry(const Model& m, State& s, Queue q, const Flag* listed) {
 }  // namespace
 
 void expose(State& s, Index face) {
-  if (s.search.face_exposed[face] >= 0) return;
-  s.search.face_exposed[face] = Index(s.search.exposed_face.size());
-  s.search.exposed_face.push(face);
-  const std::size_t count = s.search.exposed_face.size();
+  Index& place = on_host(s.search.face_exposed)[face];
+  if (place >= 0) return;
+  place = Index(s.search.exposed_face.size());
+  const std::size_t count = s.search.exposed_face.size() + 1;
+  s.search.exposed_face.resize(count, face);
   visit_faces(s, [&](auto& column, Index row, auto fill) { column.resize(row * count, fill); });
   s.edges.first.resize(count + 1, Index(s.edges.contact.size() / 4));
 }
@@ -69,33 +70,34 @@ namespace {
 
 /// Keep these exposed faces, in this order: place x was from[x].
 void keep_exposed(State& s, const std::vector<Index>& from) {
-  Column<Index>&exposed = s.search.exposed_face, &place = s.search.face_exposed;
+  const auto exposed = on_host(s.search.exposed_face), place = on_host(s.search.face_exposed);
   const std::size_t count = from.size();
   std::vector<Index> to(exposed.size(), -1);  // places
   for (std::size_t x = 0; x < count; ++x) to[from[x]] = Index(x);
   for (std::size_t x = 0; x < to.size(); ++x) place[exposed[x]] = to[x];
   const auto follow = [&](Column<Index>& targets) {
-    for (std::size_t k = 0; k < targets.size(); ++k)
-      if (targets[k] >= 0) targets[k] = to[targets[k]];
+    for (Index& target : on_host(targets))
+      if (target >= 0) target = to[target];
   };
   follow(s.springs.target);
   follow(s.springs.target_before);
   sort_edges(s, from, to);
   const auto sort_rows = [&](auto& column, std::size_t row, auto) {
-    const auto before = std::vector(column.data(), column.data() + row * to.size());
+    const auto before = fetch(column);
+    const auto items = on_host(column);
     for (std::size_t x = 0; x < count; ++x)
-      std::copy_n(before.data() + row * from[x], row, column.data() + row * x);
+      std::copy_n(before.begin() + row * from[x], row, items.begin() + row * x);
     column.resize(row * count);
   };
   visit_faces(s, sort_rows);
-  sort_rows(exposed, 1, Index(-1));
+  sort_rows(s.search.exposed_face, 1, Index(-1));
 }
 
 }  // namespace
 
 void sort_exposed(State& s) {
-  const Column<Index>& exposed = s.search.exposed_face;
-  if (std::is_sorted(exposed.data(), exposed.data() + exposed.size())) return;
+  const auto exposed = on_host(s.search.exposed_face);
+  if (std::is_sorted(exposed.begin(), exposed.end())) return;
   std::vector<Index> from(exposed.size());
   std::iota(from.begin(), from.end(), 0);
   std::sort(from.begin(), from.end(), [&](Index a, Index b) { return exposed[a] < exposed[b]; });
@@ -103,39 +105,47 @@ void sort_exposed(State& s) {
 }
 
 void hide(State& s, const std::vector<Flag>& hidden) {
-  const Index count = Index(s.search.exposed_face.size());
-  const auto leaves = [&](Index x) { return hidden[s.search.exposed_face[x]] != 0; };
+  const auto exposed = on_host(s.search.exposed_face), targets = on_host(s.springs.target);
+  const auto targets_before = on_host(s.springs.target_before);
+  const auto state = on_host(s.springs.state), reaction = on_host(s.springs.reaction);
+  const auto rolling = on_host(s.springs.rolling);
+  const Index count = Index(exposed.size());
+  const auto leaves = [&](Index x) { return hidden[exposed[x]] != 0; };
   std::vector<Index> from;
   for (Index x = 0; x < count; ++x)
     if (!leaves(x)) from.push_back(x);
   for (Index slot = 0; slot < 4 * count; ++slot) {
-    const Index target = s.springs.target[slot];
+    const Index target = targets[slot];
     if (target < 0 || !leaves(target)) continue;
-    s.springs.target[slot] = s.springs.target_before[slot] = -1;
-    for (Column<Real>* rows : {&s.springs.state, &s.springs.reaction, &s.springs.rolling})
+    targets[slot] = targets_before[slot] = -1;
+    for (const OnHost<Real>& rows : {state, reaction, rolling})
       for (std::size_t k = 8 * std::size_t(slot); k < 8 * std::size_t(slot) + 8; ++k)
-        if (k < rows->size()) (*rows)[k] = 0;
+        if (k < rows.size()) rows[k] = 0;
   }
   keep_exposed(s, from);
 }
 
 void list_exposed(const Model& m, State& s) {
-  const SearchState& search = s.search;
-  const std::size_t count = search.exposed_face.size();
-  s.search.exposed.resize(count);
-  for (std::size_t x = 0; x < count; ++x) {
-    const Index face = search.exposed_face[x];
-    ExposedRow& row = s.search.exposed[x];
-    const Index* nodes = m.face_nodes.data() + 4 * std::size_t(face);
+  s.search.exposed.resize(s.search.exposed_face.size());
+  const auto exposed_face = on_host(s.search.exposed_face), across = on_host(s.search.across);
+  const auto place = on_host(s.search.face_exposed);
+  const auto rows = on_host(s.search.exposed);
+  const auto face_nodes = on_host(m.face_nodes), classes = on_host(m.face_interface_class);
+  const auto reach = on_host(m.face_reach), area = on_host(m.face_area);
+  const auto stiffness = on_host(m.face_stiffness);
+  for (std::size_t x = 0; x < rows.size(); ++x) {
+    const Index face = exposed_face[x];
+    ExposedRow& row = rows[x];
+    const Index* nodes = face_nodes.data() + 4 * std::size_t(face);
     for (Index k = 0; k < 4; ++k) {
-      const Index across = search.across[4 * x + k];
+      const Index beyond = across[4 * x + k];
       row.corner[k] = nodes[k] < 0 ? nodes[2] : nodes[k];
-      row.beside[k] = across < 0 ? -1 : search.face_exposed[across];
+      row.beside[k] = beyond < 0 ? -1 : place[beyond];
     }
-    row.reach = m.face_reach[face];
-    row.area = m.face_area[face] / row.count();
-    row.stiffness = m.face_stiffness[face];
-    row.interface_class = m.face_interface_class[face];
+    row.reach = reach[face];
+    row.area = area[face] / row.count();
+    row.stiffness = stiffness[face];
+    row.interface_class = classes[face];
   }
 }
 

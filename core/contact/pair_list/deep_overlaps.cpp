@@ -91,12 +91,21 @@ struct Body {
   }
 };
 
+using NodesOf = decltype(nodes_of(std::declval<Model&>(), std::declval<ElementSet&>()));
+
 /// Looks for overlaps of elements.
 class Overlaps {
  public:
-  Overlaps(const Model& model, State& state) : m(model), s(state), edges(touching_edges(m, s)) {
+  Overlaps(const Model& model, State& state)
+      : m(model),
+        s(state),
+        edges(on_host(touching_edges(m, s))),
+        nodes_(on_host(InMotion{s.nodes.motion.data()})),
+        exposed_face_(on_host(s.search.exposed_face)),
+        target_(on_host(s.springs.target)),
+        springs_(on_host(s.springs.state)) {
     for_each_element_set(m, s, [&](auto, const ElementSet& e, const ElementState&) {
-      sets_.push_back(&e);
+      sets_.push_back(nodes_of(m, e));
       first_.push_back(element_count_);
       element_count_ += e.count;
     });
@@ -156,12 +165,11 @@ class Overlaps {
         for (Index k = 0; k < one->count; ++k)
           if (other->depth_of(one->x[k]) > f.limit) inside[one->node[k]] = 1;
     }
-    const ResolveTargets search{face_search(m, s)};
-    for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x)
-      for (Index k = 0; k < search.faces.vertex_count(s.search.exposed_face[x]); ++k)
-        if (inside[search.faces.vertex(s.search.exposed_face[x], k)] &&
-            s.springs.target[4 * x + k] < 0)
-          adopt_vertex(m, s, search, x, k, adopted);
+    const ResolveTargets search = on_host(ResolveTargets{face_search(m, s)});
+    for (Index x = 0; x < Index(exposed_face_.size()); ++x)
+      for (Index k = 0; k < search.faces.vertex_count(exposed_face_[x]); ++k)
+        if (inside[search.faces.vertex(exposed_face_[x], k)] && target_[4 * x + k] < 0)
+          adopt_vertex(search, x, k, adopted);
   }
 
   Body body(Index element) const {
@@ -175,10 +183,9 @@ class Overlaps {
     while (set + 1 < sets_.size() && element >= first_[set + 1]) ++set;
     Body b;
     b.element = element, b.count = 0;
-    const InMotion nodes{s.nodes.motion.data()};
-    for_each_node(m, *sets_[set], element - first_[set], [&](Index node) {
+    sets_[set](element - first_[set], [&](Index node) {
       b.node[b.count] = node;
-      b.x[b.count++] = nodes.position(node);
+      b.x[b.count++] = nodes_.position(node);
     });
     b.faces = &faces_of_shape(b.count);
     return b;
@@ -188,10 +195,11 @@ class Overlaps {
     block_.resize(element_count_);
     entry_.resize(element_count_);
     warpage_.resize(element_count_);
+    const auto node_block = on_host(m.node_block);
 #pragma omp parallel for schedule(static) if (element_count_ >= worth_threads)
     for (Index e = 0; e < element_count_; ++e) {
       const Body b = body(e);
-      block_[e] = m.node_block[b.node[0]];
+      block_[e] = node_block[b.node[0]];
       for (Index k = 0; k < b.count; ++k) boxes_[e].include(b.x[k]);
       Real length = 1e300, warpage = 0;
       for (std::size_t f = 0; f < b.faces->size(); ++f) {
@@ -212,12 +220,14 @@ class Overlaps {
   void list_faces() {
     movable_.assign(*std::max_element(block_.begin(), block_.end()) + 1, 0);
     surface_.assign(m.node_count, 0);
-    element_faces_.reserve(s.search.exposed_face.size());
+    element_faces_.reserve(exposed_face_.size());
+    const auto block = on_host(m.face_block), element = on_host(m.face_element);
+    const auto face_movable = on_host(m.face_movable);
     for (Index f = 0; f < m.face_count; ++f)
-      if (m.face_movable[f]) movable_[m.face_block[f]] = 1;
-    for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x) {
-      const Index face = s.search.exposed_face[x];
-      element_faces_.push_back({m.face_element[face], x});
+      if (face_movable[f]) movable_[block[f]] = 1;
+    for (Index x = 0; x < Index(exposed_face_.size()); ++x) {
+      const Index face = exposed_face_[x];
+      element_faces_.push_back({element[face], x});
       for (Index k = 0; k < edges.faces.vertex_count(face); ++k)
         surface_[edges.faces.vertex(face, k)] = 1;
     }
@@ -225,14 +235,15 @@ class Overlaps {
   }
   /// Contacts of vertices and how deep they hold.
   void list_contacts() {
+    const auto face_block = on_host(m.face_block);
     held_.clear();
-    for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x)
+    for (std::size_t x = 0; x < exposed_face_.size(); ++x)
       for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t slot = 4 * x + k;
-        if (s.springs.target[slot] < 0) continue;
-        const Real free = ContactState::at(s.springs.state.data(), slot).stress_free_gap;
-        held_.push_back({m.face_nodes[4 * s.search.exposed_face[x] + k],
-                         m.face_block[s.search.exposed_face[s.springs.target[slot]]], -free});
+        if (target_[slot] < 0) continue;
+        const Real free = ContactState::at(springs_.data(), slot).stress_free_gap;
+        held_.push_back({edges.faces.vertex(exposed_face_[x], Index(k)),
+                         face_block[exposed_face_[target_[slot]]], -free});
       }
     std::sort(held_.begin(), held_.end(), [](const Held& a, const Held& b) {
       return std::pair(a.key(), a.depth) < std::pair(b.key(), b.depth);
@@ -332,7 +343,7 @@ class Overlaps {
     return false;
   }
   bool sides_touch(Index x, Index t) const {
-    const Index mother = s.search.exposed_face[x], target = s.search.exposed_face[t];
+    const Index mother = exposed_face_[x], target = exposed_face_[t];
     for (Index k = 0; k < edges.faces.vertex_count(mother); ++k)
       for (Index j = 0; j < edges.faces.vertex_count(target); ++j) {
         Index shared;
@@ -363,7 +374,10 @@ class Overlaps {
   const Model& m;
   State& s;
   const TouchingEdges edges;
-  std::vector<const ElementSet*> sets_;
+  const InMotion nodes_;
+  const OnHost<Index> exposed_face_, target_;
+  const OnHost<Real> springs_;
+  std::vector<NodesOf> sets_;
   std::vector<Index> first_;  // [set] number of its first element among all
   Index element_count_ = 0;
   std::vector<Box> boxes_;                              // [element]

@@ -7,22 +7,22 @@
 
 namespace cdem {
 
-void adopt_vertex(const Model& m, State& s, const ResolveTargets& search, Index x, Index k,
-                  InitialOverlaps& found) {
+void adopt_vertex(const ResolveTargets& search, Index x, Index k, InitialOverlaps& found) {
   constexpr Real reported = 1e-6;  // of L: shallower overlaps are round-off of the mesh
-  const Index mother = s.search.exposed_face[x];
-  Index& t = s.springs.target[4 * x + k];
-  s.springs.target_before[4 * x + k] = t;
-  t = search.choose(x, k, search.listed_for(4 * x + k), &s.springs.lost[4 * x + k]);
+  const SpringColumns& springs = search.springs;
+  const Index mother = search.exposed_face[x];
+  Index& t = springs.target[4 * x + k];
+  springs.target_before[4 * x + k] = t;
+  t = search.choose(x, k, search.listed_for(4 * x + k), &springs.lost[4 * x + k]);
   if (t < 0) return;
-  const FaceShape<Real> shape = search.faces.shape(s.search.exposed_face[t]);
+  const FaceShape<Real> shape = search.faces.shape(search.exposed_face[t]);
   const Vec3<Real> v = search.faces.nodes.position(search.faces.vertex(mother, k));
   const Real gap = project(shape, v, shape.normal()).gap;
   ContactState spring{};
   spring.stress_free_gap = gap;
-  spring.store(s.springs.state.data(), 4 * x + k);
-  s.springs.target_before[4 * x + k] = t;
-  if (gap > -reported * m.face_length[mother]) return;
+  spring.store(springs.state, 4 * x + k);
+  springs.target_before[4 * x + k] = t;
+  if (gap > -reported * search.faces.face_length[mother]) return;
   ++found.count;
   if (-gap > found.deepest) found.deepest = -gap, found.face = mother;
 }
@@ -30,12 +30,12 @@ void adopt_vertex(const Model& m, State& s, const ResolveTargets& search, Index 
 InitialOverlaps adopt_overlaps(const Model& m, State& s) {
   update_all_face_geometry(m, s, {});
   prune_pair_list(m, s, {});
-  ResolveTargets search{face_search(m, s)};
+  ResolveTargets search = on_host(ResolveTargets{face_search(m, s)});
   search.rules.entry = search.rules.depth;
   InitialOverlaps found;
   for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x)
-    for (Index k = 0; k < search.faces.vertex_count(s.search.exposed_face[x]); ++k)
-      adopt_vertex(m, s, search, x, k, found);
+    for (Index k = 0; k < search.faces.vertex_count(search.exposed_face[x]); ++k)
+      adopt_vertex(search, x, k, found);
   return found;
 }
 

@@ -15,9 +15,9 @@ struct InitialOverlaps {
   Real deepest = 0;  // [m]
 };
 
-/// Set the stress-free gap of a spring (vertex k of exposed face x) that overlaps by these rules.
-void adopt_vertex(const Model& model, State& state, const ResolveTargets& search, Index x, Index k,
-                  InitialOverlaps& found);
+/// Set the stress-free gap of a spring (vertex k of exposed face x) that overlaps by the rules of a
+/// search that the host has.
+void adopt_vertex(const ResolveTargets& search, Index x, Index k, InitialOverlaps& found);
 
 /// Set the stress-free gap of springs that overlap at the start.
 InitialOverlaps adopt_overlaps(const Model& model, State& state);

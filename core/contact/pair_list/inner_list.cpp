@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/base/parallel.hpp"
+#include "core/base/primitives.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
 #include "core/contact/narrow_phase/views.hpp"
 #include "core/contact/pair_list/prune.hpp"
@@ -25,19 +25,22 @@ bool inner_list_is_due(const State& s) {
 void predict_inner_motion(const Model& m, State& s) {
   constexpr Real more = 1.5, least = 0.05;
   InnerList& inner = s.search.inner;
-  const InMotion nodes{s.nodes.motion.data()};
-  const Index count = Index(s.search.outer.predicted_nodes.size());
+  const InMotion nodes = on_host(InMotion{s.nodes.motion.data()});
+  const PredictedNodes outer(s);
+  const auto predicted_nodes = on_host(s.search.outer.predicted_nodes);
+  const Index count = Index(predicted_nodes.size());
   const Real way = more * inner_horizon * s.search.outer.lookahead_time;
   inner.predicted.resize(8 * std::size_t(count));
   inner.skin.resize(m.node_count);
+  const auto rows = on_host(inner.predicted), skins = on_host(inner.skin);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index w = 0; w < count; ++w) {
-    const Index node = s.search.outer.predicted_nodes[w];
-    const PredictedNode predicted = PredictedNode::of(s, node);
+    const Index node = predicted_nodes[w];
+    const PredictedNode predicted = outer.at(node);
     const Real deviation = way * norm(nodes.velocity(node) - predicted.velocity);
     const Real skin = std::clamp(deviation, least * predicted.skin, inner_skin * predicted.skin);
-    inner.skin[node] = skin;
-    PredictedNode{nodes.position(node), predicted.velocity, skin}.store(inner.predicted.data() +
+    skins[node] = skin;
+    PredictedNode{nodes.position(node), predicted.velocity, skin}.store(rows.data() +
                                                                         8 * std::size_t(w));
   }
   inner.built_time = s.time;
@@ -67,8 +70,8 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                            .near = inner.faces.data(),
                            .motion = inner.motion.data(),
                            .rotation = search.outer.rotation_soon.data()};
-  inner.candidates.resize(search.outer.slot_faces.size());
-  inner.candidates.fill(0);
+  inner.candidates.renew(search.outer.slot_faces.size());
+  set_all(q, Index(inner.candidates.size()), inner.candidates.data(), Flag(0));
   for_each_selected(q, count,
                     MarkInnerFaces{.faces = face_columns(m, s),
                                    .geometry = face_geometry(s),
@@ -78,12 +81,11 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
   inner.count.resize(slots);
   for_each_item(q, slots,
                 CountInnerFaces{listed.first, inner.candidates.data(), inner.count.data()});
-  finish(q);
-  inner.first.resize(slots + 1);
-  for (Index i = 0; i < slots; ++i) inner.first[i + 1] = inner.first[i] + inner.count[i];
-  inner.candidate.resize(inner.first[slots]);
-  inner.rises.resize(inner.first[slots]);
-  inner.may_begin.resize(inner.first[slots]);
+  inner.first.renew(slots + 1);
+  const Index found = scan(q, slots, inner.count.data(), inner.first.data());
+  inner.candidate.resize(found);
+  inner.rises.resize(found);
+  inner.may_begin.resize(found);
   for_each_item(q, slots,
                 ListInnerFaces{.listed = listed,
                                .close = inner.candidates.data(),
@@ -97,21 +99,38 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
 void join_pairs_of_edges(const Model& m, SearchState& search) {
   InnerList& inner = search.inner;
   const Index pairs = Index(search.outer.ee_codes.size()), stride = padded_stride(pairs);
-  const InIndices of{search.outer.ee_pairs.data(), stride};
+  const InIndices of = on_host(InIndices{search.outer.ee_pairs.data(), stride});
+  const auto sides = on_host(search.outer.ee_sides), exposed_face = on_host(search.exposed_face);
+  const auto first = on_host(search.outer.edge_first), listed = on_host(search.outer.edge_pairs);
+  const auto face_edges = on_host(m.face_edges);
+  const auto near = on_host(inner.edges);
   const auto is_of_one = [&](Index p, Index which) {
-    return search.outer.ee_sides[2 * std::size_t(of.at(which, One{p})) + 1] >= 0;
+    return sides[2 * std::size_t(of.at(which, One{p})) + 1] >= 0;
   };
   const auto edge_of = [&](Index p, Index which) {
-    const Index side = search.outer.ee_sides[2 * std::size_t(of.at(which, One{p}))];
-    return m.face_edges[4 * search.exposed_face[side / 4] + side % 4];
+    const Index side = sides[2 * std::size_t(of.at(which, One{p}))];
+    return face_edges[4 * exposed_face[side / 4] + side % 4];
   };
   for (Index p = 0; p < pairs; ++p) {
-    if (!inner.edges[p] || (is_of_one(p, 0) && is_of_one(p, 1))) continue;
+    if (!near[p] || (is_of_one(p, 0) && is_of_one(p, 1))) continue;
     const Index edge = edge_of(p, 0), other = edge_of(p, 1);
-    for (Index i = search.outer.edge_first[edge]; i < search.outer.edge_first[edge + 1]; ++i)
-      if (search.outer.edge_pairs[2 * i + 1] == other)
-        inner.edges[search.outer.edge_pairs[2 * i]] = 1;
+    for (Index i = first[edge]; i < first[edge + 1]; ++i)
+      if (listed[2 * i + 1] == other) near[listed[2 * i]] = 1;
   }
+}
+
+/// Returns how many there are.
+Index list_near_edges(InnerList& inner) {
+  inner.near_edges.renew(inner.edges.size());
+  const auto near_edges = on_host(inner.near_edges);
+  const auto is_near = on_host(inner.edges);
+  Index count = 0;
+  for (Index p = 0; p < Index(is_near.size()); ++p) {
+    near_edges[count] = p;
+    count += is_near[p];
+  }
+  inner.near_edges.resize(count);
+  return count;
 }
 
 void prune_edges(const Model& m, State& s, Queue q) {
@@ -139,15 +158,8 @@ void prune_edges(const Model& m, State& s, Queue q) {
                                 .first = search.outer.edge_first.data(),
                                 .listed = search.outer.edge_pairs.data(),
                                 .near = inner.edges.data()});
-  finish(q);
   join_pairs_of_edges(m, search);
-  inner.near_edges.resize(pairs);
-  Index count = 0;
-  for (Index p = 0; p < pairs; ++p) {
-    inner.near_edges[count] = p;
-    count += inner.edges[p];
-  }
-  inner.near_edges.resize(count);
+  const Index count = list_near_edges(inner);
   const Index near_stride = padded_stride(count);
   inner.edge_ends.resize(4 * std::size_t(near_stride));
   inner.edge_sides.resize(4 * std::size_t(near_stride));

@@ -86,9 +86,11 @@ void list_pairs(const PairBuffers& found, std::vector<Pair> PairBuffer::* pairs,
   const Index patches = Index(found.by_patch.size()), count = first.back();
   const std::size_t stride = padded_stride(count);
   of.resize(2 * stride);
-  for (std::size_t k = 0; k < 2; ++k)  // lanes go on past the last
-    std::fill(of.data() + k * stride + count, of.data() + (k + 1) * stride, 0);
   room.resize(std::size(Pair{}.room) * stride);
+  const auto members = on_host(of);
+  const auto rooms = on_host(room);
+  for (std::size_t k = 0; k < 2; ++k)  // lanes go on past the last
+    std::fill(members.begin() + k * stride + count, members.begin() + (k + 1) * stride, 0);
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index p = 0; p < patches; ++p) {
     const std::vector<Pair>& list = found.by_thread[found.by_patch[p].thread].*pairs;
@@ -96,9 +98,9 @@ void list_pairs(const PairBuffers& found, std::vector<Pair> PairBuffer::* pairs,
     std::size_t place = first[p];
     for (Index i = range.first; i < range.last; ++i, ++place) {
       const Pair& pair = list[i];
-      for (std::size_t k = 0; k < 2; ++k) of[k * stride + place] = pair.of[k];
+      for (std::size_t k = 0; k < 2; ++k) members[k * stride + place] = pair.of[k];
       for (std::size_t k = 0; k < std::size(pair.room); ++k)
-        room[k * stride + place] = float(pair.room[k]);
+        rooms[k * stride + place] = float(pair.room[k]);
       also(pair, place);
     }
   }
@@ -123,10 +125,11 @@ void list_face_pairs(PairBuffers& found, SearchState& search) {
 void list_edge_pairs(const PairBuffers& found, SearchState& search) {
   const std::vector<Index> first = places(found, &Share::edges);
   search.outer.ee_sides.assign(found.edge_sides.data(), found.edge_sides.size());
-  search.outer.ee_codes.resize(first.back());
+  search.outer.ee_codes.renew(first.back());
+  const auto codes = on_host(search.outer.ee_codes);
   list_pairs(found, &PairBuffer::edges, &Share::edges, first, search.outer.ee_pairs,
              search.outer.ee_bounds, [&](const PairBuffer::EdgePair& pair, std::size_t place) {
-               search.outer.ee_codes[place] = pair.code;
+               codes[place] = pair.code;
              });
 }
 
@@ -134,23 +137,24 @@ void list_edge_pairs(const PairBuffers& found, SearchState& search) {
 void list_pairs_of_edges(const Model& m, SearchState& search) {
   const Index count = Index(search.outer.ee_codes.size());
   const std::size_t stride = padded_stride(count);
-  Column<Index>&first = search.outer.edge_first, &pairs = search.outer.edge_pairs;
-  first.resize(count > 0 ? m.edge_nodes.size() / 2 + 1 : 0);
-  first.fill(0);
-  pairs.resize(4 * std::size_t(count));
+  std::vector<Index> first(count > 0 ? m.edge_nodes.size() / 2 + 1 : 0);
+  search.outer.edge_pairs.renew(4 * std::size_t(count));
+  search.outer.edge_first.assign(first);
   if (count == 0) return;
+  const auto sides = on_host(search.outer.ee_sides), members = on_host(search.outer.ee_pairs);
+  const auto exposed_face = on_host(search.exposed_face), pairs = on_host(search.outer.edge_pairs);
+  const auto face_edges = on_host(m.face_edges);
   const auto edge = [&](Index p, Index which) {
-    const Index side =
-        search.outer.ee_sides[2 * std::size_t(search.outer.ee_pairs[which * stride + p])];
-    return m.face_edges[4 * search.exposed_face[side / 4] + side % 4];
+    const Index side = sides[2 * std::size_t(members[which * stride + p])];
+    return face_edges[4 * exposed_face[side / 4] + side % 4];
   };
   for (Index p = 0; p < count; ++p)
     for (const Index which : {0, 1}) ++first[edge(p, which) + 1];
   add_up(first, first.size() - 1);
-  std::vector<Index> places(first.data(), first.data() + first.size() - 1);
+  search.outer.edge_first.assign(first);
   for (Index p = 0; p < count; ++p)
     for (const Index which : {0, 1}) {
-      const std::size_t place = places[edge(p, which)]++;
+      const std::size_t place = first[edge(p, which)]++;
       pairs[2 * place] = p;
       pairs[2 * place + 1] = edge(p, 1 - which);
     }
@@ -158,12 +162,8 @@ void list_pairs_of_edges(const Model& m, SearchState& search) {
 
 /// For every exposed face the others that list it: their contacts may act on it.
 void list_sources(const PairBuffers& found, Index count, SearchState& search) {
-  Column<Index>&first = search.outer.acting_first, &source = search.outer.faces_acting_on;
-  Column<Flag>& listed = search.outer.face_listed;
-  first.resize(count + 1);
-  first.fill(0);
-  listed.resize(count);
-  listed.fill(0);
+  std::vector<Index> first(count + 1);
+  std::vector<Flag> listed(count);
   const auto visit = [&](auto&& at) {
     for (const PairBuffer& of : found.by_thread) {
 #pragma omp parallel for schedule(static) if (of.face_pairs.size() >= worth_threads)
@@ -177,34 +177,37 @@ void list_sources(const PairBuffers& found, Index count, SearchState& search) {
     set(listed[pair.mother]);
   });
   add_up(first, count);
-  source.resize(first[count]);
-  std::vector<Index> next_places(first.data(), first.data() + count);
-  const Counters next{next_places.data()};
+  search.outer.face_listed.assign(listed);
+  search.outer.acting_first.assign(first);
+  search.outer.faces_acting_on.renew(first[count]);
+  const auto source = on_host(search.outer.faces_acting_on);
+  std::vector<Index> places(first.begin(), first.end() - 1);
+  const Counters next{places.data()};
   visit([&](const PairBuffer::FacePair& pair) { source[next.raise(pair.face)] = pair.mother; });
 #pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
   for (Index y = 0; y < count; ++y)
-    std::sort(source.data() + first[y], source.data() + first[y + 1]);
+    std::sort(source.begin() + first[y], source.begin() + first[y + 1]);
 }
 
 void list_slot_candidates(SearchState& search, const CandidateRows& candidates) {
   const Index count = Index(candidates.first.size()) - 1;
-  Column<Index>&first = search.outer.slot_first, &other = search.outer.slot_faces;
-  first.resize(4 * std::size_t(count) + 1);
-  first.fill(0);
+  std::vector<Index> first(4 * std::size_t(count) + 1);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x)
     for (const PairBuffer::Candidate* t = candidates.begin(x); t != candidates.end(x); ++t)
       ++first[4 * std::size_t(x) + t->vertex + 1];
   add_up(first, 4 * std::size_t(count));
-  other.resize(first[4 * std::size_t(count)]);
-  search.outer.slot_pairs.resize(other.size());
+  search.outer.slot_first.assign(first);
+  search.outer.slot_faces.renew(first.back());
+  search.outer.slot_pairs.renew(first.back());
+  const auto other = on_host(search.outer.slot_faces), pair = on_host(search.outer.slot_pairs);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index x = 0; x < count; ++x)
     for (Index k = 0; k < 4; ++k) {
       Index place = first[4 * x + k];
       for (const PairBuffer::Candidate* t = candidates.begin(x); t != candidates.end(x); ++t)
         if (t->vertex == k) {
-          search.outer.slot_pairs[place] = t->pair;
+          pair[place] = t->pair;
           other[place++] = t->face;
         }
     }
@@ -221,9 +224,9 @@ void list_candidates(const Model& m, State& s) {
   list_face_pairs(found, s.search);
   list_edge_pairs(found, s.search);
   list_pairs_of_edges(m, s.search);
-  s.search.outer.rotation_soon.resize(count);
-  for (Index x = 0; x < count; ++x)
-    s.search.outer.rotation_soon[x] = s.search.lists->exposed[x].rotation_soon;
+  s.search.outer.rotation_soon.renew(count);
+  const auto rotation_soon = on_host(s.search.outer.rotation_soon);
+  for (Index x = 0; x < count; ++x) rotation_soon[x] = s.search.lists->exposed[x].rotation_soon;
   s.search.inner.known = false;
   list_sources(found, count, s.search);
   list_slot_candidates(s.search, by_mother(found, &PairBuffer::candidates, count,

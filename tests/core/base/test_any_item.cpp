@@ -27,9 +27,9 @@ TEST_CASE("any_item finds one item wherever it is, and none where there is none"
     CHECK(!any_item({}, count, kernel));
     for (const Index i : {0, count / 2, count - 1}) {
       if (i < 0 || i >= count) continue;
-      x[i] = 1;
+      on_host(x)[i] = 1;
       CHECK(any_item({}, count, kernel));
-      x[i] = 0;
+      on_host(x)[i] = 0;
     }
     CHECK(!any_item({}, count, kernel));
   }

@@ -80,7 +80,7 @@ TEST_CASE("set_all sets all and no more") {
     items.resize(count + 1, 7);
     set_all({}, count, items.data(), Index(3));
     CHECK(std::count(items.data(), items.data() + count + 1, 3) == count);
-    CHECK(items[count] == 7);
+    CHECK(on_host(items)[count] == 7);
   }
 }
 
@@ -147,12 +147,13 @@ TEST_CASE("sort_pairs sorts by all bits of a key, and keeps the order of those w
     Column<Index> values;
     keys.resize(count);
     values.resize(count);
-    for (Index i = 0; i < count; ++i) keys[i] = pairs[i].first, values[i] = pairs[i].second;
+    for (Index i = 0; i < count; ++i)
+      on_host(keys)[i] = pairs[i].first, on_host(values)[i] = pairs[i].second;
     sort_pairs({}, count, keys.data(), values.data());
     std::sort(pairs.begin(), pairs.end());  // values ascend: as a stable sort by keys
     bool same = true;
     for (Index i = 0; i < count; ++i)
-      same = same && keys[i] == pairs[i].first && values[i] == pairs[i].second;
+      same = same && on_host(keys)[i] == pairs[i].first && on_host(values)[i] == pairs[i].second;
     CHECK(same);
   });
 }
@@ -169,12 +170,12 @@ TEST_CASE("list_rows brings numbers into their rows, short and long ones, ascend
     Column<Index> first, number;
     list_rows({}, items, 2 * items, rows, ToRows{given.data()}, first, number);
     REQUIRE(first.size() == std::size_t(rows) + 1);
-    CHECK(first[0] == 0);
-    CHECK(std::size_t(first[rows]) == number.size());
+    CHECK(on_host(first)[0] == 0);
+    CHECK(std::size_t(on_host(first)[rows]) == number.size());
     bool same = true;
     for (Index r = 0; r < rows; ++r)
-      same = same && expected[r] ==
-                         std::vector<Index>(number.data() + first[r], number.data() + first[r + 1]);
+      same = same && expected[r] == std::vector<Index>(number.data() + on_host(first)[r],
+                                                       number.data() + on_host(first)[r + 1]);
     CHECK(same);
   });
 }

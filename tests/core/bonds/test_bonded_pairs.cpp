@@ -50,7 +50,7 @@ struct Pairs : Scene {
   Vec force(Index pair, Index k) const {
     return vector_at(state.corner_force.data() + 4 * (set().corner_first + pair * count + k));
   }
-  Index node(Index pair, Index k) const { return set().nodes[k * set().stride + pair]; }
+  Index node(Index pair, Index k) const { return on_host(set().nodes)[k * set().stride + pair]; }
 };
 
 }  // namespace
@@ -62,7 +62,7 @@ TEST_CASE_TEMPLATE("a rigid motion of a pair gives no force", Scene, Pairs<3>, P
   for (Index i = 0; i < pairs.model.node_count; ++i)
     put(pairs.motion(i), turn * pairs.position(i) + Vec{1, 2, 3});
   for_each_lane({}, pairs.set().count, Blocks{}, pairs.kernel());
-  const Real stiffness = pairs.set().stiffness[0];
+  const Real stiffness = on_host(pairs.set().stiffness)[0];
   for (Index p = 0; p < pairs.set().count; ++p)
     for (Index k = 0; k < 3; ++k) CHECK(norm(pairs.force(p, k)) < 1e-14 * stiffness);
 }
@@ -80,16 +80,16 @@ TEST_CASE_TEMPLATE("a pair that is pulled bears stiffness times area times openi
   for_each_lane({}, 1, Blocks{}, pairs.kernel());
   Vec sum{0, 0, 0};
   for (Index k = 0; k < count; ++k) sum = sum + pairs.force(0, k);
-  const Real k = pairs.set().stiffness[0] * pairs.set().area[0];
+  const Real k = on_host(pairs.set().stiffness)[0] * on_host(pairs.set().area)[0];
   CHECK(distance(sum, Real(-k) * jump) < 1e-12 * k * norm(jump));
-  CHECK(relative_error(pairs.pairs().stored[0], 0.5 * k * dot(jump, jump)) < 2e-12);
+  CHECK(relative_error(on_host(pairs.pairs().stored)[0], 0.5 * k * dot(jump, jump)) < 2e-12);
 }
 
 TEST_CASE_TEMPLATE("pairs give the same bits one by one and in lanes, broken or not", Scene,
                    Pairs<3>, Pairs<4>) {
   const auto fill = [](Scene& pairs) {
     for (Index p = 0; p < pairs.set().count; ++p)
-      pairs.pairs().status[p] = p % 4 == 3 ? 0 : p % 3 == 2 ? 2 : 1;
+      on_host(pairs.pairs().status)[p] = p % 4 == 3 ? 0 : p % 3 == 2 ? 2 : 1;
   };
   Random random(3), again(3);
   constexpr Index several = 8 + 2 * lanes + 3;
@@ -109,22 +109,22 @@ TEST_CASE_TEMPLATE("pairs give the same bits one by one and in lanes, broken or 
   PairState &a = in_lanes.pairs(), &b = one_by_one.pairs();
   const PairSet& set = in_lanes.set();
   for (Index p = 0; p < count; ++p) {
-    if (a.status[p] == 0) continue;  // one by one, a released pair writes nothing
+    if (on_host(a.status)[p] == 0) continue;  // one by one, a released pair writes nothing
     for (Index k = 0; k < set.points; ++k) {
       const std::size_t row = std::size_t(k) * set.point_stride + p;
-      CHECK(same_bits(a.bond[row], b.bond[row]));
-      CHECK(same_bits(a.slip1[row], b.slip1[row]));
+      CHECK(same_bits(on_host(a.bond)[row], on_host(b.bond)[row]));
+      CHECK(same_bits(on_host(a.slip1)[row], on_host(b.slip1)[row]));
       CHECK(distance(in_lanes.force(p, k), one_by_one.force(p, k)) == 0);
     }
     for (Column<Real> PairState::* column :
          {&PairState::stored, &PairState::fracture, &PairState::friction, &PairState::jump,
           &PairState::broken_shear, &PairState::broken_tension})
-      CHECK(same_bits((a.*column)[p], (b.*column)[p]));
+      CHECK(same_bits(on_host((a.*column))[p], on_host((b.*column))[p]));
   }
   Real broken = 0, intact = 0;
   for (Index p = 0; p < count; ++p)
     for (Index k = 0; k < set.points; ++k)
-      (a.bond[std::size_t(k) * set.point_stride + p] > 0 ? intact : broken) += 1;
+      (on_host(a.bond)[std::size_t(k) * set.point_stride + p] > 0 ? intact : broken) += 1;
   CHECK(broken > 5);
   CHECK(intact > 5);
 }
@@ -132,11 +132,11 @@ TEST_CASE_TEMPLATE("pairs give the same bits one by one and in lanes, broken or 
 TEST_CASE("a released pair exerts nothing and keeps its history") {
   Random random(4);
   Pairs<4> pairs(1, random, 0.01);
-  pairs.pairs().status[0] = 0;
+  on_host(pairs.pairs().status)[0] = 0;
   for_each_lane({}, 1, Blocks{}, pairs.kernel());
   for (Index k = 0; k < 4; ++k) {
     CHECK(norm(pairs.force(0, k)) == 0);
-    CHECK(pairs.pairs().bond[k * pairs.set().point_stride] == 1);
+    CHECK(on_host(pairs.pairs().bond)[k * pairs.set().point_stride] == 1);
   }
 }
 

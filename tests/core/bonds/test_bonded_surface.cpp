@@ -21,8 +21,8 @@ struct Stack : Scene {
     for (Index f = 0; f < model.face_count; ++f) {
       const Index* n = model.face_nodes.data() + 4 * f;
       const Vec out = unit(cross(position(n[1]) - position(n[0]), position(n[2]) - position(n[1])));
-      if (model.face_block[f] == block && distance(out, normal) < 1e-9)
-        return state.search.face_exposed[f];
+      if (on_host(model.face_block)[f] == block && distance(out, normal) < 1e-9)
+        return on_host(state.search.face_exposed)[f];
     }
     return -1;
   }
@@ -31,7 +31,7 @@ struct Stack : Scene {
     const Index* across = state.search.across.data() + 4 * place;
     std::vector<Index> places;
     for (Index k = 0; k < 4; ++k)
-      places.push_back(across[k] < 0 ? -1 : state.search.face_exposed[across[k]]);
+      places.push_back(across[k] < 0 ? -1 : on_host(state.search.face_exposed)[across[k]]);
     return places;
   }
 };
@@ -46,7 +46,8 @@ TEST_CASE("nodes that intact bonds hold together share a label") {
   Stack stack;
   for (Index i = 0; i < 16; ++i)
     for (Index j = 0; j < i; ++j)
-      CHECK((stack.state.nodes.bonded_node[i] == stack.state.nodes.bonded_node[j]) ==
+      CHECK((on_host(stack.state.nodes.bonded_node)[i] ==
+             on_host(stack.state.nodes.bonded_node)[j]) ==
             (distance(stack.position(i), stack.position(j)) == 0));
 }
 
@@ -59,10 +60,10 @@ TEST_CASE("nodes of blocks that bonds join, directly or through others, are of o
   chain.set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}});
   chain.start();
   State& s = chain.state;
-  for (Index i = 0; i < 32; ++i) CHECK(s.nodes.body[i] == (i < 24 ? 0 : 24));
-  s.quads.status[1] = Flag(PairStatus::released);
+  for (Index i = 0; i < 32; ++i) CHECK(on_host(s.nodes.body)[i] == (i < 24 ? 0 : 24));
+  on_host(s.quads.status)[1] = Flag(PairStatus::released);
   join_surfaces(chain.model, s, true);
-  for (Index i = 0; i < 32; ++i) CHECK(s.nodes.body[i] == (i < 16 ? 0 : i < 24 ? 16 : 24));
+  for (Index i = 0; i < 32; ++i) CHECK(on_host(s.nodes.body)[i] == (i < 16 ? 0 : i < 24 ? 16 : 24));
 }
 
 TEST_CASE("beyond a side at a bond lies the face of the other block, flush with it") {
@@ -83,11 +84,11 @@ TEST_CASE("edges that leave a point are those of all nodes that are bonded there
   const Column<Index>&first = stack.state.search.edge_star_first,
         &star = stack.state.search.edge_star;
   for (Index i = 0; i < 16; ++i) {
-    const Index label = stack.state.nodes.bonded_node[i];
+    const Index label = on_host(stack.state.nodes.bonded_node)[i];
     const Vec x = stack.position(i);
     Index ends = 0;
-    for (Index r = first[label]; r < first[label + 1]; ++r, ++ends)
-      CHECK(std::abs(norm(stack.position(star[r]) - x) - 1) < 1e-15);
+    for (Index r = on_host(first)[label]; r < on_host(first)[label + 1]; ++r, ++ends)
+      CHECK(std::abs(norm(stack.position(on_host(star)[r]) - x) - 1) < 1e-15);
     CHECK(ends == (x.z == 1 ? 4 : 3));
   }
 }
@@ -95,9 +96,9 @@ TEST_CASE("edges that leave a point are those of all nodes that are bonded there
 TEST_CASE("where the bond is broken the nodes part") {
   Stack stack;
   PairState& pairs = stack.state.quads;
-  for (Index k = 0; k < 4; ++k) pairs.bond[k * stack.model.quads.point_stride] = 0;
+  for (Index k = 0; k < 4; ++k) on_host(pairs.bond)[k * stack.model.quads.point_stride] = 0;
   join_surfaces(stack.model, stack.state, false);
-  for (Index i = 0; i < 16; ++i) CHECK(stack.state.nodes.bonded_node[i] == i);
+  for (Index i = 0; i < 16; ++i) CHECK(on_host(stack.state.nodes.bonded_node)[i] == i);
 }
 
 }  // namespace cdem::test

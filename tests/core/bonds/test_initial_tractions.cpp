@@ -40,7 +40,9 @@ struct Stressed : Scene {
                             4 * (std::size_t(model.quads.corner_first) + std::size_t(k)));
     return on_second() ? sum : Real(-1) * sum;
   }
-  bool on_second() const { return model.quads.nodes[4 * model.quads.stride] >= first_node(box); }
+  bool on_second() const {
+    return on_host(model.quads.nodes)[4 * model.quads.stride] >= first_node(box);
+  }
 };
 
 const Named strong{{"cohesion", 1e6}, {"tensile_strength", 1e6}, {"friction_angle", 0.5}};
@@ -55,7 +57,8 @@ TEST_CASE("a joint begins with the traction of its stress, and nothing moves") {
   CHECK(f.x == doctest::Approx(3e3));
   CHECK(f.y == doctest::Approx(-2e3));
   CHECK(f.z == doctest::Approx(4e4));
-  for (Index k = 0; k < 4; ++k) CHECK(s.state.quads.bond[k * s.model.quads.point_stride] == 1);
+  for (Index k = 0; k < 4; ++k)
+    CHECK(on_host(s.state.quads.bond)[k * s.model.quads.point_stride] == 1);
 }
 
 TEST_CASE("a joint without strength begins broken, and bears what friction bears") {
@@ -64,7 +67,8 @@ TEST_CASE("a joint without strength begins broken, and bears what friction bears
   CHECK(cut.count == 4);
   CHECK(cut.most == doctest::Approx(1e4));  // 3e4 less 0.5 of 4e4
   CHECK(norm(s.force() - Vec{-2e4, 0, 4e4}) < 1e-6);
-  for (Index k = 0; k < 4; ++k) CHECK(s.state.quads.bond[k * s.model.quads.point_stride] == 0);
+  for (Index k = 0; k < 4; ++k)
+    CHECK(on_host(s.state.quads.bond)[k * s.model.quads.point_stride] == 0);
   s.step(1);
   CHECK(energies(s.model, s.state).terms[energy_term("friction")] < 1e-9);
 }
@@ -85,7 +89,7 @@ TEST_CASE("forces on the vertices are those of a linear traction, wherever the b
     set_initial_tractions(s.model, s.state, all.data(), &bonds);
     s.force();
     for (Index k = 0; k < 4; ++k) {
-      const Index node = s.model.quads.nodes[std::size_t(4 + k) * s.model.quads.stride];
+      const Index node = on_host(s.model.quads.nodes)[std::size_t(4 + k) * s.model.quads.stride];
       const Vec f = vector_at(s.state.corner_force.data() +
                               4 * (std::size_t(s.model.quads.corner_first) + std::size_t(k)));
       // 1/4 of the mean traction, and of a linear part x: 1/12 at x = 0, 1/6 at x = 1

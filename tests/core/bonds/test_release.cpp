@@ -21,7 +21,7 @@ struct Torn : Scene {
   }
   Real intact() const {
     Real sum = 0;
-    for (Index k = 0; k < 4; ++k) sum += state.quads.bond[k * model.quads.point_stride];
+    for (Index k = 0; k < 4; ++k) sum += on_host(state.quads.bond)[k * model.quads.point_stride];
     return sum;
   }
 };
@@ -34,8 +34,8 @@ TEST_CASE("a pair that is torn apart is released, and its faces can be touched")
   CHECK(!release_is_due(torn.model, torn.state));
   torn.step(100);
   CHECK(torn.intact() == 0);
-  CHECK(torn.state.quads.status[0] == 0);
-  CHECK(torn.state.quads.broken_tension[0] == 4);
+  CHECK(on_host(torn.state.quads.status)[0] == 0);
+  CHECK(on_host(torn.state.quads.broken_tension)[0] == 4);
   CHECK(torn.state.search.exposed_face.size() == 12);
   CHECK(torn.velocity(12).z > 4);
 }
@@ -44,15 +44,15 @@ TEST_CASE("a pair that bears is not released") {
   Torn torn({0, 0, 0.01}, 1e9);
   torn.step(200);
   CHECK(torn.intact() == 4);
-  CHECK(torn.state.quads.status[0] == 1);
+  CHECK(on_host(torn.state.quads.status)[0] == 1);
 }
 
 TEST_CASE("a pair that is sheared off slides on as a contact, and its energy is accounted for") {
   Torn torn({2, 0, -0.5});
   torn.model.gravity = {0, 0, -10};
   torn.step(150);
-  CHECK(torn.state.quads.status[0] == 0);
-  CHECK(torn.state.quads.broken_shear[0] > 0);
+  CHECK(on_host(torn.state.quads.status)[0] == 0);
+  CHECK(on_host(torn.state.quads.broken_shear)[0] > 0);
   const Energies e = energies(torn.model, torn.state);
   CHECK(e.terms[energy_term("fracture")] > 0);
   CHECK(e.terms[energy_term("friction")] > 0);
@@ -62,10 +62,10 @@ TEST_CASE("a pair that is sheared off slides on as a contact, and its energy is 
 TEST_CASE("broken pairs are due when they have moved by the indentation") {
   Torn torn({0, 0, 0});
   PairState& pairs = torn.state.quads;
-  const Real length = torn.model.face_length[0];
-  pairs.jump[0] = 0.9 * torn.model.rules.indentation * length;
+  const Real length = on_host(torn.model.face_length)[0];
+  on_host(pairs.jump)[0] = 0.9 * torn.model.rules.indentation * length;
   CHECK(!release_is_due(torn.model, torn.state));
-  pairs.jump[0] = 1.1 * torn.model.rules.indentation * length;
+  on_host(pairs.jump)[0] = 1.1 * torn.model.rules.indentation * length;
   CHECK(release_is_due(torn.model, torn.state));
 }
 

@@ -20,15 +20,15 @@ struct Slid : Scene {
     add_box({0, 0, 1}, {1, 1, 1});
     build();
     start();
-    expose(state, model.quads.faces[0]);
-    expose(state, model.quads.faces[1]);
+    expose(state, on_host(model.quads.faces)[0]);
+    expose(state, on_host(model.quads.faces)[1]);
     for (Index i = 8; i < 16; ++i) put(motion(i), position(i) + jump);
   }
   Real transfer() { return transfer_to_contact(model, state, model.quads, state.quads, 0); }
   Index held() const {
     Index count = 0;
     for (std::size_t k = 0; k < state.springs.target.size(); ++k)
-      count += state.springs.target[k] >= 0;
+      count += on_host(state.springs.target)[k] >= 0;
     return count;
   }
 };
@@ -39,16 +39,17 @@ TEST_CASE("both sides take half of the force of a pressed pair, and all of its e
   Slid slid({1e-4, 2e-4, -3e-4});
   const Real energy = slid.transfer();
   const PairSet& p = slid.model.quads;
-  const Real k = p.stiffness[0] * p.area[0];
+  const Real k = on_host(p.stiffness)[0] * on_host(p.area)[0];
   CHECK(relative_error(energy, 0.5 * k * dot(slid.jump, slid.jump)) < 1e-12);
   CHECK(slid.held() == 8);
   Real normal = 0;
   for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
-    if (slid.state.springs.target[slot] < 0) continue;
+    if (on_host(slid.state.springs.target)[slot] < 0) continue;
     const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
     CHECK(relative_error(s.force_n, k / 8 * 3e-4) < 5e-13);
     CHECK(relative_error(std::hypot(s.shear1, s.shear2), k / 8 * std::hypot(1e-4, 2e-4)) < 5e-13);
-    CHECK(slid.state.springs.target_before[slot] == slid.state.springs.target[slot]);
+    CHECK(on_host(slid.state.springs.target_before)[slot] ==
+          on_host(slid.state.springs.target)[slot]);
     normal += s.force_n;
   }
   CHECK(relative_error(normal, k * 3e-4) < 5e-13);
@@ -59,13 +60,13 @@ TEST_CASE(
   for (const Real part : {0.1, 10.0}) {
     Slid slid({1e-4, 2e-4, -3e-4});
     const PairSet& p = slid.model.quads;
-    const Real k = p.stiffness[0], corner = k * p.area[0] / 8;
-    Interface& contact = slid.model.interfaces[p.interface[0]];
+    const Real k = on_host(p.stiffness)[0], corner = k * on_host(p.area)[0] / 8;
+    Interface& contact = on_host(slid.model.interfaces)[on_host(p.interface)[0]];
     contact.stiffness_n_value = contact.stiffness_s_value = part * k;
     const Real energy = slid.transfer(), taken = std::min(1.0, part), depth = taken / part * 3e-4;
     CHECK(slid.held() == 8);
     for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
-      if (slid.state.springs.target[slot] < 0) continue;
+      if (on_host(slid.state.springs.target)[slot] < 0) continue;
       const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
       CHECK(relative_error(s.force_n, taken * corner * 3e-4) < 5e-12);
       CHECK(relative_error(s.penetration, depth) < 5e-12);
@@ -74,19 +75,19 @@ TEST_CASE(
             5e-12);
     }
     const Real carried = taken * taken / part * dot(slid.jump, slid.jump);
-    CHECK(relative_error(energy, 0.5 * k * p.area[0] * carried) < 1e-11);
+    CHECK(relative_error(energy, 0.5 * k * on_host(p.area)[0] * carried) < 1e-11);
   }
 }
 
 TEST_CASE("a contact with restitution takes the force, and holds what it can give back") {
   Slid slid({1e-4, 2e-4, -3e-4});
   const PairSet& p = slid.model.quads;
-  slid.model.interfaces[p.interface[0]].returned_n = 0.25;
-  slid.model.interfaces[p.interface[0]].returned_s = 0.64;
-  const Real k = p.stiffness[0] * p.area[0], energy = slid.transfer();
+  on_host(slid.model.interfaces)[on_host(p.interface)[0]].returned_n = 0.25;
+  on_host(slid.model.interfaces)[on_host(p.interface)[0]].returned_s = 0.64;
+  const Real k = on_host(p.stiffness)[0] * on_host(p.area)[0], energy = slid.transfer();
   CHECK(relative_error(energy, 0.5 * k * (0.25 * 9e-8 + 0.64 * 5e-8)) < 1e-11);
   for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
-    if (slid.state.springs.target[slot] < 0) continue;
+    if (on_host(slid.state.springs.target)[slot] < 0) continue;
     const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
     CHECK(relative_error(s.force_n, k / 8 * 3e-4) < 5e-12);
     CHECK(s.approach == s.penetration);
@@ -98,13 +99,13 @@ TEST_CASE("what has slipped already carries no shear") {
   const PairSet& p = slid.model.quads;
   PairState& bonds = slid.state.quads;
   // along the frame of the first face, whichever way its first side runs
-  const Index* n = slid.model.face_nodes.data() + 4 * p.faces[0];
+  const Index* n = slid.model.face_nodes.data() + 4 * on_host(p.faces)[0];
   const Vec t1 = unit(slid.position(n[1]) - slid.position(n[0])), t2 = cross(Vec{0, 0, 1}, t1);
   for (Index k = 0; k < 4; ++k) {
-    bonds.slip1[k * p.point_stride] = dot(t1, slid.jump);
-    bonds.slip2[k * p.point_stride] = dot(t2, slid.jump);
+    on_host(bonds.slip1)[k * p.point_stride] = dot(t1, slid.jump);
+    on_host(bonds.slip2)[k * p.point_stride] = dot(t2, slid.jump);
   }
-  const Real k = p.stiffness[0] * p.area[0];
+  const Real k = on_host(p.stiffness)[0] * on_host(p.area)[0];
   CHECK(relative_error(slid.transfer(), 0.5 * k * 9e-8) < 1e-12);
 }
 
@@ -114,13 +115,13 @@ TEST_CASE("a pair that has risen hands over all that it carried, at the gap wher
     Slid slid({2e-4, 0, gap});
     const PairSet& p = slid.model.quads;
     slid.state.quads.rise.resize(slid.state.quads.bond.size(), rise);
-    const Real k = p.stiffness[0], corner = k * p.area[0] / 8;
-    Interface& contact = slid.model.interfaces[p.interface[0]];
+    const Real k = on_host(p.stiffness)[0], corner = k * on_host(p.area)[0] / 8;
+    Interface& contact = on_host(slid.model.interfaces)[on_host(p.interface)[0]];
     contact.stiffness_n_value = contact.stiffness_s_value = part * k;
     slid.transfer();
     CHECK(slid.held() == 8);
     for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {
-      if (slid.state.springs.target[slot] < 0) continue;
+      if (on_host(slid.state.springs.target)[slot] < 0) continue;
       const ContactState s = ContactState::at(slid.state.springs.state.data(), slot);
       CHECK(relative_error(s.force_n, corner * (rise - gap)) < 5e-12);
       CHECK(relative_error(s.stress_free_gap, gap + (rise - gap) / part) < 5e-12);
@@ -140,7 +141,7 @@ TEST_CASE("what a vertex leaves that has slid off goes to its mate, or to the ot
     Real normal = 0;
     for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot)
       normal += ContactState::at(slid.state.springs.state.data(), slot).force_n;
-    CHECK(relative_error(normal, p.stiffness[0] * p.area[0] * rise) < 5e-12);
+    CHECK(relative_error(normal, on_host(p.stiffness)[0] * on_host(p.area)[0] * rise) < 5e-12);
   }
 }
 
@@ -154,7 +155,7 @@ TEST_CASE("an open pair hands nothing over, nor one whose vertices have parted")
 TEST_CASE("the length of a pair is the smaller of its faces'") {
   const Slid slid({0, 0, 0});
   CHECK(pair_length(slid.model, slid.model.quads, 0) ==
-        slid.model.face_length[slid.model.quads.faces[0]]);
+        on_host(slid.model.face_length)[on_host(slid.model.quads.faces)[0]]);
 }
 
 }  // namespace cdem::test

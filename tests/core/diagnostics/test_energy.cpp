@@ -64,7 +64,7 @@ TEST_CASE("energies close where bonds shear off while they are pulled") {
   scene.start();
   scene.step(60);
   const Energies e = energies(scene.model, scene.state);
-  CHECK(scene.state.quads.broken_shear[0] == 4);
+  CHECK(on_host(scene.state.quads.broken_shear)[0] == 4);
   CHECK(e.terms[energy_term("fracture")] > 0);
   CHECK(std::abs(e.error) < 1e-3);
 }
@@ -79,7 +79,7 @@ TEST_CASE("the error is measured against the largest term so far") {
   State& s = scene.state;
   const Real kinetic = energies(scene.model, s).terms[energy_term("kinetic")];
   CHECK(relative_error(kinetic, 0.5 * 2500) < 1e-15);
-  s.nodes.work_external[0] += 0.1 * kinetic;  // out of nothing
+  on_host(s.nodes.work_external)[0] += 0.1 * kinetic;  // out of nothing
   CHECK(relative_error(energies(scene.model, s).error, -0.1) < 1e-15);
   s.energy_scale = 10 * kinetic;
   CHECK(relative_error(energies(scene.model, s).error, -0.01) < 1e-15);

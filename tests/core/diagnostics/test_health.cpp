@@ -55,19 +55,19 @@ TEST_CASE("a node with a scaled mass is too fast if its energy is") {
   box.model.speed_limit = 10;
   box.motion(3)[5] = 1000;
   box.state.nodes.relax_mass.assign(box.model.mass.data(), box.model.node_count);
-  box.state.nodes.relax_mass[3] *= 0.99e-4;
+  on_host(box.state.nodes.relax_mass)[3] *= 0.99e-4;
   CHECK(box.health().outcome == Outcome::steps_done);
-  box.state.nodes.relax_mass[3] *= 1.03;
+  on_host(box.state.nodes.relax_mass)[3] *= 1.03;
   CHECK(box.health().outcome == Outcome::too_fast);
 }
 
 TEST_CASE("a contact that penetrated too deep is named by its face") {
   Box box;
-  box.state.springs.lost[4 * 2 + 3] = 1;
+  on_host(box.state.springs.lost)[4 * 2 + 3] = 1;
   CHECK(box.health().outcome == Outcome::lost_contact);
   CHECK(box.health().culprit == 2);
   Box other;
-  other.state.edges.lost[4] = 1;
+  on_host(other.state.edges.lost)[4] = 1;
   CHECK(other.health().outcome == Outcome::lost_contact);
   CHECK(other.health().culprit == 4);
 }

@@ -74,7 +74,7 @@ TEST_CASE("elements that are not awake keep their forces") {
   const Index of_tet = shapes.first_node(3);
   const Vec before = shapes.force(0), tet_before = shapes.force(of_tet);
   shapes.motion(0)[0] += 0.1;
-  shapes.state.tet4.awake.push(0);
+  shapes.state.tet4.awake.assign({0});
   shapes.motion(of_tet)[0] += 0.1;
   update_element_forces(shapes.model, shapes.state, {}, {});
   CHECK(distance(shapes.force(0), before) == 0);

@@ -32,9 +32,9 @@ struct Mesh {
   }
   void set_rock(Real new_lambda, Real cohesion) {
     lambda = new_lambda;
-    model.material_lambda[0] = lambda;
-    model.material_parameters[0] = cohesion;
-    model.material_parameters[3] = cohesion;  // tensile strength
+    on_host(model.material_lambda)[0] = lambda;
+    on_host(model.material_parameters)[0] = cohesion;
+    on_host(model.material_parameters)[3] = cohesion;  // tensile strength
   }
   void place(Index node, const Vec& x) { put(state.nodes.motion.data() + 8 * node, x); }
   void move(Index node, const Vec& v) { put(state.nodes.motion.data() + 8 * node + 4, v); }
@@ -49,19 +49,20 @@ struct Mesh {
   }
   Vec force(Index node) const {
     Vec sum{0, 0, 0};
-    for (Index t = state.nodes.tile_first[node]; t < state.nodes.tile_first[node + 1]; ++t)
+    for (Index t = on_host(state.nodes.tile_first)[node];
+         t < on_host(state.nodes.tile_first)[node + 1]; ++t)
       sum = sum + vector_at(state.tile_force.data() + 4 * t);
     return sum;
   }
   Real energy() {
     report_elements(model, state, {});
     Real sum = 0;
-    for (Index e = 0; e < model.tet4.count; ++e) sum += state.tet4.energy[e];
+    for (Index e = 0; e < model.tet4.count; ++e) sum += on_host(state.tet4.energy)[e];
     return sum;
   }
   Real plastic_work() const {
     Real sum = 0;
-    for (Index e = 0; e < model.tet4.count; ++e) sum += state.tet4.plastic_work[e];
+    for (Index e = 0; e < model.tet4.count; ++e) sum += on_host(state.tet4.plastic_work)[e];
     return sum;
   }
   /// Inelastic strains whose stress grows along z, as an initial stress has them.
@@ -71,7 +72,7 @@ struct Mesh {
         const Index tet = std::min(e, model.tet4.count - 1);
         Real z = 0;
         for (Index k = 0; k < 4; ++k) z += 0.25 * rest[tets[4 * tet + k]].z;
-        state.tet4.history[row * model.tet4.stride + e] = row == 2 ? 1e-4 * z : 0.5e-4 * z;
+        on_host(state.tet4.history)[row * model.tet4.stride + e] = row == 2 ? 1e-4 * z : 0.5e-4 * z;
       }
   }
   std::vector<Index> tets;  // [tet][4]
@@ -114,14 +115,14 @@ struct Mesh {
     Vec x[4];
     for (Index k = 0; k < 4; ++k) {
       x[k] = rest[tets[4 * tet + k]];
-      e.nodes[k * e.stride + place_in_table] = tets[4 * tet + k];
+      on_host(e.nodes)[k * e.stride + place_in_table] = tets[4 * tet + k];
     }
     const ElementGeometry<Tet4> g(x, 1);
     CHECK(g.volume[0] > 0);
-    e.volume[place_in_table] = g.volume[0];
+    on_host(e.volume)[place_in_table] = g.volume[0];
     for (Index k = 1; k < 4; ++k)
       for (Index axis = 0; axis < 3; ++axis)
-        e.gradient[((k - 1) * 3 + axis) * e.stride + place_in_table] =
+        on_host(e.gradient)[((k - 1) * 3 + axis) * e.stride + place_in_table] =
             axis == 0   ? g.gradient[0][k].x
             : axis == 1 ? g.gradient[0][k].y
                         : g.gradient[0][k].z;
@@ -287,8 +288,8 @@ TEST_CASE("averaged tets: what the mean force of each step supplies is stored or
 TEST_CASE("tets between averaged ones that are not keep their own dilatation") {
   Random random(7);
   Mesh some(true), full(false);
-  for (Index e = 0; e < some.model.tet4.stride; ++e) some.model.tet4.nodal_mean[e] = 0;
-  some.model.tet4.nodal_mean[3] = 1;  // alone: the mean is its own
+  for (Index e = 0; e < some.model.tet4.stride; ++e) on_host(some.model.tet4.nodal_mean)[e] = 0;
+  on_host(some.model.tet4.nodal_mean)[3] = 1;  // alone: the mean is its own
   list_nodal_means(some.model, some.state);
   for (int k = 0; k < 3; ++k) {
     some.deform(random, 0.02);

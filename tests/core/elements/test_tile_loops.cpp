@@ -40,12 +40,13 @@ struct Web {
     e.nodes.resize(4 * std::size_t(e.stride));
     e.volume.resize(e.stride);
     for (Index i = 0; i < count; ++i) {
-      e.volume[i] = std::pow(10, random.between(-8, 8));
+      on_host(e.volume)[i] = std::pow(10, random.between(-8, 8));
       const Index first = random.below(150);
       for (Index k = 0; k < 4; ++k)
-        e.nodes[k * e.stride + i] = (first + 150 * k + i / 8) % model.node_count;
+        on_host(e.nodes)[k * e.stride + i] = (first + 150 * k + i / 8) % model.node_count;
     }
-    for (Index k = 0; k < 8 * model.node_count; ++k) motion.push(random.between(-1, 1));
+    motion.resize(8 * std::size_t(model.node_count));
+    for (Real& number : on_host(motion)) number = random.between(-1, 1);
     list_tiles(model, state);
   }
   Tiles tiles() {
@@ -68,14 +69,14 @@ struct Web {
   std::vector<Real> expected(Index tile) const {
     const ElementSet& e = model.tet4;
     const ElementTiles& t = state.tet4.tiles;
-    const Index begin = t.block_first[tile], end = t.block_first[tile + 1];
-    std::vector<Real> sum(4 * (t.node_first[end] - t.node_first[begin]));
+    const Index begin = on_host(t.block_first)[tile], end = on_host(t.block_first)[tile + 1];
+    std::vector<Real> sum(4 * (on_host(t.node_first)[end] - on_host(t.node_first)[begin]));
     const Index last = std::min(end * block_size, e.count);
     for (Index i = begin * block_size; i < last; ++i)
       for (Index k = 0; k < 4; ++k)
         for (Index axis = 0; axis < 3; ++axis)
-          sum[4 * t.place[k * e.stride + i] + axis] +=
-              e.volume[i] * motion[8 * e.nodes[k * e.stride + i] + axis];
+          sum[4 * on_host(t.place)[k * e.stride + i] + axis] +=
+              on_host(e.volume)[i] * on_host(motion)[8 * on_host(e.nodes)[k * e.stride + i] + axis];
     return sum;
   }
 };
@@ -94,8 +95,9 @@ TEST_CASE("tiles sum in the order of their elements, whatever the lanes and thre
       for (Index tile = 0; tile + 1 < Index(t.block_first.size()); ++tile) {
         const std::vector<Real> sum = web.expected(tile);
         for (std::size_t k = 0; k < sum.size(); ++k) {
-          const Index row = t.row[t.node_first[t.block_first[tile]] + Index(k) / 4];
-          differ += !same_bits(sum[k], web.state.tile_force[4 * row + k % 4]);
+          const Index row =
+              on_host(t.row)[on_host(t.node_first)[on_host(t.block_first)[tile]] + Index(k) / 4];
+          differ += !same_bits(sum[k], on_host(web.state.tile_force)[4 * row + k % 4]);
         }
       }
       CHECK(differ == 0);
@@ -109,16 +111,17 @@ TEST_CASE("tiles without a block on the list keep their rows") {
   const ElementTiles& t = web.state.tet4.tiles;
   REQUIRE(t.block_first.size() > 4);
   std::vector<Index> list;  // of the second tile
-  for (Index b = t.block_first[1]; b < t.block_first[2]; ++b) list.push_back(b);
-  web.state.tile_force.fill(7);
+  for (Index b = on_host(t.block_first)[1]; b < on_host(t.block_first)[2]; ++b) list.push_back(b);
+  for (Real& number : on_host(web.state.tile_force)) number = 7;
   Column<Index> blocks;
-  blocks.assign(list.data(), list.size());
+  blocks.assign(list);
   web.run({blocks.data(), Index(blocks.size())});
   const std::vector<Real> sum = web.expected(1);
   for (Index k = 0; k < Index(t.node.size()); ++k) {
-    const Index first = t.node_first[list.front()], last = t.node_first[list.back() + 1];
+    const Index first = on_host(t.node_first)[list.front()],
+                last = on_host(t.node_first)[list.back() + 1];
     const Real expected = k >= first && k < last ? sum[4 * (k - first)] : 7;
-    CHECK(same_bits(web.state.tile_force[4 * t.row[k]], expected));
+    CHECK(same_bits(on_host(web.state.tile_force)[4 * on_host(t.row)[k]], expected));
   }
 }
 

@@ -9,8 +9,8 @@ TEST_CASE("blocks with an item that is awake are listed") {
   list_blocks(3 * block_size + 2, list,
               [&](Index i) { return i == 1 || i == block_size - 1 || i == 3 * block_size + 1; });
   REQUIRE(list.size() == 2);
-  CHECK(list[0] == 0);
-  CHECK(list[1] == 3);
+  CHECK(on_host(list)[0] == 0);
+  CHECK(on_host(list)[1] == 3);
 }
 
 TEST_CASE("an empty list stands for no block, a plan that wakes everything for all") {
@@ -18,7 +18,7 @@ TEST_CASE("an empty list stands for no block, a plan that wakes everything for a
   CHECK(awake({}, list).id != nullptr);
   CHECK(awake({}, list).count == 0);
   CHECK(awake({.everything_awake = true}, list).id == nullptr);
-  list.push(4);
+  list.assign({4});
   CHECK(awake({}, list).count == 1);
   CHECK(awake({}, list).id[0] == 4);
 }

@@ -31,9 +31,11 @@ TEST_CASE("every set is visited once, and all corner rows belong to one item") {
     CHECK(names.insert(kind.name).second);
   });
   for_each_row_set(mixed.model, mixed.state, [&](auto, const auto& set, const auto& state) {
+    const auto is_active = activity(state);
+    const auto for_each_corner_row = corner_rows_of(set);
     for (Index i = 0; i < set.count; ++i) {
-      for_each_corner_row(set, i, [&](Index row) { ++owners[row]; });
-      active += is_active(state, i);
+      for_each_corner_row(i, [&](Index row) { ++owners[row]; });
+      active += is_active(i);
     }
   });
   CHECK(names == std::set<std::string>{"tet4", "pyramid5", "wedge6", "hex8", "triangles", "quads",
@@ -47,8 +49,8 @@ TEST_CASE("items name their nodes, and what a pair stiffens them by") {
   const Mixed mixed;
   std::vector<Index> visits(mixed.model.node_count);
   for_each_set(mixed.model, mixed.state, [&](const auto&, const auto& set, const auto&) {
-    for (Index i = 0; i < set.count; ++i)
-      for_each_node(mixed.model, set, i, [&](Index node) { ++visits[node]; });
+    const auto for_each_node = nodes_of(mixed.model, set);
+    for (Index i = 0; i < set.count; ++i) for_each_node(i, [&](Index node) { ++visits[node]; });
   });
   for (Index i = 0; i < mixed.model.node_count; ++i) {
     const Vec x = mixed.position(i);
@@ -56,16 +58,16 @@ TEST_CASE("items name their nodes, and what a pair stiffens them by") {
     CHECK(visits[i] == (at_bond ? 2 : 1));
   }
   Real sum = 0;
-  for_each_stiffness(mixed.model, mixed.model.triangles, 0, [&](Index, Real k) { sum += k; });
   const PairSet& p = mixed.model.triangles;
-  CHECK(relative_error(sum, 2 * p.stiffness[0] * p.area[0]) < 1e-15);
+  stiffness_of(mixed.model, p)(0, [&](Index, Real k) { sum += k; });
+  CHECK(relative_error(sum, 2 * on_host(p.stiffness)[0] * on_host(p.area)[0]) < 1e-15);
 }
 
 TEST_CASE("a released pair is not active") {
   Mixed mixed;
-  mixed.state.quads.status[0] = 0;
-  CHECK(!is_active(mixed.state.quads, 0));
-  CHECK(is_active(mixed.state.triangles, 0));
+  on_host(mixed.state.quads.status)[0] = 0;
+  CHECK(!activity(mixed.state.quads)(0));
+  CHECK(activity(mixed.state.triangles)(0));
 }
 
 }  // namespace cdem::test

@@ -41,7 +41,8 @@ struct Grid {
     e.count = Index(nodes.size()), e.stride = padded_stride(e.count), e.corners = corners;
     e.nodes.resize(std::size_t(corners) * e.stride);
     for (Index i = 0; i < e.count; ++i)
-      for (Index k = 0; k < corners; ++k) e.nodes[std::size_t(k) * e.stride + i] = nodes[i][k];
+      for (Index k = 0; k < corners; ++k)
+        on_host(e.nodes)[std::size_t(k) * e.stride + i] = nodes[i][k];
   }
 };
 
@@ -54,21 +55,21 @@ TEST_CASE("tiles are blocks one after the other, and each lists its nodes once")
       grid.model, grid.state, [&](auto, const ElementSet& e, const ElementState& es) {
         const ElementTiles& t = es.tiles;
         const Index count = Index(t.block_first.size()) - 1;
-        CHECK(t.block_first[0] == 0);
-        CHECK(t.block_first[count] == Blocks{}.count_in(e.count));
+        CHECK(on_host(t.block_first)[0] == 0);
+        CHECK(on_host(t.block_first)[count] == Blocks{}.count_in(e.count));
         for (Index tile = 0; tile < count; ++tile) {
-          CHECK(t.block_first[tile] < t.block_first[tile + 1]);
-          const Index first = t.node_first[t.block_first[tile]];
-          const Index nodes = t.node_first[t.block_first[tile + 1]] - first;
+          CHECK(on_host(t.block_first)[tile] < on_host(t.block_first)[tile + 1]);
+          const Index first = on_host(t.node_first)[on_host(t.block_first)[tile]];
+          const Index nodes = on_host(t.node_first)[on_host(t.block_first)[tile + 1]] - first;
           CHECK(nodes <= most_tile_nodes);
           std::set<Index> named(t.node.data() + first, t.node.data() + first + nodes), used;
           CHECK(Index(named.size()) == nodes);
-          const Index last = std::min(t.block_first[tile + 1] * block_size, e.count);
-          for (Index i = t.block_first[tile] * block_size; i < last; ++i)
+          const Index last = std::min(on_host(t.block_first)[tile + 1] * block_size, e.count);
+          for (Index i = on_host(t.block_first)[tile] * block_size; i < last; ++i)
             for (Index k = 0; k < e.corners; ++k) {
               const std::size_t at = std::size_t(k) * e.stride + i;
-              CHECK(t.node[first + t.place[at]] == e.nodes[at]);
-              used.insert(e.nodes[at]);
+              CHECK(on_host(t.node)[first + on_host(t.place)[at]] == on_host(e.nodes)[at]);
+              used.insert(on_host(e.nodes)[at]);
             }
           CHECK(used == named);
         }
@@ -84,14 +85,14 @@ TEST_CASE("rows of a node lie together, in the order of sets and tiles, each of 
   for_each_element_set(grid.model, grid.state,
                        [&](auto, const ElementSet&, const ElementState& es) {
                          for (std::size_t k = 0; k < es.tiles.node.size(); ++k)
-                           CHECK(es.tiles.row[k] == next[es.tiles.node[k]]++);
+                           CHECK(on_host(es.tiles.row)[k] == next[on_host(es.tiles.node)[k]]++);
                        });
   for (Index i = 0; i < grid.model.node_count; ++i) {
-    CHECK(next[i] == s.nodes.tile_first[i + 1]);
-    most = std::max(most, next[i] - s.nodes.tile_first[i]);
+    CHECK(next[i] == on_host(s.nodes.tile_first)[i + 1]);
+    most = std::max(most, next[i] - on_host(s.nodes.tile_first)[i]);
   }
   CHECK(most > 2);
-  CHECK(s.tile_force.size() == 4 * std::size_t(s.nodes.tile_first[grid.model.node_count]));
+  CHECK(s.tile_force.size() == 4 * std::size_t(on_host(s.nodes.tile_first)[grid.model.node_count]));
 }
 
 }  // namespace cdem::test

@@ -26,9 +26,9 @@ TEST_CASE("a node lists the row of its pair with opposite signs") {
   Index owned = 0, opposite = 0;
   for (Index i = 0; i < stack.model.node_count; ++i) {
     const bool at_bond = stack.position(i).z == 1;
-    CHECK(first[i + 1] - first[i] == (at_bond ? 1 : 0));
+    CHECK(on_host(first)[i + 1] - on_host(first)[i] == (at_bond ? 1 : 0));
     if (!at_bond) continue;
-    const Index row = corner[first[i]];
+    const Index row = on_host(corner)[on_host(first)[i]];
     (row < 0 ? opposite : owned) += 1;
     CHECK((row < 0 ? ~row : row) >= stack.model.quads.corner_first);
   }
@@ -38,26 +38,27 @@ TEST_CASE("a node lists the row of its pair with opposite signs") {
 
 TEST_CASE("rows of a released pair are on no list") {
   Stack stack;
-  stack.state.quads.status[0] = 0;
+  on_host(stack.state.quads.status)[0] = 0;
   list_corners(stack.model, stack.state);
   const Column<Index>& first = stack.state.nodes.corner_first;
-  for (Index i = 0; i < stack.model.node_count; ++i) CHECK(first[i + 1] - first[i] == 0);
+  for (Index i = 0; i < stack.model.node_count; ++i)
+    CHECK(on_host(first)[i + 1] - on_host(first)[i] == 0);
 }
 
 TEST_CASE("a node lists the contact rows of its faces that are not idle") {
   Stack stack;
   const Index exposed = Index(stack.state.search.exposed_face.size());
   CHECK(exposed == 10);
-  for (Index x = 0; x < exposed; ++x) stack.state.search.outer.face_listed[x] = x % 2;
+  for (Index x = 0; x < exposed; ++x) on_host(stack.state.search.outer.face_listed)[x] = x % 2;
   list_contact_corners(stack.model, stack.state);
   const Column<Index>&first = stack.state.search.contact_first,
         &corner = stack.state.search.contact_corner;
   Index listed = 0;
   for (Index i = 0; i < stack.model.node_count; ++i)
-    for (Index c = first[i]; c < first[i + 1]; ++c, ++listed) {
-      const Index x = corner[c] / 4, face = stack.state.search.exposed_face[x];
+    for (Index c = on_host(first)[i]; c < on_host(first)[i + 1]; ++c, ++listed) {
+      const Index x = on_host(corner)[c] / 4, face = on_host(stack.state.search.exposed_face)[x];
       CHECK(x % 2 == 1);
-      CHECK(stack.model.face_nodes[4 * face + corner[c] % 4] == i);
+      CHECK(on_host(stack.model.face_nodes)[4 * face + on_host(corner)[c] % 4] == i);
     }
   CHECK(listed == 4 * exposed / 2);
 }

@@ -12,9 +12,9 @@ TEST_CASE("curves are linear between their points, constant outside, and may jum
   const auto check = [&](Real time, Real first, Real third) {
     s.time = time;
     set_loads_and_supports(m, s);
-    CHECK(std::abs(s.load_factor[0] - first) < 1e-14);
-    CHECK(s.load_factor[1] == 7);
-    CHECK(std::abs(s.load_factor[2] - third) < 1e-14);
+    CHECK(std::abs(on_host(s.load_factor)[0] - first) < 1e-14);
+    CHECK(on_host(s.load_factor)[1] == 7);
+    CHECK(std::abs(on_host(s.load_factor)[2] - third) < 1e-14);
   };
   check(0, 10, 0);
   check(1, 10, 5);
@@ -33,8 +33,8 @@ TEST_CASE("velocities follow their curves at the middle of the coming step, load
   s.time = 0.25;
   s.dt = 0.5;
   set_loads_and_supports(m, s);
-  CHECK(s.load_factor[0] == 0.25);
-  CHECK(s.velocity_factor[0] == 0.5);
+  CHECK(on_host(s.load_factor)[0] == 0.25);
+  CHECK(on_host(s.velocity_factor)[0] == 0.5);
 }
 
 }  // namespace cdem::test

@@ -40,9 +40,10 @@ void check_same_bits(Swarm& fused, Swarm& apart) {
   REQUIRE(apart.state.time == fused.state.time);
   for (std::size_t k = 0; k < fused.state.nodes.motion.size(); ++k)
     if (k % 8 != 3 && k % 8 != 7)
-      CHECK(same_bits(fused.state.nodes.motion[k], apart.state.nodes.motion[k]));
+      CHECK(same_bits(on_host(fused.state.nodes.motion)[k], on_host(apart.state.nodes.motion)[k]));
   for (Index i = 0; i < fused.model.node_count; ++i)
-    CHECK(same_bits(fused.state.nodes.work_external[i], apart.state.nodes.work_external[i]));
+    CHECK(same_bits(on_host(fused.state.nodes.work_external)[i],
+                    on_host(apart.state.nodes.work_external)[i]));
 }
 
 TEST_CASE("fused or not, blocks move by the same bits") {

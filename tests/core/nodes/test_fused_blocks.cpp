@@ -28,19 +28,20 @@ TEST_CASE("free blocks are fused, those with a load or a support are not") {
   Tets tets;
   CHECK(tets.fused() == std::vector<Index>{0, 1});
   const Index second = 4 * block_size;  // first node of the second block of elements
-  tets.model.support[second + 2] = 0;
+  on_host(tets.model.support)[second + 2] = 0;
   CHECK(tets.fused() == std::vector<Index>{0});
-  CHECK(tets.state.nodes.fused[0] == 1);
-  CHECK(tets.state.nodes.fused[second] == 0);
+  CHECK(on_host(tets.state.nodes.fused)[0] == 1);
+  CHECK(on_host(tets.state.nodes.fused)[second] == 0);
   CHECK(tets.state.nodes.general.size() == 4);  // 32 nodes of the other
-  tets.model.support[second + 2] = -1;
-  for (Index i = 2; i <= tets.model.node_count; ++i) tets.model.load_first[i] = 1;
+  on_host(tets.model.support)[second + 2] = -1;
+  for (Index i = 2; i <= tets.model.node_count; ++i) on_host(tets.model.load_first)[i] = 1;
   CHECK(tets.fused() == std::vector<Index>{1});
 }
 
 TEST_CASE("blocks with contacts, scaled masses or another formulation are not fused") {
   Tets tets;
-  for (Index i = 1; i <= tets.model.node_count; ++i) tets.state.search.contact_first[i] = 1;
+  for (Index i = 1; i <= tets.model.node_count; ++i)
+    on_host(tets.state.search.contact_first)[i] = 1;
   CHECK(tets.fused() == std::vector<Index>{1});
   tets.state.nodes.relax_mass.resize(tets.model.node_count);
   tets.fused();
@@ -55,12 +56,12 @@ TEST_CASE("blocks with lumped masses are fused apart, and blocks with both not a
   Tets tets;
   tets.state.nodes.lumped.resize(tets.model.node_count);
   const Index second = 4 * block_size;
-  for (Index i = second; i < tets.model.node_count; ++i) tets.state.nodes.lumped[i] = 1;
+  for (Index i = second; i < tets.model.node_count; ++i) on_host(tets.state.nodes.lumped)[i] = 1;
   CHECK(tets.fused() == std::vector<Index>{0});
   CHECK(tets.state.tet4.fused.lumped.size() == 1);
-  CHECK(tets.state.tet4.fused.lumped[0] == 1);
-  CHECK(tets.state.nodes.fused[second] == 1);
-  for (Index i = 0; i < 4; ++i) tets.state.nodes.lumped[second + i] = 0;
+  CHECK(on_host(tets.state.tet4.fused.lumped)[0] == 1);
+  CHECK(on_host(tets.state.nodes.fused)[second] == 1);
+  for (Index i = 0; i < 4; ++i) on_host(tets.state.nodes.lumped)[second + i] = 0;
   CHECK(tets.fused() == std::vector<Index>{0});
   CHECK(tets.state.tet4.fused.lumped.size() == 0);
   CHECK(tets.state.tet4.fused.general.size() == 1);

@@ -59,13 +59,13 @@ struct Pair : Scene {
 
 TEST_CASE("blocks move lumped masses while they have bonds") {
   Pair pair;
-  for (Index i = 0; i < 8; ++i) CHECK(pair.state.nodes.lumped[i] == 1);
-  for (Index i = 8; i < 12; ++i) CHECK(pair.state.nodes.lumped[i] == 0);
+  for (Index i = 0; i < 8; ++i) CHECK(on_host(pair.state.nodes.lumped)[i] == 1);
+  for (Index i = 8; i < 12; ++i) CHECK(on_host(pair.state.nodes.lumped)[i] == 0);
   CHECK(mass_columns(pair.model, pair.state).row(5) == -1);
   CHECK(mass_columns(pair.model, pair.state).row(9) >= 0);
   pair.state.nodes.lumped.resize(0);  // as of a restored state
   list_lumped(pair.model, pair.state);
-  CHECK(pair.state.nodes.lumped[4] == 1);
+  CHECK(on_host(pair.state.nodes.lumped)[4] == 1);
   CHECK(pair.state.stopped_energy == 0);
   pair.state.nodes.lumped.resize(0);
   pair.model.lumped_while_bonded = false;
@@ -77,9 +77,9 @@ TEST_CASE("the exact masses move from the last release on, and the difference is
   Pair pair;
   const Real before = energy_of_motion(pair.model, pair.state);
   const std::vector<Real> motion(pair.motion(0), pair.motion(12));
-  pair.state.triangles.status[0] = Flag(PairStatus::released);
+  on_host(pair.state.triangles.status)[0] = Flag(PairStatus::released);
   list_lumped(pair.model, pair.state);
-  for (Index i = 0; i < 8; ++i) CHECK(pair.state.nodes.lumped[i] == 0);
+  for (Index i = 0; i < 8; ++i) CHECK(on_host(pair.state.nodes.lumped)[i] == 0);
   const Real after = energy_of_motion(pair.model, pair.state);
   CHECK(after < before);
   CHECK(pair.state.stopped_energy == before - after);
@@ -90,15 +90,15 @@ TEST_CASE("the exact masses move from the last release on, and the difference is
 TEST_CASE("energy closes over a break that changes the masses") {
   Pair torn(1e4);
   torn.step(200);
-  REQUIRE(torn.state.triangles.status[0] == Flag(PairStatus::released));
-  CHECK(torn.state.nodes.lumped[4] == 0);
+  REQUIRE(on_host(torn.state.triangles.status)[0] == Flag(PairStatus::released));
+  CHECK(on_host(torn.state.nodes.lumped)[4] == 0);
   CHECK(torn.state.stopped_energy > 0);
   CHECK(std::abs(energies(torn.model, torn.state).error) < 1e-3);
 }
 
 TEST_CASE("the energy of a rigid body is that of its mass and inertia") {
   Spinning tet;
-  const Real mass = 4 * tet.model.mass[0];
+  const Real mass = 4 * on_host(tet.model.mass)[0];
   tet.set_motion(0, {1, 2, 3});
   CHECK(relative_error(energy_of_motion(tet.model, tet.state), 0.5 * mass * 14) < 1e-14);
 }
@@ -107,12 +107,12 @@ TEST_CASE("stopped motion is zero, and its energy is booked as damping") {
   Spinning tet;
   State& s = tet.state;
   tet.model.gravity = {0, 0, -10};
-  const Real mass = 4 * tet.model.mass[0], before = energy_of_motion(tet.model, s);
+  const Real mass = 4 * on_host(tet.model.mass)[0], before = energy_of_motion(tet.model, s);
   s.dt_last = 0.01;
   Vec momentum{0, 0, 0};
   for (Index i = 0; i < 4; ++i) {
-    put(s.nodes.force.data() + 4 * i, Vec{0, 0, -10 * tet.model.mass[i]});
-    momentum = momentum + tet.model.mass[i] * tet.velocity(i);
+    put(s.nodes.force.data() + 4 * i, Vec{0, 0, -10 * on_host(tet.model.mass)[i]});
+    momentum = momentum + on_host(tet.model.mass)[i] * tet.velocity(i);
   }
   stop_motion(tet.model, s);
   for (Index i = 0; i < 4; ++i) CHECK(norm(tet.velocity(i)) == 0);
@@ -121,7 +121,7 @@ TEST_CASE("stopped motion is zero, and its energy is booked as damping") {
   const Real work = 0.5 * 0.01 * -10 * momentum.z;
   CHECK(relative_error(s.stopped_energy, before + work) < 1e-14);
   Real external = 0;
-  for (Index i = 0; i < 4; ++i) external += s.nodes.work_external[i];
+  for (Index i = 0; i < 4; ++i) external += on_host(s.nodes.work_external)[i];
   CHECK(relative_error(external, work) < 1e-14);
   CHECK(mass > 0);
 }

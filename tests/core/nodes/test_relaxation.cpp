@@ -26,7 +26,7 @@ struct Hanging : Scene {
   /// Stress of the lowest bond against the weight above it.
   Real carried() {
     Real sum = 0;
-    for (Index i = 0; i < 8; ++i) sum += state.nodes.reaction[4 * i + 2];
+    for (Index i = 0; i < 8; ++i) sum += on_host(state.nodes.reaction)[4 * i + 2];
     return sum;
   }
 };
@@ -41,7 +41,7 @@ TEST_CASE("kinetic relaxation stops all motion when the kinetic energy has passe
   const Real kinetic[] = {1, 3, 2, 1, 2};
   const bool due[] = {false, false, true, false, false};
   for (int k = 0; k < 5; ++k) {
-    s.nodes.sample[0] = kinetic[k];
+    on_host(s.nodes.sample)[0] = kinetic[k];
     relax_kinetically(m, s);
     CHECK(s.stop_due == due[k]);
   }
@@ -62,14 +62,14 @@ TEST_CASE("energies close while scaled masses grow and shrink a thousandfold") {
   Hanging hanging;
   Model& m = hanging.model;
   State& s = hanging.state;
-  const Real bonds = s.node_bonds[10], dt = s.dt;
+  const Real bonds = on_host(s.node_bonds)[10], dt = s.dt;
   Real most = 0;
   for (int n = 0; n < 40; ++n) {
     run(m, s, {.steps = 3, .relaxation = Relaxation::adaptive});
     const Energies e = energies(m, s);
     CHECK(std::abs(e.error) < 2e-8);  // strains of 1e-4 are not quite linear
     most = std::max(most, e.terms[energy_term("kinetic")]);
-    s.node_bonds[10] = (n % 3 == 0 ? 1000 : 1) * bonds;
+    on_host(s.node_bonds)[10] = (n % 3 == 0 ? 1000 : 1) * bonds;
     renew_step(m, s);
   }
   CHECK(s.dt == dt);
@@ -82,16 +82,16 @@ TEST_CASE("a node that becomes heavier keeps its momentum, a lighter one its vel
   Model& m = hanging.model;
   State& s = hanging.state;
   run(m, s, {.steps = 5, .relaxation = Relaxation::adaptive});
-  const Real bonds = s.node_bonds[10];
-  const auto momentum = [&] { return s.nodes.relax_mass[10] * hanging.velocity(10); };
+  const Real bonds = on_host(s.node_bonds)[10];
+  const auto momentum = [&] { return on_host(s.nodes.relax_mass)[10] * hanging.velocity(10); };
   const Vec before = momentum();
-  s.node_bonds[10] = 1000 * bonds;
+  on_host(s.node_bonds)[10] = 1000 * bonds;
   renew_step(m, s);
   slow_heavier_nodes(m, s);
   CHECK(distance(momentum(), before) < 1e-14 * norm(before));
-  s.nodes.relax[8 * 10 + 3] = 1;
+  on_host(s.nodes.relax)[8 * 10 + 3] = 1;
   const Vec velocity = hanging.velocity(10);
-  s.node_bonds[10] = bonds;
+  on_host(s.node_bonds)[10] = bonds;
   renew_step(m, s);
   slow_heavier_nodes(m, s);
   CHECK(distance(hanging.velocity(10), velocity) == 0);

@@ -28,27 +28,28 @@ TEST_CASE("elements and nodes of which all are fixed sleep") {
   const Boxes all(false);
   CHECK(all.state.hex8.awake.size() == 0);
   const Boxes boxes(true);
-  const Index tile = boxes.state.hex8.tiles.block_first[1] * block_size;  // the last one: all awake
+  const Index tile =
+      on_host(boxes.state.hex8.tiles.block_first)[1] * block_size;  // the last one: all awake
   REQUIRE(tile < Boxes::count - block_size);
   for (Index b = 0; b < Boxes::count; ++b) CHECK(lists(boxes.state.hex8.awake, b) == (b >= tile));
   const Index last = 8 * (Boxes::count - 1);
-  CHECK(boxes.state.nodes.sleeps[0]);
-  CHECK(boxes.state.nodes.sleeps[last - 8]);
-  CHECK(!boxes.state.nodes.sleeps[last]);
+  CHECK(on_host(boxes.state.nodes.sleeps)[0]);
+  CHECK(on_host(boxes.state.nodes.sleeps)[last - 8]);
+  CHECK(!on_host(boxes.state.nodes.sleeps)[last]);
   CHECK(lists(boxes.state.nodes.awake, last));
   CHECK(!lists(boxes.state.nodes.awake, 0));
 }
 
 TEST_CASE("a fixed node that moves, or carries a load, is awake") {
   Boxes boxes(false);
-  CHECK(boxes.state.nodes.sleeps[3]);
-  for (Index i = 4; i <= boxes.model.node_count; ++i) boxes.model.load_first[i] = 1;
+  CHECK(on_host(boxes.state.nodes.sleeps)[3]);
+  for (Index i = 4; i <= boxes.model.node_count; ++i) on_host(boxes.model.load_first)[i] = 1;
   find_awake(boxes.model, boxes.state);
-  CHECK(!boxes.state.nodes.sleeps[3]);
-  CHECK(boxes.state.nodes.sleeps[2]);
+  CHECK(!on_host(boxes.state.nodes.sleeps)[3]);
+  CHECK(on_host(boxes.state.nodes.sleeps)[2]);
   boxes.motion(40)[4] = 1;
   find_awake(boxes.model, boxes.state);
-  CHECK(!boxes.state.nodes.sleeps[40]);
+  CHECK(!on_host(boxes.state.nodes.sleeps)[40]);
   CHECK(lists(boxes.state.hex8.awake, 5));
 }
 
@@ -62,15 +63,16 @@ TEST_CASE("a free block that is bonded to a fixed one pulls at it") {
   find_awake(scene.model, scene.state);
   CHECK(lists(scene.state.quads.awake, 0));
   for (Index i = 0; i < 8; ++i)
-    CHECK(bool(scene.state.nodes.sleeps[i]) == (scene.position(i).z == 0));
+    CHECK(bool(on_host(scene.state.nodes.sleeps)[i]) == (scene.position(i).z == 0));
 }
 
 TEST_CASE("a node on the last list of contacts stays awake until the next") {
   Boxes boxes(false);
   State& s = boxes.state;
-  s.search.contact_first.fill(0);
+  for (Index& first : on_host(s.search.contact_first)) first = 0;
   const auto contacts = [&](Index of_first) {  // of node 0
-    for (Index i = 1; i <= boxes.model.node_count; ++i) s.search.contact_first[i] = of_first;
+    for (Index i = 1; i <= boxes.model.node_count; ++i)
+      on_host(s.search.contact_first)[i] = of_first;
     list_awake_nodes(boxes.model, s);
     return lists(s.nodes.awake, 0);
   };

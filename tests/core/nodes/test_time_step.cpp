@@ -15,7 +15,7 @@ struct Floating : Scene {
     start();
   }
   void set_frequency(Index node, Real frequency) {
-    model.frequency_squared[node] = frequency * frequency;
+    on_host(model.frequency_squared)[node] = frequency * frequency;
   }
 };
 
@@ -39,19 +39,19 @@ TEST_CASE("what is held counts only where nothing else is") {
   both.add_box({5, 0, 0}, {1, 1, 1});
   both.build();
   both.start();
-  both.model.frequency_squared[2] = 1e12;
+  on_host(both.model.frequency_squared)[2] = 1e12;
   CHECK(step_limit(both.model, both.state).node >= 8);
 }
 
 TEST_CASE("springs add twice their stiffness over the mass, Gershgorin") {
   Floating floating;
-  floating.state.node_bonds[5] = 1e9;
-  floating.state.node_potential[5] = 3e8;
-  floating.state.nodes.force[4 * 5 + 3] = 5e8;  // more than was expected
+  on_host(floating.state.node_bonds)[5] = 1e9;
+  on_host(floating.state.node_potential)[5] = 3e8;
+  on_host(floating.state.nodes.force)[4 * 5 + 3] = 5e8;  // more than was expected
   const StepLimit limit = step_limit(floating.model, floating.state);
   CHECK(limit.node == 5);
-  CHECK(relative_error(limit.contact_frequency_squared, 2 * 1.5e9 / floating.model.mass[5]) <
-        1e-15);
+  CHECK(relative_error(limit.contact_frequency_squared,
+                       2 * 1.5e9 / on_host(floating.model.mass)[5]) < 1e-15);
 }
 
 TEST_CASE("lumped masses bound the step of a block with bonds, exact ones that of others") {
@@ -60,16 +60,16 @@ TEST_CASE("lumped masses bound the step of a block with bonds, exact ones that o
   tet.add_tet(random, {0, 0, 0}, 1);
   tet.build();
   tet.start();
-  tet.state.node_bonds[0] = 1e8;
+  on_host(tet.state.node_bonds)[0] = 1e8;
   Model& m = tet.model;
   for (Index i = 0; i < 4; ++i) {  // the mass matrix of a tet has 5 times the inverse
-    m.lumped_frequency_squared[i] = 1e8;
-    m.frequency_squared[i] = 5e8;
-    m.inverse_mass_bound[i] = 5 / m.mass[i];
+    on_host(m.lumped_frequency_squared)[i] = 1e8;
+    on_host(m.frequency_squared)[i] = 5e8;
+    on_host(m.inverse_mass_bound)[i] = 5 / on_host(m.mass)[i];
   }
   const Real exact = step_limit(m, tet.state).dt;
   tet.state.nodes.lumped.resize(4);
-  for (Index i = 0; i < 4; ++i) tet.state.nodes.lumped[i] = 1;
+  for (Index i = 0; i < 4; ++i) on_host(tet.state.nodes.lumped)[i] = 1;
   CHECK(relative_error(step_limit(m, tet.state).dt, std::sqrt(5.0) * exact) < 1e-14);
 }
 
@@ -90,22 +90,22 @@ TEST_CASE("with a diagonal below the mass matrix, nodes of a block count one by 
   tet.add_tet(random, {0, 0, 0}, 1);
   tet.build();
   Model& m = tet.model;
-  m.support[2] = 0;
+  on_host(m.support)[2] = 0;
   m.support_component.assign(std::array<Flag, 3>{1, 1, 1}.data(), 3);
   m.support_curve.assign(std::array<Index, 3>{0, 0, 0}.data(), 3);
   m.support_velocity.assign(std::array<Real, 3>{0, 0, 0}.data(), 3);
   tet.start();
   for (Index i = 0; i < 4; ++i) {
-    m.lumped_frequency_squared[i] = 1e6;
-    m.frequency_squared[i] = 5e6;
-    m.inverse_mass_bound[i] = 5 / m.mass[i];
+    on_host(m.lumped_frequency_squared)[i] = 1e6;
+    on_host(m.frequency_squared)[i] = 5e6;
+    on_host(m.inverse_mass_bound)[i] = 5 / on_host(m.mass)[i];
   }
-  tet.state.node_bonds[1] = 1e9;
-  tet.state.node_bonds[2] = 1e12;  // held: it moves nothing
+  on_host(tet.state.node_bonds)[1] = 1e9;
+  on_host(tet.state.node_bonds)[2] = 1e12;  // held: it moves nothing
   m.least_mass.resize(4);
-  for (Index i = 0; i < 4; ++i) m.least_mass[i] = 0.2 * m.mass[i];
-  m.least_mass[1] = 40 * m.mass[1];
-  const Real light = 5e6, heavy = (m.mass[1] * 1e6 + 2e9) / m.least_mass[1];
+  for (Index i = 0; i < 4; ++i) on_host(m.least_mass)[i] = 0.2 * on_host(m.mass)[i];
+  on_host(m.least_mass)[1] = 40 * on_host(m.mass)[1];
+  const Real light = 5e6, heavy = (on_host(m.mass)[1] * 1e6 + 2e9) / on_host(m.least_mass)[1];
   const StepLimit limit = step_limit(m, tet.state);
   CHECK(relative_error(limit.dt, 2 / std::sqrt(std::max(light, heavy))) < 1e-14);
   CHECK(relative_error(limit.element_frequency_squared + limit.contact_frequency_squared,
@@ -128,11 +128,11 @@ TEST_CASE("the coming step shrinks at once and grows by one per cent") {
   State& s = floating.state;
   const Real before = s.dt;
   CHECK(relative_error(before, 0.8 * step_limit(floating.model, s).dt) < 1e-15);
-  s.node_bonds[0] = 1e10;
+  on_host(s.node_bonds)[0] = 1e10;
   renew_step(floating.model, s);
   const Real short_step = s.dt;
   CHECK(short_step < 0.5 * before);
-  s.node_bonds[0] = 0;
+  on_host(s.node_bonds)[0] = 0;
   renew_step(floating.model, s);
   CHECK(s.dt == short_step);
   CHECK(relative_error(s.dt_stable, flight_growth * before) < 1e-15);
@@ -147,9 +147,9 @@ TEST_CASE("the coming step shrinks at once and grows by one per cent") {
 TEST_CASE("where contacts limit the step it grows back to all of the stable one") {
   Floating floating;
   State& s = floating.state;
-  s.node_bonds[0] = 1e10;
+  on_host(s.node_bonds)[0] = 1e10;
   renew_step(floating.model, s);
-  s.node_bonds[0] = 5e9;
+  on_host(s.node_bonds)[0] = 5e9;
   renew_step(floating.model, s);
   CHECK(s.dt < s.dt_stable);
   CHECK(relative_error(s.dt_stable, 0.8 * step_limit(floating.model, s).dt) < 1e-15);
@@ -177,8 +177,8 @@ TEST_CASE("scaled masses make the present step stable, and their motion is booke
   const Real booked = s.stopped_energy;
   CHECK(relative_error(before - energy_of_motion(m, s), booked) < 1e-14);
   for (Index i = 0; i < m.node_count; ++i) {
-    const Real frequency =
-        std::sqrt(m.mass[i] * m.lumped_frequency_squared[i] / s.nodes.relax_mass[i]);
+    const Real frequency = std::sqrt(on_host(m.mass)[i] * on_host(m.lumped_frequency_squared)[i] /
+                                     on_host(s.nodes.relax_mass)[i]);
     CHECK(relative_error(frequency * s.dt, 2 * relax_safety) < 5e-16);
   }
 }

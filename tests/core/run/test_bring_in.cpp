@@ -53,7 +53,7 @@ struct Later : Scene {
   Index live_pairs() const {
     Index count = 0;
     for (Index i = 0; i < model.quads.count; ++i)
-      count += is_live(PairStatus(state.quads.status[i]));
+      count += is_live(PairStatus(on_host(state.quads.status)[i]));
     return count;
   }
 };

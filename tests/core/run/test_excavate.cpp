@@ -35,7 +35,8 @@ struct Tower : Scene {
   }
   Real weight(Index block) const {
     Real sum = 0;
-    for (Index i = 0; i < node_count(block); ++i) sum += model.gravity_mass[first_node(block) + i];
+    for (Index i = 0; i < node_count(block); ++i)
+      sum += on_host(model.gravity_mass)[first_node(block) + i];
     return 10 * sum;
   }
 };

@@ -36,7 +36,7 @@ struct Pile {
   Index contacts() const {
     Index count = 0;
     for (std::size_t k = 0; k < scene.state.springs.target.size(); ++k)
-      count += scene.state.springs.target[k] >= 0;
+      count += on_host(scene.state.springs.target)[k] >= 0;
     return count;
   }
 };
@@ -73,7 +73,8 @@ TEST_CASE("what is taken out stays where it is and nothing touches it") {
   const Vec place = scene.position(first), above = scene.position(top);
   const SearchState& search = scene.state.search;
   for (Index f = 0; f < scene.model.face_count; ++f)
-    CHECK((search.face_exposed[f] < 0) == (scene.model.face_block[f] == pile.low));
+    CHECK((on_host(search.face_exposed)[f] < 0) ==
+          (on_host(scene.model.face_block)[f] == pile.low));
   CHECK(pile.contacts() == 0);  // all were of the box that left
   // the other one falls through its place onto the bed
   const Real begin = scene.state.time;
@@ -89,7 +90,7 @@ TEST_CASE("what is taken out stays where it is and nothing touches it") {
   CHECK(scene.velocity(top).z > 0);
   CHECK(norm(scene.position(first) - place) == 0);
   CHECK(std::abs(pile.ledger().error) < 5e-3);
-  for (Index k = 0; k < 3; ++k) CHECK(scene.state.nodes.reaction[4 * first + k] == 0);
+  for (Index k = 0; k < 3; ++k) CHECK(on_host(scene.state.nodes.reaction)[4 * first + k] == 0);
 }
 
 TEST_CASE("a body that leaves keeps no force in its bonds") {
@@ -104,12 +105,12 @@ TEST_CASE("a body that leaves keeps no force in its bonds") {
   scene.set_motion(other, {1, 0, 0});
   scene.start();
   scene.step(20);
-  REQUIRE(scene.state.quads.stored[0] > 0);
+  REQUIRE(on_host(scene.state.quads.stored)[0] > 0);
   const Real limit = step_limit(scene.model, scene.state).dt;
   std::vector<Flag> leaves = flags_of(scene, low);
   for (Index i = 0; i < scene.node_count(high); ++i) leaves[scene.first_node(high) + i] = 1;
   take_out(scene.model, scene.state, leaves.data());
-  CHECK(PairStatus(scene.state.quads.status[0]) == PairStatus::released);
+  CHECK(PairStatus(on_host(scene.state.quads.status)[0]) == PairStatus::released);
   CHECK(step_limit(scene.model, scene.state).dt > limit);  // bonds do not count any more
   scene.step(50);
   const Energies e = energies(scene.model, scene.state);
@@ -124,11 +125,11 @@ TEST_CASE("supports and materials of what is out are added once") {
   take_out(m, pile.scene.state, flags_of(pile.scene, pile.low).data());
   const std::size_t supports = m.support_component.size(), materials = m.material_mu.size();
   const Index first = pile.scene.first_node(pile.low);
-  m.support[first] = -1;  // as a stage hands it over
-  m.gravity_mass[first] = 7;
+  on_host(m.support)[first] = -1;  // as a stage hands it over
+  on_host(m.gravity_mass)[first] = 7;
   hold_taken_out(m, pile.scene.state);
-  CHECK(m.support[first] >= 0);
-  CHECK(m.gravity_mass[first] == 0);
+  CHECK(on_host(m.support)[first] >= 0);
+  CHECK(on_host(m.gravity_mass)[first] == 0);
   CHECK(m.support_component.size() == supports);
   CHECK(m.material_mu.size() == materials);
 }

@@ -18,14 +18,15 @@ TEST_CASE("a contact that is dropped counts as missed, one that is made up too")
   check_against_all_pairs(scene.model, scene.state);
   CHECK(scene.state.missed == 0);
   std::size_t held = 0, idle = 0;
-  for (std::size_t slot = 0; slot < target.size(); ++slot) (target[slot] >= 0 ? held : idle) = slot;
-  REQUIRE(target[held] >= 0);
-  const Index kept = target[held];
-  target[held] = -1;
+  for (std::size_t slot = 0; slot < target.size(); ++slot)
+    (on_host(target)[slot] >= 0 ? held : idle) = slot;
+  REQUIRE(on_host(target)[held] >= 0);
+  const Index kept = on_host(target)[held];
+  on_host(target)[held] = -1;
   check_against_all_pairs(scene.model, scene.state);
   CHECK(scene.state.missed == 1);
-  target[held] = kept;
-  target[idle] = kept;
+  on_host(target)[held] = kept;
+  on_host(target)[idle] = kept;
   check_against_all_pairs(scene.model, scene.state);
   CHECK(scene.state.missed == 2);
   scene.model.check_search = false;

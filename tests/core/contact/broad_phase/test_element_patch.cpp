@@ -49,9 +49,9 @@ TEST_CASE("a patch has the vertices, edges and faces of its element once") {
     }
     for (Index v = 0; v < patch.vertex_count; ++v)
       for (Index i = 0; i < patch.face_count; ++i) {
-        const Index face = shapes.state.search.exposed_face[patch.face[i]];
+        const Index face = on_host(shapes.state.search.exposed_face)[patch.face[i]];
         if (patch.corner[v][i] >= 0)
-          CHECK(shapes.model.face_nodes[4 * face + patch.corner[v][i]] == patch.vertex[v]);
+          CHECK(on_host(shapes.model.face_nodes)[4 * face + patch.corner[v][i]] == patch.vertex[v]);
       }
   }
 }

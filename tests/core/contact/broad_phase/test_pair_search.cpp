@@ -31,7 +31,7 @@ struct Rubble : Scene {
   Index contacts() const {
     Index count = Index(state.edges.contact.size() / 4);
     for (std::size_t k = 0; k < state.springs.target.size(); ++k)
-      count += state.springs.target[k] >= 0;
+      count += on_host(state.springs.target)[k] >= 0;
     return count;
   }
 };

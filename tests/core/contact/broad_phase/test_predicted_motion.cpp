@@ -15,7 +15,7 @@ struct Flying : Scene {
     start();
     state.dt = 1e-3;
   }
-  PredictedNode predicted(Index node) const { return PredictedNode::of(state, node); }
+  PredictedNode predicted(Index node) const { return PredictedNodes(state).at(node); }
 };
 
 }  // namespace
@@ -43,8 +43,8 @@ TEST_CASE("a skin is the least of a calm node, a tenth of the smallest L of one 
   Real length[4] = {1e300, 1e300, 1e300, 1e300};
   for (Index f = 0; f < 4; ++f)
     for (Index k = 0; k < 3; ++k) {
-      Real& least = length[tet.model.face_nodes[4 * f + k]];
-      least = std::min(least, tet.model.face_length[f]);
+      Real& least = length[on_host(tet.model.face_nodes)[4 * f + k]];
+      least = std::min(least, on_host(tet.model.face_length)[f]);
     }
   predict_motion(tet.model, tet.state);
   for (Index i = 0; i < 4; ++i)
@@ -83,8 +83,8 @@ TEST_CASE("a predicted node is read back from its row") {
   Flying tet;
   predict_motion(tet.model, tet.state);
   const PredictedNode node{{1, 2, 3}, {4, 5, 6}, 0.5};
-  node.store(tet.state.search.outer.predicted.data() +
-             8 * tet.state.search.outer.node_predicted[1]);
+  node.store(on_host(tet.state.search.outer.predicted).data() +
+             8 * on_host(tet.state.search.outer.node_predicted)[1]);
   CHECK(distance(tet.predicted(1).position, node.position) == 0);
   CHECK(distance(tet.predicted(1).velocity, node.velocity) == 0);
   CHECK(tet.predicted(1).skin == 0.5);

@@ -39,13 +39,13 @@ struct TwoBlocks : Scene {
     search_pairs(model, state, *state.search.lists);
   }
   Vec at(Index node, Real time) const {
-    return position(node) + time * velocity_of[model.node_block[node]];
+    return position(node) + time * velocity_of[on_host(model.node_block)[node]];
   }
   /// How far a point is outside of a block at a time: its largest gap to one of its faces  [m].
   Real outside_of(Index block, const Vec& point, Real time) const {
     Real largest = -1e300;
     for (Index f = 0; f < model.face_count; ++f) {
-      if (model.face_block[f] != block) continue;
+      if (on_host(model.face_block)[f] != block) continue;
       const Index* n = model.face_nodes.data() + 4 * f;
       const Vec a = at(n[0], time), b = at(n[1], time), c = at(n[2], time);
       largest = std::max(largest, dot(unit(cross(b - a, c - a)), point - a));
@@ -63,8 +63,7 @@ TEST_CASE("a vertex or an edge that is separated stays outside of the other bloc
     const TwoBlocks blocks(random);
     const PairSearch& lists = *blocks.state.search.lists;
     const Bonded bonded = live_overlaps(blocks.model, blocks.state);
-    const PairContext context{blocks.model,  blocks.state, face_columns(blocks.model, blocks.state),
-                              lists.exposed, lists.sides,  bonded};
+    const PairContext context{blocks.model, blocks.state, lists.exposed, lists.sides, bonded};
     REQUIRE(lists.patches.size() == 2);
     const SeparatedParts separated(context, lists.patches[0], lists.patches[1]);
     const Real horizon = blocks.state.search.outer.lookahead_time;
@@ -103,8 +102,7 @@ TEST_CASE("faces that a plane holds apart have no vertex inside the other block 
     const TwoBlocks blocks(random);
     const PairSearch& lists = *blocks.state.search.lists;
     const Bonded bonded = live_overlaps(blocks.model, blocks.state);
-    const PairContext context{blocks.model,  blocks.state, face_columns(blocks.model, blocks.state),
-                              lists.exposed, lists.sides,  bonded};
+    const PairContext context{blocks.model, blocks.state, lists.exposed, lists.sides, bonded};
     const Patch &a = lists.patches[0], &b = lists.patches[1];
     const FacePairMask mask(context, a, b, SeparatedParts(context, a, b));
     const Real horizon = blocks.state.search.outer.lookahead_time;
@@ -112,7 +110,8 @@ TEST_CASE("faces that a plane holds apart have no vertex inside the other block 
     if (mask.any()) continue;
     for (Real time = 0; time <= horizon; time += 0.05 * horizon)
       for (Index i = 0; i < blocks.model.node_count; ++i)
-        CHECK(blocks.outside_of(1 - blocks.model.node_block[i], blocks.at(i, time), time) > 0);
+        CHECK(blocks.outside_of(1 - on_host(blocks.model.node_block)[i], blocks.at(i, time), time) >
+              0);
   }
   CHECK(masked > 20);
   CHECK(listed > 20);

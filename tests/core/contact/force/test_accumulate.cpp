@@ -25,14 +25,14 @@ struct Pressed : Scene {
     first.resize(exposed + 1);
     for (Index k = 0; k < 3; ++k) {
       const Index slot = 4 * 6 + k;
-      c.target[slot] = 1;
-      for (Index n = 0; n < 4; ++n) c.reaction[8 * slot + n] = random.between(-1, 1);
-      for (Index n = 4; n < 8; ++n) c.reaction[8 * slot + n] = random.between(0, 1);
-      c.reaction[8 * slot + 3] = 5 + k;  // stiffness
+      on_host(c.target)[slot] = 1;
+      for (Index n = 0; n < 4; ++n) on_host(c.reaction)[8 * slot + n] = random.between(-1, 1);
+      for (Index n = 4; n < 8; ++n) on_host(c.reaction)[8 * slot + n] = random.between(0, 1);
+      on_host(c.reaction)[8 * slot + 3] = 5 + k;  // stiffness
       acting.push_back(slot);
     }
     for (Index x = 2; x <= exposed; ++x) first[x] = 3;
-    for (Index x = 0; x < exposed; ++x) state.search.outer.face_listed[x] = 1;
+    for (Index x = 0; x < exposed; ++x) on_host(state.search.outer.face_listed)[x] = 1;
   }
   AccumulateFaceForces kernel() {
     return {ContactsOf{spring_columns(state), edge_columns(state), 10},
@@ -63,7 +63,7 @@ TEST_CASE("a vertex gets the force of its semi-spring, the target the opposite b
     Vec sum{0, 0, 0};
     Real stiffness = 0;
     for (Index slot = 24; slot < 27; ++slot) {
-      const Real w = pressed.state.springs.reaction[8 * slot + 4 + j];
+      const Real w = on_host(pressed.state.springs.reaction)[8 * slot + 4 + j];
       sum = sum - w * pressed.reaction(slot).vector();
       stiffness += w * pressed.reaction(slot).n[3];
     }
@@ -90,15 +90,15 @@ TEST_CASE("the action coefficient shares a force among the corners of its face")
 
 TEST_CASE("an idle face keeps what it has") {
   Pressed pressed;
-  pressed.state.search.outer.face_listed[6] = 0;
-  pressed.state.contact_force[4 * 24] = 42;
+  on_host(pressed.state.search.outer.face_listed)[6] = 0;
+  on_host(pressed.state.contact_force)[4 * 24] = 42;
   pressed.kernel()(One{6});
-  CHECK(pressed.state.contact_force[4 * 24] == 42);
+  CHECK(on_host(pressed.state.contact_force)[4 * 24] == 42);
 }
 
 TEST_CASE("contacts are listed by their targets") {
   Pressed pressed;
-  pressed.state.springs.target[0] = 7;
+  on_host(pressed.state.springs.target)[0] = 7;
   const ContactsOf all{spring_columns(pressed.state), edge_columns(pressed.state), 10};
   Column<Index> first, contact;
   list_rows({}, 10, 40, 10, all, first, contact);
@@ -144,7 +144,8 @@ TEST_CASE("forces of crossing edges and their moments sum to zero") {
   Real size = 0;
   for (std::size_t x = 0; x < ridges.state.search.exposed_face.size(); ++x)
     for (Index k = 0; k < 4; ++k) {
-      const Index node = ridges.model.face_nodes[4 * ridges.state.search.exposed_face[x] + k];
+      const Index node =
+          on_host(ridges.model.face_nodes)[4 * on_host(ridges.state.search.exposed_face)[x] + k];
       if (node < 0) continue;
       // where the node was when the force was found
       const Vec at = ridges.position(node) - ridges.state.dt_last * ridges.velocity(node);

@@ -33,10 +33,10 @@ struct Corner : Scene {
   }
   void change(Index before, Index now, const ContactState& held = test::held) {
     State& s = state;
-    s.springs.target_before[slot] = before;
-    s.springs.target[slot] = now;
+    on_host(s.springs.target_before)[slot] = before;
+    on_host(s.springs.target)[slot] = now;
     held.store(s.springs.state.data(), slot);
-    for (Index k = 0; k < 8; ++k) s.springs.reaction[8 * slot + k] = 9;
+    for (Index k = 0; k < 8; ++k) on_host(s.springs.reaction)[8 * slot + k] = 9;
     for_each_item({}, Index(s.search.exposed_face.size()),
                   ChangeTargets{face_columns(model, s), face_geometry(s), model.rules,
                                 contact_laws(model, s), spring_columns(s)});
@@ -58,7 +58,7 @@ TEST_CASE("a contact that goes on, or begins, is left as it is") {
     corner.change(before, top);
     CHECK(corner.now().force_n == held.force_n);
     CHECK(corner.now().shear2 == held.shear2);
-    CHECK(corner.state.springs.reaction[8 * corner.slot] == 9);
+    CHECK(on_host(corner.state.springs.reaction)[8 * corner.slot] == 9);
   }
 }
 
@@ -68,10 +68,10 @@ TEST_CASE("a contact that ended forgets its force, and books what it did not giv
   CHECK(corner.now().force_n == 0);
   CHECK(corner.now().shear1 == 0);
   CHECK(corner.now().energy_n == 0);
-  CHECK(corner.state.springs.reaction[8 * corner.slot] == 0);
+  CHECK(on_host(corner.state.springs.reaction)[8 * corner.slot] == 0);
   // nothing moved: all of it is lost
-  CHECK(corner.state.springs.dashpot[corner.slot] == held.energy_n);
-  CHECK(corner.state.springs.friction[corner.slot] == held.energy_s);
+  CHECK(on_host(corner.state.springs.dashpot)[corner.slot] == held.energy_n);
+  CHECK(on_host(corner.state.springs.friction)[corner.slot] == held.energy_s);
 }
 
 TEST_CASE(
@@ -85,12 +85,12 @@ TEST_CASE(
   // until it has its new force, its energies are what the springs did not give back
   CHECK(s.energy_n == held.energy_n);
   CHECK(s.energy_s == held.energy_s);
-  CHECK(corner.state.springs.friction[corner.slot] == 0);
+  CHECK(on_host(corner.state.springs.friction)[corner.slot] == 0);
 }
 
 TEST_CASE("a contact that has unloaded keeps its share of the approach on the next face") {
   Corner corner;
-  corner.model.interfaces[0].returned_n = 0.25;
+  on_host(corner.model.interfaces)[0].returned_n = 0.25;
   ContactState unloaded = held;
   unloaded.energy_n = 2;
   unloaded.penetration = std::sqrt(2 * 2 / (0.25 * corner.kn(top)));
@@ -122,12 +122,12 @@ struct Loaded : Scene {
     build();
     start();
     step(1);
-    state.springs.target_before[slot] = before;
+    on_host(state.springs.target_before)[slot] = before;
     old.store(state.springs.state.data(), slot);
-    for (Index k = 0; k < 8; ++k) state.springs.reaction[8 * slot + k] = 1;
+    for (Index k = 0; k < 8; ++k) on_host(state.springs.reaction)[8 * slot + k] = 1;
   }
   ContactState change(Index target) {
-    state.springs.target[slot] = target;
+    on_host(state.springs.target)[slot] = target;
     for_each_item({}, Index(state.search.exposed_face.size()), kernel());
     return ContactState::at(state.springs.state.data(), slot);
   }
@@ -136,7 +136,7 @@ struct Loaded : Scene {
             contact_laws(model, state), spring_columns(state)};
   }
   Frame<Real> frame(Index x) {
-    return face_columns(model, state).shape(state.search.exposed_face[x]).frame();
+    return face_columns(model, state).shape(on_host(state.search.exposed_face)[x]).frame();
   }
 };
 
@@ -169,10 +169,10 @@ TEST_CASE("a contact that ends forgets its forces, and what it held is lost") {
   CHECK(ended.shear2 == 0);
   CHECK(ended.energy_n == 0);
   CHECK(ended.energy_s == 0);
-  for (Index k = 0; k < 4; ++k) CHECK(box.state.springs.reaction[8 * box.slot + k] == 0);
+  for (Index k = 0; k < 4; ++k) CHECK(on_host(box.state.springs.reaction)[8 * box.slot + k] == 0);
   // nothing moves but by round-off
-  CHECK(relative_error(box.state.springs.friction[box.slot], box.old.energy_s) < 1e-10);
-  CHECK(relative_error(box.state.springs.dashpot[box.slot], box.old.energy_n) < 1e-10);
+  CHECK(relative_error(on_host(box.state.springs.friction)[box.slot], box.old.energy_s) < 1e-10);
+  CHECK(relative_error(on_host(box.state.springs.dashpot)[box.slot], box.old.energy_n) < 1e-10);
 }
 
 TEST_CASE("a contact that stays on its face is left alone") {
@@ -180,7 +180,7 @@ TEST_CASE("a contact that stays on its face is left alone") {
   const ContactState kept = box.change(box.before);
   CHECK(kept.force_n == box.old.force_n);
   CHECK(kept.shear2 == box.old.shear2);
-  CHECK(box.state.springs.friction[box.slot] == 0);
+  CHECK(on_host(box.state.springs.friction)[box.slot] == 0);
 }
 
 }  // namespace cdem::test

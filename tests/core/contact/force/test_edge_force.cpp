@@ -45,8 +45,9 @@ TEST_CASE("ridges that cross are pressed apart along their common perpendicular"
     CHECK(relative_error(std::abs(force[2]), s.force_n) < 1e-12);
     CHECK(std::hypot(force[0], force[1]) < 1e-12 * s.force_n);
     const bool upper =
-        ridges.model.face_block[EdgeContact::at(ridges.state.edges.contact.data(), c).mother / 4] ==
-        1;
+        on_host(
+            ridges.model
+                .face_block)[EdgeContact::at(ridges.state.edges.contact.data(), c).mother / 4] == 1;
     CHECK((force[2] > 0) == upper);
     CHECK(force[4] > 0);  // places on the two sides
     CHECK(force[4] < 1);
@@ -67,7 +68,7 @@ TEST_CASE("edges that slide have Coulomb's friction, and lose energy") {
     CHECK(std::hypot(s.shear1, s.shear2) > 0.1 * s.force_n);
   }
   for (std::size_t x = 0; x < ridges.state.edges.friction.size(); ++x)
-    friction += ridges.state.edges.friction[x];
+    friction += on_host(ridges.state.edges.friction)[x];
   CHECK(friction > 0);
 }
 
@@ -80,8 +81,8 @@ TEST_CASE("forces of crossing edges sum to no force and no moment") {
     Real size = 0;
     const State& s = ridges.state;
     for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x)
-      for (Index k = 0; k < s.search.exposed[x].count(); ++k) {
-        const Index node = s.search.exposed[x].corner[k];
+      for (Index k = 0; k < on_host(s.search.exposed)[x].count(); ++k) {
+        const Index node = on_host(s.search.exposed)[x].corner[k];
         const Vec f = vector_at(s.contact_force.data() + 4 * (4 * x + k));
         force = force + f;
         moment = moment + cross(ridges.position(node) - s.dt_last * ridges.velocity(node), f);

@@ -16,7 +16,7 @@ struct Blocks : Scene {
     for (Index b = 0; b < 2; ++b) set_motion(b, random.vector(1), random.vector(1));
     start();
     state.dt_last = 0.01;
-    for (Index i = 0; i < model.node_count; ++i) model.mass[i] = 1 + i;
+    for (Index i = 0; i < model.node_count; ++i) on_host(model.mass)[i] = 1 + i;
   }
   template <class T, class Ids>
   MotherPoint<T> at(const Ids& m, const Ids& slot) const {
@@ -31,7 +31,7 @@ TEST_CASE("without action coefficient the point is the vertex, with its mass") {
   const Blocks blocks;
   for (Index m = 0; m < 10; ++m)
     for (Index k = 0; k < 3; ++k) {
-      const Index node = blocks.state.search.exposed[m].corner[k];
+      const Index node = on_host(blocks.state.search.exposed)[m].corner[k];
       const auto p = blocks.at<Real>(m, 4 * m + k);
       CHECK(distance(p.x, blocks.position(node)) == 0);
       CHECK(distance(p.v, blocks.velocity(node)) == 0);
@@ -44,7 +44,7 @@ TEST_CASE("the coefficient moves the point towards the centre, with weights that
   Blocks blocks;
   blocks.model.rules.action = 0.3;
   for (Index m = 0; m < 10; ++m) {
-    const ExposedRow& row = blocks.state.search.exposed[m];
+    const ExposedRow& row = on_host(blocks.state.search.exposed)[m];
     const Index count = row.count();
     Vec center{0, 0, 0};
     for (Index k = 0; k < count; ++k)

@@ -19,7 +19,7 @@ struct Tilting : Scene {
     box = add_box({-0.5, -0.5, 0}, {1, 1, 1});
     build();
     set_interface({{"friction_angle", 0.5}});
-    model.interfaces[0].rolling_resistance = resistance;
+    on_host(model.interfaces)[0].rolling_resistance = resistance;
     set_motion(box, {0, 0, -0.5}, {0, 0.2, 0});
     start();
   }
@@ -27,7 +27,7 @@ struct Tilting : Scene {
   std::vector<std::size_t> touching() const {
     std::vector<std::size_t> slots;
     for (std::size_t k = 0; k < state.springs.target.size(); ++k)
-      if (state.springs.target[k] >= 0) slots.push_back(k);
+      if (on_host(state.springs.target)[k] >= 0) slots.push_back(k);
     return slots;
   }
 };
@@ -76,7 +76,7 @@ TEST_CASE("couples are no larger than mu_r R F_n, and act against the rotation")
   CHECK(at_limit > 0);
   Real friction = 0;
   for (std::size_t k = 0; k < tilting.state.springs.friction.size(); ++k)
-    friction += tilting.state.springs.friction[k];
+    friction += on_host(tilting.state.springs.friction)[k];
   CHECK(friction > 0);
 }
 
@@ -87,13 +87,13 @@ TEST_CASE("couples add no force and no moment to two bodies") {
     Vec force{0, 0, 0}, moment{0, 0, 0}, on_box{0, 0, 0};
     const State& s = tilting.state;
     for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x) {
-      const Index face = s.search.exposed_face[x];
+      const Index face = on_host(s.search.exposed_face)[x];
       for (Index k = 0; k < 4; ++k) {
-        const Index node = tilting.model.face_nodes[4 * face + k];
+        const Index node = on_host(tilting.model.face_nodes)[4 * face + k];
         const Vec f = vector_at(s.contact_force.data() + 4 * (4 * x + k));
         force = force + f;
         moment = moment + cross(tilting.position(node) - s.dt_last * tilting.velocity(node), f);
-        if (tilting.model.face_block[face] == tilting.box) on_box = on_box + f;
+        if (on_host(tilting.model.face_block)[face] == tilting.box) on_box = on_box + f;
       }
     }
     CHECK(norm(force) < 1e-14 * (1 + norm(on_box)));
@@ -123,18 +123,18 @@ TEST_CASE(
   for (Index i = 0; i < tilting.model.node_count; ++i) put(tilting.motion(i) + 4, Vec{0, 0, 0});
   RollingState held{0, 0, 1e-11, 1, {3, -4, 0}};  // of a stiffer spring
   held.store(s.springs.rolling.data(), slot);
-  s.springs.friction[slot] = 0;
-  s.springs.target_before[slot] = s.springs.target[slot] == 1 ? 2 : 1;
+  on_host(s.springs.friction)[slot] = 0;
+  on_host(s.springs.target_before)[slot] = on_host(s.springs.target)[slot] == 1 ? 2 : 1;
   const RollingState moved = run();
   CHECK(relative_error(moved.energy, held.energy) < 1e-12);
   CHECK(relative_error(moved.couple.x * -4, moved.couple.y * 3) < 1e-12);
-  CHECK(std::abs(s.springs.friction[slot]) < 1e-12 * held.energy);
-  s.springs.target_before[slot] = s.springs.target[slot];
-  s.springs.target[slot] = -1;
+  CHECK(std::abs(on_host(s.springs.friction)[slot]) < 1e-12 * held.energy);
+  on_host(s.springs.target_before)[slot] = on_host(s.springs.target)[slot];
+  on_host(s.springs.target)[slot] = -1;
   const RollingState ended = run();
   CHECK(norm(ended.couple) == 0);
   CHECK(ended.energy == 0);
-  CHECK(relative_error(s.springs.friction[slot], held.energy) < 1e-12);
+  CHECK(relative_error(on_host(s.springs.friction)[slot], held.energy) < 1e-12);
 }
 
 TEST_CASE("a resistance that a stage takes away lets go of what springs hold") {
@@ -143,11 +143,11 @@ TEST_CASE("a resistance that a stage takes away lets go of what springs hold") {
   const auto held = [&] {
     Real sum = 0;
     for (std::size_t k = 0; k < tilting.state.springs.rolling.size(); ++k)
-      sum += std::abs(tilting.state.springs.rolling[k]);
+      sum += std::abs(on_host(tilting.state.springs.rolling)[k]);
     return sum;
   };
   CHECK(held() > 0);
-  tilting.model.interfaces[0].rolling_resistance = 0;
+  on_host(tilting.model.interfaces)[0].rolling_resistance = 0;
   tilting.step(1);
   CHECK(held() == 0);
 }

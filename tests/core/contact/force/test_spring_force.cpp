@@ -27,7 +27,7 @@ struct Landing : Scene {
   std::vector<ContactState> contacts() const {
     std::vector<ContactState> all;
     for (std::size_t k = 0; k < state.springs.target.size(); ++k)
-      if (state.springs.target[k] >= 0)
+      if (on_host(state.springs.target)[k] >= 0)
         all.push_back(ContactState::at(state.springs.state.data(), k));
     return all;
   }
@@ -74,7 +74,7 @@ TEST_CASE("a pair that turns as a whole keeps its force: slip is objective") {
   }
   update_all_face_geometry(landing.model, s, {});
   for (std::size_t k = 0; k < s.springs.target.size(); ++k)
-    s.springs.target_before[k] = s.springs.target[k];
+    on_host(s.springs.target_before)[k] = on_host(s.springs.target)[k];
   update_contact_forces(landing.model, s, {});
   const auto after = landing.contacts();
   REQUIRE(after.size() == before.size());
@@ -92,13 +92,13 @@ TEST_CASE("contact forces of a body on another sum to no force and no moment") {
     Vec force{0, 0, 0}, moment{0, 0, 0}, on_box{0, 0, 0};
     const State& s = landing.state;
     for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x) {
-      const Index face = s.search.exposed_face[x];
+      const Index face = on_host(s.search.exposed_face)[x];
       for (Index k = 0; k < 4; ++k) {
-        const Index node = landing.model.face_nodes[4 * face + k];
+        const Index node = on_host(landing.model.face_nodes)[4 * face + k];
         const Vec f = vector_at(s.contact_force.data() + 4 * (4 * x + k));
         force = force + f;
         moment = moment + cross(landing.position(node) - s.dt_last * landing.velocity(node), f);
-        if (landing.model.face_block[face] == landing.box) on_box = on_box + f;
+        if (on_host(landing.model.face_block)[face] == landing.box) on_box = on_box + f;
       }
     }
     CHECK(norm(force) < 1e-15 * (1 + norm(on_box)));
@@ -115,8 +115,8 @@ TEST_CASE("sliding corners have the friction of Coulomb against their motion") {
   for (const ContactState& c : contacts)
     CHECK(relative_error(std::hypot(c.shear1, c.shear2), 0.3 * c.force_n) < 1e-12);
   for (std::size_t k = 0; k < landing.state.springs.friction.size(); ++k) {
-    CHECK(landing.state.springs.friction[k] >= 0);
-    friction += landing.state.springs.friction[k];
+    CHECK(on_host(landing.state.springs.friction)[k] >= 0);
+    friction += on_host(landing.state.springs.friction)[k];
   }
   CHECK(friction > 0);
 }
@@ -147,11 +147,11 @@ TEST_CASE("semi-springs give the same bits one by one and in lanes") {
       if (one.selects(m, slot)) one(Selected{m, slot});
   const SpringState &a = in_lanes.state.springs, &b = one_by_one.state.springs;
   for (std::size_t k = 0; k < a.state.size(); ++k) {
-    CHECK(same_bits(a.state[k], b.state[k]));
-    CHECK(same_bits(a.reaction[k], b.reaction[k]));
+    CHECK(same_bits(on_host(a.state)[k], on_host(b.state)[k]));
+    CHECK(same_bits(on_host(a.reaction)[k], on_host(b.reaction)[k]));
   }
   for (std::size_t k = 0; k < a.friction.size(); ++k)
-    CHECK(same_bits(a.friction[k], b.friction[k]));
+    CHECK(same_bits(on_host(a.friction)[k], on_host(b.friction)[k]));
 }
 
 }  // namespace cdem::test

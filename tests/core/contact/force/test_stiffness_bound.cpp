@@ -13,12 +13,12 @@ TEST_CASE("a live bond puts its share on its nodes, a released one nothing") {
   scene.set_interface({{"cohesion", 1e9}});
   scene.start();
   const PairSet& quads = scene.model.quads;
-  const Real share = quads.stiffness[0] * quads.area[0] / 4;
+  const Real share = on_host(quads.stiffness)[0] * on_host(quads.area)[0] / 4;
   for (Index i = 0; i < 16; ++i)
-    CHECK(scene.state.node_bonds[i] == (scene.position(i).z == 1 ? share : 0));
-  scene.state.quads.status[0] = 0;
+    CHECK(on_host(scene.state.node_bonds)[i] == (scene.position(i).z == 1 ? share : 0));
+  on_host(scene.state.quads.status)[0] = 0;
   sum_stiffness(scene.model, scene.state);
-  for (Index i = 0; i < 16; ++i) CHECK(scene.state.node_bonds[i] == 0);
+  for (Index i = 0; i < 16; ++i) CHECK(on_host(scene.state.node_bonds)[i] == 0);
 }
 
 TEST_CASE("the stiffness of contacts is not more than what is expected of them") {
@@ -33,8 +33,8 @@ TEST_CASE("the stiffness of contacts is not more than what is expected of them")
   for (int n = 0; n < 300; ++n) {
     scene.step(1);
     for (Index i = 8; i < 12; ++i) {
-      const Real now = scene.state.nodes.force[4 * i + 3];
-      CHECK(now <= scene.state.node_potential[i]);
+      const Real now = on_host(scene.state.nodes.force)[4 * i + 3];
+      CHECK(now <= on_host(scene.state.node_potential)[i]);
       most = std::max(most, now);
     }
   }

@@ -46,13 +46,13 @@ TEST_CASE("rows tell triangles from quadrilaterals, length and centre") {
   const FaceGeometry geometry = face_geometry(blocks.state);
   const FaceColumns faces = face_columns(blocks.model, blocks.state);
   for (Index x = 0; x < blocks.exposed(); ++x) {
-    const Index face = blocks.state.search.exposed_face[x];
+    const Index face = on_host(blocks.state.search.exposed_face)[x];
     CHECK(geometry.is_triangle(x) == (faces.vertex_count(face) == 3));
-    CHECK(geometry.length(x) == blocks.model.face_length[face]);
+    CHECK(geometry.length(x) == on_host(blocks.model.face_length)[face]);
     CHECK(distance(geometry.center(x), faces.shape(face).center()) == 0);
     CHECK(distance(geometry.normal(x), faces.shape(face).normal()) == 0);
     for (Index k = 0; k < faces.vertex_count(face); ++k)
-      CHECK(faces.side_on(face, blocks.model.face_edges[4 * face + k]) == k);
+      CHECK(faces.side_on(face, on_host(blocks.model.face_edges)[4 * face + k]) == k);
   }
 }
 

@@ -22,7 +22,7 @@ TEST_CASE("the list of a step begins empty; the last one is kept for its history
   State s;
   fill(s);
   begin_edges(s);
-  CHECK(s.edges.old_first[2] == 2);
+  CHECK(on_host(s.edges.old_first)[2] == 2);
   CHECK(EdgeContact::at(s.edges.old_contact.data(), 1).edge == 7);
   CHECK(s.edges.old_state.size() == 16);
 }
@@ -51,7 +51,7 @@ TEST_CASE("contacts are added to their faces in the state given; those there sta
   s.search.inner.held_known = true;
   add_edges(s, {{9, 0, 4, -1}, {5, 0, 7, -1}, {2, 1, 4, -1}}, awaited);
   const Index first[] = {0, 1, 3, 4};
-  for (Index x = 0; x < 4; ++x) CHECK(s.edges.first[x] == first[x]);
+  for (Index x = 0; x < 4; ++x) CHECK(on_host(s.edges.first)[x] == first[x]);
   CHECK(EdgeContact::at(s.edges.contact.data(), 0).mother == 2);
   CHECK(EdgeContact::at(s.edges.contact.data(), 3).mother == 9);
   CHECK(ContactState::at(s.edges.state.data(), 2).force_n == 3);

@@ -29,13 +29,14 @@ struct Ridges : Scene {
     std::vector<Found> list;
     for (std::size_t c = 0; c < state.edges.contact.size() / 4; ++c) {
       const EdgeContact contact = EdgeContact::at(state.edges.contact.data(), c);
-      const Index face = state.search.exposed_face[contact.mother / 4];
-      list.push_back({model.face_edges[4 * face + contact.mother % 4], contact.edge});
+      const Index face = on_host(state.search.exposed_face)[contact.mother / 4];
+      list.push_back({on_host(model.face_edges)[4 * face + contact.mother % 4], contact.edge});
     }
     return list;
   }
   bool is_ridge(Index edge) const {
-    const Index a = model.edge_nodes[2 * edge], b = model.edge_nodes[2 * edge + 1];
+    const Index a = on_host(model.edge_nodes)[2 * edge],
+                b = on_host(model.edge_nodes)[2 * edge + 1];
     return b == a + 3 && a % 6 == 2;
   }
 };
@@ -52,7 +53,7 @@ TEST_CASE("ridges that cross touch each other: two semi-edges of either block") 
     CHECK(contact.mother != contact.target);
   }
   for (std::size_t k = 0; k < ridges.state.springs.target.size(); ++k)
-    CHECK(ridges.state.springs.target[k] == -1);
+    CHECK(on_host(ridges.state.springs.target)[k] == -1);
 }
 
 TEST_CASE("ridges that are apart, or parallel, do not touch") {
@@ -65,7 +66,7 @@ TEST_CASE("contacts are in the order of target face, mother side and target side
   const State& s = ridges.state;
   const auto at = [&](Index c) { return EdgeContact::at(s.edges.contact.data(), c); };
   for (std::size_t x = 0; x < s.search.exposed_face.size(); ++x)
-    for (Index c = s.edges.first[x]; c + 1 < s.edges.first[x + 1]; ++c) {
+    for (Index c = on_host(s.edges.first)[x]; c + 1 < on_host(s.edges.first)[x + 1]; ++c) {
       CHECK(at(c).face <= at(c + 1).face);
       if (at(c).face == at(c + 1).face) CHECK(at(c).mother <= at(c + 1).mother);
     }
@@ -85,7 +86,7 @@ TEST_CASE(
   for (const Real gap : {1e-3, 5e-3}) {
     Ridges ridges(-0.001);
     ridges.model.rules.lifted = 0.01;
-    for (std::size_t c = 0; c < 4; ++c) ridges.state.edges.state[8 * c + 4] = 2e-3;
+    for (std::size_t c = 0; c < 4; ++c) on_host(ridges.state.edges.state)[8 * c + 4] = 2e-3;
     for (Index i = 6; i < 12; ++i)
       put(ridges.motion(i), ridges.position(i) + Vec{0, 0, 1e-3 + gap});
     ridges.step(1);
@@ -109,7 +110,8 @@ TEST_CASE("pairs of edges know what they hold, and find it anew when contacts we
   CHECK(s.search.inner.held_known);
   CHECK(held() == std::vector<Index>{0, 1, 2, 3});
   s.search.inner.held_known = false;
-  for (Index i = 0; i < Index(s.search.inner.held.size()); ++i) s.search.inner.held[i] = -1;
+  for (Index i = 0; i < Index(s.search.inner.held.size()); ++i)
+    on_host(s.search.inner.held)[i] = -1;
   ridges.step(1);
   CHECK(ridges.found().size() == 4);
   for (std::size_t c = 0; c < 4; ++c)
@@ -149,12 +151,12 @@ TEST_CASE("edges are judged in lanes as one by one, and as sides") {
   const Index exposed = Index(s.search.exposed_face.size());
   for (Index m = 0; m < exposed; ++m)
     for (Index t = 0; t < exposed; ++t)
-      for (Index k = 0; k < s.search.exposed[m].count(); ++k)
-        for (Index j = 0; j < s.search.exposed[t].count(); ++j)
+      for (Index k = 0; k < on_host(s.search.exposed)[m].count(); ++k)
+        for (Index j = 0; j < on_host(s.search.exposed)[t].count(); ++j)
           if (m / 5 != t / 5) all.push_back({4 * m + k, 4 * t + j});
   const auto edges_of = [&](const Sides& sides) {
-    const ExposedRow &m = s.search.exposed[sides.mother / 4],
-                     &t = s.search.exposed[sides.target / 4];
+    const ExposedRow &m = on_host(s.search.exposed)[sides.mother / 4],
+                     &t = on_host(s.search.exposed)[sides.target / 4];
     return TwoEdges<Index>{.end = {{m.corner[sides.mother % 4], m.end(sides.mother % 4)},
                                    {t.corner[sides.target % 4], t.end(sides.target % 4)}},
                            .side = {{sides.mother, sides.mother}, {sides.target, sides.target}},

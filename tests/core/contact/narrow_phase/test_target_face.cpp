@@ -35,7 +35,7 @@ struct Tip : Scene {
     lost = 0;
     for (Index x = 6; x < Index(state.search.exposed_face.size()); ++x)
       for (Index k = 0; k < 3; ++k)
-        if (state.search.exposed[x].corner[k] == tip)
+        if (on_host(state.search.exposed)[x].corner[k] == tip)
           found.push_back(
               search.choose(x, k, {faces().data(), nullptr, Index(faces().size())}, &lost));
     return found;
@@ -59,7 +59,8 @@ TEST_CASE("a vertex touches the face that it is behind, with all its faces") {
 
 TEST_CASE("a contact may begin as deep as the entry, and 1.5 times the approach of the step") {
   Tip tip;
-  const Real length = std::min(tip.model.face_length[6], tip.model.face_length[top]);
+  const Real length =
+      std::min(on_host(tip.model.face_length)[6], on_host(tip.model.face_length)[top]);
   const Real entry = tip.model.rules.entry * length;
   // at an edge of the top, where the way out is shorter through the side
   const Real x = 2 - 0.5 * entry;
@@ -96,7 +97,7 @@ TEST_CASE("a face that does not oppose the mother face is no target") {
   const ResolveTargets search{face_search(tip.model, tip.state)};
   for (Index x = 6; x < 10; ++x)
     for (Index k = 0; k < 3; ++k) {
-      if (tip.state.search.exposed[x].corner[k] != tip.tip) continue;
+      if (on_host(tip.state.search.exposed)[x].corner[k] != tip.tip) continue;
       for (const Index t : tip.faces()) {
         Flag lost = 0;
         if (search.choose(x, k, {&t, nullptr, 1}, &lost) >= 0) CHECK(t == top);
@@ -106,7 +107,8 @@ TEST_CASE("a face that does not oppose the mother face is no target") {
 
 TEST_CASE("a contact in place is kept deeper than one may begin, and lost under load below that") {
   Tip tip;
-  const Real length = std::min(tip.model.face_length[6], tip.model.face_length[top]);
+  const Real length =
+      std::min(on_host(tip.model.face_length)[6], on_host(tip.model.face_length)[top]);
   SpringColumns springs = spring_columns(tip.state);
   for (Index x = 6; x < 10; ++x)
     for (Index k = 0; k < 3; ++k) {
@@ -143,7 +145,7 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
     std::vector<Index> first(4 * exposed + 1), other;
     for (Index slot = 0; slot < 4 * exposed; ++slot) {
       const bool of_tip = slot % 4 < 3 && slot >= 24 &&
-                          tip.state.search.exposed[slot / 4].corner[slot % 4] == tip.tip;
+                          on_host(tip.state.search.exposed)[slot / 4].corner[slot % 4] == tip.tip;
       if (of_tip) other.insert(other.end(), {0, 1, 2, 3, 4, 5});
       first[slot + 1] = Index(other.size());
     }
@@ -154,7 +156,7 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
     for_each_item({}, exposed, ResolveTargets{search});
     std::vector<Index> found;
     for (Index slot = 24; slot < 4 * exposed; ++slot)
-      if (first[slot + 1] > first[slot]) found.push_back(tip.state.springs.target[slot]);
+      if (first[slot + 1] > first[slot]) found.push_back(on_host(tip.state.springs.target)[slot]);
     CHECK(found == expected);
   }
 }

@@ -37,8 +37,9 @@ TEST_CASE("the indented point lies alpha of the way from the vertex to the centr
       CHECK(distance(pair.p, indented) == 0);
       CHECK(distance(pair.center, target.center()) == 0);
       CHECK(distance(pair.normal, target.normal()) == 0);
-      CHECK(pair.length == std::min(two.model.face_length[m], two.model.face_length[t]));
-      CHECK(pair.target_length == -two.model.face_length[t]);  // a quadrilateral
+      CHECK(pair.length ==
+            std::min(on_host(two.model.face_length)[m], on_host(two.model.face_length)[t]));
+      CHECK(pair.target_length == -on_host(two.model.face_length)[t]);  // a quadrilateral
       CHECK(bool(pair.opposes) ==
             (dot(mother.normal(), target.normal()) < -two.model.rules.opposing));
     }

@@ -24,7 +24,7 @@ TEST_CASE("overlaps are counted, and the springs there are free of stress at the
   // four vertices, each through the face that looks down
   CHECK(found.count == 4);
   CHECK(relative_error(found.deepest, 0.05) < 1e-14);
-  CHECK(sunk.model.face_block[found.face] == 1);
+  CHECK(on_host(sunk.model.face_block)[found.face] == 1);
   for (int n = 0; n < 20; ++n) sunk.step(1);
   for (Index i = 8; i < 16; ++i) CHECK(norm(sunk.velocity(i)) < 3e-13);
 }

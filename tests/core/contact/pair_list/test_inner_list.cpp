@@ -35,7 +35,8 @@ struct Landing : Scene {
                                                  const Column<Index>& other) {
     std::set<std::pair<Index, Index>> all;
     for (std::size_t slot = 0; slot + 1 < first.size(); ++slot)
-      for (Index c = first[slot]; c < first[slot + 1]; ++c) all.insert({Index(slot), other[c]});
+      for (Index c = on_host(first)[slot]; c < on_host(first)[slot + 1]; ++c)
+        all.insert({Index(slot), on_host(other)[c]});
     return all;
   }
 };
@@ -63,7 +64,7 @@ TEST_CASE("contacts are on the inner list when they begin, and as long as they l
     landing.step(1);
     const auto near = landing.inner();
     for (std::size_t slot = 0; slot < landing.state.springs.target.size(); ++slot) {
-      const Index target = landing.state.springs.target[slot];
+      const Index target = on_host(landing.state.springs.target)[slot];
       if (target < 0) continue;
       ++held;
       CHECK(near.count({Index(slot), target}) == 1);
@@ -83,15 +84,16 @@ TEST_CASE("what a vertex may reach within the skins is on the inner list") {
     const auto near = landing.inner();
     const FaceColumns faces = face_columns(m, s);
     for (const auto& [slot, t] : landing.outer()) {
-      const FaceShape<Real> mother = faces.shape(s.search.exposed_face[slot / 4]),
-                            target = faces.shape(s.search.exposed_face[t]);
+      const FaceShape<Real> mother = faces.shape(on_host(s.search.exposed_face)[slot / 4]),
+                            target = faces.shape(on_host(s.search.exposed_face)[t]);
       const Vec v = mother.x[slot % 4], n_t = target.normal();
       const Vec p = v + m.rules.indentation * (mother.center() - v);
       const bool opposes = dot(mother.normal(), n_t) < -m.rules.opposing;
       const Real gap = project(target, v, n_t).gap;
       if (!opposes || !target.inside(p, n_t, 0.0) || gap < 0) continue;
       const auto skin_of = [&](Index x, Index k) {
-        return landing.list().skin[m.face_nodes[4 * s.search.exposed_face[x] + k]];
+        return on_host(
+            landing.list().skin)[on_host(m.face_nodes)[4 * on_host(s.search.exposed_face)[x] + k]];
       };
       Real skins = 0;
       for (Index k = 0; k < target.count(); ++k) skins = std::max(skins, skin_of(t, k));
@@ -110,8 +112,8 @@ TEST_CASE("the inner list is made again when a node has left its inner skin") {
   const Real made = landing.list().built_time;
   prune_pair_list_if_due(landing.model, landing.state, {});
   CHECK(landing.list().built_time == made);
-  const Index node = landing.state.search.outer.predicted_nodes[8];
-  landing.motion(node)[2] += 2 * landing.list().skin[node];
+  const Index node = on_host(landing.state.search.outer.predicted_nodes)[8];
+  landing.motion(node)[2] += 2 * on_host(landing.list().skin)[node];
   prune_pair_list_if_due(landing.model, landing.state, {});
   CHECK(landing.list().built_time == landing.state.time);
 }

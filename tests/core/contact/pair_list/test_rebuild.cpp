@@ -25,7 +25,7 @@ TEST_CASE("the list is due at once in a new state, and when a node has left its 
   CHECK(pair_list_is_due(scene.model, scene.state));
   scene.start();
   CHECK(!pair_list_is_due(scene.model, scene.state));
-  const Real skin = scene.state.search.outer.predicted[7];
+  const Real skin = on_host(scene.state.search.outer.predicted)[7];
   CHECK(skin > 0);
   scene.motion(0)[0] += 0.9 * skin;
   CHECK(!pair_list_is_due(scene.model, scene.state));
@@ -48,13 +48,13 @@ TEST_CASE("a rebuild lists the faces that may meet, and expects their springs in
   State& s = falling.state;
   CHECK(s.rebuilds == 1);
   CHECK(s.search.exposed_face.size() == 12);
-  CHECK(s.node_potential[8] == 0);
+  CHECK(on_host(s.node_potential)[8] == 0);
   for (Index i = 8; i < 16; ++i) put(falling.motion(i) + 4, Vec{0, 0, -50});
   const Real free_step = s.dt;
   rebuild_pair_list(falling.model, s, {.everything_awake = true});
   CHECK(s.rebuilds == 2);
   CHECK(s.search.outer.faces_acting_on.size() > 0);
-  CHECK(s.node_potential[8] > 0);
+  CHECK(on_host(s.node_potential)[8] > 0);
   CHECK(s.dt < free_step);
   CHECK(s.built_step == s.step);
 }
