@@ -18,6 +18,13 @@
 namespace cdem {
 inline namespace CDEM_DEVICE {
 
+/// Do kernels run on a GPU?
+#if defined(CDEM_CUDA)
+inline constexpr bool on_gpu = true;
+#else
+inline constexpr bool on_gpu = false;
+#endif
+
 /// Where launches are put: a CUDA stream, or nothing on the CPU.
 struct Queue {
   void* stream = nullptr;

@@ -30,6 +30,12 @@ struct Blocks {
   }
   /// First item of the b-th of them.
   CDEM_HD Index first(Index b) const { return (id ? id[b] : b) * block_size; }
+  /// Is a block among them?
+  CDEM_HD bool has(Index block) const {
+    if (!id) return true;
+    const Index place = first_from(block);
+    return place < count && id[place] == block;
+  }
   /// Which of them have numbers from `begin` to before `end`.
   CDEM_HD Range between(Index begin, Index end) const {
     if (!id) return {begin, end};

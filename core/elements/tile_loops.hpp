@@ -17,46 +17,92 @@ CDEM_HD inline Kernel in_tile(Kernel kernel, const TileNodes& nodes) {
 
 #if defined(CDEM_CUDA)
 
-/// One thread block for each tile. Its threads compute elements side by side; three of them then
-/// add the forces in the order of the elements, one for each axis.
-inline constexpr Index tile_threads = 64;
+/// Elements of a tile that are computed side by side, a thread each: their forces fit into shared
+/// memory beside the motion of the nodes.
+template <class Shape>
+inline constexpr Index tile_window = Shape::nodes > 4 ? 128 : 256;
 
+/// Forces of a window of elements on their corners, axis by axis.
+template <class Shape>
+struct WindowForces {
+  static constexpr Index window = tile_window<Shape>;
+  Real number[3][Shape::nodes][window];
+
+  __device__ void put(Index thread, const CornerForces<Shape, Real>& forces) {
+    for (Index k = 0; k < Shape::nodes; ++k) {
+      number[0][k][thread] = forces.f[k].x;
+      number[1][k][thread] = forces.f[k].y;
+      number[2][k][thread] = forces.f[k].z;
+    }
+  }
+  /// Of a corner, counted element by element from the first of the window.
+  __device__ Vec3<Real> of(Index corner) const {
+    const Index e = corner / Shape::nodes, k = corner % Shape::nodes;
+    return {number[0][k][e], number[1][k][e], number[2][k][e]};
+  }
+};
+
+/// One thread block for each tile: a window of elements after the other, and after each of them
+/// every node takes its forces, in the order of the elements.
 template <class Kernel>
-__global__ void run_tiles_on_gpu(Index count, Blocks blocks, Tiles tiles, Kernel kernel) {
-  constexpr Index corners = Kernel::Shape::nodes;
-  __shared__ Real motion[8 * most_tile_nodes], force[4 * most_tile_nodes];
-  __shared__ Real rows[4 * corners * tile_threads];
+__global__ void __launch_bounds__(tile_window<typename Kernel::Shape>, 2)
+    run_tiles_on_gpu(Index count, Blocks blocks, Tiles tiles, Kernel kernel) {
+  using Shape = typename Kernel::Shape;
+  constexpr Index corners = Shape::nodes, window = tile_window<Shape>, none = -1;
+  constexpr Index nodes_of_thread = (most_tile_nodes + window - 1) / window;
+  __shared__ Real motion[8 * most_tile_nodes];
+  __shared__ WindowForces<Shape> forces;
+  __shared__ Index next[most_tile_nodes];  // corner of each node; none where it is not to be run
+  __shared__ Range own, all;  // blocks and nodes of the tile; in registers they would be too many
   const Index tile = blockIdx.x, thread = threadIdx.x;
-  const Range some = blocks.between(tiles.block_first[tile], tiles.block_first[tile + 1]);
-  if (some.first == some.last) return;
-  const Range all{tiles.node_first[tiles.block_first[tile]],
-                  tiles.node_first[tiles.block_first[tile + 1]]};
-  const TileNodes nodes{tiles, all.first, motion, force};
-  for (Index k = all.first + thread; k < all.last; k += tile_threads) nodes.begin(k);
-  const Kernel local = in_tile(kernel, nodes);
-  const auto element = [&](Index b, Index j) {
-    return b + j / block_size < some.last ? blocks.first(b + j / block_size) + j % block_size
-                                          : count;
-  };
-  for (Index b = some.first; b < some.last; b += tile_threads / block_size) {
-    __syncthreads();
-    const Index own = element(b, thread);
-    if (own < count) local.forces(One{own}).store(OutForces{rows}, One{thread});
-    __syncthreads();
-    for (Index j = 0; thread < 3 && j < tile_threads; ++j)
-      for (Index k = 0; element(b, j) < count && k < corners; ++k)
-        force[4 * tiles.place.at(k, One{element(b, j)}) + thread] +=
-            rows[4 * (corners * j + k) + thread];
+  if (thread == 0) {
+    own = {tiles.block_first[tile], tiles.block_first[tile + 1]};
+    all = {tiles.node_first[own.first], tiles.node_first[own.last]};
   }
   __syncthreads();
-  for (Index k = all.first + thread; k < all.last; k += tile_threads) nodes.end(k);
+  const Range some = blocks.between(own.first, own.last);
+  if (some.first == some.last) return;
+  const TileNodes nodes{tiles, all.first, motion, nullptr};
+  for (Index n = thread; n < all.last - all.first; n += window) {
+    nodes.take(all.first + n);
+    const Index corner = tiles.corner_first[all.first + n];
+    const Index block = own.first + tiles.corner[corner] / (corners * block_size);
+    next[n] = blocks.has(block) ? corner : none;
+  }
+  const Kernel local = in_tile(kernel, nodes);
+  Vec3<Real> sum[nodes_of_thread];
+  for (Vec3<Real>& of_node : sum) of_node = {0.0, 0.0, 0.0};
+  const auto for_own_nodes = [&](const auto& act) {
+#pragma unroll
+    for (Index k = 0; k < nodes_of_thread; ++k) {
+      const Index n = thread + k * window;
+      if (n < all.last - all.first && next[n] != none) act(n, sum[k]);
+    }
+  };
+  for (Index b = own.first; b < own.last; b += window / block_size) {
+    const Index block = b + thread / block_size, e = b * block_size + thread;
+    const bool runs = block < own.last && e < count && blocks.has(block);
+    if (!__syncthreads_or(runs)) continue;
+    if (runs) forces.put(thread, local.forces(One{e}));
+    __syncthreads();
+    const Index begin = (b - own.first) * block_size * corners, end = begin + window * corners;
+    for_own_nodes([&](Index n, Vec3<Real>& of_node) {
+      Index c = next[n];
+      const Index last = tiles.corner_first[all.first + n + 1];
+      for (; c < last && tiles.corner[c] < end; ++c)
+        of_node = of_node + forces.of(tiles.corner[c] - begin);
+      next[n] = c;
+    });
+  }
+  for_own_nodes([&](Index n, Vec3<Real>& of_node) { nodes.give(all.first + n, of_node); });
 }
 
 template <class Kernel>
 void for_each_tile(Queue queue, Index count, Blocks blocks, const Tiles& tiles,
                    const Kernel& kernel) {
   if (tiles.count == 0 || blocks.count_in(count) == 0) return;
-  run_tiles_on_gpu<<<tiles.count, tile_threads, 0, static_cast<cudaStream_t>(queue.stream)>>>(
+  constexpr Index threads = tile_window<typename Kernel::Shape>;
+  run_tiles_on_gpu<<<tiles.count, threads, 0, static_cast<cudaStream_t>(queue.stream)>>>(
       count, blocks, tiles, kernel);
   check(cudaGetLastError());
 }

@@ -9,12 +9,13 @@ namespace cdem {
 /// Tiles of the elements of a set.
 struct Tiles {
   Index count;
-  const Index* block_first;  // [tile + 1] blocks of elements
-  const Index* node_first;   // [block + 1] nodes that come to the tile with a block
-  const Index *node, *row;   // these nodes, and their rows
-  InIndices place;           // [corner][element] of its node among those of the tile
-  const Real* motion;        // [node] rows of 8
-  Real* force;               // [row] rows of 4  [N]
+  const Index* block_first;            // [tile + 1] blocks of elements
+  const Index* node_first;             // [block + 1] nodes that come to the tile with a block
+  const Index *node, *row;             // these nodes, and their rows
+  InIndices place;                     // [corner][element] of its node among those of the tile
+  const Index *corner_first, *corner;  // of a GPU: see ElementTiles
+  const Real* motion;                  // [node] rows of 8
+  Real* force;                         // [row] rows of 4  [N]
 };
 
 /// Motion of the nodes of a tile, and the forces of its elements on them: small enough to stay in
@@ -25,12 +26,20 @@ struct TileNodes {
   Real* motion;  // [place] rows of 8
   Real* force;   // [place] rows of 4  [N]
 
-  /// Take a node of the list in; without force yet.
-  CDEM_HD void begin(Index k) const {
+  /// Take the motion of a node of the list.
+  CDEM_HD void take(Index k) const {
     const Real* from = tiles.motion + std::size_t(tiles.node[k]) * 8;
     Real* to = motion + 8 * (k - first);
     Row::at(from).store(to);
     Row::at(from + 4).store(to + 4);
+  }
+  /// Put a force into the row of a node.
+  CDEM_HD void give(Index k, const Vec3<Real>& f) const {
+    Row::of(f.x, f.y, f.z).store(tiles.force + std::size_t(tiles.row[k]) * 4);
+  }
+  /// Take a node of the list in; without force yet.
+  CDEM_HD void begin(Index k) const {
+    take(k);
     Row::zero().store(force + 4 * (k - first));
   }
   /// Put the force on it into its row.

@@ -31,6 +31,8 @@ inline Tiles tiles_of(const ElementSet& e, const ElementState& es, State& s) {
           .node = t.node.data(),
           .row = t.row.data(),
           .place = {t.place.data(), e.stride},
+          .corner_first = t.corner_first.data(),
+          .corner = t.corner.data(),
           .motion = s.nodes.motion.data(),
           .force = s.tile_force.data()};
 }

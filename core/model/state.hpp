@@ -48,6 +48,8 @@ struct ElementTiles {
   Column<Index> node_first;   // [block + 1] nodes that come to the tile with a block
   Column<Index> node, row;    // these nodes, and their rows: those of a node lie together
   Column<Index> place;        // [corner][element] of its node among those of the tile
+  // On a GPU: [tile node + 1] and the corners at it, by element, counted from the first of the tile
+  Column<Index> corner_first, corner;
 };
 
 struct ElementState {

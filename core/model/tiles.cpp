@@ -1,6 +1,8 @@
 // tiles.cpp - see tiles.hpp.
 #include "core/model/tiles.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "core/base/parallel.hpp"
@@ -10,6 +12,20 @@
 namespace cdem {
 
 namespace {
+
+/// Call act(node of a tile, number) for the corners of all elements, tile by tile.
+template <class Act>
+void visit_corners(const ElementSet& e, const ElementTiles& tiles, const Act& act) {
+  const auto block_first = on_host(tiles.block_first), node_first = on_host(tiles.node_first);
+  const auto places = on_host(tiles.place);
+  for (std::size_t tile = 0; tile + 1 < block_first.size(); ++tile) {
+    const Index first = block_first[tile] * block_size, node = node_first[block_first[tile]];
+    const Index last = std::min(block_first[tile + 1] * block_size, e.count);
+    for (Index i = first; i < last; ++i)
+      for (Index k = 0; k < e.corners; ++k)
+        act(node + places[std::size_t(k) * e.stride + i], (i - first) * e.corners + k);
+  }
+}
 
 /// A tile ends where the nodes of another block of elements might be too many.
 static_assert(most_tile_nodes >= 8 * block_size);
@@ -61,6 +77,19 @@ void list_tiles(const Model& m, State& s) {
     es.tiles.row.resize(es.tiles.node.size());
     Index* row = on_host(es.tiles.row).data();
     for (const Index node : on_host(es.tiles.node)) *row++ = first[node]++;
+  });
+  if (on_gpu) list_tile_corners(m, s);
+}
+
+void list_tile_corners(const Model& m, State& s) {
+  for_each_element_set(m, s, [&](auto, const ElementSet& e, ElementState& es) {
+    std::vector<Index> first(es.tiles.node.size() + 1), corner(std::size_t(e.corners) * e.count);
+    visit_corners(e, es.tiles, [&](Index node, Index) { ++first[node + 1]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<Index> next = first;
+    visit_corners(e, es.tiles, [&](Index node, Index number) { corner[next[node]++] = number; });
+    es.tiles.corner_first.assign(first);
+    es.tiles.corner.assign(corner);
   });
 }
 

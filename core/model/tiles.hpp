@@ -10,4 +10,7 @@ namespace cdem {
 /// the order of the sets and of their elements.
 void list_tiles(const Model& model, State& state);
 
+/// List the corners at each node of a tile: a GPU sums node by node. Part of list_tiles there.
+void list_tile_corners(const Model& model, State& state);
+
 }  // namespace cdem

@@ -26,16 +26,16 @@ struct Pull {
   }
 };
 
-/// Tets that join nodes at random.
+/// Tets that join nodes at random, or each its own.
 struct Web {
   Model model;
   State state;
   Column<Real> motion;
 
-  explicit Web(Index count) {
+  explicit Web(Index count, bool joined = true) {
     Random random(3);
     ElementSet& e = model.tet4;
-    model.node_count = 600;
+    model.node_count = joined ? 600 : 4 * count;
     e.count = count, e.stride = padded_stride(count), e.corners = 4;
     e.nodes.resize(4 * std::size_t(e.stride));
     e.volume.resize(e.stride);
@@ -43,7 +43,8 @@ struct Web {
       on_host(e.volume)[i] = std::pow(10, random.between(-8, 8));
       const Index first = random.below(150);
       for (Index k = 0; k < 4; ++k)
-        on_host(e.nodes)[k * e.stride + i] = (first + 150 * k + i / 8) % model.node_count;
+        on_host(e.nodes)[k * e.stride + i] =
+            joined ? (first + 150 * k + i / 8) % model.node_count : 4 * i + k;
     }
     motion.resize(8 * std::size_t(model.node_count));
     for (Real& number : on_host(motion)) number = random.between(-1, 1);
@@ -57,6 +58,8 @@ struct Web {
             .node = t.node.data(),
             .row = t.row.data(),
             .place = {t.place.data(), model.tet4.stride},
+            .corner_first = t.corner_first.data(),
+            .corner = t.corner.data(),
             .motion = motion.data(),
             .force = state.tile_force.data()};
   }
@@ -122,6 +125,25 @@ TEST_CASE("tiles without a block on the list keep their rows") {
                 last = on_host(t.node_first)[list.back() + 1];
     const Real expected = k >= first && k < last ? sum[4 * (k - first)] : 7;
     CHECK(same_bits(on_host(web.state.tile_force)[4 * on_host(t.row)[k]], expected));
+  }
+}
+
+TEST_CASE("blocks that share no node with others may be a part of a tile") {
+  const Index count = 1003;
+  Web web(count, false);
+  std::vector<Index> list;
+  for (Index b = 0; b <= count / block_size; ++b)
+    if (b % 3 == 1 || b * block_size + block_size > count) list.push_back(b);
+  for (Real& number : on_host(web.state.tile_force)) number = 7;
+  Column<Index> blocks;
+  blocks.assign(list);
+  web.run({blocks.data(), Index(blocks.size())});
+  const ElementTiles& t = web.state.tet4.tiles;
+  const auto force = on_host(web.state.tile_force), motion = on_host(web.motion);
+  for (Index k = 0; k < 4 * count; ++k) {  // nodes are numbered by their elements
+    const bool runs = std::binary_search(list.begin(), list.end(), k / 4 / block_size);
+    const Real expected = on_host(web.model.tet4.volume)[k / 4] * motion[8 * k];
+    CHECK(same_bits(force[4 * on_host(t.row)[k]], runs ? 0 + expected : 7));
   }
 }
 

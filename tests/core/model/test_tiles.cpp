@@ -76,6 +76,31 @@ TEST_CASE("tiles are blocks one after the other, and each lists its nodes once")
       });
 }
 
+TEST_CASE("the corners at a node of a tile are listed by element") {
+  Grid grid(14);
+  list_tile_corners(grid.model, grid.state);
+  for_each_element_set(
+      grid.model, grid.state, [&](auto, const ElementSet& e, const ElementState& es) {
+        const ElementTiles& t = es.tiles;
+        const auto first = on_host(t.corner_first), corner = on_host(t.corner);
+        REQUIRE(first.size() == t.node.size() + 1);
+        CHECK(first[t.node.size()] == e.corners * e.count);
+        for (std::size_t tile = 0; tile + 1 < t.block_first.size(); ++tile) {
+          const Index block = on_host(t.block_first)[tile];
+          const Index begin = on_host(t.node_first)[block];
+          const Index end = on_host(t.node_first)[on_host(t.block_first)[tile + 1]];
+          for (Index k = begin; k < end; ++k) {
+            CHECK(first[k] < first[k + 1]);
+            for (Index c = first[k]; c < first[k + 1]; ++c) {
+              if (c > first[k]) CHECK(corner[c - 1] < corner[c]);
+              const Index i = block * block_size + corner[c] / e.corners;
+              CHECK(on_host(t.place)[corner[c] % e.corners * e.stride + i] == k - begin);
+            }
+          }
+        }
+      });
+}
+
 TEST_CASE("rows of a node lie together, in the order of sets and tiles, each of one tile") {
   Grid grid(14);
   const State& s = grid.state;
