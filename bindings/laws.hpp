@@ -13,6 +13,7 @@
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
 #include "core/model/init_state.hpp"
+#include "core/model/interface_table.hpp"
 
 namespace cdem {
 
@@ -198,6 +199,7 @@ inline void set_interfaces(Core& core, const nb::list& interfaces) {
       lift = std::max(lift, 2 * Law<Real>::rise_most(row.data()));
     });
   }
+  note_interfaces(m);
   m.rules.lifted = m.initial_lift + lift;
   make_room_for_rises(m, core.state);
 }

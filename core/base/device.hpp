@@ -41,9 +41,9 @@ void* allocate_answer(std::size_t bytes);
 
 /// Wait until all launches are done; host code may read their columns then.
 void finish(Queue queue);
-/// The same for host code that is about to touch arrays. Other devices are done when a launch ends.
+/// The same for host code that is about to touch arrays; a launch on the CPU ends with its work.
 inline void wait_for_launches() {
-#if defined(CDEM_CUDA)
+#if !defined(CDEM_CPU)
   finish({});
 #endif
 }

@@ -118,6 +118,7 @@ struct Host {
   int transfers = 0;  // that live
   struct sigaction action_before{};
   std::int64_t launches = 0, waits = 0, transfers_made = 0;
+  bool in_flight = false;  // was anything launched since the last wait?
   std::map<char*, std::size_t> taken;
   std::multimap<std::size_t, char*> free;
   std::mt19937 random;
@@ -262,7 +263,10 @@ void release(void* memory) {
   host().free.emplace(one->second, one->first);
   host().taken.erase(one);
 }
-void finish(Queue) { ++host().waits; }
+void finish(Queue) {
+  host().waits += host().in_flight;
+  host().in_flight = false;
+}
 bool runs_alone() { return false; }
 const char* device_name() { return "emulated"; }
 
@@ -288,6 +292,7 @@ void launch(Index count, const char* kernel, void (*run)(const void* work, Index
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), host().random);
   ++host().launches, ++watch.launch;
+  host().in_flight = true;
   watch.item = 0, watch.fault = {}, watch.stack_end = end_of_stack();
   launching = true;
   open_or_close();

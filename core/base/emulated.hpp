@@ -22,7 +22,7 @@ struct HostAccess {
   std::int64_t reads, writes;
 };
 
-/// What the device has seen.
+/// What the device has seen; waits are those for launches that had not been waited for.
 struct Seen {
   std::int64_t launches, waits, transfers;
   std::vector<HostAccess> host;

@@ -111,6 +111,7 @@ struct FindMost {
 
 template <class T>
 T fetch_word(const T* word) {
+  finish({});
   const Transfer transfer;
   return *word;
 }

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
 #include "core/model/force_sets.hpp"
-#include "core/model/interface_table.hpp"
 #include "core/model/tiles.hpp"
 
 namespace cdem {
@@ -37,7 +37,7 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
 }
 
 void init_histories(const Model& m, const PairSet& p, PairState& s) {
-  if (!interface_table(m).remembers) return;
+  if (!m.interface_traits.remembers) return;
   s.history.resize(InterfaceLaws::most_state * std::size_t(p.points) * p.point_stride);
   const BeginHistory begin(m, p, s);
   const auto first = on_host(p.point_first);
@@ -120,7 +120,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   n.body.resize(count);
   for (HistoryColumns* history :
        {&s.springs.history, &s.edges.side_history, &s.edges.contact_history})
-    history->width = interface_table(m).remembers ? InterfaceLaws::most_state : 0;
+    history->width = m.interface_traits.remembers ? InterfaceLaws::most_state : 0;
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   make_room_for_rises(m, s);
   list_tiles(m, s);

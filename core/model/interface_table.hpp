@@ -1,15 +1,29 @@
 // interface_table.hpp - the interfaces of a model, as kernels see them.
 #pragma once
 
-#include "core/base/device.hpp"
+#include <algorithm>
+
 #include "core/interfaces/laws.hpp"
 #include "core/model/model.hpp"
 
 namespace cdem {
 
+/// Look at the interfaces once they are given or changed: no step then has to.
+inline void note_interfaces(Model& m) {
+  const auto all = on_host(m.interfaces);
+  const auto any = [&](auto&& has) { return std::any_of(all.begin(), all.end(), has); };
+  const InterfaceTable table = table_of(all.data(), all.size(), nullptr);
+  m.interface_traits = {
+      .laws = table.laws,
+      .curved = table.curved,
+      .remembers = table.remembers,
+      .hysteretic = table.curved != 0 || any([](const Interface& i) { return i.is_hysteretic(); }),
+      .rolls = any([](const Interface& i) { return i.rolling_resistance > 0; })};
+}
+
 inline InterfaceTable interface_table(const Model& m) {
-  const Transfer transfer;
-  return table_of(on_host(m.interfaces).data(), m.interfaces.size(), m.interface_parameters.data());
+  const InterfaceTraits& t = m.interface_traits;
+  return {m.interfaces.data(), m.interface_parameters.data(), t.laws, t.curved, t.remembers};
 }
 
 }  // namespace cdem

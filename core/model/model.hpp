@@ -111,6 +111,7 @@ struct Model {
   Column<Index> interface_of;
   Column<Interface> interfaces;
   Column<Real> interface_parameters;  // [interface][parameter_row]
+  InterfaceTraits interface_traits;   // what a step asks of them, see note_interfaces
 
   BoltSet bolts;
 

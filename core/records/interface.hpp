@@ -32,4 +32,12 @@ struct Interface {
   }
 };
 
+/// What all interfaces of a model have together.
+struct InterfaceTraits {
+  unsigned laws = 0, curved = 0;  // see InterfaceTable
+  bool remembers = false;         // the same
+  bool hysteretic = false;        // does any ask for restitution, or close by a curve?
+  bool rolls = false;             // does any resist rolling?
+};
+
 }  // namespace cdem

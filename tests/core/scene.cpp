@@ -6,6 +6,7 @@
 
 #include "core/materials/laws.hpp"
 #include "core/model/init_state.hpp"
+#include "core/model/interface_table.hpp"
 
 namespace cdem::test {
 
@@ -344,8 +345,14 @@ void Scene::build_loads() {
 
 void Scene::set_interface(const Named& parameters) {
   const Joints joints{parameters};
-  model.interfaces.assign(joints.interfaces.data(), 1);
-  model.interface_parameters.assign(joints.parameters.data(), joints.parameters.size());
+  model.interfaces.assign(joints.interfaces);
+  model.interface_parameters.assign(joints.parameters);
+  note_interfaces(model);
+}
+
+void Scene::change_interface(Index number, const std::function<void(Interface&)>& change) {
+  change(on_host(model.interfaces)[number]);
+  note_interfaces(model);
 }
 
 }  // namespace cdem::test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <type_traits>
 #include <vector>
 
@@ -40,6 +41,7 @@ class Scene {
   /// Parameters of the one interface by name, those that are not named being 0 (an angle is its
   /// tangent). Its stiffness is the stiffer side's modulus over its height.
   void set_interface(const Named& parameters);
+  void change_interface(Index number, const std::function<void(Interface&)>& change);
   /// Ready for steps.
   void start() { prepare(model, state); }
   void step(std::int64_t steps) { run(model, state, {.steps = steps}); }

@@ -100,7 +100,7 @@ void add_rolling_couples(const Model& m, State& s, Queue q) {
 
 void update_contact_forces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::contact);
-  if (any_hysteretic(m)) {
+  if (m.interface_traits.hysteretic) {
     update_spring_forces<HystereticUnloading>(m, s, q);
     update_edge_forces<HystereticUnloading>(m, s, q);
   } else {
@@ -108,7 +108,7 @@ void update_contact_forces(const Model& m, State& s, Queue q) {
     update_edge_forces<ElasticUnloading>(m, s, q);
   }
   accumulate_forces(m, s, q);
-  if (any_resists_rolling(m) || s.springs.rolling.size() > 0) add_rolling_couples(m, s, q);
+  if (m.interface_traits.rolls || s.springs.rolling.size() > 0) add_rolling_couples(m, s, q);
 }
 
 }  // namespace cdem

@@ -137,10 +137,10 @@ void list_edge_pairs(const PairBuffers& found, SearchState& search) {
 void list_pairs_of_edges(const Model& m, SearchState& search) {
   const Index count = Index(search.outer.ee_codes.size());
   const std::size_t stride = padded_stride(count);
-  std::vector<Index> first(count > 0 ? m.edge_nodes.size() / 2 + 1 : 0);
+  search.outer.edge_first.resize(0);
   search.outer.edge_pairs.renew(4 * std::size_t(count));
-  search.outer.edge_first.assign(first);
   if (count == 0) return;
+  std::vector<Index> first(m.edge_nodes.size() / 2 + 1);
   const auto sides = on_host(search.outer.ee_sides), members = on_host(search.outer.ee_pairs);
   const auto exposed_face = on_host(search.exposed_face), pairs = on_host(search.outer.edge_pairs);
   const auto face_edges = on_host(m.face_edges);

@@ -82,8 +82,8 @@ TEST_CASE(
 TEST_CASE("a contact with restitution takes the force, and holds what it can give back") {
   Slid slid({1e-4, 2e-4, -3e-4});
   const PairSet& p = slid.model.quads;
-  on_host(slid.model.interfaces)[on_host(p.interface)[0]].returned_n = 0.25;
-  on_host(slid.model.interfaces)[on_host(p.interface)[0]].returned_s = 0.64;
+  slid.change_interface(on_host(p.interface)[0],
+                        [](Interface& i) { i.returned_n = 0.25, i.returned_s = 0.64; });
   const Real k = on_host(p.stiffness)[0] * on_host(p.area)[0], energy = slid.transfer();
   CHECK(relative_error(energy, 0.5 * k * (0.25 * 9e-8 + 0.64 * 5e-8)) < 1e-11);
   for (std::size_t slot = 0; slot < slid.state.springs.target.size(); ++slot) {

@@ -90,7 +90,7 @@ TEST_CASE(
 
 TEST_CASE("a contact that has unloaded keeps its share of the approach on the next face") {
   Corner corner;
-  on_host(corner.model.interfaces)[0].returned_n = 0.25;
+  corner.change_interface(0, [](Interface& i) { i.returned_n = 0.25; });
   ContactState unloaded = held;
   unloaded.energy_n = 2;
   unloaded.penetration = std::sqrt(2 * 2 / (0.25 * corner.kn(top)));

@@ -20,6 +20,7 @@ struct TwoClasses : Scene {
     const Interface rows[] = {
         {0, false, 5e9, 0, 0, 3}, {0, false, 0, 2, 7e8, 0}, {0, true, 0, 1, 0, 1}};
     model.interfaces.assign(rows, 3);
+    note_interfaces(model);
     for (Index f = 6; f < 12; ++f) on_host(model.face_interface_class)[f] = 1;
     start();
   }
@@ -69,8 +70,7 @@ TEST_CASE("a stiffness is the given value, or a factor times the stiffer side or
 
 TEST_CASE("contacts of an interface give back its share, for one pair and for a lane") {
   TwoClasses blocks;
-  on_host(blocks.model.interfaces)[1].returned_n = 0.25;
-  on_host(blocks.model.interfaces)[1].returned_s = 0.64;
+  blocks.change_interface(1, [](Interface& i) { i.returned_n = 0.25, i.returned_s = 0.64; });
   const FaceInterfaces faces = contact_laws(blocks.model, blocks.state).faces;
   const ExposedRow* table = face_geometry(blocks.state).table;
   CHECK(faces.returned_n(faces.between(table, 0, 8)) == 0.25);

@@ -19,7 +19,7 @@ struct Tilting : Scene {
     box = add_box({-0.5, -0.5, 0}, {1, 1, 1});
     build();
     set_interface({{"friction_angle", 0.5}});
-    on_host(model.interfaces)[0].rolling_resistance = resistance;
+    change_interface(0, [&](Interface& i) { i.rolling_resistance = resistance; });
     set_motion(box, {0, 0, -0.5}, {0, 0.2, 0});
     start();
   }
@@ -147,7 +147,7 @@ TEST_CASE("a resistance that a stage takes away lets go of what springs hold") {
     return sum;
   };
   CHECK(held() > 0);
-  on_host(tilting.model.interfaces)[0].rolling_resistance = 0;
+  tilting.change_interface(0, [](Interface& i) { i.rolling_resistance = 0; });
   tilting.step(1);
   CHECK(held() == 0);
 }
