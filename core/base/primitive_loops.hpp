@@ -137,7 +137,7 @@ Most most(Queue queue, Index count, const Kernel& kernel) {
 #if defined(CDEM_CUDA)
 
 inline constexpr int sum_warp = 32, sum_threads = 256;
-inline constexpr Index sum_blocks = 1024;
+inline constexpr Index sum_groups = 1024;
 
 /// Of all threads of a warp, which call it together.
 __device__ inline int most_of_warp(int number) { return __reduce_max_sync(~0u, number); }
@@ -182,10 +182,8 @@ template <class Kernel>
 Real exact_sum(Queue queue, Index count, const Kernel& kernel) {
   if (count == 0) return 0;
   std::int64_t* const words = zeroed_words(queue);
-  const Index blocks = std::min(sum_blocks, count / sum_threads + (count % sum_threads > 0));
-  sum_on_gpu<<<blocks, sum_threads, 0, static_cast<cudaStream_t>(queue.stream)> > >(count, kernel,
-                                                                                    words);
-  check(cudaGetLastError());
+  const Index groups = std::min(sum_groups, count / sum_threads + (count % sum_threads > 0));
+  launch_groups(queue, groups, sum_threads, sum_on_gpu<Kernel>, count, kernel, words);
   return sum_of_words(queue, words);
 }
 
