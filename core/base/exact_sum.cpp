@@ -7,6 +7,7 @@
 // large superaccumulators, the digits.
 #include "core/base/exact_sum.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,11 +16,11 @@ namespace cdem {
 
 namespace {
 
-constexpr int digit_bits = 32;
+constexpr int digit_bits = ExactSum::digit_bits;
 constexpr Index together = 4;  // packs, so that none waits for the one before
 
 /// The unit of a digit is two to this power.
-constexpr int exponent_of(int digit) { return digit_bits * digit - 1074; }
+constexpr int exponent_of(int digit) { return digit_bits * digit + ExactSum::lowest; }
 
 /// The lowest digit in which a number counts less than 2^31.
 int digit_of(Real number) {
@@ -79,26 +80,28 @@ Real take(Real* numbers, Index count, Real large, Real& largest) {
 void ExactSum::add(Real* numbers, Index count) {
   while (count % (together * lanes) != 0) numbers[count++] = 0;
   Real largest = largest_of_all(numbers, count);
-  finite_ = finite_ && largest < 0x1p973;
-  for (int digit = digits; finite_ && largest > 0;) {
+  if (!(largest < std::ldexp(1.0, too_large))) {
+    ++word_[digits];
+    return;
+  }
+  for (int digit = digits; largest > 0;) {
     digit = std::min(digit_of(largest), digit - 1);  // half a unit, which may be left, fits as well
     const int unit = exponent_of(digit);
     const Real sum = take(numbers, count, std::ldexp(1.5, unit + 52), largest);
-    digit_[digit] += std::int64_t(std::ldexp(sum, -unit));
+    word_[digit] += std::int64_t(std::ldexp(sum, -unit));
   }
 }
 
-void ExactSum::add(const ExactSum& part) {
-  finite_ = finite_ && part.finite_;
-  for (int k = 0; k < digits; ++k) digit_[k] += part.digit_[k];
+void ExactSum::add(const std::int64_t* part) {
+  for (int k = 0; k < words; ++k) word_[k] += part[k];
 }
 
 Real ExactSum::value() const {
-  if (!finite_) return std::numeric_limits<Real>::quiet_NaN();
+  if (word_[digits] > 0) return std::numeric_limits<Real>::quiet_NaN();
   Real sum = 0;
   std::int64_t carry = 0;
   for (int k = 0; k < digits; ++k) {
-    std::int64_t here = digit_[k] + carry;
+    std::int64_t here = word_[k] + carry;
     carry = 0;
     if (k + 1 < digits) {
       carry = (here + (std::int64_t(1) << (digit_bits - 1))) >> digit_bits;

@@ -1,12 +1,11 @@
-// exact_sum.hpp - sums that have the same bits whatever the order of their terms.
+// exact_sum.hpp - sums that have the same bits whatever the order of their terms: what they are
+// made of. `exact_sum` of primitives.hpp makes them.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
-#include "core/base/column.hpp"
-#include "core/base/parallel.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 
@@ -15,45 +14,71 @@ namespace cdem {
 class ExactSum {
  public:
   static constexpr Index most = 1024;  // numbers at a time
+  static constexpr int digits = 64, digit_bits = 32;
+  static constexpr int lowest = -1074;      // the unit of digit 0 is two to this power
+  static constexpr int too_large = 973;     // two to this power is
+  static constexpr int words = digits + 1;  // behind the digits: how many were none or too large
 
   /// Add numbers, which are lost; behind them there is room up to `most`. For all parts of a sum
   /// together up to 2^31.
   void add(Real* numbers, Index count);
-  void add(const ExactSum& part);
+  /// Add a part, of which these are the words.
+  void add(const std::int64_t* part);
+  void add(const ExactSum& part) { add(part.word_.data()); }
   /// Within two units in the last place; no number if one of them was none or too large.
   Real value() const;
 
  private:
-  static constexpr int digits = 64;
-  std::array<std::int64_t, digits> digit_{};
-  bool finite_ = true;
+  std::array<std::int64_t, words> word_{};
 };
 
-/// Sum of `term(i)`, which is called once for each of `count` items.
-template <class Term>
-Real exact_sum(Index count, Term&& term) {
-  constexpr Index chunk = ExactSum::most;
-  ExactSum all;
-#pragma omp parallel if (count >= worth_threads)
-  {
-    ExactSum own;
-    alignas(64) Real numbers[chunk];
-#pragma omp for schedule(static) nowait
-    for (Index c = 0; c < count / chunk + (count % chunk > 0); ++c) {
-      const Index first = c * chunk, here = std::min(chunk, count - first);
-      for (Index i = 0; i < here; ++i) numbers[i] = term(first + i);
-      own.add(numbers, here);
+/// A number as words of an exact sum, which a device adds up: two or three digits side by side, or
+/// 1 behind the digits. Their unit is that of ExactSum, so the sum is the same integer.
+class NumberDigits {
+ public:
+  CDEM_HD explicit NumberDigits(Real number) {
+    constexpr int fraction_bits = 52, bias = 1023;
+    const std::uint64_t bits = bits_of(number);
+    const int exponent = int(bits >> fraction_bits & 0x7ff);
+    if (exponent >= bias + ExactSum::too_large) {
+      first_ = last_ = ExactSum::digits;
+      low_ = 1;
+      return;
     }
-#pragma omp critical(cdem_exact_sum)
-    all.add(own);
+    std::uint64_t whole = bits & ((std::uint64_t(1) << fraction_bits) - 1);
+    if (exponent > 0) whole |= std::uint64_t(1) << fraction_bits;
+    if (whole == 0) return;
+    const int place = exponent > 0 ? exponent - 1 : 0;  // of the last bit, counted from the lowest
+    const int shift = place % ExactSum::digit_bits;
+    low_ = whole << shift;
+    high_ = shift > 0 ? whole >> (64 - shift) : 0;
+    first_ = place / ExactSum::digit_bits;
+    last_ = first_ + (high_ != 0 ? 2 : 1);
+    negative_ = bits >> 63 != 0;
   }
-  return all.value();
-}
 
-/// Sum of a column.
-inline Real column_sum(const Column<Real>& c) {
-  const auto numbers = on_host(c);
-  return exact_sum(Index(c.size()), [&](Index i) { return numbers[i]; });
-}
+  /// Its next word below this one, or -1.
+  CDEM_HD int below(int word) const {
+    const int next = word - 1 < last_ ? word - 1 : last_;
+    return next >= first_ ? next : -1;
+  }
+  /// What it adds to a word.
+  CDEM_HD std::int64_t at(int word) const {
+    std::uint64_t size = 0;
+    if (word == first_) size = low_ & 0xffffffff;
+    if (word == first_ + 1) size = low_ >> ExactSum::digit_bits;
+    if (word == first_ + 2) size = high_;
+    return negative_ ? -std::int64_t(size) : std::int64_t(size);
+  }
+  /// Add it to a sum that nothing else adds to.
+  CDEM_HD void add_to(std::int64_t* words) const {
+    for (int k = below(ExactSum::words); k >= 0; k = below(k)) words[k] += at(k);
+  }
+
+ private:
+  std::uint64_t low_ = 0, high_ = 0;  // the digits from the first on
+  int first_ = 0, last_ = -1;
+  bool negative_ = false;
+};
 
 }  // namespace cdem

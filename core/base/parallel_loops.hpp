@@ -15,14 +15,19 @@ namespace cdem {
 
 #if defined(CDEM_CUDA)
 
-/// Put a launch of a thread for each of `count` items into the queue.
+/// Put a launch of some groups of threads into the queue.
 template <class Run, class... Arguments>
-void launch(Queue queue, Index count, Run* run, const Arguments&... arguments) {
-  if (count <= 0) return;
-  constexpr Index together = 128;
-  const Index groups = count / together + (count % together > 0);
+void launch_groups(Queue queue, Index groups, Index together, Run* run,
+                   const Arguments&... arguments) {
   run<<<groups, together, 0, static_cast<cudaStream_t>(queue.stream)>>>(arguments...);
   check(cudaGetLastError());
+}
+/// The same of a thread for each of `count` items.
+template <class Run, class... Arguments>
+void launch(Queue queue, Index count, Run* run, const Arguments&... arguments) {
+  constexpr Index together = 128;
+  const Index groups = count / together + (count % together > 0);
+  if (count > 0) launch_groups(queue, groups, together, run, arguments...);
 }
 
 template <class Kernel>

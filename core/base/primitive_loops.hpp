@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/exact_sum.hpp"
 #include "core/base/parallel_loops.hpp"
 #include "core/base/primitives.hpp"
 
@@ -75,6 +76,26 @@ Most most(Queue, Index count, const Kernel& kernel) {
 }
 
 template <class Kernel>
+Real exact_sum(Queue, Index count, const Kernel& kernel) {
+  constexpr Index chunk = ExactSum::most;
+  ExactSum all;
+#pragma omp parallel if (count >= worth_threads)
+  {
+    ExactSum own;
+    alignas(64) Real numbers[chunk];
+#pragma omp for schedule(static) nowait
+    for (Index c = 0; c < count / chunk + (count % chunk > 0); ++c) {
+      const Index first = c * chunk, here = std::min(chunk, count - first);
+      for (Index i = 0; i < here; ++i) numbers[i] = kernel(One{first + i});
+      own.add(numbers, here);
+    }
+#pragma omp critical(cdem_exact_sum)
+    all.add(own);
+  }
+  return all.value();
+}
+
+template <class Kernel>
 void select_items(Queue, Index count, const Kernel& kernel, Column<Index>& list) {
   const Parts parts = parts_of(count, worth_threads);
   std::vector<Index> found(parts.count);
@@ -112,6 +133,74 @@ Most most(Queue queue, Index count, const Kernel& kernel) {
   for_each_item(queue, count, SetValue<Kernel>{kernel, values});
   return most_of(queue, count, values);
 }
+
+#if defined(CDEM_CUDA)
+
+inline constexpr int sum_warp = 32, sum_threads = 256;
+inline constexpr Index sum_groups = 1024;
+
+/// Of all threads of a warp, which call it together.
+__device__ inline int most_of_warp(int number) { return __reduce_max_sync(~0u, number); }
+/// The same for a digit, which has up to 32 bits and a sign.
+__device__ inline std::int64_t sum_of_warp(std::int64_t digit) {
+  const int low = __reduce_add_sync(~0u, int(digit & 0xffff));
+  const int high = __reduce_add_sync(~0u, int(digit >> 16));
+  return std::int64_t(high) * 0x10000 + low;
+}
+
+/// Add a number of each item to the words of a sum: digit by digit in warps, which have a sum each,
+/// then these.
+template <class Kernel>
+__global__ void sum_on_gpu(Index count, Kernel kernel, std::int64_t* words) {
+  __shared__ std::int64_t own[sum_threads / sum_warp][ExactSum::words];
+  const int warp = threadIdx.x / sum_warp, lane = threadIdx.x % sum_warp;
+  for (int k = lane; k < ExactSum::words; k += sum_warp) own[warp][k] = 0;
+  __syncwarp();
+  const std::int64_t step = std::int64_t(gridDim.x) * sum_threads;
+  std::int64_t first = std::int64_t(blockIdx.x) * sum_threads + warp * sum_warp;
+  for (; first < count; first += step) {
+    const NumberDigits digits(first + lane < count ? kernel(One{Index(first + lane)}) : 0.0);
+    int k = most_of_warp(digits.below(ExactSum::words));
+    for (; k >= 0; k = most_of_warp(digits.below(k))) {
+      const std::int64_t sum = sum_of_warp(digits.at(k));
+      if (lane == 0) own[warp][k] += sum;
+    }
+  }
+  __syncthreads();
+  for (int k = threadIdx.x; k < ExactSum::words; k += sum_threads) {
+    std::int64_t sum = 0;
+    for (const auto& part : own) sum += part[k];
+    if (sum != 0) atomicAdd(reinterpret_cast<unsigned long long*>(words + k), sum);
+  }
+}
+
+/// Words of a sum, zero, and the sum of what has been added to them.
+std::int64_t* zeroed_words(Queue queue);
+Real sum_of_words(Queue queue, const std::int64_t* words);
+
+template <class Kernel>
+Real exact_sum(Queue queue, Index count, const Kernel& kernel) {
+  if (count == 0) return 0;
+  std::int64_t* const words = zeroed_words(queue);
+  const Index groups = std::min(sum_groups, count / sum_threads + (count % sum_threads > 0));
+  launch_groups(queue, groups, sum_threads, sum_on_gpu<Kernel>, count, kernel, words);
+  return sum_of_words(queue, words);
+}
+
+#else
+
+/// The same of numbers.
+Real exact_sum_of(Queue queue, Index count, const Real* values);
+
+template <class Kernel>
+Real exact_sum(Queue queue, Index count, const Kernel& kernel) {
+  if (count == 0) return 0;
+  Real* const values = scratch<Real>(count);
+  for_each_item(queue, count, SetValue<Kernel>{kernel, values});
+  return exact_sum_of(queue, count, values);
+}
+
+#endif
 
 template <class Kernel>
 struct CountItem {

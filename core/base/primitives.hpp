@@ -38,6 +38,20 @@ struct Most {
 template <class Kernel>
 Most most(Queue queue, Index count, const Kernel& kernel);
 
+/// Sum of `kernel(item)`, which is called once for each item, without round-off: see exact_sum.hpp.
+/// Waits for it.
+template <class Kernel>
+Real exact_sum(Queue queue, Index count, const Kernel& kernel);
+
+/// A number of every item, for a sum of it.
+struct EachNumber {
+  const Real* first;
+  Index stride = 1;
+  CDEM_HD Real operator()(One item) const { return first[std::size_t(item.i) * stride]; }
+};
+/// Sum of an array.
+Real column_sum(Queue queue, const Column<Real>& column);
+
 /// List the items for which `kernel(item)` holds, ascending. Waits for how many they are.
 template <class Kernel>
 void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list);

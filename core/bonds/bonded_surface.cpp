@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/base/exact_sum.hpp"
+#include "core/base/primitives.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -177,7 +177,7 @@ void find_across(const Model& m, State& s) {
 Real bonded_points(const Model& m, const State& s) {
   Real sum = 0;
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
-    if (conforms(p)) sum += column_sum(ps.bond);
+    if (conforms(p)) sum += column_sum({}, ps.bond);
   });
   return sum;
 }

@@ -1,23 +1,19 @@
 // round_off.cpp - see round_off.hpp.
 #include "core/diagnostics/round_off.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "core/base/exact_sum.hpp"
+#include "core/base/primitives.hpp"
+#include "core/diagnostics/force_terms.hpp"
 
 namespace cdem {
 
 RoundOff::RoundOff(const Model& m, const State& s) {
-  const auto motion = on_host(s.nodes.motion);
-  Real farthest = 0;  // coordinate
-  for (Index i = 0; i < m.node_count; ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      farthest = std::max(farthest, std::abs(motion[8 * std::size_t(i) + axis]));
-  shift = std::numeric_limits<Real>::epsilon() * farthest;
-  const auto mass = on_host(m.mass), frequency_squared = on_host(m.lumped_frequency_squared);
-  force = shift * exact_sum(m.node_count, [&](Index i) { return mass[i] * frequency_squared[i]; });
+  const Most farthest = most({}, m.node_count, Farthest{s.nodes.motion.data()});
+  shift = std::numeric_limits<Real>::epsilon() * farthest.value;
+  force = shift * exact_sum({}, m.node_count,
+                            NodeStiffness{.mass = m.mass.data(),
+                                          .frequency_squared = m.lumped_frequency_squared.data()});
 }
 
 }  // namespace cdem

@@ -4,6 +4,7 @@
 #include "core/nodes/contact_corners.hpp"
 #include "core/nodes/node_energy.hpp"
 #include "core/nodes/node_frequency.hpp"
+#include "core/nodes/relaxing_node.hpp"
 
 namespace cdem {
 
@@ -15,5 +16,12 @@ template Most most(Queue, Index, const NodeFrequency&);
 template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Column<Index>&,
                         Column<Index>&);
 template void for_each_item(Queue, Index, const SampleNodes&);
+template Real exact_sum(Queue, Index, const KineticEnergy&);
+template Real exact_sum(Queue, Index, const StopNode&);
+template void for_each_item(Queue, Index, const RememberNode&);
+template void for_each_item(Queue, Index, const SlowNode&);
+template Real exact_sum(Queue, Index, const SlowedWork&);
+template Real exact_sum(Queue, Index, const StiffnessInMotion&);
+template Real exact_sum(Queue, Index, const MassInMotion&);
 
 }  // namespace cdem

@@ -12,6 +12,11 @@ namespace cdem {
 template void set_all(Queue, Index, Flag*, Flag);
 template void set_all(Queue, Index, Index*, Index);
 template void set_all(Queue, Index, Real*, Real);
+template Real exact_sum(Queue, Index, const EachNumber&);
+
+Real column_sum(Queue queue, const Column<Real>& column) {
+  return exact_sum(queue, Index(column.size()), EachNumber{column.data()});
+}
 
 #if defined(CDEM_CUDA)
 
@@ -69,6 +74,20 @@ Most most_of(Queue queue, Index count, const Real* values) {
   return most;
 }
 
+std::int64_t* zeroed_words(Queue queue) {
+  std::int64_t* const words = scratch<std::int64_t>(ExactSum::words);
+  check(cudaMemsetAsync(words, 0, ExactSum::words * sizeof *words, stream_of(queue)));
+  return words;
+}
+Real sum_of_words(Queue queue, const std::int64_t* words) {
+  std::int64_t here[ExactSum::words];
+  check(cudaMemcpyAsync(here, words, sizeof here, cudaMemcpyDefault, stream_of(queue)));
+  finish(queue);
+  ExactSum sum;
+  sum.add(here);
+  return sum.value();
+}
+
 void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values) {
   std::uint64_t* const sorted_keys = scratch<std::uint64_t>(count);
   Index* const sorted_values = scratch<Index>(count);
@@ -108,6 +127,15 @@ struct FindMost {
     for (Index i = 0; i < count; ++i) most->meet(values[i], i);
   }
 };
+struct AddUp {
+  Index count;
+  const Real* values;
+  std::int64_t* words;
+  void operator()(One) const {
+    for (int k = 0; k < ExactSum::words; ++k) words[k] = 0;
+    for (Index i = 0; i < count; ++i) NumberDigits(values[i]).add_to(words);
+  }
+};
 
 template <class T>
 T fetch_word(const T* word) {
@@ -127,6 +155,15 @@ Most most_of(Queue queue, Index count, const Real* values) {
   Most* const most = scratch<Most>(1);
   for_each_item(queue, 1, FindMost{count, values, most});
   return fetch_word(most);
+}
+
+Real exact_sum_of(Queue queue, Index count, const Real* values) {
+  std::int64_t* const words = scratch<std::int64_t>(ExactSum::words);
+  for_each_item(queue, 1, AddUp{count, values, words});
+  const Transfer transfer;
+  ExactSum sum;
+  sum.add(words);
+  return sum.value();
 }
 
 #else

@@ -4,25 +4,25 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/base/exact_sum.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/primitives.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/nodes/node_energy.hpp"
+#include "core/nodes/relaxing_node.hpp"
 #include "core/nodes/views.hpp"
 
 namespace cdem {
 
 namespace {
 
-/// What a node has of the kinetic energy  [J].
-Real energy_of_node(const MassColumns& mass, const InMotion& nodes, Index i) {
-  return 0.5 * dot(mass.momentum(nodes, i).vector(), nodes.velocity(i));
+KineticEnergy kinetic_energies(const Model& m, const State& s) {
+  return {.nodes = {s.nodes.motion.data()}, .mass = mass_columns(m, s)};
 }
 
 }  // namespace
 
 Real energy_of_motion(const Model& m, const State& s) {
-  const MassColumns mass = on_host(mass_columns(m, s));
-  const InMotion nodes = on_host(InMotion{s.nodes.motion.data()});
-  return exact_sum(m.node_count, [&](Index i) { return energy_of_node(mass, nodes, i); });
+  return exact_sum({}, m.node_count, kinetic_energies(m, s));
 }
 
 namespace {
@@ -33,11 +33,9 @@ template <class Change>
 void book_change(const Model& m, State& s, Change&& change) {
   const Real before = energy_of_motion(m, s);
   const auto count_in_sample = [&](Real sign) {
-    const MassColumns mass = on_host(mass_columns(m, s));
-    const InMotion nodes = on_host(InMotion{s.nodes.motion.data()});
+    const KineticEnergy energy = on_host(kinetic_energies(m, s));
     const auto sample = on_host(s.nodes.sample);
-    for (Index i = 0; i < m.node_count; ++i)
-      sample[4 * std::size_t(i)] += sign * energy_of_node(mass, nodes, i);
+    for (Index i = 0; i < m.node_count; ++i) sample[4 * std::size_t(i)] += sign * energy(One{i});
   };
   count_in_sample(-1);
   change();
@@ -78,32 +76,23 @@ void list_lumped(const Model& m, State& s) {
 
 void slow_heavier_nodes(const Model& m, State& s) {
   const Real before = energy_of_motion(m, s);
-  const SupportColumns supports = on_host(support_columns(m, s));
-  const auto relax = on_host(s.nodes.relax), motion = on_host(s.nodes.motion);
-  for (Index i = 0; i < m.node_count; ++i) {
-    const Real ratio = relax[8 * std::size_t(i) + 3];
-    for (Index axis = 0; axis < 3; ++axis)
-      if (!supports.given(i, axis)) motion[8 * std::size_t(i) + 4 + axis] *= ratio;
-  }
+  for_each_item({}, m.node_count,
+                SlowNode{.supports = support_columns(m, s),
+                         .remembered = s.nodes.relax.data(),
+                         .motion = s.nodes.motion.data()});
   s.stopped_energy += before - energy_of_motion(m, s);
 }
 
 void stop_motion(const Model& m, State& s) {
-  const LoadColumns loads = on_host(load_columns(m, s));
-  const Real* damping = on_host(damping_forces(s));
-  const auto motion = on_host(s.nodes.motion), force = on_host(s.nodes.force);
-  const auto work_external = on_host(s.nodes.work_external);
-  const auto work_damping = on_host(s.nodes.work_damping);
   s.stopped_energy += energy_of_motion(m, s);
-  // the forces of this moment have worked since the middle of the last step
-  s.stopped_energy += exact_sum(m.node_count, [&](Index i) {
-    Real* v = motion.data() + std::size_t(i) * 8 + 4;
-    const Vec3<Real> way = 0.5 * s.dt_last * Vec3<Real>{v[0], v[1], v[2]};
-    work_external[i] += dot(loads.at(i).vector(), way);
-    if (damping) work_damping[i] -= dot(Row::at(damping + std::size_t(i) * 4).vector(), way);
-    v[0] = v[1] = v[2] = 0;
-    return dot(Row::at(force.data() + std::size_t(i) * 4).vector(), way);
-  });
+  s.stopped_energy += exact_sum({}, m.node_count,
+                                StopNode{.force = s.nodes.force.data(),
+                                         .damping_force = damping_forces(s),
+                                         .loads = load_columns(m, s),
+                                         .since = 0.5 * s.dt_last,
+                                         .motion = s.nodes.motion.data(),
+                                         .work_external = s.nodes.work_external.data(),
+                                         .work_damping = s.nodes.work_damping.data()});
   s.dt_last = 0;
 }
 

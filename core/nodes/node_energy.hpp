@@ -7,6 +7,37 @@
 
 namespace cdem {
 
+/// Kinetic energy of a node  [J].
+struct KineticEnergy {
+  InMotion nodes;
+  MassColumns mass;
+
+  CDEM_HD Real operator()(One node) const {
+    return 0.5 * dot(mass.momentum(nodes, node.i).vector(), nodes.velocity(node.i));
+  }
+};
+
+/// Zero the velocity of a node. The forces of this moment have worked since the middle of the last
+/// step: what they have done  [J].
+struct StopNode {
+  const Real *force, *damping_force;  // rows of 4; null where nothing damps
+  LoadColumns loads;
+  Real since;    // [s]
+  Real* motion;  // rows of 8
+  Real *work_external, *work_damping;
+
+  CDEM_HD Real operator()(One node) const {
+    const Index i = node.i;
+    Real* v = motion + std::size_t(i) * 8 + 4;
+    const Vec3<Real> way = since * Vec3<Real>{v[0], v[1], v[2]};
+    work_external[i] += dot(loads.at(i).vector(), way);
+    if (damping_force)
+      work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way);
+    v[0] = v[1] = v[2] = 0;
+    return dot(Row::at(force + std::size_t(i) * 4).vector(), way);
+  }
+};
+
 /// Momentum M v of each node before the step, and v . M v: half of what the kinetic energy needs.
 /// Kept in the rows of `SampleNodes` until that has the other half.
 struct NodeMomentum {

@@ -1,8 +1,8 @@
 // nodes.cpp - see nodes.hpp.
 #include "core/nodes/nodes.hpp"
 
-#include "core/base/exact_sum.hpp"
 #include "core/base/parallel.hpp"
+#include "core/base/primitives.hpp"
 #include "core/elements/report.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
@@ -156,8 +156,7 @@ bool damps_nodes(const Model& m, const State& s) {
 }
 
 Real kinetic_energy(const Model& m, const State& s) {
-  const auto sample = on_host(s.nodes.sample);
-  return exact_sum(m.node_count, [&](Index i) { return sample[4 * std::size_t(i)]; });
+  return exact_sum({}, m.node_count, EachNumber{.first = s.nodes.sample.data(), .stride = 4});
 }
 
 }  // namespace cdem

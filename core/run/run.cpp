@@ -80,7 +80,6 @@ Report report_of(const Model& m, const State& s, const Goal& goal, const Place& 
   if (health.outcome != Outcome::steps_done) return health;
   if (s.time >= goal.end_time) return {Outcome::time_reached, -1, s.time};
   if (!place.scheduled || !(goal.unbalance_limit > 0)) return {};
-  const Transfer transfer;
   if (unbalance_ratio(m, s) < goal.unbalance_limit) return {Outcome::converged, -1, s.time};
   return {};
 }
