@@ -2,13 +2,18 @@
 
 CDEM_ISA=cuda uses it. Needs nvcc, 13 or later; no GPU. The kernels are compiled for one architecture:
 `pip install . -C cmake.define.CDEM_CUDA=ON` compiles them for all that CMakeLists.txt names.
+
+With --ptx only the kernels with a limit become machine code, and host code is not optimized: all is
+checked that is checked without, in half the time. A GPU would have to compile the rest at its start.
 """
 
+import argparse
 import re
 import shutil
 import subprocess
 import sys
 import sysconfig
+import tempfile
 from pathlib import Path
 
 import build
@@ -46,11 +51,14 @@ LIMITS = {
     "UpdateSpringForces<ElasticUnloading>, InterfaceLaws": (255, 0),
 }
 LEAST_REGISTERS = 16
-KERNEL = re.compile(
+USED = re.compile(
     r"Compiling entry function '(\w+)'.*\n.*\n"
     r" *\d+ bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads\n"
     r".*Used (\d+) registers"
 )
+# PTX of a source of kernels, and the kernels in it.
+PTX = re.compile(rb"\.version \d[^\0]*\.entry[^\0]*")
+ENTRY = re.compile(r"\.entry (\w+)")
 # The last byte of a number that is read, or written, byte by byte.
 BYTE_OF_A_NUMBER = re.compile(rb"(?:ld|st)\.global\.[us]8[^;]*\+(\d+)\]")
 
@@ -64,19 +72,20 @@ def compiler() -> str:
     sys.exit(f"no nvcc: install the CUDA toolkit, or: .venv/bin/pip install {WHEELS}")
 
 
-def compile_kernels() -> str:
-    """Compile all kernels once more and return what the assembler says of them."""
-    build.configure(
-        FOLDER,
-        {
-            "CDEM_CUDA": "ON",
-            "CMAKE_CUDA_ARCHITECTURES": ARCHITECTURE,
-            "CMAKE_CUDA_COMPILER": compiler(),
-            "CMAKE_CUDA_FLAGS": "-Xptxas -v --no-compress",
-        },
-    )
-    build.run(["ninja", "-C", str(FOLDER), "-t", "clean", "kernels_cuda"])
-    return build.run(["ninja", "-C", str(FOLDER), "kernels_cuda"], quiet=True)
+def compile_core(ptx: bool) -> bytes:
+    """Compile the core; its kernels, in which the PTX is text."""
+    settings = {
+        "CDEM_CUDA": "ON",
+        "CMAKE_CUDA_ARCHITECTURES": ARCHITECTURE + "-virtual" * ptx,
+        "CMAKE_CUDA_COMPILER": compiler(),
+        "CMAKE_CUDA_FLAGS": "--no-compress",
+        "CMAKE_BUILD_TYPE": "Debug" if ptx else "Release",
+        "CMAKE_CXX_FLAGS_DEBUG": "-O0 -DNDEBUG",
+        "CMAKE_CUDA_FLAGS_DEBUG": "-O0 -DNDEBUG",  # of the host; a GPU's code is optimized
+    }
+    build.configure(FOLDER, settings)
+    build.run(["ninja", "-C", str(FOLDER), "_core_cuda"], quiet=True)
+    return (FOLDER / "core" / "kernels" / "libkernels_cuda.a").read_bytes()
 
 
 def short(name: str) -> str:
@@ -87,23 +96,40 @@ def short(name: str) -> str:
     return re.sub(r"WithLaws<(.*)>", r"\1", kernel).strip()
 
 
-def needs(log: str) -> dict[str, tuple[int, int]]:
-    """Registers and spilled bytes of every kernel."""
-    rows = KERNEL.findall(log)
-    names = subprocess.run(
-        ["c++filt"],
-        input="\n".join(row[0] for row in rows),
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout.splitlines()
+def names(entries: list[str]) -> dict[str, str]:
+    """Short name of each kernel, by its name in PTX."""
+    done = subprocess.run(
+        ["c++filt"], input="\n".join(entries), capture_output=True, text=True, check=True
+    )
     return {
-        short(name): (int(registers), max(int(stores), int(loads)))
-        for name, (_, stores, loads, registers) in zip(names, rows, strict=True)
+        entry: short(name) for entry, name in zip(entries, done.stdout.splitlines(), strict=True)
     }
 
 
-def faults(found: dict[str, tuple[int, int]]) -> list[str]:
+def assemble(ptx: bytes, entries: list[str]) -> str:
+    """What the assembler says of kernels, as nvcc calls it."""
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "kernels.ptx"
+        source.write_bytes(ptx)
+        command = [str(Path(compiler()).with_name("ptxas")), "-arch", f"sm_{ARCHITECTURE}", "-m64"]
+        command += ["-v", "--fmad", "false", "--entry", ",".join(entries), str(source)]
+        return build.run([*command, "-o", str(source.with_suffix(".cubin"))], quiet=True)
+
+
+def needs(code: bytes) -> tuple[dict[str, tuple[int, int]], int]:
+    """Registers and spilled bytes of the kernels with a limit; how many kernels there are."""
+    found, count = {}, 0
+    for ptx in PTX.findall(code):
+        short_names = names(ENTRY.findall(ptx.decode()))
+        count += len(short_names)
+        limited = [entry for entry, name in short_names.items() if name in LIMITS]
+        rows = USED.findall(assemble(ptx, limited)) if limited else []
+        for entry, stores, loads, registers in rows:
+            found[short_names[entry]] = int(registers), max(int(stores), int(loads))
+    return found, count
+
+
+def faults(found: dict[str, tuple[int, int]], code: bytes) -> list[str]:
     """What is over its limit or empty, and numbers that are read or written byte by byte."""
     lines = [f"LIMITS names {name}, which is no kernel" for name in LIMITS.keys() - found.keys()]
     for name, limits in LIMITS.items():
@@ -118,7 +144,6 @@ def faults(found: dict[str, tuple[int, int]]) -> list[str]:
         for name in LIMITS.keys() & found.keys()
         if found[name][0] < LEAST_REGISTERS
     ]
-    code = (FOLDER / "core" / "kernels" / "libkernels_cuda.a").read_bytes()
     in_bytes = sum(int(place) % 8 == 7 for place in BYTE_OF_A_NUMBER.findall(code))
     if in_bytes:
         lines.append(f"{in_bytes} numbers are read or written byte by byte: see Row of math.hpp")
@@ -129,10 +154,12 @@ def faults(found: dict[str, tuple[int, int]]) -> list[str]:
 
 def main() -> None:
     """Compile, check, place and import."""
-    found = needs(compile_kernels())
-    if problems := faults(found):
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--ptx", action="store_true", help="machine code only where it is checked")
+    code = compile_core(parser.parse_args().ptx)
+    found, count = needs(code)
+    if problems := faults(found, code):
         sys.exit("\n".join(problems))
-    build.run(["ninja", "-C", str(FOLDER), "_core_cuda"], quiet=True)
     build.place(FOLDER, "_core_cuda", beside=True)
     sys.path.insert(0, str(FOLDER))
     import _core_cuda  # imports without a GPU
@@ -141,7 +168,10 @@ def main() -> None:
         device = _core_cuda.device_name()
     except RuntimeError as error:
         device = f"none ({error})"
-    print(f"CUDA core: {len(found)} kernels within their limits, imported; device: {device}")
+    print(
+        f"CUDA core: {count} kernels, {len(found)} of them with limits that hold; imported; "
+        f"device: {device}"
+    )
 
 
 if __name__ == "__main__":
