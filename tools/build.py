@@ -1,6 +1,7 @@
 """Build the compiled core incrementally and put it in place, without pip.
 
-Without options it builds a module for every instruction set.
+Without options it builds a module for every instruction set, or for that of this CPU and those that
+the environment variable CDEM_ISAS lists.
 """
 
 import argparse
@@ -26,6 +27,11 @@ def native() -> str:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.native()
+
+
+def sets() -> list[str]:
+    """The instruction sets to build a module for."""
+    return list(dict.fromkeys([native(), *os.environ.get("CDEM_ISAS", "x86_64 v3 v4").split()]))
 
 
 def run(command: list[str], quiet: bool = False) -> str:
@@ -110,7 +116,9 @@ def main() -> None:
     module = f"_core_{core}" if one else "_core_*"
     targets = [module if one else "all"]
     targets += ["core_tests"] * bool(tests) + ["_core_own_laws"] * wants.own_laws
-    settings = {"CDEM_TESTS": core} if tests or wants.own_laws else {}
+    settings = {} if special else {"CDEM_ISAS": ";".join(sets())}
+    if tests or wants.own_laws:
+        settings["CDEM_TESTS"] = core
     if special == "emulated":
         settings["CDEM_EMULATED"] = "ON"
     elif special:

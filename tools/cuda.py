@@ -1,21 +1,25 @@
-"""Compile the core for a GPU, put it in place, import it, and check what its kernels need.
+"""Compile the core for a GPU, check what its kernels need, import it, and put it in place.
 
 CDEM_ISA=cuda uses it. Needs nvcc, 13 or later; no GPU, but where there is one the tests of the core
 and the golden scenes run on it. The kernels are compiled for one architecture:
 `pip install . -C cmake.define.CDEM_CUDA=ON` compiles them for all that CMakeLists.txt names.
+
+With --ptx only the kernels with a limit become machine code, host code is not optimized and nothing
+is put in place: all is checked that is checked without, in half the time.
 """
 
+import argparse
 import os
 import re
 import shutil
 import subprocess
 import sys
 import sysconfig
+import tempfile
 from pathlib import Path
 
 import build
 
-FOLDER = build.ROOT / "build" / "cuda"
 ARCHITECTURE = "90"
 WHEELS = "nvidia-cuda-nvcc nvidia-cuda-runtime nvidia-cuda-cccl"
 # Kernels of tets, bonds, contacts and nodes: the most registers with which as many threads run at
@@ -48,11 +52,14 @@ LIMITS = {
     "UpdateSpringForces<ElasticUnloading>, InterfaceLaws": (255, 0),
 }
 LEAST_REGISTERS = 16
-KERNEL = re.compile(
+USED = re.compile(
     r"Compiling entry function '(\w+)'.*\n.*\n"
     r" *\d+ bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads\n"
     r".*Used (\d+) registers"
 )
+# PTX of a source of kernels, and the kernels in it.
+PTX = re.compile(rb"\.version \d[^\0]*\.entry[^\0]*")
+ENTRY = re.compile(r"\.entry (\w+)")
 # The last byte of a number that is read, or written, byte by byte.
 BYTE_OF_A_NUMBER = re.compile(rb"(?:ld|st)\.global\.[us]8[^;]*\+(\d+)\]")
 
@@ -66,20 +73,21 @@ def compiler() -> str:
     sys.exit(f"no nvcc: install the CUDA toolkit, or: .venv/bin/pip install {WHEELS}")
 
 
-def compile_kernels() -> str:
-    """Compile all kernels once more and return what the assembler says of them."""
-    build.configure(
-        FOLDER,
-        {
-            "CDEM_CUDA": "ON",
-            "CMAKE_CUDA_ARCHITECTURES": ARCHITECTURE,
-            "CMAKE_CUDA_COMPILER": compiler(),
-            "CMAKE_CUDA_FLAGS": "-Xptxas -v --no-compress",
-            "CDEM_TESTS": "cuda",
-        },
-    )
-    build.run(["ninja", "-C", str(FOLDER), "-t", "clean", "kernels_cuda"])
-    return build.run(["ninja", "-C", str(FOLDER), "kernels_cuda"], quiet=True)
+def compile_core(folder: Path, ptx: bool) -> bytes:
+    """Compile the core; its kernels, in which the PTX is text."""
+    settings = {
+        "CDEM_CUDA": "ON",
+        "CDEM_TESTS": "cuda",
+        "CMAKE_CUDA_ARCHITECTURES": ARCHITECTURE + "-virtual" * ptx,
+        "CMAKE_CUDA_COMPILER": compiler(),
+        "CMAKE_CUDA_FLAGS": "--no-compress",
+        "CMAKE_BUILD_TYPE": "Debug" if ptx else "Release",
+        "CMAKE_CXX_FLAGS_DEBUG": "-O0 -DNDEBUG",
+        "CMAKE_CUDA_FLAGS_DEBUG": "-O0 -DNDEBUG",  # of the host; a GPU's code is optimized
+    }
+    build.configure(folder, settings)
+    build.run(["ninja", "-C", str(folder), "_core_cuda"], quiet=True)
+    return (folder / "core" / "kernels" / "libkernels_cuda.a").read_bytes()
 
 
 def short(name: str) -> str:
@@ -90,23 +98,40 @@ def short(name: str) -> str:
     return re.sub(r"WithLaws<(.*)>", r"\1", kernel).strip()
 
 
-def needs(log: str) -> dict[str, tuple[int, int]]:
-    """Registers and spilled bytes of every kernel."""
-    rows = KERNEL.findall(log)
-    names = subprocess.run(
-        ["c++filt"],
-        input="\n".join(row[0] for row in rows),
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout.splitlines()
+def names(entries: list[str]) -> dict[str, str]:
+    """Short name of each kernel, by its name in PTX."""
+    done = subprocess.run(
+        ["c++filt"], input="\n".join(entries), capture_output=True, text=True, check=True
+    )
     return {
-        short(name): (int(registers), max(int(stores), int(loads)))
-        for name, (_, stores, loads, registers) in zip(names, rows, strict=True)
+        entry: short(name) for entry, name in zip(entries, done.stdout.splitlines(), strict=True)
     }
 
 
-def faults(found: dict[str, tuple[int, int]]) -> list[str]:
+def assemble(ptx: bytes, entries: list[str]) -> str:
+    """What the assembler says of kernels, as nvcc calls it."""
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "kernels.ptx"
+        source.write_bytes(ptx)
+        command = [str(Path(compiler()).with_name("ptxas")), "-arch", f"sm_{ARCHITECTURE}", "-m64"]
+        command += ["-v", "--fmad", "false", "--entry", ",".join(entries), str(source)]
+        return build.run([*command, "-o", str(source.with_suffix(".cubin"))], quiet=True)
+
+
+def needs(code: bytes) -> tuple[dict[str, tuple[int, int]], int]:
+    """Registers and spilled bytes of the kernels with a limit; how many kernels there are."""
+    found, count = {}, 0
+    for ptx in PTX.findall(code):
+        short_names = names(ENTRY.findall(ptx.decode()))
+        count += len(short_names)
+        limited = [entry for entry, name in short_names.items() if name in LIMITS]
+        rows = USED.findall(assemble(ptx, limited)) if limited else []
+        for entry, stores, loads, registers in rows:
+            found[short_names[entry]] = int(registers), max(int(stores), int(loads))
+    return found, count
+
+
+def faults(found: dict[str, tuple[int, int]], code: bytes) -> list[str]:
     """What is over its limit or empty, and numbers that are read or written byte by byte."""
     lines = [f"LIMITS names {name}, which is no kernel" for name in LIMITS.keys() - found.keys()]
     for name, limits in LIMITS.items():
@@ -121,7 +146,6 @@ def faults(found: dict[str, tuple[int, int]]) -> list[str]:
         for name in LIMITS.keys() & found.keys()
         if found[name][0] < LEAST_REGISTERS
     ]
-    code = (FOLDER / "core" / "kernels" / "libkernels_cuda.a").read_bytes()
     in_bytes = sum(int(place) % 8 == 7 for place in BYTE_OF_A_NUMBER.findall(code))
     if in_bytes:
         lines.append(f"{in_bytes} numbers are read or written byte by byte: see Row of math.hpp")
@@ -130,10 +154,10 @@ def faults(found: dict[str, tuple[int, int]]) -> list[str]:
     return lines
 
 
-def run_on_gpu() -> None:
+def run_on_gpu(folder: Path) -> None:
     """The tests of the core, and the golden scenes, which must have the bits of the CPU."""
-    build.run(["ninja", "-C", str(FOLDER), "core_tests"], quiet=True)
-    build.run([str(FOLDER / "core_tests")])
+    build.run(["ninja", "-C", str(folder), "core_tests"], quiet=True)
+    build.run([str(folder / "core_tests")])
     os.environ |= {"CDEM_ISA": "cuda", "OMP_NUM_THREADS": "1"}
     tests = [str(build.ROOT / "tests" / "regression" / "test_golden.py"), "-k", "pinned"]
     build.run([sys.executable, "-m", "pytest", *tests])
@@ -141,21 +165,27 @@ def run_on_gpu() -> None:
 
 def main() -> None:
     """Compile, check, place and import; where there is a GPU, run on it."""
-    found = needs(compile_kernels())
-    if problems := faults(found):
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--ptx", action="store_true", help="machine code only where it is checked")
+    ptx = parser.parse_args().ptx
+    folder = build.ROOT / "build" / ("ptx" if ptx else "cuda")
+    code = compile_core(folder, ptx)
+    found, count = needs(code)
+    if problems := faults(found, code):
         sys.exit("\n".join(problems))
-    build.run(["ninja", "-C", str(FOLDER), "_core_cuda"], quiet=True)
-    build.place(FOLDER, "_core_cuda", beside=True)
-    sys.path.insert(0, str(FOLDER))
+    sys.path.insert(0, str(folder))
     import _core_cuda  # imports without a GPU
 
-    print(f"CUDA core: {len(found)} kernels within their limits, imported")
+    print(f"CUDA core: {count} kernels, {len(found)} of them with limits that hold; imported")
+    if ptx:
+        return
+    build.place(folder, "_core_cuda", beside=True)
     try:
         print(f"device: {_core_cuda.device_name()}")
     except RuntimeError as error:
         print(f"device: none ({error})")
-        return
-    run_on_gpu()
+    else:
+        run_on_gpu(folder)
 
 
 if __name__ == "__main__":

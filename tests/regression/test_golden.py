@@ -39,10 +39,14 @@ def test_results_are_those_pinned(name, threads):
 
 
 def others() -> list[str]:
-    """Instruction sets that are built and that this machine has, but for the one in use."""
+    """Cores that are built and that this machine can run, but for the one in use.
+
+    The one with laws of users is compiled for any processor of its family, two items in a lane.
+    """
     flags = _instruction_sets.cpu_flags()
     runnable = [isa for isa in _native.available if flags >= _instruction_sets.NEEDS[isa]]
-    return [isa for isa in runnable if isa != _native.name]
+    found = [isa for isa in runnable if isa != _native.name]
+    return found + ["own_laws"] * any((ROOT / "build" / "core").glob("_core_own_laws.*.so"))
 
 
 @pytest.mark.parametrize("isa", others())
@@ -52,9 +56,11 @@ def test_results_do_not_depend_on_the_instruction_set(isa):
     NumPy takes the BLAS of this CPU, whatever the environment asks for.
     """
     env = {k: v for k, v in os.environ.items() if k != "OPENBLAS_CORETYPE"}
+    own_laws = [ROOT / "tests" / "validation" / "own_law_scenes.py", "pinned"]
+    script = own_laws if isa == "own_laws" else [Path(__file__).parent / "golden_scenes.py"]
     done = subprocess.run(
-        [sys.executable, str(Path(__file__).parent / "golden_scenes.py")],
-        env=env | {"CDEM_ISA": isa},
+        [sys.executable, *script],
+        env=env | ({} if isa == "own_laws" else {"CDEM_ISA": isa}),
         capture_output=True,
         text=True,
         check=True,

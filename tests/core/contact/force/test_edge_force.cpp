@@ -7,8 +7,8 @@ namespace cdem::test {
 namespace {
 
 /// Two ridges that cross under an angle; the upper comes down onto the lower, which is fixed.
-struct Ridges : Scene {
-  Ridges() {
+struct DroppedRidges : Scene {
+  DroppedRidges() {
     add<Wedge6>({{{1, -2, -1}, {-1, -2, -1}, {0, -2, 0}, {1, 2, -1}, {-1, 2, -1}, {0, 2, 0}}},
                 true);
     const Real s = std::sin(1.2), c = std::cos(1.2);
@@ -32,7 +32,7 @@ struct Ridges : Scene {
 }  // namespace
 
 TEST_CASE("ridges that cross are pressed apart along their common perpendicular") {
-  Ridges ridges;
+  DroppedRidges ridges;
   ridges.drop({0, 0, -1});
   ridges.step(2);
   REQUIRE(ridges.contacts() == 4);
@@ -57,7 +57,7 @@ TEST_CASE("ridges that cross are pressed apart along their common perpendicular"
 }
 
 TEST_CASE("edges that slide have Coulomb's friction, and lose energy") {
-  Ridges ridges;
+  DroppedRidges ridges;
   ridges.drop({0, 2, -1});
   ridges.step(10);
   REQUIRE(ridges.contacts() == 4);
@@ -73,7 +73,7 @@ TEST_CASE("edges that slide have Coulomb's friction, and lose energy") {
 }
 
 TEST_CASE("forces of crossing edges sum to no force and no moment") {
-  Ridges ridges;
+  DroppedRidges ridges;
   ridges.drop({0.5, 1, -1});
   for (int n = 0; n < 10; ++n) {
     ridges.step(1);
