@@ -43,10 +43,10 @@ Most most(Queue queue, Index count, const Kernel& kernel);
 template <class Kernel>
 Real exact_sum(Queue queue, Index count, const Kernel& kernel);
 
-/// A number of every item, for a sum of it.
+/// A number of every item, for a sum of it: of rows that are `stride` long.
+template <Index stride = 1>
 struct EachNumber {
   const Real* first;
-  Index stride = 1;
   CDEM_HD Real operator()(One item) const { return first[std::size_t(item.i) * stride]; }
 };
 /// Sum of an array.

@@ -42,7 +42,7 @@ Real balance(const Energies& e) {
 Energies sum_terms(const Model& m, const State& s) {
   const Queue q;
   const auto sample = [&](int k) {
-    return exact_sum(q, m.node_count, EachNumber{.first = s.nodes.sample.data() + k, .stride = 4});
+    return exact_sum(q, m.node_count, EachNumber<4>{s.nodes.sample.data() + k});
   };
   Energies e;
   Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];

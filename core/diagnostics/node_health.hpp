@@ -14,8 +14,7 @@ struct SquaredSpeed {
   CDEM_HD Real operator()(One node) const {
     const Real* r = motion + std::size_t(node.i) * 8;
     const Real v2 = of(node.i);
-    return is_finite(v2) && is_finite(r[0] + r[1] + r[2]) ? v2
-                                                          : infinity;
+    return is_finite(v2) && is_finite(r[0] + r[1] + r[2]) ? v2 : infinity;
   }
   /// With scaled masses, of the speed with which the true one would have as much energy.
   CDEM_HD Real of(Index i) const {

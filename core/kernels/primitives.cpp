@@ -12,10 +12,11 @@ namespace cdem {
 template void set_all(Queue, Index, Flag*, Flag);
 template void set_all(Queue, Index, Index*, Index);
 template void set_all(Queue, Index, Real*, Real);
-template Real exact_sum(Queue, Index, const EachNumber&);
+template Real exact_sum(Queue, Index, const EachNumber<>&);
+template Real exact_sum(Queue, Index, const EachNumber<4>&);
 
 Real column_sum(Queue queue, const Column<Real>& column) {
-  return exact_sum(queue, Index(column.size()), EachNumber{column.data()});
+  return exact_sum(queue, Index(column.size()), EachNumber<>{column.data()});
 }
 
 #if defined(CDEM_CUDA)

@@ -156,7 +156,7 @@ bool damps_nodes(const Model& m, const State& s) {
 }
 
 Real kinetic_energy(const Model& m, const State& s) {
-  return exact_sum({}, m.node_count, EachNumber{.first = s.nodes.sample.data(), .stride = 4});
+  return exact_sum({}, m.node_count, EachNumber<4>{s.nodes.sample.data()});
 }
 
 }  // namespace cdem

@@ -12,6 +12,14 @@ FAULTS = [
         "tests/core/base/test_exact_sum.cpp",
     ),
     Mutant(
+        "digits of a number",
+        "a device loses the third digit of a number",
+        "core/base/exact_sum.hpp",
+        "high_ = shift > 0 ? whole >> (64 - shift) : 0;",
+        "high_ = 0;",
+        "tests/core/base/test_exact_sum.cpp",
+    ),
+    Mutant(
         "first of the most",
         "of equal numbers the most is any",
         "core/base/primitives.hpp",

@@ -87,9 +87,9 @@ FAULTS = [
     Mutant(
         "heavier",
         "nodes that grow heavier keep their velocity, not their momentum",
-        "core/nodes/masses.cpp",
-        "motion[8 * std::size_t(i) + 4 + axis] *= ratio;",
-        "motion[8 * std::size_t(i) + 4 + axis] *= ratio / ratio;",
+        "core/nodes/relaxing_node.hpp",
+        "motion[row + 4 + axis] *= remembered[row + 3];",
+        "motion[row + 4 + axis] *= 1;",
         "tests/validation/test_rest.py",
     ),
     Mutant(

@@ -175,7 +175,7 @@ TEST_CASE("terms are made once, and items of an array may lie apart") {
   for (Index i = 1; i < 4000; i += 4) numbers[i] = 1;
   Column<Real> rows;
   rows.assign(numbers);
-  CHECK(exact_sum({}, 1000, EachNumber{.first = rows.data() + 1, .stride = 4}) == 1000);
+  CHECK(exact_sum({}, 1000, EachNumber<4>{rows.data() + 1}) == 1000);
 }
 
 }  // namespace cdem::test
