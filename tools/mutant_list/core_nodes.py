@@ -7,8 +7,8 @@ FAULTS = [
         "curve",
         "curves interpolated from the wrong end",
         "core/nodes/curves.cpp",
-        "f[after - 1] + part *",
-        "f[after - 1] + (1 - part) *",
+        "factors[after - 1] + part *",
+        "factors[after - 1] + (1 - part) *",
         "tests/core/nodes/test_curves.cpp",
     ),
     Mutant(
@@ -87,9 +87,9 @@ FAULTS = [
     Mutant(
         "heavier",
         "nodes that grow heavier keep their velocity, not their momentum",
-        "core/nodes/masses.cpp",
-        "motion[8 * std::size_t(i) + 4 + axis] *= ratio;",
-        "motion[8 * std::size_t(i) + 4 + axis] *= ratio / ratio;",
+        "core/nodes/relaxing_node.hpp",
+        "motion[row + 4 + axis] *= remembered[row + 3];",
+        "motion[row + 4 + axis] *= 1;",
         "tests/validation/test_rest.py",
     ),
     Mutant(
