@@ -14,7 +14,8 @@ import cdem
 from cdem.model.compensation import bonded_tets
 from cdem.model.homogenize import STATES, means
 
-YOUNG, NU, SIDE = 1e10, 0.25, 8
+YOUNG, NU = 1e10, 0.25
+SIDES = pytest.mark.parametrize("side", [6, pytest.param(8, marks=pytest.mark.slow)])
 STRONG = {"friction_angle": 30, "cohesion": 1e12, "tensile_strength": 1e12}
 
 
@@ -57,17 +58,19 @@ def elastic():
     )
 
 
-def test_regular_tets():
-    box = {"size": [SIDE] * 3, "divisions": [SIDE] * 3, "shape": "tet4"}
+@SIDES
+def test_regular_tets(side):
+    box = {"size": [side] * 3, "divisions": [side] * 3, "shape": "tet4"}
     found = compliance(
         {"blocks": [{"group": "rock", "box": box}], "split": {"rock": "elements"}}, "rock"
     )
     np.testing.assert_allclose(found, elastic(), atol=1e-6 / YOUNG)
 
 
-def test_irregular_tets(tmp_path):
+@SIDES
+def test_irregular_tets(tmp_path, side):
     """The isotropic part: 3 sum C_nn + 2 sum C_cross + sum C_ss = 15 / E; sum over normals 1 / K."""
-    mesh = irregular_tets(tmp_path / "m.vtk", [SIDE] * 3, [SIDE] * 3)
+    mesh = irregular_tets(tmp_path / "m.vtk", [side] * 3, [side] * 3)
     c = compliance({**mesh, "split": {"default": "elements"}}, "default")
     normal, bulk = np.trace(c[:3, :3]), c[:3, :3].sum()
     young = 15 / (3 * normal + (bulk - normal) + np.trace(c[3:, 3:]))

@@ -492,7 +492,10 @@ def test_energy_ledger_counts_contacts_that_end_under_load(phi):
     assert abs(sim.energies["error"]) < 2e-5
 
 
-def test_contact_search_in_fragmenting_rock_agrees_with_an_all_pairs_search():
+@pytest.mark.parametrize(
+    ("steps", "least"), [(250, 1000), pytest.param(800, 10_000, marks=pytest.mark.slow)]
+)
+def test_contact_search_in_fragmenting_rock_agrees_with_an_all_pairs_search(steps, least):
     """48 tets break at once and fly apart: neighbours share edges, vertices, and faces."""
     sim = simulate(
         [
@@ -511,10 +514,10 @@ def test_contact_search_in_fragmenting_rock_agrees_with_an_all_pairs_search():
         contact={"check": True},
     )
     edges = 0
-    for _ in range(800):
+    for _ in range(steps):
         sim.step(1)  # stops if an all-pairs search finds anything else
         edges += int((sim.contacts["kind"] == 1).sum())
-    assert edges > 10_000
+    assert edges > least
 
 
 def test_an_edge_contact_keeps_its_history_from_face_to_face():

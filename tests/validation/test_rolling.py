@@ -83,11 +83,12 @@ def ball(folder, resistance, *, slope=0.0, speed=0.0, rock=None, damping=0.5):
     )
 
 
-def test_a_sphere_rests_where_the_slope_is_below_the_rolling_resistance(tmp_path):
+@pytest.mark.parametrize("young", ["1 GPa", pytest.param("10 GPa", marks=pytest.mark.slow)])
+def test_a_sphere_rests_where_the_slope_is_below_the_rolling_resistance(tmp_path, young):
     """tan(slope) = 0.25. With 0.3 it rocks on its facet; with 0.1 it rolls off."""
     moved = {}
     for resistance in (0.1, 0.3):
-        sim = ball(tmp_path, resistance, slope=0.25)
+        sim = ball(tmp_path, resistance, slope=0.25, rock={"young_modulus": young})
         nodes = sim.build.nodes_of("default")
         while sim.time < 0.6:
             sim.step(500)

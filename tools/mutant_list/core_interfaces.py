@@ -63,8 +63,8 @@ FAULTS = [
         "weibull square",
         "fracture energies vary like strengths, not like their square",
         "core/interfaces/laws.hpp",
-        "for (int times = 0; times < power; ++times)",
-        "if (power > 0)",
+        "for (int times = 0; times < scatter_power<Law, k>; ++times)",
+        "if (scatter_power<Law, k> > 0)",
         "tests/core/interfaces/test_draws.cpp",
     ),
     Mutant(

@@ -7,8 +7,8 @@ FAULTS = [
         "curve",
         "curves interpolated from the wrong end",
         "core/nodes/curves.cpp",
-        "f[after - 1] + part *",
-        "f[after - 1] + (1 - part) *",
+        "factors[after - 1] + part *",
+        "factors[after - 1] + (1 - part) *",
         "tests/core/nodes/test_curves.cpp",
     ),
     Mutant(

@@ -224,8 +224,10 @@ def test_a_fault_in_any_call_leaves_a_folder_that_opens_and_resumes(how):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_damaged_checkpoints_neither_crash_nor_pass():
+@pytest.mark.parametrize(("bits", "bends"), [(17, 5), pytest.param(49, 12, marks=pytest.mark.slow)])
+def test_damaged_checkpoints_neither_crash_nor_pass(bits, bends):
     """A few damages; `make torture` tries thousands."""
-    command = [sys.executable, str(TOOLS / "damage.py"), "--bits", "49", "--bends", "12"]
+    command = [sys.executable, str(TOOLS / "damage.py"), "--bits", str(bits)]
+    command += ["--bends", str(bends)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
