@@ -159,8 +159,10 @@ def faults(found: dict[str, tuple[int, int]], code: bytes) -> list[str]:
 def run_on_gpu(folder: Path) -> None:
     """The tests of the core, and the golden scenes, which must have the bits of the CPU."""
     build.run(["ninja", "-C", str(folder), "core_tests"], quiet=True)
-    build.run([str(folder / "core_tests")])
     os.environ |= {"CDEM_ISA": "cuda", "OMP_NUM_THREADS": "1"}
+    os.environ["CUDA_LAUNCH_BLOCKING"] = "1"  # tests look at what kernels write without waiting
+    build.run([str(folder / "core_tests")])
+    del os.environ["CUDA_LAUNCH_BLOCKING"]
     tests = [str(build.ROOT / "tests" / "regression" / "test_golden.py"), "-k", "pinned"]
     build.run([sys.executable, "-m", "pytest", *tests])
 

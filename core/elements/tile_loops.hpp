@@ -42,17 +42,32 @@ struct WindowForces {
   }
 };
 
+inline constexpr Index no_corner = -1;
+
+/// Take the motion of a tile's nodes, and the first corner of each: none of a node whose elements
+/// are not to be run. The threads of a window share the work.
+template <class Shape>
+__device__ void begin_nodes(const TileNodes& nodes, Blocks blocks, Index first_block, Range all,
+                            Index* next) {
+  for (Index n = threadIdx.x; n < all.last - all.first; n += tile_window<Shape>) {
+    nodes.take(all.first + n);
+    const Index corner = nodes.tiles.corner_first[all.first + n];
+    const Index block = first_block + nodes.tiles.corner[corner] / (Shape::nodes * block_size);
+    next[n] = blocks.has(block) ? corner : no_corner;
+  }
+}
+
 /// One thread block for each tile: a window of elements after the other, and after each of them
 /// every node takes its forces, in the order of the elements.
 template <class Kernel>
 __global__ void __launch_bounds__(tile_window<typename Kernel::Shape>, 2)
     run_tiles_on_gpu(Index count, Blocks blocks, Tiles tiles, Kernel kernel) {
   using Shape = typename Kernel::Shape;
-  constexpr Index corners = Shape::nodes, window = tile_window<Shape>, none = -1;
+  constexpr Index corners = Shape::nodes, window = tile_window<Shape>;
   constexpr Index nodes_of_thread = (most_tile_nodes + window - 1) / window;
   __shared__ Real motion[8 * most_tile_nodes];
   __shared__ WindowForces<Shape> forces;
-  __shared__ Index next[most_tile_nodes];  // corner of each node; none where it is not to be run
+  __shared__ Index next[most_tile_nodes];  // corner of each node
   __shared__ Range own, all;  // blocks and nodes of the tile; in registers they would be too many
   const Index tile = blockIdx.x, thread = threadIdx.x;
   if (thread == 0) {
@@ -63,12 +78,7 @@ __global__ void __launch_bounds__(tile_window<typename Kernel::Shape>, 2)
   const Range some = blocks.between(own.first, own.last);
   if (some.first == some.last) return;
   const TileNodes nodes{tiles, all.first, motion, nullptr};
-  for (Index n = thread; n < all.last - all.first; n += window) {
-    nodes.take(all.first + n);
-    const Index corner = tiles.corner_first[all.first + n];
-    const Index block = own.first + tiles.corner[corner] / (corners * block_size);
-    next[n] = blocks.has(block) ? corner : none;
-  }
+  begin_nodes<Shape>(nodes, blocks, own.first, all, next);
   const Kernel local = in_tile(kernel, nodes);
   Vec3<Real> sum[nodes_of_thread];
   for (Vec3<Real>& of_node : sum) of_node = {0.0, 0.0, 0.0};
@@ -76,7 +86,7 @@ __global__ void __launch_bounds__(tile_window<typename Kernel::Shape>, 2)
 #pragma unroll
     for (Index k = 0; k < nodes_of_thread; ++k) {
       const Index n = thread + k * window;
-      if (n < all.last - all.first && next[n] != none) act(n, sum[k]);
+      if (n < all.last - all.first && next[n] != no_corner) act(n, sum[k]);
     }
   };
   for (Index b = own.first; b < own.last; b += window / block_size) {

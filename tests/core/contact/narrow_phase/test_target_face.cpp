@@ -149,8 +149,13 @@ TEST_CASE("contacts are kept and sifted in lanes as they are chosen one by one")
       if (of_tip) other.insert(other.end(), {0, 1, 2, 3, 4, 5});
       first[slot + 1] = Index(other.size());
     }
-    std::vector<Flag> rises(other.size()), may_begin(other.size());
-    search.candidates = {first.data(), other.data(), rises.data(), may_begin.data()};
+    Column<Index> firsts, others;
+    Column<Flag> rises, may_begin;
+    firsts.assign(first);
+    others.assign(other);
+    rises.resize(other.size());
+    may_begin.resize(other.size());
+    search.candidates = {firsts.data(), others.data(), rises.data(), may_begin.data()};
     for_each_selected({}, exposed, UpdateHeldTargets{search});
     for_each_selected({}, exposed, FilterNewTargets{search});
     for_each_item({}, exposed, ResolveTargets{search});
