@@ -129,10 +129,10 @@ emulated: setup
 	build/emulated/core_tests
 	CDEM_ISA=emulated OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto $(or $(T),$(QUICK))
 
-# What the host does between the launches of a step.
+# What the host does between the launches of a step; RUN="CASE FOLDER": of a run that goes on.
 devices: setup
 	$(BIN)/python tools/build.py --emulated
-	CDEM_ISA=emulated CDEM_EMULATED_HOST=count OMP_NUM_THREADS=1 $(BIN)/python tools/devices.py
+	CDEM_ISA=emulated CDEM_EMULATED_HOST=count OMP_NUM_THREADS=1 $(BIN)/python tools/devices.py $(RUN)
 
 clean:
 	rm -rf .venv build demo
