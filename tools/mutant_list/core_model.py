@@ -28,4 +28,12 @@ FAULTS = [
         "if (place < Index(node.size())) {",
         "tests/core/model/test_tiles.cpp",
     ),
+    Mutant(
+        "tile corners",
+        "a GPU counts the corners of a tile from the first of all elements",
+        "core/model/tiles.cpp",
+        "(i - first) * e.corners + k);",
+        "i * e.corners + k);",
+        "tests/core/model/test_tiles.cpp",
+    ),
 ]

@@ -12,6 +12,14 @@ FAULTS = [
         "tests/core/nodes/test_curves.cpp",
     ),
     Mutant(
+        "known factor",
+        "factors are written only where all of them change",
+        "core/nodes/curves.cpp",
+        "changes = changes || known[c] != before;",
+        "changes = changes && known[c] != before;",
+        "tests/core/nodes/test_curves.cpp",
+    ),
+    Mutant(
         "step_bound",
         "bound of the time step without contacts and bonds",
         "core/nodes/node_frequency.hpp",
