@@ -161,6 +161,7 @@ Most most_of(Queue queue, Index count, const Real* values) {
 Real exact_sum_of(Queue queue, Index count, const Real* values) {
   std::int64_t* const words = scratch<std::int64_t>(ExactSum::words);
   for_each_item(queue, 1, AddUp{count, values, words});
+  finish(queue);
   const Transfer transfer;
   ExactSum sum;
   sum.add(words);
