@@ -116,8 +116,8 @@ docs: build
 	$(BIN)/python -m sphinx -q -E -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 
-# The core for a GPU: registers, spills and loads of its kernels; needs nvcc, no GPU. With PTX=1 the
-# same checks in half the time; a GPU would have to compile most kernels when it starts.
+# The core for a GPU: registers, spills and loads of its kernels; needs nvcc. Where there is a GPU the
+# tests of the core and the golden scenes run on it. With PTX=1 the checks alone, in half the time.
 cuda: setup
 	$(BIN)/python tools/cuda.py $(if $(PTX),--ptx)
 
