@@ -41,7 +41,7 @@ CDEM_HD inline void wet_part(const T (&p)[3], T (&part)[3]) {
   for (Index k = 0; k < 3; ++k) corner(one, k, above), corner(-one, k, below);
   const T sum = p[0] + p[1] + p[2];
   const auto mostly = !(above[0] + above[1] + above[2] > zero);  // none or two or all wet
-  const auto dry = !(p[0] > zero) & !(p[1] > zero) & !(p[2] > zero);
+  const auto dry = (!(p[0] > zero)) & (!(p[1] > zero)) & (!(p[2] > zero));
   for (Index k = 0; k < 3; ++k) {
     const T whole = T(1.0 / 24) * (sum + p[k]) + below[k];
     part[k] = select(dry, zero, select(mostly, whole, above[k]));

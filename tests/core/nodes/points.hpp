@@ -77,7 +77,8 @@ struct Points {
             .load_force = load_force.data(),
             .curve_value = curve.data(),
             .relief = nullptr,
-            .relief_part = 1};
+            .relief_part = 1,
+            .water = nullptr};
   }
   MassColumns mass_columns() const {
     return {.lumped = false,

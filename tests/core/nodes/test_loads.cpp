@@ -15,7 +15,8 @@ TEST_CASE("a node feels its weight and its loads, each scaled by its curve") {
                     .load_force = force,
                     .curve_value = factor,
                     .relief = nullptr,
-                    .relief_part = 0.25};
+                    .relief_part = 0.25,
+                    .water = nullptr};
   CHECK(distance(loads.at(0).vector(), Vec{0, 0, -20}) == 0);
   CHECK(distance(loads.at(1).vector(), Vec{0.5, 30, -30}) == 0);
   loads.relief = relief;
