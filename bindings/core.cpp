@@ -203,7 +203,6 @@ auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
   {
     nb::gil_scoped_release release;
     r = run(c.model, c.state, goal);
-    wait_for_launches();  // Python may have views of arrays
   }
   return std::make_tuple(std::string(name_of(r.outcome)), r.culprit, r.value);
 }

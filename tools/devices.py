@@ -106,6 +106,9 @@ def main() -> None:
     print("|---|---|---|---|---|---|")
     if sys.argv[1:]:
         case, folder = (Path(word) for word in sys.argv[1:])
+        for needed in (case, folder / "checkpoint.h5"):
+            if not needed.is_file():
+                sys.exit(f"{needed}: no such file; give a case, and the folder of a run of it")
         with tempfile.TemporaryDirectory() as copy:
             kept = shutil.ignore_patterns("frames*", "*.vtkhdf", "*.html", "*.png")
             shutil.copytree(folder, copy, ignore=kept, dirs_exist_ok=True)

@@ -10,7 +10,7 @@ namespace cdem {
 
 RoundOff::RoundOff(const Model& m, const State& s) {
   const Most farthest = most({}, m.node_count, Farthest{s.nodes.motion.data()});
-  shift = std::numeric_limits<Real>::epsilon() * farthest.value;
+  shift = std::numeric_limits<Real>::epsilon() * max_of(farthest.value, 0.0);
   force = shift * exact_sum({}, m.node_count,
                             NodeStiffness{.mass = m.mass.data(),
                                           .frequency_squared = m.lumped_frequency_squared.data()});

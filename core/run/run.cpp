@@ -103,7 +103,7 @@ Report run(const Model& m, State& s, const Goal& goal) {
   const RunOnDevice on_device;
   begin_run(s, goal);
   const Report report = take_steps(m, s, goal);
-  finish({});
+  finish({});  // Python may have views of arrays
   return report;
 }
 

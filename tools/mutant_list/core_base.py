@@ -4,6 +4,14 @@ from mutant_list.mutant import Mutant
 
 FAULTS = [
     Mutant(
+        "listed block",
+        "a block that is on the list is looked for behind its place",
+        "core/base/parallel.hpp",
+        "if (id[middle] < number)",
+        "if (id[middle] <= number)",
+        "tests/core/base/test_parallel_loops.cpp",
+    ),
+    Mutant(
         "exact sum",
         "sums lose half a unit of a digit",
         "core/base/exact_sum.cpp",

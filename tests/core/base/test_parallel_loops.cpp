@@ -1,6 +1,7 @@
 // Loops over kernels run for every item once, in whole lanes and a remainder.
 #include <omp.h>
 
+#include <algorithm>
 #include <atomic>
 #include <type_traits>
 #include <vector>
@@ -83,6 +84,23 @@ void on_threads(const Test& test) {
 }
 
 }  // namespace
+
+TEST_CASE("blocks are found by their numbers") {
+  const std::vector<Index> list{2, 3, 7, 20, 21};
+  const Blocks some{list.data(), Index(list.size())}, every{}, none{list.data(), 0};
+  for (Index begin = 0; begin < 24; ++begin) {
+    const bool listed = std::find(list.begin(), list.end(), begin) != list.end();
+    CHECK(some.has(begin) == listed);
+    CHECK(every.has(begin));
+    CHECK(!none.has(begin));
+    for (Index end = begin; end < 24; ++end) {
+      const Range found = some.between(begin, end);
+      CHECK(found.first == std::lower_bound(list.begin(), list.end(), begin) - list.begin());
+      CHECK(found.last == std::lower_bound(list.begin(), list.end(), end) - list.begin());
+      CHECK(every.between(begin, end).last == end);
+    }
+  }
+}
 
 TEST_CASE("for_each_lane runs every item once, all but the remainder in lanes") {
   on_threads([](Index count) {
