@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from shared.machine import of_the_cpu
 
 from cdem import Case
 from cdem.model import memory
@@ -29,6 +30,7 @@ def write(path: Path, cells, shape="hex8", split="connected", cohesion=0) -> Pat
     return path
 
 
+@of_the_cpu
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize(
     ("cells", "shape", "split", "cohesion"),

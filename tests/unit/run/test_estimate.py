@@ -8,6 +8,7 @@ import time
 import pytest
 import yaml
 from shared.cases import FALL, WALL
+from shared.machine import of_the_cpu
 
 import cdem
 from cdem.run import estimate as module
@@ -16,6 +17,7 @@ from cdem.run.estimate import StageEstimate, estimate
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
 
+@of_the_cpu
 def test_the_estimate_is_the_time_that_a_run_takes():
     """Within a factor of 2; a busy machine is given three chances."""
     data = yaml.safe_load(WALL)
