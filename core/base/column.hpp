@@ -38,9 +38,8 @@ class Column {
   /// Set the length and forget the items: for kernels to write all of them.
   void renew(std::size_t size) {
     if (size > capacity_) {
-      const std::size_t capacity = grown(size);
       Column().swap(*this);
-      take(capacity);
+      take(size + size / 8);  // the next time it may be a little longer
     }
     size_ = size;
   }

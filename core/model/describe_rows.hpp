@@ -105,7 +105,8 @@ void describe_search_rows(const State& s, Visit&& visit) {
   visit(RowKind{"outer_edge_pairs", "pairs of edges of the outer list"}, total(outer.ee_codes));
   visit(RowKind{"outer_edges", "edges of the exposed faces of one element"},
         total(outer.ee_sides) / 2);
-  visit(RowKind{"pairs_of_edges", "pairs that an edge is of"}, end_of(outer.edge_first));
+  visit(RowKind{"pairs_of_edges", "pairs of edges by the lower of the two"},
+        end_of(outer.edge_first));
   visit(RowKind{"acting_faces", "exposed faces whose contacts may act on a face"},
         end_of(outer.acting_first));
   visit(RowKind{"predicted", "nodes of exposed faces"}, total(outer.predicted_nodes));

@@ -160,14 +160,14 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
           .refers_to = {"slots"}},
          outer.ee_sides);
   stored({.name = "outer.edge_first",
-          .meaning = "pairs that an edge is of",
+          .meaning = "pairs of an edge with edges of higher numbers",
           .rows = "edges",
           .layout = Layout::starts,
           .refers_to = {"pairs_of_edges"},
           .optional = true},
          outer.edge_first);
   stored({.name = "outer.edge_pairs",
-          .meaning = "pair that the edge is of, and the other edge",
+          .meaning = "pair, and the other edge",
           .rows = "pairs_of_edges",
           .numbers = 2,
           .refers_to = {"outer_edge_pairs", "edges"}},

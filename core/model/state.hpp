@@ -1,7 +1,6 @@
 // state.hpp - what a step changes.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/base/column.hpp"
@@ -148,7 +147,7 @@ struct OuterList {
   Column<Index> ee_pairs, ee_codes;         // [2][pair], [pair], see ListedEdges
   Column<Index> ee_sides;                   // [edge][2] the same
   Column<float> ee_bounds;                  // [6][pair] see MarkNearEdges
-  Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see MarkHeldEdges
+  Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see PairsOfEdges
   Column<Real> rotation_soon;               // [exposed] see ListedFaces
   Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it
   Column<Flag> face_listed;                       // [exposed] may it act on any, or any on it?
@@ -187,7 +186,6 @@ struct SearchState {
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   OuterList outer;
   InnerList inner;
-  std::shared_ptr<struct PairSearch> lists;  // how they are made, see pair_search.hpp
 };
 
 /// What the wall time of steps is counted by.

@@ -148,6 +148,14 @@ FAULTS = [
         "tests/validation/test_contacts.py",
     ),
     Mutant(
+        "pairs of edges",
+        "pairs of two edges are looked for in the row of either",
+        "core/contact/pair_list/prune.hpp",
+        "const Index one = a < b ? a : b, other = a < b ? b : a;",
+        "const Index one = a, other = b;",
+        "tests/core/contact/pair_list/test_inner_list.cpp",
+    ),
+    Mutant(
         "lifted edge",
         "edges that have dilated are lost above zero gap",
         "core/contact/narrow_phase/touching_edges.hpp",

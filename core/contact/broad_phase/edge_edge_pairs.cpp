@@ -258,12 +258,13 @@ PairBuffer::EdgePair near_edges(const PairContext& f, const Patch& a, Index e, c
       against(a, a.edge[e], p.node[first_p]) | against(b, b.edge[g], q.node[first_q]) << 2;
   // seen along the cross product of the two as their ends are listed here
   const Real way = on == 3 ? 0 : ((on == 1) != (first_p != first_q) ? 1 : -1);
-  return {{a.edge_first + e, b.edge_first + g},
-          {1.000001 * rules.entry * std::min(a.length, b.length), edges.shift, way, edges.inset,
-           ends.shared ? 0.999999 * rules.indentation * edges.length : 0,
-           ways_part_soon(p, q) + 1e-6 * edges.length},
-          EdgeWays::code_of(ways, EdgeWays::turned(ends.shared, first_p, first_q), sides,
-                            first_p | first_q << 1)};
+  return {
+      {a.edge_first + e, b.edge_first + g},
+      {float(1.000001 * rules.entry * std::min(a.length, b.length)), float(edges.shift), float(way),
+       float(edges.inset), float(ends.shared ? 0.999999 * rules.indentation * edges.length : 0),
+       float(ways_part_soon(p, q) + 1e-6 * edges.length)},
+      EdgeWays::code_of(ways, EdgeWays::turned(ends.shared, first_p, first_q), sides,
+                        first_p | first_q << 1)};
 }
 
 /// Are the lines of two edges farther apart than `room` [m]?

@@ -118,13 +118,13 @@ void complete(const Surface& of, const Unset<ExposedFace>& exposed, Patch& p) {
         p.vertex[p.vertex_count++] = node;
         std::fill_n(p.corner[v], 6, -1);
       }
-      p.corner[v][i] = k;
+      p.corner[v][i] = Patch::Place(k);
       const Index id = of.faces.face_edges[4 * e.face + k];
       Patch::Edge* last = p.edge + p.edge_count;
       Patch::Edge* edge = std::find_if(p.edge, last, [&](const auto& o) { return o.id == id; });
       if (edge == last) p.edge[p.edge_count++] = {.id = id};
-      edge->face[edge->faces] = i;
-      edge->side[edge->faces++] = k;
+      edge->face[edge->faces] = Patch::Place(i);
+      edge->side[edge->faces++] = Patch::Place(k);
       edge->indented = edge->indented.and_of(indented_at(of.m, e, k));
     }
   }
@@ -135,7 +135,7 @@ void complete(const Surface& of, const Unset<ExposedFace>& exposed, Patch& p) {
     const Index i = edge.face[0], count = exposed[p.face[i]].shape.count();
     for (Index v = 0; v < p.vertex_count; ++v)
       for (Index end = 0; end < 2; ++end)
-        if (p.corner[v][i] == (edge.side[0] + end) % count) edge.vertex[end] = v;
+        if (p.corner[v][i] == (edge.side[0] + end) % count) edge.vertex[end] = Patch::Place(v);
   }
   for (Index i = 0; i < p.face_count; ++i) {
     const ExposedFace& e = exposed[p.face[i]];

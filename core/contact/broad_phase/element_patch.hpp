@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include "core/base/uninitialized.hpp"
 #include "core/contact/broad_phase/bounding_boxes.hpp"
@@ -43,17 +44,19 @@ struct Indented {
 
 /// The exposed faces of one element, with their vertices and edges, each once.
 struct Patch {
+  using Place = std::int8_t;  // among the few of a patch or a face
   /// An edge: the faces of the patch that meet there, and which of their sides it is.
   struct Edge {
-    Index id = -1, faces = 0;
-    Index face[2] = {}, side[2] = {};
-    Index vertex[2] = {};
+    Index id = -1;
+    Place faces = 0;
+    Place face[2] = {}, side[2] = {};
+    Place vertex[2] = {};
     Indented indented = {};
   };
   Index face_count, vertex_count, edge_count;
   Index face[6];  // exposed
   Index vertex[8];
-  Index corner[8][6];  // which corner of a face a vertex is, or -1
+  Place corner[8][6];  // which corner of a face a vertex is, or -1
   Edge edge[12];
   Index edge_first;         // place of the first among those of all patches
   Vec3<Real> displacement;  // of all its vertices alike  [m]

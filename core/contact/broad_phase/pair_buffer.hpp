@@ -1,6 +1,8 @@
 // pair_buffer.hpp - pairs that the broad phase has found, thread by thread.
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <vector>
 
 #include "core/base/lanes.hpp"
@@ -8,40 +10,60 @@
 
 namespace cdem {
 
+/// A list that grows without moving its items: part k has room for 2^k times as many as the first.
+/// Room that nothing was written to takes no memory.
+template <class T>
+class PartedList {
+ public:
+  void push_back(const T& item) {
+    if (size_ == before(parts_.size())) parts_.emplace_back().reserve(first_part << part_of(size_));
+    parts_.back().push_back(item);
+    ++size_;
+  }
+  T& operator[](std::size_t i) {
+    const std::size_t part = part_of(i);
+    return parts_[part][i - before(part)];
+  }
+  const T& operator[](std::size_t i) const { return const_cast<PartedList&>(*this)[i]; }
+  std::size_t size() const { return size_; }
+
+ private:
+  static constexpr std::size_t first_part = 4096;
+  static std::size_t part_of(std::size_t i) { return std::bit_width(i / first_part + 1) - 1; }
+  static std::size_t before(std::size_t part) { return first_part * ((1UL << part) - 1); }
+
+  std::vector<std::vector<T>> parts_;
+  std::size_t size_ = 0;
+};
+
 /// What patches may touch of the patches after them, patch after patch as one thread comes to them.
 struct PairBuffer {
   /// A vertex of a mother face on another exposed face.
   struct Candidate {
-    Index mother, vertex, face;
+    Index slot;  // 4 * mother face + vertex
+    Index face;
     Index pair;  // place in the list below
   };
   /// The pair of vertex and face that candidates are of, see MarkNearFaces. The room leaves some
   /// for single precision.
   struct VertexFacePair {
     Index of[2];  // node, exposed face
-    Real room[6];
+    float room[6];
   };
   /// A pair of edges that may touch, see MarkNearEdges and EdgePairs; the same of the room.
   struct EdgePair {
     Index of[2];  // places of the edges in `edge_sides`
-    Real room[6];
+    float room[6];
     Index code;
   };
   /// A face of which a vertex or a side is on the lists, and the one that it may touch.
   struct FacePair {
     Index mother, face;
   };
-  std::vector<Candidate> candidates;
-  std::vector<VertexFacePair> vertex_faces;
-  std::vector<EdgePair> edges;
-  std::vector<FacePair> face_pairs;
-
-  void clear() {
-    candidates.clear();
-    vertex_faces.clear();
-    edges.clear();
-    face_pairs.clear();
-  }
+  PartedList<Candidate> candidates;
+  PartedList<VertexFacePair> vertex_faces;
+  PartedList<EdgePair> edges;
+  PartedList<FacePair> face_pairs;
 };
 
 /// All that may touch before the next rebuild.

@@ -93,7 +93,6 @@ void search_pairs(const Model& m, const State& s, PairSearch& search) {
   all.by_thread.resize(omp_get_max_threads());
   all.by_patch.assign(count, {});
   list_edge_sides(patches, all.edge_sides);
-  for (PairBuffer& found : all.by_thread) found.clear();
   std::exception_ptr failure;  // memory may run out, and no exception may leave a parallel loop
 #pragma omp parallel if (count >= worth_threads)
   {

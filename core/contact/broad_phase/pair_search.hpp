@@ -12,8 +12,7 @@
 
 namespace cdem {
 
-/// Work arrays of a search and the pairs that it finds. They are kept from rebuild to rebuild for
-/// their memory only.
+/// Work arrays of a search and the pairs that it finds.
 struct PairSearch {
   Unset<ExposedFace> exposed;
   Unset<ExposedSide> sides;

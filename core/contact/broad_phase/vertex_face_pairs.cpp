@@ -123,8 +123,8 @@ PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index p
   const Real motion =
       parted + rules.indentation * 2 * deviation + 2 * y.rotation_soon * off + slack;
   return {{node, place_y},
-          {above + rules.lifted + motion, above + rules.depth * length + motion, aside + motion,
-           Real(behind), reach + motion, motion}};
+          {float(above + rules.lifted + motion), float(above + rules.depth * length + motion),
+           float(aside + motion), float(behind), float(reach + motion), float(motion)}};
 }
 
 /// The faces of a patch that meet at one of its vertices and may touch a face of another patch.
@@ -175,8 +175,7 @@ struct VertexFaceSearch {
       points.shift = std::max(points.shift, f.m.rules.indentation * (norm(arm) + 2 * x.deviation));
       points.deviation = std::max(points.deviation, x.deviation_soon);
       listed.add(reverse, i, j);
-      found.candidates.push_back({.mother = a.face[i],
-                                  .vertex = a.corner[v][i],
+      found.candidates.push_back({.slot = 4 * a.face[i] + a.corner[v][i],
                                   .face = b.face[j],
                                   .pair = Index(found.vertex_faces.size())});
     }

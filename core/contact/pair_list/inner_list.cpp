@@ -30,7 +30,7 @@ void predict_inner_motion(const Model& m, State& s) {
   const auto predicted_nodes = on_host(s.search.outer.predicted_nodes);
   const Index count = Index(predicted_nodes.size());
   const Real way = more * inner_horizon * s.search.outer.lookahead_time;
-  inner.predicted.resize(8 * std::size_t(count));
+  inner.predicted.renew(8 * std::size_t(count));
   inner.skin.resize(m.node_count);
   const auto rows = on_host(inner.predicted), skins = on_host(inner.skin);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
@@ -51,8 +51,8 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
   SearchState& search = s.search;
   InnerList& inner = search.inner;
   const Index stride = Index(search.outer.vf_pairs.size() / 2), pairs = stride;
-  inner.faces.resize(pairs);
-  inner.motion.resize(pairs);
+  inner.faces.renew(pairs);
+  inner.motion.renew(pairs);
   for_each_lane(q, pairs,
                 MarkNearFaces{.nodes = {s.nodes.motion.data()},
                               .geometry = face_geometry(s),
@@ -78,20 +78,24 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                                    .rules = m.rules,
                                    .listed = listed,
                                    .close = inner.candidates.data()});
-  inner.count.resize(slots);
+  inner.count.renew(slots);
   for_each_item(q, slots,
                 CountInnerFaces{listed.first, inner.candidates.data(), inner.count.data()});
   inner.first.renew(slots + 1);
   const Index found = scan(q, slots, inner.count.data(), inner.first.data());
-  inner.candidate.resize(found);
-  inner.rises.resize(found);
-  inner.may_begin.resize(found);
+  inner.candidate.renew(found);
+  inner.rises.renew(found);
+  inner.may_begin.renew(found);
   for_each_item(q, slots,
                 ListInnerFaces{.listed = listed,
                                .close = inner.candidates.data(),
                                .first = inner.first.data(),
                                .other = inner.candidate.data(),
                                .rises = inner.rises.data()});
+}
+
+PairsOfEdges pairs_of_edges(const OuterList& outer) {
+  return {outer.edge_first.data(), outer.edge_pairs.data()};
 }
 
 /// Where faces of two elements meet at an edge, a contact may be found through another pair than
@@ -101,7 +105,7 @@ void join_pairs_of_edges(const Model& m, SearchState& search) {
   const Index pairs = Index(search.outer.ee_codes.size()), stride = padded_stride(pairs);
   const InIndices of = on_host(InIndices{search.outer.ee_pairs.data(), stride});
   const auto sides = on_host(search.outer.ee_sides), exposed_face = on_host(search.exposed_face);
-  const auto first = on_host(search.outer.edge_first), listed = on_host(search.outer.edge_pairs);
+  const PairsOfEdges of_edges = on_host(pairs_of_edges(search.outer));
   const auto face_edges = on_host(m.face_edges);
   const auto near = on_host(inner.edges);
   const auto is_of_one = [&](Index p, Index which) {
@@ -113,9 +117,7 @@ void join_pairs_of_edges(const Model& m, SearchState& search) {
   };
   for (Index p = 0; p < pairs; ++p) {
     if (!near[p] || (is_of_one(p, 0) && is_of_one(p, 1))) continue;
-    const Index edge = edge_of(p, 0), other = edge_of(p, 1);
-    for (Index i = first[edge]; i < first[edge + 1]; ++i)
-      if (listed[2 * i + 1] == other) near[listed[2 * i]] = 1;
+    of_edges.each(edge_of(p, 0), edge_of(p, 1), [&](Index pair) { near[pair] = 1; });
   }
 }
 
@@ -141,7 +143,7 @@ void prune_edges(const Model& m, State& s, Queue q) {
                            .code = search.outer.ee_codes.data(),
                            .sides = search.outer.ee_sides.data(),
                            .table = search.exposed.data()};
-  inner.edges.resize(pairs);
+  inner.edges.renew(pairs);
   for_each_lane(q, pairs,
                 MarkNearEdges{.nodes = {s.nodes.motion.data()},
                               .listed = listed,
@@ -155,18 +157,17 @@ void prune_edges(const Model& m, State& s, Queue q) {
                   MarkHeldEdges{.exposed_face = search.exposed_face.data(),
                                 .face_edges = m.face_edges.data(),
                                 .contact = s.edges.contact.data(),
-                                .first = search.outer.edge_first.data(),
-                                .listed = search.outer.edge_pairs.data(),
+                                .pairs = pairs_of_edges(search.outer),
                                 .near = inner.edges.data()});
   join_pairs_of_edges(m, search);
   const Index count = list_near_edges(inner);
   const Index near_stride = padded_stride(count);
-  inner.edge_ends.resize(4 * std::size_t(near_stride));
-  inner.edge_sides.resize(4 * std::size_t(near_stride));
-  inner.edge_codes.resize(near_stride);
-  inner.edge_of.resize(2 * std::size_t(near_stride));
-  inner.open.resize(count);
-  inner.held.resize(4 * std::size_t(near_stride));
+  inner.edge_ends.renew(4 * std::size_t(near_stride));
+  inner.edge_sides.renew(4 * std::size_t(near_stride));
+  inner.edge_codes.renew(near_stride);
+  inner.edge_of.renew(2 * std::size_t(near_stride));
+  inner.open.renew(count);
+  inner.held.renew(4 * std::size_t(near_stride));
   inner.held_known = false;
   for_each_item(q, count,
                 CopyInnerEdges{.near = inner.near_edges.data(),

@@ -260,21 +260,33 @@ struct MarkNearEdges {
   }
 };
 
+/// Pairs of edges by the edge of the lower number: ragged rows.
+struct PairsOfEdges {
+  const Index* first;   // [edge + 1]
+  const Index* listed;  // rows of 2: pair, the other edge
+
+  /// Visit the pairs of two edges.
+  template <class Visit>
+  CDEM_HD void each(Index a, Index b, const Visit& visit) const {
+    const Index one = a < b ? a : b, other = a < b ? b : a;
+    for (Index i = first[one]; i < first[one + 1]; ++i)
+      if (listed[2 * i + 1] == other) visit(listed[2 * i]);
+  }
+};
+
 /// Those that are in contact must be looked at all the same: whatever faces the pair is listed for,
 /// as another face at the target edge may be the right one soon.
 struct MarkHeldEdges {
   const Index* exposed_face;
   const Index* face_edges;  // see FaceColumns
   const Index* contact;     // rows of EdgeContact
-  const Index* first;       // [edge + 1]
-  const Index* listed;      // rows of 2, by edge: pair that it is of, the other edge
+  PairsOfEdges pairs;
   Flag* near;
 
   CDEM_HD void operator()(One c) const {
     const EdgeContact held = EdgeContact::at(contact, c.i);
     const Index edge = face_edges[4 * exposed_face[held.mother / 4] + held.mother % 4];
-    for (Index i = first[edge]; i < first[edge + 1]; ++i)
-      if (listed[2 * i + 1] == held.edge) set(near[listed[2 * i]]);
+    pairs.each(edge, held.edge, [&](Index pair) { set(near[pair]); });
   }
 };
 

@@ -25,10 +25,11 @@ BUILT = {"tet4": 1000, "pyramid5": 2000, "wedge6": 1500, "hex8": 2500}
 """Bytes an element once it is built, without its faces."""
 BONDED = {3: 1250, 4: 2090}
 """Bytes a bonded pair, by vertices of its faces."""
-EXPOSED = {3: 7200, 4: 4200}
+EXPOSED = {3: 4100, 4: 3600}
 """Bytes an exposed face that touches another, by vertices: its lists and contacts."""
-# Fitted to the peaks of 15 meshes of 27,000 to 132,000 elements (25 Nov 2026): within 15 %, but for
-# connected plates of tets one element thick, which take up to twice as much.
+# Fitted to the peaks of 15 meshes of 27,000 to 132,000 elements (25 Nov 2026), exposed faces to nine
+# of 2,700 to 48,000 (26 Nov 2026): within 15 %, but for connected plates of tets one element thick,
+# which take up to twice as much.
 
 Pieces = Counter[tuple[str, bool, bool]]
 """Number of elements by shape, whether each is a block, and whether its group is bonded inside."""

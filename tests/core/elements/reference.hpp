@@ -247,6 +247,8 @@ struct Elements {
                         .node = own.data(),
                         .row = own.data(),
                         .place = {place.data(), stride},
+                        .corner_first = nullptr,
+                        .corner = nullptr,
                         .motion = motion.data(),
                         .force = corner_force.data()},
                   kernel);

@@ -18,6 +18,11 @@ struct Shapes : Scene {
     for (Index b = 0; b < 4; ++b) set_motion(b, {0.1, 0, 0});
     start();
   }
+  PairSearch search() const {
+    PairSearch found;
+    search_pairs(model, state, found);
+    return found;
+  }
 
  private:
   template <class Corners>
@@ -31,7 +36,7 @@ struct Shapes : Scene {
 
 TEST_CASE("a patch has the vertices, edges and faces of its element once") {
   const Shapes shapes;
-  const PairSearch& lists = *shapes.state.search.lists;
+  const PairSearch lists = shapes.search();
   REQUIRE(lists.patches.size() == 4);
   const Index faces[] = {6, 5, 5, 4}, vertices[] = {8, 6, 5, 4}, edges[] = {12, 9, 8, 6};
   for (const Patch& patch : lists.patches) {
@@ -59,7 +64,7 @@ TEST_CASE("a patch has the vertices, edges and faces of its element once") {
 TEST_CASE("boxes hold faces and patches on their whole way") {
   Shapes shapes;
   shapes.state.search.outer.lookahead_time = 0.5;
-  PairSearch& lists = *shapes.state.search.lists;
+  PairSearch lists = shapes.search();
   list_exposed_faces(shapes.model, shapes.state, lists.exposed);
   list_patches(shapes.model, shapes.state, lists.exposed, lists.patches);
   for (const Patch& patch : lists.patches)
@@ -76,7 +81,7 @@ TEST_CASE("boxes hold faces and patches on their whole way") {
 
 TEST_CASE("sides of exposed faces are sharp where the faces bend, and know what is across") {
   const Shapes shapes;
-  const PairSearch& lists = *shapes.state.search.lists;
+  const PairSearch lists = shapes.search();
   for (std::size_t x = 0; x < lists.exposed.size(); ++x)
     for (Index k = 0; k < lists.exposed[x].shape.count(); ++k) {
       const ExposedSide& side = lists.sides[4 * x + k];

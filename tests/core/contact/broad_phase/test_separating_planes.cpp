@@ -12,6 +12,7 @@ namespace {
 /// Two convex blocks that move past or into each other, and the lists of them.
 struct TwoBlocks : Scene {
   Vec velocity_of[2];
+  PairSearch lists;
 
   explicit TwoBlocks(Random& random) {
     const Vec apart = random.between(0.6, 1.6) * random.direction();
@@ -36,7 +37,7 @@ struct TwoBlocks : Scene {
     state.dt = 1e-3;  // the lists look 0.2 s ahead
     rebuild_pair_list(model, state, {.everything_awake = true});
     // the search is made again with room for nothing but the motion
-    search_pairs(model, state, *state.search.lists);
+    search_pairs(model, state, lists);
   }
   Vec at(Index node, Real time) const {
     return position(node) + time * velocity_of[on_host(model.node_block)[node]];
@@ -61,7 +62,7 @@ TEST_CASE("a vertex or an edge that is separated stays outside of the other bloc
   Index separated_vertices = 0, near_vertices = 0, inside_vertices = 0, separated_edges = 0;
   for (int k = 0; k < 200; ++k) {
     const TwoBlocks blocks(random);
-    const PairSearch& lists = *blocks.state.search.lists;
+    const PairSearch& lists = blocks.lists;
     const Bonded bonded = live_overlaps(blocks.model, blocks.state);
     const PairContext context{blocks.model, blocks.state, lists.exposed, lists.sides, bonded};
     REQUIRE(lists.patches.size() == 2);
@@ -100,7 +101,7 @@ TEST_CASE("faces that a plane holds apart have no vertex inside the other block 
   Index masked = 0, listed = 0;
   for (int k = 0; k < 200; ++k) {
     const TwoBlocks blocks(random);
-    const PairSearch& lists = *blocks.state.search.lists;
+    const PairSearch& lists = blocks.lists;
     const Bonded bonded = live_overlaps(blocks.model, blocks.state);
     const PairContext context{blocks.model, blocks.state, lists.exposed, lists.sides, bonded};
     const Patch &a = lists.patches[0], &b = lists.patches[1];

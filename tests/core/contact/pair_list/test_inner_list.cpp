@@ -3,6 +3,7 @@
 
 #include "core/contact/geometry/views.hpp"
 #include "core/contact/pair_list/inner_list.hpp"
+#include "core/contact/pair_list/prune.hpp"
 #include "tests/core/scene.hpp"
 
 namespace cdem::test {
@@ -42,6 +43,20 @@ struct Landing : Scene {
 };
 
 }  // namespace
+
+TEST_CASE("the pairs of two edges are found whichever of them comes first") {
+  const Index first[] = {0, 2, 4, 4}, listed[] = {5, 1, 7, 2, 9, 2, 4, 2};
+  const PairsOfEdges pairs{first, listed};
+  const auto of = [&](Index a, Index b) {
+    std::set<Index> all;
+    pairs.each(a, b, [&](Index pair) { all.insert(pair); });
+    return all;
+  };
+  CHECK(of(0, 1) == std::set<Index>{5});
+  CHECK(of(1, 0) == std::set<Index>{5});
+  CHECK(of(2, 0) == std::set<Index>{7});
+  CHECK(of(2, 1) == std::set<Index>{4, 9});
+}
 
 TEST_CASE("the inner list is part of the outer one, and smaller") {
   Landing landing;
