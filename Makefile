@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants torture sanitize package nightly verify lint format demo docs cuda emulated devices clean
+.PHONY: setup build dev check test validate coverage mutants torture sanitize package nightly verify lint format demo docs cuda emulated devices serial clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -133,6 +133,10 @@ emulated: setup
 devices: setup
 	$(BIN)/python tools/build.py --emulated
 	CDEM_ISA=emulated CDEM_EMULATED_HOST=count OMP_NUM_THREADS=1 $(BIN)/python tools/devices.py $(RUN)
+
+# How far threads could speed up a step: what runs on one of them only.
+serial: build
+	$(BIN)/python tools/serial.py
 
 clean:
 	rm -rf .venv build demo

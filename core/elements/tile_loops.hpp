@@ -177,7 +177,8 @@ void run_blocks(Index count, Blocks blocks, Range some, const TileNodes& nodes,
 template <class Kernel>
 void for_each_tile(Queue, Index count, Blocks blocks, const Tiles& tiles, const Kernel& kernel) {
   const Index run = tiles.count / 64 + 1;
-  const bool several = blocks.count_in(count) * block_size >= worth_threads;
+  const Index points = blocks.count_in(count) * block_size * Kernel::Shape::points;
+  const bool several = points >= worth_threads;
 #pragma omp parallel for schedule(static, run) if (several)
   for (Index tile = 0; tile < tiles.count; ++tile) {
     const Range some = blocks.between(tiles.block_first[tile], tiles.block_first[tile + 1]);

@@ -167,11 +167,15 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
           .optional = true},
          outer.edge_first);
   stored({.name = "outer.edge_pairs",
-          .meaning = "pair, and the other edge",
+          .meaning = "pair that an edge is of",
           .rows = "pairs_of_edges",
-          .numbers = 2,
-          .refers_to = {"outer_edge_pairs", "edges"}},
+          .refers_to = {"outer_edge_pairs"}},
          outer.edge_pairs);
+  stored({.name = "outer.edge_others",
+          .meaning = "its other edge",
+          .rows = "pairs_of_edges",
+          .refers_to = {"edges"}},
+         outer.edge_others);
 }
 
 /// Inner list of vertices and faces: part of `describe_search`.

@@ -148,6 +148,7 @@ struct OuterList {
   Column<Index> ee_sides;                   // [edge][2] the same
   Column<float> ee_bounds;                  // [6][pair] see MarkNearEdges
   Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see PairsOfEdges
+  Column<Index> edge_others;                // the same
   Column<Real> rotation_soon;               // [exposed] see ListedFaces
   Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it
   Column<Flag> face_listed;                       // [exposed] may it act on any, or any on it?

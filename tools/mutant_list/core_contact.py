@@ -151,8 +151,8 @@ FAULTS = [
         "pairs of edges",
         "pairs of two edges are looked for in the row of either",
         "core/contact/pair_list/prune.hpp",
-        "const Index one = a < b ? a : b, other = a < b ? b : a;",
-        "const Index one = a, other = b;",
+        "const Index low = a < b ? a : b, high = a < b ? b : a;",
+        "const Index low = a, high = b;",
         "tests/core/contact/pair_list/test_inner_list.cpp",
     ),
     Mutant(

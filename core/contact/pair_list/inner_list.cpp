@@ -7,6 +7,7 @@
 #include "core/contact/broad_phase/predicted_motion.hpp"
 #include "core/contact/narrow_phase/views.hpp"
 #include "core/contact/pair_list/prune.hpp"
+#include "core/contact/pair_list/views.hpp"
 #include "core/model/phase_timer.hpp"
 
 namespace cdem {
@@ -94,47 +95,6 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                                .rises = inner.rises.data()});
 }
 
-PairsOfEdges pairs_of_edges(const OuterList& outer) {
-  return {outer.edge_first.data(), outer.edge_pairs.data()};
-}
-
-/// Where faces of two elements meet at an edge, a contact may be found through another pair than
-/// the one that was near: all pairs of the same two edges are listed together.
-void join_pairs_of_edges(const Model& m, SearchState& search) {
-  InnerList& inner = search.inner;
-  const Index pairs = Index(search.outer.ee_codes.size()), stride = padded_stride(pairs);
-  const InIndices of = on_host(InIndices{search.outer.ee_pairs.data(), stride});
-  const auto sides = on_host(search.outer.ee_sides), exposed_face = on_host(search.exposed_face);
-  const PairsOfEdges of_edges = on_host(pairs_of_edges(search.outer));
-  const auto face_edges = on_host(m.face_edges);
-  const auto near = on_host(inner.edges);
-  const auto is_of_one = [&](Index p, Index which) {
-    return sides[2 * std::size_t(of.at(which, One{p})) + 1] >= 0;
-  };
-  const auto edge_of = [&](Index p, Index which) {
-    const Index side = sides[2 * std::size_t(of.at(which, One{p}))];
-    return face_edges[4 * exposed_face[side / 4] + side % 4];
-  };
-  for (Index p = 0; p < pairs; ++p) {
-    if (!near[p] || (is_of_one(p, 0) && is_of_one(p, 1))) continue;
-    of_edges.each(edge_of(p, 0), edge_of(p, 1), [&](Index pair) { near[pair] = 1; });
-  }
-}
-
-/// Returns how many there are.
-Index list_near_edges(InnerList& inner) {
-  inner.near_edges.renew(inner.edges.size());
-  const auto near_edges = on_host(inner.near_edges);
-  const auto is_near = on_host(inner.edges);
-  Index count = 0;
-  for (Index p = 0; p < Index(is_near.size()); ++p) {
-    near_edges[count] = p;
-    count += is_near[p];
-  }
-  inner.near_edges.resize(count);
-  return count;
-}
-
 void prune_edges(const Model& m, State& s, Queue q) {
   SearchState& search = s.search;
   InnerList& inner = search.inner;
@@ -152,15 +112,25 @@ void prune_edges(const Model& m, State& s, Queue q) {
                               .rules = m.rules,
                               .dt = s.dt_last,
                               .near = inner.edges.data()});
+  const PairsOfEdges of_edges{.first = search.outer.edge_first.data(),
+                              .listed = search.outer.edge_pairs.data(),
+                              .other = search.outer.edge_others.data()};
   if (pairs > 0)
     for_each_item(q, Index(s.edges.contact.size() / 4),
                   MarkHeldEdges{.exposed_face = search.exposed_face.data(),
                                 .face_edges = m.face_edges.data(),
                                 .contact = s.edges.contact.data(),
-                                .pairs = pairs_of_edges(search.outer),
+                                .pairs = of_edges,
                                 .near = inner.edges.data()});
-  join_pairs_of_edges(m, search);
-  const Index count = list_near_edges(inner);
+  const IsNear near{inner.edges.data()};
+  select_items(q, pairs, near, inner.near_edges);
+  for_each_item(q, Index(inner.near_edges.size()),
+                JoinPairsOfEdges{.listed = inner.near_edges.data(),
+                                 .edges = edges_of_pairs(m, search),
+                                 .pairs = of_edges,
+                                 .near = inner.edges.data()});
+  select_items(q, pairs, near, inner.near_edges);
+  const Index count = Index(inner.near_edges.size());
   const Index near_stride = padded_stride(count);
   inner.edge_ends.renew(4 * std::size_t(near_stride));
   inner.edge_sides.renew(4 * std::size_t(near_stride));

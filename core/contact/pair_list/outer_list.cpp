@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "core/base/primitives.hpp"
 #include "core/contact/broad_phase/pair_search.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/pair_list/views.hpp"
 
 namespace cdem {
 
@@ -115,28 +117,15 @@ void list_edge_pairs(PairBuffers& found, SearchState& search) {
 
 /// For every edge of the mesh the pairs that it is of, with edges of higher numbers.
 void list_pairs_of_edges(const Model& m, SearchState& search) {
-  const Index count = Index(search.outer.ee_codes.size());
-  const std::size_t stride = padded_stride(count);
-  search.outer.edge_first.resize(0);
-  search.outer.edge_pairs.renew(2 * std::size_t(count));
-  if (count == 0) return;
-  std::vector<Index> first(m.edge_nodes.size() / 2 + 1);
-  const auto sides = on_host(search.outer.ee_sides), members = on_host(search.outer.ee_pairs);
-  const auto exposed_face = on_host(search.exposed_face), pairs = on_host(search.outer.edge_pairs);
-  const auto face_edges = on_host(m.face_edges);
-  const auto edge = [&](Index p, Index which) {
-    const Index side = sides[2 * std::size_t(members[which * stride + p])];
-    return face_edges[4 * exposed_face[side / 4] + side % 4];
-  };
-  for (Index p = 0; p < count; ++p) ++first[std::min(edge(p, 0), edge(p, 1)) + 1];
-  add_up(first, first.size() - 1);
-  search.outer.edge_first.assign(first);
-  for (Index p = 0; p < count; ++p) {
-    const auto [one, other] = std::minmax({edge(p, 0), edge(p, 1)});
-    const std::size_t place = first[one]++;
-    pairs[2 * place] = p;
-    pairs[2 * place + 1] = other;
-  }
+  OuterList& outer = search.outer;
+  const Index count = Index(outer.ee_codes.size());
+  outer.edge_first.resize(0);
+  outer.edge_others.renew(count);
+  if (count == 0) return outer.edge_pairs.renew(0);
+  const EdgesOfPairs edges = edges_of_pairs(m, search);
+  list_rows({}, count, count, Index(m.edge_nodes.size() / 2), RowOfEdges{edges}, outer.edge_first,
+            outer.edge_pairs);
+  for_each_item({}, count, SetOtherEdge{edges, outer.edge_pairs.data(), outer.edge_others.data()});
 }
 
 /// For every exposed face the others that list it: their contacts may act on it.

@@ -260,17 +260,58 @@ struct MarkNearEdges {
   }
 };
 
+/// Pairs of edges of the outer list, and the edges of the mesh that they are of.
+struct EdgesOfPairs {
+  InIndices of;  // see ListedEdges
+  const Index* sides;
+  const Index* exposed_face;
+  const Index* face_edges;  // see FaceColumns
+
+  CDEM_HD Index edge(Index pair, Index which) const {
+    const Index side = sides[2 * of.at(which, One{pair})];
+    return face_edges[4 * exposed_face[side / 4] + side % 4];
+  }
+  /// Do faces of one element alone meet at the edge?
+  CDEM_HD bool is_of_one(Index pair, Index which) const {
+    return sides[2 * of.at(which, One{pair}) + 1] >= 0;
+  }
+};
+
+/// The row of a pair in PairsOfEdges, see list_rows.
+struct RowOfEdges {
+  EdgesOfPairs edges;
+
+  template <class Act>
+  CDEM_HD void visit(One pair, const Act& act) const {
+    const Index a = edges.edge(pair.i, 0), b = edges.edge(pair.i, 1);
+    act(a < b ? a : b, pair.i);
+  }
+};
+
+/// The other edge of the pairs in it.
+struct SetOtherEdge {
+  EdgesOfPairs edges;
+  const Index* listed;
+  Index* other;
+
+  CDEM_HD void operator()(One i) const {
+    const Index a = edges.edge(listed[i.i], 0), b = edges.edge(listed[i.i], 1);
+    other[i.i] = a < b ? b : a;
+  }
+};
+
 /// Pairs of edges by the edge of the lower number: ragged rows.
 struct PairsOfEdges {
   const Index* first;   // [edge + 1]
-  const Index* listed;  // rows of 2: pair, the other edge
+  const Index* listed;  // pair
+  const Index* other;   // the edge of the higher number
 
   /// Visit the pairs of two edges.
   template <class Visit>
   CDEM_HD void each(Index a, Index b, const Visit& visit) const {
-    const Index one = a < b ? a : b, other = a < b ? b : a;
-    for (Index i = first[one]; i < first[one + 1]; ++i)
-      if (listed[2 * i + 1] == other) visit(listed[2 * i]);
+    const Index low = a < b ? a : b, high = a < b ? b : a;
+    for (Index i = first[low]; i < first[low + 1]; ++i)
+      if (other[i] == high) visit(listed[i]);
   }
 };
 
@@ -288,6 +329,27 @@ struct MarkHeldEdges {
     const Index edge = face_edges[4 * exposed_face[held.mother / 4] + held.mother % 4];
     pairs.each(edge, held.edge, [&](Index pair) { set(near[pair]); });
   }
+};
+
+/// Where faces of two elements meet at an edge, a contact may be found through another pair than
+/// the one that is near: all pairs of the same two edges are listed together.
+struct JoinPairsOfEdges {
+  const Index* listed;  // pairs that are near
+  EdgesOfPairs edges;
+  PairsOfEdges pairs;
+  Flag* near;
+
+  CDEM_HD void operator()(One i) const {
+    const Index p = listed[i.i];
+    if (edges.is_of_one(p, 0) && edges.is_of_one(p, 1)) return;
+    pairs.each(edges.edge(p, 0), edges.edge(p, 1), [&](Index pair) { set(near[pair]); });
+  }
+};
+
+/// Is a pair near, see select_items?
+struct IsNear {
+  const Flag* near;
+  CDEM_HD bool operator()(One pair) const { return near[pair.i] != 0; }
 };
 
 /// Copy the pairs of edges that are near to where the search looks for them.

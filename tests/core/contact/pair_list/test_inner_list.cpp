@@ -45,8 +45,8 @@ struct Landing : Scene {
 }  // namespace
 
 TEST_CASE("the pairs of two edges are found whichever of them comes first") {
-  const Index first[] = {0, 2, 4, 4}, listed[] = {5, 1, 7, 2, 9, 2, 4, 2};
-  const PairsOfEdges pairs{first, listed};
+  const Index first[] = {0, 2, 4, 4}, listed[] = {5, 7, 9, 4}, other[] = {1, 2, 2, 2};
+  const PairsOfEdges pairs{first, listed, other};
   const auto of = [&](Index a, Index b) {
     std::set<Index> all;
     pairs.each(a, b, [&](Index pair) { all.insert(pair); });
