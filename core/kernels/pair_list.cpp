@@ -7,6 +7,7 @@
 namespace cdem {
 
 template bool any_item(Queue, Index, const ExceedsSkin&);
+template void for_each_item(Queue, Index, const PredictInner&);
 template void for_each_lane(Queue, Index, const MarkNearFaces&);
 template void for_each_selected(Queue, Index, const MarkInnerFaces&);
 template void for_each_item(Queue, Index, const CountInnerFaces&);

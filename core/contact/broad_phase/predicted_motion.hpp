@@ -1,25 +1,11 @@
 // predicted_motion.hpp - prediction and skin of the nodes of exposed faces until the next rebuild.
 #pragma once
 
-#include "core/base/math.hpp"
+#include "core/contact/broad_phase/predicted_node.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 
 namespace cdem {
-
-/// A node of exposed faces as the lists see it: they are too old once it is farther than its skin
-/// from its predicted path.
-struct PredictedNode {
-  Vec3<Real> position;  // when the lists were made  [m]
-  Vec3<Real> velocity;  // predicted  [m/s]
-  Real skin;            // [m]
-
-  static PredictedNode at(const Real* r) { return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[7]}; }
-  void store(Real* r) const {
-    r[0] = position.x, r[1] = position.y, r[2] = position.z, r[3] = skin * skin;
-    r[4] = velocity.x, r[5] = velocity.y, r[6] = velocity.z, r[7] = skin;
-  }
-};
 
 /// Those of the outer list, for host code.
 class PredictedNodes {
@@ -35,10 +21,6 @@ class PredictedNodes {
   OnHost<const Index> place_;
   OnHost<const Real> rows_;
 };
-
-/// The inner list looks ahead for this part of the lookahead time, and gives every vertex this part
-/// of its skin at most, see pair_list/inner_list.hpp.
-inline constexpr Real inner_horizon = 0.06, inner_skin = 0.5;
 
 /// Predict the paths of the nodes of exposed faces, straight on with the rigid motion of their
 /// elements (which leaves the elements' vibrations out), and their skins: the deviation that the

@@ -1,8 +1,6 @@
 // inner_list.cpp - see inner_list.hpp.
 #include "core/contact/pair_list/inner_list.hpp"
 
-#include <algorithm>
-
 #include "core/base/primitives.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
 #include "core/contact/narrow_phase/views.hpp"
@@ -20,30 +18,19 @@ bool inner_list_is_due(const State& s) {
                                           inner_horizon * s.search.outer.lookahead_time);
 }
 
-/// Predict the motion of the nodes from here on. Their skins allow the deviation that the present
-/// velocity makes beyond the predicted one, and a little more; a node that is hit leaves its skin
-/// and calls for a new list.
-void predict_inner_motion(const Model& m, State& s) {
-  constexpr Real more = 1.5, least = 0.05;
+/// Predict the motion of the nodes from here on.
+void predict_inner_motion(const Model& m, State& s, Queue q) {
   InnerList& inner = s.search.inner;
-  const InMotion nodes = on_host(InMotion{s.nodes.motion.data()});
-  const PredictedNodes outer(s);
-  const auto predicted_nodes = on_host(s.search.outer.predicted_nodes);
-  const Index count = Index(predicted_nodes.size());
-  const Real way = more * inner_horizon * s.search.outer.lookahead_time;
+  const Index count = Index(s.search.outer.predicted_nodes.size());
   inner.predicted.renew(8 * std::size_t(count));
   inner.skin.resize(m.node_count);
-  const auto rows = on_host(inner.predicted), skins = on_host(inner.skin);
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
-  for (Index w = 0; w < count; ++w) {
-    const Index node = predicted_nodes[w];
-    const PredictedNode predicted = outer.at(node);
-    const Real deviation = way * norm(nodes.velocity(node) - predicted.velocity);
-    const Real skin = std::clamp(deviation, least * predicted.skin, inner_skin * predicted.skin);
-    skins[node] = skin;
-    PredictedNode{nodes.position(node), predicted.velocity, skin}.store(rows.data() +
-                                                                        8 * std::size_t(w));
-  }
+  for_each_item(q, count,
+                PredictInner{.nodes = {s.nodes.motion.data()},
+                             .nodes_of = s.search.outer.predicted_nodes.data(),
+                             .outer = s.search.outer.predicted.data(),
+                             .time = inner_horizon * s.search.outer.lookahead_time,
+                             .predicted = inner.predicted.data(),
+                             .skin = inner.skin.data()});
   inner.built_time = s.time;
   inner.known = true;
 }
@@ -154,7 +141,7 @@ void prune_edges(const Model& m, State& s, Queue q) {
 }  // namespace
 
 void prune_pair_list(const Model& m, State& s, Queue q) {
-  predict_inner_motion(m, s);
+  predict_inner_motion(m, s, q);
   prune_vertex_faces(m, s, q);
   if (m.semi_edges) prune_edges(m, s, q);
   finish(q);

@@ -5,11 +5,37 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
+#include "core/contact/broad_phase/predicted_node.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/contact/narrow_phase/edge_pair.hpp"
 #include "core/contact/narrow_phase/vertex_face.hpp"
 
 namespace cdem {
+
+/// Predict the motion of a node from here on, with the velocity that the outer list has for it. Its
+/// skin allows the deviation that the present velocity makes beyond that one, and a little more; a
+/// node that is hit leaves its skin and calls for a new list.
+struct PredictInner {
+  InMotion nodes;
+  const Index* nodes_of;  // [predicted]
+  const Real* outer;      // rows of PredictedNode
+  Real time;              // for which it looks ahead  [s]
+  Real* predicted;        // rows of PredictedNode
+  Real* skin;             // [node]  [m]
+
+  static constexpr Real more = 1.5,
+                        least = 0.05;  // of the deviation, of the skin of the outer list
+
+  CDEM_HD void operator()(One w) const {
+    const Index node = nodes_of[w.i];
+    const PredictedNode before = PredictedNode::at(outer + 8 * std::size_t(w.i));
+    const Real deviation = more * time * norm(nodes.velocity(node) - before.velocity);
+    const Real own = max_of(min_of(deviation, inner_skin * before.skin), least * before.skin);
+    skin[node] = own;
+    PredictedNode{nodes.position(node), before.velocity, own}.store(predicted +
+                                                                    8 * std::size_t(w.i));
+  }
+};
 
 /// Mark the pairs of vertex and face that may soon be in contact. One test stands for the
 /// semi-springs in all faces at the vertex, and has room for the differences between them.
