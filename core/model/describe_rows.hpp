@@ -1,21 +1,10 @@
 // describe_rows.hpp - the kinds of rows that arrays have, and how many there are of each.
 #pragma once
 
-#include "core/base/parallel.hpp"
-#include "core/model/column_info.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/model/row_kinds.hpp"
 
 namespace cdem {
-
-/// Kind of rows for blocks of `block_size` consecutive rows of another kind, see Blocks.
-inline std::string blocks_of(const std::string& rows) { return rows + "/8"; }
-static_assert(block_size == 8);
-/// Kind of rows for what the nodes of fused elements sum, see FusedRows.
-inline std::string fused_rows_of(const std::string& rows) { return rows + ".fused_rows"; }
-
-/// Kinds of rows for tiles of elements, and for their nodes.
-inline std::string tiles_of(const std::string& rows) { return rows + ".tiles"; }
-inline std::string tile_nodes_of(const std::string& rows) { return rows + ".tile_nodes"; }
 
 /// How many rows there are, by their starts.
 inline Index end_of(const Column<Index>& starts) {

@@ -1,8 +1,9 @@
-// describe_water.hpp - the arrays of water: part of describe_model.hpp.
+// describe_water.hpp - the arrays of water: part of describe_model.hpp and describe_state.hpp.
 #pragma once
 
 #include "core/model/column_info.hpp"
 #include "core/model/model.hpp"
+#include "core/model/state.hpp"
 
 namespace cdem {
 
@@ -110,6 +111,63 @@ void describe_water(Water& w, Visit&& given) {
          .rows = "node_water",
          .refers_to = {"water_rows"}},
         w.row);
+}
+
+/// Water: part of `describe_state`.
+template <class Stored, class Rebuilt>
+void describe_water(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt) {
+  stored({.name = "node.water",
+          .unit = "N",
+          .meaning = "force of water, x y z, and a pad",
+          .rows = "nodes",
+          .numbers = 4,
+          .optional = true},
+         s.nodes.water);
+  stored({.name = "node.work_water",
+          .unit = "J",
+          .meaning = "work of water",
+          .rows = "nodes",
+          .optional = true},
+         s.nodes.work_water);
+  rebuilt("update_water",
+          {.name = "water.fields_now",
+           .unit = "Pa, Pa/m",
+           .meaning = "pressure fields in this step, see WaterFields",
+           .rows = "water_fields",
+           .numbers = 8},
+          s.water.fields);
+  rebuilt("update_water",
+          {.name = "wet_triangles.field",
+           .meaning = "field that presses on a vertex",
+           .rows = "wet_triangles",
+           .numbers = m.water.triangles.vertices,
+           .layout = Layout::columns,
+           .refers_to = {"water_fields"},
+           .optional = true},
+          s.water.triangle_field);
+  rebuilt("update_water",
+          {.name = "wet_quads.field",
+           .meaning = "field that presses on a vertex",
+           .rows = "wet_quads",
+           .numbers = m.water.quads.vertices,
+           .layout = Layout::columns,
+           .refers_to = {"water_fields"},
+           .optional = true},
+          s.water.quad_field);
+  rebuilt("update_water",
+          {.name = "water.force",
+           .unit = "N",
+           .meaning = "force of water on a vertex of a face or a node of an element, and a pad",
+           .rows = "water_rows",
+           .numbers = 4},
+          s.water.force);
+  rebuilt("update_water",
+          {.name = "water.node_pressure",
+           .unit = "Pa",
+           .meaning = "pressure in the pores",
+           .rows = "nodes",
+           .optional = true},
+          s.water.node_pressure);
 }
 
 }  // namespace cdem

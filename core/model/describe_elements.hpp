@@ -1,0 +1,205 @@
+// describe_elements.hpp - the arrays of elements: part of describe_state.hpp.
+#pragma once
+
+#include "core/materials/laws.hpp"
+#include "core/model/force_sets.hpp"
+#include "core/model/row_kinds.hpp"
+
+namespace cdem {
+
+/// Tiles of elements: part of `describe_state`.
+template <class Rebuilt>
+void describe_tiles(const char* rows, const ElementSet& set, ElementTiles& tiles,
+                    Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".";
+  rebuilt("list_tiles",
+          {.name = name + "tile.blocks",
+           .meaning = "blocks of elements of a tile",
+           .rows = tiles_of(rows),
+           .layout = Layout::starts,
+           .refers_to = {blocks_of(rows)}},
+          tiles.block_first);
+  rebuilt("list_tiles",
+          {.name = name + "tile.nodes",
+           .meaning = "nodes that come to the tile with a block",
+           .rows = blocks_of(rows),
+           .layout = Layout::starts,
+           .refers_to = {tile_nodes_of(rows)}},
+          tiles.node_first);
+  rebuilt("list_tiles",
+          {.name = name + "tile.node",
+           .meaning = "node of a tile",
+           .rows = tile_nodes_of(rows),
+           .refers_to = {"nodes"}},
+          tiles.node);
+  rebuilt("list_tiles",
+          {.name = name + "tile.row",
+           .meaning = "row of the tile's force on the node",
+           .rows = tile_nodes_of(rows),
+           .refers_to = {"tile_rows"}},
+          tiles.row);
+  rebuilt("list_tiles",
+          {.name = name + "tile.place",
+           .meaning = "place of a node of an element among those of its tile",
+           .rows = rows,
+           .numbers = set.corners,
+           .layout = Layout::columns},
+          tiles.place);
+}
+
+/// Blocks of elements that the fused kernel moves: part of `describe_state`.
+template <class Rebuilt>
+void describe_fused(const char* rows, FusedBlocks& fused, Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".", blocks = blocks_of(rows);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.blocks",
+           .meaning = "blocks of elements that the fused kernel moves, full mass matrices",
+           .refers_to = {blocks}},
+          fused.blocks);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.lumped",
+           .meaning = "the same with lumped masses",
+           .refers_to = {blocks}},
+          fused.lumped);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.general",
+           .meaning = "awake blocks of the other elements",
+           .refers_to = {blocks}},
+          fused.general);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.row_first",
+           .meaning = "corner rows of bonds at a fused block",
+           .rows = blocks,
+           .layout = Layout::starts,
+           .refers_to = {fused_rows_of(rows)}},
+          fused.row_first);
+  rebuilt("find_fused_blocks",
+          {.name = name + "fused.row",
+           .meaning = "corner row of a bond, or the one that adds nothing",
+           .rows = fused_rows_of(rows),
+           .refers_to = {"corner_rows"},
+           .opposite = true},
+          fused.row);
+}
+
+/// One set of elements: part of `describe_state`.
+template <class Stored, class Rebuilt>
+void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stored&& stored,
+                  Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".";
+  stored({.name = name + "point_stress",
+          .unit = "Pa",
+          .meaning = "stress at the Gauss points, of incremental formulations",
+          .rows = rows,
+          .numbers = 6 * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.point_stress);
+  stored({.name = name + "energy",
+          .unit = "J",
+          .meaning = "stored energy",
+          .rows = rows,
+          .layout = Layout::columns},
+         e.energy);
+  stored({.name = name + "damping_work",
+          .unit = "J",
+          .meaning = "work of the stiffness dashpot",
+          .rows = rows,
+          .layout = Layout::columns},
+         e.damping_work);
+  stored({.name = name + "history",
+          .unit = "1, and of the law",
+          .meaning = "inelastic strain and state of the law at the Gauss points",
+          .rows = rows,
+          .numbers = point_history * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.history);
+  stored({.name = name + "plastic_work",
+          .unit = "J",
+          .meaning = "work of inelastic strain",
+          .rows = rows,
+          .layout = Layout::columns,
+          .optional = true},
+         e.plastic_work);
+  rebuilt("report_elements",
+          {.name = name + "stress",
+           .unit = "Pa",
+           .meaning = "mean stress, for output",
+           .rows = rows,
+           .numbers = 6,
+           .layout = Layout::columns},
+          e.stress);
+  rebuilt("report_elements",
+          {.name = name + "yielded",
+           .meaning = "what flows now and what ever has, for output",
+           .rows = rows,
+           .layout = Layout::columns,
+           .optional = true},
+          e.yielded);
+  rebuilt("find_awake",
+          {.name = name + "awake",
+           .meaning = "blocks of elements that are computed",
+           .refers_to = {blocks_of(rows)}},
+          e.awake);
+  describe_fused(rows, e.fused, rebuilt);
+}
+
+/// Dilatation that is averaged at nodes: part of `describe_state`.
+template <class Stored, class Rebuilt>
+void describe_nodal_means(NodalMeans& n, Stored&& stored, Rebuilt&& rebuilt) {
+  stored({.name = "tet4.start_dilatation",
+          .meaning = "elastic dilatation at the start, which is not averaged",
+          .rows = "tet4",
+          .layout = Layout::columns,
+          .optional = true},
+         n.start);
+  stored({.name = "node.dilatation",
+          .meaning = "mean elastic dilatation of its tets since the start, after the last step",
+          .rows = "nodes",
+          .optional = true},
+         n.after);
+  const auto of_tet = [&](const char* name, const char* meaning, Column<Real>& column) {
+    rebuilt("update_nodal_means",
+            {.name = name,
+             .meaning = meaning,
+             .rows = "tet4",
+             .layout = Layout::columns,
+             .optional = true},
+            column);
+  };
+  of_tet("tet4.dilatation", "elastic dilatation since the start", n.own);
+  of_tet("tet4.flowed_dilatation", "inelastic dilatation of the step", n.flowed);
+  rebuilt("update_nodal_means",
+          {.name = "node.trial_dilatation",
+           .meaning = "mean elastic dilatation of its tets before the laws moved on",
+           .rows = "nodes",
+           .optional = true},
+          n.trial);
+  const auto of_blocks = [&](const char* name, const char* meaning, const char* rows,
+                             Column<Index>& column) {
+    rebuilt("list_nodal_means", {.name = name, .meaning = meaning, .refers_to = {blocks_of(rows)}},
+            column);
+  };
+  of_blocks("tet4.averaged", "blocks of tiles with a tet that is averaged", "tet4", n.blocks);
+  of_blocks("tet4.not_averaged", "the other ones", "tet4", n.other_blocks);
+  of_blocks("node.averaging", "blocks of nodes with one of an averaged tet", "nodes",
+            n.node_blocks);
+  rebuilt("list_nodal_means",
+          {.name = "node.tet_first",
+           .meaning = "tets at a node",
+           .rows = "nodes",
+           .layout = Layout::starts,
+           .refers_to = {"node_tets"},
+           .optional = true},
+          n.tet_first);
+  rebuilt("list_nodal_means",
+          {.name = "node.tet",
+           .meaning = "tet at a node",
+           .rows = "node_tets",
+           .refers_to = {"tet4"},
+           .optional = true},
+          n.tet);
+}
+
+}  // namespace cdem
