@@ -52,6 +52,34 @@ def irregular_tets(path, size, divisions):
     return {"mesh": str(path)}
 
 
+def _cube(kind):
+    """Corners of a cube of 0.6 m with a face, an edge or a vertex lowest, at height 0."""
+    tip = np.degrees(np.arctan(np.sqrt(2)))
+    turned = {
+        "face": np.eye(3),
+        "edge": turn([0, 1, 0], 45),
+        "vertex": turn([0, 1, 0], tip) @ turn([0, 0, 1], 45),
+    }[kind]
+    corners = 0.6 * (np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T - 0.5)
+    corners = corners @ turned.T
+    corners[:, 2] -= corners[:, 2].min()
+    return corners
+
+
+def meeting_cubes(lower, upper, gap=0.0):
+    """Two cubes that meet at the origin: the lower's topmost and the upper's lowest feature.
+
+    Either feature is "face", "edge" or "vertex"; groups "lower" and "upper", a gap [m] apart.
+    """
+    below = _cube(lower) * [1, 1, -1]
+    if lower == "edge":
+        below = below @ turn([0, 0, 1], 90).T  # edges cross instead of lying along each other
+    return [
+        {"group": "lower", "polyhedron": {"vertices": below.tolist()}},
+        {"group": "upper", "polyhedron": {"vertices": (_cube(upper) + [0, 0, gap]).tolist()}},
+    ]
+
+
 def momentum(sim):
     """Linear and angular momentum with the mass matrices that the core uses."""
     arrays, motion = sim.build.arrays, sim.fields

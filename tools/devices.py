@@ -17,7 +17,7 @@ from pathlib import Path
 import cdem
 from cdem import _native
 from cdem.case.case import Case
-from cdem.tools import benchmark
+from cdem.tools import benchmark, benchmark_cases
 
 STEPS = 100
 MOST = 6
@@ -26,7 +26,7 @@ MOST = 6
 
 def bonded() -> dict:
     """P2: a bar of bonded tets."""
-    return benchmark._bar(6, "tet4", **benchmark._breakable("1 GPa"))
+    return benchmark_cases.bar(6, "tet4", **benchmark_cases.breakable("1 GPa"))
 
 
 def landslide() -> Case:
@@ -38,10 +38,10 @@ def landslide() -> Case:
 
 # Name, case, and steps before those that are counted.
 SCENES = {
-    "P1, tets that share nodes": (lambda: benchmark._bar(6, "tet4"), 20),
+    "P1, tets that share nodes": (lambda: benchmark_cases.bar(6, "tet4"), 20),
     "P2, bonded tets": (bonded, 20),
-    "P3, rubble": (lambda: benchmark._rubble(2), 200),
-    "P4, wall of cubes": (lambda: benchmark._wall(benchmark.WALL), 200),
+    "P3, rubble": (lambda: benchmark_cases.rubble(2), 200),
+    "P4, wall of cubes": (lambda: benchmark_cases.wall(benchmark.WALL), 200),
     "landslide, template": (landslide, 200),
 }
 

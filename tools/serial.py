@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import cdem
-from cdem.tools import benchmark
+from cdem.tools import benchmark, benchmark_cases
 
 ROOT = Path(__file__).resolve().parent.parent
 CLOCK = ROOT / "build" / "serial.so"
@@ -23,22 +23,22 @@ THREADS = 2
 def cases() -> Iterator[tuple[str, cdem.Simulation, int]]:
     """Name, simulation at the moment, and steps that are counted."""
     size = benchmark.SIZES["1e5"]
-    yield "P1, 105,456 tets", start(benchmark._bar(size, "tet4")), 400
-    bonded = benchmark._bar(size, "tet4", **benchmark._breakable("1 GPa"))
+    yield "P1, 105,456 tets", start(benchmark_cases.bar(size, "tet4")), 400
+    bonded = benchmark_cases.bar(size, "tet4", **benchmark_cases.breakable("1 GPa"))
     yield "P2, 105,456 tets", start(bonded), 200
-    rubble = start(benchmark._rubble(8))
+    rubble = start(benchmark_cases.rubble(8))
     for moment in benchmark.MOMENTS:
         rubble.run_until(moment / 1e3)
         yield f"P3, 24,576 tets, at {moment} ms", rubble, 150
     for rows in (benchmark.WALL, 8 * benchmark.WALL):
-        wall = start(benchmark._wall(rows))
+        wall = start(benchmark_cases.wall(rows))
         wall.step(200)
-        yield f"P4, {rows * benchmark.COLUMNS:,} cubes", wall, 300
+        yield f"P4, {rows * benchmark_cases.COLUMNS:,} cubes", wall, 300
 
 
 def start(data: dict) -> cdem.Simulation:
     """A simulation after some steps; its first run has what no other step has."""
-    return benchmark._start(data, THREADS)[0]
+    return benchmark_cases.start(data, THREADS)[0]
 
 
 def main() -> None:

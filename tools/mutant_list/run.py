@@ -46,8 +46,8 @@ FAULTS = [
     Mutant(
         "fingerprint",
         "a checkpoint of another model is taken",
-        "src/cdem/run/simulation.py",
-        "if attributes.nodes != self.build.fingerprint:",
+        "src/cdem/run/restored.py",
+        "if attributes.nodes != run.build.fingerprint:",
         "if not attributes.nodes:",
         "tests/unit/run/test_result_folder.py",
     ),

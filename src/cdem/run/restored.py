@@ -1,15 +1,66 @@
-"""Whether arrays from a checkpoint fit the model, checked before the core works with them."""
+"""Whether a checkpoint is of the model, and its arrays fit, before the core works with them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
-from cdem.run.state import Attributes
+from cdem._native import digests
+from cdem._version import __version__
+from cdem.errors import CdemError
+from cdem.run.flow_recorder import PREFIX
+from cdem.run.state import Attributes, RunState
+
+
+def check_model(
+    run: RunState, path: Path, arrays: dict[str, NDArray], attributes: Attributes, *, force: bool
+) -> None:
+    """Make sure that a checkpoint is of this model and this program.
+
+    Args:
+        run: The run that is to go on.
+        path: Of the checkpoint.
+        arrays: What it holds, by name.
+        attributes: What it keeps besides arrays.
+        force: Whether the program may be of another version.
+
+    Raises:
+        CdemError: It is of another model or program; says what to do.
+    """
+    if attributes.nodes != run.build.fingerprint:
+        raise CdemError(
+            f"{path}: belongs to another model, with other elements or groups, or whose nodes "
+            "begin at other places or are numbered otherwise; resume with the case and the mesh "
+            "that were run"
+        )
+    if attributes.own_laws != digests:
+        names = ", ".join(attributes.own_laws) or "none"
+        raise CdemError(
+            f"{path}: was written with another text of own laws ({names}); go on with the "
+            "headers that were run, or run the case again in another folder (-o)"
+        )
+    output = run.given_case.model_dump(mode="json")["output"]
+    if attributes.case.get("output", {}).get("maps") != output["maps"]:
+        raise CdemError(
+            f"{path}: was written with another output.maps, whose values are half there; go on with "
+            "that of the run"
+        )
+    own = {"simulation.reference", "simulation.born"}  # see RunState.kept
+    own |= {name for name in arrays if name.startswith(PREFIX)}
+    other = set(arrays) - own | set(attributes.core)
+    other ^= set(run.core.fields()) | set(run.core.scalars())
+    if other or (attributes.version != __version__ and not force):
+        fields = f" and holds other fields ({', '.join(sorted(other)[:3])}, ...)" if other else ""
+        raise CdemError(
+            f"{path}: was written by another version of cdem ({attributes.version}; this is "
+            f"{__version__}){fields}. Go on with the cdem that wrote it"
+            f"{'' if other else ', with --force'}, or run the case again in another folder (-o)"
+        )
 
 
 def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:

@@ -6,7 +6,6 @@ import os
 import time
 from collections.abc import Callable
 from functools import partial
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -14,15 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
-from cdem._native import digests
-from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.errors import CdemError, DiskError, UnstableError
 from cdem.model.audit import Audit
 from cdem.model.fill import nodes_of_groups
 from cdem.model.overlaps import adopt_overlaps
-from cdem.model.ruling_step import ruling_step
-from cdem.run import failures, restored, stages
+from cdem.run import failures, restored, shown, stages
 from cdem.run.actions import Act, Action
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
@@ -180,11 +176,6 @@ class Simulation(RunState):
             self.results.finish(self, status)
         return status
 
-    @property
-    def is_over(self) -> bool:
-        """Whether all stages have ended."""
-        return self.stage_index >= len(self.case.stages)
-
     def _with_advice(self, error: DiskError) -> DiskError:
         """Say in the error of a full disk what is safe, and how to go on."""
         kept = "run the case again"
@@ -276,21 +267,7 @@ class Simulation(RunState):
 
     def _repr_html_(self) -> str:
         """What a notebook shows: where the simulation is."""
-        counts, broken = self.audit.counts, self.broken
-        stage = "all stages have ended" if self.is_over else self.case.stages[self.stage_index].name
-        rows = {
-            "stage": stage,
-            "time": f"{self.time:.6g} s",
-            "steps": f"{self.step_count:,}",
-            "elements, blocks": f"{counts['elements']:,}, {counts['blocks']:,}",
-            "springs broken in tension, shear": f"{broken['tension']:,}, {broken['shear']:,}",
-        }
-        if self.step_count:
-            rows["energy balance closes to"] = f"{100 * self.energies['error']:.2g} %"
-        if self.results:
-            rows["results"] = f"cdem.open({str(self.results.folder)!r})"
-        lines = (f"<tr><td>{escape(k)}</td><td>{escape(v)}</td></tr>" for k, v in rows.items())
-        return f"<b>{escape(self.case.title or 'Simulation')}</b><table>{''.join(lines)}</table>"
+        return shown.table(self, self.results.folder if self.results else None)
 
     def step(self, count: int = 1) -> None:
         """Do a number of steps with the present settings, recording nothing and ending no stage."""
@@ -320,7 +297,7 @@ class Simulation(RunState):
                 stage.note(self.step_count - stage.start_step, self.core.unbalance_ratio()),
             )
             if progress:
-                progress(self._progress(stage, speed, note))
+                progress(shown.progress(self, stage, speed, note))
             if note and not known and self.results:
                 self.results.log(f"{stage.name}: {note}")
             if status is not None:
@@ -417,36 +394,6 @@ class Simulation(RunState):
                 )
         return UnstableError(f"step {self.step_count}, t = {self.time:.6g} s: {why}{kept}")
 
-    def _rules(self) -> str:
-        """What rules the step, where the program chooses it and masses are not made for it."""
-        made = self.case.time.step != "auto" or len(self.core.fields()["node.relax_mass"])
-        return "" if made else ruling_step(self.build).words()
-
-    def _progress(self, stage: StageState, speed: float, note: str) -> Progress:
-        end = stage.end_time
-        fraction = left = None
-        if end is not None:
-            # a stage shorter than the resolution of the time is over when it begins
-            length = end - stage.start_time
-            fraction = (self.time - stage.start_time) / length if length > 0 else 1.0
-            if fraction > 0:
-                left = stage.wall_time * (1 - fraction) / fraction
-        return Progress(
-            stage=stage.name,
-            time=self.time,
-            end_time=end,
-            step=self.step_count,
-            dt=float(self.core.scalars()["dt"]),
-            rules=self._rules(),
-            unbalance_ratio=self.core.unbalance_ratio(),
-            energy_error=self.energies["error"],
-            broken=sum(self.broken.values()),
-            steps_per_second=speed,
-            time_left=left,
-            fraction=fraction,
-            note=note,
-        )
-
     def _guard(self, advance: Callable[[], tuple[str, int, float]]) -> str:
         """Turn a failed outcome of the core into an error that says what, where and when."""
         try:
@@ -479,7 +426,7 @@ class Simulation(RunState):
     def _restore(self, *, force: bool) -> None:
         assert self.results is not None
         path, arrays, attributes = self.results.read_checkpoint()
-        self._check_model(path, arrays, attributes, force=force)
+        restored.check_model(self, path, arrays, attributes, force=force)
         begun = attributes.stage_index + (attributes.stage is not None)
         changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
         self.results.notes += changes.check(self.case, force=force)
@@ -490,54 +437,10 @@ class Simulation(RunState):
         self.wall_time, self.departures = attributes.wall_time, attributes.departures
         stages.change_end(self, longer=changes.longer)
         self.settings = attributes.settings
-        for done in range(self.begun + 1):
-            if done:
-                stages.apply_settings(self, done - 1)
-            for setting in self.settings:
-                if setting.begun == done:
-                    stages.change_value(self, setting)
-        added = {name for stage in self.case.stages[: self.begun] for name in stage.add}
-        if added:
-            self.core.update_model(stages.renewed(self, sorted(added)))
+        stages.catch_up(self)
         self.core.prepare()
         if not self.is_over or self.results.ended(self) is None:
             self.results.reopen(self, attributes)
-
-    def _check_model(
-        self, path: Path, arrays: dict[str, NDArray], attributes: Attributes, *, force: bool
-    ) -> None:
-        """Make sure that a checkpoint is of this model and this program."""
-        if attributes.nodes != self.build.fingerprint:
-            raise CdemError(
-                f"{path}: belongs to another model, with other elements or groups, or whose nodes "
-                "begin at other places or are numbered otherwise; resume with the case and the mesh "
-                "that were run"
-            )
-        if attributes.own_laws != digests:
-            names = ", ".join(attributes.own_laws) or "none"
-            raise CdemError(
-                f"{path}: was written with another text of own laws ({names}); go on with the "
-                "headers that were run, or run the case again in another folder (-o)"
-            )
-        output = self.given_case.model_dump(mode="json")["output"]
-        if attributes.case.get("output", {}).get("maps") != output["maps"]:
-            raise CdemError(
-                f"{path}: was written with another output.maps, whose values are half there; go on with "
-                "that of the run"
-            )
-        own = {"simulation.reference", "simulation.born"}  # see RunState.kept
-        own |= {name for name in arrays if name.startswith(PREFIX)}
-        other = set(arrays) - own | set(attributes.core)
-        other ^= set(self.core.fields()) | set(self.core.scalars())
-        if other or (attributes.version != __version__ and not force):
-            fields = (
-                f" and holds other fields ({', '.join(sorted(other)[:3])}, ...)" if other else ""
-            )
-            raise CdemError(
-                f"{path}: was written by another version of cdem ({attributes.version}; this is "
-                f"{__version__}){fields}. Go on with the cdem that wrote it"
-                f"{'' if other else ', with --force'}, or run the case again in another folder (-o)"
-            )
 
     def _restore_core(self, path: Path, arrays: dict[str, NDArray], attributes: Attributes) -> None:
         """Hand the arrays of a checkpoint to the core, if it can work with them."""

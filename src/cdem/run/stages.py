@@ -200,6 +200,19 @@ def change_end(sim: RunState, *, longer: bool) -> None:
         sim.stage.end_time = None if duration is None else sim.stage.start_time + duration
 
 
+def catch_up(sim: RunState) -> None:
+    """Give the core of a resumed run what its stages and its script have set and added so far."""
+    for done in range(sim.begun + 1):
+        if done:
+            apply_settings(sim, done - 1)
+        for setting in sim.settings:
+            if setting.begun == done:
+                change_value(sim, setting)
+    added = {name for stage in sim.case.stages[: sim.begun] for name in stage.add}
+    if added:
+        sim.core.update_model(renewed(sim, sorted(added)))
+
+
 def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple[str, int, float]:
     """Run towards the stage's next event or a time, at most `steps` steps; the core's report."""
     rules = sim.case.stages[sim.stage_index]

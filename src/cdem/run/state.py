@@ -372,6 +372,11 @@ class RunState:
         return self.stage_index + (self.stage is not None)
 
     @property
+    def is_over(self) -> bool:
+        """Whether all stages have ended."""
+        return self.stage_index >= len(self.case.stages)
+
+    @property
     def energies(self) -> dict[str, float]:
         """Energy ledger at the last sampled step [J], and its closing "error" (a fraction)."""
         return self.core.energies()

@@ -19,11 +19,9 @@ import numpy as np
 from cdem._native import core as native
 from cdem._native import name as native_name
 from cdem._version import __version__
-from cdem.case.case import Case
-from cdem.mesh.primitives import box
-from cdem.model.compensation import bonded_tets
-from cdem.model.homogenize import means
 from cdem.run.simulation import Simulation
+from cdem.tools import benchmark_cases as cases
+from cdem.tools.benchmark_errors import modulus_error, wave_error
 
 REPEATS = 5
 """Timed runs of a row; the median counts, least and most are shown."""
@@ -35,7 +33,6 @@ SIZES = {"1e4": 6, "1e5": 13, "1e6": 28}
 """Cells in the width of the bars (8 m x m x m cells of 6 tets), by number of tets."""
 TRIAD_BYTES = 400_000_000
 """Size of the arrays of the bandwidth test: no cache holds them [B]."""
-ROCK = {"density": 2500, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
 RUBBLE = 4
 """Cells in the width of the bar that is broken to rubble: 3,072 tets."""
 RUBBLE_STEPS = 100
@@ -44,10 +41,6 @@ MOMENTS = (5, 20, 50)
 """When rubble is timed: its tets meet, then part [ms after release]."""
 SHAKEN = 4
 """Cells in the width of the irregular bar: 3,072 tets whose corners are moved by up to a quarter."""
-CUBE = 6
-"""Cells along a cube that is pulled for its Young's modulus."""
-COLUMNS = 20
-"""Cubes in a row of the wall."""
 WALL = 26
 """Rows of cubes in the wall of which a second is measured."""
 MIXED = 15
@@ -142,18 +135,19 @@ def seconds() -> Iterator[Row]:
     little = {"time": {"mass_scaling": {"most": 0.001}}}
     overlap = {"contact_stiffness": {"overlap": 1e-3}}
     for version in (1, 2):
-        regular = _bar(SIZES["1e4"], "tet4", **_breakable("1 GPa"))
+        regular = cases.bar(SIZES["1e4"], "tet4", **cases.breakable("1 GPa"))
         yield _cost("P2 regular tets", version, regular, error=True)
     with tempfile.TemporaryDirectory() as place:
         for version, more in ((1, {}), (2, {}), (2, little)):
-            yield _cost("P2 irregular tets", version, _irregular(Path(place)) | more, error=True)
+            shaken = cases.irregular(SHAKEN, Path(place)) | more
+            yield _cost("P2 irregular tets", version, shaken, error=True)
     for version, law in ((1, {}), (2, {}), (2, overlap)):
-        case = _wall(WALL)
+        case = cases.wall(WALL)
         case["interfaces"]["default"] |= law
         yield _cost("P4 wall" + (", overlap 1e-3" if law else ""), version, case)
     for speed in (2, 21):
         for version in (1, 2):
-            yield _cost(f"P3 rubble, {speed} m/s", version, _rubble(RUBBLE, speed / 21), 0.005)
+            yield _cost(f"P3 rubble, {speed} m/s", version, cases.rubble(RUBBLE, speed / 21), 0.005)
 
 
 def _cost(
@@ -161,7 +155,7 @@ def _cost(
 ) -> Row:
     """CPU seconds per simulated second, the step, and the error of Young's modulus of the rock."""
     case = case | {"cdem": version}
-    sim, _ = _start(case, 1)
+    sim, _ = cases.start(case, 1)
     if settle:
         sim.run_until(settle)
     steps = RUBBLE_STEPS if settle else _steps_for(lambda n: sim.step(n))
@@ -175,91 +169,13 @@ def _cost(
               "CPU s/simulated s", statistics.median(costs), min(costs), max(costs), 1)  # fmt: skip
     row.more["step [us]"] = 1e6 * float(sim.core.scalars()["dt"])
     if error:
-        row.more["error of E [%]"] = 100 * _modulus_error(
-            version, irregular="mesh" in case["model"]
-        )
+        row.more["error of E [%]"] = 100 * modulus_error(version, irregular="mesh" in case["model"])
     return row
-
-
-def _shaken(folder: Path, size: list[int]) -> str:
-    """A mesh file of a box of tets whose inner corners are moved by up to a quarter of a cell."""
-    import meshio
-
-    whole = box("bar", [float(n) for n in size], size, shape="tet4")
-    points, inner = whole.points, np.ones(whole.points.shape, bool)
-    inner &= (points > 1e-9) & (points < np.array(size) - 1e-9)
-    points = points + inner * np.random.default_rng(1).uniform(-0.25, 0.25, points.shape)
-    path = folder / f"{size[0]}.vtk"
-    meshio.write_points_cells(path, points, [("tetra", whole.cells["tet4"])])
-    return str(path)
-
-
-def _irregular(folder: Path) -> dict[str, Any]:
-    """The bonded bar of a shaken mesh."""
-    case = _bar(SHAKEN, "tet4", **_breakable("1 GPa"))
-    mesh = _shaken(folder, [8 * SHAKEN, SHAKEN, SHAKEN])
-    case["model"] = {"mesh": mesh, "split": {"default": "elements"}}
-    case["groups"] = {"default": case["groups"]["bar"]}
-    case["loads"]["supports"][0]["surface"]["group"] = "default"
-    return case
-
-
-def _modulus_error(version: int, *, irregular: bool) -> float:
-    """Error of Young's modulus of a cube of bonded tets that is pulled along x, the mean of its inner
-    tets and their faces."""
-    size, group = [CUBE] * 3, "default" if irregular else "bar"
-    with tempfile.TemporaryDirectory() as place:
-        model: dict[str, Any] = {"split": {group: "elements"}}
-        if irregular:
-            model["mesh"] = _shaken(Path(place), size)
-        else:
-            model["blocks"] = [
-                {"group": group, "box": {"size": size, "divisions": size, "shape": "tet4"}}
-            ]
-        case = {
-            "cdem": version,
-            "model": model,
-            "materials": {"rock": ROCK},
-            "groups": {group: {"material": "rock"}},
-            "interfaces": {"default": {"friction_angle": 30, **_breakable("1 GPa")["interface"]}},
-            "loads": {"tractions": [
-                {"surface": {"group": group, "normal": [n, 0, 0]}, "traction": [n * 1e5, 0, 0]}
-                for n in (-1, 1)
-            ]},
-            "stages": [{"name": "pull", "mode": "static", "relax": "adaptive"}],
-        }  # fmt: skip
-        sim = Simulation(Case.from_dict(case), threads=1)
-        sim.run()
-    t, made = sim.build.topology, sim.build.compensation.get(group)
-    tets = bonded_tets(t, np.arange(len(t.pair_faces)), np.arange(len(t.element_nodes["tet4"])))
-    u = sim.fields["displacement"][t.element_nodes["tet4"]].reshape(-1, 12, 1)
-    stiffening = 1.0 if made is None else made.stiffening
-    strain, stress = means(tets, u, stiffening * 10e9, stiffening * 0.25, tets.inner(2))
-    return float((stress[0, 0] - 0.25 * (stress[1, 0] + stress[2, 0])) / strain[0, 0] / 10e9 - 1)
-
-
-def _bar(m: int, shape: str, **more: Any) -> dict[str, Any]:
-    return {
-        "model": {
-            "blocks": [
-                {"group": "bar", "box": {"size": [8 * m, m, m], "divisions": [8 * m, m, m],
-                                         "shape": shape}},
-            ],
-            **more.pop("model", {}),
-        },
-        "materials": {"rock": ROCK},
-        "groups": {"bar": {"material": "rock", "velocity": [1e-3, 0, 0], **more.pop("group", {})}},
-        "interfaces": {"default": {"friction_angle": 30, **more.pop("interface", {})}},
-        "loads": {"supports": [{"surface": {"group": "bar", "normal": [-1, 0, 0]},
-                                "fix": ["x", "y", "z"]}]},
-        "stages": [{"name": "run", "mode": "dynamic", "duration": 1e3}],
-        **more,
-    }  # fmt: skip
 
 
 def tets_shared(m: int, threads: int) -> Row:
     """P1: one block, no interfaces."""
-    sim, start = _start(_bar(m, "tet4"), threads)
+    sim, start = cases.start(cases.bar(m, "tet4"), threads)
     tets = sim.audit.counts["elements"]
     row = _time("P1 tets, shared nodes", f"{tets:,}", "tets/s", sim, tets)
     # gradients, volume, places of nodes, material
@@ -272,7 +188,7 @@ def tets_shared(m: int, threads: int) -> Row:
     row.more["of bandwidth"] = row.rate * moved / bandwidth(threads)
     row.more["start-up [s]"] = start
     if m == SIZES["1e4"]:
-        row.more["wave speed error [%]"] = 100 * _wave_error(m, {})
+        row.more["wave speed error [%]"] = 100 * wave_error(m, {})
     return row
 
 
@@ -280,7 +196,7 @@ def tets_bonded(m: int, threads: int) -> Row:
     """P2: every interior face a breakable interface, all intact."""
     row, _ = _bonded("P2 tets, all faces bonded", "1 GPa", m, threads)
     if m == SIZES["1e4"]:
-        row.more["wave speed error [%]"] = 100 * _wave_error(m, _breakable("1 GPa"))
+        row.more["wave speed error [%]"] = 100 * wave_error(m, cases.breakable("1 GPa"))
     return row
 
 
@@ -292,16 +208,8 @@ def tets_broken(m: int, threads: int) -> Row:
     return row
 
 
-def _breakable(strength: str) -> dict[str, Any]:
-    """Every element a block of its own, bonded to the others by interfaces of one strength."""
-    return {
-        "model": {"split": {"bar": "elements"}},
-        "interface": {"cohesion": strength, "tensile_strength": strength},
-    }
-
-
 def _bonded(name: str, strength: str, m: int, threads: int) -> tuple[Row, Simulation]:
-    sim, start = _start(_bar(m, "tet4", **_breakable(strength)), threads)
+    sim, start = cases.start(cases.bar(m, "tet4", **cases.breakable(strength)), threads)
     counts = sim.audit.counts
     tets = counts["elements"]
     row = _time(name, f"{tets:,}", "tets/s", sim, tets)
@@ -312,31 +220,10 @@ def _bonded(name: str, strength: str, m: int, threads: int) -> tuple[Row, Simula
     return row, sim
 
 
-def _rubble(m: int, speed: float = 1.0) -> dict[str, Any]:
-    """The bonded bar with every bond cut, above a plate; it slides and tumbles at 21 m/s (rms)."""
-    case = _bar(
-        m,
-        "tet4",
-        model={"split": {"bar": "elements"}},
-        group={
-            "velocity": [2 * speed, 0, -speed],
-            "angular_velocity": [0.5 * speed, speed, 2 * speed],
-        },
-        interface={"cohesion": "10 Pa", "tensile_strength": "10 Pa"},  # all break at once
-    )
-    case["model"]["blocks"].append(
-        {"group": "plate", "box": {"size": [20 * m, 6 * m, 1]}, "translate": [-4 * m, -3 * m, -1]}
-    )
-    case["groups"]["plate"] = {"material": "rock", "fix": ["x", "y", "z"]}
-    case["loads"] = {"gravity": [0, 0, -9.81]}
-    case["stages"][0]["damping"] = {"contact": 0.2, "stiffness": 0.1}
-    return case
-
-
 def rubble(m: int, threads: int) -> Iterator[Row]:
     """P3: the same with every bond cut, while it slides and tumbles on a plate; S: its search."""
-    case = _rubble(m)
-    sim, start = _start(case, threads)
+    case = cases.rubble(m)
+    sim, start = cases.start(case, threads)
     tets = sim.audit.groups["bar"]["elements"]
     bonds = 3 * sim.audit.counts["bonded_pairs"]
     for moment in MOMENTS:
@@ -372,34 +259,12 @@ def _search(row: Row, refreshes: int, steps: int, sim: Simulation) -> Row:
     return s
 
 
-def _wall(rows: int) -> dict[str, Any]:
-    """A running-bond wall of cubes of one element on a floor."""
-    blocks: list[dict[str, Any]] = [
-        {"group": "cubes", "box": {"size": [1, 1, 1]}, "translate": [i + 0.5 * (j % 2), 0, j]}
-        for j in range(rows)
-        for i in range(COLUMNS)
-    ]
-    blocks.append(
-        {"group": "floor", "box": {"size": [COLUMNS + 4, 3, 1]}, "translate": [-2, -1, -1]}
-    )
-    return {
-        "model": {"blocks": blocks},
-        "materials": {"rock": ROCK},
-        "groups": {"cubes": {"material": "rock"},
-                   "floor": {"material": "rock", "fix": ["x", "y", "z"]}},
-        "interfaces": {"default": {"friction_angle": 30}},
-        "loads": {"gravity": [0, 0, -9.81]},
-        "stages": [{"name": "rest", "mode": "dynamic", "duration": 1e3,
-                    "damping": {"contact": 0.2, "stiffness": 0.1}}],
-    }  # fmt: skip
-
-
 def wall(rows: int, threads: int) -> Row:
     """P4: running-bond wall of cubes of one element, at rest under gravity."""
-    case = _wall(rows)
-    sim, start = _start(case, threads)
+    case = cases.wall(rows)
+    sim, start = cases.start(case, threads)
     sim.step(200)
-    cubes = rows * COLUMNS
+    cubes = rows * cases.COLUMNS
     row = _time("P4 wall of cubes at rest", f"{cubes:,}", "cubes/s", sim, cubes)
     row.more["springs/s"] = row.rate / cubes * sim.audit.counts["semi_springs"]
     row.more["wall time per simulated s"] = cubes / row.rate / float(sim.core.scalars()["dt"])
@@ -410,7 +275,7 @@ def wall(rows: int, threads: int) -> Row:
 def hexes(threads: int, hexahedra: str) -> Row:
     """Hexahedra that share nodes."""
     m = 23
-    sim, start = _start(_bar(m, "hex8", elements={"hexahedra": hexahedra}), threads)
+    sim, start = cases.start(cases.bar(m, "hex8", elements={"hexahedra": hexahedra}), threads)
     count = sim.audit.counts["elements"]
     row = _time(f"hexahedra, {hexahedra}", f"{count:,}", "hexes/s", sim, count)
     row.more["start-up [s]"] = start
@@ -419,26 +284,11 @@ def hexes(threads: int, hexahedra: str) -> Row:
 
 def mixed(m: int, threads: int) -> Row:
     """A quarter each of the bar in hexahedra, wedges, pyramids and tets, bonded where they meet."""
-    case = _bar(m, "hex8", interface={"cohesion": "1 GPa", "tensile_strength": "1 GPa"})
-    case["model"]["blocks"] = [
-        {"group": "bar", "translate": [2 * m * i, 0, 0],
-         "box": {"size": [2 * m, m, m], "divisions": [2 * m, m, m], "shape": shape}}
-        for i, shape in enumerate(("hex8", "wedge6", "pyramid5", "tet4"))
-    ]  # fmt: skip
-    sim, start = _start(case, threads)
+    sim, start = cases.start(cases.mixed(m), threads)
     count = sim.audit.counts["elements"]
     row = _time("mixed mesh", f"{count:,}", "elements/s", sim, count)
     row.more["start-up [s]"] = start
     return row
-
-
-def _start(data: dict[str, Any], threads: int) -> tuple[Simulation, float]:
-    data = data | {"output": {"frames": False}}
-    began = time.perf_counter()
-    sim = Simulation(Case.from_dict(data), threads=threads)
-    start = time.perf_counter() - began
-    sim.step(20)
-    return sim, start
 
 
 def _time(
@@ -473,30 +323,6 @@ def _steps_for(step: Callable[[int], None]) -> int:
         if spent > SECONDS:
             return count
         count = max(count + 1, min(8 * count, int(1.2 * SECONDS / max(spent, 1e-6) * count)))
-
-
-def _wave_error(m: int, more: dict[str, Any]) -> float:
-    """Error of the first P mode of the bar, its lateral motion held: a speed with a wrong stiffness
-    is worth nothing."""
-    group = {"velocity": [1, 0, 0], "fix": ["y", "z"]}
-    sim, _ = _start(_bar(m, "tet4", **{**_copy(more), "group": group}), os.cpu_count() or 1)
-    x, length = sim.build.start_position[:, 0], 8.0 * m
-    weight = sim.fields["mass"] * np.sin(np.pi * x / (2 * length))
-    e, nu, rho = 10e9, 0.25, 2500.0
-    speed = np.sqrt(e * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / rho)
-    crossings: list[float] = []
-    before: tuple[float, float] | None = None
-    while len(crossings) < 2:
-        sim.step(4)
-        now = sim.time, float(weight @ sim.fields["displacement"][:, 0])
-        if before is not None and before[1] * now[1] < 0:
-            crossings.append(before[0] + before[1] / (before[1] - now[1]) * (now[0] - before[0]))
-        before = now
-    return float(2 * length / (crossings[1] - crossings[0]) / speed - 1)
-
-
-def _copy(more: dict[str, Any]) -> dict[str, Any]:
-    return {key: dict(value) for key, value in more.items()}
 
 
 def _short(value: float) -> str:
