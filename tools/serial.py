@@ -1,8 +1,9 @@
 """What of a step runs on one thread only, and how far threads could speed it up: `make serial`.
 
 Puts a clock before `GOMP_parallel` and runs the cases of `cdem benchmark` on two threads, in seven
-minutes. Time outside of parallel regions is serial. With S of it and P inside, one thread would take S + 2 P, and no
-number of threads less than S; barriers come on top. docs/benchmark.md has the table.
+minutes. Time outside of parallel regions is serial. With S of it and P inside, one thread would
+take S + 2 P, and no number of threads less than S; barriers come on top. docs/benchmark.md has the
+table.
 """
 
 import ctypes

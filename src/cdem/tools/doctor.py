@@ -50,7 +50,8 @@ def _core() -> tuple[str, bool]:
         from cdem._native import available, name
     except Exception as error:  # an extension module can fail to load in many ways
         return f"not usable: {error}", False
-    return f"{name} is used; built for {', '.join(available)}", True
+    why = ", as CDEM_ISA says" if os.environ.get("CDEM_ISA") else ""
+    return f"{name} is used{why}; built for {', '.join(available)}", True
 
 
 def _memory() -> str:
