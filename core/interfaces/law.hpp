@@ -56,11 +56,11 @@ struct JointInput {
   T opening;         // past the stress-free gap; < 0 is pressed  [m]
   T shear1, shear2;  // along the joint, less what has slipped  [m]
   JointStiffness<T> stiffness;
-  T damping;       // normal traction of the contact's dashpot, compression > 0  [Pa]
-  T bond;          // 1 while bonded, then 0
-  T risen;         // how far the stress-free gap lies above zero  [m]
-  T rate1, rate2;  // of the joint's slip in this step  [m/s]
-  T dt = T(0.0);   // that step; 0 at rest  [s]
+  T damping;  // normal traction of the contact's dashpot, compression > 0  [Pa]
+  T bond;     // 1 while bonded, then 0
+  T risen;    // how far the stress-free gap lies above zero  [m]
+  T rate1 = T(0.0), rate2 = T(0.0);  // of the slip in this step  [m/s]
+  T dt = T(0.0);                     // that step; 0 at rest  [s]
   T has_area;  // 1 where the area is that of the joint, so that a cohesion counts: at bond points
 
   CDEM_HD T slip_rate() const { return sqrt_of(rate1 * rate1 + rate2 * rate2); }  // [m/s]
