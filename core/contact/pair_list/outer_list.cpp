@@ -159,7 +159,7 @@ void list_sources(PairBuffers& found, SearchState& search) {
 void drop(OuterList& outer) {
   for (Column<Index>* indices :
        {&outer.vf_pairs, &outer.ee_pairs, &outer.ee_codes, &outer.slot_faces, &outer.slot_pairs,
-        &outer.edge_pairs, &outer.faces_acting_on})
+        &outer.edge_pairs, &outer.edge_others, &outer.faces_acting_on})
     *indices = {};
   for (Column<float>* bounds : {&outer.vf_bounds, &outer.ee_bounds}) *bounds = {};
 }
