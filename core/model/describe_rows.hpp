@@ -47,6 +47,8 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   visit(RowKind{"edges", "exterior edges of all blocks"}, m.edge_count);
   visit(RowKind{"edge_ends", "other ends of the edges that leave a node"},
         end_of(m.edge_star_first));
+  visit(RowKind{"flush_faces", "faces of other blocks that began flush with a face"},
+        end_of(m.flush_first));
   visit(RowKind{"class_pairs", "pairs of interface classes of faces"},
         m.class_count * m.class_count);
   visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));

@@ -104,6 +104,7 @@ struct Model {
   Column<Real> face_length, face_reach, face_area, face_height, face_stiffness, face_radius;
   Column<Index> edge_nodes, edge_faces, edge_star_first, edge_star;
   Column<Flag> face_initially_exposed, face_movable;
+  Column<Index> flush_first, flush_face;  // faces of other blocks that began flush with a face
 
   // interfaces
   PairSet triangles, quads, overlaps;

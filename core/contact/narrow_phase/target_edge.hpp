@@ -25,11 +25,17 @@ struct ResolveTargetEdges {
     for_lanes(item, [&](Index lane, Index, Index p) {
       Index touch = 0;
       EdgeWays::visit(pairs.open[p], [&](Index way) {
-        touch |= (found.touches[way] >> lane & 1) << way;
+        if ((found.touches[way] >> lane & 1) && !begins_hidden(p, way)) touch |= 1 << way;
         if (found.too_deep[way] >> lane & 1) set(lost[pairs.mother(p, way) / 4]);
       });
       pairs.open[p] = Flag(touch);
     });
+  }
+
+ private:
+  CDEM_HD bool begins_hidden(Index p, Index way) const {
+    return touching.flush.first && pairs.held[pairs.place_held(EdgeWays::mother(way), p)] < 0 &&
+           touching.hidden(pairs.mother(p, way), pairs.target(p, way));
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/contact/narrow_phase/contact_columns.hpp"
+#include "core/contact/narrow_phase/flush_faces.hpp"
 #include "core/contact/narrow_phase/vertex_face.hpp"
 
 namespace cdem {
@@ -14,6 +15,7 @@ struct FaceSearch {
   Candidates candidates;
   SearchRules rules;
   SpringColumns springs;
+  FlushFaces flush;
 };
 
 /// Begin the search of a step: what was the target is now that of one step ago.
@@ -238,7 +240,7 @@ struct ResolveTargets : FaceSearch {
       const bool penetration = s.free && plane < -entry && encloses(t, s, plane);
       const Real limit = penetration ? deepest_inside(t, length) : entry;
       const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, penetration});
-      if (gap < none && gap > s.gap) {
+      if (gap < none && gap > s.gap && !hidden(m, k, t, s)) {
         s.best = t;
         s.gap = gap;
       }
@@ -324,6 +326,19 @@ struct ResolveTargets : FaceSearch {
         return false;
     }
     return true;
+  }
+  /// Is a contact of vertex k of exposed face m with t inside the surface that one of their blocks
+  /// makes with others that lie flush?
+  CDEM_HD bool hidden(Index m, Index k, Index t, const Seeker& s) const {
+    if (!flush.first || flush.met(faces, geometry.table[m], geometry.table[t])) return false;
+    const Index face = exposed_face[m], target = exposed_face[t];
+    const Vec3<Real> n = geometry.normal(t);
+    if (flush.cover(faces, rules, target, s.p - plane_gap(s.p, t) * n, s.node)) return true;
+    const Index last = (k == 0 ? faces.vertex_count(face) : k) - 1;
+    const Index at_vertex[3] = {face, faces.across(m, k), faces.across(m, last)};
+    for (const Index f : at_vertex)
+      if (f >= 0 && flush.obstruct(faces, rules, f, s.v, -n, faces.vertex(target, 0))) return true;
+    return false;
   }
   CDEM_HD bool is_of_body(Index node, Index t) const {
     return faces.body[node] == faces.body[faces.vertex(exposed_face[t], 0)];

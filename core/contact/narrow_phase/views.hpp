@@ -53,20 +53,28 @@ inline EdgesBefore edges_before(const State& s) {
       .first = c.old_first.data(), .contact = c.old_contact.data(), .state = c.old_state.data()};
 }
 
+inline FlushFaces flush_faces(const Model& m) {
+  const Index* first = m.flush_face.size() > 0 ? m.flush_first.data() : nullptr;
+  return {.first = first, .mate = m.flush_face.data(), .edge_faces = m.edge_faces.data()};
+}
+
 inline FaceSearch face_search(const Model& m, State& s) {
   return {.faces = face_columns(m, s),
           .geometry = face_geometry(s),
           .exposed_face = s.search.exposed_face.data(),
           .candidates = candidate_columns(s),
           .rules = m.rules,
-          .springs = spring_columns(s)};
+          .springs = spring_columns(s),
+          .flush = flush_faces(m)};
 }
 
 inline TouchingEdges touching_edges(const Model& m, const State& s) {
   return {.faces = face_columns(m, s),
           .geometry = face_geometry(s),
           .rules = m.rules,
-          .held = edges_before(s)};
+          .held = edges_before(s),
+          .flush = flush_faces(m),
+          .exposed_face = s.search.exposed_face.data()};
 }
 
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {

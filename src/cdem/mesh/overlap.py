@@ -60,6 +60,28 @@ def find_overlaps(t: Topology, bonded: NDArray[np.bool_]) -> Overlaps:
     )
 
 
+def flush_faces(
+    t: Topology, kinds: NDArray[np.bool_]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Faces of other blocks that lie flush with each face, conforming or not.
+
+    Args:
+        t: Blocks and faces.
+        kinds: Which kinds of faces are asked for, (kinds, kinds).
+
+    Returns:
+        Where the rows of all faces begin, (faces + 1,), and the faces in them, ascending.
+    """
+    conforming = t.pair_faces.reshape(-1, 2)
+    asked = kinds[t.face_kind[conforming[:, 0]], t.face_kind[conforming[:, 1]]]
+    others = _candidates(t, kinds)
+    pairs = np.concatenate([conforming[asked], others]).astype(np.int32).reshape(-1, 2)
+    both = np.concatenate([pairs, pairs[:, ::-1]])
+    both = both[np.lexsort((both[:, 1], both[:, 0]))]
+    first = np.searchsorted(both[:, 0], np.arange(len(t.face_nodes) + 1))
+    return first.astype(np.int32), both[:, 1].copy()
+
+
 def _corners(t: Topology, face: int) -> Floats:
     nodes = t.face_nodes[face]
     return t.node_position[nodes[nodes >= 0]]

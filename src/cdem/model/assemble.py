@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from cdem.mesh import element_shapes
 from cdem.mesh.arrays import in_pieces, lengths, same_everywhere
+from cdem.mesh.overlap import flush_faces
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
@@ -140,6 +141,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
     area, length, reach = in_pieces(geometry, t.face_nodes).T.copy()
     young = p.young_modulus[t.face_group]
     height = face_heights(t, np.concatenate(list(out.element_volume.values())), area)
+    flush_first, flush = flush_faces(t, ~p.paired)  # bonded blocks have one surface
     out.arrays |= {
         "face.nodes": t.face_nodes.ravel(),
         "face.edges": t.face_edges.ravel(),
@@ -153,6 +155,8 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.stiffness": young / height,
         "face.movable": _movable(t, p),
         "face.radius": _radius(t, p, out),
+        "flush.first": flush_first,
+        "flush.face": flush,
         "edge.nodes": t.edge_nodes.ravel(),
         "edge.faces": t.edge_faces.ravel(),
         "edge_star.first": t.node_ring_first,
