@@ -163,8 +163,8 @@ def _compile(headers: list[Header], isa: str, folder: Path) -> Path:
             settings[f"CDEM_OWN_{kind}_HEADER"] = str(whole)
     given = [f"-D{name}={value}" for name, value in settings.items()]
     build = folder / "build"
-    _run(["cmake", "-S", str(sources()), "-B", str(build), "-G", "Ninja", *given], headers)
-    _run(["ninja", "-C", str(build), f"_core_{isa}"], headers)
+    _run(["cmake", "-S", str(sources()), "-B", str(build), "-G", "Ninja", *given], headers, folder)
+    _run(["ninja", "-C", str(build), f"_core_{isa}"], headers, folder)
     (built,) = build.glob(f"_core_{isa}.*")
     return built
 
@@ -174,8 +174,8 @@ def _needs(missing: str) -> str:
     return f"cdem law build finds no {missing}: pip install 'cdem[laws]', and g++ or clang of the system"
 
 
-def _run(command: list[str], headers: list[Header]) -> None:
-    """Run a tool of the build.
+def _run(command: list[str], headers: list[Header], folder: Path) -> None:
+    """Run a tool of the build, in its folder: nothing is imported from the current one.
 
     Raises:
         CaseError: The compiler refuses a header.
@@ -188,7 +188,12 @@ def _run(command: list[str], headers: list[Header]) -> None:
         raise BackendError(_needs(command[0]))
     environment = os.environ | {"PATH": tools, "LC_ALL": "C"}
     done = subprocess.run(
-        [found, *command[1:]], capture_output=True, text=True, check=False, env=environment
+        [found, *command[1:]],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+        cwd=folder,
     )
     if done.returncode == 0:
         return
