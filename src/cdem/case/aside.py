@@ -32,8 +32,8 @@ from cdem.errors import CdemError, MeshError
 Arrays = dict[str, NDArray]
 START, PATIENCE = 60.0, 30.0
 """Wall seconds to begin to read, and for each second of processor time: a disk or machine may be busy."""
-CLOSED = {"PROJ_NETWORK": "OFF", "GDAL_PAM_ENABLED": "NO", "OGR_SQLITE_LOAD_EXTENSIONS": ""}
-"""Environment of the process: no library fetches, writes or loads anything more."""
+CLOSED = {"PROJ_NETWORK": "OFF", "OGR_SQLITE_LOAD_EXTENSIONS": ""}
+"""Environment of the process: no library fetches or loads anything more."""
 _words: IO[str] | None = None  # of the process that reads: what it says to the one that asks
 
 
