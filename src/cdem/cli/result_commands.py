@@ -214,7 +214,9 @@ def _results(folder: Path) -> Path:
     if not folder.is_dir():
         raise CaseError(f"{folder}: no such folder; name the result folder of a run")
     from cdem.run.result_folder import RESULT_FILES
+    from cdem.run.written_files import refuse_links
 
     if not {path.name for path in folder.iterdir()} & RESULT_FILES:
         raise CaseError(f"{folder}: is not a result folder; 'cdem run CASE.yaml' makes one")
+    refuse_links(folder)
     return folder

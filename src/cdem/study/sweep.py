@@ -18,7 +18,7 @@ from cdem.study.results_table import Table, check_results
 from cdem.study.run import Run
 from cdem.study.study import Study
 from cdem.study.worker import finished
-from cdem.whole_files import write_json
+from cdem.whole_files import refuse_link, write_json
 
 POLL_SECONDS, LOOK_SECONDS = 0.05, 0.5
 """Wall time between looks at what is finished, and at the workers and the progress [s]."""
@@ -125,6 +125,7 @@ def _open(folder: Path, study: Study) -> None:
     if folder.exists() and any(folder.iterdir()) and not (folder / "study.json").is_file():
         raise CdemError(f"{folder}: holds other things than a sweep; name another folder with -o")
     folder.mkdir(parents=True, exist_ok=True)
+    refuse_link(folder / "plots")
     write_json(folder / "study.json", study.model_dump(mode="json", exclude_unset=True))
 
 

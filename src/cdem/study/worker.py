@@ -21,7 +21,7 @@ from cdem.case.case import Case
 from cdem.case.named_files import files_of
 from cdem.errors import BackendError, CdemError
 from cdem.study.criterion import Criterion
-from cdem.whole_files import write_json
+from cdem.whole_files import refuse_link, write_json
 
 RESULT_FILE, RESULT_FOLDER = "result.json", "results"
 
@@ -58,6 +58,8 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
         if not Path(holder[key]).is_file():
             raise BackendError(f"a worker does not see {holder[key]}; it must have the same files")
     folder = Path(task["folder"]) / "runs" / task["name"]
+    for part in (folder.parent, folder, folder / RESULT_FOLDER):
+        refuse_link(part)
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     result = {key: task[key] for key in ("name", "identity", "version", "parameters")}
