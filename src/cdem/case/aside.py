@@ -148,6 +148,6 @@ def _limit_time(seconds: float) -> None:
         return
     import resource
 
-    whole = math.ceil(time.process_time() + seconds + 1)
+    whole = math.ceil(time.process_time() + seconds)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 1))
