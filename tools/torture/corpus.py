@@ -180,8 +180,8 @@ def _write_by_gdal(folder: Path, ring: list, lines: list) -> None:
         "fgb": "FlatGeobuf",
         "dxf": "DXF",
     }
-    shapes = np.array([shapely.to_wkb(shapely.LineString(line)) for line in lines])
-    closed = np.array([shapely.to_wkb(shapely.LineString(ring))])
+    shapes = np.array([shapely.to_wkb(shapely.LineString(line)) for line in lines], object)
+    closed = np.array([shapely.to_wkb(shapely.LineString(ring))], object)
     heights = [np.array([5.0 * k for k in range(len(lines))])]
     for ending, driver in kinds.items():
         options = {"geometry_type": "LineString", "driver": driver, "crs": "EPSG:32632"}

@@ -1,4 +1,4 @@
-"""Virtual rasters (VRT): mosaics of plain grids below their own folder, written anew before GDAL sees
+"""Virtual rasters (VRT): mosaics of plain grids below their own folder, written again before GDAL sees
 one.
 
 A VRT may name files, addresses, programs and services in many ways. What is read is a copy that has
@@ -53,7 +53,7 @@ ATTRIBUTES = {
 
 
 def plain(path: Path) -> tuple[str, list[Path]]:
-    """A VRT written anew, and the grids that it names.
+    """A VRT written again, and the grids that it names.
 
     Raises:
         CaseError: It has anything but heights from plain grids below its folder; says which.
