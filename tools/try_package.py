@@ -7,8 +7,10 @@ Prints what the light install takes on disk, package by package. Ends at the fir
 import os
 import subprocess
 import sys
+import tarfile
 import tempfile
 import time
+import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -65,11 +67,26 @@ def make_wheel(folder: Path) -> Path:
     return next(folder.glob("*.whl"))
 
 
+def check_notices(package: Path) -> None:
+    """Stop if a wheel or sdist lacks the licences of what it brings along."""
+    if package.suffix == ".whl":
+        with zipfile.ZipFile(package) as wheel:
+            names = wheel.namelist()
+    else:
+        with tarfile.open(package) as sdist:
+            names = sdist.getnames()
+    for needed in ("LICENSE", "NOTICES.txt"):
+        if not any(Path(name).name == needed for name in names):
+            sys.exit(f"{package.name}: has no {needed}")
+
+
 def main() -> None:
     """Build, install, print sizes, run."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         wheel = Path(sys.argv[1]).resolve() if sys.argv[1:] else make_wheel(folder)
+        for package in (wheel, *folder.glob("*.tar.gz")):
+            check_notices(package)
         print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB")
         run([sys.executable, "-m", "venv", str(folder / "bare")])
         tools = folder / "bare" / "bin"

@@ -1,7 +1,9 @@
 """Laws of users: headers whose laws a library has, a core of its own that `cdem law build` makes.
 
-The library lies beside the first header, with a record of what it was made from. A process has one
-core, so its laws are chosen before anything of cdem is used; processes that it starts have them too.
+Libraries lie in a folder of the user's own, `home`, each under a digest of what it is made from: the
+text of its headers, the sources and the version of cdem. So what runs is what was read; nothing that
+lies beside a header is loaded. A process has one core, so its laws are chosen before anything of cdem
+is used; processes that it starts have them too.
 """
 
 from __future__ import annotations
@@ -10,8 +12,9 @@ import hashlib
 import importlib.util
 import json
 import os
+import stat
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -47,10 +50,33 @@ def digest_of_sources() -> str:
     return whole.hexdigest()
 
 
+def home() -> Path:
+    """Folder of the libraries, which only this user may write.
+
+    Raises:
+        BackendError: Another user owns it or may write there.
+    """
+    caches = os.environ.get("XDG_CACHE_HOME") or ""
+    folder = (Path(caches) if Path(caches).is_absolute() else Path.home() / ".cache") / "cdem/laws"
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    _refuse_others(folder)
+    return folder
+
+
+def _refuse_others(path: Path) -> None:
+    there = path.lstat()
+    if stat.S_ISLNK(there.st_mode) or there.st_uid != os.getuid() or there.st_mode & 0o022:
+        raise BackendError(
+            f"{path}: is a link, or another user owns it or may write there; own laws are loaded from "
+            "what is yours alone: remove it, or chmod go-w"
+        )
+
+
 def library_of(headers: Iterable[Path], isa: str) -> Path:
-    """The library with the laws of these headers: beside the first, named after all."""
+    """The library with the laws of these headers as they are now."""
     headers = list(headers)
-    return headers[0].with_name(f"{'+'.join(h.stem for h in headers)}.{isa}.so")
+    made = json.dumps(record_of(headers, isa), sort_keys=True)
+    return home() / f"{headers[0].stem}-{hashlib.sha256(made.encode()).hexdigest()}.so"
 
 
 def record_of(headers: Iterable[Path], isa: str) -> dict[str, Any]:
@@ -60,7 +86,7 @@ def record_of(headers: Iterable[Path], isa: str) -> dict[str, Any]:
         "version": __version__,
         "instruction_set": isa,
         "sources": digest_of_sources(),
-        "headers": digests(headers),
+        "headers": [[header.name, digest(header)] for header in headers],
     }
 
 
@@ -79,8 +105,8 @@ def load_own_laws(*headers: str | Path) -> None:
 
     Raises:
         CaseError: There is no such header.
-        BackendError: There is no library, or it was made from other files or for another version;
-            or this process uses other laws already.
+        BackendError: There is no library of this text for this version and core, or it is not this
+            user's alone; or this process uses other laws already.
     """
     paths = [Path(header).resolve() for header in headers]
     _checked(paths, choose())
@@ -118,28 +144,18 @@ def _checked(headers: list[Path], isa: str) -> Path:
     again = f"cdem law build {' '.join(map(str, headers))}"
     record = library.with_suffix(".json")
     try:
-        made = json.loads(record.read_text())
+        _refuse_others(library)
+        made = json.loads(record.read_text())["library"]
         whole = digest(library)
     except FileNotFoundError:
         raise BackendError(
-            f"{headers[0]}: has no library for the instruction set {isa}; make it: {again}"
+            f"{headers[0]}: has no library of this text for cdem {__version__}, instruction set {isa}; "
+            f"make it: {again}"
         ) from None
-    except ValueError as error:
+    except (ValueError, KeyError, TypeError) as error:
         raise BackendError(f"{record}: cannot be read ({error}); make it again: {again}") from None
-    if fault := _fault(made if isinstance(made, dict) else {}, record_of(headers, isa), whole):
-        raise BackendError(f"{library}: {fault}; make it again: {again}")
+    if made != whole:
+        raise BackendError(
+            f"{library}: is not what cdem law build has written; make it again: {again}"
+        )
     return library
-
-
-def _fault(made: Mapping[str, Any], now: Mapping[str, Any], library: str) -> str:
-    """Why a library does not fit, or ""."""
-    if made.get("abi") != ABI or made.get("version") != __version__:
-        return f"was made for cdem {made.get('version')}, this is {__version__}"
-    for key, what in (
-        ("instruction_set", "was made for another instruction set"),
-        ("sources", "was made from other sources of cdem"),
-        ("headers", "was made from another text of its headers"),
-    ):
-        if made.get(key) != now[key]:
-            return what
-    return "" if made.get("library") == library else "is not what cdem law build has written"

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from cdem.errors import DiskError
+from cdem.errors import CdemError, DiskError
 
 ASIDE = ".tmp"
 """Ending of a file that is being written."""
@@ -34,7 +34,9 @@ def replaced(path: Path, keep: Path | None = None) -> Iterator[BinaryIO]:
     """
     aside = path.with_name(path.name + ASIDE)
     try:
-        with aside.open("w+b") as file:
+        # a link that somebody put there is not followed
+        number = os.open(aside, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o666)
+        with os.fdopen(number, "w+b") as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
@@ -48,6 +50,19 @@ def replaced(path: Path, keep: Path | None = None) -> Iterator[BinaryIO]:
         if isinstance(error, OSError):
             raise disk_error(path, error) from error
         raise
+
+
+def refuse_link(path: Path) -> None:
+    """Stop where a link lies in place of a file or folder that is written.
+
+    Raises:
+        CdemError: It does.
+    """
+    if path.is_symlink():
+        raise CdemError(
+            f"{path}: is a link; nothing is read, written or removed through links in results: "
+            "remove it"
+        )
 
 
 def sync(path: Path) -> None:

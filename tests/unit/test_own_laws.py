@@ -22,6 +22,7 @@ def folder(tmp_path, monkeypatch):
     """A working folder with a header and a case that names it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv(own_laws.VARIABLE, raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     new_law("my-clay", "block", tmp_path, force=False)
     (tmp_path / "case.yaml").write_text(flow(own_laws=f"[{HEADER}]"))
     return tmp_path
@@ -69,34 +70,74 @@ def test_allowed_code_is_loaded(library):
 def test_a_library_must_be_there(folder):
     done = cdem("check", "case.yaml", "--allow-code")
     assert done.returncode == 1 and done.stderr.count("\n") == 1
-    assert "has no library for the instruction set" in done.stderr
+    assert "has no library of this text for cdem" in done.stderr
     assert f"cdem law build {folder / HEADER}" in done.stderr
-    assert sorted(p.name for p in folder.iterdir()) == ["case.yaml", HEADER, "test_my_clay.py"]
+    assert sorted(p.name for p in folder.iterdir()) == [
+        "cache",
+        "case.yaml",
+        HEADER,
+        "test_my_clay.py",
+    ]
 
 
-@pytest.mark.parametrize(
-    "change, told",
-    [
-        ({"version": "0.0.9"}, "was made for cdem 0.0.9, this is"),
-        ({"abi": 0}, "was made for cdem"),
-        ({"instruction_set": "v1"}, "was made for another instruction set"),
-        ({"sources": ""}, "was made from other sources of cdem"),
-        ({"headers": {}}, "was made from another text of its headers"),
-        ({"library": ""}, "is not what cdem law build has written"),
-    ],
-)
-def test_another_library_is_refused(library, change, told):
-    record = library.with_suffix(".json")
-    record.write_text(json.dumps(json.loads(record.read_text()) | change))
-    with pytest.raises(BackendError, match=f"{told}.*; make it again: cdem law build"):
+def test_a_library_that_was_changed_is_refused(library):
+    library.write_bytes(b"another library")
+    with pytest.raises(BackendError, match=r"is not what .* has written; make it again: cdem law"):
+        own_laws.load_own_laws(HEADER)
+    library.with_suffix(".json").write_text("[]")
+    with pytest.raises(BackendError, match="cannot be read"):
+        own_laws.load_own_laws(HEADER)
+
+
+@pytest.mark.parametrize("what", ["__version__", "ABI"])
+def test_another_version_has_another_library(library, folder, monkeypatch, what):
+    monkeypatch.setattr(own_laws, what, "0.0.9")
+    assert own_laws.library_of([folder / HEADER], choose()) != library
+    with pytest.raises(BackendError, match=r"has no library .*; make it: cdem law build"):
         own_laws.load_own_laws(HEADER)
 
 
 def test_a_header_that_has_changed_is_refused(library, folder):
     with (folder / HEADER).open("a") as file:
         file.write("\n")
-    with pytest.raises(BackendError, match="another text of its headers"):
+    with pytest.raises(BackendError, match="has no library of this text"):
         own_laws.load_own_laws(HEADER)
+
+
+def test_a_library_beside_the_header_is_not_loaded(library, folder):
+    """A stranger's folder has a library and a record with the right digests in all places beside."""
+    for name in (library.name, f"my_clay.{choose()}.so"):
+        (folder / name).write_bytes(library.read_bytes())
+        (folder / name).with_suffix(".json").write_text(library.with_suffix(".json").read_text())
+    library.unlink()
+    done = cdem("check", "case.yaml", "--allow-code")
+    assert done.returncode == 1 and "has no library of this text" in done.stderr
+
+
+def test_a_folder_that_others_may_write_is_refused(library):
+    library.parent.chmod(0o777)
+    with pytest.raises(BackendError, match="another user owns it or may write there"):
+        own_laws.load_own_laws(HEADER)
+    library.parent.chmod(0o700)
+    own = library.parent.rename(library.parent.with_name("mine"))
+    library.parent.symlink_to(own)
+    with pytest.raises(BackendError, match="is a link"):
+        own_laws.load_own_laws(HEADER)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '#include "more.hpp"', "#include </tmp/more.hpp>", '#include "core/../more.hpp"',
+        "#include <../more.hpp>", "# /* */ include MORE", "%:include <a/b.h>", '#embed "x"',
+        '#inc\\\nlude "more.hpp"',
+    ],
+)  # fmt: skip
+def test_a_header_includes_no_other_file(folder, line):
+    with (folder / HEADER).open("a") as file:
+        file.write(line + "\n")
+    with pytest.raises(CaseError, match="a law stands in one header"):
+        Header.read(folder / HEADER)
 
 
 def test_laws_are_chosen_before_all_else(library):

@@ -4,7 +4,6 @@ They are the templates of `cdem law new`, and copies of built-in laws under othe
 `tools/build.py --own-laws` builds a core with them.
 """
 
-import json
 import os
 import re
 import subprocess
@@ -15,7 +14,7 @@ import pytest
 from shared.own_laws import differences, flow
 
 from cdem._core_choice import choose
-from cdem.own_laws import digest, library_of, sources
+from cdem.own_laws import library_of, sources
 from cdem.run.checkpoint import read_checkpoint
 
 SCENES = Path(__file__).parent / "own_law_scenes.py"
@@ -107,13 +106,14 @@ def test_a_run_is_not_resumed_with_another_text(copies):
     (copies / "other.yaml").write_text(flow("copied-", f"[{', '.join(HEADERS)}]"))
     run = ["run", "other.yaml", "--allow-code", "--quiet"]
     assert cdem(copies, *run).returncode == 0
-    library = library_of([copies / header for header in HEADERS], choose())
-    record = json.loads(library.with_suffix(".json").read_text())
+    paths = [copies / header for header in HEADERS]
+    library = library_of(paths, choose())
     text = (copies / HEADERS[0]).read_text()
     try:
         (copies / HEADERS[0]).write_text(text + "// another\n")
-        record["headers"][HEADERS[0]] = digest(copies / HEADERS[0])
-        library.with_suffix(".json").write_text(json.dumps(record))
+        other = library_of(paths, choose())  # as if built of it
+        for suffix in (".so", ".json"):
+            other.with_suffix(suffix).write_bytes(library.with_suffix(suffix).read_bytes())
         done = cdem(copies, *run, "--resume")
         assert done.returncode == 1 and "was written with another text of own laws" in done.stderr
     finally:

@@ -160,3 +160,42 @@ def _write_terrain(folder: Path) -> None:
     for name, more in (("a.tif", {}), ("b.tif", {"compress": "lzw"}), ("c.tif", {"tiled": True})):
         with rasterio.open(folder / f"grid-{name}", "w", driver="GTiff", **shape, **more) as file:
             file.write(heights, 1)
+    _write_by_gdal(folder, ring, lines)
+
+
+def _write_by_gdal(folder: Path, ring: list, lines: list) -> None:
+    """Outlines, contours and grids in the formats that GDAL reads, and a cloud of points."""
+    import zipfile
+
+    import laspy
+    import numpy as np
+    import pyogrio
+    import shapely
+    from rasterio.shutil import copy
+
+    kinds = {
+        "gpkg": "GPKG",
+        "shp": "ESRI Shapefile",
+        "kml": "KML",
+        "fgb": "FlatGeobuf",
+        "dxf": "DXF",
+    }
+    shapes = np.array([shapely.to_wkb(shapely.LineString(line)) for line in lines], object)
+    closed = np.array([shapely.to_wkb(shapely.LineString(ring))], object)
+    heights = [np.array([5.0 * k for k in range(len(lines))])]
+    for ending, driver in kinds.items():
+        options = {"geometry_type": "LineString", "driver": driver, "crs": "EPSG:32632"}
+        pyogrio.raw.write(folder / f"outline-b.{ending}", closed, [], [], **options)
+        if driver not in ("DXF", "KML"):
+            pyogrio.raw.write(folder / f"lines-b.{ending}", shapes, heights, ["elev"], **options)
+    with zipfile.ZipFile(folder / "outline-c.kmz", "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.write(folder / "outline-b.kml", "doc.kml")
+    for name, driver in (("d.vrt", "VRT"), ("e.grd", "GSBG"), ("f.grd", "GSAG")):
+        copy(folder / "grid-a.tif", folder / f"grid-{name}", driver=driver)
+    for path in folder.glob("*.aux.xml"):
+        path.unlink()
+    cloud = laspy.LasData(laspy.LasHeader(point_format=3, version="1.2"))
+    cloud.x, cloud.y = np.tile(np.arange(9.0), 9), np.repeat(np.arange(9.0), 9)
+    cloud.z, cloud.classification = cloud.x, np.full(81, 2)
+    for name in ("a.las", "b.laz"):
+        cloud.write(str(folder / f"cloud-{name}"))

@@ -19,7 +19,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import traceback
 from collections import Counter
 from collections.abc import Callable
@@ -40,7 +39,10 @@ START = 120.0
 BATCH = 500
 MOST_MEMORY = 1000
 """Peak of a process that is allowed [MB]."""
-ASIDE = (".vtk", ".vtu", ".med", ".h5m", ".cgns", ".hmf", ".xdmf")
+ASIDE = (
+    ".vtk", ".vtu", ".med", ".h5m", ".cgns", ".hmf", ".xdmf", ".tif", ".vrt", ".grd", ".gpkg",
+    ".shp", ".kml", ".kmz", ".fgb", ".dxf", ".laz",
+)  # fmt: skip
 """Formats that are often read in a process of their own."""
 SMALL = 300
 """Elements up to which a model is built."""
@@ -139,11 +141,15 @@ def _few_planes(case: Any, boxes: list[Any]) -> bool:
 
 def read_file(path: Path) -> None:
     """Read a mesh, bodies, contours, a grid or an outline, and do the first thing that follows."""
+    import numpy as np
+
     from cdem.mesh.blocks import build_topology
     from cdem.mesh.mesh_files import read_mesh
     from cdem.model.body_files import read_bodies
+    from cdem.terrain.clouds import read_cloud
     from cdem.terrain.files import read_lines, read_outline
     from cdem.terrain.heights import Lines
+    from cdem.terrain.projection import Projection
     from cdem.terrain.rasters import read_grid
 
     kind = path.name.split("-")[0]
@@ -155,6 +161,9 @@ def read_file(path: Path) -> None:
         Lines(read_lines(path), 5.0)
     elif kind == "grid":
         read_grid(path)
+    elif kind == "cloud":
+        box = np.zeros(2), np.full(2, 9.0)
+        read_cloud(path, Projection(None), None, box, 1.0, "ground")
     else:
         read_outline(path)
 
@@ -174,7 +183,7 @@ def work(kind: str, seed: int, first: int, count: int, folder: Path) -> None:
         path = folder / "seeds" / f"{name.split('-')[0]}-now-{name.partition('-')[2]}"
         path.write_bytes(raw)
         print(f"begin {number}", file=words, flush=True)
-        began, what = time.process_time(), "read"
+        began, what = spent(), "read"
         try:
             read(path)
         except CdemError as error:
@@ -182,13 +191,19 @@ def work(kind: str, seed: int, first: int, count: int, folder: Path) -> None:
         except BaseException:
             what = "traceback"
             keep(folder, number, name, raw, traceback.format_exc())
-        seconds = time.process_time() - began
+        seconds = spent() - began
         path.unlink()
         if seconds > SLOW:
             what = "hang"
             keep(folder, number, name, raw, f"{seconds:.1f} s")
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1000
         print(f"end {number} {what} {seconds:.3f} {memory}", file=words, flush=True)
+
+
+def spent() -> float:
+    """Processor time of this process and of those that it has waited for [s]."""
+    t = os.times()
+    return t.user + t.system + t.children_user + t.children_system
 
 
 def seeds_of(folder: Path) -> list[Path]:

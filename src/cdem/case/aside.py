@@ -1,35 +1,50 @@
 """Files that only compiled libraries read: in a process of its own, for they may die or hang.
 
-HDF5, VTK and LAZ do on some damaged files. The module that reads is run as ``python -m MODULE FILE
-OUT.npz`` with what is asked as JSON on stdin, and calls `answer`; an error is one line on stderr and
-status 1.
+GDAL, HDF5, VTK and LAZ do on some damaged files. The module that reads is run by
+`cdem.case.child` with FILE OUT.npz SHOWN SIZE behind its name and what is asked as JSON in the first
+line of stdin, and calls `answer`; an error is one line on stderr and status 1. Processor time and
+memory of the process are limited by the size of what it reads.
 """
 
 from __future__ import annotations
 
-import faulthandler
+import contextlib
 import json
+import math
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import BYTES_PER_SECOND, LEAST_SECONDS, reading
+from cdem.case import child
+from cdem.case.input_file import reading, seconds_for, size_of, too_long
 from cdem.errors import CdemError, MeshError
 
 Arrays = dict[str, NDArray]
-START = 60.0
-"""Seconds in which the process begins to read; on a slow disk libraries take long to load."""
+START, PATIENCE = 60.0, 30.0
+"""Wall seconds to begin to read, and for each second of processor time: a disk or machine may be busy."""
+CLOSED = {"PROJ_NETWORK": "OFF", "OGR_SQLITE_LOAD_EXTENSIONS": ""}
+"""Environment of the process: no library fetches or loads anything more."""
+_words: IO[str] | None = None  # of the process that reads: what it says to the one that asks
 
 
 def read(
-    module: str, path: Path, mend: str, kind: type[CdemError] = MeshError, asked: Any = None
+    module: str,
+    path: Path,
+    mend: str,
+    kind: type[CdemError] = MeshError,
+    asked: Any = None,
+    size: int | None = None,
+    reply: Callable[[Any], Any] | None = None,
 ) -> Arrays:
     """Let a module read a file in a process of its own.
 
@@ -39,48 +54,100 @@ def read(
         mend: What the file should be, or how to mend it.
         kind: Class of the error.
         asked: What the module wants to know beside the file; anything that JSON holds.
+        size: Of all that is read [bytes]; by default of the file and those of the same name.
+        reply: Answers what the module asks with `ask`.
 
     Raises:
-        CdemError: Of the class ``kind``: the file cannot be read, or the process died or hung.
+        CdemError: Of the class ``kind``: the file cannot be read, or the process died or hung. What
+            ``reply`` raises passes.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "read.npz"
-        try:
-            ended = subprocess.run(
-                [sys.executable, "-m", module, str(path.absolute()), str(out), str(path)],
-                input=json.dumps(asked),
-                capture_output=True,
+    size = size_of(path) if size is None else size
+    patience = START + PATIENCE * seconds_for(size)
+    end = time.monotonic() + patience
+    with tempfile.TemporaryDirectory(prefix="cdem-read-") as folder:
+        out, errors = Path(folder) / "read.npz", Path(folder) / "errors"
+        command = child.module(module, str(path.absolute()), str(out), str(path), str(size))
+        with errors.open("wb") as file:
+            process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=file,
                 text=True,
-                errors="replace",
-                timeout=START + _seconds(path),
-                check=False,
+                env=os.environ | CLOSED,
             )
-        except subprocess.TimeoutExpired:
-            raise kind(f"{path}: reading it does not come to an end; {mend}") from None
-        said = ended.stderr.strip()
-        if ended.returncode == 1 and said:
+        timer = threading.Timer(patience, process.kill)
+        timer.start()
+        try:
+            _talk(process, asked, reply)
+            process.wait()
+            late = time.monotonic() >= end
+        finally:
+            timer.cancel()
+            process.kill()
+            process.communicate()
+        if late:
+            raise kind(f"{path}: no answer in {patience:.0f} s; is the machine or the disk busy?")
+        said = errors.read_text(errors="replace").strip()
+        if process.returncode == 1 and said:
             raise kind(said.splitlines()[-1])
-        if ended.returncode or not out.is_file():
-            what = "does not come to an end" if ended.returncode == 1 else "ends its reader"
-            raise kind(f"{path}: reading it {what}; {mend}")
+        if process.returncode or not out.is_file():
+            raise kind(f"{path}: {_end(process.returncode, size)}; {mend}")
         with np.load(out, allow_pickle=False) as arrays:
             return dict(arrays)
 
 
+def _talk(process: subprocess.Popen[str], asked: Any, reply: Callable[[Any], Any] | None) -> None:
+    """Say what is asked, and answer what the process asks; it may die meanwhile."""
+    assert process.stdin is not None and process.stdout is not None
+    with contextlib.suppress(BrokenPipeError):
+        process.stdin.write(json.dumps(asked) + "\n")
+        process.stdin.flush()
+        for line in process.stdout:
+            assert reply is not None
+            process.stdin.write(json.dumps(reply(json.loads(line))) + "\n")
+            process.stdin.flush()
+
+
+def _end(status: int, size: int) -> str:
+    """How a process ended that did not say it."""
+    if status == -signal.SIGXCPU:
+        return too_long(size)
+    if status < 0:
+        name = signal.Signals(-status).name
+        return f"its reader died ({name}), as it does on damaged files and for want of memory"
+    return f"its reader ended without a word (status {status})"
+
+
 def answer(function: Callable[[Path, Any], Arrays], mend: str) -> None:
     """Write what `function` makes of the file that the command line names and of what is asked."""
-    path, out, shown = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3]
-    asked = json.load(sys.stdin)
-    with open(os.devnull, "w") as silent:
-        faulthandler.dump_traceback_later(0.5 + _seconds(path), exit=True, file=silent)
-        try:
-            with reading(path, MeshError, mend):
-                arrays = function(path, asked)
-        except CdemError as error:
-            sys.exit(" ".join(str(error).replace(str(path), shown).split()))
-        np.savez(out, **arrays)  # type: ignore[arg-type]
-        faulthandler.cancel_dump_traceback_later()
+    global _words
+    path, out, shown, size = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3], int(sys.argv[4])
+    asked = json.loads(sys.stdin.readline())
+    _words = os.fdopen(os.dup(1), "w")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # libraries print
+    _limit_time(seconds_for(size))
+    try:
+        with reading(path, MeshError, mend, size):
+            arrays = function(path, asked)
+    except CdemError as error:
+        sys.exit(" ".join(str(error).replace(str(path), shown).split()))
+    np.savez(out, **arrays)  # type: ignore[arg-type]
 
 
-def _seconds(path: Path) -> float:
-    return LEAST_SECONDS + path.stat().st_size / BYTES_PER_SECOND
+def ask(question: Any) -> Any:
+    """Ask the process that wants the file; question and answer are anything that JSON holds."""
+    assert _words is not None
+    print(json.dumps(question), file=_words, flush=True)
+    return json.loads(sys.stdin.readline())
+
+
+def _limit_time(seconds: float) -> None:
+    """Let the system end this process after so much more processor time, in compiled code too."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    whole = math.ceil(time.process_time() + seconds)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 1))

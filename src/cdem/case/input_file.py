@@ -7,15 +7,17 @@ import ctypes
 import glob
 import sys
 import threading
+import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from cdem.errors import CaseError, CdemError
 
 LEAST_SECONDS = 4.0
-"""So long the reading of any file may take [s]."""
+"""So much processor time the reading of any file may take [s]."""
 BYTES_PER_SECOND = 100_000
 """A file so large may take a second more; the slowest reader is ten times as fast [1/s]."""
 LEAST_MEMORY = 600_000_000
@@ -24,6 +26,8 @@ MEMORY_PER_BYTE = 100
 """A file may take so many times its size more; the most wasteful reader takes a tenth [1]."""
 XML = (".vtu", ".xdmf", ".xmf", ".xml")
 """Endings of the formats that are XML."""
+LOOK = 0.02
+"""Shortest wall time between looks at the clock [s]."""
 WORDS = 200
 """Characters of a library's message that are passed on."""
 
@@ -36,33 +40,35 @@ class _TooLong(BaseException):
 
 
 @contextmanager
-def reading(path: Path, kind: type[CdemError], mend: str) -> Iterator[None]:
+def reading(
+    path: Path, kind: type[CdemError], mend: str, size: int | None = None
+) -> Iterator[None]:
     """Turn whatever goes wrong inside into one error that names the file.
 
     Args:
         path: The file that is read.
         kind: Class of the error.
         mend: What the file should be, or how to mend it.
+        size: Of all that is read [bytes]; by default of the file and those of the same name.
 
     Raises:
-        CdemError: Of the class ``kind``: a library raised, left the program, or took more time or
-            memory than a file of that size needs. Errors of cdem pass.
+        CdemError: Of the class ``kind``: a library raised, left the program, or took more processor
+            time or memory than a file of that size needs. Errors of cdem pass.
     """
     try:
-        parts = path.parent.glob(glob.escape(path.stem) + ".*")  # some formats have several files
-        size = sum(part.stat().st_size for part in parts if part.is_file())
+        size = size_of(path) if size is None else size
         with (
             _ONE_READER,
             _memory_limited(LEAST_MEMORY + MEMORY_PER_BYTE * size),
             warnings.catch_warnings(),
-            _time_limited(LEAST_SECONDS + size / BYTES_PER_SECOND),
+            _time_limited(seconds_for(size)),
         ):
             warnings.simplefilter("ignore")
             yield
     except CdemError:
         raise
     except _TooLong:
-        raise kind(f"{path}: reading it does not come to an end; {mend}") from None
+        raise kind(f"{path}: {too_long(size or 0)}; {mend}") from None
     except OSError as error:
         raise kind(f"{path}: cannot be read ({error.strerror or _words(error)}); {mend}") from None
     except (MemoryError, RecursionError) as error:
@@ -70,6 +76,25 @@ def reading(path: Path, kind: type[CdemError], mend: str) -> Iterator[None]:
         raise kind(f"{path}: {what} than a sound file does; {mend}") from None
     except (Exception, SystemExit) as error:
         raise kind(f"{path}: cannot be read ({_words(error)}); {mend}") from error
+
+
+def size_of(path: Path) -> int:
+    """Size of a file and of those beside it of the same name [bytes]: some formats have several."""
+    parts = path.parent.glob(glob.escape(path.stem) + ".*")
+    return sum(part.stat().st_size for part in parts if part.is_file())
+
+
+def seconds_for(size: int) -> float:
+    """Processor time that the reading of so many bytes may take [s]."""
+    return LEAST_SECONDS + size / BYTES_PER_SECOND
+
+
+def too_long(size: int) -> str:
+    """What is said of a file of this size [bytes] whose reading takes longer."""
+    return (
+        f"reading it takes more than {seconds_for(size):.3g} s of processor time, as no sound file of "
+        "its size does"
+    )
 
 
 def _words(error: BaseException) -> str:
@@ -86,28 +111,47 @@ def _words(error: BaseException) -> str:
 
 @contextmanager
 def _time_limited(seconds: float) -> Iterator[None]:
-    """Raise `_TooLong` inside when it takes longer: readers of meshio loop for ever at an early end.
+    """Raise `_TooLong` inside after so much processor time: readers of meshio loop for ever at an
+    early end.
 
     Python code is interrupted, in any thread; one long call of compiled code ends first.
     """
     raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
-    thread, guard, over = ctypes.c_ulong(threading.get_ident()), threading.Lock(), False
+    thread, spent = ctypes.c_ulong(threading.get_ident()), _clock()
+    end, guard, over, fired, came = (
+        spent() + seconds,
+        threading.Lock(),
+        threading.Event(),
+        [],
+        False,
+    )
 
-    def interrupt() -> None:
-        with guard:
-            if not over:
-                raise_in(thread, ctypes.py_object(_TooLong))
+    def watch() -> None:
+        while not over.wait(max(end - spent(), LOOK)):
+            with guard:
+                if spent() >= end and not over.is_set():
+                    raise_in(thread, ctypes.py_object(_TooLong))
+                    fired.append(True)
+                    return
 
-    timer = threading.Timer(seconds, interrupt)
-    timer.daemon = True
-    timer.start()
+    threading.Thread(target=watch, daemon=True).start()
     try:
         yield
+    except _TooLong:
+        came = True
+        raise
     finally:
         with guard:
-            over = True
-        timer.cancel()
-        raise_in(thread, None)  # one that came too late
+            over.set()
+        if fired and not came:
+            raise_in(thread, None)  # it would come too late
+
+
+def _clock() -> Callable[[], float]:
+    """A clock of the processor time of this thread, which other threads can read [s]."""
+    if not hasattr(time, "pthread_getcpuclockid"):
+        return time.process_time
+    return partial(time.clock_gettime, time.pthread_getcpuclockid(threading.get_ident()))
 
 
 @contextmanager

@@ -11,6 +11,10 @@ from cdem.errors import BackendError, CaseError
 
 CODE = re.compile(r"[A-Za-z]{2,12}:\d{1,9}")
 WKT = re.compile(r"[A-Z_]{3,30}\s*\[.*\]", re.DOTALL)
+NAMES_FILE = re.compile(
+    r"((grids|init|catalog)\s*=|PROJ4_GRIDS\W+|PARAMETERFILE\s*[\[(])[^\]\s]*[/\\]", re.IGNORECASE
+)
+"""A path behind the name of a parameter that PROJ opens."""
 LONGEST = 20_000  # characters of a WKT
 
 
@@ -41,6 +45,8 @@ def look_up(text: str) -> Any:
         raise BackendError(
             f"map projections need pyproj: pip install 'cdem[terrain]' ({error})"
         ) from None
+    if NAMES_FILE.search(text):
+        raise CaseError(f"a projection that names a file is not read: '{text[:60]}'")
     try:
         return pyproj.CRS.from_user_input(text)
     except pyproj.exceptions.CRSError:

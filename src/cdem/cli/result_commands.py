@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import tempfile
 import webbrowser
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -111,10 +112,22 @@ def view(
 
     with ViewServer(folder, port) as server:
         print(f"{server.address}\nCtrl-C ends it", flush=True)
-        if not no_browser and _has_screen():
-            webbrowser.open(server.address)
-        with contextlib.suppress(KeyboardInterrupt):
-            server.serve_forever()
+        with tempfile.TemporaryDirectory(prefix="cdem-view-") as private:
+            if not no_browser and _has_screen():
+                webbrowser.open(_redirect(Path(private), server.address))
+            with contextlib.suppress(KeyboardInterrupt):
+                server.serve_forever()
+
+
+def _redirect(folder: Path, address: str) -> str:
+    """Address of a file that leads to the page, which only this user can read.
+
+    Other users see the arguments of a browser, and the page's address holds its token.
+    """
+    path = folder / "view.html"
+    with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
+        file.write(f'<!doctype html><meta http-equiv="refresh" content="0; url={address}">')
+    return path.as_uri()
 
 
 def _has_screen() -> bool:
@@ -201,7 +214,9 @@ def _results(folder: Path) -> Path:
     if not folder.is_dir():
         raise CaseError(f"{folder}: no such folder; name the result folder of a run")
     from cdem.run.result_folder import RESULT_FILES
+    from cdem.run.written_files import refuse_links
 
     if not {path.name for path in folder.iterdir()} & RESULT_FILES:
         raise CaseError(f"{folder}: is not a result folder; 'cdem run CASE.yaml' makes one")
+    refuse_links(folder)
     return folder

@@ -20,6 +20,7 @@ from cdem.mesh.element_shapes import NODES, volumes
 from cdem.mesh.gmsh_nodes import check_node_ids
 from cdem.mesh.mesh import Mesh, drop_unused
 from cdem.mesh.mesh_arrays import from_arrays
+from cdem.mesh.named_parts import check_parts
 
 _MESHIO_SHAPES = {"tetra": "tet4", "pyramid": "pyramid5", "wedge": "wedge6", "hexahedron": "hex8"}
 _MESHIO_FACES = ("triangle", "quad")
@@ -235,6 +236,8 @@ def read_raw(path: Path) -> Any:
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         if path.suffix.lower() != ".msh":
             refuse_entities(path)
+            if path.suffix.lower() in (*HDF5, ".inp"):
+                check_parts(path)
             return meshio.read(path)
         with path.open("rb") as file:
             ansys = file.read(1) == b"("

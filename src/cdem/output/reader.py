@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 
 from cdem.errors import CdemError
 from cdem.mesh.element_shapes import NODES
+from cdem.mesh.hdf5_links import refuse_links
 from cdem.run.checkpoint import has_checkpoint
-from cdem.run.frame_files import KINDS, VTK_TYPES, frame_numbers, frame_path
+from cdem.run.frame_files import ELEMENTS, KINDS, VTK_TYPES, frame_numbers, frame_path
+from cdem.whole_files import refuse_link
 
 MESHIO_NAMES = {"tet4": "tetra", "pyramid5": "pyramid", "wedge6": "wedge", "hex8": "hexahedron"}
 
@@ -101,6 +103,8 @@ class _Frames:
 
     def __init__(self, folder: Path, numbers: Sequence[int] | None = None) -> None:
         self.folder = folder
+        refuse_link(folder)
+        self._checked: set[Path] = set()
         numbers = frame_numbers(folder) if numbers is None else numbers
         self._paths = [frame_path(folder, number) for number in numbers]
         if not self._paths:
@@ -131,11 +135,27 @@ class _Frames:
         path = self._paths[frame]
         try:
             with h5py.File(path, "r", locking=False) as hdf5:
+                self._check(path, hdf5)
                 yield hdf5["VTKHDF"]
         except (OSError, KeyError, RuntimeError) as error:
             raise CdemError(
                 f"{path}: is damaged ({error}); move it away to look at the other frames"
             ) from None
+
+    def _check(self, path: Path, hdf5: Any) -> None:
+        """Stop at a file that leads to another but that of the elements beside it; once for each."""
+        import h5py
+
+        if path in self._checked:
+            return
+        refuse_link(path)
+        refuse_links(hdf5, path, ELEMENTS, CdemError)
+        elements = path.with_name(ELEMENTS)
+        if elements.is_file() and elements not in self._checked:
+            refuse_link(elements)
+            with h5py.File(elements, "r", locking=False) as other:
+                refuse_links(other, elements, kind=CdemError)
+        self._checked |= {path, elements}
 
 
 class SurfaceSeries(_Frames):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case import child
 from cdem.case.output_fields import CARRIED
 from cdem.case.shown_fields import AXIAL_FORCE, SHOWN
 from cdem.errors import CdemError
@@ -54,7 +54,7 @@ def can_draw() -> bool:
         "import pyvista as p; q = p.Plotter(off_screen=True, window_size=(16, 16));"
         "q.add_mesh(p.Sphere()); q.screenshot(return_img=True)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    done = subprocess.run(child.code(code), capture_output=True, check=False)
     return done.returncode == 0
 
 

@@ -6,9 +6,11 @@ other sites neither, though they may make the browser ask (the token, and the na
 
 from __future__ import annotations
 
+import contextlib
 import hmac
 import json
 import secrets
+import socket
 import sys
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -22,6 +24,10 @@ from cdem.output.web_page import RunPage
 HERE = "127.0.0.1"
 MOST = 100_000_000
 """Bytes that are sent at once at most; else digits and frames are left out."""
+MOST_THREADS = 32
+"""Requests that are answered at a time; a browser has six."""
+PATIENCE = 30.0
+"""Wall time of a request from its first byte to the last of the answer [s]."""
 
 
 class ViewServer(ThreadingHTTPServer):
@@ -39,6 +45,7 @@ class ViewServer(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    request_queue_size = MOST_THREADS
 
     def __init__(self, folder: Path, port: int = 0) -> None:
         try:
@@ -48,14 +55,43 @@ class ViewServer(ThreadingHTTPServer):
             raise CdemError(f"port {port}: {why}; name another with --port") from None
         self.page = RunPage(folder)
         self.lock = threading.Lock()
+        self._free = threading.BoundedSemaphore(MOST_THREADS)
         self.token = secrets.token_urlsafe(16)
         self.hosts = {f"{name}:{self.server_port}" for name in (HERE, "localhost")}
         self.address = f"http://{HERE}:{self.server_port}/{self.token}/"
 
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Answer in a thread, if one is free; else close."""
+        if not self._free.acquire(blocking=False):
+            self.shutdown_request(request)
+            return
+        try:
+            super().process_request(request, client_address)
+        except RuntimeError:  # the system has no more threads
+            self._free.release()
+            self.shutdown_request(request)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Answer a request; who takes longer than `PATIENCE` to ask or to take is cut off."""
+        late = threading.Timer(PATIENCE, _cut, [request])
+        late.daemon = True
+        late.start()
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            late.cancel()
+            self._free.release()
+
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Say nothing of a browser that went away."""
-        if not isinstance(sys.exc_info()[1], ConnectionError):
+        if not isinstance(sys.exc_info()[1], OSError | ValueError):
             super().handle_error(request, client_address)
+
+
+def _cut(request: socket.socket) -> None:
+    """End a connection, whoever waits for it."""
+    with contextlib.suppress(OSError):
+        request.shutdown(socket.SHUT_RDWR)
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -66,7 +102,11 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """Send the page, the state of the run, or what is new."""
-        url = urlsplit(self.path)
+        try:
+            url = urlsplit(self.path)
+        except ValueError:
+            self._send(400, "text/plain", b"no address\n")
+            return
         _, token, *rest = (*url.path.split("/"), "")[:3]
         known = hmac.compare_digest(token.encode(), self.server.token.encode())
         if not known or self.headers.get("Host") not in self.server.hosts:
@@ -107,7 +147,7 @@ class _Handler(BaseHTTPRequestHandler):
                 self.send_header(name, value)
             self.end_headers()
             self.wfile.write(body)
-        except ConnectionError:  # the browser has closed the page meanwhile
+        except OSError:  # the browser has closed the page meanwhile, or was too slow
             self.close_connection = True
 
     def log_message(self, format: str, *args: object) -> None:

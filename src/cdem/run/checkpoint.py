@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
+from cdem.mesh.hdf5_links import refuse_links
 from cdem.whole_files import replaced
 
 CHECKPOINT = "checkpoint.h5"
@@ -72,6 +73,7 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
                 raise DamagedError(f"{path}: is damaged (its checksum is another)")
             file.seek(0)
             with h5py.File(file, "r") as hdf5:
+                refuse_links(hdf5, path)
                 hdf5.visititems(keep)
                 attributes = bytes(hdf5[ATTRIBUTES][()])
     except FileNotFoundError:

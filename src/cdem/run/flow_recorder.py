@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from cdem.errors import CdemError
 from cdem.mesh.element_volumes import Solids
+from cdem.mesh.hdf5_links import refuse_links
 from cdem.run.fields import block_of, group_of, pieces_of
 from cdem.run.flow_maps import LAYERS, FlowMaps, Moment
 from cdem.run.state import RunState, StageState
@@ -152,6 +153,7 @@ def read_maxima(folder: Path) -> tuple[FlowMaps, list[str], float] | None:
         return None
     try:
         with h5py.File(path, "r") as hdf5:
+            refuse_links(hdf5, path, kind=CdemError)
             numbers, layers, middles = (hdf5[n][()] for n in ("numbers", "layers", "middles"))
             maps = _maps_of(float(hdf5.attrs["cell"]), numbers, layers, middles)
             time = float(hdf5.attrs["time"])

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.mesh.element_shapes import NODES
+from cdem.mesh.hdf5_links import refuse_links
 from cdem.whole_files import ASIDE, replaced
 
 VTK_TYPES = {"tet4": 10, "pyramid5": 14, "wedge6": 13, "hex8": 12}
@@ -187,7 +188,9 @@ class _Series:
             path.unlink()
 
     def _look(self, number: int) -> _Frame:
-        with h5py.File(frame_path(self.folder, number), "r", locking=False) as hdf5:
+        path = frame_path(self.folder, number)
+        with h5py.File(path, "r", locking=False) as hdf5:
+            refuse_links(hdf5, path, ELEMENTS)
             root = hdf5["VTKHDF"]
             frame = _Frame(
                 number,

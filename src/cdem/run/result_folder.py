@@ -32,7 +32,7 @@ from cdem.run.histories import tracks
 from cdem.run.history_file import HistoryFile
 from cdem.run.law_fields import wanted_fields
 from cdem.run.state import Attributes, RunState
-from cdem.run.written_files import LOCK, MARKER, check_replaceable, remove_written
+from cdem.run.written_files import LOCK, MARKER, check_replaceable, refuse_links, remove_written
 from cdem.whole_files import disk_error, write_json, write_text
 
 RESULT_FILES = {"case.yaml", "run.log", "summary.json", CHECKPOINT, CHECKPOINT_BEFORE}
@@ -47,6 +47,7 @@ def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) ->
     if resume:
         if not has_checkpoint(folder):
             raise CdemError(f"{folder}: no checkpoint to resume from; run without --resume")
+        refuse_links(folder)
     elif inside and not overwrite:
         raise _exists(folder)
     elif inside:

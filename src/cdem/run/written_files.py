@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cdem.case.shown_fields import SHOWN
 from cdem.errors import CdemError
-from cdem.whole_files import ASIDE, write_text
+from cdem.whole_files import ASIDE, refuse_link, write_text
 
 MARKER = ".cdem-results"
 """The file that says that `cdem run` made the folder."""
@@ -77,6 +77,7 @@ def check_replaceable(folder: Path, case_folder: Path) -> None:
     advice = "so it is not overwritten; name another folder with -o"
     if folder.resolve() == case_folder.resolve():
         raise CdemError(f"{folder}: is the folder of the case, {advice}")
+    refuse_link(folder / LOCK)
     if not (folder / MARKER).is_file():
         raise CdemError(
             f"{folder}: is not a result folder ({MARKER} is not there), {advice}, or remove it yourself"
@@ -87,6 +88,21 @@ def check_replaceable(folder: Path, case_folder: Path) -> None:
         raise CdemError(
             f"{folder}: holds {other[0]}{more}, which cdem did not write, {advice}, or move it away"
         )
+
+
+def refuse_links(folder: Path) -> None:
+    """Make sure that what cdem writes into a result folder lies there, and nowhere else.
+
+    Raises:
+        CdemError: A file or folder of a name that cdem writes is a link.
+    """
+    for path in folder.iterdir():
+        if path.name in FOLDERS:
+            refuse_link(path)
+            for inside in path.iterdir() if path.is_dir() else ():
+                refuse_link(inside)
+        elif _matches(path.name, WRITTEN):
+            refuse_link(path)
 
 
 def remove_written(folder: Path) -> None:

@@ -70,7 +70,7 @@ def confirm(
         should_stop: Asked as often; True ends it with the results so far.
 
     Raises:
-        BackendError: Dask is missing.
+        BackendError: A worker lacks what it needs.
     """
     folder.mkdir(parents=True, exist_ok=True)
     studies: dict[int, tuple[Study, Path]] = {}

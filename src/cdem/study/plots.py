@@ -13,6 +13,7 @@ from cdem.output.scene import color
 from cdem.study.results_table import Table
 from cdem.study.schema import Plot
 from cdem.study.study import Study
+from cdem.whole_files import refuse_link
 
 MOST_BARS = 20  # of a tornado; more cannot be read
 
@@ -26,6 +27,7 @@ def draw_all(table: Table, folder: Path) -> list[Path]:
     """
     if not table.study.plots:
         return []
+    refuse_link(folder)
     folder.mkdir(exist_ok=True)
     plt = pyplot()
     paths = []

@@ -1,4 +1,4 @@
-"""Parameter studies: many runs of a case on dask.distributed, each of which is done only once."""
+"""Parameter studies: many runs of a case on processes of this machine or on Dask, each done only once."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from typing import Any
 
 from cdem.errors import BackendError, CdemError
 from cdem.run.progress import clock
+from cdem.study.dask_workers import DaskTask, DaskWorkers
+from cdem.study.local_workers import LocalTask, LocalWorkers
 from cdem.study.plan import plan
 from cdem.study.results_table import Table, check_results
 from cdem.study.run import Run
 from cdem.study.study import Study
-from cdem.study.worker import execute, finished
-from cdem.whole_files import write_json
+from cdem.study.worker import finished
+from cdem.whole_files import refuse_link, write_json
 
 POLL_SECONDS, LOOK_SECONDS = 0.05, 0.5
 """Wall time between looks at what is finished, and at the workers and the progress [s]."""
-DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""What local workers begin with: a Ctrl-C is for the sweep, which ends them."""
 
 
 @dataclass
@@ -33,7 +33,7 @@ class SweepProgress:
         finished: Runs that have a result, those of earlier sweeps included.
         failed: Runs that failed.
         time_left: Estimate of the remaining wall time [s], or None.
-        dashboard: Address of Dask's dashboard, or nothing.
+        dashboard: Address of the dashboard of a Dask scheduler, or nothing.
     """
 
     total: int
@@ -62,9 +62,6 @@ def run_study(
 ) -> Table:
     """Execute the runs of a study that have no result yet, and collect all results.
 
-    A script that calls this with local workers needs ``if __name__ == "__main__":`` around the call,
-    because every worker imports the script.
-
     Args:
         study: A `Study`, or the path of a study file.
         folder: Where results go; what an earlier sweep finished there is used.
@@ -76,7 +73,7 @@ def run_study(
 
     Raises:
         CaseError: The study or its case is wrong, or a name under ``results`` is.
-        BackendError: Dask is missing, or its scheduler cannot be reached any more.
+        BackendError: Dask is missing, or its scheduler cannot be reached (any more).
     """
     study = study if isinstance(study, Study) else Study.load(study)
     how: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
@@ -116,8 +113,8 @@ def run_studies(
         check_results(owner[run.identity], run)
 
     if waiting:
-        with _cluster(workers, scheduler) as client:
-            _execute_all(check, runs, waiting, client, progress, should_stop)
+        with LocalWorkers(workers) if scheduler is None else _scheduler(scheduler) as pool:
+            _execute_all(check, runs, waiting, pool, progress, should_stop)
     return tables
 
 
@@ -128,57 +125,43 @@ def _open(folder: Path, study: Study) -> None:
     if folder.exists() and any(folder.iterdir()) and not (folder / "study.json").is_file():
         raise CdemError(f"{folder}: holds other things than a sweep; name another folder with -o")
     folder.mkdir(parents=True, exist_ok=True)
+    refuse_link(folder / "plots")
     write_json(folder / "study.json", study.model_dump(mode="json", exclude_unset=True))
 
 
 @contextmanager
-def _cluster(workers: int | None, scheduler: str | None) -> Iterator[Any]:
-    """A client of a local cluster, or of one that is there already."""
+def _scheduler(address: str) -> Iterator[DaskWorkers]:
+    """The workers of a Dask scheduler that is there already."""
     try:
-        import dask
-        from distributed import Client, LocalCluster
+        from distributed import Client
     except ImportError as error:
         raise BackendError(
-            f"a sweep needs dask.distributed; pip install 'cdem[sweep]' ({error})"
+            f"--scheduler needs dask.distributed; pip install 'cdem[sweep]' ({error})"
         ) from None
-    if scheduler is not None:
-        try:
-            client = Client(scheduler, timeout=10)
-        except (OSError, ValueError) as error:
-            raise BackendError(f"no Dask scheduler answers at {scheduler}: {error}") from None
-        with client:
-            yield client
-        return
-    # Building a large model may keep a worker from answering for long, and is no fault.
-    with (
-        dask.config.set({"distributed.scheduler.worker-ttl": None}),
-        LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            memory_limit=None,
-            dashboard_address="127.0.0.1:0",
-            env={"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"},
-            preload=[DEAF],
-            silence_logs=50,  # critical only: what matters is said in our own words
-        ) as cluster,
-        Client(cluster) as client,
-    ):
-        yield client
+    try:
+        client = Client(address, timeout=10)
+    except (OSError, ValueError) as error:
+        raise BackendError(f"no Dask scheduler answers at {address}: {error}") from None
+    with client:
+        yield DaskWorkers(client)
 
 
 class _Execution:
-    """Runs on a cluster, as many at a time as it has threads.
+    """Runs on workers, as many at a time as they have threads.
 
     Args:
         check: Looks at the result of a run, and raises if its study asks for what is not there.
         waiting: Runs to execute; those of the same case, by its identity, are executed once.
-        client: Of the cluster.
+        pool: The workers.
     """
 
     def __init__(
-        self, check: Callable[[Run], None], waiting: dict[str, list[Run]], client: Any
+        self,
+        check: Callable[[Run], None],
+        waiting: dict[str, list[Run]],
+        pool: LocalWorkers | DaskWorkers,
     ) -> None:
-        self._check, self._client = check, client
+        self._check, self._pool = check, pool
         self._left, self._count = list(waiting.values()), len(waiting)
         self._under_way: dict[Any, list[Run]] = {}
         self._began = time.perf_counter()
@@ -192,7 +175,7 @@ class _Execution:
         """Keep so many threads busy, and no more: a worker that dies takes only its own run along."""
         while self._left and len(self._under_way) < threads:
             same = self._left.pop(0)
-            self._under_way[self._client.submit(execute, same[0].task, pure=False)] = same
+            self._under_way[self._pool.submit(same[0].task)] = same
 
     def collect(self) -> None:
         """Take over what is finished.
@@ -200,17 +183,15 @@ class _Execution:
         Raises:
             CaseError: A result shows that the study asks for what is not there.
         """
-        for future in list(self._under_way):
-            status = future.status
-            if status in ("pending", "lost"):  # lost with its worker: another one computes it again
-                continue
-            for run in (same := self._under_way.pop(future)):
-                _settle(run, future, status)
-            self._check(same[0])
+        for task in list(self._under_way):
+            if task.done:
+                for run in (same := self._under_way.pop(task)):
+                    _settle(run, task)
+                self._check(same[0])
 
     def cancel(self) -> None:
         """Give up what is under way."""
-        self._client.cancel(list(self._under_way))
+        self._pool.cancel(list(self._under_way))
 
     def time_left(self) -> float | None:
         """Estimate of the remaining wall time [s], or None before anything is finished."""
@@ -224,13 +205,13 @@ def _execute_all(
     check: Callable[[Run], None],
     runs: list[Run],
     waiting: dict[str, list[Run]],
-    client: Any,
+    pool: LocalWorkers | DaskWorkers,
     progress: Callable[[SweepProgress], None] | None,
     should_stop: Callable[[], bool] | None,
 ) -> None:
-    """Keep every thread of the cluster busy until all runs are done or the user wants to stop."""
-    execution = _Execution(check, waiting, client)
-    looked, threads = time.perf_counter(), _threads(client)
+    """Keep every thread of the workers busy until all runs are done or the user wants to stop."""
+    execution = _Execution(check, waiting, pool)
+    looked, threads = time.perf_counter(), pool.threads
     while execution.going:
         execution.submit(threads)
         execution.collect()
@@ -238,50 +219,25 @@ def _execute_all(
             execution.cancel()
             return
         if time.perf_counter() > looked + LOOK_SECONDS or not execution.going:
-            looked, threads = time.perf_counter(), _threads(client)
+            looked, threads = time.perf_counter(), pool.threads
             if progress:
-                progress(_progress(runs, client, execution.time_left()))
+                progress(_progress(runs, pool.dashboard, execution.time_left()))
         time.sleep(POLL_SECONDS)
 
 
-def _threads(client: Any) -> int:
-    """Threads of all workers now; at least one, so that something waits for the first worker.
-
-    Raises:
-        BackendError: The scheduler does not answer any more.
-    """
-    try:
-        if client.status == "running":
-            return max(sum(client.nthreads().values()), 1)
-    except (OSError, TimeoutError):
-        pass
-    raise BackendError(
-        "the Dask scheduler is gone; finished runs are kept: the same command goes on"
-    )
-
-
-def _progress(runs: list[Run], client: Any, time_left: float | None) -> SweepProgress:
+def _progress(runs: list[Run], dashboard: str, time_left: float | None) -> SweepProgress:
     return SweepProgress(
         total=len(runs),
         finished=sum(run.status != "waiting" for run in runs),
         failed=sum(run.status == "failed" for run in runs),
         time_left=time_left,
-        dashboard=client.dashboard_link or "",
+        dashboard=dashboard,
     )
 
 
-def _settle(run: Run, future: Any, status: str) -> None:
-    """Take over what became of a run whose future had this status."""
-    from distributed.scheduler import KilledWorker
-
-    if status == "finished":
-        run.result = future.result()
-    elif status == "error":
-        error = future.exception()
-        if isinstance(error, KilledWorker):
-            run.error = "its worker died again and again (out of memory?); tried again next time"
-        else:
-            said = (
-                str(error) if isinstance(error, CdemError) else f"{type(error).__name__}: {error}"
-            )
-            run.error = f"{said} (tried again next time)"
+def _settle(run: Run, task: LocalTask | DaskTask) -> None:
+    """Take over what became of a run."""
+    try:
+        run.result = task.result()
+    except CdemError as error:
+        run.error = f"{error} (tried again next time)"

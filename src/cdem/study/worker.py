@@ -1,8 +1,17 @@
-"""What a worker does with one run: execute it once, and keep its result."""
+"""What a worker does with one run: execute it once, and keep its result.
+
+Run as a program it is a worker of `cdem.study.local_workers`: a task as JSON in each line of stdin,
+an answer in each line of stdout.
+"""
 
 from __future__ import annotations
 
 import json
+import os
+import queue
+import signal
+import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -12,7 +21,7 @@ from cdem.case.case import Case
 from cdem.case.named_files import files_of
 from cdem.errors import BackendError, CdemError
 from cdem.study.criterion import Criterion
-from cdem.whole_files import write_json
+from cdem.whole_files import refuse_link, write_json
 
 RESULT_FILE, RESULT_FOLDER = "result.json", "results"
 
@@ -49,6 +58,8 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
         if not Path(holder[key]).is_file():
             raise BackendError(f"a worker does not see {holder[key]}; it must have the same files")
     folder = Path(task["folder"]) / "runs" / task["name"]
+    for part in (folder.parent, folder, folder / RESULT_FOLDER):
+        refuse_link(part)
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     result = {key: task[key] for key in ("name", "identity", "version", "parameters")}
@@ -101,3 +112,33 @@ def _search(case: Case, search: dict[str, Any]) -> dict[str, Any]:
         threads=1,
     )
     return {"status": "found", "critical": found.as_dict()}
+
+
+def serve() -> None:
+    """Execute the tasks of stdin until it ends: then the sweep has ended, and this process does."""
+    signal.signal(
+        signal.SIGINT, signal.SIG_IGN
+    )  # a Ctrl-C is for the sweep, which ends its workers
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    tasks: queue.SimpleQueue[str] = queue.SimpleQueue()
+
+    def listen() -> None:
+        for line in sys.stdin:
+            tasks.put(line)
+        os._exit(0)  # also in the middle of a run
+
+    threading.Thread(target=listen, daemon=True).start()
+    while True:
+        task = json.loads(tasks.get())
+        try:
+            said: dict[str, Any] = {"result": execute(task)}
+        except CdemError as error:
+            said = {"error": str(error)}
+        except Exception as error:
+            said = {"error": f"{type(error).__name__}: {error}"}
+        print(json.dumps(said), file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    serve()

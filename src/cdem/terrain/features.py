@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cdem.case import aside
 from cdem.case.input_file import is_file, read_text, reading
 from cdem.errors import CaseError
 from cdem.terrain.heights import extra
@@ -46,14 +49,12 @@ def read_features(
     """
     kind = path.suffix.lower()
     if kind in GEOJSON:
-        found = _geojson(path, read_text(path, WHAT))
+        with reading(path, CaseError, MEND):
+            found = _geojson(path, read_text(path, WHAT))
     elif kind in BY_GDAL:
         if not is_file(path):
             raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
-        extra("pyogrio.raw")
-        extra("shapely")
-        with reading(path, CaseError, MEND):
-            found = _by_gdal(path, layer)
+        found = _by_gdal(path, layer)
     else:
         raise CaseError(f"{path}: {MEND}")
     return _chosen(path, found, where) if where else found
@@ -104,38 +105,13 @@ def _geojson_label(data: dict[str, Any]) -> str | None:
 
 
 def _by_gdal(path: Path, layer: str | None) -> Features:
-    with path.open("rb") as file:
-        if b"VRTData" in file.read(4096):
-            raise CaseError(f"{path}: is a link to other files (VRT), not what its name says")
-    import pyogrio
-    import shapely
-
-    items, label = [], None
-    for name in _layers(path, layer):
-        meta, _, shapes, columns = pyogrio.raw.read(path, layer=name)
-        label = meta["crs"] or label
-        fields = [str(field) for field in meta["fields"]]
-        for row, shape in enumerate(shapely.from_wkb(shapes)):
-            if shape is not None:
-                properties = {f: c[row] for f, c in zip(fields, columns, strict=True)}
-                items += [(part, properties) for part in _parts(shapely.geometry.mapping(shape))]
-    return Features(items, label)
-
-
-def _layers(path: Path, layer: str | None) -> list[str]:
-    """Names of the layers that are read."""
-    import pyogrio
-
-    layers = [str(name) for name in pyogrio.list_layers(path)[:, 0]]
-    if layer is not None and layer not in layers:
-        raise CaseError(f"{path}: has no layer '{layer}'; there are: {', '.join(layers)}")
-    if layer is None and len(layers) > 1 and path.suffix.lower() not in (".kml", ".kmz"):
-        raise CaseError(f"{path}: has several layers; choose with 'layer': {', '.join(layers)}")
-    return layers if layer is None else [layer]
-
-
-def _parts(geometry: dict[str, Any]) -> list[dict[str, Any]]:
-    """The geometries of a collection, which KML makes of lines and points together."""
-    if geometry["type"] != "GeometryCollection":
-        return [geometry]
-    return [part for inner in geometry["geometries"] for part in _parts(inner)]
+    for name in ("pyogrio", "shapely"):
+        if importlib.util.find_spec(name) is None:
+            extra(name)
+    with tempfile.TemporaryDirectory(prefix="cdem-read-") as folder:
+        asked = {"layer": layer, "folder": folder}
+        read = aside.read("cdem.terrain.gdal_features", path, MEND, kind=CaseError, asked=asked)
+    found = json.loads(read["text"].tobytes())
+    return Features(
+        [(geometry, properties) for geometry, properties in found["items"]], found["label"]
+    )

@@ -57,8 +57,8 @@ def read_lines(path: Path, elevation: str | None = None, bring: Bring = as_it_is
         with reading(path, CaseError, "contours are GIS files or CSV"):
             lines = list(_csv_lines(path, read_text(path, WHAT), elevation))
     elif kind in (*GEOJSON, *BY_GDAL):
+        found = read_features(path)
         with reading(path, CaseError, "contours are GIS files or CSV"):
-            found = read_features(path)
             label, lines = found.label, list(_lines(path, found, elevation))
     else:
         raise CaseError(

@@ -20,7 +20,13 @@ from cdem.terrain.features import read_features
 from cdem.terrain.heights import Grid, Heights, Lines, Plane, Smooth
 from cdem.terrain.projection import Projection, horizontal, name_of, short_name, utm_zone
 from cdem.terrain.rasters import read_raster
-from cdem.terrain.resample import Wanted, filled, label_of, read_heights
+from cdem.terrain.resample import (
+    Wanted,
+    filled,
+    label_of,
+    metres_of_heights,
+    read_heights,
+)
 from cdem.terrain.schema import HeightsBy, LandslideParts, OutlineFile, PlaneBy, PlaneThrough
 
 Floats = NDArray[np.float64]
@@ -122,9 +128,17 @@ class Landslide(LandslideParts):
         self.projection.tell(*notes)
         return corners
 
-    def _bring(self, path: Path, told: str | None) -> files.Bring:
-        """How points of a file come to metres."""
-        return lambda label, xy: self.projection.bring(path, label, told, xy)
+    def _bring(self, path: Path, told: str | None, unit: str | None = None) -> files.Bring:
+        """How points of a file, and their heights if they have any, come to metres."""
+
+        def bring(label: str | None, points: Floats) -> Floats:
+            there = self.projection.bring(path, label, told, points)
+            if there.shape[1] < 3:
+                return there
+            factor = metres_of_heights(path, told or label, "", unit, self.projection)
+            return there * [1.0, 1.0, factor]
+
+        return bring
 
     def _target(self) -> Any | None:
         """What all is brought to: as told, or as the terrain's file says."""
@@ -185,7 +199,8 @@ class Landslide(LandslideParts):
                 return self._grid(key, given)
             if given.contours is not None:
                 path = self._source.folder / given.contours
-                lines = files.read_lines(path, given.elevation, self._bring(path, given.crs))
+                bring = self._bring(path, given.crs, given.unit)
+                lines = files.read_lines(path, given.elevation, bring)
             else:
                 lines = [np.array(line) for line in given.lines or []]
             return Lines(lines, self.sizes.body / 4)

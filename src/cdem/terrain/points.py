@@ -57,8 +57,9 @@ def read_points(path: Path, columns: Mapping[str, str], bring: Bring) -> dict[st
         raise CaseError(f"{path}: holds no points")
     named = _named(path, rows[0], columns)
     values = {key: _numbers(path, rows, name) for key, name in named.items()}
-    xy = bring(label, np.column_stack([values["x"], values["y"]]))
-    values["x"], values["y"] = xy[:, 0], xy[:, 1]
+    values["x"], values["y"], values["z"] = bring(
+        label, np.column_stack([values["x"], values["y"], values["z"]])
+    ).T
     _check_dips(path, values)
     return values
 

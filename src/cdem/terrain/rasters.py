@@ -1,8 +1,10 @@
-"""Readers of grids of heights: ESRI ASCII by itself; GeoTIFF, VRT and Surfer by rasterio."""
+"""Readers of grids of heights: ESRI ASCII by itself; GeoTIFF, VRT and Surfer by GDAL."""
 
 from __future__ import annotations
 
+import importlib.util
 import math
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,27 +13,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.input_file import is_file, read_text, reading
+from cdem.case import aside
+from cdem.case.input_file import is_file, read_text, reading, size_of
 from cdem.case.map_system import look_up
 from cdem.errors import BackendError, CaseError
+from cdem.terrain import vrt
 from cdem.terrain.heights import Grid, extra, refuse_degrees
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Box = tuple[Floats, Floats]  # south-west and north-east corner, in the units of a file
 Part = Callable[[str | None, Box], Box | None]  # from the label and all of a file
+Window = tuple[int, int, int, int]  # first column and row from the north, how many of each
 ASCII = (".asc", ".grd", ".txt")
 DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".vrt": "VRT"}
 SURFER = {b"DSAA": "GSAG", b"DSBB": "GSBG", b"DSRB": "GS7BG"}
 KINDS = ".asc (ESRI ASCII), .tif (GeoTIFF), .vrt or .grd"
 MEND = f"a grid is one of {KINDS}"
 WHAT = "terrain file"
-# a VRT may name other files; none from the net, and no code
-CLOSED = {
-    "CPL_VSIL_CURL_ALLOWED_EXTENSIONS": ".none",
-    "GDAL_VRT_ENABLE_PYTHON": "NO",
-    "GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR",
-}
 
 
 @dataclass
@@ -69,8 +68,7 @@ def read_label(path: Path) -> str | None:
     driver = _driver(path)
     if driver is None:
         return _sidecar(path)
-    with reading(path, CaseError, MEND):
-        return _opened(path, driver, lambda file: file.crs and file.crs.to_wkt())
+    return _by_gdal(path, driver, lambda head: None)[0]["label"]
 
 
 def read_raster(path: Path, part: Part | None = None) -> Raster:
@@ -84,16 +82,30 @@ def read_raster(path: Path, part: Part | None = None) -> Raster:
         CaseError: The file is missing, not such a grid, or has no heights there.
     """
     driver = _driver(path)
-    with reading(path, CaseError, MEND):
-        if driver is None:
-            raster = Raster(_ascii_grid(path, read_text(path, WHAT)), _sidecar(path))
-        else:
-            raster = _opened(path, driver, lambda file: _read(path, file, part))
-    if min(raster.grid.values.shape) < 2:
+    if driver is None:
+        with reading(path, CaseError, MEND):
+            head, values = _ascii_grid(path, read_text(path, WHAT))
+        head["label"] = _sidecar(path)
+        left, top, columns, rows = window = _window(path, head, part)
+        values = values[top : top + rows, left : left + columns]
+    else:
+        windows: list[Window] = []
+
+        def wanted(head: dict[str, Any]) -> Window:
+            windows.append(_window(path, head, part))
+            return windows[0]
+
+        head, values = _by_gdal(path, driver, wanted)
+        window = windows[0]
+    if min(values.shape) < 2:
         raise CaseError(f"{path}: a grid needs at least two rows and two columns")
-    if not np.isfinite(raster.grid.values).any():
-        raise CaseError(f"{path}: holds no heights, all cells are without data")
-    return raster
+    if not np.isfinite(values).any():
+        where = "" if part is None else " where they are needed"
+        raise CaseError(f"{path}: holds no heights{where}, all cells are without data")
+    x, _, west, _, y, north = head["place"]
+    west, north = west + x * (window[0] + 0.5), north + y * (window[1] + 0.5)
+    grid = Grid(west, north + y * (len(values) - 1), (x, -y), values[::-1])
+    return Raster(grid, head["label"], head["unit"])
 
 
 def _driver(path: Path) -> str | None:
@@ -107,52 +119,60 @@ def _driver(path: Path) -> str | None:
     return DRIVERS.get(kind)
 
 
-def _opened(path: Path, driver: str, use: Callable[[Any], Any]) -> Any:
+def _by_gdal(
+    path: Path, driver: str, wanted: Callable[[dict[str, Any]], Window | None]
+) -> tuple[dict[str, Any], Floats]:
+    """Read the window that is wanted of a grid, once its head is known, in a process of its own.
+
+    Returns:
+        The head, and the heights, rows from the north; no heights where no window is wanted.
+    """
     if not is_file(path):
         raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
-    rasterio = extra("rasterio")
-    try:
-        # other drivers of GDAL would follow links to other files, and into the net
-        with rasterio.Env(**CLOSED), rasterio.open(path, driver=driver) as file:
-            return use(file)
-    except rasterio.errors.RasterioError as error:
-        name = {"GTiff": "GeoTIFF", "VRT": "VRT"}.get(driver, "Surfer grid")
-        raise CaseError(f"{path}: not a {name}: {error}") from None
+    if importlib.util.find_spec("rasterio") is None:
+        extra("rasterio")
+    heads: list[dict[str, Any]] = []
 
+    def reply(head: dict[str, Any]) -> Window:
+        heads.append(head)
+        return wanted(head) or (0, 0, 0, 0)
 
-def _read(path: Path, file: Any, part: Part | None) -> Raster:
-    place, label = file.transform, file.crs and file.crs.to_wkt()
-    if place.b or place.d or place.a <= 0 or place.e >= 0:
-        raise CaseError(f"{path}: its rows do not run from west to east, north to south")
-    b = file.bounds
-    box = part(label, (np.array([b.left, b.bottom]), np.array([b.right, b.top]))) if part else None
-    window = None if box is None else _window(path, file, box)
-    values = file.read(1, masked=True, window=window).astype(float).filled(np.nan)
-    values = values * file.scales[0] + file.offsets[0]
-    if window is not None:
-        place = file.window_transform(window)
-    west, north = place.c + place.a / 2, place.f + place.e / 2
-    south = north + place.e * (len(values) - 1)
-    grid = Grid(west, south, (place.a, -place.e), values[::-1])
-    return Raster(grid, label, (file.units[0] or "").strip())
-
-
-def _window(path: Path, file: Any, box: Box) -> Any:
-    """The cells that a box covers, two more around it."""
-    windows = extra("rasterio.windows")
-    place = file.transform
-    left, right = sorted((x - place.c) / place.a for x in (box[0][0], box[1][0]))
-    top, bottom = sorted((y - place.f) / place.e for y in (box[0][1], box[1][1]))
-    first = [max(0, math.floor(v) - 2) for v in (left, top)]
-    last = [min(size, math.ceil(v) + 2) for v, size in ((right, file.width), (bottom, file.height))]
-    if last[0] - first[0] < 2 or last[1] - first[1] < 2:
-        b = file.bounds
-        raise CaseError(
-            f"{path}: reaches from ({coordinates((b.left, b.bottom))}) to "
-            f"({coordinates((b.right, b.top))}), and does not cover what is needed, "
-            f"({coordinates(box[0])}) to ({coordinates(box[1])})"
+    size = size_of(path)
+    with tempfile.TemporaryDirectory(prefix="cdem-read-") as folder:
+        asked = {"driver": driver, "vrt": None}
+        with reading(path, CaseError, MEND):
+            vrt.refuse_links(path)
+            text, files = vrt.plain(path) if driver == "VRT" else ("", [])
+        if driver == "VRT":
+            copy = Path(folder) / "grid.vrt"
+            copy.write_text(text, encoding="utf-8")
+            asked["vrt"], size = str(copy), size + sum(file.stat().st_size for file in files)
+        read = aside.read(
+            "cdem.terrain.gdal_grids", path, MEND, CaseError, asked, size=size, reply=reply
         )
-    return windows.Window(*first, last[0] - first[0], last[1] - first[1])
+    return heads[0], read.get("values", np.zeros((0, 0)))
+
+
+def _window(path: Path, head: dict[str, Any], part: Part | None) -> Window:
+    """The cells that are needed, two more around them: first column and row, and how many."""
+    x, bx, west, by, y, north = head["place"]
+    columns, rows = head["size"]
+    if bx or by or x <= 0 or y >= 0:
+        raise CaseError(f"{path}: its rows do not run from west to east, north to south")
+    low, high = np.array([west, north + y * rows]), np.array([west + x * columns, north])
+    box = part(head["label"], (low, high)) if part else None
+    if box is None:
+        return 0, 0, columns, rows
+    left, right = sorted((v - west) / x for v in (box[0][0], box[1][0]))
+    top, bottom = sorted((v - north) / y for v in (box[0][1], box[1][1]))
+    first = [max(0, math.floor(v) - 2) for v in (left, top)]
+    last = [min(size, math.ceil(v) + 2) for v, size in ((right, columns), (bottom, rows))]
+    if last[0] - first[0] < 2 or last[1] - first[1] < 2:
+        raise CaseError(
+            f"{path}: reaches from ({coordinates(low)}) to ({coordinates(high)}), and does not cover "
+            f"what is needed, ({coordinates(box[0])}) to ({coordinates(box[1])})"
+        )
+    return first[0], first[1], last[0] - first[0], last[1] - first[1]
 
 
 def _refuse_other_units(path: Path, label: str | None) -> None:
@@ -181,7 +201,8 @@ def _sidecar(path: Path) -> str | None:
     return read_text(beside, "projection of the grid").strip() or None if is_file(beside) else None
 
 
-def _ascii_grid(path: Path, text: str) -> Grid:
+def _ascii_grid(path: Path, text: str) -> tuple[dict[str, Any], Floats]:
+    """The head of a grid as `gdal_grids` gives it, and its heights, rows from the north."""
     lines = text.splitlines()
     head, count = _grid_head(path, lines)
     corner = "xllcorner" in head
@@ -202,10 +223,11 @@ def _ascii_grid(path: Path, text: str) -> Grid:
             f"{path}: holds {len(values)} heights, but its head says {rows} x {columns}"
         )
     values[values == head.get("nodata_value", -9999.0)] = np.nan
-    shift = step / 2 if corner else 0.0
-    west = head["xllcorner" if corner else "xllcenter"] + shift
-    south = head["yllcorner" if corner else "yllcenter"] + shift
-    return Grid(west, south, (step, step), values.reshape(rows, columns)[::-1])
+    shift = 0.0 if corner else step / 2
+    west = head["xllcorner" if corner else "xllcenter"] - shift
+    south = head["yllcorner" if corner else "yllcenter"] - shift
+    place = [step, 0.0, west, 0.0, -step, south + rows * step]
+    return {"place": place, "size": [columns, rows], "unit": ""}, values.reshape(rows, columns)
 
 
 def _grid_head(path: Path, lines: list[str]) -> tuple[dict[str, float], int]:

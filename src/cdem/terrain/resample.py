@@ -65,7 +65,9 @@ def read_heights(path: Path, projection: Projection, wanted: Wanted) -> Grid:
     raster = read_raster(path, lambda label, whole: _part(path, label, whole, projection, wanted))
     projection.same_heights(path, wanted.told or raster.label)
     own = projection.own(path, raster.label, wanted.told, raster.grid.low, raster.grid.high)
-    values = raster.grid.values * _factor(path, raster.label, raster.unit, wanted, projection)
+    values = raster.grid.values * metres_of_heights(
+        path, wanted.told or raster.label, raster.unit, wanted.unit, projection
+    )
     for value in wanted.nodata or []:
         values[raster.grid.values == value] = np.nan
     grid = Grid(raster.grid.west, raster.grid.south, raster.grid.step, values)
@@ -81,7 +83,9 @@ def _of_cloud(path: Path, projection: Projection, wanted: Wanted) -> Grid:
     label = label_of(path)
     projection.same_heights(path, wanted.told or label)
     grid = read_cloud(path, projection, wanted.told, wanted.box, wanted.cell, wanted.classes)
-    values = grid.values * _factor(path, label, "", wanted, projection)
+    values = grid.values * metres_of_heights(
+        path, wanted.told or label, "", wanted.unit, projection
+    )
     return trimmed(Grid(grid.west, grid.south, grid.step, values))
 
 
@@ -105,28 +109,51 @@ def _edge(low: Floats, high: Floats) -> Floats:
     return np.concatenate([a + (b - a) * t for a, b in pairwise(corners)])
 
 
-def _factor(
-    path: Path, label: str | None, unit: str, wanted: Wanted, projection: Projection
+def metres_of_heights(
+    path: Path,
+    label: str | None,
+    unit: str,
+    told: str | None,
+    projection: Projection,
 ) -> float:
-    """Metres in a unit of the heights: as told, as the band says, or as the heights' system says."""
-    if wanted.unit is not None:
-        return UNITS[wanted.unit]
+    """Metres in a unit of the heights: as told, as the band says, or as the heights' system says.
+
+    Args:
+        path: The file.
+        label: Its projection, as the user or the file says; None if nobody does.
+        unit: Unit of its heights as it says; empty if it says nothing.
+        told: That unit as the user says, or None.
+        projection: Is told of what is assumed.
+
+    Raises:
+        CaseError: The unit is not known, or nobody says it and the projection is in feet.
+    """
+    if told is not None:
+        return UNITS[told]
     named = OTHER_NAMES.get(unit.lower(), unit.lower())
     if named and named not in UNITS:
         raise CaseError(
             f"{path}: its heights are in '{unit}'; write 'unit' beside it, one of {', '.join(UNITS)}"
         )
-    factor = UNITS[named] if named else _axis_factor(wanted.told or label)
+    factor = UNITS[named] if named else _axis_factor(path, label)
     if factor != 1.0:
         projection.tell(f"{path.name}: its heights are taken times {factor:.10g}")
     return factor
 
 
-def _axis_factor(label: str | None) -> float:
+def _axis_factor(path: Path, label: str | None) -> float:
     system = look_up(label) if label is not None else None
-    if system is None or vertical_name(system) is None:
+    if system is None:
         return 1.0
-    return float(system.axis_info[-1].unit_conversion_factor)
+    if vertical_name(system) is not None:
+        return float(system.axis_info[-1].unit_conversion_factor)
+    plan = horizontal(system)
+    if plan.is_projected and abs(plan.axis_info[0].unit_conversion_factor - 1) > 1e-9:
+        raise CaseError(
+            f"{path}: its projection is in {plan.axis_info[0].unit_name}, and it does not say in what "
+            "its heights are; write 'unit' beside it (--unit), us-ft, ft or m"
+        )
+    return 1.0
 
 
 def _warped(path: Path, grid: Grid, source: Any, projection: Projection, wanted: Wanted) -> Grid:

@@ -106,7 +106,8 @@ class HeightsBy(Part):
         description="Fill gaps of a grid up to this distance [m]; all: any, also inside outlines",
     )
     unit: Literal["m", "ft", "us-ft", "cm", "dm"] | None = Field(
-        None, description="Unit of the heights of a grid; by default what it says, else metres"
+        None,
+        description="Unit of the heights of a grid or contours; by default what it says, else metres",
     )
     nodata: list[float] = Field([], description="More values of a grid that mean no data")
     classes: Literal["ground", "all"] = Field(

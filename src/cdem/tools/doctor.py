@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 from cdem._version import __version__
+from cdem.case import child
 
 DEVELOPER_EXTRAS = {"dev", "docs", "test", "webtest"}
 RENDER_TIMEOUT = 60.0  # a broken driver can hang [s]
@@ -80,7 +81,7 @@ def _opengl() -> str:
         return "not tried: pyvista is missing"
     try:  # in a process of its own, because a bad driver ends it
         done = subprocess.run(
-            [sys.executable, "-c", RENDER], capture_output=True, timeout=RENDER_TIMEOUT, check=False
+            child.code(RENDER), capture_output=True, timeout=RENDER_TIMEOUT, check=False
         )
     except subprocess.TimeoutExpired:
         return f"does not answer; {OPENGL_HINT}"

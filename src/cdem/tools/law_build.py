@@ -22,7 +22,8 @@ NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 LAW = re.compile(
     r'template\s*<class T>\s*struct\s+(\w+)[^;]*?LawText\s+text\s*\{\s*\.name\s*=\s*"([^"]*)"'
 )
-INCLUDE = re.compile(r'^\s*#\s*include\s*"(?!core/)([^"]*)"', re.MULTILINE)
+INCLUDE = re.compile(r"^\s*(?:#|%:)\s*(?:include\w*|import|embed)(.*)$", re.MULTILINE)
+KNOWN = re.compile(r'\s*(?:<\w+(?:\.h)?>|"core/(?:\w+/)*\w+\.hpp")\s*')
 ANSWERS = {"BLOCK": re.compile(r"\bflow\s*\("), "INTERFACE": re.compile(r"\brespond\s*\(")}
 SHOWN = 8
 """Lines of what the compiler says."""
@@ -53,10 +54,13 @@ class Header:
         """
         if not path.is_file():
             raise CaseError(f"{path}: no such file")
-        text = re.sub(r"//[^\n]*", "", path.read_text(errors="replace"))
-        if other := INCLUDE.search(text):
+        text = path.read_text(errors="replace").replace("\\\n", "")
+        text = re.sub(r"/\*.*?\*/|//[^\n]*", " ", text, flags=re.DOTALL)
+        for other in INCLUDE.findall(text):
+            if KNOWN.fullmatch(other):
+                continue
             raise CaseError(
-                f'{path}: includes "{other[1]}"; a law stands in one header, which includes files of '
+                f"{path}: includes {other.strip()}; a law stands in one header, which includes files of "
                 "core/ and of the language only"
             )
         laws = LAW.findall(text)
@@ -121,7 +125,7 @@ def build(files: list[Path]) -> Path:
         files: The headers; a case names them in the same order.
 
     Returns:
-        The library, beside the first header.
+        The library, in the folder of libraries of this user.
 
     Raises:
         CaseError: A header is wrong, or does not compile.
@@ -140,8 +144,10 @@ def build(files: list[Path]) -> Path:
     paths = [header.path for header in headers]
     if len({path.name for path in paths}) < len(paths):
         raise CaseError("own laws of one library need file names that differ")
-    library, made = library_of(paths, isa), record_of(paths, isa)
     with tempfile.TemporaryDirectory(prefix="cdem-law-") as folder:
+        # what is compiled is what the digest is of, whatever becomes of the files meanwhile
+        copies = [Path(shutil.copy(path, folder)) for path in paths]
+        library, made = library_of(copies, isa), record_of(copies, isa)
         built = _compile(headers, isa, Path(folder))
         with replaced(library) as file:
             file.write(built.read_bytes())
@@ -158,13 +164,13 @@ def _compile(headers: list[Header], isa: str, folder: Path) -> Path:
         own = [header for header in headers if header.kind == kind]
         if own:
             whole = folder / f"{kind.lower()}_laws.hpp"
-            whole.write_text("".join(f'#include "{header.path}"\n' for header in own))
+            whole.write_text("".join(f'#include "{folder / header.path.name}"\n' for header in own))
             settings[f"CDEM_OWN_{kind}_LAW"] = ",".join(header.structure for header in own)
             settings[f"CDEM_OWN_{kind}_HEADER"] = str(whole)
     given = [f"-D{name}={value}" for name, value in settings.items()]
     build = folder / "build"
-    _run(["cmake", "-S", str(sources()), "-B", str(build), "-G", "Ninja", *given], headers)
-    _run(["ninja", "-C", str(build), f"_core_{isa}"], headers)
+    _run(["cmake", "-S", str(sources()), "-B", str(build), "-G", "Ninja", *given], headers, folder)
+    _run(["ninja", "-C", str(build), f"_core_{isa}"], headers, folder)
     (built,) = build.glob(f"_core_{isa}.*")
     return built
 
@@ -174,8 +180,8 @@ def _needs(missing: str) -> str:
     return f"cdem law build finds no {missing}: pip install 'cdem[laws]', and g++ or clang of the system"
 
 
-def _run(command: list[str], headers: list[Header]) -> None:
-    """Run a tool of the build.
+def _run(command: list[str], headers: list[Header], folder: Path) -> None:
+    """Run a tool of the build, in its folder: nothing is imported from the current one.
 
     Raises:
         CaseError: The compiler refuses a header.
@@ -188,13 +194,20 @@ def _run(command: list[str], headers: list[Header]) -> None:
         raise BackendError(_needs(command[0]))
     environment = os.environ | {"PATH": tools, "LC_ALL": "C"}
     done = subprocess.run(
-        [found, *command[1:]], capture_output=True, text=True, check=False, env=environment
+        [found, *command[1:]],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+        cwd=folder,
     )
     if done.returncode == 0:
         return
     said = (done.stdout + done.stderr).splitlines()
     faults = [line for line in said if "error" in line.lower()] or said
     text = "\n".join(faults[:SHOWN])
+    for header in headers:
+        text = text.replace(str(folder / header.path.name), str(header.path))
     if any(str(header.path) in text for header in headers):
         raise CaseError(f"a law does not compile:\n{text}")
     raise BackendError(f"{command[0]} fails:\n{text}")

@@ -83,7 +83,6 @@ def test_nothing_found_is_said(run_cli, hill):
 
 @pytest.mark.slow
 def test_confirmed_factors_are_those_of_the_closed_form(run_cli, hill):
-    pytest.importorskip("distributed")
     words = ("--joints", "joints.yaml", "--volume", "50", "1e5", "--confirm", "1", "--json")
     status, out, _ = run_cli("screen", "hill.tif", *words)
     one = json.loads(out)["confirmed"][0]

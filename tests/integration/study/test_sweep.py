@@ -19,7 +19,6 @@ from cdem.study.plots import effects
 from cdem.study.study import Study
 from cdem.study.sweep import run_study
 
-pytest.importorskip("distributed")
 psutil = pytest.importorskip("psutil")
 
 
@@ -34,9 +33,8 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture(scope="module")
 def cluster():
     """A scheduler with two workers, each a process of its own."""
-    from distributed import LocalCluster
-
-    with LocalCluster(
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     ) as cluster:
         yield cluster
@@ -61,7 +59,7 @@ def test_a_sweep_from_the_command_line(run_cli, folder, no_report):
     status, out, err = run_cli("sweep", "study.yaml", "--workers", "2", "-o", "out")
     assert status == 3
     assert err.count("failed: ") == 2 and "moves at 1e+06 m/s" in err
-    assert "6 of 6 runs, 2 failed" in err and "dashboard http://" in err
+    assert "6 of 6 runs, 2 failed" in err and "dashboard" not in err
     rows = list(csv.DictReader((folder / "out/table.csv").open()))
     assert [row["status"] for row in rows] == ["finished"] * 4 + ["failed"] * 2
     assert [row["interfaces.default.cohesion [kPa]"] for row in rows] == ["1", "2"] * 3
@@ -152,6 +150,32 @@ def test_a_scheduler_that_is_killed_is_said_and_the_sweep_goes_on(folder, cluste
     assert len(after) == 6 and before.items() <= after.items()
 
 
+def test_a_local_worker_that_is_killed_is_replaced(folder):
+    slow(folder, 0.5)
+    killed: list[int] = []
+
+    def kill_one() -> bool:
+        if not killed and results_of(folder / "out"):
+            killed.append(psutil.Process().children()[0].pid)
+            os.kill(killed[0], signal.SIGKILL)
+        return False
+
+    table = run_study("study.yaml", "out", workers=2, should_stop=kill_one)
+    assert killed and not table.failed and not table.waiting
+    assert len(results_of(folder / "out")) == 6
+
+
+def test_workers_import_nothing_from_the_current_folder(folder):
+    """A stranger's folder has modules of names that workers import."""
+    (folder / "study.yaml").write_text("case: cube.yaml\nparameters: {groups.cube.velocity.0: [1]}")
+    for name in ("json", "pickle", "numpy", "multiprocessing", "sitecustomize", "cdem"):
+        (folder / f"{name}.py").write_text(f"open({str(folder / 'ran')!r}, 'w')")
+    program = [sys.executable, "-I", "-c", "from cdem.cli import main; main()"]
+    command = [*program, "sweep", "study.yaml", "--workers", "1", "-o", "out"]
+    subprocess.run(command, check=True, capture_output=True)
+    assert len(results_of(folder / "out")) == 1 and not (folder / "ran").exists()
+
+
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_a_sweep_that_is_killed_goes_on(folder, cluster, number):
     """What was finished is not repeated; no worker stays behind."""
@@ -168,6 +192,9 @@ def test_a_sweep_that_is_killed_goes_on(folder, cluster, number):
         assert child.poll() is None
         time.sleep(0.05)
     workers = psutil.Process(child.pid).children(recursive=True)
+    assert len(workers) == 2
+    for process in (psutil.Process(child.pid), *workers):  # nobody can enter
+        assert process.net_connections(kind="inet") == []
     if number == signal.SIGKILL:
         child.kill()
     else:

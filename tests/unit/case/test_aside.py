@@ -1,5 +1,7 @@
 """Readers in a process of their own: what they give, and what is said when they die or hang."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -7,11 +9,12 @@ from cdem.case import aside
 from cdem.errors import CaseError, MeshError
 
 READER = """
-import os, re
+import os, re, time
 import numpy as np
 from cdem.case import aside
 from cdem.errors import MeshError
-aside.LEAST_SECONDS = 0.2
+from cdem.case import input_file
+input_file.LEAST_SECONDS = 0.2
 
 def act(path, asked):
     text = path.read_text()
@@ -19,6 +22,13 @@ def act(path, asked):
         os.abort()
     if text == "hang":  # in compiled code, where Python cannot end it
         re.match("(a+)+$", "a" * 60 + "b")
+    if text == "loop":
+        while True:
+            pass
+    if text == "wait":  # as on a busy machine: no processor time is taken
+        time.sleep(2)
+    if text == "ask":
+        return {"told": np.array(aside.ask({"size": 3}))}
     if text == "leave":
         os._exit(0)
     if text == "refuse":
@@ -36,9 +46,10 @@ if __name__ == "__main__":
 
 @pytest.fixture
 def ask(tmp_path, monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    (tmp_path / "modules").mkdir()
+    (tmp_path / "modules/reader_of_a_test.py").write_text(READER)
+    monkeypatch.syspath_prepend(str(tmp_path / "modules"))
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "reader_of_a_test.py").write_text(READER)
 
     def ask(text, **more):
         path = tmp_path / "a.bin"
@@ -51,14 +62,41 @@ def ask(tmp_path, monkeypatch):
 def test_arrays_come_back(ask):
     assert np.array_equal(ask("abc")["read"], [97, 98, 99])
     assert np.array_equal(ask("tell", asked=[1.5, 2])["told"], [1.5, 2])
+    assert ask("ask", reply=lambda question: [question["size"], 4])["told"].tolist() == [3, 4]
+    assert ask("wait").keys() == {"read"}
+
+
+def test_what_the_answer_raises_passes(ask):
+    def refuse(question):
+        raise CaseError("not this part")
+
+    with pytest.raises(CaseError, match="not this part"):
+        ask("ask", reply=refuse)
+
+
+def test_wall_time_is_a_last_resort_and_is_told(ask, monkeypatch):
+    monkeypatch.setattr(aside, "START", 0.0)
+    monkeypatch.setattr(aside, "PATIENCE", 0.1)
+    with pytest.raises(MeshError, match=r"no answer in 0 s; is the machine or the disk busy\?"):
+        ask("wait")
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("die", "a.bin: reading it ends its reader; mend it"),
-        ("leave", "a.bin: reading it ends its reader; mend it"),
-        ("hang", "a.bin: reading it does not come to an end; mend it"),
+        (
+            "die",
+            "a.bin: its reader died (SIGABRT), as it does on damaged files and for want of memory; mend it",
+        ),
+        ("leave", "a.bin: its reader ended without a word (status 0); mend it"),
+        (
+            "hang",
+            "a.bin: reading it takes more than 4 s of processor time, as no sound file of its size does; mend it",
+        ),
+        (
+            "loop",
+            "a.bin: reading it takes more than 0.2 s of processor time, as no sound file of its size does; mend it",
+        ),
         ("refuse", "a.bin: is not good"),
         ("raise", "a.bin: cannot be read (bad bytes); mend it"),
     ],
@@ -69,3 +107,16 @@ def test_what_goes_wrong_is_one_message(ask, text, message):
     assert str(caught.value) == message
     with pytest.raises(CaseError):
         ask(text, kind=CaseError)
+
+
+def test_nothing_is_imported_from_the_current_folder(ask, tmp_path):
+    """A stranger's folder has modules of names that readers import."""
+    for name in ("json", "numpy", "h5py", "reader_of_a_test", "sitecustomize", "usercustomize"):
+        (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
+    for folder in ("", ".", str(tmp_path)):
+        sys.path.insert(0, folder)
+        try:
+            assert ask("abc").keys() == {"read"}
+        finally:
+            sys.path.remove(folder)
+    assert not (tmp_path / "ran").exists()

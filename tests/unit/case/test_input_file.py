@@ -1,6 +1,8 @@
 """The boundary around readers: whatever a library does becomes one error, in time."""
 
 import contextlib
+import ctypes
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -8,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cdem.case.input_file import _time_limited, _TooLong, read_text, reading
+from cdem.case.input_file import _time_limited, _TooLong, read_text, reading, too_long
 from cdem.errors import CaseError, MeshError
 
 
@@ -60,6 +62,39 @@ def test_a_reader_that_never_ends_is_ended():
             with contextlib.suppress(Exception):  # as libraries do
                 Path("none").read_text()
     assert time.perf_counter() - began < 5
+
+
+def test_processor_time_counts_not_that_of_a_clock_on_the_wall(tmp_path):
+    """On a busy machine a sound file takes long."""
+    with _time_limited(0.2):
+        time.sleep(0.6)
+    assert too_long(0).startswith("reading it takes more than 4 s of processor time")
+
+
+def test_a_read_leaves_nothing_behind_that_slows_python_down(monkeypatch):
+    """Where the limit was not reached nothing is raised in the thread, not even nothing."""
+    raised = []
+    monkeypatch.setattr(ctypes.pythonapi, "PyThreadState_SetAsyncExc", lambda *a: raised.append(a))
+    with _time_limited(10):
+        pass
+    assert raised == []
+
+
+def test_a_read_under_the_profiler_ends(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("x")
+    script = tmp_path / "read.py"
+    script.write_text(
+        "from pathlib import Path\nfrom cdem.errors import CaseError\n"
+        "from cdem.case.input_file import reading\n"
+        f"path = Path({str(path)!r})\n"
+        "for _ in range(5):\n"
+        "    with reading(path, CaseError, 'mend'):\n        path.read_text()\n"
+        "print(sum(range(1000)))\n"
+    )
+    command = [sys.executable, "-m", "cProfile", str(script)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.startswith("499500")
 
 
 def test_nothing_is_raised_after_the_end():

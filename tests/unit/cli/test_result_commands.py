@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from http.server import ThreadingHTTPServer
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -29,14 +30,24 @@ def test_the_address_is_told_and_opened_where_there_is_a_screen(run_cli, results
         raise KeyboardInterrupt
 
     opened = []
+
+    def open_browser(address):
+        """Other users see what the browser is called with, but cannot read that file."""
+        path = Path(urlsplit(address).path)
+        assert "http" not in address and path.stat().st_mode & 0o077 == 0
+        assert path.parent.stat().st_mode & 0o077 == 0
+        opened.append((path, path.read_text()))
+
     monkeypatch.setattr(ThreadingHTTPServer, "serve_forever", interrupted)
-    monkeypatch.setattr(result_commands.webbrowser, "open", opened.append)
+    monkeypatch.setattr(result_commands.webbrowser, "open", open_browser)
     for screen, options, found in (("", [], 0), (":0", [], 1), (":0", ["--no-browser"], 1)):
         monkeypatch.setenv("DISPLAY", screen)
         monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
         status, out, err = run_cli("view", str(results), *options)
         assert (status, err, len(opened)) == (0, "", found)
         assert out.startswith("http://127.0.0.1:") and "Ctrl-C" in out
+        if found:
+            assert not opened[0][0].exists() and "url=http://127.0.0.1:" in opened[0][1]
 
 
 def test_other_folders_are_one_line(run_cli, tmp_path):

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import http.client
 import json
+import socket
+import threading
+import time
 from urllib.parse import urlsplit
 
 import pytest
@@ -12,6 +16,7 @@ from shared.served import served
 
 import cdem
 from cdem.errors import CdemError
+from cdem.output import view
 from cdem.output.view import HERE, ViewServer
 from cdem.output.web_page import RunPage
 
@@ -76,3 +81,37 @@ def test_only_what_is_new_is_sent(server, folder):
 def test_a_port_in_use_is_one_line(server, folder):
     with pytest.raises(CdemError, match=r"port \d+: Address already in use; name another"):
         ViewServer(folder, server.server_port)
+
+
+def raw(server, request: bytes) -> bytes:
+    """What is answered to these bytes."""
+    with socket.create_connection((HERE, server.server_port), timeout=10) as connection:
+        connection.sendall(request)
+        return connection.recv(1000)
+
+
+def test_an_address_that_is_none_is_answered_in_silence(server, capfd):
+    assert b" 400 " in raw(server, b"GET http://[::1/x HTTP/1.1\r\nHost: a\r\n\r\n")
+    raw(server, b"\xff\x00 GET\r\n\r\n")
+    assert capfd.readouterr().err == ""
+
+
+def test_connections_that_stay_open_keep_few_threads_and_not_for_long(server, monkeypatch):
+    """300 of them ask for nothing, or for a letter now and then."""
+    monkeypatch.setattr(view, "PATIENCE", 1.0)
+    before = threading.active_count()
+    there = [socket.create_connection((HERE, server.server_port)) for _ in range(300)]
+    try:
+        time.sleep(0.5)
+        assert threading.active_count() <= before + 2 * view.MOST_THREADS
+        began = time.monotonic()
+        while time.monotonic() < began + 5 and threading.active_count() > before:
+            for connection in there:
+                with contextlib.suppress(OSError):
+                    connection.send(b"G")
+            time.sleep(0.1)
+        assert threading.active_count() <= before
+        assert ask(server, urlsplit(server.address).path)[0] == 200
+    finally:
+        for connection in there:
+            connection.close()

@@ -7,6 +7,7 @@ from functools import partial
 import pytest
 from shared.cases import STUDY, SWEPT
 
+from cdem.study.dask_workers import DaskWorkers
 from cdem.study.results_table import check_results
 from cdem.study.run import Run
 from cdem.study.study import Study
@@ -47,7 +48,7 @@ class Scheduler:
 def test_a_result_that_was_lost_with_its_worker_is_waited_for(folder):
     run = Run("a", "a", {}, {})
     study = Study(case="cube.yaml", parameters={"groups.cube.velocity.0": [0]})
-    execution = _Execution(partial(check_results, study), {"a": [run]}, Scheduler())
+    execution = _Execution(partial(check_results, study), {"a": [run]}, DaskWorkers(Scheduler()))
     execution.submit(threads=1)
     for _ in range(4):
         assert execution.going

@@ -87,5 +87,5 @@ def test_files_that_are_no_shapes_are_refused(tmp_path):
     with pytest.raises(CaseError, match=r"o\.gpkg: cannot be read \(.*; lines and polygons"):
         read_features(tmp_path / "o.gpkg")
     (tmp_path / "o.shp").write_text("<OGRVRTDataSource></OGRVRTDataSource>")
-    with pytest.raises(CaseError, match=r"is a link to other files \(VRT\)"):
+    with pytest.raises(CaseError, match=r"does not begin as a file that ends in \.shp does"):
         read_features(tmp_path / "o.shp")

@@ -89,6 +89,37 @@ def test_heights_of_other_units_become_metres(tmp_path, unit, factor):
         heights(path)
 
 
+FEET = "EPSG:6529"  # a state plane in US survey feet
+
+
+def test_heights_of_a_projection_in_feet_are_asked_for(tmp_path):
+    """Nobody says whether they are feet too: it makes a slope of 30 deg one of 62 deg."""
+    foot = 1200 / 3937
+    place = rasterio.transform.from_origin(1.7e6, 1.7e6 + 161 * 20, 20, 20)
+    ground = 6000 + np.tan(np.radians(30)) * 20 * np.arange(161) * np.ones((161, 1))
+    shape = {"width": 161, "height": 161, "count": 1, "dtype": "float64", "transform": place}
+    for name, crs, values in (
+        ("plan", FEET, ground),
+        ("feet", f"{FEET}+6360", ground),
+        ("metres", f"{FEET}+5703", ground * foot),
+    ):
+        with rasterio.open(tmp_path / f"{name}.tif", "w", driver="GTiff", crs=crs, **shape) as file:
+            file.write(values, 1)
+    low = np.array([1.7e6 + 500, 1.7e6 + 500])
+    ring = Projection(look_up("EPSG:32613")).bring(
+        tmp_path, FEET, None, np.array([low, low + 1500, low + [1500, 0], low + [0, 1500]])
+    )
+    box = ring.min(axis=0), ring.max(axis=0)
+    with pytest.raises(CaseError, match=r"plan\.tif: its projection is in US survey foot, and it"):
+        heights(tmp_path / "plan.tif", "EPSG:32613", box)
+    with pytest.raises(CaseError, match="does not say in what its heights are; write 'unit'"):
+        heights(tmp_path / "plan.tif", "EPSG:32613", box, told=FEET)
+    for name, unit in (("plan", "us-ft"), ("feet", None), ("metres", None)):
+        grid, _ = heights(tmp_path / f"{name}.tif", "EPSG:32613", box, unit=unit)
+        slope = np.hypot(*np.gradient(grid.values, *grid.step[::-1]))
+        assert np.degrees(np.arctan(np.median(slope))) == pytest.approx(30, abs=0.05)
+
+
 def test_heights_above_sea_and_ellipsoid_are_not_mixed(tmp_path):
     low = write_raster(tmp_path / "dem.tif", label="EPSG:25832+5783")
     high = write_raster(tmp_path / "bed.tif", label="EPSG:4979", crs="EPSG:4326")
@@ -143,3 +174,28 @@ def test_projections_are_what_geodesy_says():
     assert 1 + stretch(ring, look_up("EPSG:3857")) == pytest.approx(
         1 / np.cos(np.radians(46.88)), rel=3e-3
     )
+
+
+def test_gaps_count_where_heights_are_needed_only(tmp_path):
+    """A clipped DEM in every format: none in the part that is read, though the file has some."""
+    from rasterio.shutil import copy
+
+    def clip(z):
+        z = z.copy()
+        z[:, :20] = z[:15, :] = -9999.0
+        return z
+
+    write_raster(tmp_path / "dem.tif", change=clip, nodata=-9999.0)
+    part = np.array([WEST + 500, SOUTH + 300]), np.array([WEST + 800, SOUTH + 600])
+    found = []
+    for kind, driver in (("tif", None), ("asc", "AAIGrid"), ("grd", "GSBG"), ("vrt", "VRT")):
+        path = tmp_path / f"dem.{kind}"
+        if driver:
+            copy(tmp_path / "dem.tif", path, driver=driver)
+        grid, _ = heights(path, box=part)
+        assert np.isfinite(grid.values).all(), kind
+        found.append(grid)
+    for grid in found[1:]:
+        assert grid.values.shape == found[0].values.shape
+        assert np.abs(grid.values - found[0].values).max() < 1e-3
+        assert (grid.west, grid.south) == pytest.approx((found[0].west, found[0].south))

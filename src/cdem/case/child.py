@@ -1,0 +1,33 @@
+"""Processes of Python that cdem starts: none imports anything from the current folder.
+
+The current folder may hold files of a stranger. ``python -m`` and ``python -c`` look there first, so
+a file ``json.py`` beside a case would run. ``-I`` prevents that, and drops PYTHONPATH and the folder
+of the user's own packages too; so the folders of this process are handed on without the current one.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+RUN = "import runpy; sys.argv.pop(0); runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"
+
+
+def module(name: str, *words: str) -> list[str]:
+    """Command line that runs a module with these words behind its name."""
+    return [*code(RUN), name, *words]
+
+
+def code(text: str) -> list[str]:
+    """Command line that runs some lines of Python."""
+    return [sys.executable, "-I", "-c", f"import sys; sys.path[:] = {folders()!r}\n{text}"]
+
+
+def folders() -> list[str]:
+    """Where Python looks for modules in this process, without the current folder.
+
+    The folder that holds cdem itself stays: its code runs here already.
+    """
+    here, home = Path.cwd(), Path(__file__).parents[2]
+    found = [one for one in sys.path if Path(one).is_absolute() and Path(one).resolve() != here]
+    return found if home != here else [*found, str(home)]

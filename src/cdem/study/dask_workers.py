@@ -1,0 +1,82 @@
+"""Workers of a sweep on other machines: those of a Dask scheduler that is there already."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cdem.errors import BackendError, CdemError
+from cdem.study.local_workers import DIED
+from cdem.study.worker import execute
+
+
+class DaskWorkers:
+    """The workers of a client of dask.distributed.
+
+    Args:
+        client: The client.
+    """
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+
+    @property
+    def threads(self) -> int:
+        """Threads of all workers now; at least one, so that something waits for the first worker.
+
+        Raises:
+            BackendError: The scheduler does not answer any more.
+        """
+        try:
+            if self._client.status == "running":
+                return max(sum(self._client.nthreads().values()), 1)
+        except (OSError, TimeoutError):
+            pass
+        raise BackendError(
+            "the Dask scheduler is gone; finished runs are kept: the same command goes on"
+        )
+
+    @property
+    def dashboard(self) -> str:
+        """Address of the page that shows them, or nothing."""
+        return self._client.dashboard_link or ""
+
+    def submit(self, task: dict[str, Any]) -> DaskTask:
+        """Let a worker execute a task."""
+        return DaskTask(self._client.submit(execute, task, pure=False))
+
+    def cancel(self, tasks: list[DaskTask]) -> None:
+        """Give up what is under way."""
+        self._client.cancel([task.future for task in tasks])
+
+
+class DaskTask:
+    """A task that a worker executes now or later.
+
+    Args:
+        future: Of dask.distributed.
+    """
+
+    def __init__(self, future: Any) -> None:
+        self.future = future
+
+    @property
+    def done(self) -> bool:
+        """Whether it has come to an end; lost with its worker, another one computes it again."""
+        return self.future.status not in ("pending", "lost")
+
+    def result(self) -> dict[str, Any]:
+        """What came of it.
+
+        Raises:
+            CdemError: The machine failed, not the case.
+        """
+        from distributed.scheduler import KilledWorker
+
+        try:
+            return self.future.result()
+        except CdemError:
+            raise
+        except KilledWorker:
+            raise CdemError(DIED) from None
+        except Exception as error:
+            raise CdemError(f"{type(error).__name__}: {error}") from None
