@@ -95,8 +95,8 @@ void describe_samples(NodeState& n, Stored&& stored) {
 }
 
 /// Forces of the nodes: part of `describe_state`.
-template <class Stored, class Rebuilt>
-void describe_node_forces(State& s, Stored&& stored, Rebuilt&& rebuilt) {
+template <class Stored>
+void describe_node_forces(State& s, Stored&& stored) {
   NodeState& n = s.nodes;
   stored({.name = "node.force",
           .unit = "N, N/m",
@@ -114,14 +114,13 @@ void describe_node_forces(State& s, Stored&& stored, Rebuilt&& rebuilt) {
           .meaning = "stiffness of its live bonds",
           .rows = "nodes"},
          s.node_bonds);
-  rebuilt("advance_nodes",
-          {.name = "node.damping_force",
-           .unit = "N",
-           .meaning = "damping force x y z, and a pad",
-           .rows = "nodes",
-           .numbers = 4,
-           .optional = true},
-          n.damping_force);
+  stored({.name = "node.damping_force",
+          .unit = "N",
+          .meaning = "damping force x y z, and a pad",
+          .rows = "nodes",
+          .numbers = 4,
+          .optional = true},
+         n.damping_force);
 }
 
 /// Lists of nodes: part of `describe_state`.

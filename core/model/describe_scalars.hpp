@@ -89,6 +89,10 @@ void describe_scalars(State& s, Visit&& visit) {
                    .unit = "1",
                    .meaning = "the next step stops all motion (kinetic relaxation)"},
         s.stop_due);
+  visit(ScalarInfo{.name = "damped",
+                   .unit = "1",
+                   .meaning = "the last step damped nodes: node.damping_force is of it"},
+        s.nodes.damped);
   visit(ScalarInfo{.name = "relax_damping",
                    .unit = "1/s",
                    .meaning = "mass damping that adaptive relaxation has found"},

@@ -16,7 +16,7 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
   describe_taken_out(s.nodes, stored);
   describe_water(m, s, stored, rebuilt);
   describe_samples(s.nodes, stored);
-  describe_node_forces(s, stored, rebuilt);
+  describe_node_forces(s, stored);
   describe_node_lists(s, rebuilt);
   describe_node_sums(s, rebuilt);
   for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {

@@ -43,7 +43,6 @@ inline constexpr Rebuild rebuilds[] = {
     {"update_nodal_means", Made::in_step},
     {"update_element_forces", Made::in_step},
     {"report_elements", Made::in_step},
-    {"advance_nodes", Made::in_step},
 };
 
 /// One of these functions; a name that is not in the list does not compile.
