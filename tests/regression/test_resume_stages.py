@@ -5,6 +5,7 @@ import shutil
 from functools import partial
 from pathlib import Path
 
+import h5py
 import pytest
 from ruamel.yaml import YAML
 
@@ -260,3 +261,16 @@ def test_a_run_goes_on_from_every_stage_to_the_same_bytes(name, tmp_path):
             got = runs.run("broken", resume=True)
             wrong = [n for n in runs.whole | got if runs.whole.get(n) != got.get(n)]
             assert not wrong, (stage, wrong)
+
+
+def test_a_run_that_stops_shows_where_it_is(tmp_path):
+    """Its last frame is of the moment of the stop; going on in the same process drops it."""
+    runs = StagesOf("dam", tmp_path)
+    simulation = Simulation(Case.load(runs.case), output=tmp_path / "broken", threads=1)
+    simulation.run_stage("rest")
+    left = iter([False, False, True])
+    assert simulation.run(should_stop=lambda: next(left)) == "stopped"
+    with h5py.File(tmp_path / "broken/frames.vtkhdf") as file:
+        assert file["VTKHDF/Steps/Values"][-1] == simulation.time
+    simulation.run()
+    assert content(tmp_path / "broken") == runs.whole

@@ -305,6 +305,8 @@ class Simulation(RunState):
                 return status
             if should_stop and should_stop():
                 self.checkpoint()
+                if self.results:
+                    self.results.show_stop(self)
                 return "stopped"
             if self.time >= until:
                 return "running"
