@@ -122,8 +122,8 @@ inline nb::list describe_arrays(Core& core) {
       core.model, core.state,
       [&](const ColumnInfo& info, const auto&) { infos.append(dict_of(info, "given", "")); },
       [&](const ColumnInfo& info, const auto&) { infos.append(dict_of(info, "stored", "")); },
-      [&](const char* by, const ColumnInfo& info, const auto&) {
-        infos.append(dict_of(info, "rebuilt", by));
+      [&](RebuiltBy by, const ColumnInfo& info, const auto&) {
+        infos.append(dict_of(info, "rebuilt", by.rebuild().name));
       });
   return infos;
 }

@@ -152,7 +152,7 @@ void set_curves(Core& c, const std::vector<std::vector<Real>>& times,
                 const std::vector<std::vector<Real>>& factors) {
   c.model.curve_time = times;
   c.model.curve_factor = factors;
-  set_loads_and_supports(c.model, c.state);
+  find_loads_and_supports(c.model, c.state);
 }
 
 void set_gravity(Core& c, const std::vector<Real>& g) {

@@ -8,6 +8,7 @@
 #include "core/model/describe_model.hpp"
 #include "core/model/describe_search.hpp"
 #include "core/model/describe_state.hpp"
+#include "core/model/rebuilds.hpp"
 
 namespace cdem {
 
@@ -25,7 +26,7 @@ template <class Visit>
 void describe_stored(Model& m, State& s, Visit&& visit) {
   describe(
       m, s, [](const ColumnInfo&, const auto&) {}, visit,
-      [](const char*, const ColumnInfo&, const auto&) {});
+      [](RebuiltBy, const ColumnInfo&, const auto&) {});
 }
 
 /// Call visit(info, column) for the arrays of the state that the core rebuilds from the others.
@@ -33,7 +34,7 @@ template <class Visit>
 void describe_rebuilt(Model& m, State& s, Visit&& visit) {
   const auto skip = [](const ColumnInfo&, const auto&) {};
   describe(m, s, skip, skip,
-           [&](const char*, const ColumnInfo& info, auto& column) { visit(info, column); });
+           [&](RebuiltBy, const ColumnInfo& info, auto& column) { visit(info, column); });
 }
 
 }  // namespace cdem

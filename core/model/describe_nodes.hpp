@@ -95,23 +95,32 @@ void describe_samples(NodeState& n, Stored&& stored) {
 }
 
 /// Forces of the nodes: part of `describe_state`.
-template <class Rebuilt>
-void describe_node_forces(NodeState& n, Rebuilt&& rebuilt) {
-  rebuilt("advance_nodes",
-          {.name = "node.force",
-           .unit = "N, N/m",
-           .meaning = "force x y z, stiffness of its contacts",
-           .rows = "nodes",
-           .numbers = 4},
-          n.force);
-  rebuilt("advance_nodes",
-          {.name = "node.damping_force",
-           .unit = "N",
-           .meaning = "damping force x y z, and a pad",
-           .rows = "nodes",
-           .numbers = 4,
-           .optional = true},
-          n.damping_force);
+template <class Stored>
+void describe_node_forces(State& s, Stored&& stored) {
+  NodeState& n = s.nodes;
+  stored({.name = "node.force",
+          .unit = "N, N/m",
+          .meaning = "force x y z, stiffness of its contacts",
+          .rows = "nodes",
+          .numbers = 4},
+         n.force);
+  stored({.name = "node.contact_stiffness",
+          .unit = "N/m",
+          .meaning = "stiffness that contacts may put on it before the next rebuild",
+          .rows = "nodes"},
+         s.node_potential);
+  stored({.name = "node.bond_stiffness",
+          .unit = "N/m",
+          .meaning = "stiffness of its live bonds",
+          .rows = "nodes"},
+         s.node_bonds);
+  stored({.name = "node.damping_force",
+          .unit = "N",
+          .meaning = "damping force x y z, and a pad",
+          .rows = "nodes",
+          .numbers = 4,
+          .optional = true},
+         n.damping_force);
 }
 
 /// Lists of nodes: part of `describe_state`.
@@ -173,22 +182,10 @@ void describe_node_sums(State& s, Rebuilt&& rebuilt) {
            .rows = "nodes",
            .optional = true},
           n.lumped);
-  rebuilt("sum_stiffness",
-          {.name = "node.contact_stiffness",
-           .unit = "N/m",
-           .meaning = "stiffness that contacts may put on it before the next rebuild",
-           .rows = "nodes"},
-          s.node_potential);
-  rebuilt("sum_stiffness",
-          {.name = "node.bond_stiffness",
-           .unit = "N/m",
-           .meaning = "stiffness of its live bonds",
-           .rows = "nodes"},
-          s.node_bonds);
-  rebuilt("set_loads_and_supports",
+  rebuilt("find_loads_and_supports",
           {.name = "curve.load_factor", .meaning = "factor in this step", .rows = "curves"},
           s.load_factor);
-  rebuilt("set_loads_and_supports",
+  rebuilt("find_loads_and_supports",
           {.name = "curve.velocity_factor",
            .meaning = "factor in the middle of the coming step",
            .rows = "curves"},

@@ -49,6 +49,8 @@ void describe_ledger(State& s, Visit&& visit) {
 template <class Visit>
 void describe_scalars(State& s, Visit&& visit) {
   visit(ScalarInfo{.name = "time", .unit = "s", .meaning = "simulated time"}, s.time);
+  visit(ScalarInfo{.name = "loads_time", .unit = "s", .meaning = "time that loads and supports have"},
+        s.loads_time);
   visit(ScalarInfo{.name = "dt", .unit = "s", .meaning = "length of the coming step"}, s.dt);
   visit(ScalarInfo{.name = "dt_last", .unit = "s", .meaning = "length of the last step"},
         s.dt_last);
@@ -87,6 +89,10 @@ void describe_scalars(State& s, Visit&& visit) {
                    .unit = "1",
                    .meaning = "the next step stops all motion (kinetic relaxation)"},
         s.stop_due);
+  visit(ScalarInfo{.name = "damped",
+                   .unit = "1",
+                   .meaning = "the last step damped nodes: node.damping_force is of it"},
+        s.nodes.damped);
   visit(ScalarInfo{.name = "relax_damping",
                    .unit = "1/s",
                    .meaning = "mass damping that adaptive relaxation has found"},

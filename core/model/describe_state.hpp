@@ -16,7 +16,7 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
   describe_taken_out(s.nodes, stored);
   describe_water(m, s, stored, rebuilt);
   describe_samples(s.nodes, stored);
-  describe_node_forces(s.nodes, rebuilt);
+  describe_node_forces(s, stored);
   describe_node_lists(s, rebuilt);
   describe_node_sums(s, rebuilt);
   for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {
@@ -33,13 +33,12 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
            .rows = "tile_rows",
            .numbers = 4},
           s.tile_force);
-  rebuilt("update_bond_forces",
-          {.name = "corner.force",
-           .unit = "N",
-           .meaning = "force of a pair or a bolt on a node, and a pad",
-           .rows = "corner_rows",
-           .numbers = 4},
-          s.corner_force);
+  stored({.name = "corner.force",
+          .unit = "N",
+          .meaning = "force of a pair or a bolt on a node, and a pad",
+          .rows = "corner_rows",
+          .numbers = 4},
+         s.corner_force);
   rebuilt("release_bonds",
           {.name = "overlaps.released",
            .meaning = "overlaps whose contacts are still to be found in the step",

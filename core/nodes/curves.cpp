@@ -33,10 +33,15 @@ void evaluate_at(const Model& m, Real time, std::vector<Real>& known, Column<Rea
 
 }  // namespace
 
+void find_loads_and_supports(const Model& m, State& s) {
+  evaluate_at(m, s.loads_time, s.known_load_factor, s.load_factor);
+  s.relief.part = s.relief.at(s.loads_time);
+  evaluate_at(m, s.loads_time + 0.5 * s.dt, s.known_velocity_factor, s.velocity_factor);
+}
+
 void set_loads_and_supports(const Model& m, State& s) {
-  evaluate_at(m, s.time, s.known_load_factor, s.load_factor);
-  s.relief.part = s.relief.at(s.time);
-  evaluate_at(m, s.time + 0.5 * s.dt, s.known_velocity_factor, s.velocity_factor);
+  s.loads_time = s.time;
+  find_loads_and_supports(m, s);
 }
 
 }  // namespace cdem

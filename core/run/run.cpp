@@ -1,39 +1,67 @@
 // run.cpp - see run.hpp.
 #include "core/run/run.hpp"
 
+#include <iterator>
+
 #include "core/contact/broad_phase/predicted_motion.hpp"
-#include "core/contact/force/stiffness_bound.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/nodal_mean.hpp"
+#include "core/model/rebuilds.hpp"
 #include "core/nodes/corner_lists.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/nodes.hpp"
+#include "core/nodes/sleep.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/step.hpp"
 
 namespace cdem {
 
+namespace {
+
+struct AfterResume {
+  RebuiltBy name;
+  void (*rebuild)(const Model&, State&);
+};
+
+/// In the order of `rebuilds`.
+constexpr AfterResume after_resume[] = {
+    {"list_nodal_means", list_nodal_means},
+    {"find_loads_and_supports", find_loads_and_supports},
+    {"list_exposed", list_exposed},
+    {"list_corners", list_corners},
+    {"list_lumped", list_lumped},
+    {"place_predicted_nodes", place_predicted_nodes},
+    {"find_awake", find_awake},
+};
+
+consteval bool is_complete() {
+  std::size_t next = 0;
+  for (std::size_t place = 0; place < std::size(rebuilds); ++place) {
+    if (rebuilds[place].made != Made::after_resume) continue;
+    if (next == std::size(after_resume) || after_resume[next++].name.place != place) return false;
+  }
+  return next == std::size(after_resume);
+}
+static_assert(is_complete(), "prepare() calls all functions of Made::after_resume, in their order");
+
+}  // namespace
+
 void prepare(const Model& m, State& s) {
-  list_nodal_means(m, s);
-  set_loads_and_supports(m, s);
   if (s.built_step < 0) {
+    list_nodal_means(m, s);
+    find_loads_and_supports(m, s);
     rebuild_pair_list(m, s, {.everything_awake = true});
     s.dt_last = s.dt;
     return;
   }
-  // restored: rebuild the arrays that follow from the stored ones
   const std::size_t exposed = s.search.exposed_face.size();
   s.face_geometry.resize(8 * exposed);
   s.contact_force.resize(16 * exposed);
-  list_exposed(m, s);
-  sum_stiffness(m, s);
-  list_corners(m, s);
-  list_lumped(m, s);
-  place_predicted_nodes(m, s);
+  for (const AfterResume& one : after_resume) one.rebuild(m, s);
 }
 
 namespace {

@@ -340,6 +340,8 @@ def _fixed_at_the_start(trial: CaseParts, stage: Stage, path: str, value: Any) -
 
 def _fixed_material(trial: CaseParts, stage: Stage, group: str, material: Any) -> str:
     """Why a stage cannot give a group this material, or "": it fills it, and the law is the same."""
+    if not isinstance(material, str):
+        return ""  # which the schema refuses
     was = trial.groups[group].material if group in trial.groups else material
     laws = {trial.materials[name].law for name in (was, material) if name in trial.materials}
     if group in stage.add and len(laws) == 1:

@@ -225,7 +225,7 @@ def choice(made: list[type[Part]], laws: dict[str, Law]) -> Any:
 
     def law_of(value: Any) -> str:
         name = value.get("law", first) if isinstance(value, dict) else getattr(value, "law", first)
-        return name if name in laws else first
+        return name if isinstance(name, str) and name in laws else first
 
     tagged = tuple(Annotated[model, Tag(name)] for model, name in zip(made, laws, strict=True))
     return Annotated[Union[tagged], Discriminator(law_of)]  # noqa: UP007

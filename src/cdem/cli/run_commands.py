@@ -111,7 +111,7 @@ def _run(
         except UnstableError:
             write_report(folder)  # it shows where
             raise
-    if status != "stopped" and not _is_reported(folder):
+    if not _is_reported(folder):
         from cdem.run.progress import busy
 
         with busy("writing report.html", silent=silent):

@@ -47,7 +47,7 @@ def face_pressures(
         build: A model with water.
         position: Of its nodes [m], shape (nodes, 3).
     """
-    arrays, now = build.arrays, build.core.rebuilt()
+    arrays, now = build.arrays, build.core.fields()
     rows = now["water.fields_now"].reshape(-1, 8)
     for kind, corners in (("triangles", 3), ("quads", 4)):
         count = build.assembly.counts[f"wet_{kind}.count"]

@@ -222,7 +222,7 @@ def pore_pressure_of(sim: RunState) -> NDArray[np.float64]:
     if sim.case.water is None:
         return np.zeros(len(group_of(sim)))
     arrays, at = sim.build.arrays, sim.motion[:, :3]
-    rows = sim.core.rebuilt()["water.fields_now"].reshape(-1, 8)[arrays["water.node_field"]]
+    rows = sim.core.fields()["water.fields_now"].reshape(-1, 8)[arrays["water.node_field"]]
     pressure = rows[:, 5] * (
         rows[:, 0] + (rows[:, 1:4] * at).sum(axis=1) + rows[:, 4] * arrays["water.node_kept"]
     )

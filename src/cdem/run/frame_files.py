@@ -95,6 +95,17 @@ class _Series:
         if self._listed != len(self._frames):
             self._write_list()
 
+    def drop_last(self) -> None:
+        """Remove the last frame, and list the others."""
+        last = self._frames.pop()
+        self._write_list()
+        frame_path(self.folder, last.number).unlink(missing_ok=True)
+
+    @property
+    def last_time(self) -> float | None:
+        """Time of the last frame [s], or None."""
+        return self._frames[-1].time if self._frames else None
+
     def _add(self, number: int, time: float, counts: tuple[int, ...], own: dict[str, Any]) -> None:
         """Write a frame and, if it is due, the list."""
         frame = _Frame(number, time, counts)

@@ -14,7 +14,7 @@ from cdem._native import digests
 from cdem._version import __version__
 from cdem.errors import CdemError
 from cdem.run.flow_recorder import PREFIX
-from cdem.run.state import Attributes, RunState
+from cdem.run.state import Attributes, RunState, StageState
 
 
 def check_model(
@@ -74,6 +74,8 @@ def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:
 def wrong_stage(attributes: Attributes) -> str:
     """What is wrong with the stage that a run has come to, or ""."""
     index, stages = attributes.stage_index, attributes.case.get("stages", [])
+    if not isinstance(stages, list) or not all(isinstance(s, dict) and "name" in s for s in stages):
+        return "its case has no stages"
     if index + (attributes.stage is not None) > len(stages):
         return "it is in a stage that the case does not have"
     begun = attributes.stage is not None or attributes.ended_stage is not None
@@ -82,6 +84,59 @@ def wrong_stage(attributes: Attributes) -> str:
     for place, kept in ((index, attributes.stage), (index - 1, attributes.ended_stage)):
         if kept is not None and (place < 0 or kept.name != stages[place]["name"]):
             return f"its stage {kept.name!r} is not that of the case"
+    return ""
+
+
+MOST_STEPS = 2**53
+"""More steps than any run does."""
+RANGES = {"node.out": 1, "bolts.phase": 3, "triangles.status": 2, "quads.status": 2,
+          "overlaps.status": 2}  # fmt: skip
+"""Highest number of arrays that tell states apart; the lowest is 0."""
+
+
+def wrong_numbers(run: RunState, attributes: Attributes) -> str:
+    """What is wrong with the numbers that a checkpoint keeps besides arrays, or ""."""
+    core, own = attributes.core, run.core.scalars()
+    for name, number in core.items():
+        whole = isinstance(own[name], int)
+        if whole != isinstance(number, int) or not np.isfinite(float(number)):
+            return f"{name} is {number}"
+        if whole and not -1 <= number <= MOST_STEPS:
+            return f"{name} is {number}"
+    if not (core["dt"] > 0 and core["time"] >= 0 and core["step"] >= max(core["built_step"], 0)):
+        return "its time, step or number of steps cannot be"
+    begun = attributes.stage_index + (attributes.stage is not None)
+    if attributes.rows > core["step"] + 2 * begun + 1 or attributes.frames > attributes.rows:
+        return f"it counts {attributes.rows} rows and {attributes.frames} frames"
+    if len(attributes.finished_stages) != attributes.stage_index:
+        return "it does not tell of the stages that have ended"
+    return next(filter(None, (_wrong_time(attributes, s) for s in _stages(attributes))), "")
+
+
+def _stages(attributes: Attributes) -> list[StageState]:
+    return [s for s in (attributes.stage, attributes.ended_stage) if s is not None]
+
+
+def _wrong_time(attributes: Attributes, stage: StageState) -> str:
+    """What cannot be of a stage that has begun, or ""."""
+    core, end = attributes.core, stage.end_time
+    times = [stage.start_time, stage.row_every, stage.held, 0.0 if end is None else end]
+    sound = np.isfinite(times).all() and stage.row_every > 0
+    sound = sound and 0 <= stage.start_step <= core["step"] and stage.start_time <= core["time"]
+    sound = sound and 0 <= stage.rows <= MOST_STEPS and 0 <= stage.parts <= MOST_STEPS
+    sound = sound and (end is None) == (stage.mode == "static")
+    return "" if sound else f"its stage {stage.name!r} has times or counts that cannot be"
+
+
+def wrong_state(arrays: Mapping[str, NDArray]) -> str:
+    """Name and fault of an array of which a value cannot be, or ""."""
+    for name, most in RANGES.items():
+        values = arrays[name]
+        if len(values) and (values.min() < 0 or values.max() > most):
+            return f"{name} holds other numbers than 0 to {most}"
+    for name in ("node.motion", "node.force", "corner.force"):
+        if not np.isfinite(arrays[name]).all():
+            return f"{name} holds numbers that are not finite"
     return ""
 
 

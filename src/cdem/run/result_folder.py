@@ -86,6 +86,7 @@ class Results:
             self._lock.take()
         self._new = not (overwrite or resume)
         self.frames = 0
+        self._shows_stop = False
         self.notes: list[str] = []
         self.tracks: list[tuple[str, Any]] = []
         self._history: HistoryFile
@@ -175,6 +176,7 @@ class Results:
 
     def record(self, sim: RunState, frame: bool) -> None:
         """Write a history row, and a frame of the fields with it if asked."""
+        self._drop_stop()
         e = sim.energies
         broken = sim.broken
         row = [sim.time, sim.step_count]
@@ -184,6 +186,23 @@ class Results:
         self._history.append(row)
         if frame and self._volume is not None and self._surface is not None:
             self._record_frame(sim, self._volume, self._surface)
+
+    def show_stop(self, sim: RunState) -> None:
+        """Write a frame of a run that stops, behind its checkpoint: one that goes on drops it."""
+        if self._volume is None or self._surface is None or self._volume.last_time == sim.time:
+            return
+        self._record_frame(sim, self._volume, self._surface)
+        for series in self._series():
+            series.sync()
+        self._shows_stop = True
+
+    def _drop_stop(self) -> None:
+        """Remove the frame of `show_stop`."""
+        if self._shows_stop:
+            for series in self._series():
+                series.drop_last()
+            self.frames -= 1
+            self._shows_stop = False
 
     def _record_frame(self, sim: RunState, volume: FrameFiles, surface: SurfaceFiles) -> None:
         wanted = wanted_fields(sim.case)
@@ -202,6 +221,7 @@ class Results:
 
     def checkpoint(self, sim: RunState) -> None:
         """Write the checkpoint, once all that it counts on is on the disk."""
+        self._drop_stop()
         self._history.sync()
         for series in self._series():
             series.sync()

@@ -305,6 +305,8 @@ class Simulation(RunState):
                 return status
             if should_stop and should_stop():
                 self.checkpoint()
+                if self.results:
+                    self.results.show_stop(self)
                 return "stopped"
             if self.time >= until:
                 return "running"
@@ -427,8 +429,15 @@ class Simulation(RunState):
         assert self.results is not None
         path, arrays, attributes = self.results.read_checkpoint()
         restored.check_model(self, path, arrays, attributes, force=force)
+        if fault := restored.wrong_stage(attributes) or restored.wrong_numbers(self, attributes):
+            raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")
         begun = attributes.stage_index + (attributes.stage is not None)
-        changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
+        try:
+            changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
+        except (TypeError, ValueError, KeyError, AttributeError) as error:
+            raise CdemError(
+                f"{path}: is damaged (its case is none); run the case again with --overwrite"
+            ) from error
         self.results.notes += changes.check(self.case, force=force)
         self._restore_core(path, arrays, attributes)
         self.overlap = attributes.overlap
@@ -451,7 +460,7 @@ class Simulation(RunState):
         self.build.born = own.get("simulation.born", self.build.born)
         fault = f"{wrong[0]} has another shape" if wrong else ""
         fault = fault or restored.wrong_type(self.core, arrays)
-        fault = fault or restored.wrong_stage(attributes)
+        fault = fault or restored.wrong_state(arrays)
         fault = fault or (self.flow.restore(followed) if self.flow else "")
         if not fault:
             self.core.restore(arrays, attributes.core)

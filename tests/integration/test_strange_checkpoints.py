@@ -1,0 +1,79 @@
+"""Checkpoints with a right checksum whose numbers cannot be are refused in one line."""
+
+import json
+import math
+
+import pytest
+from shared.cases import FALL
+
+from cdem import Case, CdemError, Simulation
+from cdem.run.checkpoint import read_checkpoint, write_checkpoint
+
+
+def core(**numbers):
+    return lambda kept: kept["core"].update(numbers)
+
+
+def stage(**values):
+    return lambda kept: kept["ended_stage"].update(values)
+
+
+CHANGES = {
+    "steps": core(step=2**70),
+    "steps of a float": core(step=1.5),
+    "negative steps": core(step=-1),
+    "time": core(time=math.nan),
+    "step": core(dt=0.0),
+    "infinite step": core(dt=math.inf),
+    "flag": core(stop_due=7.5),
+    "frames": lambda kept: kept.update(frames=10**6),
+    "rows": lambda kept: kept.update(rows=10**12, frames=10**12),
+    "no stages": lambda kept: kept["case"].update(stages=None),
+    "stages that are none": lambda kept: kept["case"].update(stages=[None]),
+    "no ended stage": lambda kept: kept.update(finished_stages=[]),
+    "index": lambda kept: kept.update(stage_index=10**9),
+    "end": stage(end_time=math.nan),
+    "rows of a stage": stage(row_every=0.0),
+    "start": stage(start_step=10**9),
+}
+
+
+@pytest.fixture
+def results(tmp_path):
+    """The folder of a run that has ended."""
+    (tmp_path / "case.yaml").write_text(FALL)
+    Simulation(Case.load(tmp_path / "case.yaml"), output=tmp_path / "out", threads=1).run()
+    return tmp_path / "out"
+
+
+def resume(folder):
+    return Simulation(Case.load(folder.parent / "case.yaml"), output=folder, resume=True, threads=1)
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_numbers_that_cannot_be_are_refused(results, what):
+    """Steps, times, counts and stages out of any range: one line that says so."""
+    arrays, text = read_checkpoint(results / "checkpoint.h5")
+    kept = json.loads(text)
+    CHANGES[what](kept)
+    for _ in range(2):  # so that the one before is of the same kind
+        write_checkpoint(results, arrays, json.dumps(kept))
+    with pytest.raises(CdemError, match="is damaged") as error:
+        resume(results)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("node.motion", math.nan), ("triangles.status", 9), ("node.body", 10**6), ("node.body", -7)],
+)
+def test_arrays_that_cannot_be_are_refused(results, name, value):
+    """States and indices out of range, and motion that is no number, never reach the core."""
+    arrays, text = read_checkpoint(results / "checkpoint.h5")
+    if not len(arrays[name]):
+        pytest.skip("the model has none")
+    arrays[name][0] = value
+    for _ in range(2):
+        write_checkpoint(results, arrays, text.decode())
+    with pytest.raises(CdemError, match="is damaged"):
+        resume(results)

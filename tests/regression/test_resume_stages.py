@@ -1,0 +1,276 @@
+"""A run that is stopped at the end or in the middle of any stage goes on to the same bytes."""
+
+import json
+import shutil
+from functools import partial
+from pathlib import Path
+
+import h5py
+import pytest
+from ruamel.yaml import YAML
+
+from cdem import Case, Simulation
+
+ROCK = {"density": 2600, "young_modulus": "2 GPa", "poisson_ratio": 0.2}
+DOWN = [0, 0, -9.81]
+
+
+def box(group, size, at=(0, 0, 0), **more):
+    """A box of a group."""
+    return {"group": group, "box": {"size": list(size), **more}, "translate": list(at)}
+
+
+def held(low, high, axes):
+    """A support of all nodes in a box."""
+    return {"box": {"min": list(low), "max": list(high)}, "fix": axes}
+
+
+def on_ground(blocks, stages, **more):
+    """Blocks of group `block` on held ground."""
+    return {
+        "cdem": 2,
+        "model": {"blocks": blocks},
+        "materials": {"r": dict(ROCK)},
+        "groups": {"ground": {"material": "r", "fix": ["x", "y", "z"]}, "block": {"material": "r"}},
+        "interfaces": {
+            "default": {"friction_angle": 35},
+            "pairs": [{"between": ["ground", "block"], "name": "base", "friction_angle": 20}],
+        },
+        "loads": {"gravity": DOWN},
+        "output": {"every": 0.02},
+        "stages": stages,
+    } | more
+
+
+def dynamic(name, duration=0.06, **more):
+    return {"name": name, "mode": "dynamic", "duration": duration} | more
+
+
+def static(name, steps=250, **more):
+    return {"name": name, "mode": "static", "tolerance": 1e-3, "max_steps": steps} | more
+
+
+def dam():
+    """Water that rises while a static stage runs, and the load of a curve."""
+    case = on_ground(
+        [box("ground", [6, 6, 1], [0, 0, -1], divisions=[2, 2, 1]),
+         box("block", [2, 2, 3], [2, 2, 0], divisions=[2, 2, 2], shape="tet4")],
+        [static("rest"), dynamic("fill"), static("stand", set={"interfaces.base.friction_angle": 40})],
+        water={
+            "fields": [{"name": "up", "interface": "base", "formula": "9810*3*max(0,1-(x-2)/2)",
+                        "history": [[0, 0], [0.05, 1]]}],
+            "reservoir": {"box": {"min": [-1, -1, -1], "max": [2.01, 9, 9]},
+                          "level": [[0, 0], [0.05, 3]]},
+        },
+    )  # fmt: skip
+    case["loads"]["tractions"] = [
+        {"surface": {"group": "block", "normal": [0, 0, 1]}, "traction": [2000, 0, 0],
+         "history": [[0, 0], [0.03, 1], [0.05, 0.2]]}
+    ]  # fmt: skip
+    return case
+
+
+def bolted():
+    """Bolts that come and go."""
+    bolt = {"plate": True, "points": [[2.6, 2.1, 3], [2.9, 2.1, 0.6]], "type": "b"}
+    return on_ground(
+        [box("ground", [6, 4, 2], divisions=[3, 2, 1], shape="tet4"),
+         box("block", [2, 2, 1], [2, 1, 2], divisions=[2, 2, 1], shape="tet4")],
+        [static("rest"), dynamic("hold"), dynamic("go")],
+        bolt_types={
+            "a": {"area": "900 mm2", "compressive_force": 0, "yield_force": "1.4 MN",
+                  "young_modulus": "195 GPa",
+                  "grout": {"stiffness": "110 MN/m2", "strength": "0.3 MN/m"}},
+            "b": {"area": "491 mm2", "dowel": True, "rupture_strain": 0.1, "yield_force": "30 kN",
+                  "young_modulus": "200 GPa",
+                  "grout": {"stiffness": "110 MN/m2", "strength": "0.05 MN/m"}},
+        },
+        bolts=[
+            bolt | {"name": "p", "remove": "go"},
+            {"name": "q", "install": "hold", "free_length": "1.2 m", "plate": True, "type": "a",
+             "points": [[3.3, 1.7, 3], [3.0, 1.7, 0.5]], "pretension": "20 kN"},
+        ],
+        histories=[{"bolt": "q", "name": "q", "quantities": ["axial_force", "slip", "plate_force"]}],
+        loads={"gravity": [6, 0, -7.5]},
+    )  # fmt: skip
+
+
+def dug(stages):
+    """A tunnel in rock under stress, with a joint."""
+    around = [[x, 0, z] for x in (-4, 0, 4) for z in (-4, 0, 4) if (x, z) != (0, 0)]
+    return {
+        "cdem": 2,
+        "model": {
+            "blocks": [box("tunnel", [4, 2, 4], divisions=[2, 1, 2])]
+            + [box("rock", [4, 2, 4], at) for at in around],
+            "joints": [{"dip": 60, "dip_direction": 90, "group": "rock", "name": "e",
+                        "origin": [3.6, 0, 4], "spacing": 4}],
+        },
+        "materials": {"r": dict(ROCK), "concrete": {**ROCK, "young_modulus": "5 GPa"}},
+        "groups": {"rock": {"material": "r"}, "tunnel": {"material": "r"}},
+        "initial_stress": [{"k0": [0.4, 0.5], "surface": "58 m", "vertical": "overburden"}],
+        "interfaces": {
+            "default": {"cohesion": "5 MPa", "friction_angle": 45, "tensile_strength": "3 MPa"},
+            "pairs": [{"friction_angle": 25, "joint": "e", "name": "e"}],
+        },
+        "loads": {"gravity": DOWN, "supports": [
+            held([-5, -1, -4.001], [9, 3, -3.999], ["z"]),
+            held([-4.001, -1, -5], [-3.999, 3, 9], ["x"]),
+            held([7.999, -1, -5], [8.001, 3, 9], ["x"]),
+            held([-5, -0.001, -5], [9, 0.001, 9], ["y"]),
+            held([-5, 1.999, -5], [9, 2.001, 9], ["y"])]},
+        "output": {"every": 0.02},
+        "stages": stages,
+    }  # fmt: skip
+
+
+def tunnel():
+    """What is dug out lets go in parts, over time, and at once."""
+    return dug([
+        static("in"),
+        static("dig", remove=["tunnel"], release={"parts": 2, "to": 0.5}, reset_displacement=True),
+        dynamic("open", release={"over": 0.03}),
+        static("last", release={"to": 1}),
+    ])  # fmt: skip
+
+
+def blown():
+    """What is dug out lets go at once while the rock moves."""
+    return dug([static("in"), dynamic("dig", 0.02, remove=["tunnel"]), dynamic("on", 0.02)])
+
+
+def lining():
+    """A lining that comes in while the rock still bears a part."""
+    return dug([
+        static("in"),
+        static("dig", remove=["tunnel"], release={"to": 0.5}),
+        static("line", add=["tunnel"], set={"groups.tunnel.material": "concrete"}),
+        static("load", release={"to": 1}),
+    ])  # fmt: skip
+
+
+def soft():
+    """Bonds that soften and break, loose blocks that leave the domain, maps of the flow."""
+    case = on_ground(
+        [box("ground", [6, 4, 1], [0, 0, -1], divisions=[3, 2, 1]),
+         box("block", [1, 2, 2], [4.2, 1, 0.05], divisions=[1, 2, 2], shape="tet4")],
+        [static("rest", 60), dynamic("slide", 0.3), dynamic("fall", 0.3)],
+        loads={"gravity": [9, 0, -6]},
+        output={"every": 0.05, "maps": {"cell": "0.5 m"}},
+    )  # fmt: skip
+    case["model"]["split"] = {"block": "elements"}
+    case["model"]["domain"] = {"min": [-1, -1, -3], "max": [6, 5, 5]}
+    case["groups"]["block"]["velocity"] = [6, 0, 0]
+    case["interfaces"]["pairs"].append(
+        {"between": ["block", "block"], "friction_angle": 30, "cohesion": "20 kPa",
+         "tensile_strength": "5 kPa", "law": "softening", "fracture_energy_1": 5,
+         "fracture_energy_2": 20}
+    )  # fmt: skip
+    return case
+
+
+def yielding():
+    """Rock that flows, with nodal means, pressed into the ground."""
+    case = on_ground(
+        [box("ground", [4, 4, 1], [0, 0, -1], divisions=[2, 2, 1]),
+         box("block", [2, 2, 2], [1, 1, 0], divisions=[2, 2, 2], shape="tet4")],
+        [static("rest"), dynamic("press", 0.04), static("stand", 200)],
+    )  # fmt: skip
+    case["materials"]["soil"] = {"density": 2000, "young_modulus": "50 MPa", "poisson_ratio": 0.3,
+                                 "law": "mohr-coulomb", "friction_angle": 20,
+                                 "cohesion": "5 kPa"}  # fmt: skip
+    case["groups"]["block"] = {"material": "soil"}
+    case["loads"]["tractions"] = [
+        {"surface": {"group": "block", "normal": [0, 0, 1]}, "traction": [0, 0, "-20 kPa"]}
+    ]
+    return case
+
+
+SCENES = {f.__name__: f for f in (dam, bolted, tunnel, blown, lining, soft, yielding)}
+FREE = {"wall_time", "version", "host", "date"}
+"""Values that differ between two runs."""
+
+
+def strip(value):
+    """A nest of dicts and lists without values that differ between two runs."""
+    if isinstance(value, dict):
+        return {k: strip(v) for k, v in value.items() if k not in FREE}
+    return [strip(v) for v in value] if isinstance(value, list) else value
+
+
+def content(folder: Path) -> dict[str, object]:
+    """All that a run has left but its log, and its checkpoints, which keep wall times."""
+    found: dict[str, object] = {}
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder).as_posix()
+        if path.is_dir() or name in ("run.log",) or name.startswith((".", "checkpoint")):
+            continue
+        found[name] = path.read_bytes()
+    found["summary.json"] = strip(json.loads((folder / "summary.json").read_text()))
+    return found
+
+
+class StagesOf:
+    """An unbroken run of a scene, and copies of its folder at the stops of another."""
+
+    def __init__(self, name: str, place: Path) -> None:
+        self.place = place
+        YAML().dump(SCENES[name](), place / "case.yaml")
+        self.case = place / "case.yaml"
+        self.whole = self.run("whole")
+        summary = self.whole["summary.json"]
+        self.stages = [(stage["name"], stage["steps"]) for stage in summary["stages"]]
+
+    def run(self, folder: str, **how) -> dict[str, object]:
+        """Run to the end; what it left."""
+        Simulation(Case.load(self.case), output=self.place / folder, threads=1, **how).run()
+        return content(self.place / folder)
+
+    def stop_at_end(self, stage: str) -> None:
+        """Leave the folder that a kill behind the end of a stage leaves."""
+        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
+        simulation.run_stage(stage)
+        simulation.close()
+
+    def stop_within(self, stage: str, steps: int) -> None:
+        """Leave the folder that a kill leaves some time after a checkpoint within a stage."""
+        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
+        before = [name for name, _ in self.stages][: [n for n, _ in self.stages].index(stage)]
+        if before:
+            simulation.run_stage(before[-1])
+        stopped_at = simulation.step_count + steps // 2
+        with pytest.MonkeyPatch.context() as patch:  # the loop comes back after few steps
+            patch.setattr("cdem.run.simulation.CHUNK_SECONDS", 0.0)
+            simulation.run(should_stop=lambda: simulation.step_count >= stopped_at)
+        simulation.close()
+
+
+SLOW = ("tunnel", "lining", "soft")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in SCENES]
+)
+def test_a_run_goes_on_from_every_stage_to_the_same_bytes(name, tmp_path):
+    """Frames, histories, maps and summary are those of the unbroken run: killed at any stage's end."""
+    runs = StagesOf(name, tmp_path)
+    for stage, steps in runs.stages:
+        for stop in (partial(runs.stop_at_end, stage), partial(runs.stop_within, stage, steps)):
+            shutil.rmtree(tmp_path / "broken", ignore_errors=True)
+            stop()
+            got = runs.run("broken", resume=True)
+            wrong = [n for n in runs.whole | got if runs.whole.get(n) != got.get(n)]
+            assert not wrong, (stage, wrong)
+
+
+def test_a_run_that_stops_shows_where_it_is(tmp_path):
+    """Its last frame is of the moment of the stop; going on in the same process drops it."""
+    runs = StagesOf("dam", tmp_path)
+    simulation = Simulation(Case.load(runs.case), output=tmp_path / "broken", threads=1)
+    simulation.run_stage("rest")
+    left = iter([False, False, True])
+    assert simulation.run(should_stop=lambda: next(left)) == "stopped"
+    with h5py.File(tmp_path / "broken/frames.vtkhdf") as file:
+        assert file["VTKHDF/Steps/Values"][-1] == simulation.time
+    simulation.run()
+    assert content(tmp_path / "broken") == runs.whole
