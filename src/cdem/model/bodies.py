@@ -32,13 +32,15 @@ def read_model(case: Case) -> Mesh:
     for block in model.blocks:
         body = block.polyhedron
         hulls.append(None if body is None else outward_faces(np.array(body.vertices), body.faces))
-    files = {}
+    files, notes = {}, list[str]()
     for index, joint in enumerate(model.joints):
         if joint.discs is not None and joint.discs.file is not None:
             with case.blame(f"model.joints.{index}.discs.file"):
-                files[joint.name] = read_discs(case.path_of(joint.discs.file))
+                files[joint.name] = read_discs(case.path_of(joint.discs.file), notes)
     with case.blame("model.joints"):
-        return cut_model(list(zip(pieces, hulls, strict=True)), model, files)
+        mesh = cut_model(list(zip(pieces, hulls, strict=True)), model, files)
+    mesh.notes += notes
+    return mesh
 
 
 def _block(case: Case, block: Block) -> Mesh:
