@@ -152,7 +152,7 @@ RANGES = (
         "from wind to the strength of the hardest rock", zero=True, meant=("kPa", "MPa"),
     ),
     Range(
-        "bolt area", ("bolt_types.*.area",), "m2", (1e-5, 0.1), None,
+        "bolt area", ("bolt_types.*.area",), "m2", (1e-5, 0.02), None,
         "Hoek, Kaiser & Bawden (1995): bars and strands 100 to 2000 mm2, cables to 0.01 m2",
         meant=("mm2", "cm2"),
     ),

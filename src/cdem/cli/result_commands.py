@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import difflib
 import os
 import sys
-import webbrowser
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -79,6 +77,8 @@ def render(
     from cdem.case.shown_fields import SHOWN
 
     if field not in SHOWN:
+        import difflib
+
         close = difflib.get_close_matches(field, SHOWN, n=1)
         hint = f"did you mean {close[0]}?" if close else "cdem render --help lists them"
         raise CaseError(f"no field {field!r}; {hint}")
@@ -119,6 +119,8 @@ def view(
     with ViewServer(folder, port) as server:
         print(f"{server.address}\nCtrl-C ends it", flush=True)
         if not no_browser and _has_screen():
+            import webbrowser
+
             webbrowser.open(server.address)
         with contextlib.suppress(KeyboardInterrupt):
             server.serve_forever()
