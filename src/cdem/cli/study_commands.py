@@ -81,16 +81,8 @@ def critical(
     criterion = Criterion.read(limits or [])
     print(f"a trial {criterion.text()}", file=sys.stderr)
     report = partial(_tell_trial, name, Path(f"{case_file.stem}.{name}.json"))
-    found = search.find_critical(
-        case,
-        vary,
-        ends,
-        tolerance=tolerance,
-        criterion=criterion,
-        threads=threads,
-        report=report,
-        tell=_warn,
-    )
+    find = partial(search.find_critical, tolerance=tolerance, criterion=criterion, threads=threads)
+    found = find(case, vary, ends, report=report, tell=_warn)
     _draw_failure(found, name, case_file.stem + (f".{parameter}" if parameter else ""))
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))

@@ -279,20 +279,11 @@ def _guess_columns(table: Table) -> None:
         CaseError: It cannot be told which is which.
     """
     width = len(table.rows[0])
-    values = [[bearings.sided(row[i])[0] for row in table.rows] for i in range(width)]
-    bearing = [
-        any(re.match("[NESW]", row[i], re.IGNORECASE) for row in table.rows) for i in range(width)
-    ]
-    sided = [any(bearings.sided(row[i])[1] for row in table.rows) for i in range(width)]
-    steep = [bool(np.nanmax([*column, 0]) > 90) for column in values]
     if width == 1 and bearings.pair(table.rows[0][0]):
         table.at["attitude"] = 0
-    elif width == 2 and (bearing[0] != bearing[1] or sided[0] != sided[1]):
-        dip = 1 if bearing[0] or sided[1] else 0
-        table.at |= {"dip": dip, "strike": 1 - dip}
-    elif width == 2 and steep[0] != steep[1]:
-        table.at |= {"dip": int(steep[0]), "dip_direction": int(steep[1])}
-    else:
+    elif width == 2:
+        _guess_two(table)
+    if not table.at:
         raise CaseError(
             f"{table.path}: has no line of names, and {width} columns that may be many things; name "
             f"{UNDERSTOOD} in its first line"
@@ -300,6 +291,19 @@ def _guess_columns(table: Table) -> None:
     what = {i: key.replace("_", " ") for key, i in table.at.items()}
     named = ", ".join(f"column {i + 1} is {what[i]}" for i in sorted(what))
     table.notes.append(f"no line of names: {named}")
+
+
+def _guess_two(table: Table) -> None:
+    """Which of two columns is the dip, if it can be told."""
+    columns = [[row[i] for row in table.rows] for i in range(2)]
+    bearing = [any(re.match("[NESW]", w, re.IGNORECASE) for w in words) for words in columns]
+    sided = [any(bearings.sided(word)[1] for word in words) for words in columns]
+    steep = [any(bearings.sided(word)[0] > 90 for word in words) for words in columns]
+    if bearing[0] != bearing[1] or sided[0] != sided[1]:
+        dip = 1 if bearing[0] or sided[1] else 0
+        table.at |= {"dip": dip, "strike": 1 - dip}
+    elif steep[0] != steep[1]:
+        table.at |= {"dip": int(steep[0]), "dip_direction": int(steep[1])}
 
 
 def _pairs(table: Table) -> tuple[Floats, Floats, set[str]]:
@@ -331,15 +335,8 @@ def _dipping(table: Table) -> tuple[Floats, Floats, set[str]]:
     _refuse(table, "dip", ~((dip >= 0) & (dip <= 90)), "a number from 0 to 90")
     key = "dip_direction" if "dip_direction" in table.at else "strike"
     direction = azimuths(table, key)
-    used = {"dip", key}
     sides = [side for _, side in found]
-    if "quadrant" in table.at:
-        used.add("quadrant")
-        words = _compass(table, "quadrant")
-        sides = [word.strip().upper() or side for word, side in zip(words, sides, strict=True)]
-    where = np.array([np.nan if (w := bearings.wind(s)) is None else w for s in sides])
-    unknown = np.array([bool(side) for side in sides]) & np.isnan(where)
-    _refuse(table, "quadrant" if "quadrant" in table.at else "dip", unknown, "N, NE, E, ... NW")
+    where = _sides(table, sides)
     if key == "strike":
         direction = _of_strike(table, direction, where, dip)
     elif all(bearings.wind(word) is not None for word in table.column(key)):
@@ -352,7 +349,19 @@ def _dipping(table: Table) -> tuple[Floats, Floats, set[str]]:
             f"{table.path}:{table.lines[row]}: {key.replace('_', ' ')} '{table.column(key)[row]}' "
             f"and the side '{sides[row]}' do not fit each other"
         )
+    used = {"dip", key} | ({"quadrant"} & table.at.keys())
     return dip, direction % 360 if key == "strike" else direction, used
+
+
+def _sides(table: Table, sides: list[str]) -> Floats:
+    """Where planes dip to by their quadrants [deg], NaN where none is said; ``sides`` become words."""
+    if "quadrant" in table.at:
+        words = _compass(table, "quadrant")
+        sides[:] = [word.strip().upper() or side for word, side in zip(words, sides, strict=True)]
+    where = np.array([np.nan if (w := bearings.wind(s)) is None else w for s in sides])
+    unknown = np.array([bool(side) for side in sides]) & np.isnan(where)
+    _refuse(table, "quadrant" if "quadrant" in table.at else "dip", unknown, "N, NE, E, ... NW")
+    return where
 
 
 def _of_strike(table: Table, strike: Floats, where: Floats, dip: Floats) -> Floats:

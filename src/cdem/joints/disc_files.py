@@ -46,10 +46,18 @@ def read_rows(path: Path, notes: list[str]) -> list[Row]:
     Raises:
         CaseError: It cannot be read, or a value is missing or out of range.
     """
+    polygons = None
     if path.suffix.lower() == ".fab":
-        return [_disc_like(path, k, x) for k, x in enumerate(read_polygons(path, notes), 1)]
-    if path.suffix.lower() == ".dat" and _has_braces(path):
-        return [_disc_like(path, k, x) for k, x in enumerate(read_braced_polygons(path), 1)]
+        polygons = read_polygons(path, notes)
+    elif path.suffix.lower() == ".dat" and _has_braces(path):
+        polygons = read_braced_polygons(path)
+    if polygons is not None:
+        return [_disc_like(path, k, x) for k, x in enumerate(polygons, 1)]
+    return _table_rows(path, notes)
+
+
+def _table_rows(path: Path, notes: list[str]) -> list[Row]:
+    """Discs of a table."""
     table = read_table(path, "file of discs", _is_heading)
     table.find(NAMES)
     at = table.at

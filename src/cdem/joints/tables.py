@@ -16,6 +16,10 @@ from cdem.case.input_file import read_text
 from cdem.errors import CaseError
 
 Floats = NDArray[np.float64]
+Line = tuple[int, str]  # its number in the file, its text
+Split = Callable[[str], list[str]]
+
+COMMENTS = ("#", "%", "!")
 
 MARKS = ";\t,"
 """What may part columns, besides spaces; the first that a line has counts."""
@@ -153,12 +157,21 @@ def read_table(path: Path, what: str, is_head: Callable[[list[str]], bool]) -> T
         for k, line in enumerate(text.translate(SAME).splitlines(), 1)
         if (words := unicodedata.normalize("NFKC", line).strip(" \xa0")).strip(MARKS + " ")
     ]
-    remarks = [(k, line.lstrip("#%! ")) for k, line in lines if line.startswith(("#", "%", "!"))]
-    lines = [(k, line) for k, line in lines if not line.startswith(("#", "%", "!"))]
+    remarks = [(k, line.lstrip("#%! ")) for k, line in lines if line.startswith(COMMENTS)]
+    lines = [(k, line) for k, line in lines if not line.startswith(COMMENTS)]
+    if lines:
+        split = _splitter(next((m for m in MARKS if m in lines[0][1]), None))
+        head, lines = _heading(lines, remarks, split, is_head)
     if not lines:
         raise CaseError(f"{path}: a {what} needs a line of names and rows of numbers")
-    mark = next((m for m in MARKS if m in lines[0][1]), None)
-    split = _splitter(mark)
+    rows = _rows(path, head, lines, split)
+    return Table(path, head, rows, [k for k, _ in lines], notes)
+
+
+def _heading(
+    lines: list[Line], remarks: list[Line], split: Split, is_head: Callable[[list[str]], bool]
+) -> tuple[list[str], list[Line]]:
+    """Names of the columns, and the lines below them."""
     first = split(lines[0][1])
     head: list[str] = []
     if not any(re.search(r"\d", word) for word in first) or is_head(first):
@@ -168,23 +181,25 @@ def read_table(path: Path, what: str, is_head: Callable[[list[str]], bool]) -> T
         head = next((h for h in map(split, reversed(above)) if is_head(h)), [])
     while head and not head[-1]:  # separators at the end
         head.pop()
-    width = len(head)
-    rows = []
+    return head, lines
+
+
+def _rows(path: Path, head: list[str], lines: list[Line], split: Split) -> list[list[str]]:
+    """Words of every row; separators at its end count for nothing."""
+    rows: list[list[str]] = []
     for k, line in lines:
         row = split(line)
-        width = width or len(row)
+        width = len(head) or len(rows[0] if rows else row)
         while len(row) > width and not row[-1]:
             row.pop()
         if len(row) != width:
             named = f"the first line names {width} columns" if head else f"others have {width}"
             raise CaseError(f"{path}:{k}: has {len(row)} values, but {named}")
         rows.append(row)
-    if not rows:
-        raise CaseError(f"{path}: a {what} needs a line of names and rows of numbers")
-    return Table(path, head, rows, [k for k, _ in lines], notes)
+    return rows
 
 
-def _splitter(mark: str | None) -> Callable[[str], list[str]]:
+def _splitter(mark: str | None) -> Split:
     """How lines become words."""
 
     def words(line: str) -> list[str]:

@@ -193,6 +193,13 @@ class Audit:
                     "tension and bending; raise its stiffness_n"
                 )
 
+    def _pulled(self) -> Iterator[str]:
+        for i in self._build.initial.pulled if self._build.initial else []:
+            yield (
+                f"{self._build.case.where(f'initial_stress.{i}')}: initial_stress.{i} pulls the rock in "
+                "all directions wherever it holds; tension is positive, write pressure with a minus sign"
+            )
+
     def _warnings(self) -> list[str]:
         b = self._build
         out = [*b.case.warnings, *b.mesh.notes, *crowded_edges(b.topology)]
@@ -219,11 +226,7 @@ class Audit:
                 f"of group {group}); the overlap counts as free of stress. Mend the mesh if it "
                 "should not be there"
             )
-        for i in b.initial.pulled if b.initial else []:
-            out.append(
-                f"{b.case.where(f'initial_stress.{i}')}: initial_stress.{i} pulls the rock in all "
-                "directions wherever it holds; tension is positive, write pressure with a minus sign"
-            )
+        out += self._pulled()
         if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
             out.append(
                 f"time.step {self.step['dt']:.4g} s is above the stable {self.step['limit']:.4g} s; "

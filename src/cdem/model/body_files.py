@@ -252,7 +252,7 @@ def _obj(path: Path) -> Iterator[Body]:
                 loops.append([c - 1 if c > 0 else len(points) + c for c in corners])
         except ValueError:
             raise MeshError(f"{path}:{number}: cannot be read: {line.strip()}") from None
-        if words[:1] == ["f"] and (len(loops[-1]) < 3 or not _within(loops[-1], len(points))):
+        if words[:1] == ["f"] and not _within(loops[-1], len(points)):
             raise MeshError(f"{path}:{number}: a face needs three or more vertices from above it")
     if not loops:
         raise MeshError(f"{path}: holds no faces")
@@ -263,7 +263,7 @@ def _obj(path: Path) -> Iterator[Body]:
 
 
 def _within(loop: list[int], count: int) -> bool:
-    return min(loop) >= 0 and max(loop) < count
+    return len(loop) >= 3 and min(loop) >= 0 and max(loop) < count
 
 
 def _stl(path: Path) -> Iterator[Body]:
