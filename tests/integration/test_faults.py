@@ -178,7 +178,7 @@ def test_a_wrong_field_is_answered_at_once(tmp_path):
     [
         (
             ["--help"],
-            "numpy pydantic h5py meshio scipy pyvista matplotlib pyproj ruamel webbrowser",
+            "numpy pydantic h5py meshio scipy pyvista matplotlib pyproj ruamel",
         ),
         (["check", "cube.yaml"], "meshio scipy pyvista matplotlib pyproj rasterio shapely"),
     ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import webbrowser
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -119,8 +120,6 @@ def view(
     with ViewServer(folder, port) as server:
         print(f"{server.address}\nCtrl-C ends it", flush=True)
         if not no_browser and _has_screen():
-            import webbrowser
-
             webbrowser.open(server.address)
         with contextlib.suppress(KeyboardInterrupt):
             server.serve_forever()

@@ -102,9 +102,9 @@ def dry_bonds(build: Build, bonded: set[str]) -> list[str]:
     case = build.case
     if case.water is None or not bonded or any(rock.biot for rock in case.materials.values()):
         return []
-    if not any(water.wet == "auto" for water in case.water.fields):
+    if not any("wet" not in water.model_fields_set for water in case.water.fields):  # auto, unsaid
         return []
     return [
         f"{case.where('water')}: water: no water presses in {', '.join(sorted(bonded))} until bonds "
-        "break (wet: auto); if it stands in these joints, give its fields wet: always"
+        "break (wet: auto); if it stands in these joints, write wet: always, else wet: auto"
     ]
