@@ -38,6 +38,8 @@ UNITS: dict[str, tuple[float, Dimension]] = {
 SMALLEST, LARGEST = 1e-30, 1e30  # products of what is beyond overflow
 MOST_POWER_DIGITS = 2  # of a power with its sign
 SHOWN = 60  # characters of a value that messages repeat
+_TYPESET = {ord("−"): "-", ord("‐"): "-", ord("–"): "-"} | dict.fromkeys(map(ord, "“”„‘’«»\"'"))
+"""Minus signs and quotes as word processors set them."""
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 _FACTOR = re.compile(r"([*/·.]?)\s*(1|[^\W\d]+|[%°])(?:\^?([-+]?\d+))?\s*")
 
@@ -90,6 +92,12 @@ def to_number(value: object, unit: str) -> float:
         (30000000000.0, 21.0)
     """
     if isinstance(value, str):
+        value = value.translate(_TYPESET).strip()
+        if re.match(r"[-+]?\d{1,3}(?:[ _'\u202f\u00a0]\d{3})+(?!\d)", value):
+            raise ValueError(
+                f"must be a number without marks between its digits, got {describe(value)}; write "
+                "5000000 or 5e6 for 5 000 000"
+            )
         if re.match(r"\s*[-+]?\d+,\d", value):
             raise ValueError(
                 f"must be a number without a comma, got {describe(value)}; write 2700 for 2,700 "

@@ -83,6 +83,9 @@ class Block(Part):
         description="Of a file: fill closed surfaces, convex or not, with tets up to this edge length "
         "(extra terrain); each is a block of several elements [m]",
     )
+    scale: Annotated[float, Quantity("1", above=0)] | None = Field(
+        None, description="Of a file: metres for each of its units, 0.001 for millimetres [1]"
+    )
     rotate: Rotate | None = Field(None, description="Rotation of the body")
     translate: Length3 | None = Field(None, description="Shift of the body after its rotation [m]")
 
@@ -91,6 +94,8 @@ class Block(Part):
         exactly_one(self, ("box", "polyhedron", "file"))
         if self.size is not None and self.file is None:
             raise ValueError("size is for bodies of a file; a box has divisions")
+        if self.scale is not None and self.file is None:
+            raise ValueError("scale is for bodies of a file; others are written in metres")
         return self
 
 

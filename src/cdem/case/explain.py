@@ -149,12 +149,26 @@ def _list_wanted(keys: Keys, model: type[BaseModel] | None) -> str:
     return "must be a list, e.g. " + ("[0, 0, -9.81] (x, y, z)" if 3 in lengths else "[a, b]")
 
 
+MISPLACED = {
+    "damping": "it belongs to a stage: stages: [{name: ..., mode: ..., damping: {local: 0.8}}]",
+    "gravity": "it belongs to loads: loads: {gravity: [0, 0, -9.81]}",
+    "supports": "it belongs to loads: loads: {supports: [...]}",
+    "joints": "it belongs to model: model: {joints: [...]}",
+    "blocks": "it belongs to model: model: {blocks: [...]}",
+    "mesh": "it belongs to model: model: {mesh: FILE}",
+    "duration": "it belongs to a stage: stages: [{name: ..., mode: dynamic, duration: 1}]",
+}
+"""Keys that are often written at the top of a case, and their places."""
+
+
 def unknown_key(key: str, known: Iterable[str]) -> str:
     """Say that a key is unknown, and what may be meant: that of another law, or one like it."""
     kind = BLOCK_LAWS if "density" in known else INTERFACE_LAWS
     laws = [law.name for law in kind.values() if key in {p.name for p in law.parameters}]
     if laws and "law" in known:
         return f"unknown key; it belongs to law: {' or '.join(laws)}"
+    if key in MISPLACED and "stages" in known:
+        return f"unknown key here; {MISPLACED[key]}"
     close = difflib.get_close_matches(key, known, n=1)
     if close:
         return f"unknown key; did you mean {close[0]}?"

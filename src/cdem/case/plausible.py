@@ -35,6 +35,7 @@ class Range:
         source: Where the ranges come from.
         zero: Whether 0 is usual, too.
         meant: Units that are often left out, most likely first.
+        in_mm: Numbers that it has in models of mm, t, s (so N and MPa), which are possible, too.
     """
 
     quantity: str
@@ -45,6 +46,7 @@ class Range:
     source: str
     zero: bool = False
     meant: tuple[str, ...] = ()
+    in_mm: tuple[float, float] | None = None
 
     def judge(self, value: float) -> tuple[bool, str]:
         """Whether a value is impossible, and what to say of it; nothing if it is usual.
@@ -55,12 +57,14 @@ class Range:
         size = abs(value)
         if (self.zero and size == 0) or self.usual[0] <= size <= self.usual[1]:
             return False, ""
+        in_mm = self.in_mm is not None and self.in_mm[0] <= size <= self.in_mm[1]
         impossible = self.possible is not None and not (
-            self.possible[0] <= size <= self.possible[1]
+            in_mm or self.possible[0] <= size <= self.possible[1]
         )
         low, high = (written(v, self.unit) for v in self.usual)
         said = f"{written(value, self.unit)} is {'not possible' if impossible else 'unusual'}"
-        return impossible, f"{said}; usual is {low} to {high}{self._meant(value)}"
+        units = " (is the whole model in mm, t, s?)" if in_mm else ""
+        return impossible, f"{said}; usual is {low} to {high}{units}{self._meant(value)}"
 
     def _meant(self, value: float) -> str:
         fitting = []
@@ -73,8 +77,9 @@ class Range:
 BODIES = "Jaeger, Cook & Zimmerman (2007), Fundamentals of Rock Mechanics; steel for platens"
 RANGES = (
     Range(
-        "density", ("materials.*.density",), "kg/m3", (500, 8000), (10, 23_000),
-        f"{BODIES}; possible: plastic foam to osmium", meant=("t/m3",),
+        "density", ("materials.*.density",), "kg/m3", (500, 8000), (10, 1e12),
+        f"{BODIES}; possible: plastic foam, to densities scaled for longer steps", meant=("t/m3",),
+        in_mm=(5e-10, 8e-9),
     ),
     Range(
         "Young's modulus", ("materials.*.young_modulus",), "Pa", (1e6, 1e12), (1e3, 2e12),
@@ -132,7 +137,7 @@ RANGES = (
     Range(
         "gravity", ("loads.gravity",), "m/s2", (1.6, 25), (0, 5000),
         "Moon to Jupiter; possible: geotechnical centrifuges (Taylor 1995), small ones to 500 g",
-        zero=True,
+        zero=True, in_mm=(9700, 9900),
     ),
     Range(
         "initial speed", ("groups.*.velocity",), "m/s", (0, 300), None,
@@ -145,6 +150,11 @@ RANGES = (
     Range(
         "traction", ("loads.tractions.*.traction",), "Pa", (1, 1e10), None,
         "from wind to the strength of the hardest rock", zero=True, meant=("kPa", "MPa"),
+    ),
+    Range(
+        "bolt area", ("bolt_types.*.area",), "m2", (1e-5, 0.02), None,
+        "Hoek, Kaiser & Bawden (1995): bars and strands 100 to 2000 mm2, cables to 0.01 m2",
+        meant=("mm2", "cm2"),
     ),
     Range(
         "contact damping", ("stages.*.damping.contact",), "1", (0, 2), None,

@@ -76,6 +76,14 @@ def render(
     """Draw the model as pictures or an animation."""
     if before_after and time is not None:
         raise typer.BadParameter("--time and --before-after exclude one another")
+    from cdem.case.shown_fields import SHOWN
+
+    if field not in SHOWN:
+        import difflib
+
+        close = difflib.get_close_matches(field, SHOWN, n=1)
+        hint = f"did you mean {close[0]}?" if close else "cdem render --help lists them"
+        raise CaseError(f"no field {field!r}; {hint}")
     from cdem.output import render as drawing
 
     paths = drawing.render(
@@ -211,6 +219,10 @@ def export(
 
 
 def _results(folder: Path) -> Path:
+    if folder.is_file():
+        case = folder.suffix.lower() in (".yaml", ".yml")
+        hint = f"; 'cdem check {folder}' tells of a case" if case else ""
+        raise CaseError(f"{folder}: is a file; name the result folder of a run{hint}")
     if not folder.is_dir():
         raise CaseError(f"{folder}: no such folder; name the result folder of a run")
     from cdem.run.result_folder import RESULT_FILES

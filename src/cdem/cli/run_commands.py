@@ -34,7 +34,9 @@ def run(
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
-    device: Annotated[Literal["cpu", "cuda"], typer.Option(help="Where to compute.")] = "cpu",
+    device: Annotated[
+        Literal["cpu", "cuda"], typer.Option(metavar="cpu", help="Where to compute.")
+    ] = "cpu",
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
     force: Annotated[
         bool, typer.Option("--force", help="With --resume: go on though the case has changed.")
@@ -68,8 +70,8 @@ def run(
                 output=folder,
                 overwrite=overwrite,
                 resume=resume,
-                force=force,
                 device=device,
+                force=force,
                 strict=strict,
             )
         status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)

@@ -81,14 +81,18 @@ def critical(
     criterion = Criterion.read(limits or [])
     print(f"a trial {criterion.text()}", file=sys.stderr)
     report = partial(_tell_trial, name, Path(f"{case_file.stem}.{name}.json"))
-    found = search.find_critical(
-        case, vary, ends, tolerance=tolerance, criterion=criterion, threads=threads, report=report
-    )
+    find = partial(search.find_critical, tolerance=tolerance, criterion=criterion, threads=threads)
+    found = find(case, vary, ends, report=report, tell=_warn)
     _draw_failure(found, name, case_file.stem + (f".{parameter}" if parameter else ""))
     if as_json:
         print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
     else:
         print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+
+
+def _warn(warnings: list[str]) -> None:
+    for warning in warnings:
+        print(f"warning: {warning}", file=sys.stderr)
 
 
 def _two_numbers(words: tuple[str, str]) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Joints of finite size: where discs lie, which blocks they meet, and which faces of a cut they hold."""
+"""Joints of finite size: discs that are drawn, which blocks they meet, and which faces of a cut they hold."""
 
 from __future__ import annotations
 
@@ -14,12 +14,9 @@ from cdem.case.bodies_schema import MOST_DISCS, Discs, Joint, Power, Radii
 from cdem.errors import CaseError
 from cdem.joints.convex_cells import Cells, Floats, Ints
 from cdem.joints.cutting import cut
-from cdem.joints.directions import fisher, mean_normal, pole
-from cdem.joints.fracman import read_polygons
+from cdem.joints.directions import fisher, mean_normal
+from cdem.joints.disc_files import read_rows
 from cdem.mesh.arrays import along, lengths
-
-COLUMNS = ("x", "y", "z", "dip", "dip_direction", "radius")
-"""Of a file of discs."""
 
 
 @dataclass(frozen=True)
@@ -31,48 +28,17 @@ class Disc:
     radius: float
 
 
-def read_discs(path: Path) -> list[Disc]:
-    """Read discs from a CSV file, or from the polygons of a FracMan file (`.fab`).
+def read_discs(path: Path, notes: list[str] | None = None) -> list[Disc]:
+    """Read discs from a file, as `disc_files.read_rows` does.
 
-    A polygon becomes the disc of its area about its centre.
+    Args:
+        path: The file.
+        notes: What was assumed or not used is added to it.
 
     Raises:
         CaseError: It cannot be read, or a value is missing or out of range.
     """
-    if path.suffix.lower() == ".fab":
-        return [_disc_like(path, k, x) for k, x in enumerate(read_polygons(path), 1)]
-    try:
-        rows = np.genfromtxt(path, delimiter=",", names=True, dtype=float, encoding="utf-8")
-        table = np.stack([np.atleast_1d(rows[name]) for name in COLUMNS], axis=1)
-    except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-        raise CaseError(
-            f"{path}: a file of discs needs columns {', '.join(COLUMNS)} in its first line ({error})"
-        ) from None
-    low = np.array([-np.inf, -np.inf, -np.inf, 0, 0, np.finfo(float).tiny])
-    high = np.array([np.inf, np.inf, np.inf, 90, 360, np.inf])
-    bad = np.argwhere(~(np.isfinite(table) & (table >= low) & (table <= high)))
-    if len(bad):
-        row, column = bad[0]
-        name, allowed = COLUMNS[column], ("a number", "0 to 90", "0 to 360", "above 0")
-        raise CaseError(
-            f"{path}: disc {row + 1}: {name} is {table[row, column]:g}; it must be "
-            f"{allowed[max(column - 2, 0)]}"
-        )
-    return [Disc(row[:3], pole(row[3], row[4]), float(row[5])) for row in table]
-
-
-def _disc_like(path: Path, number: int, x: Floats) -> Disc:
-    """The disc of the area, centre and plane of a polygon."""
-    a, b = x[1:-1] - x[0], x[2:] - x[0]
-    halves = np.cross(a, b) / 2
-    area = float(np.linalg.norm(halves.sum(axis=0)))
-    if area <= 1e-12 * float(np.ptp(x, axis=0).max()) ** 2:
-        raise CaseError(f"{path}: fracture {number} has no area")
-    normal = halves.sum(axis=0) / area
-    part = along(halves, normal) / area
-    center = x[0] + (part[:, None] * (a + b)).sum(axis=0) / 3
-    upward = normal if normal[2] >= 0 else -normal
-    return Disc(center, upward, math.sqrt(area / math.pi))
+    return [Disc(*row) for row in read_rows(path, [] if notes is None else notes)]
 
 
 def draw_discs(joint: Joint, discs: Discs, points: Floats) -> list[Disc]:

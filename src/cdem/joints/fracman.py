@@ -1,7 +1,8 @@
-"""Fractures of FracMan files (.fab, ASCII), which 3DEC, PFC and FLAC3D write too."""
+"""Fractures as polygons: FracMan (.fab, ASCII), which 3DEC, PFC and FLAC3D write too; dfnWorks (.dat)."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,10 +17,14 @@ Floats = NDArray[np.float64]
 METRES = ("m", "meter", "meters", "metre", "metres")
 
 
-def read_polygons(path: Path) -> list[Floats]:
+def read_polygons(path: Path, notes: list[str]) -> list[Floats]:
     """Read the fractures of a file: their corners in turn [m], each of shape (corners, 3).
 
     The normals in the file are not read: some writers put a constant there.
+
+    Args:
+        path: The file.
+        notes: Sections that are not used are added to it.
 
     Raises:
         CaseError: It is binary, not in metres, tessellated, or broken off; says where.
@@ -32,6 +37,39 @@ def read_polygons(path: Path) -> list[Floats]:
     polygons = list(_polygons(path, lines, start))
     if not polygons:
         raise CaseError(f"{path}: holds no fractures")
+    begun = [words[1] for words in lines if len(words) == 2 and words[0].upper() == "BEGIN"]
+    if idle := [name for name in begun if name.upper() not in ("FORMAT", "FRACTURE")]:
+        notes.append(f"{path.name}: sections not used: {', '.join(idle)}")
+    return polygons
+
+
+def read_braced_polygons(path: Path) -> list[Floats]:
+    """Read the polygons of a dfnWorks file: a row for each, `corners {x, y, z} {x, y, z} ...` [m].
+
+    Raises:
+        CaseError: A row is none, or there are others than the first line says; says where.
+    """
+    polygons, wanted = [], None
+    for k, words in enumerate(read_text(path, "file of polygons").splitlines(), 1):
+        if not words.strip() or words.lstrip().startswith(("#", "//")):
+            continue
+        if (head := re.fullmatch(r"\s*nPolygons:?\s*(\d+)\s*", words)) is not None:
+            wanted = int(head[1])
+            continue
+        try:
+            count = int(words.split("{")[0])
+            corners = np.array(
+                [[float(x) for x in row.split(",")] for row in re.findall(r"{([^}]*)}", words)]
+            )
+            if corners.shape != (count, 3) or count < 3 or not np.isfinite(corners).all():
+                raise ValueError
+        except ValueError:
+            raise CaseError(
+                f"{path}:{k}: a polygon is a row 'corners {{x, y, z}} {{x, y, z}} ...', three or more"
+            ) from None
+        polygons.append(corners)
+    if not polygons or wanted not in (None, len(polygons)):
+        raise CaseError(f"{path}: holds {len(polygons)} polygons, its first line says {wanted}")
     return polygons
 
 

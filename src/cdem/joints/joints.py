@@ -29,6 +29,8 @@ THINNEST_OF_ALL = 0.001
 """The same over the size of what is cut, where no set has a spacing."""
 SHORTEST = 0.1
 """Edges shorter than this part of the least thickness are closed."""
+MOST_BLOCKS = 3_000_000
+"""More blocks than this, as sets with spacings would cut them, are a slip of the spacing."""
 MOST_PLANES = 100_000
 """More planes than this in one set are a slip of the spacing."""
 
@@ -192,9 +194,32 @@ def cut_model(
         if inside.cells:
             inside.surfaces = {name: piece.surfaces.get(name, []) for name in surfaces}
             parts.append(_cells_of(inside, faces, names, model))
+    _refuse_too_many(model, parts)
     whole = merge([*rest, _cut_and_mesh(join(parts), model, names, surfaces, files or {})])
     _refuse_lost(whole, names)
     return whole
+
+
+def _refuse_too_many(model: Model, parts: list[Cells]) -> None:
+    """Stop before cutting where the sets would make more blocks than any computer holds.
+
+    Raises:
+        CaseError: They would, by the volumes between the planes of the three densest sets.
+    """
+    points = np.concatenate([c.points for c in parts]) if parts else np.zeros((1, 3))
+    counts = []
+    for joint in model.joints:
+        if joint.spacing is not None and joint.discs is None:
+            reach = along(points, mean_normal(joint))
+            counts.append((1 + joint.persistence * float(np.ptp(reach)) / joint.spacing, joint))
+    densest = sorted(counts, key=lambda pair: -pair[0])[:3]
+    blocks = float(np.prod([count for count, _ in densest]))
+    if blocks > MOST_BLOCKS:
+        said = ", ".join(f"{joint.name} {joint.spacing:g} m" for _, joint in densest)
+        raise CaseError(
+            f"these sets would cut the model into about {blocks:.2g} blocks (spacing of {said}), and "
+            f"{MOST_BLOCKS:.0e} are the most; give wider spacings, or a group that they cut"
+        )
 
 
 def _refuse_lost(whole: Mesh, names: list[str]) -> None:

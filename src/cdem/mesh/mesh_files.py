@@ -6,6 +6,7 @@ import contextlib
 import gzip
 import io
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,8 @@ BODIES = {".obj", ".stl"}
 """Those from which bodies are read."""
 MEND = "is it whole, and of the kind that its name says?"
 POLYHEDRA = " Polyhedral cells are read with model.blocks: [{group: NAME, file: FILE}]"
+GROUP_DATA = ("material", "gmsh:physical", "region", "group")
+"""Cell data that are groups where a file has no groups of its own, the first that is there."""
 UNPACKED = 100
 """A packed mesh unpacks to at most so many times its size."""
 TURNED = {
@@ -246,6 +249,41 @@ def read_raw(path: Path) -> Any:
         return meshio.read(path, file_format="ansys" if ansys else "gmsh")
 
 
+def cell_groups(data: Mapping[str, NDArray]) -> NDArray | None:
+    """Groups of cells by their data: the first of `GROUP_DATA` that has whole numbers or names.
+
+    Args:
+        data: Values of all cells, by name.
+
+    Returns:
+        A name for each cell, e.g. `material2`, or `group2` of `gmsh:physical`; None if none is there.
+    """
+    for name in GROUP_DATA:
+        values = data.get(name)
+        if values is None or values.ndim != 1:
+            continue
+        if values.dtype.kind in "US":
+            return values.astype(object)
+        if np.isfinite(values).all() and (values == np.round(values)).all():
+            stem = "group" if name == "gmsh:physical" else name
+            return np.array([f"{stem}{int(value)}" for value in values], object)
+    return None
+
+
+def _data_groups(raw: Any) -> dict[int, NDArray]:
+    """Groups by cell data, block by block; none where all cells have the same."""
+    sizes = [len(block.data) for block in raw.cells]
+    data = {
+        name: np.concatenate([np.asarray(part) for part in parts])
+        for name, parts in raw.cell_data.items()
+        if name in GROUP_DATA and all(np.ndim(part) == 1 for part in parts)
+    }
+    names = cell_groups(data)
+    if names is None or len(set(names.tolist())) < 2:
+        return {}
+    return dict(enumerate(np.split(names, np.cumsum(sizes)[:-1])))
+
+
 def _cell_groups(raw: Any) -> dict[int, NDArray]:
     """Group name of each cell, by meshio cell block; blocks without groups are left out."""
     out: dict[int, NDArray] = {}
@@ -266,4 +304,4 @@ def _cell_groups(raw: Any) -> dict[int, NDArray]:
             label = out.setdefault(index, np.full(len(raw.cells[index].data), "default", object))
             free = np.asarray(members)[label[members] == "default"]
             label[free] = name
-    return out
+    return out or _data_groups(raw)

@@ -90,18 +90,21 @@ def polyhedron(
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
         raise MeshError(f"vertex {bad} of a polyhedron is not finite: {points[bad].tolist()}")
-    triangles = _fans(outward_faces(points, faces))
+    loops = outward_faces(points, faces)
+    triangles = _fans(loops)
     if len(points) == 4:
         a, b, c, d = points
         tet = [0, 1, 2, 3] if np.linalg.det([b - a, c - a, d - a]) > 0 else [0, 2, 1, 3]
         return Mesh(points, {"tet4": np.array([tet])}, {"tet4": np.zeros(1, np.int32)}, [group])
     center = _centroid(points, triangles)
     cells = np.column_stack([triangles[:, ::-1], np.full(len(triangles), len(points))])
+    note = snapped(points, loops)
     return Mesh(
         np.vstack([points, center]),
         {"tet4": cells},
         {"tet4": np.zeros(len(cells), np.int32)},
         [group],
+        notes=[f"a polyhedron of group {group!r} is {note}"] if note else [],
     )
 
 
@@ -110,6 +113,31 @@ def _centroid(points: Floats, triangles: NDArray) -> Floats:
     a, b, c = (points[triangles[:, k]] - middle for k in range(3))
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
     return middle + (volume[:, None] * (a + b + c) / 4).sum(axis=0) / volume.sum()
+
+
+SNAPPED = 1e-4
+"""A body whose corners lie no farther outside of its faces than this part of its size is convex."""
+
+
+def bulge(points: Floats, loops: Sequence[Sequence[int]]) -> float:
+    """How far corners of a body lie outside of the planes of its outward faces, at most [m]."""
+    most = 0.0
+    for loop in loops:
+        x = points[list(loop)]
+        normal = np.cross(x[1:-1] - x[0], x[2:] - x[0]).sum(axis=0)
+        most = max(most, float(((points - x[0]) @ normal).max() / np.linalg.norm(normal)))
+    return most
+
+
+def snapped(points: Floats, loops: Sequence[Sequence[int]], near: float = 0.0) -> str:
+    """What to say of a body that is convex within `SNAPPED` only; nothing of others."""
+    off, size = bulge(points, loops), float(np.ptp(points, axis=0).max())
+    if off <= max(near, 100 * _tolerance(points)):
+        return ""
+    return (
+        f"taken as convex: corners lie up to {off:.2g} m outside of its faces, {off / size:.1g} of "
+        f"its size (up to {SNAPPED:g} is)"
+    )
 
 
 def _tolerance(points: Floats) -> float:
@@ -202,7 +230,7 @@ def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
 
 def _outward(points: Floats, faces: Sequence[Sequence[int]], near: float) -> list[list[int]]:
     """The faces that a user gave, turned outward; refused if they do not bound a convex body."""
-    near = max(near, 100 * _tolerance(points))
+    near = max(near, SNAPPED * float(np.ptp(points, axis=0).max()))
     middle = points.mean(axis=0)
     loops = []
     for number, face in enumerate(faces):

@@ -24,7 +24,8 @@ from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
 from cdem.model.meshed_strength import meshed_strengths, strength_text
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
-from cdem.model.wetted import idle_water, water_text, wetted
+from cdem.model.slips import slips
+from cdem.model.wetted import dry_bonds, idle_water, water_text, wetted
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
@@ -184,13 +185,20 @@ class Audit:
         return {name: names.count(name) for name in dict.fromkeys(names)}
 
     def _soft_interfaces(self) -> Iterator[str]:
-        for row in self.interfaces:
+        for row in self.interfaces:  # joints are meant to be soft; the table has what they add
             made_up = set(row["between"]) <= self.compensation.keys()
-            if row["compliance_percent"] > SOFT and not made_up:
+            if row["compliance_percent"] > SOFT and not made_up and not row["joint"]:
                 yield (
                     f"the interface {_place(row)} adds {row['compliance_percent']:.0f} % compliance in "
                     "tension and bending; raise its stiffness_n"
                 )
+
+    def _pulled(self) -> Iterator[str]:
+        for i in self._build.initial.pulled if self._build.initial else []:
+            yield (
+                f"{self._build.case.where(f'initial_stress.{i}')}: initial_stress.{i} pulls the rock in "
+                "all directions wherever it holds; tension is positive, write pressure with a minus sign"
+            )
 
     def _warnings(self) -> list[str]:
         b = self._build
@@ -199,8 +207,11 @@ class Audit:
         out += idle_bonds(b)
         out += uneven_tiles(b)
         out += idle_water(b, self.water)
+        out += dry_bonds(b, {row["joint"] for row in self.interfaces if row["joint"]})
+        unheld = self._unheld_blocks()
+        out += slips(b, self._threads, unheld)
         if any(s.mode == "static" for s in b.case.stages):
-            for name, count in self._unheld_blocks().items():
+            for name, count in unheld.items():
                 blocks = "1 block has" if count == 1 else f"{count:,} blocks have"
                 out.append(
                     f"group {name}: {blocks} no support, direct or through others, at the start; in "
@@ -215,11 +226,7 @@ class Audit:
                 f"of group {group}); the overlap counts as free of stress. Mend the mesh if it "
                 "should not be there"
             )
-        for i in b.initial.pulled if b.initial else []:
-            out.append(
-                f"{b.case.where(f'initial_stress.{i}')}: initial_stress.{i} pulls the rock in all "
-                "directions wherever it holds; tension is positive, write pressure with a minus sign"
-            )
+        out += self._pulled()
         if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
             out.append(
                 f"time.step {self.step['dt']:.4g} s is above the stable {self.step['limit']:.4g} s; "

@@ -14,6 +14,13 @@ from cdem.mesh.mesh_files import read_mesh
 from cdem.mesh.primitives import box, outward_faces, polyhedron
 from cdem.model.body_files import fill_bodies, read_bodies
 
+LARGER = 20
+"""Bodies of a file may be so much larger than all others without a word."""
+FAR_LARGER = 100
+"""Beyond so many times the scale has to be written."""
+LARGE = 1000.0
+"""So large may they be where there are no others [m]."""
+
 
 def read_model(case: Case) -> Mesh:
     """Read and place the mesh file and the blocks of a case, all in one mesh."""
@@ -25,6 +32,7 @@ def read_model(case: Case) -> Mesh:
     for index, block in enumerate(model.blocks):
         with case.blame(f"model.blocks.{index}"):
             pieces.append(_block(case, block))
+    _tell_sizes(case, pieces)
     if not model.joints:
         return place(merge(pieces), model.rotate, model.translate)
     pieces = [place(piece, model.rotate, model.translate) for piece in pieces]
@@ -32,20 +40,43 @@ def read_model(case: Case) -> Mesh:
     for block in model.blocks:
         body = block.polyhedron
         hulls.append(None if body is None else outward_faces(np.array(body.vertices), body.faces))
-    files = {}
+    files, notes = {}, list[str]()
     for index, joint in enumerate(model.joints):
         if joint.discs is not None and joint.discs.file is not None:
             with case.blame(f"model.joints.{index}.discs.file"):
-                files[joint.name] = read_discs(case.path_of(joint.discs.file))
+                files[joint.name] = read_discs(case.path_of(joint.discs.file), notes)
     with case.blame("model.joints"):
-        return cut_model(list(zip(pieces, hulls, strict=True)), model, files)
+        mesh = cut_model(list(zip(pieces, hulls, strict=True)), model, files)
+    mesh.notes += notes
+    return mesh
+
+
+def _tell_sizes(case: Case, pieces: list[Mesh]) -> None:
+    """Note bodies of files that are larger than is usual, if no scale is given; ask if far larger."""
+    sizes = [np.ptp(piece.points, axis=0) for piece in pieces]
+    first = len(pieces) - len(case.model.blocks)
+    for index, block in enumerate(case.model.blocks, first):
+        others = [float(s.max()) for i, s in enumerate(sizes) if i != index]
+        most = LARGER * max(others) if others else LARGE
+        if block.file is None or block.scale is not None or sizes[index].max() <= most:
+            continue
+        span = " x ".join(f"{s:,.4g}" for s in sizes[index])
+        beside = f"; the other bodies span up to {max(others):.4g} m" if others else ""
+        said = (
+            f"{block.file} spans {span} m, with its numbers taken as metres{beside}. If they are "
+            "millimetres, write scale: 0.001 beside the file (scale: 1 if not)"
+        )
+        if others and sizes[index].max() > FAR_LARGER * max(others):
+            with case.blame(f"model.blocks.{index - first}"):
+                raise CaseError(said)
+        pieces[index].notes.append(f"model.blocks.{index - first}: {said}")
 
 
 def _block(case: Case, block: Block) -> Mesh:
     if block.file is not None and block.size is not None:
-        piece = fill_bodies(case.path_of(block.file), block.group, block.size)
+        piece = fill_bodies(case.path_of(block.file), block.group, block.size, block.scale or 1)
     elif block.file is not None:
-        piece = read_bodies(case.path_of(block.file), block.group)
+        piece = read_bodies(case.path_of(block.file), block.group, block.scale or 1)
     elif block.box is not None:
         b = block.box
         piece = box(block.group, b.size, b.divisions, shape=b.shape, mirrored=case.cdem > 1)

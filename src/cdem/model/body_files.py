@@ -16,14 +16,14 @@ from cdem.joints.convex_cells import from_polyhedron, join
 from cdem.mesh.arrays import components
 from cdem.mesh.mesh import Mesh, merge
 from cdem.mesh.mesh_files import MEND, read_raw
-from cdem.mesh.primitives import outward_faces
+from cdem.mesh.primitives import outward_faces, snapped
 from cdem.model import vtk_cells
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Loops = list[list[int]]
-Body = tuple[str, Floats, Loops]  # what to call it, its corners, its faces
+Body = tuple[str, Floats, Loops, str]  # what to call it, its corners, its faces, its material
 
 SHELLS = (".obj", ".stl")
 """Endings of the formats that hold closed surfaces."""
@@ -37,24 +37,31 @@ ROUNDED = 1e-6
 """Coordinates in files are rounded to about this part of the largest: STL keeps seven digits."""
 
 
-def read_bodies(path: Path, group: str) -> Mesh:
+def read_bodies(path: Path, group: str, scale: float = 1.0) -> Mesh:
     """Read convex bodies; each becomes a block of tets around its centre.
 
     Args:
-        path: ``.obj`` or ``.stl``: every connected closed surface is a body; ``.vtu`` or ``.vtk``: every
+        path: ``.obj`` or ``.stl``: every closed surface is a body; ``.vtu`` or ``.vtk``: every
             volume cell is, polyhedra too (needs the extra ``viz``).
-        group: Group of the bodies.
+        group: Group of the bodies; where cell data tell materials apart, it begins their groups.
+        scale: Metres for each unit of the file.
 
     Raises:
         MeshError: The file cannot be read.
         BodyError: A body is open or not convex; says where.
     """
-    parts = []
-    for name, points, faces in _bodies(path):
+    parts, notes, groups = [], list[str](), list[str]()
+    for name, points, faces, kind in _bodies(path, scale):
+        own = f"{group}_{kind}" if kind else group
+        if own not in groups:
+            groups.append(own)
         try:
             _refuse_open(points, faces)
             near = ROUNDED * float(np.abs(points).max())
-            parts.append(from_polyhedron(points, outward_faces(points, faces, near), 0))
+            loops = outward_faces(points, faces, near)
+            if note := snapped(points, loops, near):
+                notes.append(f"{path.name}: {name} is {note}")
+            parts.append(from_polyhedron(points, loops, groups.index(own)))
         except MeshError as error:
             hint = (
                 "; with 'size' beside the file it is filled with tets"
@@ -65,16 +72,21 @@ def read_bodies(path: Path, group: str) -> Mesh:
             error.args = (f"{path}: {name}: {error}{hint if closed else ''}",)
             raise
     # meshed like what joints cut: bodies that share a face divide it alike
-    return to_mesh(join(parts), [group], [], [])
+    mesh = to_mesh(join(parts), groups, [], [])
+    mesh.notes += [*notes[:SHOWN], *([f"{len(notes) - SHOWN} more"] if len(notes) > SHOWN else [])]
+    if groups != [group]:
+        mesh.notes.append(f"{path.name}: groups by its cell data: {', '.join(groups)}")
+    return mesh
 
 
-def fill_bodies(path: Path, group: str, size: float) -> Mesh:
+def fill_bodies(path: Path, group: str, size: float, scale: float = 1.0) -> Mesh:
     """Read closed surfaces, convex or not, and fill each with tets.
 
     Args:
-        path: ``.obj`` or ``.stl``: every connected closed surface is a body.
+        path: ``.obj`` or ``.stl``: every closed surface is a body.
         group: Group of the bodies.
         size: Largest edge of the tets inside [m]; the triangles of the surface stay as they are.
+        scale: Metres for each unit of the file.
 
     Raises:
         MeshError: The file cannot be read, or a surface crosses itself.
@@ -86,7 +98,7 @@ def fill_bodies(path: Path, group: str, size: float) -> Mesh:
     if path.suffix.lower() not in SHELLS:
         raise MeshError(f"{path}: size is for surfaces, {' and '.join(SHELLS)}")
     meshes = []
-    for name, points, faces in _bodies(path):
+    for name, points, faces, _ in _bodies(path, scale):
         try:
             _refuse_open(points, faces)
             shell = _outward([(f[0], a, b) for f in faces for a, b in pairwise(f[1:])], points)
@@ -134,8 +146,8 @@ def _outward(triangles: list[tuple[int, int, int]], points: Floats) -> Ints:
     return faces if _volume(points[faces]) > 0 else faces[:, ::-1]
 
 
-def _bodies(path: Path) -> list[Body]:
-    """All bodies of a file."""
+def _bodies(path: Path, scale: float) -> list[Body]:
+    """All bodies of a file, in metres."""
     if not is_file(path):
         raise MeshError(f"{path}: no such file; give a path relative to the case file")
     kind = path.suffix.lower()
@@ -149,7 +161,7 @@ def _bodies(path: Path) -> list[Body]:
             bodies = list(readers[kind](path))
     if not bodies:
         raise MeshError(f"{path}: holds no bodies")
-    return bodies
+    return [(name, points * scale, faces, kind) for name, points, faces, kind in bodies]
 
 
 def _refuse_open(points: Floats, faces: Loops) -> None:
@@ -175,8 +187,15 @@ def _refuse_open(points: Floats, faces: Loops) -> None:
     )
 
 
-def _surfaces(points: Floats, loops: Loops) -> Iterator[Body]:
-    """Bodies of a surface: its parts that hang together at points of the same place."""
+def _surfaces(points: Floats, loops: Loops, parts: list[str] | None = None) -> Iterator[Body]:
+    """Bodies of a surface: each run of faces that closes, within what hangs together.
+
+    Args:
+        points: Corners [m]; those of the same place are one.
+        loops: Faces, in the order of the file: objects, groups and solids stand there one by one, so
+            bodies that share a face, an edge or a corner close one after the other.
+        parts: Name of the object or solid of each face, if the file has any.
+    """
     points, same = np.unique(points, axis=0, return_inverse=True)
     same = same.reshape(-1)
     loops = [[int(same[v]) for v in loop] for loop in loops]
@@ -185,42 +204,66 @@ def _surfaces(points: Floats, loops: Loops) -> Iterator[Body]:
     of_loop = label[[loop[0] for loop in loops]]
     order = np.argsort(of_loop, kind="stable")
     starts = np.flatnonzero(np.r_[True, np.diff(of_loop[order]) != 0])
-    for number, some in enumerate(np.split(order, starts[1:])):
-        yield _own(f"body {number}", points, [loops[i] for i in some])
+    number = 0
+    for some in np.split(order, starts[1:]):
+        for run in _runs(loops, some.tolist()):
+            named = {parts[i] for i in run} - {""} if parts else set()
+            name = f"body {number}" + (f" ({named.pop()})" if len(named) == 1 else "")
+            yield _own(name, points, [loops[i] for i in run])
+            number += 1
 
 
-def _own(name: str, points: Floats, loops: Loops) -> Body:
+def _runs(loops: Loops, some: list[int]) -> Iterator[list[int]]:
+    """Parts of connected faces that close one after the other; an open rest makes all of them one."""
+    runs: list[list[int]] = [[]]
+    odd: set[tuple[int, int]] = set()
+    for i in some:
+        runs[-1].append(i)
+        for a, b in zip(loops[i], loops[i][1:] + loops[i][:1], strict=True):
+            odd ^= {(min(a, b), max(a, b))}
+        if not odd:
+            runs.append([])
+    if odd:
+        yield some
+    else:
+        yield from runs[:-1]
+
+
+def _own(name: str, points: Floats, loops: Loops, kind: str = "") -> Body:
     """A body with corners of its own, numbered from 0."""
     used = np.unique(np.concatenate(loops))
     faces = [np.searchsorted(used, loop).tolist() for loop in loops]
-    return name, points[used], faces
+    return name, points[used], faces, kind
 
 
 def _obj(path: Path) -> Iterator[Body]:
-    points, loops = [], []
+    points, loops, parts, part = [], [], [], ""
     text = path.read_text(encoding="utf-8", errors="replace")
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.split()
         try:
             if words[:1] == ["v"]:
                 points.append([float(x) for x in words[1:4]])
+            elif words[:1] in (["o"], ["g"]):
+                part = " ".join(words[1:])
             elif words[:1] == ["f"]:
+                parts.append(part)
                 corners = [int(word.split("/")[0]) for word in words[1:]]
                 loops.append([c - 1 if c > 0 else len(points) + c for c in corners])
         except ValueError:
             raise MeshError(f"{path}:{number}: cannot be read: {line.strip()}") from None
-        if words[:1] == ["f"] and (len(loops[-1]) < 3 or not _within(loops[-1], len(points))):
+        if words[:1] == ["f"] and not _within(loops[-1], len(points)):
             raise MeshError(f"{path}:{number}: a face needs three or more vertices from above it")
     if not loops:
         raise MeshError(f"{path}: holds no faces")
     array = np.array(points)
     if array.ndim != 2 or array.shape[1] != 3:
         raise MeshError(f"{path}: vertices need three coordinates")
-    yield from _surfaces(array, loops)
+    yield from _surfaces(array, loops, parts)
 
 
 def _within(loop: list[int], count: int) -> bool:
-    return min(loop) >= 0 and max(loop) < count
+    return len(loop) >= 3 and min(loop) >= 0 and max(loop) < count
 
 
 def _stl(path: Path) -> Iterator[Body]:
@@ -232,5 +275,5 @@ def _stl(path: Path) -> Iterator[Body]:
 
 
 def _vtk(path: Path) -> Iterator[Body]:
-    for name, points, faces in vtk_cells.cells(path):
-        yield _own(name, points, faces)
+    for name, points, faces, kind in vtk_cells.cells(path):
+        yield _own(name, points, faces, kind)

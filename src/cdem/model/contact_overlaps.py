@@ -39,13 +39,14 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
             continue
         own = INTERFACE_LAWS[law.law]
         stiffness = np.array([k for _, pair in sides for k in pair])
-        weight = impact = 0.0
+        weight = impact = by_speed = 0.0
         speed = greatest_speed(case, law)
         for rock, (low, _) in sides:
             modulus, soft = rock["young_modulus"], rock["young_modulus"] / (low * rock["height"])
             ratio = rock["density"] / modulus
             weight = max(weight, 2 * ratio * math.hypot(*case.loads.gravity) * height * soft)
-            impact = max(impact, speed * math.sqrt(2 * ratio * soft))
+            by_speed = max(by_speed, math.sqrt(2 * ratio * soft))
+            impact = speed * by_speed
         rows.append(
             {
                 "interface": name_of(law),
@@ -54,6 +55,7 @@ def contact_interfaces(build: Build) -> list[dict[str, Any]]:
                 "overlap_under_weight": float(weight),
                 "speed": speed,
                 "overlap_at_speed": float(impact),
+                "overlap_by_speed": float(by_speed),
                 "restitution": min(law.coefficients()),
                 "curve_end": native.interface_curve_end(
                     law.law, own.numbers(law), float(stiffness.max())

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from cdem.case import aside
 from cdem.case.input_file import refuse_entities
 from cdem.errors import MeshError
-from cdem.mesh.mesh_files import MEND
+from cdem.mesh.mesh_files import MEND, cell_groups
 
 
-def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]]]]:
-    """Every volume cell of a file: what to call it, the points of the file [m], its faces.
+def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]], str]]:
+    """Every volume cell: what to call it, the points of the file, its faces, its material.
+
+    The material is empty where the file has one only, else e.g. `material2`, after its cell data.
 
     Raises:
         MeshError: The file cannot be read, or pyvista is missing.
@@ -27,8 +29,9 @@ def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]
         raise MeshError(f"{path}: a cell has less than four faces, or corners that are not there")
     loops = [loop.tolist() for loop in np.split(corners, np.cumsum(sizes)[:-1])]
     ends = np.cumsum(read["faces"])
-    for number, first, end in zip(read["numbers"], ends - read["faces"], ends, strict=True):
-        yield f"cell {number}", points, loops[first:end]
+    rows = zip(read["numbers"], ends - read["faces"], ends, read["kinds"].tolist(), strict=True)
+    for number, first, end, kind in rows:
+        yield f"cell {number}", points, loops[first:end], kind
 
 
 def _cells(path: Path) -> aside.Arrays:
@@ -43,12 +46,18 @@ def _cells(path: Path) -> aside.Arrays:
         cell = grid.get_cell(number)
         if cell.dimension == 3:
             loops = [list(face.point_ids) for face in cell.faces]
+            if cell.type == pyvista.CellType.VOXEL:  # its faces number corners row by row
+                loops = [[a, b, d, c] for a, b, c, d in loops]
             numbers.append(number)
             faces.append(len(loops))
             sizes += [len(loop) for loop in loops]
             corners += [v for loop in loops for v in loop]
+    kinds = cell_groups({name: np.asarray(grid.cell_data[name]) for name in grid.cell_data})
+    of_cell = np.full(len(numbers), "") if kinds is None else kinds[numbers].astype(str)
+    if len(set(of_cell.tolist())) < 2:
+        of_cell = np.full(len(numbers), "")
     whole = {"sizes": sizes, "corners": corners, "faces": faces, "numbers": numbers}
-    return {"points": np.asarray(grid.points, float)} | {
+    return {"points": np.asarray(grid.points, float), "kinds": of_cell} | {
         name: np.array(part, np.int64) for name, part in whole.items()
     }
 

@@ -90,3 +90,21 @@ def idle_water(build: Build, water: dict[str, Any] | None) -> list[str]:
         f"{build.case.where('water')}: water presses nowhere at the start: no rock has pores (biot), and "
         "no joint or face is wet; look at levels, and at wet of the fields"
     ]
+
+
+def dry_bonds(build: Build, bonded: set[str]) -> list[str]:
+    """A warning where water lies at joints that hold by bonds, which let none in until they break.
+
+    Args:
+        build: The model.
+        bonded: Names of the sets of joints that hold by bonds.
+    """
+    case = build.case
+    if case.water is None or not bonded or any(rock.biot for rock in case.materials.values()):
+        return []
+    if not any("wet" not in water.model_fields_set for water in case.water.fields):  # auto, unsaid
+        return []
+    return [
+        f"{case.where('water')}: water: no water presses in {', '.join(sorted(bonded))} until bonds "
+        "break (wet: auto); if it stands in these joints, write wet: always, else wet: auto"
+    ]

@@ -1,7 +1,7 @@
 """Frames of a moving surface as few bytes: what report.html holds and what `cdem view` sends.
 
 A pack is the length of a header in JSON (four bytes), the header, and arrays one after the other;
-all of it compressed by gzip. The page's own unpack.js reads it.
+all of it compressed by gzip. `unpack` of the page's run.js reads it.
 
 - Positions are whole numbers in the box of the frames. A frame holds the second difference in time,
   of that the difference from node to node, folded so that small ones are small numbers (zigzag), low

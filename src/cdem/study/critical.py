@@ -86,6 +86,8 @@ WIDEST = 100.0
 
 Report = Callable[["Critical"], None]
 """Takes the search so far: its last trial is the newest, its bracket nan where there is none yet."""
+Tell = Callable[[list[str]], None]
+"""Takes the warnings of a model."""
 
 
 @dataclass(frozen=True)
@@ -159,6 +161,7 @@ def find_critical(
     criterion: Criterion | None = None,
     threads: int | None = None,
     report: Report | None = None,
+    tell: Tell | None = None,
 ) -> Critical:
     """Bisect between a value at which a case rests and one at which it fails.
 
@@ -178,6 +181,7 @@ def find_critical(
         criterion: What counts as failed; by default that of `Criterion`.
         threads: Threads of the core; None for all.
         report: Called after every trial.
+        tell: Called once with the warnings of the model.
 
     Raises:
         CaseError: The last stage is not static, or both ends rest or fail.
@@ -187,7 +191,7 @@ def find_critical(
         raise CaseError(f"tolerance {tolerance}: must be above zero")
     criterion = criterion or Criterion()
     cold = isinstance(apply, _OneValue) and apply.makes_a_model
-    search = (_Cold if cold else _Warm)(case, apply, criterion, threads)
+    search = (_Cold if cold else _Warm)(case, apply, criterion, threads, tell or (lambda _: None))
     found = Critical(np.nan, np.nan, criterion)
     step = partial(_attempt, search, found, report)
     if between:
@@ -236,9 +240,17 @@ def _widen(step: Callable[[float], Trial]) -> None:
 class _Warm:
     """Trials of one model, each from the state of the last stable one."""
 
-    def __init__(self, case: Case, apply: Apply, criterion: Criterion, threads: int | None) -> None:
+    def __init__(
+        self,
+        case: Case,
+        apply: Apply,
+        criterion: Criterion,
+        threads: int | None,
+        tell: Tell,
+    ) -> None:
         self.apply, self.criterion = apply, criterion
         self.sim = Simulation(case, threads=threads)
+        tell(self.sim.audit.warnings)
         while self.sim.stage_index < len(case.stages) - 1:
             self.sim.run_stage(case.stages[self.sim.stage_index].name)
         self.start = self.at_rest = _keep(self.sim)
@@ -261,8 +273,16 @@ class _Warm:
 class _Cold:
     """Trials that each build their own model."""
 
-    def __init__(self, case: Case, apply: Apply, criterion: Criterion, threads: int | None) -> None:
+    def __init__(
+        self,
+        case: Case,
+        apply: Apply,
+        criterion: Criterion,
+        threads: int | None,
+        tell: Tell,
+    ) -> None:
         self.case, self.apply, self.criterion, self.threads = case, apply, criterion, threads
+        self.tell: Tell | None = tell
 
     def begin_bisection(self) -> None:
         """Nothing to do: no state is carried over."""
@@ -271,6 +291,9 @@ class _Cold:
         case = self.case.model_copy(deep=True)
         self.apply(case, value)
         sim = self.sim = Simulation(case, threads=self.threads)
+        if self.tell:  # of the first trial; others differ by a value only
+            self.tell(sim.audit.warnings)
+            self.tell = None
         verdict = Verdict(True, "at rest", "")
         for index, stage in enumerate(case.stages):
             if stage.mode == "static":

@@ -142,3 +142,18 @@ def test_a_number_far_beyond_all_units_is_answered_too(tmp_path):
     """1e22 GPa would be more than a number of a case may be."""
     with pytest.raises(CaseError, match=r"young_modulus: 1e\+13 GPa is not possible; usual is"):
         load(tmp_path, "materials.rock.young_modulus=1e22")
+
+
+@pytest.mark.parametrize(
+    "quantity, value, told",
+    [
+        ("density", 1e5, "100000 kg/m3 is unusual"),
+        ("density", 2.7e7, "2.7e+07 kg/m3 is unusual"),
+        ("density", 2.7e-9, "(is the whole model in mm, t, s?)"),
+        ("gravity", 9810, "(is the whole model in mm, t, s?)"),
+        ("Young's modulus", 1e4, "10 kPa is unusual"),
+    ],
+)
+def test_scaled_densities_and_models_in_mm_are_warned_of(quantity, value, told):
+    impossible, said = range_of(quantity).judge(value)
+    assert not impossible and told in said

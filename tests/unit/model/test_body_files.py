@@ -47,11 +47,65 @@ def test_obj(tmp_path):
     assert len(t.pair_faces) == 0
 
 
-def test_surfaces_that_share_corners_are_one_body(tmp_path):
-    # two cubes side by side share a wall: its edges have four faces, and that is said
-    write_obj(tmp_path / "a.obj", *cubes(2))
+def test_solids_that_share_a_face_are_bodies_of_their_own(tmp_path):
+    points, faces = cubes(3)
+    write_obj(tmp_path / "a.obj", points, faces)
+    made = read_bodies(tmp_path / "a.obj", "rock")
+    t = build_topology(made, {})
+    assert len(t.block_group) == 3 and volume(made) == pytest.approx(3, rel=1e-12)
+    assert len(t.pair_faces) == 4  # two walls of two triangles
+    write_obj(tmp_path / "a.obj", points, faces[:-1])  # one is open: no part is taken for sound
     with pytest.raises(cdem.MeshError, match=r"body 0: the surface is not closed.* has 4;"):
         read_bodies(tmp_path / "a.obj", "rock")
+
+
+@pytest.mark.parametrize("binary", [True, False])
+def test_solids_of_an_stl_that_share_a_face(tmp_path, binary):
+    import meshio
+
+    points, faces = cubes(2)
+    mesh = meshio.Mesh(points, [("triangle", np.array(triangles(faces)))])
+    mesh.write(tmp_path / "a.stl", binary=binary)
+    made = read_bodies(tmp_path / "a.stl", "rock", scale=0.001)
+    assert len(build_topology(made, {}).block_group) == 2
+    assert volume(made) == pytest.approx(2e-9, rel=1e-6)
+
+
+def test_almost_convex_is_convex_and_told(tmp_path):
+    points, faces = cubes()
+    points[7, 2] += 3e-5  # a warped lid
+    write_obj(tmp_path / "a.obj", points, faces)
+    made = read_bodies(tmp_path / "a.obj", "rock")
+    assert volume(made) == pytest.approx(1 + 1e-5, rel=1e-5)
+    assert "body 0 is taken as convex: corners lie up to" in made.notes[0]
+    made = primitives.polyhedron("rock", points, faces)
+    assert "is taken as convex" in made.notes[0] and volume(made) == pytest.approx(1, rel=3e-5)
+    points[7] -= 1e-3
+    write_obj(tmp_path / "a.obj", points, [list(t) for t in triangles(faces)])
+    with pytest.raises(cdem.MeshError, match="not convex"):
+        read_bodies(tmp_path / "a.obj", "rock")
+
+
+@pytest.mark.parametrize("name", ["material", "region", "gmsh:physical"])
+def test_cell_data_of_vtk_are_groups(tmp_path, name):
+    pyvista = pytest.importorskip("pyvista")
+    from cdem.mesh.mesh_files import read_mesh
+
+    grid = pyvista.ImageData(dimensions=(4, 2, 2)).cast_to_unstructured_grid()
+    grid.cell_data[name] = np.array([1, 2, 2])
+    grid.save(tmp_path / "a.vtu")
+    stem = "group" if name == "gmsh:physical" else name
+    made = read_bodies(tmp_path / "a.vtu", "rock")
+    assert made.group_names == [f"rock_{stem}1", f"rock_{stem}2"]
+    assert np.bincount(made.cell_group["tet4"]).tolist() == [12, 24]
+    cells = [("hexahedron", grid.cells.reshape(-1, 9)[:, [1, 2, 4, 3, 5, 6, 8, 7]])]  # of voxels
+    import meshio
+
+    data = {name: [grid.cell_data[name]]}
+    meshio.Mesh(np.asarray(grid.points, float), cells, cell_data=data).write(tmp_path / "b.vtu")
+    mesh = read_mesh(tmp_path / "b.vtu")
+    assert mesh.group_names == [f"{stem}1", f"{stem}2"]
+    assert mesh.cell_group["hex8"].tolist() == [0, 1, 1]
 
 
 @pytest.mark.parametrize("far", [0.0, 5000.0])

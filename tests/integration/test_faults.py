@@ -1,0 +1,196 @@
+"""Inputs that were once misread or passed over in silence, each answered with its right value."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from shared.cases import CUBE
+
+from cdem.joints.directions import dips
+from cdem.joints.discs import read_discs
+
+FAULTS = Path(__file__).parent.parent / "faults"
+BOX = {"group": "rock", "box": {"size": [1, 1, 1]}}
+CASE = {
+    "cdem": 2,
+    "model": {"blocks": [BOX]},
+    "materials": {"r": {"density": 2600, "young_modulus": "1 GPa", "poisson_ratio": 0.25}},
+    "groups": {"rock": {"material": "r"}},
+    "interfaces": {"default": {"friction_angle": 30}},
+    "loads": {
+        "gravity": [0, 0, -9.81],
+        "supports": [{"surface": {"group": "rock", "normal": [0, 0, -1]}, "fix": ["x", "y", "z"]}],
+    },
+    "stages": [{"name": "s", "mode": "dynamic", "duration": 0.01}],
+}
+
+
+@pytest.fixture
+def check(run_cli, tmp_path, monkeypatch, short_estimate):
+    """Check a case with changes; returns all that is printed."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words: str, **changes: object) -> str:
+        Path("case.yaml").write_text(yaml.safe_dump(CASE | changes, allow_unicode=True))
+        status, out, err = run_cli("check", "case.yaml", *words)
+        assert status in (0, 1) and "Traceback" not in err
+        return out + err
+
+    return call
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "azimuth_strike",
+        "joints_comment_lines",
+        "joints_degree_signs",
+        "joints_quadrant",
+        "joints_strike_quadrant_column",
+    ],
+)
+def test_both_sets_of_every_table(run_cli, tmp_path, monkeypatch, name):
+    import json
+
+    monkeypatch.chdir(tmp_path)
+    status, out, _ = run_cli("joints", str(FAULTS / f"{name}.csv"), "--sets", "2", "--json")
+    assert status == 0
+    sets = sorted((s["dip"], s["dip_direction"]) for s in json.loads(out)["sets"])
+    assert np.allclose(sets, [(40, 120), (75, 300)], atol=1.5)
+
+
+@pytest.mark.parametrize("name", ["adfne.csv", "normal.csv", "semi.csv", "polygons.dat"])
+def test_the_same_discs_in_four_files(name):
+    rows = read_discs(FAULTS / name)
+    assert len(rows) == 12
+    assert rows[2].center == pytest.approx([2.503, 1.441, 3.2], abs=1e-3)
+    dip, direction = dips(rows[2].normal)
+    assert (dip, direction) == (pytest.approx(71.7, abs=0.1), pytest.approx(252.7, abs=0.1))
+    area = 2 * np.sqrt(2) / np.pi if name == "polygons.dat" else 1.0  # of an octagon in the circle
+    assert rows[2].radius == pytest.approx(2.21 * np.sqrt(area), rel=3e-3)  # of two decimals
+
+
+@pytest.mark.parametrize("file", ["two.obj", "two.stl"])
+def test_two_solids_are_two_blocks(run_cli, tmp_path, monkeypatch, short_estimate, file):
+    import json
+
+    text = (FAULTS / "two.yaml").read_text().replace("two.obj", str(FAULTS / file))
+    (tmp_path / "two.yaml").write_text(text)
+    status, out, _ = run_cli("check", str(tmp_path / "two.yaml"), "--json")
+    assert status == 0
+    rock = json.loads(out)["groups"]["rock"]
+    assert rock["blocks"] == 2 and rock["volume"] == pytest.approx(2)
+
+
+def test_millimetres_are_asked_for_and_scaled(run_cli, tmp_path, short_estimate):
+    import json
+
+    status, _, err = run_cli("check", str(FAULTS / "mm.yaml"))
+    assert status == 1 and "spans 1,489 x 1,089 x 709.1 m" in err and "scale: 0.001" in err
+    text = (FAULTS / "mm.yaml").read_text()
+    text = text.replace("mm.stl}", f"{FAULTS / 'mm.stl'}, scale: 0.001}}")
+    (tmp_path / "mm.yaml").write_text(text)
+    status, out, _ = run_cli("check", str(tmp_path / "mm.yaml"), "--json")
+    assert status == 0
+    assert json.loads(out)["groups"]["rock"]["volume"] == pytest.approx(0.4016, rel=1e-3)
+
+
+def test_a_fall_names_the_stiffness_that_it_needs(run_cli, short_estimate):
+    # 5.9e8 Pa/m let the boulder go through; 1.2e9 Pa/m stops it
+    _, out, _ = run_cli("check", str(FAULTS / "rockfall_200MPa_too_deep.yaml"))
+    assert "group boulder may fall 116 m, to 47.6 m/s" in out
+    assert "contact_stiffness: 1.2e+09 Pa/m" in out
+
+
+def test_bonded_joints_that_stay_dry(run_cli, short_estimate):
+    _, out, _ = run_cli("check", str(FAULTS / "roadcut.yaml"))
+    assert "no water presses in bedding, cross until bonds break (wet: auto)" in out
+    assert (
+        "compliance; raise" not in out and "% compliance in tension and bending; raise" not in out
+    )
+
+
+BOLTS = {
+    "bolt_types": {"bar": {"area": "491 mm2", "young_modulus": "200 GPa", "yield_force": "250 kN"}},
+    "bolts": [
+        {"name": "b", "type": "bar", "points": [[0.5, 0.5, 1], [0.5, 0.5, 0.2]], "plate": True,
+         "anchor": True, "pretension": "300 kN"},
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "changes, said",
+    [
+        (BOLTS, "bolts.0.pretension: 3e+05 N is above the yield force of bar, 2.5e+05 N"),
+        ({"bolt_types": {"bar": BOLTS["bolt_types"]["bar"] | {"area": 491}}},
+         'did you mean "491 mm2"?'),
+        ({"histories": [{"name": "h", "point": [9, 0, 0], "quantities": ["velocity"]}]},
+         "the point of 'h' lies outside of the model; the nearest node, which is followed, is 8 m"),
+        ({"output": {"every": 1e-9}}, "output.every: 1e-09 s makes 1e+07 frames of stage 's'"),
+        ({"damping": {"local": 0.8}}, "it belongs to a stage"),
+        ({"materials": {"r": CASE["materials"]["r"] | {"young_modulus": "5 000 000 000"}}},
+         "without marks between its digits"),
+        ({"model": {"blocks": [BOX], "joints": [
+            {"name": f"j{k}", "normal": n, "spacing": 0.001}
+            for k, n in enumerate(([1, 0, 0], [0, 1, 0], [0, 0, 1]))]}},
+         "would cut the model into about 1e+09 blocks"),
+    ],
+)  # fmt: skip
+def test_check_speaks(check, changes, said):
+    assert said in check(**changes)
+
+
+def test_more_threads_than_cores_are_told(check):
+    assert "--threads 999: there are" in check("--threads", "999")
+
+
+def test_typeset_signs_are_read(check):
+    loads = CASE["loads"] | {"gravity": [0, 0, "−9.81 m/s2"]}
+    out = check(loads=loads, interfaces={"default": {"friction_angle": "“30 deg”"}})
+    assert "time step" in out and "gravity" not in out
+
+
+def test_a_case_is_no_result_folder(run_cli, tmp_path):
+    (tmp_path / "cube.yaml").write_text(CUBE)
+    status, _, err = run_cli("info", str(tmp_path / "cube.yaml"))
+    assert status == 1 and "cdem check" in err
+
+
+def test_a_wrong_field_is_answered_at_once(tmp_path):
+    text = (
+        "import sys\nfrom cdem import cli\nsys.argv = ['cdem', 'render', '.', '--field', 'displacment']\n"
+        "try:\n    cli.main()\nexcept SystemExit:\n    pass\n"
+        "print(*(m for m in ('numpy', 'h5py', 'pyvista', 'matplotlib', 'meshio') if m in sys.modules))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", text], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert "did you mean displacement?" in done.stderr
+    assert not {"h5py", "pyvista", "matplotlib", "meshio"} & set(done.stdout.split())
+
+
+@pytest.mark.parametrize(
+    "words, heavy",
+    [
+        (
+            ["--help"],
+            "numpy pydantic h5py meshio scipy pyvista matplotlib pyproj ruamel",
+        ),
+        (["check", "cube.yaml"], "meshio scipy pyvista matplotlib pyproj rasterio shapely"),
+    ],
+)
+def test_nothing_heavy_is_imported(tmp_path, words, heavy):
+    (tmp_path / "cube.yaml").write_text(CUBE)
+    text = (
+        f"import sys\nfrom cdem import cli\nsys.argv = ['cdem', *{words}]\n"
+        "try:\n    cli.main()\nexcept SystemExit:\n    pass\n"
+        f"print('HEAVY', *(m for m in {heavy.split()} if m in sys.modules))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", text], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.stdout.splitlines()[-1].split() == ["HEAVY"], done.stdout + done.stderr
