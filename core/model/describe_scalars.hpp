@@ -49,8 +49,9 @@ void describe_ledger(State& s, Visit&& visit) {
 template <class Visit>
 void describe_scalars(State& s, Visit&& visit) {
   visit(ScalarInfo{.name = "time", .unit = "s", .meaning = "simulated time"}, s.time);
-  visit(ScalarInfo{.name = "loads_time", .unit = "s", .meaning = "time that loads and supports have"},
-        s.loads_time);
+  visit(
+      ScalarInfo{.name = "loads_time", .unit = "s", .meaning = "time that loads and supports have"},
+      s.loads_time);
   visit(ScalarInfo{.name = "dt", .unit = "s", .meaning = "length of the coming step"}, s.dt);
   visit(ScalarInfo{.name = "dt_last", .unit = "s", .meaning = "length of the last step"},
         s.dt_last);

@@ -215,7 +215,7 @@ struct Relief {
 struct State {
   Real seconds[5] = {};  // wall time so far by Phase; no part of the results
   Real time = 0;
-  Real loads_time = 0;  // of load_factor and velocity_factor  [s]
+  Real loads_time = 0;       // of load_factor and velocity_factor  [s]
   Real dt = 0, dt_last = 0;  // of the coming and of the last step  [s]
   Real dt_stable = 0;        // which `dt` grows towards  [s]
   std::int64_t step = 0, rebuilds = 0, built_step = -1;
