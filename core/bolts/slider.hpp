@@ -32,9 +32,11 @@ struct Slider {
   CDEM_HD Real tangent(SliderState on) const {
     return on == SliderState::holds ? stiffness : slider_rest * stiffness;
   }
-  /// Where it is free after it bore a force at x.
+  /// Where it is free after it bore a force at x. One that can only pull goes slack: it bears again
+  /// where it is as long as it was.
   CDEM_HD Real free_after(Real x, Real force) const {
-    return stiffness > 0 ? x - force / stiffness : free;
+    const bool slack = least == 0 && most > 0 && force < 0;
+    return stiffness > 0 && !slack ? x - force / stiffness : free;
   }
   /// Elastic energy under a force  [J].
   CDEM_HD Real stored(Real force) const {

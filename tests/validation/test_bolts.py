@@ -76,7 +76,7 @@ def test_bolts_shorten_the_step():
 def test_bolts_put_no_net_force_on_the_rock():
     sim = cubes()
     sim.run()
-    rows = sim.core.rebuilt()["corner.force"].reshape(-1, 4)
+    rows = sim.core.fields()["corner.force"].reshape(-1, 4)
     first = sim.build.assembly.counts["bolts.corner_first"]
     of_bolts = rows[first:-1, :3]
     assert np.abs(of_bolts).max() > 1e3

@@ -62,7 +62,7 @@ def test_bonds_are_as_stiff_as_the_core_has_them(monkeypatch):
     )
     sim = cdem.Simulation(mixed(), threads=1)
     assert all(sim.build.assembly.counts[f"{k}.count"] for k in ("triangles", "quads", "overlaps"))
-    np.testing.assert_allclose(found[0], sim.core.rebuilt()["node.bond_stiffness"], rtol=1e-13)
+    np.testing.assert_allclose(found[0], sim.core.fields()["node.bond_stiffness"], rtol=1e-13)
 
 
 @pytest.mark.parametrize(("version", "joint", "a", "b"), [(1, 20, 10, 20), (2, 4 / 3, 1, 2)])
@@ -92,7 +92,7 @@ def test_contacts_of_faces_that_touch_and_of_others(monkeypatch, version, joint,
     below = sim.build.node_groups() == sim.build.group_names.index("a")
     np.testing.assert_allclose(found[0][at_joint & below], 0.5e10 * (joint + 2 * a), rtol=1e-12)
     np.testing.assert_allclose(found[0][at_joint & ~below], 0.5e10 * (joint + 2 * b), rtol=1e-12)
-    core = sim.core.rebuilt()["node.contact_stiffness"]  # of the faces on its list alone
+    core = sim.core.fields()["node.contact_stiffness"]  # of the faces on its list alone
     np.testing.assert_allclose(core[at_joint], 0.5e10 * joint, rtol=1e-12)
 
 
