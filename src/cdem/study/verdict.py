@@ -109,9 +109,7 @@ class _Watch:
         moved, kinetic = float(ways.max()) / self.size, float(self.sim.energies["kinetic"])
         now = _Look(steps, moved, min(last.least, self.sim.core.unbalance_ratio()))
         self.looks.append(now)
-        if (
-            last.steps == 0 or moved < 0.5 * c.travel
-        ):  # the first look sees what gives as loads come
+        if last.steps == 0 or moved < 0.5 * c.travel:  # the first look sees loads come, too
             self.half_way = kinetic
         elif moved > c.far or (moved > c.travel and kinetic > self.half_way):
             return Verdict(False, "sliding", self._text(ways))
