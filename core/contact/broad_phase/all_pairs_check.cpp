@@ -50,6 +50,7 @@ class AllPairs {
       : m(model),
         springs(on_host(ResolveTargets{face_search(model, state)})),
         edges(on_host(touching_edges(model, state))),
+        hidden(on_host(hidden_edges(model, state))),
         found(on_host(edge_columns(state))),
         movable(on_host(model.face_movable)),
         block(on_host(model.face_block)),
@@ -102,7 +103,8 @@ class AllPairs {
     Index shared;
     if (!pair_sides(edges.faces, face(x), k, face(t), j, shared)) return false;
     const Index before = edges.held.place_of(4 * x + k, edges.faces.face_edges[4 * face(t) + j]);
-    return edges.touch(4 * x + k, 4 * t + j, shared, before);
+    return edges.touch(4 * x + k, 4 * t + j, shared, before) &&
+           (before >= 0 || !hidden.hide(4 * x + k, 4 * t + j));
   }
   /// Has the step found that they do?
   bool is_found(Index x, Index k, Index t, Index j) const {
@@ -128,6 +130,7 @@ class AllPairs {
   const Model& m;
   const ResolveTargets springs;
   const TouchingEdges edges;
+  const HiddenEdges hidden;
   const EdgeColumns found;
   const OnHost<const Flag> movable;
   const OnHost<const Index> block;

@@ -1,6 +1,7 @@
 // flush_faces.hpp - what blocks that began flush with each other hide from third ones.
 #pragma once
 
+#include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
 #include "core/records/rules.hpp"
 
@@ -95,6 +96,43 @@ struct FlushFaces {
     const Index* at = edge_faces + 2 * std::size_t(faces.face_edges[4 * face + k]);
     const Index across = exposed >= 0 ? faces.across(exposed, k) : at[at[0] == face];
     return across >= 0 ? faces.shape(across).normal() : Vec3<Real>{0.0, 0.0, 0.0};
+  }
+};
+
+/// Sides of exposed faces, which are 4 * exposed face + side, in the seams of blocks that lie
+/// flush.
+struct HiddenEdges {
+  FaceColumns faces;
+  FaceGeometry geometry;
+  SearchRules rules;
+  FlushFaces flush;
+  const Index* exposed_face;
+
+  /// Is a contact of two sides inside the surface that one of their blocks makes with others that
+  /// lie flush?
+  CDEM_HD bool hide(Index mother, Index target) const {
+    if (!flush.first || flush.met(faces, geometry.table[mother / 4], geometry.table[target / 4]))
+      return false;
+    const Index side[2] = {mother, target};
+    Vec3<Real> x[2], along[2];
+    for (Index e = 0; e < 2; ++e) {
+      const ExposedRow& row = geometry.table[side[e] / 4];
+      x[e] = faces.nodes.position(row.corner[side[e] % 4]);
+      along[e] = faces.nodes.position(row.end(side[e] % 4)) - x[e];
+    }
+    const Vec3<Real> n =
+        edge_normal(along[0], along[1], geometry.normal(target / 4) - geometry.normal(mother / 4));
+    const Crossing<Real> at = cross_edges(x[0], along[0], x[1], along[1], n);
+    const Vec3<Real> point[2] = {x[0] + at.s * along[0], x[1] + at.t * along[1]};
+    for (Index e = 0; e < 2; ++e) {
+      const Index exposed = side[e] / 4, k = side[e] % 4;
+      const Index other = geometry.table[side[1 - e] / 4].corner[0];
+      const Index at_edge[2] = {exposed_face[exposed], faces.across(exposed, k)};
+      for (const Index f : at_edge)
+        if (f >= 0 && flush.obstruct(faces, rules, f, point[e], e == 0 ? -n : n, other))
+          return true;
+    }
+    return false;
   }
 };
 

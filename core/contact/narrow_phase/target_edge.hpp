@@ -6,6 +6,7 @@
 #include "core/contact/geometry/face_interfaces.hpp"
 #include "core/contact/narrow_phase/closed_contact.hpp"
 #include "core/contact/narrow_phase/edge_pair.hpp"
+#include "core/contact/narrow_phase/flush_faces.hpp"
 #include "core/contact/narrow_phase/touching_edges.hpp"
 
 namespace cdem {
@@ -14,6 +15,7 @@ namespace cdem {
 struct ResolveTargetEdges {
   TouchingEdges touching;
   EdgePairs pairs;
+  HiddenEdges hidden;
   Flag* lost;  // [exposed] 1: a loaded contact was lost because it penetrated too deep
 
   CDEM_HD Range items(Index p) const { return {p, p + 1}; }
@@ -34,8 +36,8 @@ struct ResolveTargetEdges {
 
  private:
   CDEM_HD bool begins_hidden(Index p, Index way) const {
-    return touching.flush.first && pairs.held[pairs.place_held(EdgeWays::mother(way), p)] < 0 &&
-           touching.hidden(pairs.mother(p, way), pairs.target(p, way));
+    return hidden.flush.first && pairs.held[pairs.place_held(EdgeWays::mother(way), p)] < 0 &&
+           hidden.hide(pairs.mother(p, way), pairs.target(p, way));
   }
 };
 

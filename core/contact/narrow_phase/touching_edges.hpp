@@ -1,11 +1,9 @@
 // touching_edges.hpp - in which ways two edges touch. Feng et al. (2014), Eq. 10-12.
 #pragma once
 
-#include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/contact/narrow_phase/edge_ways.hpp"
-#include "core/contact/narrow_phase/flush_faces.hpp"
 #include "core/records/rules.hpp"
 
 namespace cdem {
@@ -27,8 +25,6 @@ struct TouchingEdges {
   FaceGeometry geometry;
   SearchRules rules;
   EdgesBefore held;
-  FlushFaces flush;
-  const Index* exposed_face;
 
   template <class Ids>
   CDEM_HD Touching judge(const TwoEdges<Ids>& pair) const {
@@ -59,34 +55,7 @@ struct TouchingEdges {
                      .side = {{mother, mother}, {target, target}},
                      .code = EdgeWays::code_of(1, shared, 0, 0),
                      .before = {before, -1, -1, -1}})
-               .touches[0] &&
-           (before >= 0 || !hidden(mother, target));
-  }
-  /// Is a contact of two sides inside the surface that one of their blocks makes with others that
-  /// lie flush?
-  CDEM_HD bool hidden(Index mother, Index target) const {
-    if (!flush.first || flush.met(faces, geometry.table[mother / 4], geometry.table[target / 4]))
-      return false;
-    const Index side[2] = {mother, target};
-    Vec3<Real> x[2], along[2];
-    for (Index e = 0; e < 2; ++e) {
-      const ExposedRow& row = geometry.table[side[e] / 4];
-      x[e] = faces.nodes.position(row.corner[side[e] % 4]);
-      along[e] = faces.nodes.position(row.end(side[e] % 4)) - x[e];
-    }
-    const Vec3<Real> n =
-        edge_normal(along[0], along[1], geometry.normal(target / 4) - geometry.normal(mother / 4));
-    const Crossing<Real> at = cross_edges(x[0], along[0], x[1], along[1], n);
-    const Vec3<Real> point[2] = {x[0] + at.s * along[0], x[1] + at.t * along[1]};
-    for (Index e = 0; e < 2; ++e) {
-      const Index exposed = side[e] / 4, k = side[e] % 4;
-      const Index other = geometry.table[side[1 - e] / 4].corner[0];
-      const Index at_edge[2] = {exposed_face[exposed], faces.across(exposed, k)};
-      for (const Index f : at_edge)
-        if (f >= 0 && flush.obstruct(faces, rules, f, point[e], e == 0 ? -n : n, other))
-          return true;
-    }
-    return false;
+        .touches[0];
   }
 
  private:

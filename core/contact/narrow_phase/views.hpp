@@ -72,13 +72,22 @@ inline TouchingEdges touching_edges(const Model& m, const State& s) {
   return {.faces = face_columns(m, s),
           .geometry = face_geometry(s),
           .rules = m.rules,
-          .held = edges_before(s),
+          .held = edges_before(s)};
+}
+
+inline HiddenEdges hidden_edges(const Model& m, const State& s) {
+  return {.faces = face_columns(m, s),
+          .geometry = face_geometry(s),
+          .rules = m.rules,
           .flush = flush_faces(m),
           .exposed_face = s.search.exposed_face.data()};
 }
 
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {
-  return {.touching = touching_edges(m, s), .pairs = edge_pairs(s), .lost = s.edges.lost.data()};
+  return {.touching = touching_edges(m, s),
+          .pairs = edge_pairs(s),
+          .hidden = hidden_edges(m, s),
+          .lost = s.edges.lost.data()};
 }
 
 }  // namespace cdem

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import case
 
-from cdem.mesh.overlap import clip, point_areas
+from cdem.mesh.overlap import clip, flush_faces, point_areas
+from cdem.run.simulation import Simulation
 
 
 @settings(max_examples=60, deadline=None)
@@ -29,3 +31,26 @@ def test_overlap_shares_area_and_centroid_exactly(dx, dy, angle, size):
     center = np.array([((x + x1) * cross).sum(), ((y + y1) * cross).sum()]) / (3 * cross.sum())
     assert weights.sum() == pytest.approx(area, rel=1e-9)
     np.testing.assert_allclose(weights @ polygon[:, :2] / area, center, atol=1e-9)
+
+
+def test_faces_that_lie_flush_are_found_whether_they_conform_or_not():
+    """A cube on a plate of two boxes: its lower face lies on both, which lie side by side."""
+    sim = Simulation(
+        case(
+            [
+                {"group": "a", "box": {"size": [1, 1, 1]}, "translate": [0.5, 0, 0]},
+                {"group": "b", "box": {"size": [1, 1, 1]}, "translate": [0, 0, -1]},
+                {"group": "b", "box": {"size": [1, 1, 1]}, "translate": [1, 0, -1]},
+            ],
+            {"a": {}, "b": {}},
+        )
+    )
+    t = sim.build.topology
+    kinds = np.ones((2, 2), bool)
+    first, mate = flush_faces(t, kinds)
+    met = [sorted(t.face_block[mate[first[f] : first[f + 1]]]) for f in range(len(t.face_nodes))]
+    assert sorted(m for m in met if m) == [[0], [0, 1], [1], [2], [2]]  # the cube is the last
+    box = t.group_names.index("b")
+    kinds[box, box] = False
+    first, mate = flush_faces(t, kinds)
+    assert len(mate) == 4  # both ways: the cube on either box
