@@ -30,7 +30,7 @@ def _told_by_check(run_cli, case):
 
 
 def test_runs_sweeps_and_searches_tell_the_warnings_of_check(run_cli, cube_folder):
-    """Of the case (a density of glue) and of the model (a history off it); each once, all the same."""
+    """Of the case (a density of 27 kg/m3) and of the model (a history off it); each once, all the same."""
     odd = SWEPT.replace("2700", "27").replace("[0, 0, 1]", "[0, 0, 9]")
     (cube_folder / "cube.yaml").write_text(odd)
     (cube_folder / "slab.yaml").write_text(
