@@ -1,4 +1,4 @@
-"""The program ``cdem``: one function for each verb. What they need is imported when they run."""
+"""The program ``cdem``: what all its verbs share. They are imported when they are asked for."""
 
 from __future__ import annotations
 
@@ -9,19 +9,13 @@ from typing import Annotated
 import typer
 
 from cdem._version import __version__
-from cdem.cli.installation_commands import benchmark, doctor, verify
-from cdem.cli.law_commands import law
 from cdem.cli.messages import Messages
-from cdem.cli.model_commands import check, mesh, new, schema
-from cdem.cli.result_commands import Fields, export, info, plot, render, runout, view
-from cdem.cli.run_commands import run
-from cdem.cli.screening_commands import joints, screen
-from cdem.cli.site_commands import site
-from cdem.cli.study_commands import critical, sweep
+from cdem.cli.verbs import Verbs
 from cdem.errors import CdemError
 
 app = typer.Typer(
     name="cdem",
+    cls=Verbs,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -73,9 +67,3 @@ def _top(
     ] = False,
 ) -> None:
     pass
-
-
-for _verb in (new, check, site, mesh, joints, screen, schema, critical, sweep, verify, benchmark,
-              run, info, plot, render, view, runout, export, doctor):  # fmt: skip
-    app.command(cls=Fields if _verb is render else None)(_verb)
-app.add_typer(law, name="law")

@@ -10,7 +10,13 @@ import typer
 from cdem.cli.options import AllowCode, print_paths
 from cdem.errors import CaseError
 
-law = typer.Typer(no_args_is_help=True, help="List laws, try one on its own, or build your own.")
+law = typer.Typer(
+    name="law",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    help="List laws, try one on its own, or build your own.",
+)
 SHOWN = 20
 """Rows of a curve that are printed."""
 

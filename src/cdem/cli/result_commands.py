@@ -49,6 +49,10 @@ class Fields(TyperCommand):
             formatter.write_dl([(shown.name, shown.meaning) for shown in SHOWN.values()])
 
 
+CLASSES = {"render": Fields}
+"""Classes of commands that are not typer's own."""
+
+
 def render(
     folder: ResultFolder,
     field: Annotated[

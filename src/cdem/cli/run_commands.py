@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 import sys
 from pathlib import Path
@@ -79,11 +80,19 @@ def run(
     if as_json:
         print(summary.read_text().rstrip())
     elif not quiet:
-        print(f"{status}; results are in {folder}")
+        print(f"{status}{_but_for(summary)}; results are in {folder}")
     if status == "stopped":
         again = _resume_command(case_file, folder, settings or [], threads, allow_code)
         print(f"stopped with a checkpoint; go on with: {again}", file=sys.stderr)
         raise typer.Exit(STOPPED)
+
+
+def _but_for(summary: Path) -> str:
+    """What a run that is at rest has left behind: blocks that fall on, or have left its domain."""
+    from cdem.output.page_facts import departed, moving
+
+    facts = json.loads(summary.read_text())
+    return moving(facts) + departed(facts) if facts["status"] == "at rest" else ""
 
 
 def _run(

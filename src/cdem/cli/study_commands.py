@@ -184,6 +184,7 @@ def sweep(
         )
     paths = table.write(folder)
     if not quiet:
+        _warn(table.warnings)
         paths += _draw_plots(table, folder)
     if as_json:
         print(json.dumps(table.as_dict(), indent=2))

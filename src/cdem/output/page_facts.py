@@ -43,6 +43,18 @@ def moving(summary: dict[str, Any]) -> str:
     return f", still moving at {speeds[name]:.3g} m/s (a block of group {name})"
 
 
+def departed(summary: dict[str, Any]) -> str:
+    """Say which blocks are not at rest, but have left the domain; nothing if the run ended otherwise."""
+    if summary["status"] != "at rest":
+        return ""
+    gone = [
+        f"{lost['blocks']:,} block{'s' * (lost['blocks'] > 1)} of group {name}"
+        for name, lost in summary.get("taken_out", {}).items()
+        if not lost.get("dug_out")
+    ]
+    return f", but for {' and '.join(gone)} that left the domain" if gone else ""
+
+
 def page_facts(folder: Path) -> dict[str, Any]:
     """What the page of a run says.
 
@@ -133,7 +145,7 @@ def _ended(s: dict[str, Any]) -> dict[str, Any]:
     return {
         "status": s["status"],
         "tone": {"failed": "bad", "stopped": "doubt"}.get(s["status"], "good"),
-        "subtitle": f"cdem {s['version']} · {s['device']} · {s['threads']} threads{moving(s)}",
+        "subtitle": f"cdem {s['version']} · {s['device']} · {s['threads']} threads{moving(s)}{departed(s)}",
         "tiles": tiles,
         "tables": [_groups(s), *_stages(s), *_energies(energies)],
     }

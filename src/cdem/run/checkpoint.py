@@ -5,9 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,6 +43,8 @@ def write_checkpoint(folder: Path, arrays: Mapping[str, NDArray], attributes: st
     Raises:
         DiskError: It cannot be written.
     """
+    import h5py
+
     with replaced(folder / CHECKPOINT, keep=folder / CHECKPOINT_BEFORE) as file:
         with h5py.File(file, "w", userblock_size=HEAD_BYTES) as hdf5:
             for name, values in arrays.items():
@@ -61,9 +62,11 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
     Raises:
         DamagedError: The file is not what was written.
     """
+    import h5py
+
     arrays: dict[str, NDArray] = {}
 
-    def keep(name: str, item: h5py.Group | h5py.Dataset) -> None:
+    def keep(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and name != ATTRIBUTES:
             arrays[name.replace("/", ".")] = np.asarray(item[()])
 

@@ -123,6 +123,7 @@ class Departure:
         block: Its number.
         time: When it was seen [s].
         place: Its middle then [m].
+        speed: Root mean square speed of its mass then [m/s].
         out: Whether it left the domain, and was taken out.
     """
 
@@ -130,6 +131,7 @@ class Departure:
     block: int
     time: float
     place: list[float]
+    speed: float
     out: bool = False
 
     def text(self) -> str:
@@ -137,13 +139,14 @@ class Departure:
         place = ", ".join(f"{x:.4g}" for x in self.place)
         if self.out:
             return (
-                f"block {self.block} of group {self.group} left model.domain: it was at ({place}) m at "
-                f"t = {self.time:.4g} s, and is taken out, as all will be that follow it"
+                f"block {self.block} of group {self.group} left model.domain at {self.speed:.3g} m/s: it "
+                f"was at ({place}) m at t = {self.time:.4g} s, and is taken out, as all will be that "
+                "follow it"
             )
         return (
             f"block {self.block} of group {self.group} fell past the edge of the model: it is at "
-            f"({place}) m at t = {self.time:.4g} s, below everything at the start, and falls on "
-            "unless model.domain takes it out"
+            f"({place}) m at t = {self.time:.4g} s, below everything at the start, and falls on at "
+            f"{self.speed:.3g} m/s unless model.domain takes it out"
         )
 
 

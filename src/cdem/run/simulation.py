@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +26,10 @@ from cdem.run.fast_weakening import FastWeakening, fast_weakenings
 from cdem.run.flow_recorder import PREFIX, FlowRecorder
 from cdem.run.law_fields import large_strains, yielded_counts
 from cdem.run.progress import Progress
-from cdem.run.result_folder import Results
 from cdem.run.state import Attributes, RunState, Setting, StageState
+
+if TYPE_CHECKING:
+    from cdem.run.result_folder import Results
 
 CHUNK_SECONDS = 0.25
 """The loop comes back about this often to look for signals and report progress [s of wall time]."""
@@ -94,6 +96,8 @@ class Simulation(RunState):
         self._fast_weakening: dict[str, FastWeakening] = {}
         self._actions: list[Action] = []
         if output is not None:
+            from cdem.run.result_folder import Results  # needs HDF5 and locks; check needs neither
+
             self.results = Results(
                 Path(output), case.path_of("."), overwrite=overwrite, resume=resume
             )

@@ -306,19 +306,25 @@ class RunState:
         gone = np.concatenate([self.fallen, np.flatnonzero(self.out)])
         return self.rigid_motion.without(gone)
 
-    def take_out(self) -> NDArray[np.intp]:
-        """Take the bodies out that have left the domain since the last look; return their blocks."""
+    def take_out(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Take the bodies out that have left the domain since the last look.
+
+        Returns:
+            Their blocks, and the speeds with which they left [m/s].
+        """
         domain, t = self.case.model.domain, self.build.topology
         if domain is None:
-            return np.zeros(0, np.intp)
+            return np.zeros(0, np.intp), np.zeros(0)
         fields, body = self.fields, self.core.fields()["node.body"][t.block_first_node[:-1]]
         middle = middles(t.block_first_node, fields["mass"], fields["position"])
         blocks = leaving(domain, middle, body, self.out)
-        if len(blocks):
-            leaves = np.zeros(len(t.block_group), np.int8)
-            leaves[blocks] = 1
-            self.core.take_out(leaves[t.node_block])
-        return blocks
+        if not len(blocks):
+            return blocks, np.zeros(0)
+        speeds = self.rigid_motion.speed[blocks]
+        leaves = np.zeros(len(t.block_group), np.int8)
+        leaves[blocks] = 1
+        self.core.take_out(leaves[t.node_block])  # where they stand still
+        return blocks, speeds
 
     def look_for_departures(self) -> list[Departure]:
         """Take out what has left the domain, and note what fell below the model since the last look.
@@ -328,13 +334,15 @@ class RunState:
         """
         t, found, position = self.build.topology, [], self.motion[:, :3]
         known = {(departure.group, departure.out) for departure in self.departures}
-        for out, blocks in ((True, self.take_out()), (False, self.fallen)):
-            for block in blocks:
+        gone, below = self.take_out(), self.fallen
+        falls = below, self.rigid_motion.speed[below] if len(below) else np.zeros(0)
+        for out, (blocks, speeds) in ((True, gone), (False, falls)):
+            for block, speed in zip(blocks, speeds, strict=True):
                 group = self.build.group_names[t.block_group[block]]
                 if (group, out) not in known:
                     nodes = slice(*t.block_first_node[block : block + 2])
                     place = position[nodes].mean(axis=0).tolist()
-                    found.append(Departure(group, int(block), self.time, place, out))
+                    found.append(Departure(group, int(block), self.time, place, float(speed), out))
                     known.add((group, out))
         self.departures += found
         return found

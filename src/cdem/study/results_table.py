@@ -60,6 +60,12 @@ class Table:
         return [run for run in self.runs if run.status == "failed"]
 
     @property
+    def warnings(self) -> list[str]:
+        """Each warning of the models of all runs once."""
+        told = [text for run in self.runs for text in (run.result or {}).get("warnings", [])]
+        return list(dict.fromkeys(told))
+
+    @property
     def waiting(self) -> int:
         """How many runs have no result yet."""
         return sum(run.status == "waiting" for run in self.runs)

@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cdem._version import __version__
 from cdem.case.case import Case
@@ -22,6 +22,9 @@ from cdem.case.named_files import files_of
 from cdem.errors import BackendError, CdemError
 from cdem.study.criterion import Criterion
 from cdem.whole_files import refuse_link, write_json
+
+if TYPE_CHECKING:
+    from cdem.study.critical import Tell
 
 RESULT_FILE, RESULT_FOLDER = "result.json", "results"
 
@@ -63,22 +66,26 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     result = {key: task[key] for key in ("name", "identity", "version", "parameters")}
+    warnings: list[str] = []
+    tell = warnings.extend
     try:
         case = Case.from_dict(task["case"])
+        kept = folder / RESULT_FOLDER
         search = task["critical"]
-        result |= _search(case, search) if search else _run(case, task, folder / RESULT_FOLDER)
+        result |= _search(case, search, tell) if search else _run(case, task, kept, tell)
     except BackendError:
         raise
     except CdemError as error:
         if type(error) is CdemError:
             raise
         result |= {"status": "failed", "error": str(error)}
+    result["warnings"] = warnings
     result["wall_time"] = time.perf_counter() - began
     write_json(folder / RESULT_FILE, result)
     return json.loads((folder / RESULT_FILE).read_text())
 
 
-def _run(case: Case, task: dict[str, Any], folder: Path) -> dict[str, Any]:
+def _run(case: Case, task: dict[str, Any], folder: Path, tell: Tell) -> dict[str, Any]:
     """Run the case as `cdem run` does, from its last checkpoint if it was broken off."""
     from cdem.run.checkpoint import has_checkpoint
     from cdem.run.histories import tracks
@@ -89,6 +96,7 @@ def _run(case: Case, task: dict[str, Any], folder: Path) -> dict[str, Any]:
         simulation = Simulation(case, threads=1, output=folder, resume=resume, overwrite=not resume)
     else:
         simulation = Simulation(case, threads=1)
+    tell(simulation.audit.warnings)
     status = simulation.run()
     return {
         "status": status,
@@ -97,7 +105,7 @@ def _run(case: Case, task: dict[str, Any], folder: Path) -> dict[str, Any]:
     }
 
 
-def _search(case: Case, search: dict[str, Any]) -> dict[str, Any]:
+def _search(case: Case, search: dict[str, Any], tell: Tell) -> dict[str, Any]:
     """Find the critical value as `cdem critical` does."""
     from cdem.study.critical import find_critical, parameter, strength_reduction
 
@@ -110,6 +118,7 @@ def _search(case: Case, search: dict[str, Any]) -> dict[str, Any]:
         tolerance=search["tolerance"],
         criterion=Criterion(**search["criterion"]),
         threads=1,
+        tell=tell,
     )
     return {"status": "found", "critical": found.as_dict()}
 

@@ -78,3 +78,15 @@ def test_import_and_help_are_fast():
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     heavy = {"numpy", "h5py", "pydantic", "ruamel.yaml", "meshio", "matplotlib", "pyvista"}
     assert heavy & set(out.stdout.split()) == set()
+
+
+def test_check_loads_nothing_that_results_need(cube_folder):
+    code = """if True:
+        import sys
+        from cdem import cli
+        sys.argv = ["cdem", "check", "cube.yaml"]
+        cli.main()
+        print(*sys.modules)
+    """
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert {"h5py", "filelock", "matplotlib", "pyvista"} & set(out.stdout.split()) == set()

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import cdem
+from cdem.output.page_facts import page_facts
 from cdem.run.rest import (
     REST_ENERGY,
     REST_SPAN,
@@ -142,7 +145,7 @@ def slide(cube_folder):
 
 def test_a_stage_ends_with_rest_and_says_who_left(run_cli, slide):
     status, out, err = run_cli("run", "slide.yaml", "--threads", "1")
-    assert (status, out) == (0, "at rest; results are in slide.results\n")
+    assert status == 0
     assert err.count("fell past the edge of the model") == 1
     assert "warning: block 2 of group goes fell past the edge" in err
     assert (slide / "slide.results/run.log").read_text().count("fell past the edge") == 1
@@ -154,6 +157,8 @@ def test_a_stage_ends_with_rest_and_says_who_left(run_cli, slide):
     assert summary["groups"]["bed"]["fastest_block"] == 0
     told = run_cli("info", "slide.results")[1]
     speed = summary["groups"]["goes"]["fastest_block"]
+    moves = f"at rest, still moving at {speed:.3g} m/s (a block of group goes)"
+    assert out == f"{moves}; results are in slide.results\n"
     assert told.splitlines()[0].endswith(
         f": at rest, still moving at {speed:.3g} m/s (a block of group goes)"
     )
@@ -163,6 +168,24 @@ def test_a_stage_ends_with_rest_and_says_who_left(run_cli, slide):
     told = run_cli("runout", "slide.results")[1]
     assert "deposit: " not in told
     assert "still moving at" in told and "no deposit yet; front and reach are not final" in told
+
+
+def test_what_left_the_domain_is_not_told_to_be_at_rest(run_cli, slide):
+    """Its speed is that of its energy: 6 m/s, less friction over 1.5 m, and 3.5 m of fall or little more."""
+    text = SLIDE.replace("model:\n", "model:\n  domain: {min: [null, null, -3]}\n")
+    (slide / "slide.yaml").write_text(text)
+    status, out, err = run_cli("run", "slide.yaml", "--threads", "1")
+    but = "at rest, but for 1 block of group goes that left the domain"
+    assert (status, out) == (0, f"{but}; results are in slide.results\n")
+    said = r"block 2 of group goes left model.domain at (\S+) m/s: it was at .* m at t = (\S+) s"
+    speed, time = map(float, re.search(said, err).groups())
+    told = run_cli("info", "slide.results")[1]
+    assert told.splitlines()[0].endswith(f": {but}")
+    assert re.search(said, told) and re.search(said, (slide / "slide.results/run.log").read_text())
+    summary = json.loads((slide / "slide.results/summary.json").read_text())
+    slowest = math.sqrt(6**2 - 2 * 9.81 * math.tan(math.radians(30)) * 1.5 + 2 * 9.81 * 3.5)
+    assert slowest < speed < math.sqrt(6**2 + 2 * 9.81 * 4) and 0.8 < time < summary["time"]
+    assert but.partition(", ")[2] in page_facts(slide / "slide.results")["subtitle"]
 
 
 def test_rest_is_the_same_for_any_split(slide):
