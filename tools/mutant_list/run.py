@@ -37,10 +37,10 @@ FAULTS = [
     ),
     Mutant(
         "resume",
-        "a resumed run keeps one history row too many",
+        "a resumed run keeps history rows that are damaged",
         "src/cdem/run/history_file.py",
-        "lines[1:-1][:keep_rows]",
-        "lines[1:-1][: keep_rows + 1]",
+        "place = sums.index(_sum(row), at)",
+        "place = at",
         "tests/unit/run/test_history_file.py",
     ),
     Mutant(

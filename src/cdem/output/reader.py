@@ -17,7 +17,14 @@ from cdem.errors import CdemError
 from cdem.mesh.element_shapes import NODES
 from cdem.mesh.hdf5_links import refuse_links
 from cdem.run.checkpoint import has_checkpoint
-from cdem.run.frame_files import ELEMENTS, KINDS, VTK_TYPES, frame_numbers, frame_path
+from cdem.run.frame_files import (
+    ELEMENTS,
+    KINDS,
+    VTK_TYPES,
+    frame_numbers,
+    frame_path,
+    names_of_groups,
+)
 from cdem.whole_files import refuse_link
 
 MESHIO_NAMES = {"tet4": "tetra", "pyramid5": "pyramid", "wedge6": "wedge", "hex8": "hexahedron"}
@@ -137,7 +144,7 @@ class _Frames:
             with h5py.File(path, "r", locking=False) as hdf5:
                 self._check(path, hdf5)
                 yield hdf5["VTKHDF"]
-        except (OSError, KeyError, RuntimeError) as error:
+        except (OSError, KeyError, RuntimeError, ValueError, IndexError) as error:
             raise CdemError(
                 f"{path}: is damaged ({error}); move it away to look at the other frames"
             ) from None
@@ -193,7 +200,7 @@ class SurfaceSeries(_Frames):
                 polygons,
                 {name: data[()] for name, data in root["PointData"].items()},
                 {name: data[()] for name, data in root["CellData"].items()},
-                _group_names(root),
+                names_of_groups(root),
                 *self._bars(frame),
             )
 
@@ -212,7 +219,7 @@ class FrameSeries(_Frames):
         super().__init__(Path(folder) / "frames")
         with self._root(0) as root:
             self.names = {kind: list(root[kind]) for kind in KINDS}
-            self.group_names = _group_names(root)
+            self.group_names = names_of_groups(root)
             types, ids, starts = (root[name][()] for name in ("Types", "Connectivity", "Offsets"))
         self.cells: dict[str, NDArray[np.int64]] = {}
         for shape, nodes in NODES.items():
@@ -227,10 +234,6 @@ class FrameSeries(_Frames):
     def field(self, kind: str, name: str, frame: int) -> NDArray:
         """A field on the nodes ("PointData") or elements ("CellData") of a frame."""
         return self.read(frame, [f"{kind}/{name}"])[0]
-
-
-def _group_names(root: Any) -> list[str]:
-    return [str(name) for name in root["CellData/group"].attrs.get("names", [])]
 
 
 def export(folder: Path, *, to: str = "vtu") -> list[Path]:

@@ -2,7 +2,8 @@
 
 `frames.vtkhdf` holds no fields itself: virtual datasets of HDF5 point into the files of the folder
 `frames`, one for each frame, as VTK writes time steps into files of their own. Every file is
-replaced as a whole, so that a kill at any moment leaves a series that can be read.
+replaced as a whole, so that a kill at any moment leaves a series that can be read. All of a frame has
+checksums: HDF5 keeps them for chunks of numbers, and for the rest in the format of 1.10.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ KINDS = ("PointData", "CellData")
 ELEMENTS = "elements.h5"
 """The file of what all frames of the volume share."""
 CHUNK_BYTES = 1 << 20
-UNCHECKED_BYTES = 1 << 14
-"""Smaller datasets have no checksum, whose list of chunks would be larger than they are."""
+FORMAT = ("v110", "v110")
+"""Of HDF5: names and sizes have checksums too, and a dataset of one chunk needs no list of chunks."""
 LISTED_AT_ONCE = 50
 """So many frames are listed one by one; later the list is written when it has grown by a 50th."""
 
@@ -112,13 +113,13 @@ class _Series:
         with _replaced_hdf5(frame_path(self.folder, number)) as hdf5:
             root = self._root(hdf5)
             for name, count in zip(COUNTS, counts, strict=True):
-                root[name] = [count]
+                _put(root, name, np.array([count]))
             for name in self.shared:
                 root[name] = h5py.ExternalLink(ELEMENTS, name)
             for name, values in sorted(own.items()):
                 _put(root, name, np.asarray(values))
                 frame.datasets[name] = (np.shape(values), np.asarray(values).dtype)
-            root["FieldData/TimeValue"] = [time]
+            _put(root, "FieldData/TimeValue", np.array([time], float))
             self._name_groups(root)
         if self._frames and self._frames[-1].datasets == frame.datasets:
             frame.datasets = self._frames[-1].datasets  # kept once
@@ -138,7 +139,7 @@ class _Series:
     def _name_groups(self, root: h5py.Group) -> None:
         """Say what the numbers of the field "group" stand for."""
         if "CellData/group" not in self.shared and "CellData/group" in root:
-            root["CellData/group"].attrs["names"] = self.group_names
+            _put_names(root["CellData/group"], self.group_names)
 
     # ------------------------------------------------------------------ the list
 
@@ -176,11 +177,11 @@ class _Series:
             kind, _, field_name = name.partition("/")
             if field_name:
                 rows = [frame.datasets[name][0][0] for frame in frames]
-                steps[f"{kind}Offsets/{field_name}"] = _starts(rows)
+                steps.require_group(f"{kind}Offsets")[field_name] = _starts(rows)
         for name in self.shared:
             kind, _, field_name = name.partition("/")
             if field_name:
-                steps[f"{kind}Offsets/{field_name}"] = none
+                steps.require_group(f"{kind}Offsets")[field_name] = none
 
     # ------------------------------------------------------------------ resuming
 
@@ -212,7 +213,9 @@ class _Series:
             fields = (f"{kind}/{name}" for kind in KINDS for name in root[kind])
             for name in [*(cells or ("Points",)), *fields]:
                 if name not in self.shared:
-                    frame.datasets[name] = (root[name].shape, root[name].dtype)
+                    values = root[name][()]  # its checksums are looked at
+                    frame.datasets[name] = (values.shape, values.dtype)
+            names_of_groups(root)
         return frame
 
 
@@ -256,7 +259,7 @@ class FrameFiles(_Series):
             for name, values in content.items():
                 _put(hdf5, name, np.asarray(values))
             if "CellData/group" in content:
-                hdf5["CellData/group"].attrs["names"] = list(group_names)
+                _put_names(hdf5["CellData/group"], group_names)
         super().__init__(path, group_names, keep)
 
     def append(
@@ -319,7 +322,7 @@ class SurfaceFiles(_Series):
 def _replaced_hdf5(path: Path) -> Iterator[h5py.File]:
     """Make an HDF5 file in memory, and replace the one on the disk by it in one write."""
     content = io.BytesIO()
-    with h5py.File(content, "w") as hdf5:
+    with h5py.File(content, "w", libver=FORMAT) as hdf5:
         yield hdf5
     with replaced(path) as file:
         file.write(content.getbuffer())
@@ -343,12 +346,27 @@ def _starts(counts: Sequence[int]) -> NDArray[np.int64]:
 
 def _put(root: h5py.Group, name: str, values: NDArray) -> None:
     """Write a dataset with checksums, which HDF5 keeps for chunks only."""
-    if values.nbytes < UNCHECKED_BYTES:
+    if not values.size:
         root.create_dataset(name, data=values)
         return
-    rows = max(1, CHUNK_BYTES // max(values[0].nbytes, 1))
+    rows = max(1, CHUNK_BYTES // values[0].nbytes)
     chunks = (min(rows, len(values)), *values.shape[1:])
     root.create_dataset(name, data=values, chunks=chunks, fletcher32=True)
+
+
+def _put_names(dataset: h5py.Dataset, names: Sequence[str]) -> None:
+    """Write names of groups, all of one length: HDF5 keeps no checksum of others."""
+    texts = [name.encode() for name in names]
+    length = max(map(len, texts), default=1)
+    dataset.attrs["names"] = np.array(texts, h5py.string_dtype("utf-8", length))
+
+
+def names_of_groups(root: h5py.Group) -> list[str]:
+    """By the numbers of the field "group" of a frame; empty where it does not tell."""
+    if "CellData/group" not in root:
+        return []
+    names = root["CellData/group"].attrs.get("names", [])
+    return [name.decode() if isinstance(name, bytes) else str(name) for name in names]
 
 
 def _put_virtual(root: h5py.Group, name: str, folder: str, frames: Sequence[_Frame]) -> None:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
+import zlib
 from collections.abc import Sequence
+from contextlib import suppress
 from numbers import Integral
 from pathlib import Path
 
 from cdem.whole_files import disk_error, replaced, sync
+
+SUM_DIGITS = 8
+"""Hexadecimal digits of a CRC-32."""
 
 
 class HistoryFile:
@@ -17,22 +22,32 @@ class HistoryFile:
     Args:
         path: The .csv file.
         columns: Names with units.
-        keep_rows: Rows to keep of an existing file; None for a new one.
+        keep: Checksums of the rows to keep of an existing file, as `sums`; None for a new one.
 
     Attributes:
         rows: Rows that it holds.
         lost: Rows that were to be kept and are damaged or not there.
+        sums: CRC-32 of each row, `SUM_DIGITS` hexadecimal digits each.
     """
 
-    def __init__(self, path: Path, columns: Sequence[str], keep_rows: int | None = None) -> None:
+    def __init__(self, path: Path, columns: Sequence[str], keep: str | None = None) -> None:
         self.path = path
-        rows = [] if keep_rows is None else self._read(len(columns), keep_rows)
-        self.rows, self.lost = len(rows), (keep_rows or 0) - len(rows)
-        content = "".join([_line(columns), *rows]).encode()
-        if keep_rows is None or not path.is_file() or path.read_bytes() != content:
+        rows = [] if keep is None else self._read(len(columns), keep)
+        self._sums = [_sum(row) for row in rows]
+        self.lost = len(keep or "") // SUM_DIGITS - len(rows)
+        content = b"".join([_line(columns).encode(), *rows])
+        if keep is None or not path.is_file() or path.read_bytes() != content:
             with replaced(path) as file:
                 file.write(content)
         self._size = len(content)
+
+    @property
+    def rows(self) -> int:
+        return len(self._sums)
+
+    @property
+    def sums(self) -> str:
+        return "".join(self._sums)
 
     def append(self, row: Sequence[float]) -> None:
         """Add a row; numbers are written so that they read back to the same bits.
@@ -48,29 +63,38 @@ class HistoryFile:
                 file.truncate()
         except OSError as error:
             raise disk_error(self.path, error) from error
-        self.rows, self._size = self.rows + 1, self._size + len(line)
+        self._sums.append(_sum(line))
+        self._size += len(line)
 
     def sync(self) -> None:
         """Make sure that all rows are on the disk."""
         sync(self.path)
 
-    def _read(self, width: int, keep_rows: int) -> list[str]:
-        """The first rows of the file, without those that are damaged."""
+    def _read(self, width: int, keep: str) -> list[bytes]:
+        """The rows of the file that have the checksums, in their order."""
         if not self.path.is_file():
             return []
-        lines = self.path.read_bytes().decode(errors="replace").split("\n")
+        sums = [keep[k : k + SUM_DIGITS] for k in range(0, len(keep), SUM_DIGITS)]
+        rows: list[bytes] = []
+        at = 0  # of the next row; two rows may be the same, at the end and begin of stages
         # the text after the last line end was being written when the run was killed
-        return [f"{line}\n" for line in lines[1:-1][:keep_rows] if _is_row(line, width)]
+        for line in self.path.read_bytes().split(b"\n")[1:-1]:
+            if at == len(sums):
+                break
+            row = line + b"\n"
+            with suppress(ValueError):  # it is none of them
+                place = sums.index(_sum(row), at)
+                if row.count(b",") == width - 1:
+                    rows.append(row)
+                    at = place + 1
+        return rows
+
+
+def _sum(row: bytes) -> str:
+    return f"{zlib.crc32(row):0{SUM_DIGITS}x}"
 
 
 def _line(cells: Sequence[object]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerow(cells)
     return text.getvalue()
-
-
-def _is_row(line: str, width: int) -> bool:
-    try:
-        return len([float(cell) for cell in line.split(",")]) == width
-    except ValueError:
-        return False

@@ -14,6 +14,7 @@ from cdem._native import digests
 from cdem._version import __version__
 from cdem.errors import CdemError
 from cdem.run.flow_recorder import PREFIX
+from cdem.run.history_file import SUM_DIGITS
 from cdem.run.state import Attributes, RunState, StageState
 
 
@@ -106,7 +107,9 @@ def wrong_numbers(run: RunState, attributes: Attributes) -> str:
     if not (core["dt"] > 0 and core["time"] >= 0 and core["step"] >= max(core["built_step"], 0)):
         return "its time, step or number of steps cannot be"
     begun = attributes.stage_index + (attributes.stage is not None)
-    if attributes.rows > core["step"] + 2 * begun + 1 or attributes.frames > attributes.rows:
+    if len(attributes.row_sums) != SUM_DIGITS * attributes.rows:
+        return "its rows and their checksums are not as many"
+    if max(attributes.rows, attributes.frames) > core["step"] + 2 * begun + 1:
         return f"it counts {attributes.rows} rows and {attributes.frames} frames"
     if len(attributes.finished_stages) != attributes.stage_index:
         return "it does not tell of the stages that have ended"

@@ -112,7 +112,7 @@ class Results:
     def reopen(self, sim: RunState, attributes: Attributes) -> None:
         """Go on with the files of an interrupted run, cut back to its checkpoint."""
         self.frames = attributes.frames
-        self._open_series(sim, self.frames, attributes.rows)
+        self._open_series(sim, self.frames, attributes.row_sums)
         write_text(self.folder / "case.yaml", sim.given_case.dump())
         for note in self.notes:
             self.log(f"warning: {note}")
@@ -134,7 +134,7 @@ class Results:
         """Let another run write into the folder."""
         self._lock.release()
 
-    def _open_series(self, sim: RunState, frames: int | None, rows: int | None) -> None:
+    def _open_series(self, sim: RunState, frames: int | None, rows: str | None) -> None:
         self.tracks = tracks(sim)
         columns = [
             "time [s]", "step",
@@ -144,7 +144,10 @@ class Results:
         columns += [name for name, _ in self.tracks]
         self._history = HistoryFile(self.folder / "histories.csv", columns, rows)
         if self._history.lost:
-            self.notes.append(f"histories.csv: {self._history.lost} rows are lost (damaged)")
+            self.notes.append(
+                f"histories.csv: {self._history.lost} rows are lost (damaged or missing); the run goes "
+                "on without them: to have them, run the case again in another folder (-o)"
+            )
         if not sim.case.output.frames:
             return
         static = values_of(sim, (f for f in OUTPUT_FIELDS if f.frames == "always"))
@@ -156,7 +159,9 @@ class Results:
         for series in self._series():
             if series.lost:
                 self.notes.append(
-                    f"{series.path.name}: frames {_ranges(series.lost)} are lost (damaged or missing)"
+                    f"{series.path.name}: frames {_ranges(series.lost)} are lost (damaged or missing); "
+                    f"move those files in {series.folder.name}/ away to read the others; to have them, "
+                    "run the case again in another folder (-o)"
                 )
 
     def _series(self) -> list[FrameFiles | SurfaceFiles]:
@@ -227,7 +232,7 @@ class Results:
             series.sync()
         arrays = dict(sim.core.fields())
         arrays |= sim.kept
-        attributes = sim.attributes(self._history.rows, self.frames)
+        attributes = sim.attributes(self._history.sums, self._history.rows, self.frames)
         write_checkpoint(self.folder, arrays, attributes.model_dump_json())
         self._checkpoint = self._stat()
 

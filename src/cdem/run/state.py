@@ -111,6 +111,7 @@ class Attributes(BaseModel):
         overlap, stage_index, stage, ended_stage, finished_stages, wall_time,
         departures, settings: As in `RunState`.
         rows: Rows of the histories.
+        row_sums: Their checksums, as in `HistoryFile`.
         frames: Frames recorded.
     """
 
@@ -130,6 +131,7 @@ class Attributes(BaseModel):
     departures: list[Departure]
     settings: list[Setting] = Field(default_factory=list)
     rows: NonNegativeInt
+    row_sums: str
     frames: NonNegativeInt
 
     @field_validator("stage", "ended_stage", mode="before")
@@ -411,7 +413,7 @@ class RunState:
         born = {"simulation.born": self.build.born} if adds else {}
         return {"simulation.reference": self.reference} | born
 
-    def attributes(self, rows: int, frames: int) -> Attributes:
+    def attributes(self, row_sums: str, rows: int, frames: int) -> Attributes:
         """What a checkpoint keeps besides arrays, after so many rows of histories and frames."""
         return Attributes(
             version=__version__,
@@ -428,6 +430,7 @@ class RunState:
             departures=self.departures,
             settings=self.settings,
             rows=rows,
+            row_sums=row_sums,
             frames=frames,
         )
 

@@ -10,9 +10,12 @@ import sys
 import time
 from pathlib import Path
 
+import h5py
 import pytest
 
 import cdem
+from cdem.errors import CdemError
+from cdem.output.reader import FrameSeries, SurfaceSeries
 from cdem.run.checkpoint import read_checkpoint, write_checkpoint
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools/torture"))
@@ -173,6 +176,36 @@ def test_lost_tails_of_histories_and_frames_are_told_and_the_run_goes_on(run_cli
         "histories.csv differs",
         "surface.vtkhdf differs",
     }
+
+
+@pytest.mark.parametrize("series", ["frames", "surface"])
+def test_a_flipped_bit_of_a_frame_is_told_at_resume_and_when_it_is_read(run_cli, stopped, series):
+    path = stopped / series / "frame-0001.vtkhdf"
+    with h5py.File(path) as file:
+        place = file["VTKHDF/Points"].id.get_chunk_info(0).byte_offset
+    content = bytearray(path.read_bytes())
+    content[place] ^= 1
+    path.write_bytes(content)
+    status, _, err = run_cli(*WORDS[:-1], "--resume")
+    assert status == 0 and "Traceback" not in err
+    assert f"{series}.vtkhdf: frames 1 are lost" in err
+    assert "move those files in" in err
+    frames = FrameSeries(stopped) if series == "frames" else SurfaceSeries(stopped)
+    with pytest.raises(CdemError, match=r"frame-0001.vtkhdf: is damaged .* move it away"):
+        frames.points(1) if isinstance(frames, FrameSeries) else frames[1]
+    path.unlink()
+    assert len((FrameSeries if series == "frames" else SurfaceSeries)(stopped)) == len(frames) - 1
+
+
+def test_a_flipped_bit_of_a_history_is_told_and_its_row_is_lost(run_cli, folder, stopped):
+    path = stopped / "histories.csv"
+    lines = path.read_bytes().splitlines(keepends=True)
+    lines[1] = bytes([lines[1][0] ^ 1]) + lines[1][1:]  # a digit becomes another
+    path.write_bytes(b"".join(lines))
+    status, _, err = run_cli(*WORDS[:-1], "--resume")
+    assert status == 0 and "histories.csv: 1 rows are lost" in err
+    whole = (unbroken(folder) / "histories.csv").read_bytes().splitlines()
+    assert path.read_bytes().splitlines() == [whole[0], *whole[2:]]
 
 
 def test_two_runs_cannot_write_into_one_folder(run_cli, folder):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cdem.errors import DiskError
-from cdem.run.history_file import HistoryFile
+from cdem.run.history_file import SUM_DIGITS, HistoryFile
 
 COLUMNS = ["time [s]", "step", "block.velocity_x [m/s]"]
 
@@ -37,7 +37,7 @@ def test_a_resumed_history_drops_the_rows_after_the_checkpoint(tmp_path):
         history.append([0.1 * step, step, 1.0])
     with path.open("a") as file:
         file.write("0.4,")  # killed here
-    resumed = HistoryFile(path, COLUMNS, keep_rows=2)
+    resumed = HistoryFile(path, COLUMNS, keep=history.sums[: 2 * SUM_DIGITS])
     resumed.append([0.2, 2, 5.0])
     assert steps_of(path) == ["step", "0", "1", "2"]
     assert (resumed.rows, resumed.lost) == (3, 0)
@@ -54,9 +54,13 @@ def test_a_resumed_history_drops_the_rows_after_the_checkpoint(tmp_path):
 )
 def test_a_damaged_history_is_mended_and_lost_rows_are_counted(tmp_path, content, lost):
     path = tmp_path / "h.csv"
+    whole = HistoryFile(path, COLUMNS)
+    for step in range(3):
+        whole.append([0.1 * step, step, 1.0])
+    path.unlink()
     if content is not None:
         path.write_bytes(content)
-    history = HistoryFile(path, COLUMNS, keep_rows=3)
+    history = HistoryFile(path, COLUMNS, keep=whole.sums)
     history.append([0.3, 3, 1.0])
     assert (history.rows, history.lost) == (4 - lost, lost)
     assert steps_of(path)[0] == "step" and steps_of(path)[-1] == "3"
@@ -77,3 +81,29 @@ def test_a_row_that_could_not_be_written_leaves_no_trace(tmp_path, monkeypatch):
     path.chmod(0o600)
     history.append([0.1, 1, 1.0])
     assert steps_of(path) == ["step", "0", "1"]
+
+
+def test_a_flipped_bit_anywhere_loses_the_rows_that_it_touches(tmp_path):
+    path = tmp_path / "h.csv"
+    history = HistoryFile(path, COLUMNS)
+    for step in range(4):
+        history.append([0.1 * step, step, 1.0])
+    whole = path.read_bytes()
+    rows = whole.splitlines(keepends=True)[1:]
+    for place in range(len(whole) - sum(map(len, rows)), len(whole)):
+        for bit in range(8):
+            content = bytearray(whole)
+            content[place] ^= 1 << bit
+            path.write_bytes(content)
+            resumed = HistoryFile(path, COLUMNS, keep=history.sums)
+            kept = path.read_bytes().splitlines(keepends=True)[1:]
+            assert resumed.lost in (1, 2) and len(kept) == resumed.rows == 4 - resumed.lost
+            assert set(kept) < set(rows)
+
+
+def test_rows_that_are_the_same_are_all_kept(tmp_path):
+    path = tmp_path / "h.csv"
+    history = HistoryFile(path, COLUMNS)
+    for step in (0, 1, 1, 2):
+        history.append([0.1 * step, step, 1.0])
+    assert HistoryFile(path, COLUMNS, keep=history.sums).lost == 0
