@@ -51,7 +51,7 @@ SMALL = 300
 # ------------------------------------------------------------------ inputs
 
 
-def make_case(rng: random.Random, path: Path) -> tuple[str, bytes]:
+def make_case(rng: random.Random, path: Path, seeds: list[Path]) -> tuple[str, bytes]:
     """A mutated case, study or landslide file: its name, and its bytes."""
     text = path.read_text()
     if rng.random() < 0.6:
@@ -60,8 +60,11 @@ def make_case(rng: random.Random, path: Path) -> tuple[str, bytes]:
         yaml, out = YAML(typ="safe", pure=True), io.StringIO()
         tree = yaml.load(text)
         for _ in range(rng.choice((1, 1, 1, 2, 4))):
-            change = mutations.scale_number if rng.random() < 0.5 else mutations.mutate_tree
-            tree = change(rng, tree) if tree else tree
+            change = rng.choice((mutations.scale_number, mutations.mutate_tree, mutations.graft))
+            if change is mutations.graft:
+                tree = mutations.graft(rng, tree, yaml.load(rng.choice(seeds).read_text()))
+            elif tree:
+                tree = change(rng, tree)
         yaml.sort_base_mapping_type_on_output = False
         yaml.dump(tree, out)
         text = out.getvalue()
@@ -71,7 +74,7 @@ def make_case(rng: random.Random, path: Path) -> tuple[str, bytes]:
     return path.name, mutations.encode(rng, text)
 
 
-def make_file(rng: random.Random, path: Path) -> tuple[str, bytes]:
+def make_file(rng: random.Random, path: Path, _: list[Path]) -> tuple[str, bytes]:
     """A mutated mesh, body or terrain file: its name, and its bytes."""
     raw, name = path.read_bytes(), path.name
     for _ in range(rng.choice((1, 1, 1, 2, 4))):
@@ -88,7 +91,7 @@ def make(kind: str, seed: int, number: int, seeds: list[Path]) -> tuple[str, byt
     path = rng.choice(seeds)
     if path.suffix in ASIDE and rng.random() < 0.7:  # a process for each takes a second
         path = rng.choice(seeds)
-    return (make_case if kind == "cases" else make_file)(rng, path)
+    return (make_case if kind == "cases" else make_file)(rng, path, seeds)
 
 
 # ------------------------------------------------------------------ what is done with one
