@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 SOLID = """\
@@ -35,6 +36,8 @@ materials:
     softening: {tensile_strength: [[0, 1 MPa], [1, 0]], joint_cohesion: [[0, 1e5], [1, 0]],
       joint_friction_angle: [[0, 20], [1, 10]], joint_dilation_angle: [[0, 2], [1, 0]],
       joint_tensile_strength: [[0, 1e4], [1, 0]]}, tensile_strength: 1 MPa}
+  broken: {density: 2500, young_modulus: 1 GPa, poisson_ratio: 0.3, law: hoek-brown,
+    uniaxial_strength: 50 MPa, mb: 1, s: 0.01, a: 0.5}
 groups:
   low: {material: stiff, fix: [x, y, z], gravity: false}
   rock: {material: soft}
@@ -141,34 +144,44 @@ USUAL = {"deg": 25, "Pa": 1e5, "1": 1, "m": 0.01, "J/m2": 50, "m/s": 1, "m/s2": 
 """Values of parameters by unit."""
 OF_LAWS: dict[str, dict[str, Any]] = {
     "hoek-brown": {"uniaxial_strength": 5e7, "gsi": 50, "mi": 10, "disturbance": 0.5},
-    "barton-bandis": {"jrc": 8, "jcs": 5e7, "uniaxial_strength": 6e7, "aperture": 1e-4},
+    "residual": {"residual_cohesion": 1e4},
     "softening": {"residual_cohesion": 1e4},
+    "barton-bandis": {"jrc": 8, "jcs": 5e7, "uniaxial_strength": 6e7, "aperture": 1e-4},
     "continuously-yielding": {"initial_friction_angle": 45},
 }
 """Values that the usual ones do not suit."""
+IN_PARTS = {"mb", "s", "a"}
+"""Parameters that do not go with others of their law: `SOLID` has them."""
 
 
 def of_laws() -> dict[str, dict[str, Any]]:
-    """A case for each law, by its name: every parameter given that has no default."""
+    """A case for each law, by its name: every parameter is given."""
     from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
 
     found = {}
-    for laws, place in ((BLOCK_LAWS, "materials"), (INTERFACE_LAWS, "interfaces")):
+    for laws, place, name in (
+        (BLOCK_LAWS, "materials", "rock"),
+        (INTERFACE_LAWS, "interfaces", "default"),
+    ):
         for law in laws.values():
             case = _two_blocks()
-            own = OF_LAWS.get(law.name, {})
-            usual = {p.name: USUAL[p.unit] for p in law.parameters if _is_usual(p)}
-            part = case[place]["rock" if place == "materials" else "default"]
-            if place == "interfaces":
-                del part["friction_angle"]
-            part |= {"law": law.name} | (own if "gsi" in own else usual | own)
+            if laws is INTERFACE_LAWS:
+                case["interfaces"]["default"] = {}
+            case[place][name] |= {"law": law.name}
+            case[place][name] |= {
+                p.name: _value(p) for p in law.parameters if p.name not in IN_PARTS
+            }
+            case[place][name] |= OF_LAWS.get(law.name, {})
             found[law.name] = case
     return found
 
 
-def _is_usual(parameter: Any) -> bool:
-    choice = parameter.choices or parameter.unit not in USUAL
-    return not choice and (parameter.is_required or parameter.default == 0)
+def _value(parameter: Any) -> Any:
+    """A usual value of a parameter, of a word the first."""
+    if parameter.choices:
+        return parameter.choices.split()[0]
+    default = parameter.default
+    return default if default and math.isfinite(default) else USUAL[parameter.unit]
 
 
 def _two_blocks() -> dict[str, Any]:
