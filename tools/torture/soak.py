@@ -138,7 +138,9 @@ def tell(name: str, state: State) -> bool:
         if len(seen) >= LONG
     ]
     if not halves:
-        print(f"{name}: no process was long enough to judge its memory; begin anew")
+        print(
+            f"{name}: no process was long enough to judge its memory; remove its state, and run again"
+        )
         return False
     early, late = max(halves, key=lambda half: half[1] / half[0])
     print(

@@ -30,7 +30,7 @@ class State:
         if path and path.exists():
             found = json.loads(path.read_text())
             if found["asked"] != asked:
-                sys.exit(f"{path} is of {found['asked']}, not of {asked}; remove it to begin anew")
+                sys.exit(f"{path} is of {found['asked']}, not of {asked}; remove it to begin again")
             self.known, self._commits = found["known"], found["commits"]
 
     def keep(self) -> None:
