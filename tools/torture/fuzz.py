@@ -137,6 +137,8 @@ def _few_planes(case: Any, boxes: list[Any]) -> bool:
     """Whether the joints of a case are some dozens of planes."""
     joints, bodies = case.model.joints, [*case.model.blocks, case.model]
     lengths = [x for box in boxes for x in box.size]
+    solids = [b.polyhedron.vertices for b in case.model.blocks if b.polyhedron is not None]
+    lengths += [max(x) - min(x) for corners in solids for x in zip(*corners, strict=True)]
     lengths += [abs(x) for body in bodies for x in body.translate or []]
     lengths += [abs(x) for joint in joints for x in joint.origin]
     near = all(j.spacing is None or 8 * j.spacing > max(lengths) for j in joints)

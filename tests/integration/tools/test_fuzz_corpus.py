@@ -72,3 +72,14 @@ def test_every_law_has_a_case(seeds, name):
     case = Case.load(seeds / f"law-{name}.yaml")
     laws = {case.materials["rock"].law, case.interfaces.default.law}
     assert name in laws
+
+
+@pytest.mark.parametrize(("far", "small"), [(14.0, True), (14_000.0, False)])
+def test_hundreds_of_planes_through_a_polyhedron_are_not_small(seeds, monkeypatch, far, small):
+    """To cut thousands of blocks takes seconds, as it should: no model is made of such a case."""
+    monkeypatch.syspath_prepend(str(TOOLS))
+    import fuzz
+
+    path = seeds / "templates-bedded_slope.yaml"
+    case = Case.load(path, [f"model.blocks.0.polyhedron.vertices.2.0={far}"])
+    assert fuzz._is_small(case) == small
