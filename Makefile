@@ -51,15 +51,30 @@ coverage: setup
 mutants: setup
 	$(BIN)/python tools/mutants.py $(T)
 
-# What may happen to a run and to its input; see docs/results.md.
-torture: build
-	$(BIN)/python tools/torture/damage.py
-	$(BIN)/python tools/torture/fuzz.py cases 20000
-	$(BIN)/python tools/torture/fuzz.py files 10000
-	$(BIN)/python tools/torture/kills.py
-	$(BIN)/python tools/torture/soak.py small
-	$(BIN)/python tools/torture/soak.py landslide
-	$(BIN)/python tools/torture/faults.py
+# What may happen to a run and to its input, in parts; see docs/results.md.
+PARTS := damage cases files kills small landslide faults-kill faults-EIO faults-ENOSPC
+TORTURES := $(PARTS:%=torture-%)
+STATE = --state build/torture/$(@:torture-%=%).json
+.PHONY: $(TORTURES)
+torture: $(TORTURES)
+
+torture-damage: build
+	$(BIN)/python tools/torture/damage.py $(STATE)
+
+torture-cases: build
+	$(BIN)/python tools/torture/fuzz.py cases 20000 --out build/torture/cases $(STATE)
+
+torture-files: build
+	$(BIN)/python tools/torture/fuzz.py files 10000 --out build/torture/files $(STATE)
+
+torture-kills: build
+	$(BIN)/python tools/torture/kills.py $(STATE)
+
+torture-small torture-landslide: build
+	$(BIN)/python tools/torture/soak.py $(@:torture-%=%) $(STATE)
+
+torture-faults-kill torture-faults-EIO torture-faults-ENOSPC: build
+	$(BIN)/python tools/torture/faults.py --how $(@:torture-faults-%=%) $(STATE)
 
 # The tests of the core by clang: wrong accesses, undefined behaviour, races. Needs libomp.
 sanitize: setup

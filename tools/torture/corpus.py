@@ -1,4 +1,7 @@
-"""Sound files to start from: all cases of the repository, and a small file of every format read."""
+"""Sound files to start from: all cases of the repository, and a small file of every format read.
+
+Cases that no example has the like of are in `parts_of_cases.py`.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,14 @@ import json
 import shutil
 import sys
 from pathlib import Path
+from typing import Any
+
+import parts_of_cases
+from ruamel.yaml import YAML
 
 ROOT = Path(__file__).parent.parent.parent
+FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+"""Of a cube."""
 JOINTED = """\
 model:
   blocks:
@@ -38,8 +47,9 @@ histories: [{name: h, group: a, quantities: [velocity, energy]}]
 def write_cases(folder: Path) -> None:
     """Write cases, studies and landslide files, and the small files that they name."""
     places = [ROOT / "src/cdem/templates", ROOT / "src/cdem/verification", ROOT / "examples"]
-    sys.path.insert(0, str(ROOT / "tests"))
+    sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/regression")]
     from shared import cases
+    from test_resume_stages import SCENES
 
     found = [path for place in places for path in sorted(place.rglob("*.yaml"))]
     for path in found:
@@ -49,9 +59,20 @@ def write_cases(folder: Path) -> None:
         if isinstance(text, str) and not name.startswith("_"):
             (folder / f"tests-{name.lower()}.yaml").write_text(text)
     (folder / "tests-jointed.yaml").write_text(JOINTED)
+    (folder / "parts-solid.yaml").write_text(parts_of_cases.SOLID)
+    (folder / "parts-joints.yaml").write_text(parts_of_cases.JOINTS)
+    trees = {f"scene-{name}": scene() for name, scene in SCENES.items()}
+    trees |= {f"law-{name}": case for name, case in parts_of_cases.of_laws().items()}
+    for name, tree in trees.items():
+        YAML().dump(tree, folder / f"{name}.yaml")
+    for name, text in parts_of_cases.BESIDE.items():
+        (folder / name).write_text(text)
     (folder / "cube.yaml").write_text(cases.CUBE)
     (folder / "case.yaml").write_text(cases.CUBE)
     shutil.copy(ROOT / "src/cdem/templates/slope.msh", folder)
+    skin = _cube()
+    (folder / "cube.obj").write_text(skin[0])
+    skin[1].write(folder / "cube.stl", binary=False)
 
 
 def write_files(folder: Path) -> None:
@@ -109,23 +130,33 @@ def _write_meshes(folder: Path) -> None:
             meshio.write(folder / f"mesh-{name}", mesh, file_format=form, **options)
 
 
-def _write_bodies(folder: Path) -> None:
-    import meshio
-    import numpy as np
-    import pyvista
-
+def _corners() -> Any:
     from cdem.mesh.primitives import box
 
-    corner = box("a", (1, 1, 1)).points
-    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    lines = [f"v {x:g} {y:g} {z:g}" for x, y, z in corner]
-    lines += ["f " + " ".join(str(v + 1) for v in face) for face in faces]
-    (folder / "body-a.obj").write_text("\n".join(lines) + "\n")
-    triangles = [(f[0], f[m], f[m + 1]) for f in faces for m in (1, 2)]
-    skin = meshio.Mesh(corner, [("triangle", np.array(triangles))])
+    return box("a", (1, 1, 1)).points
+
+
+def _cube() -> tuple[str, Any]:
+    """Text of a cube as .obj, and its skin of triangles."""
+    import meshio
+    import numpy as np
+
+    corners = _corners()
+    lines = [f"v {x:g} {y:g} {z:g}" for x, y, z in corners]
+    lines += ["f " + " ".join(str(v + 1) for v in face) for face in FACES]
+    triangles = [(f[0], f[m], f[m + 1]) for f in FACES for m in (1, 2)]
+    return "\n".join(lines) + "\n", meshio.Mesh(corners, [("triangle", np.array(triangles))])
+
+
+def _write_bodies(folder: Path) -> None:
+    import pyvista
+
+    corner = _corners()
+    text, skin = _cube()
+    (folder / "body-a.obj").write_text(text)
     skin.write(folder / "body-a.stl", binary=False)
     skin.write(folder / "body-b.stl", binary=True)
-    row = [len(faces), *(v for face in faces for v in (len(face), *face))]
+    row = [len(FACES), *(v for face in FACES for v in (len(face), *face))]
     grid = pyvista.UnstructuredGrid([len(row), *row], [pyvista.CellType.POLYHEDRON], corner)
     for name, binary in (("a.vtu", False), ("b.vtu", True), ("a.vtk", False), ("b.vtk", True)):
         grid.save(folder / f"body-{name}", binary=binary)

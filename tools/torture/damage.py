@@ -20,6 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 from runs import CASE, command, differences, in_child, run_words
+from state import State, add_option
 
 REFUSED = ("is damaged", "another version of cdem", "belongs to another model")
 RESUMED = 50  # of so many flipped bits one is resumed to the end
@@ -31,10 +32,11 @@ class Damages:
     Args:
         folder: Where to work.
         seed: Of the random places.
+        state: What was done before.
     """
 
-    def __init__(self, folder: Path, seed: int) -> None:
-        self.random = random.Random(seed)
+    def __init__(self, folder: Path, seed: int, state: State) -> None:
+        self.seed, self.state, self.random = seed, state, random.Random()
         self.case, self.said = folder / "case.yaml", folder / "stderr"
         self.whole, self.stopped, self.trial = (
             folder / "whole",
@@ -65,14 +67,15 @@ class Damages:
         words = [word for word in run_words(self.case, self.trial) if word != "--quiet"]
         return in_child(lambda: command(*words, "--resume"), self.said)
 
-    def flip(self, count: int) -> dict[str, int]:
+    def flip(self, count: int) -> None:
         """Flip one bit after the other."""
         from cdem.run.checkpoint import DamagedError, read_checkpoint
 
         content = (self.stopped / "checkpoint.h5").read_bytes()
-        found = {"noticed": 0, "resumed to the same bytes": 0, "wrong": 0}
+        found = self.state.known["flipped"]
         path = self.trial.with_name("flipped.h5")
-        for number in range(count):
+        for number in range(found["done"], count):
+            self.random.seed(f"bit {self.seed} {number}")
             damaged = bytearray(content)
             damaged[self.random.randrange(len(content))] ^= 1 << self.random.randrange(8)
             path.write_bytes(damaged)
@@ -86,12 +89,14 @@ class Damages:
                 same = status == 0 and not differences(self.whole, self.trial)
                 same = same and "going on from the one before" in said
                 found["resumed to the same bytes" if same else "wrong"] += 1
-        return found
+            found["done"] = number + 1
+            self.state.keep()
 
-    def bend(self, count: int) -> dict[str, int]:
+    def bend(self, count: int) -> None:
         """Change structure under a right checksum, one array or attribute after the other."""
-        found = {"refused": 0, "to the same bytes": 0, "wrong": 0}
-        for _ in range(count):
+        found = self.state.known["bent"]
+        for number in range(found["done"], count):
+            self.random.seed(f"bend {self.seed} {number}")
             what: list[str] = []
             status, said = self.resume(lambda path, what=what: what.append(self._bend(path)))
             if status == 1 and "Traceback" not in said and any(one in said for one in REFUSED):
@@ -101,7 +106,8 @@ class Damages:
             else:
                 found["wrong"] += 1
                 print(f"{what[0]}: status {status}, {said.strip()[-300:]}")
-        return found
+            found["done"] = number + 1
+            self.state.keep()
 
     def _bend(self, path: Path) -> str:
         """Change one thing in a checkpoint and give it a right checksum; says what."""
@@ -167,9 +173,24 @@ def main() -> None:
     parser.add_argument("--bits", type=int, default=5000, help="bits to flip")
     parser.add_argument("--bends", type=int, default=500, help="structures to change")
     parser.add_argument("--seed", type=int, default=1)
+    add_option(parser)
     wants = parser.parse_args()
+    fresh = {
+        "flipped": {"done": 0, "noticed": 0, "resumed to the same bytes": 0, "wrong": 0},
+        "bent": {"done": 0, "refused": 0, "to the same bytes": 0, "wrong": 0},
+    }
+    state = State(wants.state, [wants.bits, wants.bends, wants.seed], fresh)
+    flipped, bent = state.known["flipped"], state.known["bent"]
+    if flipped["done"] < wants.bits or bent["done"] < wants.bends:
+        damage(state, wants.bits, wants.bends, wants.seed)
+    print(f"flipped bits: {flipped}; structures: {bent} ({state.commits()})")
+    sys.exit(flipped["wrong"] + bent["wrong"] > 0)
+
+
+def damage(state: State, bits: int, bends: int, seed: int) -> None:
+    """Do the damage that is left."""
     with tempfile.TemporaryDirectory() as place:
-        damages = Damages(Path(place).resolve(), wants.seed)
+        damages = Damages(Path(place).resolve(), seed, state)
         told = damages.said.with_suffix(".json")
 
         def tell() -> int:
@@ -179,9 +200,8 @@ def main() -> None:
         in_child(tell, damages.said)
         INDICES.update(json.loads(told.read_text()))
         assert h5py and INDICES
-        flipped, bent = damages.flip(wants.bits), damages.bend(wants.bends)
-    print(f"{wants.bits} flipped bits: {flipped}; {wants.bends} structures: {bent}")
-    sys.exit(flipped["wrong"] + bent["wrong"] > 0)
+        damages.flip(bits)
+        damages.bend(bends)
 
 
 if __name__ == "__main__":

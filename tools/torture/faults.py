@@ -17,6 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 from runs import CASE, command, differences, in_child, opens, run_words
+from state import State, add_option
 
 HERE = Path(__file__).parent
 HOWS = {"kill": 0, "EIO": errno.EIO, "ENOSPC": errno.ENOSPC}
@@ -112,7 +113,24 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--every", type=int, default=1, help="try one call of so many")
     parser.add_argument("--how", choices=HOWS, action="append", help="by default all of them")
+    add_option(parser)
     wants = parser.parse_args()
+    hows = wants.how or list(HOWS)
+    fresh = {"calls": 0, "done": dict.fromkeys(hows, 0), "same": 0, "lost": 0, "wrong": 0}
+    state = State(wants.state, [wants.every, hows], fresh)
+    if not state.known["calls"] or min(state.known["done"].values()) < state.known["calls"]:
+        break_runs(state, wants.every)
+    known = state.known
+    print(
+        f"{known['same'] + known['lost'] + known['wrong']} faults ({', '.join(hows)}) at "
+        f"{known['calls']} calls: {known['same']} runs resumed to the same bytes, {known['lost']} had "
+        f"no checkpoint yet and said so, {known['wrong']} wrong ({state.commits()})"
+    )
+    sys.exit(known["wrong"] > 0)
+
+
+def break_runs(state: State, every: int) -> None:
+    """Try the calls that are left."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place).resolve()
         if "CDEM_FAULTS" not in os.environ:
@@ -126,19 +144,16 @@ def main() -> None:
         from cdem.run import simulation  # noqa: F401
 
         trial = Trial(folder, ctypes.CDLL(os.environ["CDEM_FAULTS"]))
-        counts = dict.fromkeys(("same", "lost", "wrong"), 0)
-        for how in wants.how or HOWS:
-            for number in range(1, trial.calls + 1, wants.every):
+        known = state.known
+        known["calls"] = trial.calls
+        for how, done in known["done"].items():
+            for number in range(done + 1, trial.calls + 1, every):
                 result, why = trial.fault(number, how)
-                counts[result] += 1
+                known[result] += 1
+                known["done"][how] = min(number - 1 + every, trial.calls)
+                state.keep()
                 if result == "wrong":
                     print(f"{how} at call {number}: {why}")
-        print(
-            f"{sum(counts.values())} faults at {trial.calls} calls: {counts['same']} runs resumed to "
-            f"the same bytes, {counts['lost']} had no checkpoint yet and said so, "
-            f"{counts['wrong']} wrong"
-        )
-    sys.exit(counts["wrong"] > 0)
 
 
 if __name__ == "__main__":

@@ -29,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import corpus
 import mutations
+from state import State, add_option
 
 SLOW = 5.0
 """Seconds of processor time above which an input counts as a hang."""
@@ -51,7 +52,7 @@ SMALL = 300
 # ------------------------------------------------------------------ inputs
 
 
-def make_case(rng: random.Random, path: Path) -> tuple[str, bytes]:
+def make_case(rng: random.Random, path: Path, seeds: list[Path]) -> tuple[str, bytes]:
     """A mutated case, study or landslide file: its name, and its bytes."""
     text = path.read_text()
     if rng.random() < 0.6:
@@ -60,8 +61,11 @@ def make_case(rng: random.Random, path: Path) -> tuple[str, bytes]:
         yaml, out = YAML(typ="safe", pure=True), io.StringIO()
         tree = yaml.load(text)
         for _ in range(rng.choice((1, 1, 1, 2, 4))):
-            change = mutations.scale_number if rng.random() < 0.5 else mutations.mutate_tree
-            tree = change(rng, tree) if tree else tree
+            change = rng.choice((mutations.scale_number, mutations.mutate_tree, mutations.graft))
+            if change is mutations.graft:
+                tree = mutations.graft(rng, tree, yaml.load(rng.choice(seeds).read_text()))
+            elif tree:
+                tree = change(rng, tree)
         yaml.sort_base_mapping_type_on_output = False
         yaml.dump(tree, out)
         text = out.getvalue()
@@ -71,7 +75,7 @@ def make_case(rng: random.Random, path: Path) -> tuple[str, bytes]:
     return path.name, mutations.encode(rng, text)
 
 
-def make_file(rng: random.Random, path: Path) -> tuple[str, bytes]:
+def make_file(rng: random.Random, path: Path, _: list[Path]) -> tuple[str, bytes]:
     """A mutated mesh, body or terrain file: its name, and its bytes."""
     raw, name = path.read_bytes(), path.name
     for _ in range(rng.choice((1, 1, 1, 2, 4))):
@@ -88,7 +92,7 @@ def make(kind: str, seed: int, number: int, seeds: list[Path]) -> tuple[str, byt
     path = rng.choice(seeds)
     if path.suffix in ASIDE and rng.random() < 0.7:  # a process for each takes a second
         path = rng.choice(seeds)
-    return (make_case if kind == "cases" else make_file)(rng, path)
+    return (make_case if kind == "cases" else make_file)(rng, path, seeds)
 
 
 # ------------------------------------------------------------------ what is done with one
@@ -133,6 +137,8 @@ def _few_planes(case: Any, boxes: list[Any]) -> bool:
     """Whether the joints of a case are some dozens of planes."""
     joints, bodies = case.model.joints, [*case.model.blocks, case.model]
     lengths = [x for box in boxes for x in box.size]
+    solids = [b.polyhedron.vertices for b in case.model.blocks if b.polyhedron is not None]
+    lengths += [max(x) - min(x) for corners in solids for x in zip(*corners, strict=True)]
     lengths += [abs(x) for body in bodies for x in body.translate or []]
     lengths += [abs(x) for joint in joints for x in joint.origin]
     near = all(j.spacing is None or 8 * j.spacing > max(lengths) for j in joints)
@@ -223,17 +229,29 @@ def keep(folder: Path, number: int, name: str, raw: bytes, why: str) -> None:
 
 
 class Tally:
-    """Counts of what came of the inputs, the longest time, and the largest memory."""
+    """Counts of what came of the inputs, the longest time, and the largest memory.
 
-    def __init__(self) -> None:
-        self.counts: Counter[str] = Counter()
-        self.slowest, self.memory = 0.0, 0
+    Args:
+        state: Of what was done before, if it is kept.
+    """
 
-    def take(self, what: str, seconds: str, memory: str) -> None:
+    def __init__(self, state: State) -> None:
+        self._state = state
+        self.counts: Counter[str] = Counter(state.known["counts"])
+        self.slowest, self.memory = state.known["slowest"], state.known["memory"]
+
+    @property
+    def done(self) -> int:
+        """Inputs so far."""
+        return self.counts.total()
+
+    def take(self, what: str, seconds: str = "0", memory: str = "0") -> None:
         """Add one input."""
         self.counts[what] += 1
         self.slowest = max(self.slowest, float(seconds))
         self.memory = max(self.memory, int(memory))
+        self._state.known |= {"counts": self.counts, "slowest": self.slowest, "memory": self.memory}
+        self._state.keep()
 
     @property
     def failed(self) -> bool:
@@ -247,19 +265,20 @@ class Tally:
         return (
             f"{c['read']} read, {c['refused']} refused; {c['traceback']} tracebacks, {c['hang']} "
             f"hangs over {SLOW:g} s, {c['abort']} aborts, {c['nameless']} empty messages; slowest "
-            f"{self.slowest:.1f} s, peak memory {self.memory} MB"
+            f"{self.slowest:.1f} s, peak memory {self.memory} MB ({self._state.commits()})"
         )
 
 
-def run_batch(kind: str, seed: int, first: int, count: int, folder: Path, tally: Tally) -> int:
-    """Run inputs in a process until it ends, dies or hangs; returns how many are done."""
+def run_batch(kind: str, seed: int, count: int, folder: Path, tally: Tally) -> None:
+    """Run the next inputs in a process until it ends, dies or hangs."""
+    first = tally.done
     command = [sys.executable, __file__, kind, str(count), "--seed", str(seed)]
     command += ["--out", str(folder), "--first", str(first), "--worker"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, bufsize=1)
     assert process.stdout is not None
     said: queue.Queue[str] = queue.Queue()
     threading.Thread(target=_listen, args=(process.stdout, said), daemon=True).start()
-    done, open_now, patience = 0, -1, START
+    open_now, patience = -1, START
     try:
         while words := said.get(timeout=patience).split():
             patience = SILENT
@@ -267,18 +286,16 @@ def run_batch(kind: str, seed: int, first: int, count: int, folder: Path, tally:
                 open_now = int(words[1])
             else:
                 tally.take(*words[2:])
-                done, open_now = done + 1, -1
+                open_now = -1
     except queue.Empty:
         process.kill()
     status = process.wait()
     if open_now >= 0:
         what = "hang" if status == -9 else "abort"
-        tally.counts[what] += 1
         keep(folder, open_now, *make(kind, seed, open_now, seeds_of(folder / "seeds")), what)
-        return done + 1
-    if status or done < count:
+        tally.take(what)
+    elif status or tally.done < first + count:
         raise SystemExit(f"a worker ended with status {status} between two inputs")
-    return done
 
 
 def _listen(stream: Any, said: queue.Queue[str]) -> None:
@@ -288,15 +305,16 @@ def _listen(stream: Any, said: queue.Queue[str]) -> None:
     said.put("")
 
 
-def fuzz(kind: str, count: int, seed: int, folder: Path) -> Tally:
-    """Feed so many inputs."""
+def fuzz(kind: str, count: int, seed: int, folder: Path, path: Path | None = None) -> Tally:
+    """Feed so many inputs; `path` is of the state file."""
     seeds = folder / "seeds"
     shutil.rmtree(seeds, ignore_errors=True)
     seeds.mkdir(parents=True)
     (corpus.write_cases if kind == "cases" else corpus.write_files)(seeds)
-    tally, number = Tally(), 0
-    while number < count:
-        number += run_batch(kind, seed, number, min(BATCH, count - number), folder, tally)
+    fresh = {"counts": {}, "slowest": 0.0, "memory": 0}
+    tally = Tally(State(path, [kind, count, seed], fresh))
+    while tally.done < count:
+        run_batch(kind, seed, min(BATCH, count - tally.done), folder, tally)
     return tally
 
 
@@ -309,12 +327,13 @@ def main() -> int:
     parser.add_argument("--out", type=Path, help="folder of inputs that failed")
     parser.add_argument("--first", type=int, default=0, help=argparse.SUPPRESS)
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
+    add_option(parser)
     a = parser.parse_args()
     folder = a.out or Path(tempfile.mkdtemp(prefix="cdem-fuzz-"))
     if a.worker:
         work(a.kind, a.seed, a.first, a.count, folder)
         return 0
-    tally = fuzz(a.kind, a.count, a.seed, folder)
+    tally = fuzz(a.kind, a.count, a.seed, folder, a.state)
     where = f"; failed inputs are in {folder / 'failed'}" if tally.failed else ""
     print(f"{a.count} {a.kind}, seed {a.seed}: {tally.text()}{where}")
     return int(tally.failed)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 from runs import CASE, command, differences, in_child, opens, run_words
+from state import State, add_option
 
 
 class Kills:
@@ -21,11 +22,10 @@ class Kills:
 
     Args:
         folder: Where to work.
-        seed: Of the random moments.
     """
 
-    def __init__(self, folder: Path, seed: int) -> None:
-        self.random = random.Random(seed)
+    def __init__(self, folder: Path) -> None:
+        self.random = random.Random()
         self.case, self.said = folder / "case.yaml", folder / "stderr"
         self.whole, self.broken = folder / "whole", folder / "broken"
         self.case.write_text(CASE)
@@ -49,8 +49,9 @@ class Kills:
         os.kill(child, signal.SIGKILL)
         return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
 
-    def trial(self) -> tuple[str, str]:
-        """Kill, look and resume: "same", "lost" or "wrong", and why."""
+    def trial(self, seed: str) -> tuple[str, str]:
+        """Kill, look and resume: "same", "lost" or "wrong", and why; the seed is of the moments."""
+        self.random.seed(seed)
         shutil.rmtree(self.broken, ignore_errors=True)
         for _ in range(self.random.randint(1, 3)):
             alive = self._kill()
@@ -74,7 +75,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100, help="runs to kill")
     parser.add_argument("--seed", type=int, default=1)
+    add_option(parser)
     wants = parser.parse_args()
+    state = State(
+        wants.state, [wants.count, wants.seed], dict.fromkeys(("same", "lost", "wrong"), 0)
+    )
+    if sum(state.known.values()) < wants.count:
+        kill(state, wants.count, wants.seed)
+    counts = state.known
+    print(
+        f"{wants.count} killed runs: {counts['same']} resumed to the same bytes, {counts['lost']} had "
+        f"no checkpoint yet and said so, {counts['wrong']} wrong ({state.commits()})"
+    )
+    sys.exit(counts["wrong"] > 0)
+
+
+def kill(state: State, count: int, seed: int) -> None:
+    """Kill the runs that are left."""
     os.environ["OMP_NUM_THREADS"] = "1"  # a forked process has the threads of its parent's only
     import vtk  # noqa: F401  (once, not in every child)
 
@@ -82,19 +99,14 @@ def main() -> None:
     from cdem.output import report  # noqa: F401
     from cdem.run import simulation  # noqa: F401
 
-    counts = dict.fromkeys(("same", "lost", "wrong"), 0)
     with tempfile.TemporaryDirectory() as place:
-        kills = Kills(Path(place).resolve(), wants.seed)
-        for number in range(wants.count):
-            result, why = kills.trial()
-            counts[result] += 1
+        kills = Kills(Path(place).resolve())
+        for number in range(sum(state.known.values()), count):
+            result, why = kills.trial(f"{seed} {number}")
+            state.known[result] += 1
+            state.keep()
             if result == "wrong":
                 print(f"run {number}: {why}")
-    print(
-        f"{wants.count} killed runs: {counts['same']} resumed to the same bytes, {counts['lost']} had "
-        f"no checkpoint yet and said so, {counts['wrong']} wrong"
-    )
-    sys.exit(counts["wrong"] > 0)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 import re
 from copy import deepcopy
@@ -12,6 +13,7 @@ VALUES: list[Any] = [
     2**63, 10**30, 10**400, "", " ", "auto", "x", "2,700", "30 GPa", "30 gpa", "5 E/h", "1e999 Pa",
     "1 m9", "1 km999", "10 %", "20 deg", "2 t/m3", "-3 cm/s", "nan", ".inf", "1 / 0", "= 1 / 0",
     "= a", "../../etc/passwd", "/dev/null", "a/b", "a\nb", "a\0b", "<b>", "ä", "\u2028", "\ud7ff",
+    math.nan, math.inf, -math.inf, -7, -1e15, 10**18, [[[[]]]], ["r"], [math.nan] * 3, {1: 2},
     "2026-13-01", "x" * 5000, [], {}, [[]], [0, 0, 0], [1, 2, 3], [1, 2], ["x", "y", "z"], [None],
     [1e-200, 0, 0], [1e30, 1e30, 1e30], {"a": 1}, {"name": "a"}, {"group": "a"}, [[1, 2], [3]],
 ]  # fmt: skip
@@ -89,6 +91,21 @@ def mutate_tree(rng: random.Random, tree: Any) -> Any:
     else:
         other, there = rng.choice(places)
         node[key] = deepcopy(other[there])
+    return tree
+
+
+def graft(rng: random.Random, tree: Any, other: Any) -> Any:
+    """Nested dicts and lists with a part of others: under the same key of a dict, or anywhere."""
+    tree = deepcopy(tree)
+    node, key = rng.choice(list(_places(other)))
+    places = list(_places(tree))
+    same = [here for here, there in places if isinstance(here, dict) and there == key]
+    if isinstance(node, dict) and rng.random() < 0.7:
+        dicts = [here for here, _ in places if isinstance(here, dict)]
+        rng.choice(same or dicts or [tree])[key] = deepcopy(node[key])
+    elif places:
+        here, there = rng.choice(places)
+        here[there] = deepcopy(node[key])
     return tree
 
 

@@ -15,7 +15,11 @@ from pathlib import Path
 
 from ruamel.yaml import YAML
 
+from cdem.run.checkpoint import has_checkpoint
 from cdem.run.simulation import Simulation
+
+sys.path.insert(0, str(Path(__file__).parent))
+from state import State, add_option
 
 SMALL = """
 cdem: 1
@@ -44,7 +48,9 @@ ENERGY = 0.01
 LOOKS = 100
 """At the memory in a run."""
 GROWTH = 0.02
-"""Largest growth allowed of the memory of the process over the second half of a run."""
+"""Largest growth allowed of the memory of a process over its second half."""
+LONG = 20
+"""Looks from which on a process is judged; a run that was cut off has several."""
 
 
 def give_back() -> None:
@@ -72,7 +78,9 @@ def case_of(name: str, folder: Path) -> Path:
         speed = [[0.0, 0.0], *([0.25 + 0.5 * k, (-1.0) ** k] for k in range(2000))]
         case["loads"]["velocities"] = [{**SHAKE, "history": speed}]
     else:
-        subprocess.run([sys.executable, "-m", "cdem", "new", name, str(folder)], check=True)
+        subprocess.run(
+            [sys.executable, "-m", "cdem", "new", name, str(folder), "--force"], check=True
+        )
         case = yaml.load(path.read_text())
         case["stages"][-1]["duration"] = 1000
     yaml.dump(case, path.open("w"))
@@ -83,43 +91,64 @@ class Watch:
     """Looks at a run now and then, and stops it after a number of steps.
 
     Args:
-        simulation: It has not begun.
+        simulation: It has not begun, or goes on from a checkpoint.
         steps: Of the last stage.
+        state: What was seen before.
     """
 
-    def __init__(self, simulation: Simulation, steps: int) -> None:
-        self.simulation, self.steps = simulation, steps
-        self.worst = self.early = self.late = 0.0
-        self.looks = 0
+    def __init__(self, simulation: Simulation, steps: int, state: State) -> None:
+        self.simulation, self.steps, self.state = simulation, steps, state
+        state.known["memories"].append([])
 
     def __call__(self) -> bool:
         """Note memory [MB] and closing error; whether the run is to stop."""
-        stage = self.simulation.stage
+        stage, known = self.simulation.stage, self.state.known
         done = self.simulation.step_count - stage.start_step
         if stage.mode == "static":
             return False
-        self.worst = max(self.worst, abs(self.simulation.energies["error"]))
-        if done >= self.looks * self.steps / LOOKS:
-            self.looks += 1
-            if done < self.steps / 2:
-                self.early = max(self.early, memory())
-            else:
-                self.late = max(self.late, memory())
+        known["worst"] = max(known["worst"], abs(self.simulation.energies["error"]))
+        looks = sum(map(len, known["memories"]))
+        if done >= looks * self.steps / LOOKS:
+            known["memories"][-1].append(memory())
+            self.state.keep()
         return done >= self.steps
 
 
-def soak(name: str, steps: int, folder: Path) -> bool:
-    """Run, say what was seen, and whether it is right."""
-    simulation = Simulation(case_of(name, folder), output=folder / "results")
-    watch = Watch(simulation, steps)
-    status = simulation.run(should_stop=watch)
-    growth = watch.late / watch.early - 1
+def soak(name: str, steps: int, folder: Path, state: State) -> None:
+    """Run what is left."""
+    folder.mkdir(parents=True, exist_ok=True)
+    results = folder / "results"
+    goes_on = has_checkpoint(results)
+    case = case_of(name, folder)
+    simulation = Simulation(case, output=results, resume=goes_on, overwrite=not goes_on)
+    status = simulation.run(should_stop=Watch(simulation, steps, state))
+    state.known |= {
+        "end": f"{status} after {simulation.step_count:,} steps, {simulation.time:.4g} s",
+        "right": status == "stopped",
+    }
+    state.keep()
+
+
+def tell(name: str, state: State) -> bool:
+    """Say what was seen, and whether it is right."""
+    known = state.known
+    halves = [
+        (max(seen[: len(seen) // 2]), max(seen[len(seen) // 2 :]))
+        for seen in known["memories"]
+        if len(seen) >= LONG
+    ]
+    if not halves:
+        print(
+            f"{name}: no process was long enough to judge its memory; remove its state, and run again"
+        )
+        return False
+    early, late = max(halves, key=lambda half: half[1] / half[0])
     print(
-        f"{name}: {status} after {simulation.step_count:,} steps, {simulation.time:.4g} s; memory "
-        f"{watch.early:.1f} MB in the first half, {watch.late:.1f} MB in the second; "
-        f"largest closing error {watch.worst:.2e}"
+        f"{name}: {known['end']}; memory {early:.1f} MB in the first half, {late:.1f} MB in the "
+        f"second, of {len(known['memories'])} processes; largest closing error "
+        f"{known['worst']:.2e} ({state.commits()})"
     )
-    return status == "stopped" and growth <= GROWTH and watch.worst <= ENERGY
+    return bool(known["right"] and late / early - 1 <= GROWTH and known["worst"] <= ENERGY)
 
 
 def main() -> None:
@@ -127,10 +156,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("name", choices=STEPS)
     parser.add_argument("--steps", type=int, help="of the last stage")
+    add_option(parser)
     wants = parser.parse_args()
+    steps = wants.steps or STEPS[wants.name]
+    fresh = {"worst": 0.0, "memories": [], "end": "", "right": False}
+    state = State(wants.state, [wants.name, steps], fresh)
     with tempfile.TemporaryDirectory() as place:
-        right = soak(wants.name, wants.steps or STEPS[wants.name], Path(place).resolve())
-    sys.exit(not right)
+        folder = wants.state.with_suffix("") if wants.state else Path(place)
+        if not state.known["end"]:
+            soak(wants.name, steps, folder.resolve(), state)
+    sys.exit(not tell(wants.name, state))
 
 
 if __name__ == "__main__":
