@@ -23,8 +23,8 @@ FAULTS = [
         "lumped forgotten",
         "a resumed run moves exact masses until the next release",
         "core/run/run.cpp",
-        "  list_lumped(m, s);\n",
-        "",
+        '{"list_lumped", list_lumped},',
+        '{"list_lumped", [](const Model&, State&) {}},',
         "tests/regression/test_bits.py",
     ),
     Mutant(
