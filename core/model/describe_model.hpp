@@ -272,20 +272,9 @@ void describe_faces(Model& m, Visit&& given) {
       m.face_initially_exposed);
   given({.name = "face.movable", .meaning = "1: its block can move", .rows = "faces"},
         m.face_movable);
-  given({.name = "flush.first",
-         .meaning = "faces of other blocks that began flush with it",
-         .rows = "faces",
-         .layout = Layout::starts,
-         .refers_to = {"flush_faces"}},
-        m.flush_first);
-  given({.name = "flush.face",
-         .meaning = "such a face",
-         .rows = "flush_faces",
-         .refers_to = {"faces"}},
-        m.flush_face);
 }
 
-/// Exterior edges and interfaces of faces: part of `describe_model`.
+/// Exterior edges, flush faces and interfaces of faces: part of `describe_model`.
 template <class Visit>
 void describe_exterior_edges(Model& m, Visit&& given) {
   given({.name = "edge.nodes",
@@ -311,6 +300,17 @@ void describe_exterior_edges(Model& m, Visit&& given) {
          .rows = "edge_ends",
          .refers_to = {"nodes"}},
         m.edge_star);
+  given({.name = "flush.first",
+         .meaning = "faces of other blocks that began flush with it",
+         .rows = "faces",
+         .layout = Layout::starts,
+         .refers_to = {"flush_faces"}},
+        m.flush_first);
+  given({.name = "flush.face",
+         .meaning = "such a face",
+         .rows = "flush_faces",
+         .refers_to = {"faces"}},
+        m.flush_face);
   given({.name = "interface.of",
          .meaning = "interface between two classes of faces",
          .rows = "class_pairs",

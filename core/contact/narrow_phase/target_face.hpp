@@ -240,7 +240,7 @@ struct ResolveTargets : FaceSearch {
       const bool penetration = s.free && plane < -entry && encloses(t, s, plane);
       const Real limit = penetration ? deepest_inside(t, length) : entry;
       const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, penetration});
-      if (gap < none && gap > s.gap && !hidden(m, k, t, s)) {
+      if (is_better(m, k, t, gap, s)) {
         s.best = t;
         s.gap = gap;
       }
@@ -326,6 +326,10 @@ struct ResolveTargets : FaceSearch {
         return false;
     }
     return true;
+  }
+  /// Is a gap of vertex k of exposed face m to t that of a contact, and the best one yet?
+  CDEM_HD bool is_better(Index m, Index k, Index t, Real gap, const Seeker& s) const {
+    return gap < none && gap > s.gap && !hidden(m, k, t, s);
   }
   /// Is a contact of vertex k of exposed face m with t inside the surface that one of their blocks
   /// makes with others that lie flush?
