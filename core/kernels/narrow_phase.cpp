@@ -10,6 +10,7 @@ template void for_each_item(Queue, Index, const BeginTargets&);
 template void for_each_selected(Queue, Index, const UpdateHeldTargets&);
 template void for_each_selected(Queue, Index, const FilterNewTargets&);
 template void for_each_item(Queue, Index, const ResolveTargets&);
+template void for_each_item(Queue, Index, const DropHiddenEdges&);
 template void for_each_selected(Queue, Index, const FindHeldEdges&);
 template void for_each_lane(Queue, Index, const FilterEdgePairs&);
 template void for_each_item(Queue, Index, const RecallHeldEdges&);

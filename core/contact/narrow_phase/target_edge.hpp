@@ -15,7 +15,6 @@ namespace cdem {
 struct ResolveTargetEdges {
   TouchingEdges touching;
   EdgePairs pairs;
-  HiddenEdges hidden;
   Flag* lost;  // [exposed] 1: a loaded contact was lost because it penetrated too deep
 
   CDEM_HD Range items(Index p) const { return {p, p + 1}; }
@@ -27,17 +26,27 @@ struct ResolveTargetEdges {
     for_lanes(item, [&](Index lane, Index, Index p) {
       Index touch = 0;
       EdgeWays::visit(pairs.open[p], [&](Index way) {
-        if ((found.touches[way] >> lane & 1) && !begins_hidden(p, way)) touch |= 1 << way;
+        touch |= (found.touches[way] >> lane & 1) << way;
         if (found.too_deep[way] >> lane & 1) set(lost[pairs.mother(p, way) / 4]);
       });
       pairs.open[p] = Flag(touch);
     });
   }
+};
 
- private:
-  CDEM_HD bool begins_hidden(Index p, Index way) const {
-    return hidden.flush.first && pairs.held[pairs.place_held(EdgeWays::mother(way), p)] < 0 &&
-           hidden.hide(pairs.mother(p, way), pairs.target(p, way));
+/// Drop contacts that would begin in the seams of blocks that lie flush.
+struct DropHiddenEdges {
+  HiddenEdges hidden;
+  EdgePairs pairs;
+
+  CDEM_HD void operator()(One p) const {
+    if (!pairs.open[p.i]) return;
+    Index open = 0;
+    EdgeWays::visit(pairs.open[p.i], [&](Index way) {
+      const bool goes_on = pairs.held[pairs.place_held(EdgeWays::mother(way), p.i)] >= 0;
+      if (goes_on || !hidden.hide(pairs.mother(p.i, way), pairs.target(p.i, way))) open |= 1 << way;
+    });
+    pairs.open[p.i] = Flag(open);
   }
 };
 

@@ -84,10 +84,7 @@ inline HiddenEdges hidden_edges(const Model& m, const State& s) {
 }
 
 inline ResolveTargetEdges edge_search(const Model& m, State& s) {
-  return {.touching = touching_edges(m, s),
-          .pairs = edge_pairs(s),
-          .hidden = hidden_edges(m, s),
-          .lost = s.edges.lost.data()};
+  return {.touching = touching_edges(m, s), .pairs = edge_pairs(s), .lost = s.edges.lost.data()};
 }
 
 }  // namespace cdem
