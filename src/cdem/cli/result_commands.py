@@ -86,8 +86,8 @@ def render(
         import difflib
 
         close = difflib.get_close_matches(field, SHOWN, n=1)
-        hint = f"did you mean {close[0]}?" if close else "cdem render --help lists them"
-        raise CaseError(f"no field {field!r}; {hint}")
+        hint = f"did you mean {close[0]}?" if close else f"choose one of: {', '.join(SHOWN)}"
+        raise CaseError(f"no field {field!r} to draw; {hint}")
     from cdem.output import render as drawing
 
     paths = drawing.render(
