@@ -70,8 +70,7 @@ def test_numbers_that_cannot_be_are_refused(results, what):
 def test_arrays_that_cannot_be_are_refused(results, name, value):
     """States and indices out of range, and motion that is no number, never reach the core."""
     arrays, text = read_checkpoint(results / "checkpoint.h5")
-    if not len(arrays[name]):
-        pytest.skip("the model has none")
+    assert len(arrays[name]) > 0
     arrays[name][0] = value
     for _ in range(2):
         write_checkpoint(results, arrays, text.decode())
