@@ -24,11 +24,8 @@ LetsGo lets_go(const Model& m, const PairSet& p, const PairState& s, Real part) 
   return {.part = part,
           .status = s.status.data(),
           .jump = s.jump.data(),
-          .stored = s.stored.data(),
           .faces = p.faces.data(),
-          .interface = p.interface.data(),
-          .face_length = m.face_length.data(),
-          .interfaces = interface_table(m)};
+          .face_length = m.face_length.data()};
 }
 
 bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {

@@ -86,6 +86,7 @@ struct Brittle {
     return nullptr;
   }
   static Real rise_most(const Real* parameter) { return parameter[3] * parameter[4]; }
+  static bool asks_area(const Real*) { return false; }
 
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T*) const {
     const T one(1.0), half(0.5);
@@ -101,21 +102,23 @@ struct Brittle {
   }
 
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T*) const {
-    return respond_within(in, [](const T& limit) { return limit; });
+    return respond_within(in, in.bond, [](const T& limit) { return limit; });
   }
-  /// The same with the limit of shear that `limit_of` makes of this one.
+  /// The same where `coheres`, 0 or 1, says whether the cohesion counts, and with the limit of
+  /// shear that `limit_of` makes of this one.
   template <class Limit>
-  CDEM_HD JointAnswer<T> respond_within(const JointInput<T>& in, const Limit& limit_of) const {
+  CDEM_HD JointAnswer<T> respond_within(const JointInput<T>& in, const T& coheres,
+                                        const Limit& limit_of) const {
     const T none(0.0), half(0.5), all(1.0);
     const JointStiffness<T>& k = in.stiffness;
     T elastic = -k.n * in.opening;
-    const auto parts = opens(elastic, in.bond);
+    const auto parts = opens(elastic, coheres);
     elastic = select(parts, none, elastic);
     T normal = select(in.bond > half, elastic, max_of(elastic + in.damping, none));
     normal = select(parts, none, normal);
     const T try1 = -k.s * in.shear1, try2 = -k.s * in.shear2;
     const T squared = try1 * try1 + try2 * try2;
-    T limit = limit_of(shear_limit(normal, in.bond));
+    T limit = limit_of(shear_limit(normal, coheres));
     const T tangent = min_of(tan_dilation, tan_friction);
     const auto lifts = (tangent > none) & (normal > none) & slips(squared, limit);
     T rise = none;
@@ -125,7 +128,7 @@ struct Brittle {
       rise = select(lifts, min_of(tangent * (sqrt_of(squared) - limit) / stiffer, room), none);
       normal += k.n * rise;
       elastic += k.n * rise;
-      limit = limit_of(shear_limit(normal, in.bond));
+      limit = limit_of(shear_limit(normal, coheres));
     }
     const auto slides = slips(squared, limit);
     const auto lets_go = slides & (normal < none);

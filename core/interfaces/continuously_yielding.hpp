@@ -68,6 +68,7 @@ struct ContinuouslyYielding {
   static Real rise_most(const Real* row) {
     return row[2] * tan_of((row[1] - row[0]) * radians_of_degree);
   }
+  static bool asks_area(const Real*) { return false; }
 
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T* state) const {
     const T none(0.0), half(0.5), angle(radians_of_degree);

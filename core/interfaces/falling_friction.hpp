@@ -79,16 +79,17 @@ CDEM_HD inline T slip_down_to(const T& trial, const T& stiffness, const T& last,
 }
 
 /// The answer of the brittle law with friction that falls with the slip, within the step already.
+/// `coheres` as there.
 template <class Law, class T>
 CDEM_HD inline JointAnswer<T> respond_falling(Law brittle, const FallingFriction<T>& friction,
-                                              const JointInput<T>& in, T& slip) {
+                                              const JointInput<T>& in, const T& coheres, T& slip) {
   const T none(0.0), half(0.5);
   const JointStiffness<T>& k = in.stiffness;
   const T elastic = -k.n * in.opening;
   const T pressed = max_of(select(in.bond > half, elastic, elastic + in.damping), none);
   const T try1 = -k.s * in.shear1, try2 = -k.s * in.shear2;
   const T trial = sqrt_of(try1 * try1 + try2 * try2);
-  const T cohesion = in.bond * brittle.cohesion;
+  const T cohesion = coheres * brittle.cohesion;
   const auto limit_after = [&](const T& more) {
     return cohesion + pressed * friction.tangent(slip + more);
   };
@@ -97,7 +98,8 @@ CDEM_HD inline JointAnswer<T> respond_falling(Law brittle, const FallingFriction
       slip_down_to(trial, k.s, cohesion + pressed * friction.residual, limit_after, fall_after);
   const auto slides = trial > limit_after(none);
   brittle.tan_friction = friction.tangent(slip + select(slides, more, none));
-  const JointAnswer<T> answer = brittle.respond(in, nullptr);
+  const JointAnswer<T> answer =
+      brittle.respond_within(in, coheres, [](const T& limit) { return limit; });
   const T left = sqrt_of(answer.shear1 * answer.shear1 + answer.shear2 * answer.shear2);
   slip +=
       select(slides & (answer.normal > none), k.compliance_s * max_of(trial - left, none), none);

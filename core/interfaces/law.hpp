@@ -13,7 +13,9 @@
 //   static const char* contradiction(const Real*);     why parameters do not fit, or nullptr;
 //                                                      {name} stands for a value of the case
 //   static Real rise_most(const Real*);                how far the stress-free gap may rise  [m]
-//   static Real broken_cohesion(const Real*);          of broken bonds  [Pa]; may be left out
+//   static bool asks_area(const Real*);                does the answer depend on the area of a
+//                                                      contact, or on ratios of tractions alone?
+//                                                      Left out: it does
 //   static std::array<Real, 2> steepest_fall(const Real*);
 //                                                      how fast strength falls, normal and in
 //                                                      shear  [Pa/m]; may be left out
@@ -61,7 +63,8 @@ struct JointInput {
   T risen;    // how far the stress-free gap lies above zero  [m]
   T rate1 = T(0.0), rate2 = T(0.0);  // of the slip in this step  [m/s]
   T dt = T(0.0);                     // that step; 0 at rest  [s]
-  T has_area;  // 1 where the area is that of the joint, so that a cohesion counts: at bond points
+  T has_area;  // 1 where the area is that of the joint, so that a cohesion counts: at bond points,
+               // and at contacts of laws that ask for it
 
   CDEM_HD T slip_rate() const { return sqrt_of(rate1 * rate1 + rate2 * rate2); }  // [m/s]
 };

@@ -179,6 +179,18 @@ inline Real depth_under(const InterfaceTable& table, Index interface, Real press
   return JointLaws<InterfaceLaws, Index>{table, interface}.depth(max_of(pressure, 0.0), k);
 }
 
+/// Does the law of this number ask for the area of contacts, with these parameters?
+inline bool asks_area(Index law, const Real* parameters) {
+  bool asks = false;
+  InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+    if (number != law) return;
+    asks = true;
+    if constexpr (requires { Law<Real>::asks_area(parameters); })
+      asks = Law<Real>::asks_area(parameters);
+  });
+  return asks;
+}
+
 /// A kernel that asks laws, limited to some of them: its `update<Laws>`.
 template <class Kernel, class Laws>
 struct WithLaws : Kernel {

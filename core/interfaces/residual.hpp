@@ -13,7 +13,7 @@ namespace cdem {
 ///   bonded   |t_s| <= t_n tan(phi)   + c,    -t_n <= T
 ///   broken   |t_s| <= t_n tan(phi_r) + c_r   where the faces are pressed
 ///
-/// c_r is a strength in pascals, so it acts at bond points only: see docs/theory/interfaces.md.
+/// c_r is a strength in pascals, on the area that the faces share: see docs/theory/interfaces.md.
 template <class T>
 struct Residual {
   static constexpr LawText text{
@@ -42,25 +42,21 @@ struct Residual {
     return nullptr;
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
-  /// What broken bonds keep while they are pressed  [Pa].
-  CDEM_HD static Real broken_cohesion(const Real* parameter) { return parameter[6]; }
+  static bool asks_area(const Real* parameter) { return parameter[6] > 0; }
 
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T* state) const {
     return bonded.bears(in, state);
   }
   /// A broken bond answers as one without tensile strength.
-  CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T* state) const {
+  CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T*) const {
     const T none(0.0), half(0.5);
     const auto holds = in.bond > half;
     Brittle<T> now = bonded;
     now.tan_friction = select(holds, bonded.tan_friction, tan_residual);
     now.cohesion = select(holds, bonded.cohesion, cohesion_left);
     now.tensile_strength = select(holds, bonded.tensile_strength, none);
-    JointInput<T> as = in;
-    as.bond = max_of(in.bond, in.has_area);
-    JointAnswer<T> answer = now.respond(as, state);
-    answer.bond = min_of(answer.bond, in.bond);
-    return answer;
+    return now.respond_within(in, max_of(in.bond, in.has_area),
+                              [](const T& limit) { return limit; });
   }
 };
 

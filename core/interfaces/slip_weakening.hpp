@@ -37,13 +37,14 @@ struct SlipWeakening {
     return contradiction_of_residual(p.friction.peak, p.bonded.tan_dilation, p.friction.residual);
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
+  static bool asks_area(const Real*) { return false; }
 
   /// A bond that slips breaks: while it is intact it has not slipped.
   CDEM_HD Borne<T> bears(const JointInput<T>& in, const T* state) const {
     return bonded.bears(in, state);
   }
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T* state) const {
-    return respond_falling(bonded, friction, in, state[0]);
+    return respond_falling(bonded, friction, in, in.bond, state[0]);
   }
 };
 

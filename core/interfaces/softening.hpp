@@ -85,7 +85,7 @@ struct Softening {
     return nullptr;
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
-  CDEM_HD static Real broken_cohesion(const Real* parameter) { return parameter[7]; }
+  static bool asks_area(const Real* parameter) { return parameter[7] > 0; }
   /// Of a softer bond strength would fall by more than the bond unloads: A / k_n + B / k_s must be
   /// below 1 for these A and B, in any mix of modes  [Pa/m].
   static std::array<Real, 2> steepest_fall(const Real* parameter) {
@@ -123,12 +123,10 @@ struct Softening {
     Brittle<T> now = peak;
     now.cohesion = cohesion_left;
     now.tensile_strength = none;
-    JointInput<T> as = in;
-    as.bond = max_of(in.bond, in.has_area);
     T own = slip;
-    JointAnswer<T> answer = respond_falling(now, friction, as, own);
+    const JointAnswer<T> answer =
+        respond_falling(now, friction, in, max_of(in.bond, in.has_area), own);
     slip = select(holds, slip, own);
-    answer.bond = min_of(answer.bond, in.bond);
     return answer;
   }
 

@@ -50,6 +50,7 @@ struct VelocityWeakening {
     return nullptr;
   }
   static Real rise_most(const Real* parameter) { return Brittle<T>::rise_most(parameter); }
+  static bool asks_area(const Real*) { return false; }
   static Real friction_fall(const Real* parameter) {
     return (parameter[0] - parameter[5]) / parameter[6];
   }

@@ -58,7 +58,7 @@ struct Voellmy {
     const T squared = in.rate1 * in.rate1 + in.rate2 * in.rate2;
     const auto touches = (in.bond < half) & !(in.opening > none);
     const T turbulent = select(touches, T(gravity) * density * squared / turbulence, none);
-    return dry.respond_within(in, [&](const T& limit) { return limit + turbulent; });
+    return dry.respond_within(in, in.bond, [&](const T& limit) { return limit + turbulent; });
   }
 };
 

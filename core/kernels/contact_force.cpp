@@ -3,6 +3,7 @@
 #include "core/base/primitive_loops.hpp"
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/force/change_of_target.hpp"
+#include "core/contact/force/contact_area.hpp"
 #include "core/contact/force/edge_force.hpp"
 #include "core/contact/force/rolling.hpp"
 #include "core/contact/force/spring_force.hpp"
@@ -29,6 +30,8 @@ template void for_each_lane(Queue, Index,
 template void for_each_item(Queue, Index, const MergeSideHistories&);
 template void list_rows(Queue, Index, Index, Index, const ContactsOf&, Column<Index>&,
                         Column<Index>&);
+template void for_each_item(Queue, Index, const SumTouching&);
+template void for_each_item(Queue, Index, const ShareAreas&);
 template void for_each_item(Queue, Index, const AccumulateFaceForces&);
 template void for_each_item(Queue, Index, const UpdateRollingCouples&);
 template void for_each_item(Queue, Index, const AddRollingCouples&);

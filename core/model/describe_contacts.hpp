@@ -199,6 +199,22 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
            .rows = "acting_contacts",
            .refers_to = {"contacts"}},
           acting.contact);
+  const Index asked = s.contact_areas.per_stiffness.size() > 0;
+  rebuilt(
+      "update_contact_forces",
+      {.name = "contact_area.touching",
+       .unit = "N/m, m, 1, -",
+       .meaning = "stiffness of the contacts of a face, highest stress-free gap, is one pressed",
+       .rows = "exposed",
+       .numbers = 4 * asked},
+      s.contact_areas.touching);
+  rebuilt("update_contact_forces",
+          {.name = "contact_area.per_stiffness",
+           .unit = "m3/N",
+           .meaning = "area in contact over that stiffness",
+           .rows = "exposed",
+           .numbers = asked},
+          s.contact_areas.per_stiffness);
 }
 
 /// Call stored(info, column) or rebuilt(by, info, column) for every array of contacts.

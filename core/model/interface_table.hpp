@@ -11,6 +11,9 @@ namespace cdem {
 /// Look at the interfaces once they are given or changed: no step then has to.
 inline void note_interfaces(Model& m) {
   const auto all = on_host(m.interfaces);
+  const auto parameters = on_host(m.interface_parameters);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i].asks_area = asks_area(all[i].law, parameters.data() + i * parameter_row);
   const auto any = [&](auto&& has) { return std::any_of(all.begin(), all.end(), has); };
   const InterfaceTable table = table_of(all.data(), all.size(), nullptr);
   m.interface_traits = {
@@ -18,7 +21,8 @@ inline void note_interfaces(Model& m) {
       .curved = table.curved,
       .remembers = table.remembers,
       .hysteretic = table.curved != 0 || any([](const Interface& i) { return i.is_hysteretic(); }),
-      .rolls = any([](const Interface& i) { return i.rolling_resistance > 0; })};
+      .rolls = any([](const Interface& i) { return i.rolling_resistance > 0; }),
+      .ask_area = any([](const Interface& i) { return i.asks_area; })};
 }
 
 inline InterfaceTable interface_table(const Model& m) {

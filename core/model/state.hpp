@@ -134,6 +134,13 @@ struct ContactsByTargetState {
   Column<Index> first, contact;
 };
 
+/// Areas of contacts, where a law asks for them, see contact/force/contact_area.hpp; made in every
+/// step.
+struct ContactAreasState {
+  Column<Real> touching;       // rows of 4 of TouchingFace
+  Column<Real> per_stiffness;  // [exposed]
+};
+
 /// Outer pair list: what may touch before the next rebuild, see contact/pair_list/outer_list.hpp.
 /// A slot is 4 * exposed face + vertex; vf is a pair of vertex and face, ee one of two edges.
 struct OuterList {
@@ -239,6 +246,7 @@ struct State {
   SpringState springs;
   EdgeState edges;
   ContactsByTargetState contacts_by_target;
+  ContactAreasState contact_areas;
   SearchState search;
   WaterState water;
   Column<Real> tile_force, corner_force;      // rows of 4: of tiles; of pairs and bolts

@@ -15,6 +15,7 @@ struct Interface {
   Real stiffness_s_value, stiffness_s_factor;
   Real rolling_resistance = 0;          // mu_r: couples on contacts up to mu_r R F_n
   Real returned_n = 1, returned_s = 1;  // e^2: share of the work of loading that contacts give back
+  bool asks_area = false;  // does its law ask for the area of contacts? see note_interfaces
 
   /// Normal and shear stiffness between sides whose elements have these stiffnesses.
   CDEM_HD Real stiffness_n(Real a, Real b) const {
@@ -38,6 +39,7 @@ struct InterfaceTraits {
   bool remembers = false;         // the same
   bool hysteretic = false;        // does any ask for restitution, or close by a curve?
   bool rolls = false;             // does any resist rolling?
+  bool ask_area = false;          // does any ask for the area of contacts?
 };
 
 }  // namespace cdem

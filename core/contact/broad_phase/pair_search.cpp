@@ -71,6 +71,7 @@ void list_pairs(const PairContext& f, const Patch& a, const Patch& b, PairBuffer
   list_vertex_face_pairs(f, a, b, pairs, separated, false, listed, found);
   list_vertex_face_pairs(f, b, a, pairs, separated, true, listed, found);
   if (f.m.semi_edges) list_edges(f, a, b, pairs, separated, listed, found);
+  if (f.m.interface_traits.ask_area) listed.add(pairs);
   listed.list(a, b, found);
 }
 

@@ -91,6 +91,12 @@ FacePairMask::FacePairMask(const PairContext& f, const Patch& a, const Patch& b,
         row[i] |= 1 << j;
 }
 
+void ListedFacePairs::add(const FacePairMask& pairs) {
+  for (Index i = 0; i < 6; ++i)
+    for (Index j = 0; j < 6; ++j)
+      if (pairs.row[i] >> j & 1) add(false, i, j), add(true, j, i);
+}
+
 void ListedFacePairs::list(const Patch& a, const Patch& b, PairBuffer& found) const {
   for (Index i = 0; i < a.face_count; ++i)
     for (Index j = 0; j < b.face_count; ++j) {

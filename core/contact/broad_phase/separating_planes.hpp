@@ -115,6 +115,8 @@ struct ListedFacePairs {
   int row[2][6] = {};
 
   void add(bool reverse, Index mother, Index face) { row[reverse][mother] |= 1 << face; }
+  /// All that may touch, with or without a vertex or an edge.
+  void add(const FacePairMask& pairs);
   void list(const Patch& a, const Patch& b, PairBuffer& found) const;
 };
 

@@ -67,6 +67,15 @@ struct ContactForce {
   T rise;                // of the stress-free gap, by dilation in this step  [m]
 };
 
+/// Is a contact pressed hard enough that its line of action meets the target near by? A law whose
+/// shear does not fall with the pressure may push a contact along that is hardly pressed at all.
+template <class T>
+CDEM_HD inline Truth<T> meets_target(const ContactForce<T>& f) {
+  const T steepest(10.0);  // shear over normal force: more than friction has
+  const T reach = steepest * f.force_n;
+  return (f.force_n > T(0.0)) & !(f.shear1 * f.shear1 + f.shear2 * f.shear2 > reach * reach);
+}
+
 /// What the law of a contact is asked: normal separation from the total gap, shear separation from
 /// the last shear force and the step's slip.
 template <class T>
@@ -85,7 +94,7 @@ CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
           .rate1 = motion.slip1 / T(motion.dt),
           .rate2 = motion.slip2 / T(motion.dt),
           .dt = T(motion.dt),
-          .has_area = zero};
+          .has_area = spring.has_area};
 }
 
 /// Force of a contact from the answer of its law, Eq. 13-14.

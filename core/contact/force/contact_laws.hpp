@@ -12,8 +12,9 @@ namespace cdem {
 struct ContactLaws {
   FaceInterfaces faces;
   InterfaceTable interfaces;
-  Real damping_ratio;     // of critical, on the effective mass of the two points
-  const Real* node_mass;  // [kg]
+  Real damping_ratio;              // of critical, on the effective mass of the two points
+  const Real* node_mass;           // [kg]
+  const Real* area_per_stiffness;  // [exposed] see ShareAreas; null where no law asks for it
 
   /// The interface between two exposed faces, or between one and another a lane.
   template <class Ids>
@@ -37,11 +38,41 @@ struct ContactLaws {
                             .stiffness = JointStiffness<T>::of(numbers_of(normal, interface, m, t),
                                                                numbers_of(shear, interface, m, t))};
   }
+  /// Let the spring of a contact that was pressed one step ago have the area that is in contact, if
+  /// its law asks for that. A straight spring keeps its stiffness, so that area changes strength
+  /// alone; a curve is of tractions, and goes with the area.
+  template <class Laws, class Ids, class T>
+  CDEM_HD void take_true_area(ContactSpring<T>& spring, const Ids& interface, const Ids& m,
+                              const Ids& t, const Truth<T>& pressed) const {
+    if constexpr (Laws::count > 1) {
+      if (!area_per_stiffness) return;
+      const Interface* table = interfaces.interfaces;
+      const T none(0.0), one(1.0);
+      const auto asks =
+          numbers_of([&](Index i) { return table[i].asks_area ? 1.0 : 0.0; }, interface) > none;
+      const T area = look_up(area_per_stiffness, m) + look_up(area_per_stiffness, t);
+      const T ratio = select(pressed, spring.stiffness.n * area, none);
+      const auto curved = interfaces.closes_by_curve(interface);
+      const T within = max_of(min_of(ratio, T(most_of_curve)), T(least_of_curve));
+      const T larger = select(asks, select(curved, within, max_of(ratio, T(least_part))), one);
+      const T softer = select(curved, one, larger);
+      spring.area = larger * spring.area;
+      spring.stiffness = {.n = spring.stiffness.n / softer,
+                          .s = spring.stiffness.s / softer,
+                          .compliance_n = softer * spring.stiffness.compliance_n,
+                          .compliance_s = softer * spring.stiffness.compliance_s};
+      spring.has_area = select(asks, one, none);
+    }
+  }
   /// The contact dashpot of a spring between points of this effective mass  [N s/m].
   template <class T>
   CDEM_HD T dashpot(const ContactSpring<T>& spring, const T& inverse_mass) const {
     return T(2.0 * damping_ratio) * sqrt_of(spring.n() / inverse_mass);
   }
+
+ private:
+  // of its share: what a corner or an edge has that touches, and what the step has room for
+  static constexpr Real least_part = 1e-3, least_of_curve = 0.5, most_of_curve = 2;
 };
 
 }  // namespace cdem

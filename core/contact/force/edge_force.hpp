@@ -28,11 +28,13 @@ struct UpdateEdgeForces {
     const auto contact = contact_of(item);
     const auto interface = laws.between(geometry, contact.mother_face, contact.target_face);
     // A_SE of Eq. 5, and a half of it because the other block's semi-edges see the crossing too
-    const ContactSpring<T> spring =
+    ContactSpring<T> spring =
         laws.spring(geometry, interface, contact.mother_face, contact.target_face);
     const auto pair = relative_motion(contact);
     const auto unloading = Unloading<T>::of(laws, interface);
     const Before<T> old = before(contact.before);
+    laws.template take_true_area<Laws>(spring, interface, contact.mother_face, contact.target_face,
+                                       old.force.penetration > zero);
     const T gap = pair.crossing.gap;
     const T free =
         select(old.begins, starting_stress_free_gap(gap, pair.gap_rate, T(faces.dt), zero, zero),
@@ -167,8 +169,9 @@ struct UpdateEdgeForces {
     const Crossing<T> line =
         cross_edges(pair.mother, pair.mother_along, pair.target, pair.target_along, force);
     const auto pressed = f.force_n > zero;
-    const T on_m = select(pressed, line.s, pair.crossing.s);
-    const T on_t = select(pressed, line.t, pair.crossing.t);
+    const auto meets = meets_target(f);
+    const T on_m = select(meets, line.s, pair.crossing.s);
+    const T on_t = select(meets, line.t, pair.crossing.t);
     // does the target face's side go the way of the edge?
     const auto same_way = [&](Index x, Index start, Index end) {
       const Index* v = geometry.table[x].corner;

@@ -4,6 +4,7 @@
 #include "core/base/primitives.hpp"
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/force/change_of_target.hpp"
+#include "core/contact/force/contact_area.hpp"
 #include "core/contact/force/edge_force.hpp"
 #include "core/contact/force/rolling.hpp"
 #include "core/contact/force/spring_force.hpp"
@@ -60,18 +61,52 @@ void update_edge_forces(const Model& m, State& s, Queue q) {
                   MergeSideHistories{edge_columns(s), sides, own});
 }
 
+ContactsOf contacts_of(State& s) {
+  return {spring_columns(s), edge_columns(s), Index(s.search.exposed_face.size())};
+}
+
+void list_contacts_by_target(State& s, Queue q) {
+  const Index count = Index(s.search.exposed_face.size());
+  ContactsByTargetState& acting = s.contacts_by_target;
+  list_rows(q, count, 4 * count + Index(s.edges.contact.size() / 4), count, contacts_of(s),
+            acting.first, acting.contact);
+}
+
+ContactsByTarget contacts_by_target(const State& s) {
+  return {s.contacts_by_target.first.data(), s.contacts_by_target.contact.data()};
+}
+
+void share_areas(const Model& m, State& s, Queue q) {
+  const Index count = Index(s.search.exposed_face.size());
+  ContactAreasState& areas = s.contact_areas;
+  areas.touching.renew(4 * std::size_t(count));
+  areas.per_stiffness.renew(count);
+  for_each_item(q, count,
+                SumTouching{.contacts = contacts_of(s),
+                            .acting = contacts_by_target(s),
+                            .geometry = face_geometry(s),
+                            .laws = contact_laws(m, s),
+                            .edge_state_before = s.edges.old_state.data(),
+                            .rows = areas.touching.data()});
+  for_each_item(q, count,
+                ShareAreas{.faces = face_columns(m, s),
+                           .geometry = face_geometry(s),
+                           .laws = contact_laws(m, s),
+                           .rules = m.rules,
+                           .exposed_face = s.search.exposed_face.data(),
+                           .facing_first = s.search.outer.acting_first.data(),
+                           .facing = s.search.outer.faces_acting_on.data(),
+                           .touching = areas.touching.data(),
+                           .area_per_stiffness = areas.per_stiffness.data()});
+}
+
 void accumulate_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
-  const ContactsOf contacts{spring_columns(s), edge_columns(s), count};
-  ContactsByTargetState& acting = s.contacts_by_target;
-  list_rows(q, count, 4 * count + Index(s.edges.contact.size() / 4), count, contacts, acting.first,
-            acting.contact);
-  const ContactsByTarget rows{acting.first.data(), acting.contact.data()};
   for_each_item(q, count,
-                AccumulateFaceForces{contacts, face_columns(m, s), s.search.exposed_face.data(),
-                                     s.search.outer.face_listed.data(), rows, m.rules,
-                                     s.edges.friction.data(), s.edges.dashpot.data(),
-                                     s.contact_force.data()});
+                AccumulateFaceForces{
+                    contacts_of(s), face_columns(m, s), s.search.exposed_face.data(),
+                    s.search.outer.face_listed.data(), contacts_by_target(s), m.rules,
+                    s.edges.friction.data(), s.edges.dashpot.data(), s.contact_force.data()});
 }
 
 void add_rolling_couples(const Model& m, State& s, Queue q) {
@@ -86,12 +121,11 @@ void add_rolling_couples(const Model& m, State& s, Queue q) {
                                      .face_radius = m.face_radius.data(),
                                      .rows = s.springs.rolling.data()});
   for_each_item(q, count,
-                AddRollingCouples{.contacts = {spring_columns(s), edge_columns(s), count},
+                AddRollingCouples{.contacts = contacts_of(s),
                                   .faces = face_columns(m, s),
                                   .geometry = face_geometry(s),
                                   .listed = s.search.outer.face_listed.data(),
-                                  .acting = {s.contacts_by_target.first.data(),
-                                             s.contacts_by_target.contact.data()},
+                                  .acting = contacts_by_target(s),
                                   .rows = s.springs.rolling.data(),
                                   .corner_force = s.contact_force.data()});
 }
@@ -100,6 +134,8 @@ void add_rolling_couples(const Model& m, State& s, Queue q) {
 
 void update_contact_forces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::contact);
+  list_contacts_by_target(s, q);
+  if (m.interface_traits.ask_area) share_areas(m, s, q);
   if (m.interface_traits.hysteretic) {
     update_spring_forces<HystereticUnloading>(m, s, q);
     update_edge_forces<HystereticUnloading>(m, s, q);

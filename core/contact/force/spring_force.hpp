@@ -35,6 +35,8 @@ struct UpdateSpringForces {
     spring.area = T(0.5) * spring.area;  // the other block's semi-springs see the contact too
     const auto unloading = Unloading<T>::of(laws, interface);
     Before<T> old = before(slot, target.begins);
+    laws.template take_true_area<Laws>(spring, interface, item.row, target.face,
+                                       old.force.penetration > zero);
     const T gap = pair.foot.gap, dt(faces.dt);
     const T free =
         select(target.changes,
@@ -167,11 +169,10 @@ struct UpdateSpringForces {
     const Frame<T>& frame = pair.frame;
     const Vec3<T> force = f.force_n * frame.n + f.shear1 * frame.t1 + f.shear2 * frame.t2;
     const auto pressed = f.force_n > zero;
-    const T lever = select(pressed, pair.foot.gap / f.force_n, zero);
+    const auto meets = meets_target(f);
+    const T lever = select(meets, pair.foot.gap / f.force_n, zero);
     const Projection<T> meet = project(pair.shape, pair.mother - lever * force, frame.n);
-    const auto weight = [&](Index j) {
-      return select(pressed, meet.weight[j], pair.foot.weight[j]);
-    };
+    const auto weight = [&](Index j) { return select(meets, meet.weight[j], pair.foot.weight[j]); };
     const T reaction[8] = {force.x,   force.y,   force.z,   select(pressed, stiffness, zero),
                            weight(0), weight(1), weight(2), weight(3)};
     set_rows(springs.reaction, slot, reaction);

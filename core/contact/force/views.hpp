@@ -14,7 +14,9 @@ inline ContactLaws contact_laws(const Model& m, const State& s) {
   return {.faces = face_interfaces(m),
           .interfaces = interface_table(m),
           .damping_ratio = m.contact_damping,
-          .node_mass = lumped_masses(m, s).data()};
+          .node_mass = lumped_masses(m, s).data(),
+          .area_per_stiffness =
+              m.interface_traits.ask_area ? s.contact_areas.per_stiffness.data() : nullptr};
 }
 
 inline HistoryRows history_rows(HistoryColumns& h) { return {h.rows.data(), h.law.data()}; }

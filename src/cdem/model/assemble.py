@@ -166,9 +166,9 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
 
 
 def _movable(t: Topology, p: Properties) -> NDArray[np.int8]:
-    """Whether a face's block can move at all; two that cannot need not be searched for contact."""
+    """Whether a face's block moves at all; two that do not need not be searched for contact."""
     free = np.zeros(len(t.block_group), np.int8)
-    free[t.node_block[~p.supported.all(axis=1)]] = 1
+    free[t.node_block[p.driven | ~p.supported.all(axis=1)]] = 1
     return free[t.face_block]
 
 

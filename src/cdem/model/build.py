@@ -43,7 +43,7 @@ from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.options import options_of, pairs_loose_joints
 from cdem.model.snap_back import check_fall, check_softening
 from cdem.model.stiffness import bond_row, interface_entries
-from cdem.model.supports import held_components, supports_of
+from cdem.model.supports import driven_nodes, held_components, supports_of
 from cdem.model.water import water_of
 
 Floats = NDArray[np.float64]
@@ -253,6 +253,7 @@ def _assemble(
         exact_mass=case.moved_masses != "lumped",
         lumped_while_bonded=case.moved_masses == "lumped-while-bonded",
         supported=held_components(supports),
+        driven=driven_nodes(supports),
         nodal_mean=_averages(case, materials),
         mass_scaling=case.time.mass_scaling,
         safety=case.time.safety,

@@ -45,6 +45,7 @@ class Properties:
         exact_mass: Whether blocks have their exact inertia, at least once they have no bonds.
         lumped_while_bonded: Whether they have it only then.
         supported: Components of nodes that are held or moved, shape (nodes, 3).
+        driven: Nodes that are moved, shape (nodes,).
         mass_scaling: What mass to add, if any.
         safety: Share of the stable step that is used.
         added_mass: What mass scaling has added to each node at the start, once that is known [kg],
@@ -73,6 +74,7 @@ class Properties:
     exact_mass: bool
     lumped_while_bonded: bool
     supported: NDArray[np.bool_]
+    driven: NDArray[np.bool_]
     nodal_mean: NDArray[np.bool_]
     mass_scaling: MassScaling | None = None
     safety: float = 1.0

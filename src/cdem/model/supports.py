@@ -19,6 +19,11 @@ def held_components(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
     return (row >= 0)[:, None] & (supports["component"][np.maximum(row, 0)] != 0)
 
 
+def driven_nodes(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
+    """Nodes that a velocity is given to, shape (nodes,); from `supports_of`."""
+    return (supports["row"] >= 0) & supports["velocity"].any(axis=1)[supports["row"]]
+
+
 def supports_of(
     case: Case, topology: Topology, names: list[str], curves: Curves
 ) -> dict[str, NDArray]:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-AREA = 0.5
-"""Of the contacts of a cube of 1 m whose vertices alone touch [m2]."""
+AREA = 1.0
+"""Of the cube of 1 m, whose vertices alone touch [m2]."""
 PRESSURES = (0.1, 0.5, 1, 2, 5, 10, 50)  # [MPa]
 
 
