@@ -8,6 +8,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
+from cdem.case.curve_times import last_dynamic, least_time, over_early, timed
 from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, block_contradiction
 from cdem.case.map_system import why_not
@@ -56,6 +57,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _groups(case)
     yield from _excavation(case)
     yield from _bolts(case)
+    yield from _curves(case)
     yield from _joints(case)
     yield from _unique_names(case)
 
@@ -212,6 +214,22 @@ def _histories_of_bolts(case: CaseParts) -> Iterator[Problem]:
         name, _, number = history.bolt.rpartition(".")
         if name not in names or not number.isdigit():
             yield ("histories", i, "bolt"), _no("bolt", history.bolt, names)
+
+
+def _curves(case: CaseParts) -> Iterator[Problem]:
+    """Whether there are the stages from which curves count, with what the curves act on."""
+    names = [stage.name for stage in case.stages]
+    for keys, entry in timed(case):
+        if entry.stage is None:
+            continue
+        if entry.stage not in names:
+            there = ", ".join(names)
+            yield (*keys, "stage"), f"no stage '{entry.stage}'; the case has: {there}"
+            continue
+        surface = getattr(entry, "surface", None)
+        group = getattr(surface, "group", getattr(entry, "group", None))
+        if group in case.absent(names.index(entry.stage) + 1):
+            yield (*keys, "stage"), f"{group} is not there in the stage {entry.stage}"
 
 
 def _joints(case: CaseParts) -> Iterator[Problem]:
@@ -395,6 +413,9 @@ def stage_settings(
             for keys, what in _names(trial)
             if (keys, what) not in known
         ]
+        if i == last_dynamic(trial.stages):
+            over = over_early(trial, least_time(trial.stages[:i]))
+            problems += [problem for problem in over if problem not in known]
         if stage.set:
             for found, told in zip(doubts(trial), (problems, doubtful), strict=True):
                 told += [

@@ -113,7 +113,19 @@ def wrong_numbers(run: RunState, attributes: Attributes) -> str:
         return f"it counts {attributes.rows} rows and {attributes.frames} frames"
     if len(attributes.finished_stages) != attributes.stage_index:
         return "it does not tell of the stages that have ended"
+    if wrong := [t for t in begins(attributes).values() if not _is_time(t, core["time"])]:
+        return f"one of its stages began at {wrong[0]}"
     return next(filter(None, (_wrong_time(attributes, s) for s in _stages(attributes))), "")
+
+
+def begins(attributes: Attributes) -> dict[str, Any]:
+    """When the stages began that have begun, by name [s]; as the checkpoint has them."""
+    ended = {str(row.get("name")): row.get("begin") for row in attributes.finished_stages}
+    return ended | {stage.name: stage.start_time for stage in _stages(attributes)}
+
+
+def _is_time(value: Any, now: float) -> bool:
+    return isinstance(value, float) and 0 <= value <= now
 
 
 def _stages(attributes: Attributes) -> list[StageState]:

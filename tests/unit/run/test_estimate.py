@@ -50,8 +50,10 @@ class Core:
         self._core, self._clock = core, clock
 
     def run(self, steps, **more):
-        self._clock.now += self._clock.pace * steps
-        return self._core.run(steps, **more)
+        before = self._core.scalars()["step"]
+        report = self._core.run(steps, **more)
+        self._clock.now += self._clock.pace * (self._core.scalars()["step"] - before)
+        return report
 
     def set_interfaces(self, entries):
         if all(e["parameters"]["cohesion"] == 0 for e in entries):
