@@ -388,20 +388,7 @@ def stage_settings(
     known = list(known)
     fixed_values = trial.interfaces.fixed()
     for i, stage in enumerate(trial.stages):
-        for path, value in stage.set.items():
-            keys = ("stages", i, "set", path)
-            if not path.startswith(SETTABLE):
-                allowed = ", ".join(f"{start}*" for start in SETTABLE)
-                problems.append((keys, f"a stage can change {allowed} only"))
-                continue
-            if fixed := _fixed_at_the_start(trial, stage, path, value):
-                problems.append((keys, fixed))
-                continue
-            try:
-                put(path, value)
-            except CaseError as error:
-                what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
-                problems.append((keys, what.partition(": ")[2]))
+        problems += _settings_of_one(trial, i, put)
         now = trial.interfaces.fixed()
         for key in now:
             if now[key] != fixed_values[key]:
@@ -425,6 +412,26 @@ def stage_settings(
                 ]
                 known += found
     return problems, doubtful
+
+
+def _settings_of_one(
+    trial: CaseParts, number: int, put: Callable[[str, Any], None]
+) -> Iterator[Problem]:
+    """Put what a stage sets into a copy of the case; what does not work."""
+    stage = trial.stages[number]
+    for path, value in stage.set.items():
+        keys = ("stages", number, "set", path)
+        if not path.startswith(SETTABLE):
+            allowed = ", ".join(f"{start}*" for start in SETTABLE)
+            yield keys, f"a stage can change {allowed} only"
+        elif fixed := _fixed_at_the_start(trial, stage, path, value):
+            yield keys, fixed
+        else:
+            try:
+                put(path, value)
+            except CaseError as error:
+                what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
+                yield keys, what.partition(": ")[2]
 
 
 def _no(kind: str, name: str, known: Iterable[str]) -> str:

@@ -37,14 +37,11 @@ def over_early(case: CaseParts, time: float, late: float = 0.0) -> Iterator[Prob
     """Curves that count from the start of the run, and are over before the last dynamic stage begins.
 
     Args:
-        case: As it is at that time.
+        case: With a dynamic stage; as it is at that time.
         time: Before that begin, or that begin [s].
         late: By how much stages before may have ended later than they should [s].
     """
-    number = last_dynamic(case.stages)
-    if number < 0:
-        return
-    name = case.stages[number].name
+    name = case.stages[last_dynamic(case.stages)].name
     for keys, key, end in _varying(case, None):
         if end + late < time:
             yield (

@@ -81,7 +81,9 @@ class Timed(Part):
             if any(later <= earlier for (earlier, _), (later, _) in pairwise(rows)):
                 raise ValueError(f"{key}: times must increase")
             if self.stage is not None and rows[0][0] < 0:
-                raise ValueError(f"{key}: times must be at least 0, the begin of stage {self.stage}")
+                raise ValueError(
+                    f"{key}: times must be at least 0, the begin of stage {self.stage}"
+                )
         if self.stage is not None and not self.curves:
             raise ValueError("stage says from when a curve counts: give it with a history or level")
         return self

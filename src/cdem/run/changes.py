@@ -81,9 +81,7 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
     for path, a, b in differences(then, now):
         later = path.startswith("stages.") and int(path.split(".")[1]) >= begun
         end = path.removeprefix(last) if path.startswith(last) else ""
-        if any(fnmatchcase(path, pattern) for pattern in FILES):
-            continue
-        if any(fnmatchcase(path, pattern) for pattern in CURVES) and {a, b} <= first:
+        if _is_of(path, FILES) or (_is_of(path, CURVES) and {a, b} <= first):
             continue
         if end in ENDS:
             found.longer |= b is None or (
@@ -92,6 +90,10 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
         allowed = later or path in FREE or end in ENDS
         (found.allowed if allowed else found.refused).append((path, a, b))
     return found
+
+
+def _is_of(path: str, patterns: tuple[str, ...]) -> bool:
+    return any(fnmatchcase(path, pattern) for pattern in patterns)
 
 
 def _other_start(then: dict[str, Any], now: dict[str, Any]) -> Iterator[Difference]:

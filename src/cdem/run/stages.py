@@ -135,7 +135,7 @@ def refuse_curves_over(sim: RunState) -> None:
     Raises:
         CaseError: One is; says from when its times count.
     """
-    if sim.stage_index > last_dynamic(sim.case.stages):
+    if sim.begun > last_dynamic(sim.case.stages):
         return
     late = sim.stage_index * float(sim.core.scalars()["dt"])  # stages end up to a step late
     for keys, what in over_early(sim.case, sim.time, late):

@@ -8,7 +8,9 @@ from cdem import Case, CaseError, Simulation
 
 PULSE = [[0, 0], [0.02, 1], [0.04, 0]]
 REST = {"name": "rest", "mode": "static"}
-OVER = "is over at {end} s, before the stage {stage} begins: its times count from the start of the run"
+OVER = (
+    "is over at {end} s, before the stage {stage} begins: its times count from the start of the run"
+)
 GOES_ON = "also while the static stage {stage} comes to rest"
 
 
@@ -29,7 +31,9 @@ def case(stages, *, velocities=(), tractions=(), water=None, **more):
 
 
 def driven(history=None, **more):
-    return {"group": "rock", "velocity": [1, 0, 0]} | ({"history": history} if history else {}) | more
+    return (
+        {"group": "rock", "velocity": [1, 0, 0]} | ({"history": history} if history else {}) | more
+    )
 
 
 def pressed(history=None, **more):
@@ -115,7 +119,10 @@ def test_an_unknown_stage_is_answered_with_those_that_there_are(path):
     ("load", "says"),
     [
         ({"velocities": [driven(stage="rest")]}, "give it with a history or level"),
-        ({"water": {"reservoir": {"level": 1, "stage": "rest"}}}, "give it with a history or level"),
+        (
+            {"water": {"reservoir": {"level": 1, "stage": "rest"}}},
+            "give it with a history or level",
+        ),
         ({"velocities": [driven([[-1, 0], [1, 1]], stage="rest")]}, "times must be at least 0"),
         ({"velocities": [driven([[1, 0], [1, 1]], stage="rest")]}, "history: times must increase"),
     ],
