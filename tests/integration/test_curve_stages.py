@@ -80,6 +80,22 @@ def test_a_pulse_that_a_static_stage_uses_up_is_refused_while_it_runs(tmp_path, 
     assert sim.stage is not None and sim.stage.name == "rest"  # told as soon as it is known
 
 
+def test_a_static_stage_waits_for_the_curves_that_name_it():
+    """A load that grows from nothing: without the wait the stage would be at rest at once."""
+    data = column(gravity=[0, 0, 0], velocities=[])
+    face = {"group": "rock", "normal": [0, 0, 1]}
+    rows = [[0, 0], [0.2, 0], [0.3, 1]]
+    data["loads"]["tractions"] = [
+        {"surface": face, "traction": [0, 0, -1e6], "history": rows, "stage": "rest"}
+    ]
+    sim = Simulation(Case.from_dict(data), threads=1)
+    assert sim.run_stage("rest") == "converged"
+    assert sim.finished_stages[0]["time"] > 0.3
+    shorter = sim.fields["displacement"][sim.build.start_position[:, 2] > 59.9, 2].mean()
+    stiffness = 5e9 / (1 - 0.25**2)  # held in y, free in x
+    assert shorter == pytest.approx(-1e6 * 60 / stiffness, rel=0.01)
+
+
 def test_a_stage_that_is_tried_again_counts_from_its_first_begin():
     """As a search for a critical value does, which goes on from the last state at rest."""
     sim = Simulation(Case.from_dict(column()), threads=1)

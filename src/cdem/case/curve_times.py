@@ -51,6 +51,11 @@ def over_early(case: CaseParts, time: float, late: float = 0.0) -> Iterator[Prob
             )
 
 
+def last_change(case: CaseParts, stage: str) -> float:
+    """When the last of the curves that count from a stage has come to its last value [s]."""
+    return max((end for _, _, end in _varying(case, stage)), default=0.0)
+
+
 def in_static_stages(case: CaseParts) -> Iterator[Problem]:
     """Curves that go on while a stage that they do not name comes to rest, in a time of its own."""
     names = [stage.name for stage in case.stages]

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.curve_times import last_dynamic, over_early
+from cdem.case.curve_times import last_change, last_dynamic, over_early
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
@@ -244,10 +244,12 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
         steps = min(steps, rules.max_steps - done)
     if stage.mode == "static":
         steps = min(steps, STATIC_RECORD_STEPS - done % STATIC_RECORD_STEPS)
+        over = sim.begins[stage.name] + last_change(sim.case, stage.name)
+        changes = sim.time < over  # no rest before its curves are over
         report = sim.core.run(
             steps,
-            end_time=until,
-            unbalance_limit=rules.tolerance,
+            end_time=min(until, over) if changes else until,
+            unbalance_limit=0.0 if changes else rules.tolerance,
             relaxation="none" if rules.relax == "local" else rules.relax,
         )
         goes_on = report[0] == "converged" and release_part(sim, stage)
