@@ -58,14 +58,42 @@ def dam():
         [static("rest"), dynamic("fill"), static("stand", set={"interfaces.base.friction_angle": 40})],
         water={
             "fields": [{"name": "up", "interface": "base", "formula": "9810*3*max(0,1-(x-2)/2)",
-                        "history": [[0, 0], [0.05, 1]]}],
+                        "history": [[0, 0], [0.05, 1]], "stage": "rest"}],
             "reservoir": {"box": {"min": [-1, -1, -1], "max": [2.01, 9, 9]},
-                          "level": [[0, 0], [0.05, 3]]},
+                          "level": [[0, 0], [0.05, 3]], "stage": "rest"},
         },
     )  # fmt: skip
     case["loads"]["tractions"] = [
         {"surface": {"group": "block", "normal": [0, 0, 1]}, "traction": [2000, 0, 0],
-         "history": [[0, 0], [0.03, 1], [0.05, 0.2]]}
+         "history": [[0, 0], [0.03, 1], [0.05, 0.2]], "stage": "rest"}
+    ]  # fmt: skip
+    return case
+
+
+def shaken():
+    """Curves that count from stages: static ones and those with what comes and goes, too."""
+    wait = {"history": [[0, 0.2], [0.013, 1], [0.03, 0.5], [0.07, 0]]}
+    case = on_ground(
+        [box("ground", [6, 6, 1], [0, 0, -1], divisions=[2, 2, 1]),
+         box("block", [2, 2, 3], [2, 2, 0], divisions=[2, 2, 2], shape="tet4"),
+         box("fill", [1, 2, 1], [4, 2, 0])],
+        [static("rest"), dynamic("go", 0.0301), static("dig", remove=["fill"]),
+         dynamic("shake", 0.0402, set={"interfaces.base.friction_angle": 40}),
+         dynamic("back", 0.05, add=["fill"])],
+        water={
+            "fields": [{"interface": "base", "level": [[0, 1], [0.02, 2]], "stage": "go"} | wait],
+            "reservoir": {"box": {"min": [-1, -1, -1], "max": [2.01, 9, 9]}, "stage": "rest",
+                          "level": [[0, 0], [0.003, 1], [0.05, 3]]},
+        },
+    )  # fmt: skip
+    case["groups"]["fill"] = {"material": "r"}
+    case["loads"]["tractions"] = [
+        {"surface": {"group": "block", "normal": [0, 0, 1]}, "traction": [2000, 0, 0]}
+        | wait | {"stage": stage} for stage in ("dig", "shake", "back")
+    ]  # fmt: skip
+    case["loads"]["velocities"] = [
+        {"surface": {"group": "ground", "normal": [0, 0, -1]}, "velocity": [0.3, 0, 0],
+         "components": ["x"], "stage": "shake", "history": [[0, 0], [0.01, 1], [0.02, 0]]}
     ]  # fmt: skip
     return case
 
@@ -186,7 +214,7 @@ def yielding():
     return case
 
 
-SCENES = {f.__name__: f for f in (dam, bolted, tunnel, blown, lining, soft, yielding)}
+SCENES = {f.__name__: f for f in (dam, shaken, bolted, tunnel, blown, lining, soft, yielding)}
 FREE = {"wall_time", "version", "host", "date"}
 """Values that differ between two runs."""
 

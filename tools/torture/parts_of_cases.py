@@ -60,7 +60,7 @@ water:
   density: 1000
   fields:
     - {name: table, groups: [rock], plane: {point: [0, 0, 2], dip: 10, dip_direction: 90},
-       seepage: parallel, lift: 0.1, history: [[0, 0], [1, 1]], wet: always, aperture: 0.01}
+       seepage: parallel, lift: 0.1, history: [[0, 0], [1, 1]], stage: on, wet: always, aperture: 0.01}
     - {interface: base, level: [[0, 1], [1, 2]], wet: broken}
     - {groups: [late], formula: "9810 * max(0, 4 - z)"}
     - {groups: [plug], ru: 0.2}
@@ -80,7 +80,7 @@ bolts:
 loads:
   gravity: [0, 0, -9.81]
   tractions: [{surface: {group: rock, normal: [0, 0, 1]}, traction: [0, 0, -1e4],
-    history: [[0, 0], [1, 1]]}]
+    history: [[0, 0], [1, 1]], stage: rest}]
   velocities:
     - {group: plug, velocity: [0.1, 0, 0], components: [x], history: [[0, 0], [1, 1]]}
     - {point: [0, 0, 3], velocity: [0, 0, 0]}

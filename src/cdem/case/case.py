@@ -154,9 +154,11 @@ class Case(CaseParts):
         """
         trial = self.model_copy(deep=True)
         trial._source = Source()
-        none: dict[str, Any] = {"set": {path: value}, "add": [], "remove": []}
-        trial.__dict__["stages"] = [Stage(name="now", mode="static").model_copy(update=none)]
-        problems, _ = checks.stage_settings(trial, trial.set, self._unusual)
+        others = [stage.model_copy(update={"set": {}}) for stage in trial.stages]
+        now = Stage(name="now", mode="static").model_copy(update={"set": {path: value}})
+        trial.__dict__["stages"] = [*others, now]
+        known = [*self._unusual, *checks.contradictions(trial, self._source.folder)]
+        problems, _ = checks.stage_settings(trial, trial.set, known)
         if problems:
             raise CaseError(f"{path}: {problems[0][1]}")
 

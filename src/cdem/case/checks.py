@@ -8,6 +8,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
+from cdem.case.curve_times import last_dynamic, least_time, over_early, timed
 from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, block_contradiction
 from cdem.case.map_system import why_not
@@ -56,6 +57,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _groups(case)
     yield from _excavation(case)
     yield from _bolts(case)
+    yield from _curves(case)
     yield from _joints(case)
     yield from _unique_names(case)
 
@@ -214,6 +216,22 @@ def _histories_of_bolts(case: CaseParts) -> Iterator[Problem]:
             yield ("histories", i, "bolt"), _no("bolt", history.bolt, names)
 
 
+def _curves(case: CaseParts) -> Iterator[Problem]:
+    """Whether there are the stages from which curves count, with what the curves act on."""
+    names = [stage.name for stage in case.stages]
+    for keys, entry in timed(case):
+        if entry.stage is None:
+            continue
+        if entry.stage not in names:
+            there = ", ".join(names)
+            yield (*keys, "stage"), f"no stage '{entry.stage}'; the case has: {there}"
+            continue
+        surface = getattr(entry, "surface", None)
+        group = getattr(surface, "group", getattr(entry, "group", None))
+        if group in case.absent(names.index(entry.stage) + 1):
+            yield (*keys, "stage"), f"{group} is not there in the stage {entry.stage}"
+
+
 def _joints(case: CaseParts) -> Iterator[Problem]:
     names = case.model.joint_surfaces
     for i, pair in enumerate(case.interfaces.pairs):
@@ -370,20 +388,7 @@ def stage_settings(
     known = list(known)
     fixed_values = trial.interfaces.fixed()
     for i, stage in enumerate(trial.stages):
-        for path, value in stage.set.items():
-            keys = ("stages", i, "set", path)
-            if not path.startswith(SETTABLE):
-                allowed = ", ".join(f"{start}*" for start in SETTABLE)
-                problems.append((keys, f"a stage can change {allowed} only"))
-                continue
-            if fixed := _fixed_at_the_start(trial, stage, path, value):
-                problems.append((keys, fixed))
-                continue
-            try:
-                put(path, value)
-            except CaseError as error:
-                what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
-                problems.append((keys, what.partition(": ")[2]))
+        problems += _settings_of_one(trial, i, put)
         now = trial.interfaces.fixed()
         for key in now:
             if now[key] != fixed_values[key]:
@@ -395,6 +400,9 @@ def stage_settings(
             for keys, what in _names(trial)
             if (keys, what) not in known
         ]
+        if i == last_dynamic(trial.stages):
+            over = over_early(trial, least_time(trial.stages[:i]))
+            problems += [problem for problem in over if problem not in known]
         if stage.set:
             for found, told in zip(doubts(trial), (problems, doubtful), strict=True):
                 told += [
@@ -404,6 +412,26 @@ def stage_settings(
                 ]
                 known += found
     return problems, doubtful
+
+
+def _settings_of_one(
+    trial: CaseParts, number: int, put: Callable[[str, Any], None]
+) -> Iterator[Problem]:
+    """Put what a stage sets into a copy of the case; what does not work."""
+    stage = trial.stages[number]
+    for path, value in stage.set.items():
+        keys = ("stages", number, "set", path)
+        if not path.startswith(SETTABLE):
+            allowed = ", ".join(f"{start}*" for start in SETTABLE)
+            yield keys, f"a stage can change {allowed} only"
+        elif fixed := _fixed_at_the_start(trial, stage, path, value):
+            yield keys, fixed
+        else:
+            try:
+                put(path, value)
+            except CaseError as error:
+                what = str(error).removeprefix("case: ").splitlines()[0]  # case: path: what
+                yield keys, what.partition(": ")[2]
 
 
 def _no(kind: str, name: str, known: Iterable[str]) -> str:

@@ -10,6 +10,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+AWAY = Path(__file__).parents[1]
+"""A folder for processes that open no file of the user: none of a stranger lies there."""
 RUN = "import runpy; sys.argv.pop(0); runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"
 
 

@@ -60,29 +60,51 @@ class Region(Part):
         return self
 
 
-class _Timed(Part):
+class Timed(Part):
+    """Something with curves over time: under `history`, of a factor, or `level`, of heights."""
+
+    stage: Name | None = Field(
+        None,
+        description="Stage from whose begin the times of history or of a level count; before it the "
+        "first value holds. By default they count from the start of the run",
+    )
+
+    @property
+    def curves(self) -> dict[str, list[tuple[float, float]]]:
+        """Rows of time [s] and value of its curves, by key."""
+        values = {key: getattr(self, key, None) for key in ("history", "level")}
+        return {key: rows for key, rows in values.items() if isinstance(rows, list)}
+
+    @model_validator(mode="after")
+    def _times_increase(self) -> Timed:
+        for key, rows in self.curves.items():
+            if any(later <= earlier for (earlier, _), (later, _) in pairwise(rows)):
+                raise ValueError(f"{key}: times must increase")
+            if self.stage is not None and rows[0][0] < 0:
+                raise ValueError(
+                    f"{key}: times must be at least 0, the begin of stage {self.stage}"
+                )
+        if self.stage is not None and not self.curves:
+            raise ValueError("stage says from when a curve counts: give it with a history or level")
+        return self
+
+
+class _Factored(Timed):
     history: History | None = Field(
         None,
         min_length=1,
         description="Factor over time, linear between: [[time [s], factor [1]], ...]",
     )
 
-    @model_validator(mode="after")
-    def _times_increase(self) -> _Timed:
-        times = [time for time, _ in self.history or []]
-        if any(later <= earlier for earlier, later in pairwise(times)):
-            raise ValueError("history: times must increase")
-        return self
 
-
-class Traction(_Timed):
+class Traction(_Factored):
     """A stress on faces, per area of the undeformed face."""
 
     surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
     traction: Stress3 = Field(description="Force per area [Pa]")
 
 
-class PrescribedVelocity(_Timed):
+class PrescribedVelocity(_Factored):
     """Nodes that are driven."""
 
     group: Name | None = Field(None, description="All nodes of this group")

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from cdem.case.curve_times import in_static_stages
 from cdem.case.interface_schema import InterfacePair
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.types import Part, Stiffness
@@ -200,6 +201,7 @@ def doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
             if what:
                 (impossible if wrong else unusual).append((keys, what))
     unusual += _gravity(case)
+    unusual += in_static_stages(case)
     for index, stage in enumerate(case.stages):
         unusual += _local_damping(case, index, stage)
     return impossible, unusual

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from cdem.errors import CaseError, CdemError
 
@@ -27,6 +28,20 @@ class Source:
     file: str | None = None
     places: dict[Keys, tuple[int, int]] = field(default_factory=dict)
     overrides: dict[Keys, str] = field(default_factory=dict)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON; `of` makes it again."""
+        return {
+            "file": self.file,
+            "places": [[list(keys), *place] for keys, place in self.places.items()],
+            "overrides": [[list(keys), by] for keys, by in self.overrides.items()],
+        }
+
+    @classmethod
+    def of(cls, data: dict[str, Any]) -> Source:
+        """That of which `as_dict` is this."""
+        places = {tuple(keys): (line, column) for keys, line, column in data["places"]}
+        return cls(data["file"], places, {tuple(keys): by for keys, by in data["overrides"]})
 
     @property
     def folder(self) -> Path:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from cdem.case.bodies_schema import exactly_one
 from cdem.case.formula import Formula
-from cdem.case.loads_schema import History, Region
+from cdem.case.loads_schema import History, Region, Timed
 from cdem.case.types import Angle, Length3, Line, Name, Part, Quantity
 
 Height = Annotated[float, Quantity("m")]
@@ -18,12 +17,6 @@ Level = Annotated[
     Annotated[Height, Tag("height")] | Annotated[Heights, Tag("heights")],
     Discriminator(lambda v: "heights" if isinstance(v, list) else "height"),
 ]
-
-
-def _increasing(level: Level | None) -> None:
-    times = [time for time, _ in level] if isinstance(level, list) else []
-    if any(later <= earlier for earlier, later in pairwise(times)):
-        raise ValueError("level: times must increase")
 
 
 class WaterPlane(Part):
@@ -36,7 +29,7 @@ class WaterPlane(Part):
     dip_direction: Angle = Field(description="Azimuth in which it falls, from north (y) [deg]")
 
 
-class WaterField(Part):
+class WaterField(Timed):
     """Water in some joints, or in the joints and pores of some groups; a later entry replaces an
     earlier one.
 
@@ -106,11 +99,7 @@ class WaterField(Part):
         return self
 
     @model_validator(mode="after")
-    def _times_increase(self) -> WaterField:
-        _increasing(self.level)
-        times = [time for time, _ in self.history or []]
-        if any(later <= earlier for earlier, later in pairwise(times)):
-            raise ValueError("history: times must increase")
+    def _factors_fit(self) -> WaterField:
         if any(factor < 0 for _, factor in self.history or []):
             raise ValueError("history: factors must be at least 0")
         return self
@@ -124,7 +113,7 @@ class WaterField(Part):
         return formula
 
 
-class Reservoir(Part):
+class Reservoir(Timed):
     """Water in the open, at rest: presses on faces that touch nothing."""
 
     box: Region | None = Field(
@@ -135,11 +124,6 @@ class Reservoir(Part):
         description="Height z of its surface, or heights over time, linear between: "
         "[[time [s], height [m]], ...]"
     )
-
-    @model_validator(mode="after")
-    def _times_increase(self) -> Reservoir:
-        _increasing(self.level)
-        return self
 
 
 class Water(Part):

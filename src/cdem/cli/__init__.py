@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from cdem._version import __version__
+from cdem.case import child
 from cdem.cli.messages import Messages
 from cdem.cli.verbs import Verbs
 from cdem.errors import CdemError
@@ -33,6 +36,7 @@ def main() -> None:
 
 def _main() -> None:
     try:
+        _pass_over_matplotlibrc()
         app()
     except CdemError as error:
         print(error, file=sys.stderr)
@@ -51,6 +55,22 @@ def _main() -> None:
         where = f"{error.filename}: " if error.filename else ""
         print(f"{where}{error.strerror or error}", file=sys.stderr)
         sys.exit(1)
+
+
+def _pass_over_matplotlibrc() -> None:
+    """Keep matplotlib from a file of settings in the current folder, which may be a stranger's.
+
+    It reads one there before all others, when it is imported, and at no other time.
+    """
+    if not os.path.lexists("matplotlibrc"):
+        return
+    here = Path.cwd()
+    os.chdir(child.AWAY)
+    try:
+        with contextlib.suppress(ImportError):
+            import matplotlib  # noqa: F401
+    finally:
+        os.chdir(here)
 
 
 def _print_version(wanted: bool) -> None:

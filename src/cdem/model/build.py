@@ -27,7 +27,7 @@ from cdem.model.assemble import assemble
 from cdem.model.bodies import check_groups, read_model
 from cdem.model.bolts import BoltModel, bolts_of
 from cdem.model.compensation import Compensation, compensate, compensated_groups, is_automatic
-from cdem.model.curves import Curves, constant
+from cdem.model.curves import Curves, constant, hand_over
 from cdem.model.domain import check_domain
 from cdem.model.flat_arrays import Assembly, Properties
 from cdem.model.initial_stress import InitialState, set_initial_stress
@@ -68,7 +68,7 @@ class Build:
         topology: Blocks, faces and pairs.
         assembly: Counts and sums of what the core was given, which holds the arrays now.
         core: The compiled core, holding model and state.
-        curves: Times and factors of load and velocity histories; the first is constant.
+        curves: Those of load and velocity histories; the first is constant.
         start_position: Positions at the start [m], shape (nodes, 3).
         born: Positions at which the rock is free of stress [m]: those of the start but for groups
             that have come in since, shape (nodes, 3).
@@ -167,7 +167,7 @@ def build(case: Case) -> Build:
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
     _share(topology, core.model())
-    core.set_curves([c[0] for c in curves], [c[1] for c in curves])
+    hand_over(core, curves, {})
     core.set_interfaces(interface_entries(case, laws, names, at))
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(at)

@@ -2,20 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
-Curves = list[tuple[list[float], list[float]]]
-"""Times [s] and factors of each curve."""
+import numpy as np
+
+
+class Curve(NamedTuple):
+    """Values over time.
+
+    Attributes:
+        times: From the start of the run, or from the begin of a stage [s].
+        values: At these times, linear between; the first holds before, the last behind.
+        stage: Name of that stage, or None.
+    """
+
+    times: list[float]
+    values: list[float]
+    stage: str | None
+
+    @property
+    def at_start(self) -> float:
+        """The value at the start of the run."""
+        return float(np.interp(0.0, self.times, self.values))
+
+    def in_run(self, begins: Mapping[str, float]) -> tuple[list[float], list[float]]:
+        """Times from the start of the run [s], and values; the first value until its stage begins.
+
+        Args:
+            begins: When the stages began that have begun, by name [s].
+        """
+        if self.stage is None:
+            return self.times, self.values
+        if self.stage not in begins:
+            return [0.0], self.values[:1]
+        return [begins[self.stage] + time for time in self.times], self.values
+
+
+Curves = list[Curve]
 
 
 def constant() -> Curves:
     """The curves before any history is added: the first is 1 at all times."""
-    return [([0.0], [1.0])]
+    return [Curve([0.0], [1.0], None)]
 
 
-def add_curve(history: Sequence[tuple[float, float]] | None, curves: Curves) -> int:
+def add_curve(
+    history: Sequence[tuple[float, float]] | None, stage: str | None, curves: Curves
+) -> int:
     """Index of a history's curve; without one, the constant."""
     if history is None:
         return 0
-    curves.append(([float(t) for t, _ in history], [float(f) for _, f in history]))
+    curves.append(Curve([float(t) for t, _ in history], [float(f) for _, f in history], stage))
     return len(curves) - 1
+
+
+def hand_over(core: Any, curves: Curves, begins: Mapping[str, float]) -> None:
+    """Give the core the curves as they are while no other stage begins.
+
+    Args:
+        core: Gets them.
+        curves: Of the model.
+        begins: When the stages began that have begun, by name [s].
+    """
+    in_run = [curve.in_run(begins) for curve in curves]
+    core.set_curves([times for times, _ in in_run], [values for _, values in in_run])

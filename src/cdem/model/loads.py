@@ -36,7 +36,7 @@ def tractions_of(
         share = np.broadcast_to((area / used.sum(axis=1))[:, None], vertex.shape)[used]
         nodes.append(vertex[used])
         forces.append(share[:, None] * np.asarray(item.traction, float))
-        of_curve.append(np.full(used.sum(), add_curve(item.history, curves), np.int32))
+        of_curve.append(np.full(used.sum(), add_curve(item.history, item.stage, curves), np.int32))
     count = len(topology.node_position)
     if not nodes:
         return {
@@ -80,7 +80,7 @@ def start_on_supports(
 
     Args:
         arrays: Of the core.
-        curves: Times and factors.
+        curves: Of the model.
         motion: Rows of the core: position, then velocity from the fifth number on; is changed.
 
     Returns:
@@ -88,7 +88,7 @@ def start_on_supports(
     """
     nodes = np.flatnonzero(arrays["support.row"] >= 0)
     row = arrays["support.row"][nodes]
-    factor = np.array([np.interp(0.0, times, factors) for times, factors in curves])
+    factor = np.array([curve.at_start for curve in curves])
     given = arrays["support.component"].reshape(-1, 3)[row].astype(bool)
     velocity = arrays["support.velocity"].reshape(-1, 3)[row]
     velocity = velocity * factor[arrays["support.curve"].reshape(-1, 3)[row]]

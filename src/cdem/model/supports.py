@@ -50,7 +50,8 @@ def supports_of(
     for index, driven in enumerate(case.loads.velocities):
         nodes = select_nodes(case, topology, names, driven, f"loads.velocities.{index}")
         axes = ["xyz".index(c) for c in driven.components]
-        hold(nodes, axes, [driven.velocity[a] for a in axes], add_curve(driven.history, curves))
+        curve_of = add_curve(driven.history, driven.stage, curves)
+        hold(nodes, axes, [driven.velocity[a] for a in axes], curve_of)
 
     held = np.asarray(component.any(axis=1))
     row = np.full(count, -1, np.int32)

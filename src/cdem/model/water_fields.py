@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cdem.case.case import Case
 from cdem.case.formula import Formula
-from cdem.case.water_schema import Level, WaterField
+from cdem.case.water_schema import Reservoir, WaterField
 from cdem.errors import CaseError
 from cdem.mesh.arrays import along
 from cdem.mesh.topology import Topology
@@ -43,7 +43,7 @@ class _Field:
 
     def pressure(self, points: Floats, curves: Curves) -> Floats:
         """Pressure [Pa] at points at time zero, shape (points,)."""
-        lift, factor = (float(np.interp(0.0, *curves[c])) for c in self.curves)
+        lift, factor = (curves[c].at_start for c in self.curves)
         raw = (
             self.row[0]
             + along(points, np.array(self.row[1:4]))
@@ -87,7 +87,7 @@ class WaterTables:
                 self.fields.append(self._field(entry))
         self.reservoir = len(self.fields)
         if self._water.reservoir is not None:
-            self.fields.append(self._at_level(self._water.reservoir.level, 0.0, 0))
+            self.fields.append(self._at_level(self._water.reservoir, 0.0, 0))
         self.fields.append(DRY)
 
     def in_wet_joints(
@@ -169,9 +169,9 @@ class WaterTables:
         return found[-1] if found else self.reservoir
 
     def _field(self, entry: WaterField) -> _Field:
-        factor = add_curve(entry.history, self._curves)
+        factor = add_curve(entry.history, entry.stage, self._curves)
         if entry.level is not None:
-            return self._at_level(entry.level, entry.lift, factor)
+            return self._at_level(entry, entry.lift, factor)
         unit = self.unit
         if entry.plane is not None:
             dip, azimuth = np.radians([entry.plane.dip, entry.plane.dip_direction])
@@ -197,10 +197,13 @@ class WaterTables:
             kept = self._by_weight(float(entry.ru or 0.0))
         return _Field([raised, 0, 0, 0, 1, 0, 0, 0], (0, factor), kept)
 
-    def _at_level(self, level: Level, lift: float, factor: int) -> _Field:
-        first, curve = (level, 0) if not isinstance(level, list) else (level[0][1], -1)
-        if curve < 0:
-            curve = add_curve([(time, height - first) for time, height in level], self._curves)  # type: ignore[union-attr]
+    def _at_level(self, entry: WaterField | Reservoir, lift: float, factor: int) -> _Field:
+        level = entry.level
+        assert level is not None
+        first, curve = (level[0][1], -1) if isinstance(level, list) else (level, 0)
+        if isinstance(level, list):
+            rise = [(time, height - first) for time, height in level]
+            curve = add_curve(rise, entry.stage, self._curves)
         per_lift = self.unit if curve else 0.0
         row = [self.unit * (first + lift), 0, 0, -self.unit, 0, per_lift, 0, 0]
         return _Field(row, (curve, factor))

@@ -54,7 +54,7 @@ def can_draw() -> bool:
         "import pyvista as p; q = p.Plotter(off_screen=True, window_size=(16, 16));"
         "q.add_mesh(p.Sphere()); q.screenshot(return_img=True)"
     )
-    done = subprocess.run(child.code(code), capture_output=True, check=False)
+    done = subprocess.run(child.code(code), cwd=child.AWAY, capture_output=True, check=False)
     return done.returncode == 0
 
 

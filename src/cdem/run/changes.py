@@ -24,6 +24,8 @@ FREE = ("title", "crs", "output.every", "output.checkpoint_every", "time.energy_
 """Values that a resumed run may change."""
 ENDS = ("duration", "until", "tolerance", "max_steps")
 """Values of the last stage that has begun which a resumed run may change."""
+CURVES = ("loads.*.*.stage", "water.fields.*.stage", "water.reservoir.stage")
+"""From which stage curves count: to name the first says the same as to name none."""
 
 Difference = tuple[str, Any, Any]  # path, value then, value now; None where there is none
 
@@ -75,10 +77,11 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
     """
     found = Changes(refused=list(_other_start(then, now)))
     last = f"stages.{begun - 1}."
+    first = {None, now["stages"][0]["name"]}
     for path, a, b in differences(then, now):
         later = path.startswith("stages.") and int(path.split(".")[1]) >= begun
         end = path.removeprefix(last) if path.startswith(last) else ""
-        if any(fnmatchcase(path, pattern) for pattern in FILES):
+        if _is_of(path, FILES) or (_is_of(path, CURVES) and {a, b} <= first):
             continue
         if end in ENDS:
             found.longer |= b is None or (
@@ -87,6 +90,10 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
         allowed = later or path in FREE or end in ENDS
         (found.allowed if allowed else found.refused).append((path, a, b))
     return found
+
+
+def _is_of(path: str, patterns: tuple[str, ...]) -> bool:
+    return any(fnmatchcase(path, pattern) for pattern in patterns)
 
 
 def _other_start(then: dict[str, Any], now: dict[str, Any]) -> Iterator[Difference]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import resource
 import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.interfaces import interfaces_of
 from cdem.model.stiffness import interface_entries
 from cdem.run import stages
-from cdem.run.state import RunState
+from cdem.run.state import RunState, StageState
 
 SECONDS = 1.0
 """Wall time given to each measurement [s]."""
@@ -114,24 +116,29 @@ class Estimate:
 def estimate(sim: RunState) -> Estimate:
     """Measure every stage by some of its steps; the simulation is of no use afterwards.
 
+    A stage that these steps end leads to the next as in a run.
+
     Args:
         sim: A simulation that has not begun.
+
+    Raises:
+        CaseError: What a run would end with up to there.
     """
     found, unbalance = [], None
     for index, stage in enumerate(sim.case.stages):
         sim.stage_index = index
-        stages.begin(sim)
+        begun = stages.begin(sim)
         if index == 0 and sim.build.initial is not None:
             sim.core.run(1)
             unbalance = float(sim.core.unbalance_ratio())
-        step, length = _measure(sim)
+        step, length = _measure(sim, partial(_follow, sim, begun))
         wall = broken = None
         if stage.duration is not None:
             wall = stage.duration / length * step
             if index == len(sim.case.stages) - 1 and _bonded(sim):
                 _take_strength(sim)
                 sim.core.move_exact_masses()
-                step_broken, length = _measure(sim)
+                step_broken, length = _measure(sim, partial(_go_on, sim))
                 broken = stage.duration / length * step_broken
         found.append(StageEstimate(stage.name, stage.mode, step, wall, broken))
     return Estimate(found, peak_memory(sim), unbalance)
@@ -152,17 +159,35 @@ def _take_strength(sim: RunState) -> None:
     sim.core.set_interfaces(entries)
 
 
-def _measure(sim: RunState) -> tuple[float, float]:
-    """Wall time and simulated time of a step [s]: the second half of what `SECONDS` allow."""
+def _follow(sim: RunState, stage: StageState, steps: int) -> bool:
+    """Run a stage as a run does, at most so many steps; whether it goes on."""
+    outcome = stages.advance(sim, stage, steps, np.inf)[0]
+    stages.record_is_due(sim, stage, outcome)  # counts the rows up to which a run steps at once
+    ended = stages.status(sim, stage, outcome) is not None
+    return outcome in ("steps_done", "time_reached") and not ended
+
+
+def _go_on(sim: RunState, steps: int) -> bool:
+    """Step on, whatever ends a stage."""
+    return bool(sim.core.run(steps)[0] == "steps_done")
+
+
+def _measure(sim: RunState, run: Callable[[int], bool]) -> tuple[float, float]:
+    """Wall time and simulated time of a step [s]: the second half of what `SECONDS` allow.
+
+    Args:
+        sim: The simulation.
+        run: Does at most so many steps; whether there are more to do.
+    """
     begin = (time.perf_counter(), sim.step_count, sim.time)
     marks, steps = [begin], PIECE[0]
     while marks[-1][0] - begin[0] < SECONDS or marks[-1][1] - begin[1] < LEAST_STEPS:
         try:
-            outcome = sim.core.run(steps)[0]
+            goes_on = run(steps)
         except RuntimeError:  # the core cannot go on: no room left for contacts
             break
         marks.append((time.perf_counter(), sim.step_count, sim.time))
-        if outcome != "steps_done":
+        if not goes_on:
             break
         wall, done, _ = np.subtract(marks[-1], marks[-2])
         steps = max(PIECE[0], int(PIECE[1] * done / max(wall, 1e-9)))

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from time import perf_counter as time_now
 from typing import Any
 
 import h5py
@@ -34,8 +35,8 @@ ELEMENTS = "elements.h5"
 CHUNK_BYTES = 1 << 20
 FORMAT = ("v110", "v110")
 """Of HDF5: names and sizes have checksums too, and a dataset of one chunk needs no list of chunks."""
-LISTED_AT_ONCE = 50
-"""So many frames are listed one by one; later the list is written when it has grown by a 50th."""
+LIST_PATIENCE = 20
+"""The list is written again after so many times as long as writing it took, and by `sync`."""
 
 
 def frame_path(folder: Path, number: int) -> Path:
@@ -87,6 +88,7 @@ class _Series:
         self.lost: list[int] = []
         self._frames: list[_Frame] = []
         self._listed = 0
+        self._list_due = 0.0
         self.folder.mkdir(exist_ok=True)
         if keep is not None:
             self._keep(keep)
@@ -124,7 +126,7 @@ class _Series:
         if self._frames and self._frames[-1].datasets == frame.datasets:
             frame.datasets = self._frames[-1].datasets  # kept once
         self._frames.append(frame)
-        if len(self._frames) - self._listed >= len(self._frames) / LISTED_AT_ONCE:
+        if time_now() >= self._list_due:
             self._write_list()
 
     @staticmethod
@@ -145,7 +147,7 @@ class _Series:
 
     def _write_list(self) -> None:
         """Write the file that holds the datasets of all frames one after the other."""
-        frames = self._frames
+        frames, began = self._frames, time_now()
         with _replaced_hdf5(self.path) as hdf5:
             root = self._root(hdf5)
             for k, name in enumerate(COUNTS):
@@ -153,11 +155,14 @@ class _Series:
             for name in self.shared:
                 root[name] = h5py.ExternalLink(f"{self.folder.name}/{ELEMENTS}", name)
             names = sorted(set.intersection(*(set(f.datasets) for f in frames))) if frames else []
+            folder = Path(self.folder.name)
+            paths = [frame_path(folder, f.number).as_posix().encode() for f in frames]
             for name in names:
-                _put_virtual(root, name, self.folder.name, frames)
+                _put_virtual(root, name, paths, [f.datasets[name] for f in frames])
             self._name_groups(root)
             self._put_steps(root, names)
         self._listed = len(frames)
+        self._list_due = time_now() + LIST_PATIENCE * (time_now() - began)
 
     def _put_steps(self, root: h5py.Group, names: Sequence[str]) -> None:
         """Write times, and where the rows of each frame begin."""
@@ -369,23 +374,37 @@ def names_of_groups(root: h5py.Group) -> list[str]:
     return [name.decode() if isinstance(name, bytes) else str(name) for name in names]
 
 
-def _put_virtual(root: h5py.Group, name: str, folder: str, frames: Sequence[_Frame]) -> None:
-    """Make a dataset of those of all frames; where a file is missing, numbers are NaN."""
-    shapes = [frame.datasets[name][0] for frame in frames]
+def _put_virtual(
+    root: h5py.Group,
+    name: str,
+    paths: Sequence[bytes],
+    datasets: Sequence[tuple[tuple[int, ...], np.dtype]],
+) -> None:
+    """Make a dataset of those of all frames; where a file is missing, numbers are NaN.
+
+    Args:
+        root: Gets it.
+        name: Its own, and theirs.
+        paths: Of the frames, from the folder of the list.
+        datasets: Shape and type of theirs.
+    """
+    shapes = [shape for shape, _ in datasets]
     rows = [shape[0] for shape in shapes]
-    dtype = frames[0].datasets[name][1]
+    dtype = datasets[0][1]
     space = h5py.h5s.create_simple((sum(rows), *shapes[0][1:]))
     properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     properties.set_obj_track_times(False)  # so that the same frames give the same bytes
     if dtype.kind == "f":
         properties.set_fill_value(np.array(np.nan, dtype))
-    for frame, start, shape in zip(frames, _starts(rows), shapes, strict=True):
+    source_name = f"VTKHDF/{name}".encode()
+    sources: dict[tuple[int, ...], h5py.h5s.SpaceID] = {}
+    for path, start, shape in zip(paths, _starts(rows).tolist(), shapes, strict=True):
         if shape[0]:
-            part = space.copy()
-            part.select_hyperslab((int(start), *(0 for _ in shape[1:])), shape)
-            path = frame_path(Path(folder), frame.number).as_posix()
-            source = h5py.h5s.create_simple(shape)
-            properties.set_virtual(part, path.encode(), f"VTKHDF/{name}".encode(), source)
+            if shape not in sources:
+                sources[shape] = h5py.h5s.create_simple(shape)
+            space.select_hyperslab((start, *(0 for _ in shape[1:])), shape)
+            properties.set_virtual(space, path, source_name, sources[shape])
+    space.select_all()
     kind, _, last = name.rpartition("/")
     parent = root[kind] if kind else root
     h5py.h5d.create(parent.id, last.encode(), h5py.h5t.py_create(dtype), space, properties)

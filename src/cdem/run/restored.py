@@ -113,7 +113,26 @@ def wrong_numbers(run: RunState, attributes: Attributes) -> str:
         return f"it counts {attributes.rows} rows and {attributes.frames} frames"
     if len(attributes.finished_stages) != attributes.stage_index:
         return "it does not tell of the stages that have ended"
-    return next(filter(None, (_wrong_time(attributes, s) for s in _stages(attributes))), "")
+    found = (_wrong_time(attributes, s) for s in _stages(attributes))
+    return _wrong_begin(attributes) or next(filter(None, found), "")
+
+
+def begins(attributes: Attributes) -> dict[str, float]:
+    """When the stages began that have begun, by name [s]; `wrong_numbers` has found nothing."""
+    names = [stage["name"] for stage in attributes.case["stages"]]
+    ended = [row["begin"] for row in attributes.finished_stages]
+    return dict(zip(names, ended, strict=False)) | {
+        stage.name: stage.start_time for stage in _stages(attributes)
+    }
+
+
+def _wrong_begin(attributes: Attributes) -> str:
+    """What cannot be of the times at which stages began that have ended, or ""."""
+    for row in attributes.finished_stages:
+        time = row.get("begin")
+        if not isinstance(time, float) or not 0 <= time <= attributes.core["time"]:
+            return f"one of its stages began at {time}"
+    return ""
 
 
 def _stages(attributes: Attributes) -> list[StageState]:

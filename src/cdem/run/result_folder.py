@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import time
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS, OutputField
-from cdem.errors import CdemError
+from cdem.errors import CdemError, DiskError
 from cdem.run.bolt_fields import bolt_lines
 from cdem.run.checkpoint import (
     CHECKPOINT,
@@ -131,7 +132,10 @@ class Results:
             )
 
     def release(self) -> None:
-        """Let another run write into the folder."""
+        """Let another run write into the folder; what is there is listed."""
+        with contextlib.suppress(DiskError):  # all that a run needs is on the disk already
+            for series in self._series():
+                series.sync()
         self._lock.release()
 
     def _open_series(self, sim: RunState, frames: int | None, rows: str | None) -> None:

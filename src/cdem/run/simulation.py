@@ -350,6 +350,7 @@ class Simulation(RunState):
                 "name": stage.name,
                 "mode": stage.mode,
                 "status": status,
+                "begin": stage.start_time,
                 "steps": self.step_count - stage.start_step,
                 "time": self.time - stage.start_time,
                 "wall_time": stage.wall_time,
@@ -377,6 +378,7 @@ class Simulation(RunState):
 
     def _check(self) -> None:
         """End a run whose results are not to be trusted any more."""
+        stages.refuse_curves_over(self)
         if why := failures.of_energy(self) or failures.of_strain(self):
             raise self._failed(why)
 
@@ -450,6 +452,7 @@ class Simulation(RunState):
         self.wall_time, self.departures = attributes.wall_time, attributes.departures
         stages.change_end(self, longer=changes.longer)
         self.settings = attributes.settings
+        self.begins = restored.begins(attributes)
         stages.catch_up(self)
         self.core.prepare()
         if not self.is_over or self.results.ended(self) is None:

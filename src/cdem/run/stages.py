@@ -7,11 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.curve_times import last_change, last_dynamic, over_early
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
 from cdem.model.build import change
-from cdem.model.curves import constant
+from cdem.model.curves import constant, hand_over
 from cdem.model.fill import folded, nodes_of_groups, places
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.stiffness import interface_entries
@@ -82,20 +83,27 @@ def update_core(sim: RunState, index: int) -> None:
         )
     sim.core.set_interfaces(interface_entries(sim.case, laws, names, b.start_position))
     sim.core.update_model(change(b))
-    sim.core.set_curves([c[0] for c in b.curves], [c[1] for c in b.curves])
+    hand_over(sim.core, b.curves, sim.begins)
     sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])
     sim.keep_case()
 
 
 def begin(sim: RunState) -> StageState:
-    """Start the next stage of a simulation."""
+    """Start the next stage of a simulation.
+
+    Raises:
+        CaseError: A curve is over before it; or what it adds does not fit in.
+    """
     index = sim.stage_index
     stage = sim.case.stages[index]
+    sim.begins.setdefault(stage.name, sim.time)  # a search begins its last stage again and again
     if stage.remove:
         excavate(sim, stage.remove)
     change_bolts(sim, stage.name)
     sim.core.change_mass(is_lumped(stage))
     apply_settings(sim, index)
+    hand_over(sim.core, sim.build.curves, sim.begins)
+    refuse_curves_over(sim)
     if stage.add:
         fill(sim, stage.add)
     if sim.step_count:
@@ -119,6 +127,20 @@ def begin(sim: RunState) -> StageState:
     elif release is not None:
         release_part(sim, begun)
     return begun
+
+
+def refuse_curves_over(sim: RunState) -> None:
+    """End a run whose curves are used up before the last dynamic stage, for which they may be meant.
+
+    Raises:
+        CaseError: One is; says from when its times count.
+    """
+    if sim.begun > last_dynamic(sim.case.stages):
+        return
+    late = sim.stage_index * float(sim.core.scalars()["dt"])  # stages end up to a step late
+    for keys, what in over_early(sim.case, sim.time, late):
+        path = ".".join(map(str, keys))
+        raise CaseError(f"{sim.case.where(path)}: {path}: {what}")
 
 
 def _release_of(stage: Stage) -> Release | None:
@@ -208,6 +230,7 @@ def catch_up(sim: RunState) -> None:
         for setting in sim.settings:
             if setting.begun == done:
                 change_value(sim, setting)
+    hand_over(sim.core, sim.build.curves, sim.begins)
     added = {name for stage in sim.case.stages[: sim.begun] for name in stage.add}
     if added:
         sim.core.update_model(renewed(sim, sorted(added)))
@@ -221,10 +244,12 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
         steps = min(steps, rules.max_steps - done)
     if stage.mode == "static":
         steps = min(steps, STATIC_RECORD_STEPS - done % STATIC_RECORD_STEPS)
+        over = sim.begins[stage.name] + last_change(sim.case, stage.name)
+        changes = sim.time < over  # no rest before its curves are over
         report = sim.core.run(
             steps,
-            end_time=until,
-            unbalance_limit=rules.tolerance,
+            end_time=min(until, over) if changes else until,
+            unbalance_limit=0.0 if changes else rules.tolerance,
             relaxation="none" if rules.relax == "local" else rules.relax,
         )
         goes_on = report[0] == "converged" and release_part(sim, stage)

@@ -168,6 +168,7 @@ class RunState:
             its domain.
         wall_time: Wall time spent in stages [s].
         settings: Values that a script has set while it ran.
+        begins: When the stages began that have begun, by name [s].
     """
 
     audit: Audit
@@ -188,6 +189,7 @@ class RunState:
         self.departures: list[Departure] = []
         self.wall_time = 0.0
         self.settings: list[Setting] = []
+        self.begins: dict[str, float] = {}
 
     def keep_case(self) -> None:
         """Remember the case that the core has now."""

@@ -77,6 +77,7 @@ def _make(
         "version": __version__,
         "folder": str(folder.resolve()),
         "case": data,
+        "source": own.as_dict(),
         "critical": search,
         "keep": study.keep,
         "parameters": row,

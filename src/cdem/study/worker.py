@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.case.named_files import files_of
+from cdem.case.source import Source
 from cdem.errors import BackendError, CdemError
 from cdem.study.criterion import Criterion
 from cdem.whole_files import refuse_link, write_json
@@ -69,7 +70,7 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
     warnings: list[str] = []
     tell = warnings.extend
     try:
-        case = Case.from_dict(task["case"])
+        case = Case(_source=Source.of(task["source"]), **task["case"])
         kept = folder / RESULT_FOLDER
         search = task["critical"]
         result |= _search(case, search, tell) if search else _run(case, task, kept, tell)

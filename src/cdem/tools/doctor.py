@@ -81,7 +81,11 @@ def _opengl() -> str:
         return "not tried: pyvista is missing"
     try:  # in a process of its own, because a bad driver ends it
         done = subprocess.run(
-            child.code(RENDER), capture_output=True, timeout=RENDER_TIMEOUT, check=False
+            child.code(RENDER),
+            cwd=child.AWAY,
+            capture_output=True,
+            timeout=RENDER_TIMEOUT,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return f"does not answer; {OPENGL_HINT}"

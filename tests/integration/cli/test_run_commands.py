@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import json
+import re
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import h5py
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools/torture"))
@@ -40,6 +44,43 @@ def test_a_signal_stops_with_a_checkpoint_and_the_run_goes_on(run_cli, cube_fold
     assert (
         json.loads((cube_folder / "cube.results/summary.json").read_text())["steps"] == steps + 100
     )
+
+
+@pytest.mark.parametrize(
+    "mode", ["mode: dynamic, duration: 1000", "mode: static, tolerance: 1e-12"]
+)
+def test_ctrl_c_leaves_the_last_frame_and_the_report(cube_folder, mode):
+    """Both of the moment of the stop, which comes long before the next frame is due."""
+    text = (cube_folder / "cube.yaml").read_text()
+    text = text.replace('mode: dynamic, duration: "5 ms"', mode)
+    text = text.replace('every: "1 ms"', "every: 1000")
+    assert mode in text and "every: 1000" in text
+    (cube_folder / "cube.yaml").write_text(text)
+    program = [sys.executable, "-c", "from cdem.cli import main; main()"]
+    child = subprocess.Popen([*program, "run", "cube.yaml", "--threads", "1"],
+                             stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # fmt: skip
+    lines = iter(child.stderr.readline, "")
+    assert any(line.startswith("fall: t ") for line in lines)  # behind warnings
+    time.sleep(0.3)
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=60)
+    assert child.returncode == 4, err
+    assert "Traceback" not in err and "no report" not in err
+    results = cube_folder / "cube.results"
+    summary = json.loads((results / "summary.json").read_text())
+    assert summary["status"] == "stopped"
+    for name in ("frames", "surface"):
+        with h5py.File(results / f"{name}.vtkhdf") as file:
+            times = file["VTKHDF/Steps/Values"][()]
+            assert list(times) == [0.0, summary["time"]]
+            fallen = file["VTKHDF/Points"][-1, 2]
+    middle = summary["groups"]["cube"]["centroid"][2]
+    assert fallen == pytest.approx(middle, abs=0.51)
+    packed = re.search(r"H4sI[\w+/]+=*", (results / "report.html").read_text())  # gzip in base64
+    raw = gzip.decompress(base64.b64decode(packed[0]))
+    page = json.loads(raw[4 : 4 + int.from_bytes(raw[:4], "little")])
+    assert page["times"] == [0.0, summary["time"]]
+    assert "stopped" in json.dumps(page["facts"])
 
 
 def test_an_energy_balance_that_does_not_close_ends_the_run(run_cli, tmp_path, monkeypatch):

@@ -17,6 +17,8 @@ GUARDS = {
     "test_nothing_is_imported_from_the_current_folder",
     "Laws of users are code.": LAWS + "test_code_is_refused_in_one_line",
     "A case that names some": LAWS + "test_code_is_refused_in_one_line",
+    "No settings of matplotlib": "integration/output/test_settings.py::"
+    "test_settings_of_a_stranger_s_folder_are_not_read",
     "Only `cdem law build` compiles.": LAWS + "test_a_library_must_be_there",
     "What runs is what was read": LAWS + "test_a_library_beside_the_header_is_not_loaded",
     "A folder of libraries": LAWS + "test_a_folder_that_others_may_write_is_refused",

@@ -18,9 +18,8 @@ def test_between_takes_two_numbers(run_cli, given):
 
 
 def _warnings(err: str) -> list[str]:
-    """Of a sweep, whose workers have data and no file, without the place."""
     lines = [line for line in err.splitlines() if line.startswith("warning: ")]
-    return [re.sub(r"warning: (\w+\.yaml:[0-9:]+|case): ", "", line) for line in lines]
+    return [line.removeprefix("warning: ") for line in lines]
 
 
 def _told_by_check(run_cli, case):
@@ -42,11 +41,16 @@ def test_runs_sweeps_and_searches_tell_the_warnings_of_check(run_cli, cube_folde
     study = "case: cube.yaml\nparameters: {groups.cube.velocity.0: [0, 1]}\n"
     (cube_folder / "study.yaml").write_text(study)
     told, of_slab = (_told_by_check(run_cli, name) for name in ("cube.yaml", "slab.yaml"))
-    assert len(told) >= 2
+    assert len(told) >= 2 and all(re.match(r"cube\.yaml:[0-9]+:[0-9]+: ", text) for text in told)
     assert _warnings(run_cli("run", "cube.yaml")[2]) == told
     for _ in "first", "again, from results that are there":
         status, _, err = run_cli("sweep", "study.yaml", "--workers", "1")
         assert (status, _warnings(err)) == (0, told)
     assert _warnings(run_cli("sweep", "study.yaml", "--quiet")[2]) == []
+    (cube_folder / "study.yaml").write_text("case: cube.yaml\nset: {materials.rock.density: 26}\n"
+                                            "parameters: {groups.cube.velocity.0: [0, 1]}\n")  # fmt: skip
+    status, _, err = run_cli("sweep", "study.yaml", "--workers", "1", "-o", "other")
+    assert status == 0
+    assert any(re.match(r"study\.yaml:2:\d+: materials", text) for text in _warnings(err))
     _, _, err = run_cli("critical", "slab.yaml", "--factor")
     assert _warnings(err) == of_slab

@@ -74,6 +74,22 @@ def test_a_new_first_stage_is_refused_and_a_new_last_one_is_not():
     assert not compare(CASE, last, begun=2).refused
 
 
+def test_curves_may_name_the_first_stage_and_no_other_later():
+    """Which says the same as to name none: both count from the start of the run."""
+    then = CASE | {
+        "loads": {"tractions": [{"stage": None}]},
+        "water": {"reservoir": {"stage": "one"}},
+    }
+    for stage, other in (("one", None), ("two", "three")):
+        now = CASE | {
+            "loads": {"tractions": [{"stage": stage}]},
+            "water": {"reservoir": {"stage": other}},
+        }
+        found = compare(then, now, begun=2)
+        assert not found.allowed
+        assert len(found.refused) == 2 * (stage == "two")
+
+
 def test_files_are_compared_by_what_they_hold_and_not_by_their_names():
     other = changed("model.mesh", "elsewhere/a.msh")
     other["model"]["blocks"][0]["file"] = "elsewhere/b.msh"

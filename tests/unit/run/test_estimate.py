@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 
 import pytest
@@ -48,10 +49,14 @@ class Core:
 
     def __init__(self, core, clock: Clock) -> None:
         self._core, self._clock = core, clock
+        self.ways: set[tuple[str, float]] = set()
 
     def run(self, steps, **more):
-        self._clock.now += self._clock.pace * steps
-        return self._core.run(steps, **more)
+        self.ways.add((more.get("relaxation", "none"), more.get("unbalance_limit", 0.0)))
+        before = self._core.scalars()["step"]
+        report = self._core.run(steps, **more)
+        self._clock.now += self._clock.pace * (self._core.scalars()["step"] - before)
+        return report
 
     def set_interfaces(self, entries):
         if all(e["parameters"]["cohesion"] == 0 for e in entries):
@@ -95,6 +100,28 @@ def test_static_stages_have_no_time():
     assert found.wall_time is None
     assert "stage settle: 1 ms a step; it takes as many steps as rest needs" in found.text()
     assert "peak memory 1,000 MB" in found.text()
+
+
+@pytest.mark.parametrize("way", ["adaptive", "kinetic", "local"])
+def test_a_static_stage_is_measured_on_its_way_to_rest(monkeypatch, way):
+    """Blocks of one element cost two to three times as much there as where nothing is relaxed."""
+    stages = f"[{{name: rest, mode: static, relax: {way}, tolerance: 1e-6}}]"
+    text = re.sub(r"stages: .*", f"stages: {stages}", WALL)
+    sim, found = measured(monkeypatch, text)
+    assert found.stages[0].wall_time is None
+    assert sim.core.ways == {("none" if way == "local" else way, 1e-6)}
+
+
+def test_a_stage_is_measured_up_to_its_end_and_leads_to_the_next(monkeypatch):
+    """Rock that moves freely is then where a run would have it."""
+    text = FALL.replace(
+        'stages: [{name: fall, mode: dynamic, duration: "5 ms"}]',
+        'stages: [{name: fall, mode: dynamic, duration: "5 ms"}, {name: then, mode: dynamic, duration: 1}]',
+    )
+    sim, _ = measured(monkeypatch, text)
+    assert list(sim.begins) == ["fall", "then"]
+    dt = sim.core.scalars()["dt"]
+    assert 0.005 <= sim.begins["then"] < 0.005 + dt
 
 
 def test_check_says_it(run_cli):

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
+from cdem.run import frame_files as module
 from cdem.run.frame_files import FrameFiles, SurfaceFiles, frame_path, names_of_groups
 
 # a tetrahedron, a pyramid on it, a wedge and a cube: node ids only need to be in range
@@ -100,6 +101,27 @@ def test_a_resumed_series_equals_an_unbroken_one(paths, write, keep):
     (broken.with_suffix("") / "frame-0005.vtkhdf.tmp").write_bytes(b"a kill left this")
     write(broken, range(keep, 6), keep)
     assert_same(unbroken, broken)
+
+
+def test_writing_the_list_takes_a_20th_of_the_time(paths, monkeypatch):
+    """A second each here, and half a second a frame; `sync` lists all that is there."""
+    now, listed = [0.0], []
+    put_steps = module.FrameFiles._put_steps
+
+    def slow(series, *what):
+        put_steps(series, *what)
+        now[0] += 1.0
+        listed.append(len(series._frames))
+
+    monkeypatch.setattr(module, "time_now", lambda: now[0])
+    monkeypatch.setattr(module.FrameFiles, "_put_steps", slow)
+    series = FrameFiles(paths[0], CELLS, STATIC, GROUPS)
+    for step in range(50):
+        series.append(step, *frame(step))
+        now[0] += 0.5
+    assert listed == [1, 41]
+    series.sync()
+    assert listed == [1, 41, 50]
 
 
 @BOTH

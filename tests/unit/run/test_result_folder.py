@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import h5py
 import meshio
 import pytest
 from shared.cases import CUBE
+
+import cdem
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
@@ -42,3 +45,18 @@ def test_a_checkpoint_of_other_elements_between_the_same_nodes_is_refused(run_cl
     assert status == 1
     assert "with other elements or groups" in err
     assert run_cli("run", "cube.yaml", "--resume", "--quiet")[0] == 0
+
+
+def test_a_run_that_is_let_go_lists_all_of_its_frames(cube_folder, monkeypatch):
+    """The list of frames is written now and then only while it runs."""
+    monkeypatch.setattr("cdem.run.frame_files.LIST_PATIENCE", 1e9)
+    case = cdem.Case.load(cube_folder / "cube.yaml")
+    sim = cdem.Simulation(case, threads=1, output=cube_folder / "out")
+    sim.run_until(0.5 * case.stages[0].duration)
+    path = cube_folder / "out/frames.vtkhdf"
+    steps = "VTKHDF/Steps"
+    with h5py.File(path, locking=False) as file:
+        assert file[steps].attrs["NSteps"] == 1
+    sim.close()
+    with h5py.File(path) as file:
+        assert file[steps].attrs["NSteps"] == sim.results.frames > 2
