@@ -1,4 +1,4 @@
-"""A block on eight meshes: a law that asks for an area gets the one that is in contact."""
+"""A block on eight meshes: laws that ask for an area get the one that is in contact."""
 
 import numpy as np
 
@@ -99,11 +99,11 @@ def run(study):
     for law in LAWS:
         for mesh in meshes:
             force, slipped, error = draw(study, law, mesh)
-            study.check(f"{law}, {mesh}", theory=theory(law, slipped), within=0.05, ours=force,
-                        unit="N")  # fmt: skip
+            study.check(f"{law}, {mesh}", theory=theory(law, slipped), ours=force, unit="N",
+                        within=0.05 if law == "barton-bandis" else 1e-3)  # fmt: skip
             study.check(f"energy, {law}, {mesh}", theory=0, within=1e-3, absolute=True, ours=error)
     for mesh in SLAB if study.full else ["a sliced bed"]:
         speed, most, error = slide(study, mesh)
-        study.check(f"speed that a slab nears, {mesh}", theory=most, within=0.03, ours=speed,
+        study.check(f"speed that a slab nears, {mesh}", theory=most, within=0.01, ours=speed,
                     unit="m/s")  # fmt: skip
         study.check(f"energy, slab, {mesh}", theory=0, within=3e-3, absolute=True, ours=error)
