@@ -111,7 +111,6 @@ def test_a_softening_bond_keeps_its_slip_and_spends_its_fracture_energy():
     assert abs(sim.energies["error"]) < 1e-4
 
 
-
 @pytest.mark.parametrize("safety", [0.8, 0.4, 0.2, 0.05])
 def test_a_bond_struck_within_a_step_misses_half_a_step_of_its_strength(safety):
     """Exact: the law spends c u - c^2 / 2 k of a step u = v dt, of which the step takes c u / 2.
@@ -359,6 +358,29 @@ def test_bond_points_dilate_and_hand_over_what_they_have_risen(law):
     assert contacts["force_n"].sum() == pytest.approx(sigma, rel=1e-9)
     assert np.hypot(*contacts["force"][:, :2].T).sum() == pytest.approx(tau, rel=1e-9)
     assert abs(sim.energies["error"]) < 1e-3
+
+
+def test_dilation_counts_the_way_back():
+    """Led by 1 mm and back, again and again: each way lifts by tan(psi) 1 mm, five ways in all.
+
+    Tolerances: the stretch of the springs before they slip, and the block's own sag.
+    """
+    sim = simulate(
+        CUBES, {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={"default": {"friction_angle": 30, "dilation_angle": 10, "dilation_slip": "5 mm",
+                                "stiffness_n": "1e9 Pa/m", "stiffness_s": "1e9 Pa/m"}},
+        loads={"gravity": [0, 0, -9.81], "velocities": [
+            {"group": "block", "components": ["x", "y"], "velocity": [0.02, 0, 0],
+             "history": [[0.05 * (k + late), (-1) ** k] for k in range(8) for late in (0, 0.999)]},
+        ]},
+        stages=[{"name": "cycles", "mode": "dynamic", "duration": 0.4, "damping": {"contact": 0.5}}],
+    )  # fmt: skip
+    risen = []
+    for way in range(1, 9):
+        sim.run_until(0.05 * way)
+        risen.append(sim.fields["displacement"][sim.build.nodes_of("block"), 2].mean())
+    expected = np.tan(np.radians(10)) * 1e-3 * np.minimum(np.arange(1, 9), 5)
+    assert np.array(risen) == pytest.approx(expected, abs=6e-5)
 
 
 def test_each_pair_of_a_heterogeneous_interface_has_its_own_strength():
