@@ -111,8 +111,8 @@ FAULTS = [
         "q",
         "irregular tets taken for regular ones",
         "src/cdem/model/compensation.py",
-        "    e_new = 1 + acts / (3 * a)",
-        "    acts = q\n    e_new = 1 + acts / (3 * a)",
+        "found = _rounded(3 * a * (e * _isotropic(c)[0] - 1))",
+        "found = q",
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
