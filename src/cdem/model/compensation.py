@@ -9,14 +9,15 @@ S_v the area of faces per volume and h their mean distance from the middle of th
 E' = e E and nu' = e nu with e = 1 + q / (3 a). Irregular tets are less compliant than that sum says,
 which takes their stress for uniform: their q is found numerically.
 
-Bricks and other shapes, and tets that are nowhere surrounded by others, have a bond stiffness of each
-face: see `bond_shares`. So what lies at the surface is as compliant as what lies inside, and slices
+Bricks and other shapes, and tets that are nowhere surrounded by others or of sizes that differ much,
+have a bond stiffness of each face: see `bond_shares`. So what lies at the surface is as compliant as what lies inside, and slices
 and columns are right along the directions in which they have bonds at all.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -51,6 +52,9 @@ LARGEST_POISSON = 0.4
 """nu of the case, at most: a is 40 there, and grows without bound towards `MOST_POISSON`."""
 MOST_TETS = 2000
 """So many tets around the middle of a group stand for all of them."""
+GRADED = 2.0
+"""So much larger than the smallest tets are the largest, but for 5 % of either, where bonds go with
+the size of tets."""
 LAYERS = 2
 """Layers at the edge of those that do not count."""
 
@@ -148,6 +152,17 @@ class _Group:
         tets = len(self.t.element_nodes["tet4"])
         return len(self.pairs) > 0 and not self.elements[tets:].any()
 
+    @cached_property
+    def sizes(self) -> Floats:
+        """Of all elements: edges of cubes of their volume [m]."""
+        return same_everywhere(np.cbrt(self.volume))
+
+    @property
+    def is_graded(self) -> bool:
+        """Whether some of its elements are far smaller than others."""
+        low, high = np.quantile(self.sizes[self.elements], (0.05, 0.95))
+        return bool(high > GRADED * low)
+
     @property
     def has_an_inside(self) -> bool:
         """Whether a tet lies `LAYERS` layers of them inside."""
@@ -208,7 +223,7 @@ def compensate(
             rock.poisson_ratio,
         )
         with case.blame("model"):
-            even = of.has_tets_only and of.has_an_inside
+            even = of.has_tets_only and of.has_an_inside and not of.is_graded
             out[names[group]] = _of_inside(of) if even else _of_faces(of)
     return out
 
@@ -298,7 +313,8 @@ def _of_faces(g: _Group) -> Compensation:
     bonded = g.area[bonds.faces] * bonds.bonded * bonds.share
     h = _rounded((bonded * height[bonds.faces]).sum() / bonded.sum())
     if not g.elements[len(g.t.element_nodes["tet4"]) :].any():
-        height = np.full(len(g.area), h)  # tets stand on all their faces alike
+        size = g.sizes[g.t.face_element]  # tets stand on all their faces alike
+        height = size * h * bonded.sum() / (bonded * size[bonds.faces]).sum()
         bonds = g.shares(height)
     fabric, far = bonds.fabric(), longest(g.t, g.elements, g.volume)
     # what has bonds in some of its parts only is to be right in these
