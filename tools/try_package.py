@@ -32,6 +32,11 @@ for size, blocks, name, version in sorted(rows, reverse=True):
     print(f"{name:<20} {version:<10} {size / 1e6:>6.1f} {blocks / 1e6:>20.1f}")
 print(f"{'all':<31} {sum(r[0] for r in rows) / 1e6:>6.1f} {sum(r[1] for r in rows) / 1e6:>20.1f}")
 """
+NOTICES = {
+    "LICENSE": ["Apache License"],
+    "NOTICES.txt": ["nanobind (BSD-3-Clause)", "robin-map (MIT)", "libgomp (GPL-3.0-or-later"],
+}
+"""What must be in a package, and how lines of it begin."""
 FIRST = [
     "cdem doctor",
     "cdem new landslide",
@@ -69,15 +74,22 @@ def make_wheel(folder: Path) -> Path:
 
 def check_notices(package: Path) -> None:
     """Stop if a wheel or sdist lacks the licences of what it brings along."""
+    texts: dict[str, bytes] = {}
     if package.suffix == ".whl":
         with zipfile.ZipFile(package) as wheel:
-            names = wheel.namelist()
+            texts = {
+                Path(n).name: wheel.read(n) for n in wheel.namelist() if Path(n).name in NOTICES
+            }
     else:
         with tarfile.open(package) as sdist:
-            names = sdist.getnames()
-    for needed in ("LICENSE", "NOTICES.txt"):
-        if not any(Path(name).name == needed for name in names):
-            sys.exit(f"{package.name}: has no {needed}")
+            for member in sdist:
+                if Path(member.name).name in NOTICES and (file := sdist.extractfile(member)):
+                    texts[Path(member.name).name] = file.read()
+    for needed, titles in NOTICES.items():
+        lines = texts.get(needed, b"").decode().splitlines()
+        for title in titles:
+            if not any(line.strip().startswith(title) for line in lines):
+                sys.exit(f"{package.name}: its {needed} has nothing of {title}")
 
 
 def main() -> None:

@@ -55,7 +55,8 @@ struct Brittle {
       Parameter{.name = "dilation_angle",
                 .symbol = "psi",
                 .unit = "deg",
-                .meaning = "Dilation angle: a sliding joint lifts by its tangent times the slip",
+                .meaning = "Dilation angle: a sliding joint lifts by its tangent times the slip, "
+                           "which counts in every direction: also on the way back",
                 .below = 90,
                 .otherwise = 0,
                 .form = Form::tangent},

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from shared.own_laws import flow
@@ -12,6 +13,7 @@ from shared.own_laws import flow
 from cdem import own_laws
 from cdem._core_choice import choose
 from cdem.errors import BackendError, CaseError
+from cdem.tools import law_build
 from cdem.tools.law_build import Header, build, new_law
 
 HEADER = "my_clay.hpp"
@@ -172,3 +174,37 @@ def test_a_build_without_its_tools_says_what_to_install(folder, monkeypatch):
     )
     with pytest.raises(BackendError, match=r"finds no nanobind: pip install 'cdem\[laws\]'"):
         build([folder / HEADER])
+
+
+def test_what_a_killed_build_has_left_goes_with_the_next(folder, monkeypatch):
+    """A build that is still at work keeps its folder."""
+    home, made = own_laws.home(), []
+
+    def compiled(headers, isa, place):
+        made.append(place)
+        (place / "built.so").write_bytes(b"library")
+        return place / "built.so"
+
+    monkeypatch.setattr(law_build, "_compile", compiled)
+    left = home / "build-left"
+    left.mkdir()
+    (left / "lock").touch()
+    (left / "large.o").touch()
+    wait = (
+        "import time; from cdem.tools.law_build import _workplace as w\n"
+        "with w() as f: print(f, flush=True); time.sleep(60)"
+    )
+    other = subprocess.Popen([sys.executable, "-c", wait], stdout=subprocess.PIPE, text=True)
+    try:
+        at_work = Path(other.stdout.readline().strip())
+        assert not left.exists() and at_work.parent == home
+        library = build([folder / HEADER])
+        assert library.read_bytes() == b"library"
+        assert made[0].parent == home and not made[0].exists()
+        assert at_work.exists()
+    finally:
+        other.kill()
+        other.wait()
+    assert at_work.exists()
+    build([folder / HEADER])
+    assert not at_work.exists()

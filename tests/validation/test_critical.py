@@ -154,3 +154,72 @@ def test_command_line_prints_the_bracket(tmp_path, monkeypatch):
     wrong = CliRunner().invoke(app, [*words, "--parameter", "materials.rock.densty"])
     assert isinstance(wrong.exception, CaseError)
     assert "did you mean density?" in str(wrong.exception)
+
+
+def anchored_block():
+    """A block held by a rod across its joint, once friction of 20 degrees alone cannot hold it."""
+    rod = {"area": 1e-5, "young_modulus": 3e10, "yield_force": 1e9}
+    line = {"name": "rod", "type": "rod", "points": [[1.9, 2.5, 0.4], [0.2, 2.5, -0.9]],
+            "plate": True, "anchor": True}  # fmt: skip
+    this = block_on_a_slope(20, bolt_types={"rod": rod}, bolts=[line])
+    this.set("model.blocks.1.box.size", [6, 4, 1])
+    this.set("model.blocks.0.translate", [1, 2, 0])
+    return this
+
+
+def slip_of_the_anchored_block():
+    """W sin a = W cos a tan(phi) + T (cos b + sin b tan(phi)), T = E A / L cos(b) s [m]."""
+    weight, a, t = 2500 * 0.5 * 9.81, math.radians(SLOPE), math.tan(math.radians(20))
+    length = math.hypot(1.7, 1.3)
+    cos_b, sin_b = 1.7 / length, 1.3 / length
+    force = weight * (math.sin(a) - math.cos(a) * t) / (cos_b + sin_b * t)
+    return force / (3e10 * 1e-5 / length * cos_b)
+
+
+def test_a_trial_that_rests_says_after_how_much_slip():
+    """An anchored block slips until its rod is tight, and past that by inertia: twice as far at most.
+
+    With a bound on the way (--travel) the same trial has failed.
+    """
+    slip = slip_of_the_anchored_block()
+    assert slip == pytest.approx(0.02, rel=0.01)
+    vary, seen = parameter("interfaces.default.friction_angle"), {}
+    for bound in (None, 0.01):
+        found = find_critical(anchored_block(), vary, (40, 20) if bound else (20, 0.1), tolerance=20,
+                              criterion=Criterion(far=0.05, most_moved=bound), threads=1)  # fmt: skip
+        seen |= {(bound, trial.value): trial for trial in found.trials}
+    free, bound = seen[None, 20], seen[0.01, 20]
+    assert free.stable and free.saw == "at rest"
+    assert slip <= free.moved <= 2 * slip
+    assert f", block has moved {free.moved:.3g} m at (" in free.why
+    assert not bound.stable and bound.saw == "sliding"
+    assert bound.moved == free.moved and ", more than 0.01 m, and rests" in bound.why
+    assert seen[0.01, 40].stable and seen[0.01, 40].moved < 1e-5
+
+
+def test_command_line_bounds_the_way_to_rest(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "anchored.yaml").write_text(anchored_block().dump())
+    words = ["critical", "anchored.yaml", "--parameter", "interfaces.default.friction_angle",
+             "--between", "40", "20", "--tolerance", "20", "--threads", "1", "--json"]  # fmt: skip
+    refused = CliRunner().invoke(app, words)
+    assert "both 40 and 20 come to rest" in str(refused.exception)
+    done = CliRunner().invoke(app, [*words, "--travel", "1 cm"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["criterion"]["most_moved"] == 0.01
+    assert [trial["stable"] for trial in found["trials"]] == [True, False]
+    assert found["trials"][1]["moved"] > 0.02
+    assert "or rests after more than 0.01 m" in done.stderr
+
+
+def test_a_run_that_rests_says_how_far_it_has_moved(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "anchored.yaml").write_text(anchored_block().dump())
+    done = CliRunner().invoke(app, ["run", "anchored.yaml", "--threads", "1"])
+    way = json.loads((tmp_path / "anchored.results/summary.json").read_text())
+    way = way["groups"]["block"]["max_displacement"]
+    assert way > 0.02
+    assert done.stdout.startswith(f"converged, moved by up to {way:.3g} m (group block); results")
+    told = CliRunner().invoke(app, ["info", "anchored.results"]).stdout
+    assert f"converged, moved by up to {way:.3g} m (group block)" in told

@@ -113,6 +113,34 @@ def test_a_softening_bond_keeps_its_slip_and_spends_its_fracture_energy():
     assert abs(sim.energies["error"]) < 1e-4
 
 
+@pytest.mark.parametrize("safety", [0.8, 0.4, 0.2, 0.05])
+def test_a_bond_struck_within_a_step_misses_half_a_step_of_its_strength(safety):
+    """Exact: the law spends c u - c^2 / 2 k of a step u = v dt, of which the step takes c u / 2.
+
+    So c v dt / 2 - c^2 / 2 k is missing, which falls with the step; once u < c / k it is a bend of
+    the force within a step. Tolerance: of the softening within the step, u / s_u = 6 %, and the bend.
+    """
+    c, k, v = 2e5, 5e9, 1.2
+    sim = simulate(
+        [CUBES[0], {"group": "block", "box": {"size": [1, 1, 0.5]}}],
+        {"bed": {"fix": ["x", "y", "z"]}, "block": {"velocity": [v, 0, 0]}},
+        interfaces={"default": {
+            "law": "softening", "friction_angle": 0, "cohesion": c, "tensile_strength": 1e5,
+            "fracture_energy_1": 200, "fracture_energy_2": 500, "stiffness_n": k, "stiffness_s": k,
+        }},
+        rock={"young_modulus": 2e9}, time={"safety": safety}, elements={"mass": "lumped"},
+        loads={"gravity": [0, 0, 0]},
+    )  # fmt: skip
+    sim.step(1)
+    way = v * sim.time
+    while sim.energies["fracture"] == 0:
+        sim.step(1)
+    missing = max(0.0, c * way / 2 - c**2 / (2 * k))
+    assert sim.energies["error"] * sim.energies["start"] == pytest.approx(
+        missing, rel=0.06, abs=0.04 * c * way
+    )
+
+
 EDGE, VERTEX = 0.5**0.5, 3**0.5
 LOWER = {  # the topmost face, edge (along y) or vertex of a cube of 1 m at the origin
     "face": {"translate": [-0.5, -0.5, -1]},
@@ -332,6 +360,29 @@ def test_bond_points_dilate_and_hand_over_what_they_have_risen(law):
     assert contacts["force_n"].sum() == pytest.approx(sigma, rel=1e-9)
     assert np.hypot(*contacts["force"][:, :2].T).sum() == pytest.approx(tau, rel=1e-9)
     assert abs(sim.energies["error"]) < 1e-3
+
+
+def test_dilation_counts_the_way_back():
+    """Led by 1 mm and back, again and again: each way lifts by tan(psi) 1 mm, five ways in all.
+
+    Tolerances: the stretch of the springs before they slip, and the block's own sag.
+    """
+    sim = simulate(
+        CUBES, {"bed": {"fix": ["x", "y", "z"]}, "block": {}},
+        interfaces={"default": {"friction_angle": 30, "dilation_angle": 10, "dilation_slip": "5 mm",
+                                "stiffness_n": "1e9 Pa/m", "stiffness_s": "1e9 Pa/m"}},
+        loads={"gravity": [0, 0, -9.81], "velocities": [
+            {"group": "block", "components": ["x", "y"], "velocity": [0.02, 0, 0],
+             "history": [[0.05 * (k + late), (-1) ** k] for k in range(8) for late in (0, 0.999)]},
+        ]},
+        stages=[{"name": "cycles", "mode": "dynamic", "duration": 0.4, "damping": {"contact": 0.5}}],
+    )  # fmt: skip
+    risen = []
+    for way in range(1, 9):
+        sim.run_until(0.05 * way)
+        risen.append(sim.fields["displacement"][sim.build.nodes_of("block"), 2].mean())
+    expected = np.tan(np.radians(10)) * 1e-3 * np.minimum(np.arange(1, 9), 5)
+    assert np.array(risen) == pytest.approx(expected, abs=6e-5)
 
 
 def test_each_pair_of_a_heterogeneous_interface_has_its_own_strength():

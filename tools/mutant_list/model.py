@@ -52,6 +52,22 @@ FAULTS = [
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
+        "free ends",
+        "no face stands for one that is free",
+        "src/cdem/model/bond_shares.py",
+        "return Shares(faces, 0.5 + extra, some[1], weight, normal)",
+        "return Shares(faces, 0.5 + 0 * extra, some[1], weight, normal)",
+        "tests/validation/test_bonded_shapes.py",
+    ),
+    Mutant(
+        "mean of directions",
+        "bonds across a slice that are not there count",
+        "src/cdem/model/compensation.py",
+        "for m in (fabric, bonds.surrounded()))",
+        "for m in (np.eye(3) * np.trace(fabric) / 3,))",
+        "tests/validation/test_bonded_shapes.py",
+    ),
+    Mutant(
         "scaled bonds",
         "mass scaling that does not count bonds",
         "src/cdem/model/mass_scaling.py",
@@ -95,8 +111,8 @@ FAULTS = [
         "q",
         "irregular tets taken for regular ones",
         "src/cdem/model/compensation.py",
-        "    e_new = 1 + acts / (3 * a)",
-        "    acts = q\n    e_new = 1 + acts / (3 * a)",
+        "found = _rounded(3 * a * (e * _isotropic(c)[0] - 1))",
+        "found = q",
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(

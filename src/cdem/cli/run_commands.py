@@ -88,11 +88,11 @@ def run(
 
 
 def _but_for(summary: Path) -> str:
-    """What a run that is at rest has left behind: blocks that fall on, or have left its domain."""
-    from cdem.output.page_facts import departed, moving
+    """What a run that is at rest has left behind: the way to it, blocks that fall on or have left."""
+    from cdem.output.page_facts import departed, moving, rested
 
     facts = json.loads(summary.read_text())
-    return moving(facts) + departed(facts) if facts["status"] == "at rest" else ""
+    return rested(facts) + (moving(facts) + departed(facts) if facts["status"] == "at rest" else "")
 
 
 def _run(

@@ -28,6 +28,21 @@ if TYPE_CHECKING:
     from cdem.study.critical import Critical
     from cdem.study.results_table import Table
 
+Limits = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--criterion",
+        metavar="NAME=VALUE",
+        help="Another limit of failure: travel, far, stall_steps or most_steps; repeatable.",
+    ),
+]
+Travel = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LENGTH", help="What rests after more than this has failed: --travel '1 cm'."
+    ),
+]
+
 
 def critical(
     case_file: CaseFile,
@@ -45,14 +60,8 @@ def critical(
         bool, typer.Option("--factor", help="Vary the factor of safety on all strengths instead.")
     ] = False,
     tolerance: Annotated[float, typer.Option(help="Width of the bracket to reach.")] = 0.01,
-    limits: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--criterion",
-            metavar="NAME=VALUE",
-            help="Another limit of failure: travel, far, stall_steps or most_steps; repeatable.",
-        ),
-    ] = None,
+    limits: Limits = None,
+    travel: Travel = None,
     settings: Settings = None,
     threads: Threads = None,
     allow_code: AllowCode = False,
@@ -78,7 +87,8 @@ def critical(
     case = Case.load(case_file, settings or [])
     vary = search.parameter(parameter) if parameter else search.strength_reduction()
     name = parameter or "factor"
-    criterion = Criterion.read(limits or [])
+    bound = [f"most_moved={travel}"] if travel else []
+    criterion = Criterion.read([*(limits or []), *bound])
     print(f"a trial {criterion.text()}", file=sys.stderr)
     report = partial(_tell_trial, name, Path(f"{case_file.stem}.{name}.json"))
     find = partial(search.find_critical, tolerance=tolerance, criterion=criterion, threads=threads)

@@ -243,8 +243,7 @@ def _pair_set(
     stiffer = out.arrays["face.stiffness"][faces].reshape(-1, 2).max(axis=1, initial=0.0)
     law = p.stiffness[interface]
     rows = [np.where(law[:, i] > 0, law[:, i], law[:, i + 1] * stiffer) for i in (0, 2)]
-    group = np.where(sides < len(p.density), sides, -1)  # not in a set of joints
-    own = np.where(group >= 0, p.bond_stiffness[group], 0.0)
+    own = p.bond_stiffness[faces].reshape(-1, 2)
     both = (own > 0).all(axis=1) & p.automatic[interface]
     in_series = 2 * own[:, 0] * own[:, 1] / np.maximum(own.sum(axis=1), 1e-300)
     rows = [np.where(both, in_series, row) for row in rows]

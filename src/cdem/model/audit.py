@@ -115,7 +115,8 @@ class Audit:
         b, out = self._build, {}
         for name, made_up in b.compensation.items():
             rock = b.case.materials[b.case.groups[name].material]
-            numbers = {key: value for key, value in vars(made_up).items() if key != "state"}
+            numbers = vars(made_up).copy()
+            del numbers["state"], numbers["of_faces"]
             out[name] = numbers | {
                 "young_modulus": made_up.stiffening * rock.young_modulus,
                 "poisson_ratio": made_up.stiffening * rock.poisson_ratio,
@@ -391,11 +392,13 @@ class Audit:
         lines = ["", "  elements that make up for bonds"] if self.compensation else []
         for name, c in self.compensation.items():
             young, shear, bulk = (100 * error for error in c["errors"])
+            along = ", ".join(f"{round(100 * e, 1) + 0.0:+.1f}" for e in c["along_xyz"])
             lines.append(
                 f"    {name}: E {c['young_modulus']:.4g} Pa, nu {c['poisson_ratio']:.3g}, bonds of "
                 f"{c['stiffness']:.3g} Pa/m (q {c['q']:.3g}, faces "
                 f"{c['area_per_volume']:.3g} m2/m3, h {c['height']:.3g} m); left in E up to "
-                f"{young:+.2g} %, in G {shear:+.2g} %, in K {bulk:+.2g} %"
+                f"{young:+.2g} %, in G {shear:+.2g} %, in K {bulk:+.2g} %; in E of the whole, with its "
+                f"surfaces, along x, y, z {along} %"
             )
         lines += ["", "  contacts"]
         for row in self.contacts:

@@ -26,7 +26,13 @@ from cdem.mesh.topology import Topology
 from cdem.model.assemble import assemble
 from cdem.model.bodies import check_groups, read_model
 from cdem.model.bolts import BoltModel, bolts_of
-from cdem.model.compensation import Compensation, compensate, compensated_groups, is_automatic
+from cdem.model.compensation import (
+    Compensation,
+    compensate,
+    compensated_groups,
+    is_automatic,
+    made_up_between,
+)
 from cdem.model.curves import Curves, constant, hand_over
 from cdem.model.domain import check_domain
 from cdem.model.flat_arrays import Assembly, Properties
@@ -120,7 +126,10 @@ class Build:
     def compensate_again(self, names: Iterable[str]) -> None:
         """Make up again for the bonds of groups whose material a stage has changed."""
         groups = [self.group_names.index(name) for name in names if name in self.compensation]
-        self.compensation |= compensate(self.case, self.topology, self.group_names, groups)
+        laws, interface_of = interfaces_of(self.case, self.group_names)
+        made_up = [self.group_names.index(name) for name in self.compensation]
+        between = made_up_between(laws, interface_of, self.bonded, made_up)
+        self.compensation |= compensate(self.case, self.topology, self.group_names, groups, between)
 
     def node_groups(self) -> NDArray[np.int32]:
         """Group of each node's block, shape (nodes,)."""
@@ -157,9 +166,9 @@ def build(case: Case) -> Build:
     snap_mates(topology)
 
     core, curves = native.Core(), constant()
-    made_up = compensate(
-        case, topology, names, compensated_groups(case, topology, names, laws, interface_of, bonds)
-    )
+    groups = compensated_groups(case, topology, names, laws, interface_of, bonds)
+    between = made_up_between(laws, interface_of, bonds, groups)
+    made_up = compensate(case, topology, names, groups, between)
     bolts = bolts_of(case, topology, names)
     at = topology.node_position
     parts = _assemble(case, topology, at, laws, interface_of, paired, made_up, curves, None, bolts)
@@ -232,7 +241,7 @@ def _assemble(
     names = topology.group_names
     entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]
-    stiffening, bond_stiffness = _made_up(names, made_up)
+    stiffening, bond_stiffness = _made_up(topology, made_up)
     supports = supports_of(case, topology, names, curves)
     properties = Properties(
         density=np.array([m.density for m in materials]),
@@ -272,13 +281,17 @@ def _assemble(
     return parts
 
 
-def _made_up(names: list[str], made_up: dict[str, Compensation]) -> tuple[Floats, Floats]:
-    """By group, how much stiffer its elements are than the whole, and its bonds [Pa/m] or 0."""
-    found = [made_up.get(name) for name in names]
-    return (
-        np.array([1.0 if c is None else c.stiffening for c in found]),
-        np.array([0.0 if c is None else c.stiffness for c in found]),
-    )
+def _made_up(t: Topology, made_up: dict[str, Compensation]) -> tuple[Floats, Floats]:
+    """How much stiffer the elements of each group are, (groups,), and the bonds of each face, or 0."""
+    found = [made_up.get(name) for name in t.group_names]
+    of_groups = np.array([0.0 if c is None else c.stiffness for c in found])
+    kind = t.face_kind
+    of_faces = np.where(kind < len(found), of_groups[np.minimum(kind, len(found) - 1)], 0.0)
+    for c in found:
+        if c is not None and c.of_faces is not None:
+            faces, stiffness = c.of_faces
+            of_faces[faces] = np.where(kind[faces] < len(found), stiffness, 0.0)
+    return np.array([1.0 if c is None else c.stiffening for c in found]), of_faces
 
 
 def _unloading_row(entry: dict[str, Any]) -> list[float]:

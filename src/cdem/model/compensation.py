@@ -8,11 +8,16 @@ normal and shear, and isotropic faces, the whole has
 S_v the area of faces per volume and h their mean distance from the middle of the elements behind: so
 E' = e E and nu' = e nu with e = 1 + q / (3 a). Irregular tets are less compliant than that sum says,
 which takes their stress for uniform: their q is found numerically.
+
+Bricks and other shapes, and tets that are nowhere surrounded by others or of sizes that differ much,
+have a bond stiffness of each face: see `bond_shares`. So what lies at the surface is as compliant as what lies inside, and slices
+and columns are right along the directions in which they have bonds at all.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -25,6 +30,7 @@ from cdem.errors import CaseError
 from cdem.mesh import element_shapes
 from cdem.mesh.arrays import found_in, in_pieces, inverses, same_everywhere
 from cdem.mesh.topology import Topology
+from cdem.model.bond_shares import Shares, added, bonded_parts, longest, shares
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.homogenize import (
     COLUMN,
@@ -46,6 +52,9 @@ LARGEST_POISSON = 0.4
 """nu of the case, at most: a is 40 there, and grows without bound towards `MOST_POISSON`."""
 MOST_TETS = 2000
 """So many tets around the middle of a group stand for all of them."""
+GRADED = 2.0
+"""So much larger than the smallest tets are the largest, but for 5 % of either, where bonds go with
+the size of tets."""
 LAYERS = 2
 """Layers at the edge of those that do not count."""
 
@@ -68,10 +77,12 @@ class ElasticState:
         tets: The tets.
         tractions: On the faces, at their corners, of `homogenize.STATES`: pulling along the outward
             normal of the first tet [1], shape (faces, 3, xyz, 6).
+        counted: Tets that stand for the rock, shape (tets,).
     """
 
     tets: BondedTets
     tractions: Floats
+    counted: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -84,10 +95,13 @@ class Compensation:
         height: h [m].
         factor: a.
         stiffening: e = E' / E = nu' / nu, of the elements.
-        stiffness: Of the bonds [Pa/m].
-        errors: What is left: in E along the axis or diagonal of space where it is worst, and in the
-            isotropic G and K [1].
+        stiffness: Of the bonds; the mean by area where it varies [Pa/m].
+        errors: What is left: in E along the direction where it is worst, and in the isotropic G and K,
+            of what lies inside, or of the whole where nothing does [1].
+        along_xyz: What is left in E if the whole is pulled along x, y, z, surfaces included [1].
         state: From which q was found; None where it is the sum over faces.
+        of_faces: Stiffness of a bond whose two faces are like each of these, and which they are; None
+            where all are the same [Pa/m].
     """
 
     q: float
@@ -97,13 +111,80 @@ class Compensation:
     stiffening: float
     stiffness: float
     errors: tuple[float, float, float]
+    along_xyz: tuple[float, float, float]
     state: ElasticState | None
+    of_faces: tuple[NDArray[np.intp], Floats] | None
+
+
+@dataclass(frozen=True)
+class _Group:
+    """A group of bonded elements, each a block.
+
+    Attributes:
+        t: The mesh.
+        pairs: Those of its conforming bonds, inside the group.
+        elements: Which they are, shape (elements,).
+        bonded: What part of each face is made up for.
+        volume: Of all elements [m3].
+        area: Of all faces [m2].
+        height: Of the elements behind the faces above them [m].
+        young: [Pa].
+        poisson: Poisson's ratio.
+    """
+
+    t: Topology
+    pairs: NDArray[np.intp]
+    elements: NDArray[np.bool_]
+    bonded: Floats
+    volume: Floats
+    area: Floats
+    height: Floats
+    young: float
+    poisson: float
+
+    def shares(self, height: Floats) -> Shares:
+        """Of its faces, with so high h of all faces [m]."""
+        return shares(self.t, self.elements, self.volume, self.bonded, self.area, height)
+
+    @property
+    def has_tets_only(self) -> bool:
+        """Whether all its elements are tets, and some of their faces conform."""
+        tets = len(self.t.element_nodes["tet4"])
+        return len(self.pairs) > 0 and not self.elements[tets:].any()
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """Of all elements: edges of cubes of their volume [m]."""
+        return same_everywhere(np.cbrt(self.volume))
+
+    @property
+    def is_graded(self) -> bool:
+        """Whether some of its elements are far smaller than others."""
+        low, high = np.quantile(self.sizes[self.elements], (0.05, 0.95))
+        return bool(high > GRADED * low)
+
+    @property
+    def has_an_inside(self) -> bool:
+        """Whether a tet lies `LAYERS` layers of them inside."""
+        inside = surrounded(self.t, self.pairs)
+        across = self.t.face_element[self.t.pair_faces[self.pairs]]
+        for _ in range(LAYERS - 1):
+            edge = ~inside[across].all(axis=1)
+            inside[across[edge].ravel()] = False
+        return bool(inside.any())
 
 
 def compensate(
-    case: Case, t: Topology, names: list[str], groups: list[int]
+    case: Case, t: Topology, names: list[str], groups: list[int], between: NDArray[np.bool_]
 ) -> dict[str, Compensation]:
     """What makes up for the bonds of groups, those of `compensated_groups`.
+
+    Args:
+        case: With the rock of the groups.
+        t: The mesh.
+        names: Of all groups.
+        groups: Which groups.
+        between: Of `made_up_between`, for all groups of `compensated_groups`.
 
     Raises:
         CaseError: Poisson's ratio of one leaves no room for it, or its mesh cannot be solved.
@@ -111,14 +192,14 @@ def compensate(
     out: dict[str, Compensation] = {}
     if not groups:
         return out
+    shapes = t.element_nodes
     volume = np.concatenate(
-        [
-            element_shapes.volumes(shape, t.node_position[nodes]).sum(axis=1)
-            for shape, nodes in t.element_nodes.items()
-        ]
+        [element_shapes.volumes(s, t.node_position[n]).sum(axis=1) for s, n in shapes.items()]
     )
+    group_of = np.concatenate([t.element_group[shape] for shape in shapes])
     area = in_pieces(lambda nodes: face_areas(t.node_position, nodes), t.face_nodes)
     height = face_heights(t, volume, area)
+    bonded = bonded_parts(t, between, area)
     for group in groups:
         pairs = np.flatnonzero((t.face_kind[t.pair_faces] == group).all(axis=1))
         material = case.groups[names[group]].material
@@ -130,10 +211,20 @@ def compensate(
                 f"between the elements of group {names[group]!r} to be made up for (at most "
                 f"{LARGEST_POISSON:g}); give stiffness_n and stiffness_s of its interface"
             )
+        of = _Group(
+            t,
+            pairs,
+            group_of == group,
+            bonded,
+            volume,
+            area,
+            height,
+            rock.young_modulus,
+            rock.poisson_ratio,
+        )
         with case.blame("model"):
-            out[names[group]] = _of_group(
-                t, pairs, volume, area, height, rock.young_modulus, rock.poisson_ratio
-            )
+            even = of.has_tets_only and of.has_an_inside and not of.is_graded
+            out[names[group]] = _of_inside(of) if even else _of_faces(of)
     return out
 
 
@@ -159,6 +250,18 @@ def compensated_groups(
     ]
 
 
+def made_up_between(
+    laws: list[Interface],
+    interface_of: NDArray[np.int32],
+    bonds: NDArray[np.bool_],
+    groups: list[int],
+) -> NDArray[np.bool_]:
+    """Between which kinds of faces bonds are made up for by groups, shape (kinds, kinds)."""
+    automatic = np.array([*map(is_automatic, laws), False])  # the last where there is no interface
+    made_up = np.isin(np.arange(len(bonds)), groups)
+    return bonds & automatic[interface_of] & made_up & made_up[:, None]
+
+
 def elements_of_blocks(t: Topology) -> NDArray[np.int64]:
     """How many elements each block has, shape (blocks,)."""
     elements = np.zeros(len(t.block_group), np.int64)
@@ -172,65 +275,145 @@ def is_automatic(law: Interface) -> bool:
     return law.stiffness_n == AUTO and law.stiffness_s == AUTO
 
 
-def _of_group(
-    t: Topology,
-    pairs: NDArray[np.intp],
-    volume: Floats,
-    area: Floats,
-    height: Floats,
-    young: float,
-    poisson: float,
-) -> Compensation:
-    """See `Compensation`; pairs are those of the bonds inside the group."""
-    faces = t.pair_faces[pairs]
-    elements = t.face_element[faces]
-    count = np.bincount(elements.ravel(), minlength=len(volume))
-    inner = surrounded(t, pairs)
-    if not inner[elements].any():
-        inner = count > 0
-    share = 0.5 * inner[elements].sum(axis=1) * area[faces[:, 0]]
-    whole = volume[inner & (count > 0)].sum()
+def _of_inside(g: _Group) -> Compensation:
+    """Of tets some of which lie inside: one stiffness for all bonds; they are right there."""
+    faces = g.t.pair_faces[g.pairs]
+    elements = g.t.face_element[faces]
+    count = np.bincount(elements.ravel(), minlength=len(g.volume))
+    inner = surrounded(g.t, g.pairs)
+    share = 0.5 * inner[elements].sum(axis=1) * g.area[faces[:, 0]]
+    whole = g.volume[inner & (count > 0)].sum()
     area_per_volume = share.sum() / whole
-    q = (share * height[faces].min(axis=1)).sum() / whole
-    h = float(same_everywhere(q / area_per_volume))
-    factor = max(FACTOR, float(same_everywhere(q * poisson / (3 * (MOST_POISSON - poisson)))))
-    tets = len(t.element_nodes["tet4"])
-    errors, state = (0.0, 0.0, 0.0), None
-    if (elements < tets).all():
-        near = bonded_tets(t, pairs, around_the_middle(t, pairs, inner))
-        q, errors, state = _found(near, q, h, factor, poisson)
-    q = float(same_everywhere(q))
-    stiffening = 1 + q / (3 * factor)
+    q = (share * g.height[faces].min(axis=1)).sum() / whole
+    h = _rounded(q / area_per_volume)
+    a = _factor(q, g.poisson)
+    near = bonded_tets(g.t, g.pairs, around_the_middle(g.t, g.pairs, inner))
+    e = 1 + q / (3 * a)
+    c, state = _found(near, counted_tets(near), e, a * e / h, g.poisson)
+    found = _rounded(3 * a * (e * _isotropic(c)[0] - 1))
+    e_new = 1 + found / (3 * a)
+    bonds = g.shares(np.full(len(g.area), h)).fabric(0.5) * found / q
     return Compensation(
-        q=q,
+        q=found,
         area_per_volume=float(area_per_volume),
         height=h,
-        factor=factor,
-        stiffening=stiffening,
-        stiffness=factor * stiffening * young / h,
-        errors=errors,
+        factor=a,
+        stiffening=e_new,
+        stiffness=a * e_new * g.young / h,
+        errors=_errors(_renewed(c, e, e_new, g.poisson), g.poisson, DIRECTIONS),
+        along_xyz=_along_xyz(_own(e_new, g.poisson) + added(bonds) / (a * e_new)),
         state=state,
+        of_faces=None,
     )
 
 
-def _found(
-    tets: BondedTets, q: float, h: float, a: float, poisson: float
-) -> tuple[float, tuple[float, float, float], ElasticState]:
-    """q of tets as it acts, what errors are left, and their state, for Young's modulus 1."""
+def _of_faces(g: _Group) -> Compensation:
+    """Of other groups: each face has a stiffness of its own, and free ones are counted."""
+    bonds, height = g.shares(g.height), g.height
+    bonded = g.area[bonds.faces] * bonds.bonded * bonds.share
+    h = _rounded((bonded * height[bonds.faces]).sum() / bonded.sum())
+    if not g.elements[len(g.t.element_nodes["tet4"]) :].any():
+        size = g.sizes[g.t.face_element]  # tets stand on all their faces alike
+        height = size * h * bonded.sum() / (bonded * size[bonds.faces]).sum()
+        bonds = g.shares(height)
+    fabric, far = bonds.fabric(), longest(g.t, g.elements, g.volume)
+    # what has bonds in some of its parts only is to be right in these
+    q = 3 * max(float((far * m).sum()) for m in (fabric, bonds.surrounded()))
+    a = _factor(q, g.poisson)
     e = 1 + q / (3 * a)
-    u = displacements(tets, e, poisson * e, a * e / h)
-    state = ElasticState(tets, a * e / h * jumps(tets, u))
-    c = compliance(tets, u, e, poisson * e, counted_tets(tets))
-    acts = 3 * a * (e * _isotropic(c)[0] - 1)
-    e_new = 1 + acts / (3 * a)
-    own, new = inverses(np.stack([elasticity(x, poisson * x) for x in (e, e_new)]))
-    left = (c - own) * e / e_new + new
-    along = 1 / np.einsum("di,ij,dj->d", DIRECTIONS, left, DIRECTIONS) - 1
+    c, state = _own(e, g.poisson) + added(fabric) / (a * e), None
+    soft = np.zeros(len(g.area))
+    soft[bonds.faces] = bonds.share * height[bonds.faces]
+    if g.has_tets_only:
+        near = around_the_middle(g.t, g.pairs, surrounded(g.t, g.pairs))
+        tets = bonded_tets(g.t, g.pairs, near)
+        stiffness = a * e / soft[g.t.pair_faces[tets.pair]].sum(axis=1)
+        even = e * _isotropic(c)[0] - 1
+        c, state = _found(tets, _uncut(g, near, tets), e, stiffness, g.poisson)
+        q *= (e * _isotropic(c)[0] - 1) / even
+    q = _rounded(q)
+    e_new = 1 + q / (3 * a)
+    left = _renewed(c, e, e_new, g.poisson)
+    own = same_everywhere(a * e_new * g.young / (2 * soft[bonds.faces]))
+    axes = np.linalg.eigh(fabric)[1].T
+    pulls = np.concatenate([DIRECTIONS, axes[:, ROW] * axes[:, COLUMN]])
+    return Compensation(
+        q=q,
+        area_per_volume=float(bonded.sum() / g.volume[g.elements].sum()),
+        height=h,
+        factor=a,
+        stiffening=e_new,
+        stiffness=float((bonded * own).sum() / bonded.sum()),
+        errors=_errors(left, g.poisson, pulls),
+        along_xyz=_along_xyz(left),
+        state=state,
+        of_faces=(bonds.faces, own),
+    )
+
+
+def _factor(q: float, poisson: float) -> float:
+    """a of bonds that act as q, as far as Poisson's ratio leaves room."""
+    return max(FACTOR, _rounded(q * poisson / (3 * (MOST_POISSON - poisson))))
+
+
+def _rounded(value: float) -> float:
+    return float(same_everywhere(np.array(value)))
+
+
+def _uncut(g: _Group, some: NDArray[np.integer], tets: BondedTets) -> NDArray[np.bool_]:
+    """Tets `LAYERS` layers away from those of the group that are not looked at, or all."""
+    bonds = np.bincount(g.t.face_element[g.t.pair_faces[g.pairs]].ravel(), minlength=len(g.volume))
+    away = np.bincount(tets.tet.ravel(), minlength=len(some)) == bonds[some]
+    for _ in range(LAYERS - 1):
+        edge = ~away[tets.tet].all(axis=1)
+        away[tets.tet[edge].ravel()] = False
+    return away if away.any() else np.ones(len(some), bool)
+
+
+def _found(
+    tets: BondedTets,
+    counted: NDArray[np.bool_],
+    e: float,
+    stiffness: float | Floats,
+    poisson: float,
+) -> tuple[Floats, ElasticState]:
+    """Compliance of tets and their state, for Young's modulus 1 of the rock.
+
+    Args:
+        tets: The tets.
+        counted: Those that stand for the rock.
+        e: Their stiffening.
+        stiffness: Of their bonds.
+        poisson: Poisson's ratio of the rock.
+    """
+    u = displacements(tets, e, poisson * e, stiffness)
+    pulls = np.reshape(stiffness, (-1, 1, 1, 1)) * jumps(tets, u)
+    return compliance(tets, u, e, poisson * e, counted), ElasticState(tets, pulls, counted)
+
+
+def _own(e: float, poisson: float) -> Floats:
+    """Compliance of elements alone, for Young's modulus 1 of the rock."""
+    return inverses(elasticity(e, e * poisson)[None])[0]
+
+
+def _renewed(c: Floats, e: float, e_new: float, poisson: float) -> Floats:
+    """A compliance if e of its elements is another: that of bonds goes with 1 / e."""
+    return (c - _own(e, poisson)) * e / e_new + _own(e_new, poisson)
+
+
+def _errors(left: Floats, poisson: float, pulls: Floats) -> tuple[float, float, float]:
+    """Of E where it is worst, and of the isotropic G and K, of a compliance for Young's modulus 1."""
+    along = 1 / np.einsum("di,ij,dj->d", pulls, left, pulls) - 1
     worst = float(along[np.argmax(abs(along))])
     young, bulk = (1 / part for part in _isotropic(left))
     shear = 3 * bulk * young / (9 * bulk - young)
-    errors = (worst, shear * 2 * (1 + poisson) - 1, bulk * 3 * (1 - 2 * poisson) - 1)
-    return acts, errors, state
+    return worst, shear * 2 * (1 + poisson) - 1, bulk * 3 * (1 - 2 * poisson) - 1
+
+
+def _along_xyz(c: Floats) -> tuple[float, float, float]:
+    """Errors of E along x, y, z of a compliance for Young's modulus 1."""
+    x, y, z = (float(1 / c[axis, axis] - 1) for axis in range(3))
+    return x, y, z
 
 
 def _isotropic(c: Floats) -> tuple[float, float]:
@@ -250,10 +433,10 @@ def surrounded(t: Topology, pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
 def around_the_middle(
     t: Topology, pairs: NDArray[np.intp], inner: NDArray[np.bool_]
 ) -> NDArray[np.integer]:
-    """Tets of pairs around the middle of those inside, `MOST_TETS` at most."""
+    """Tets of pairs around the middle of those inside, or of all, `MOST_TETS` at most."""
     used = found_in([t.face_element[t.pair_faces[pairs]]], len(inner))
     center = t.node_position[t.element_nodes["tet4"][used]].mean(axis=1)
-    inside = center[inner[used]]
+    inside = center[inner[used]] if inner[used].any() else center
     start = inside[np.argmin(((inside - inside.mean(axis=0)) ** 2).sum(axis=1))]
     near = np.argsort(((center - start) ** 2).sum(axis=1), kind="stable")[:MOST_TETS]
     return used[near]

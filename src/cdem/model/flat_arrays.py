@@ -38,7 +38,8 @@ class Properties:
         automatic: Whether the case leaves them to the program, shape (interfaces,).
         stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
             (groups,).
-        bond_stiffness: Of bonds that are made up for [Pa/m], else 0, shape (groups,).
+        bond_stiffness: Of bonds that are made up for between faces like each [Pa/m], else 0, shape
+            (faces,).
         contact_stiffness: (value, factor) of k_n and k_s of contacts that unload by interface,
             shape (interfaces, 4).
         in_series: Whether E / h of contacts is that of both sides in series, shape (interfaces,).

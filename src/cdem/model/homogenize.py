@@ -101,14 +101,16 @@ def compliance(
     return matrix_product(matrix_product(strains, stresses.T), inverses(normal))
 
 
-def displacements(tets: BondedTets, young: float, poisson: float, stiffness: float) -> Floats:
+def displacements(
+    tets: BondedTets, young: float, poisson: float, stiffness: float | Floats
+) -> Floats:
     """Displacements of the tets' corners under the six uniform stresses, shape (tets, 12, 6) [m].
 
     Args:
         tets: The tets.
         young: Young's modulus of the tets [Pa].
         poisson: Their Poisson's ratio.
-        stiffness: Of the faces, normal and shear [Pa/m].
+        stiffness: Of the faces, normal and shear, one or shape (faces,) [Pa/m].
 
     Raises:
         ModelError: No equilibrium was found.
@@ -173,13 +175,13 @@ def _loads(tets: BondedTets) -> Floats:
     return load.reshape(-1, 12, len(STATES))
 
 
-def _start(tets: BondedTets, young: float, poisson: float, stiffness: float) -> Floats:
+def _start(tets: BondedTets, young: float, poisson: float, stiffness: float | Floats) -> Floats:
     """Displacements under the six stresses if these were uniform, the faces' share spread evenly."""
     trace = np.einsum("sxx->s", STATES)[:, None, None] * np.eye(3)
     own = ((1 + poisson) * STATES - poisson * trace) / young
     area = lengths(tets.vectors)
     moment = np.einsum("fx,fy,f->xy", tets.vectors, tets.vectors, 1 / area) / tets.volume.sum()
-    jumps = np.einsum("xy,syz->sxz", moment, STATES) / stiffness
+    jumps = np.einsum("xy,syz->sxz", moment, STATES) / np.mean(stiffness)
     whole = own + 0.5 * (jumps + jumps.transpose(0, 2, 1))
     center = tets.x.mean(axis=1, keepdims=True)
     u = np.einsum("sxy,eay->eaxs", own, tets.x - center)

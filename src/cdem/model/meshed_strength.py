@@ -119,7 +119,7 @@ def _of_group(
     else:
         state, stiffness = _elastic_state(build, name, pairs)
     tets = state.tets
-    some = np.flatnonzero(counted_tets(tets)[tets.tet].any(axis=1))
+    some = np.flatnonzero(state.counted[tets.tet].any(axis=1))
     weakness = np.ones(len(tets.pair))
     factors = strength_factors_of(interface)
     if factors is not None:
@@ -213,7 +213,7 @@ def _elastic_state(build: Build, name: str, pairs: NDArray[np.intp]) -> tuple[El
     stiffness = build.arrays["triangles.stiffness"][place[t.pair_faces[tets.pair, 0]]]
     mean = float(stiffness.mean())
     u = displacements(tets, rock.young_modulus, rock.poisson_ratio, mean)
-    return ElasticState(tets, mean * jumps(tets, u)), mean
+    return ElasticState(tets, mean * jumps(tets, u), counted_tets(tets)), mean
 
 
 def _ductility(law: dict[str, float], stiffness: float) -> list[float]:

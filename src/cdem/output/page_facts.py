@@ -43,6 +43,15 @@ def moving(summary: dict[str, Any]) -> str:
     return f", still moving at {speeds[name]:.3g} m/s (a block of group {name})"
 
 
+def rested(summary: dict[str, Any]) -> str:
+    """Say how far what came to rest has moved; nothing of other ends."""
+    if summary["status"] != "converged":
+        return ""
+    ways = {name: g.get("max_displacement") or 0.0 for name, g in summary["groups"].items()}
+    name = max(ways, key=ways.__getitem__)
+    return f", moved by up to {ways[name]:.3g} m (group {name})"
+
+
 def departed(summary: dict[str, Any]) -> str:
     """Say which blocks are not at rest, but have left the domain; nothing if the run ended otherwise."""
     if summary["status"] != "at rest":
@@ -145,7 +154,7 @@ def _ended(s: dict[str, Any]) -> dict[str, Any]:
     return {
         "status": s["status"],
         "tone": {"failed": "bad", "stopped": "doubt"}.get(s["status"], "good"),
-        "subtitle": f"cdem {s['version']} · {s['device']} · {s['threads']} threads{moving(s)}{departed(s)}",
+        "subtitle": f"cdem {s['version']} · {s['device']} · {s['threads']} threads{rested(s)}{moving(s)}{departed(s)}",
         "tiles": tiles,
         "tables": [_groups(s), *_stages(s), *_energies(energies)],
     }

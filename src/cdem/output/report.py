@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cdem.output.page_facts import closing, departed, moving
+from cdem.output.page_facts import closing, departed, moving, rested
 from cdem.output.reader import read_summary
 from cdem.output.web_page import RunPage
 from cdem.run.energy_terms import ENERGY_TERMS
@@ -20,7 +20,7 @@ def info(folder: Path) -> str:
     """The summary as a page of text."""
     s = read_summary(folder)
     lines = [
-        f"{s['title'] or 'untitled case'}: {s['status']}{moving(s)}{departed(s)}",
+        f"{s['title'] or 'untitled case'}: {s['status']}{rested(s)}{moving(s)}{departed(s)}",
         f"  {s['steps']:,} steps to t = {s['time']:.6g} s in {s['wall_time']:.1f} s "
         f"({s['steps'] / max(s['wall_time'], 1e-9):,.0f} steps/s), dt {s['time_step']:.4g} s, "
         f"{s['device']}, {s['threads']} threads, cdem {s['version']}",

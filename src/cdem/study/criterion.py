@@ -30,6 +30,11 @@ class Criterion(Part):
         description="After so many steps or more, the last half of them moved the farthest node as "
         "far as the quarter before did, and the unbalance ratio fell by less than half: it creeps on",
     )
+    most_moved: Annotated[float, Quantity("m", above=0)] | None = Field(
+        None,
+        description="A node has moved farther than this [m] since the first trial began, though it "
+        "rests (--travel)",
+    )
     most_steps: int = Field(
         1_000_000, ge=1, description="There was no rest in so many steps (or the stage's max_steps)"
     )
@@ -56,8 +61,9 @@ class Criterion(Part):
 
     def text(self) -> str:
         """The whole rule in one line."""
+        bound = f", or rests after more than {self.most_moved:g} m" if self.most_moved else ""
         return (
             f"fails when a node has moved {100 * self.travel:g} % of the mean face size with growing "
             f"kinetic energy, or {100 * self.far:g} % in any way, or creeps on after "
-            f"{self.stall_steps:,} steps, or finds no rest in {self.most_steps:,} steps"
+            f"{self.stall_steps:,} steps, or finds no rest in {self.most_steps:,} steps{bound}"
         )

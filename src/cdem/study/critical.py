@@ -36,6 +36,8 @@ class Trial:
         saw: What it did, see `Verdict`.
         why: The same with figures.
         steps: Steps that it took.
+        moved: How far its farthest node has moved since the first trial began, or since its own last
+            stage did where each trial builds its model [m].
     """
 
     value: float
@@ -43,6 +45,7 @@ class Trial:
     saw: Seen
     why: str
     steps: int
+    moved: float
 
 
 @dataclass
@@ -254,6 +257,7 @@ class _Warm:
         while self.sim.stage_index < len(case.stages) - 1:
             self.sim.run_stage(case.stages[self.sim.stage_index].name)
         self.start = self.at_rest = _keep(self.sim)
+        self.from_where = self.sim.fields["position"].copy()
         self.bisecting = False
 
     def begin_bisection(self) -> None:
@@ -264,7 +268,8 @@ class _Warm:
         sim = self.sim
         _bring_back(sim, self.at_rest if self.bisecting else self.start)
         before = sim.step_count
-        verdict = rests(sim, lambda: self.apply(sim.case, value), self.criterion)
+        prepare = partial(self.apply, sim.case, value)
+        verdict = rests(sim, prepare, self.criterion, start=self.from_where)
         if verdict.stable:
             self.at_rest = _keep(sim)
         return _trial(value, verdict, sim.step_count - before)
@@ -309,7 +314,7 @@ class _Cold:
 
 
 def _trial(value: float, verdict: Verdict, steps: int) -> Trial:
-    return Trial(value, verdict.stable, verdict.saw, verdict.why, steps)
+    return Trial(value, verdict.stable, verdict.saw, verdict.why, steps, verdict.moved)
 
 
 @dataclass

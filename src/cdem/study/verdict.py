@@ -7,12 +7,15 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cdem.errors import UnstableError
 from cdem.run import stages
 from cdem.run.simulation import CHECK_INTERVAL, Simulation
 from cdem.study.criterion import Criterion
 from cdem.units import coordinates
+
+Floats = NDArray[np.float64]
 
 LOOK = 10 * CHECK_INTERVAL
 """Steps between two looks at a stage."""
@@ -34,11 +37,14 @@ class Verdict:
             that falls too slowly; undecided at the last step allowed; unstable, a computation that
             failed.
         why: The same with figures. Speeds are those of relaxation, which brakes.
+        moved: How far the farthest node came from where it was when the trial began, or where it was in
+            the state that is given [m].
     """
 
     stable: bool
     saw: Seen
     why: str
+    moved: float = np.nan
 
 
 def rests(
@@ -46,10 +52,17 @@ def rests(
     prepare: Callable[[], None] | None = None,
     criterion: Criterion | None = None,
     index: int = -1,
+    start: Floats | None = None,
 ) -> Verdict:
     """Run a static stage, by default the last, until it rests or fails by the criterion.
 
-    `prepare` may change the case as the stage begins.
+    Args:
+        sim: The simulation.
+        prepare: May change the case as the stage begins.
+        criterion: What counts as failed.
+        index: Of the stage.
+        start: Positions from which the way of nodes counts where it rests [m], shape (nodes, 3); None:
+            those when the stage begins.
     """
     c = criterion or Criterion()
     sim.stage_index = range(len(sim.case.stages))[index]
@@ -58,25 +71,21 @@ def rests(
         prepare()
         stages.update_core(sim, sim.stage_index)
         sim.core.renew_step()
-    watch = _Watch(sim, c)
+    watch = _Watch(sim, c, start)
     most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
     done = 0
     while done < most:
         try:
             outcome = sim.advance(stage, min(LOOK, most - done))
         except UnstableError as error:
-            return Verdict(False, "unstable", str(error))
+            return Verdict(False, "unstable", str(error), watch.moved())
         done = sim.step_count - stage.start_step
         if outcome == "converged":
-            left = sim.core.unbalance_ratio()  # 0 below the round-off of the coordinates
-            return Verdict(
-                True, "at rest", f"unbalance ratio {left:.2g}" if left else "to round-off"
-            )
+            return watch.rest()
         if verdict := watch.look(done):
             return verdict
-    return Verdict(
-        False, "undecided", f"no rest in {done:,} steps, ratio {sim.core.unbalance_ratio():.2g}"
-    )
+    text = f"no rest in {done:,} steps, ratio {sim.core.unbalance_ratio():.2g}"
+    return Verdict(False, "undecided", text, watch.moved())
 
 
 @dataclass
@@ -94,6 +103,7 @@ class _Watch:
 
     sim: Simulation
     criterion: Criterion
+    origin: Floats | None = None  # of the way that is told [m]
     looks: list[_Look] = field(default_factory=lambda: [_Look()])
     half_way: float = 0.0  # kinetic energy when half of the travel was reached [J]
 
@@ -101,18 +111,37 @@ class _Watch:
         counts, arrays = self.sim.audit.counts, self.sim.build.arrays
         self.size = float(arrays["face.length"][: counts["faces"]].mean())
         self.start = self.sim.fields["position"].copy()
+        self.begin = self.start if self.origin is None else self.origin
+
+    def moved(self) -> float:
+        """Way of the farthest node from the origin [m]."""
+        return float(self._ways(self.begin).max())
+
+    def rest(self) -> Verdict:
+        """What came to rest, and after how much it has moved."""
+        left = self.sim.core.unbalance_ratio()  # 0 below the round-off of the coordinates
+        ways = self._ways(self.begin)
+        moved, ratio = float(ways.max()), f"unbalance ratio {left:.2g}" if left else "to round-off"
+        most = self.criterion.most_moved
+        if most is not None and moved > most:
+            text = f"{self._place(ways)}, more than {most:g} m, and rests, {ratio}"
+            return Verdict(False, "sliding", text, moved)
+        return Verdict(True, "at rest", f"{ratio}, {self._place(ways)}", moved)
+
+    def _ways(self, start: Floats) -> Floats:
+        return np.linalg.norm(self.sim.fields["position"] - start, axis=1)
 
     def look(self, steps: int) -> Verdict | None:
         """Take in the state after so many steps; a verdict where it has failed."""
         c, last = self.criterion, self.looks[-1]
-        ways = np.linalg.norm(self.sim.fields["position"] - self.start, axis=1)
+        ways = self._ways(self.start)
         moved, kinetic = float(ways.max()) / self.size, float(self.sim.energies["kinetic"])
         now = _Look(steps, moved, min(last.least, self.sim.core.unbalance_ratio()))
         self.looks.append(now)
         if last.steps == 0 or moved < 0.5 * c.travel:  # the first look sees loads come, too
             self.half_way = kinetic
         elif moved > c.far or (moved > c.travel and kinetic > self.half_way):
-            return Verdict(False, "sliding", self._text(ways))
+            return Verdict(False, "sliding", self._text(ways), self.moved())
         if steps >= c.stall_steps:
             return self._goes_on(now, self._text(ways))
         return None
@@ -126,12 +155,15 @@ class _Watch:
         if slower or now.least <= 0.5 * half.least:
             return None
         saw: Seen = "sliding" if now.least > STEADY * half.least else "creeping"
-        return Verdict(False, saw, f"{text}, ratio stays at {now.least:.2g}")
+        return Verdict(False, saw, f"{text}, ratio stays at {now.least:.2g}", self.moved())
 
-    def _text(self, ways: np.ndarray) -> str:
+    def _place(self, ways: Floats) -> str:
         farthest = int(ways.argmax())
         t = self.sim.build.topology
         group = self.sim.build.group_names[t.block_group[t.node_block[farthest]]]
         place = coordinates(self.sim.fields["position"][farthest])
+        return f"{group} has moved {ways[farthest]:.3g} m at ({place})"
+
+    def _text(self, ways: Floats) -> str:
         speed = np.linalg.norm(self.sim.fields["velocity"], axis=1).max()
-        return f"{group} has moved {ways[farthest]:.3g} m at ({place}), {speed:.2g} m/s"
+        return f"{self._place(ways)}, {speed:.2g} m/s"

@@ -9,13 +9,17 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
+from filelock import FileLock, Timeout
+
 from cdem._core_choice import choose
 from cdem.errors import BackendError, CaseError
-from cdem.own_laws import digest, library_of, record_of, sources
+from cdem.own_laws import digest, home, library_of, record_of, sources
 from cdem.whole_files import replaced, write_json
 
 NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
@@ -25,6 +29,8 @@ LAW = re.compile(
 INCLUDE = re.compile(r"^\s*(?:#|%:)\s*(?:include\w*|import|embed)(.*)$", re.MULTILINE)
 KNOWN = re.compile(r'\s*(?:<\w+(?:\.h)?>|"core/(?:\w+/)*\w+\.hpp")\s*')
 ANSWERS = {"BLOCK": re.compile(r"\bflow\s*\("), "INTERFACE": re.compile(r"\brespond\s*\(")}
+BUILD, LOCK = "build", "lock"
+"""Folders of builds begin so, among the libraries; the lock in each."""
 SHOWN = 8
 """Lines of what the compiler says."""
 
@@ -144,15 +150,33 @@ def build(files: list[Path]) -> Path:
     paths = [header.path for header in headers]
     if len({path.name for path in paths}) < len(paths):
         raise CaseError("own laws of one library need file names that differ")
-    with tempfile.TemporaryDirectory(prefix="cdem-law-") as folder:
+    with _workplace() as folder:
         # what is compiled is what the digest is of, whatever becomes of the files meanwhile
         copies = [Path(shutil.copy(path, folder)) for path in paths]
         library, made = library_of(copies, isa), record_of(copies, isa)
-        built = _compile(headers, isa, Path(folder))
+        built = _compile(headers, isa, folder)
         with replaced(library) as file:
             file.write(built.read_bytes())
     write_json(library.with_suffix(".json"), made | {"library": digest(library)})
     return library
+
+
+@contextmanager
+def _workplace() -> Iterator[Path]:
+    """A folder to build in, which is gone afterwards. What builds that were killed have left goes too.
+
+    A build holds the lock of its folder, which the system lets go of when its process ends.
+    """
+    place = home()
+    with ExitStack() as kept:
+        with FileLock(place / f"{BUILD}.lock"):
+            for left in place.glob(f"{BUILD}-*"):
+                with suppress(Timeout), FileLock(left / LOCK, timeout=0):
+                    shutil.rmtree(left, ignore_errors=True)
+            made = tempfile.TemporaryDirectory(prefix=f"{BUILD}-", dir=place)
+            folder = Path(kept.enter_context(made))
+            kept.enter_context(FileLock(folder / LOCK))
+        yield folder
 
 
 def _compile(headers: list[Header], isa: str, folder: Path) -> Path:

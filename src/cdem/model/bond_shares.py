@@ -1,0 +1,143 @@
+"""What part of the compliance of its bonds each face stands for, and what bonds add by direction.
+
+Under a uniform stress S a bond of area A, normal n and stiffness k opens by S n / k. An element that
+others surround has half of that at each of its faces; so with k = a E' / h, h its height above the
+face, equal bricks gain 1 / (a E') along each axis. A face that is free takes its half from none.
+What it lacks goes to the faces that look as it does, up or down: that across from it, in a brick.
+Where that is free too, as in a slice one element thick, nothing can stand for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.mesh.arrays import first_of_each, found_in, in_pieces
+from cdem.mesh.topology import Topology
+from cdem.model.faces import face_normals
+from cdem.model.homogenize import COLUMN, ROW, STATES
+
+Floats = NDArray[np.float64]
+
+MOST_FACES = 6
+"""Of an element."""
+SHARPNESS = 2
+"""A face stands for another by |cos|^(2 this) between them."""
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Of the faces of some elements.
+
+    Attributes:
+        faces: Which they are, ascending.
+        share: What part of the compliance of its bonds each stands for: 1/2 in the midst of others [1].
+        bonded: What part of its area is bonded [1].
+        weight: Its area times the h of its bonds over the volume of all elements [1].
+        normal: shape (faces, 3).
+    """
+
+    faces: NDArray[np.intp]
+    share: Floats
+    bonded: Floats
+    weight: Floats
+    normal: Floats
+
+    def fabric(self, share: Floats | float | None = None) -> Floats:
+        """M of what bonds add to 1 / E along d, d M d / (a E'), shape (3, 3); or with other shares."""
+        some = self.weight * self.bonded * (self.share if share is None else share)
+        return _moment(some, self.normal)
+
+    def surrounded(self) -> Floats:
+        """The same if all faces were bonded, shape (3, 3)."""
+        return _moment(0.5 * self.weight, self.normal)
+
+
+def _moment(weight: Floats, normal: Floats) -> Floats:
+    return np.einsum("f,fi,fj->ij", weight, normal, normal)
+
+
+def longest(t: Topology, elements: NDArray[np.bool_], volume: Floats) -> Floats:
+    """Weights of directions of some elements, in sum 1: those along which they reach far, shape (3, 3).
+
+    The square of the second moment of their volume: 10,000 to 1 for a column of ten bricks.
+    """
+    center = np.concatenate(
+        [t.node_position[nodes].mean(axis=1) for nodes in t.element_nodes.values()]
+    )[elements]
+    weight = volume[elements] / volume[elements].sum()
+    away = center - np.einsum("e,ex->x", weight, center)
+    moment = np.einsum("e,ex,ey->xy", weight, away, away)
+    squared = np.einsum("xy,yz->xz", moment, moment)
+    return squared / np.trace(squared)
+
+
+def bonded_parts(t: Topology, between: NDArray[np.bool_], area: Floats) -> Floats:
+    """What part of each face is bonded to a face of a kind that it is made up for with, (faces,)."""
+    out = np.zeros(len(area))
+    overlap = np.zeros(0)
+    if len(t.overlap_faces):
+        overlap = np.add.reduceat(t.overlap_area, t.overlap_first[:-1])
+    sets = ((t.pair_faces, area[t.pair_faces[:, 0]]), (t.overlap_faces, overlap))
+    for faces, common in sets:
+        kinds = t.face_kind[faces].reshape(-1, 2)
+        made_up = between[kinds[:, 0], kinds[:, 1]]
+        for side in (0, 1):
+            some = faces[made_up, side]
+            np.add.at(out, some, common[made_up] / area[some])
+    return np.minimum(out, 1.0)
+
+
+def shares(
+    t: Topology,
+    elements: NDArray[np.bool_],
+    volume: Floats,
+    bonded: Floats,
+    area: Floats,
+    height: Floats,
+) -> Shares:
+    """Shares of the faces of some elements.
+
+    Args:
+        t: The mesh.
+        elements: Which they are, shape (elements,).
+        volume: Of all elements [m3].
+        bonded: Of `bonded_parts`.
+        area: Of all faces [m2].
+        height: h of the bonds of each face [m].
+    """
+    faces = np.flatnonzero(elements[t.face_element])
+    normal = face_normals(t.node_position, t.face_nodes[faces])
+    owner = t.face_element[faces]
+    used = found_in([owner], len(elements))
+    number = np.zeros(len(elements), np.intp)
+    number[used] = np.arange(len(used))
+    order = np.argsort(owner, kind="stable")
+    first = first_of_each(number[owner], len(used))
+    table = np.full((len(used), MOST_FACES), -1)
+    table[number[owner[order]], np.arange(len(order)) - first[number[owner[order]]]] = order
+    some = area[faces], bonded[faces], normal
+    extra = np.zeros(len(faces))
+    extra[table[table >= 0]] = in_pieces(lambda rows: _taken_over(rows, *some), table)[table >= 0]
+    weight = area[faces] * height[faces] / volume[used].sum()
+    return Shares(faces, 0.5 + extra, some[1], weight, normal)
+
+
+def _taken_over(rows: NDArray[np.intp], area: Floats, bonded: Floats, normal: Floats) -> Floats:
+    """What the faces of elements (rows, -1 past the last) stand for besides their own halves."""
+    a = np.where(rows >= 0, area[rows], 0.0)
+    n, part = normal[rows], bonded[rows]
+    alike = np.einsum("efx,egx->efg", n, n) ** (2 * SHARPNESS) * a[:, None]
+    own = np.arange(MOST_FACES)
+    alike[:, own, own] *= part
+    lacks = 0.5 * a * (1 - part) / np.maximum(alike.sum(axis=2), 1e-300)
+    return np.einsum("ef,efg->eg", lacks, alike) / np.where(rows >= 0, a, 1.0)
+
+
+def added(fabric: Floats) -> Floats:
+    """Strains (engineering shears) by stresses that bonds of k h = 1 add, as in `STATES`, (6, 6)."""
+    opened = np.einsum("ij,sjk->sik", fabric, STATES)
+    both = 0.5 * (opened + opened.transpose(0, 2, 1))
+    return both[:, ROW, COLUMN].T * np.array([1, 1, 1, 2, 2, 2])[:, None]
