@@ -62,14 +62,6 @@ FAULTS = [
         "spends_its_fracture_energy",
     ),
     Mutant(
-        "kept pairs",
-        "pairs with residual cohesion are released like those without",
-        "core/bonds/lets_go.hpp",
-        "return !pressed ||",
-        "return pressed ||",
-        "tests/validation/test_interface_laws.py::test_residual_strength_after_the_peak",
-    ),
-    Mutant(
         "softer",
         "a softer contact is pressed by more than its depth",
         "core/bonds/transfer_to_contact.cpp",

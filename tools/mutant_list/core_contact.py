@@ -4,6 +4,30 @@ from mutant_list.mutant import Mutant
 
 FAULTS = [
     Mutant(
+        "areas twice",
+        "both faces give their contacts the whole area that they share",
+        "core/contact/force/contact_area.hpp",
+        "(shares ? 0.5 : 1.0)",
+        "1.0",
+        "tests/core/contact/force/test_contact_area.cpp",
+    ),
+    Mutant(
+        "areas of new ones",
+        "a contact that begins has a share of the area at once",
+        "core/contact/force/contact_laws.hpp",
+        "const T ratio = select(pressed, spring.stiffness.n * area, none);",
+        "const T ratio = spring.stiffness.n * area;",
+        "tests/core/contact/force/test_contact_area.cpp",
+    ),
+    Mutant(
+        "steep",
+        "a contact that is hardly pressed meets its target anywhere",
+        "core/contact/force/contact_force.hpp",
+        "const T steepest(10.0);",
+        "const T steepest(1e30);",
+        "tests/core/contact/force/test_contact_force.cpp",
+    ),
+    Mutant(
         "rolling",
         "rolling resistance acts on the mother alone",
         "core/contact/force/rolling.hpp",

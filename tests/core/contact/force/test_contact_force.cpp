@@ -181,4 +181,17 @@ TEST_CASE("contacts of a lane are those of their numbers") {
       });
 }
 
+TEST_CASE("a contact meets its target where it is pressed, and not along the face") {
+  const auto meets = [](Real normal, Real shear1, Real shear2) {
+    ContactForce<Real> f{};
+    f.force_n = normal, f.shear1 = shear1, f.shear2 = shear2;
+    return meets_target(f);
+  };
+  CHECK(meets(1, 0, 0));
+  CHECK(meets(1, 5.6, -5.6));  // 83 degrees
+  CHECK(!meets(1, 8, 8));
+  CHECK(!meets(1e-9, 1, 0));
+  CHECK(!meets(0, 0, 0));
+}
+
 }  // namespace cdem::test
