@@ -21,7 +21,8 @@ def held_components(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
 
 def driven_nodes(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
     """Nodes that a velocity is given to, shape (nodes,); from `supports_of`."""
-    return (supports["row"] >= 0) & supports["velocity"].any(axis=1)[supports["row"]]
+    row, driven = supports["row"], np.asarray(supports["velocity"].any(axis=1))
+    return (row >= 0) & driven[row]
 
 
 def supports_of(

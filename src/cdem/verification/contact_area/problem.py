@@ -2,15 +2,15 @@
 
 import numpy as np
 
-MESHES = {  # divisions of bed and block, where the block lies, and what else differs
-    "the same": ([8, 4, 1], [1, 1, 1], [0, -0.5], {}),
-    "offset": ([8, 4, 1], [1, 1, 1], [0.37, 0.23], {}),
-    "a finer bed": ([32, 16, 1], [1, 1, 1], [0.37, 0.23], {}),
-    "a coarser bed": ([2, 1, 1], [1, 1, 1], [0.37, 0.23], {}),
-    "a finer block": ([2, 1, 1], [4, 4, 1], [0.37, 0.23], {}),
-    "a sliced bed": ([8, 1, 1], [2, 1, 1], [0.37, 0.23], {}),
-    "tets": ([8, 4, 1], [2, 2, 1], [0.37, 0.23], {"shape": "tet4"}),
-    "a turned block": ([8, 4, 1], [2, 2, 1], [0.87, 0.23], {"turn": 30}),
+MESHES = {  # divisions of bed and block, where the block lies, elements, and how far it is turned
+    "the same": ([8, 4, 1], [1, 1, 1], [0, -0.5], "hex8", 0),
+    "offset": ([8, 4, 1], [1, 1, 1], [0.37, 0.23], "hex8", 0),
+    "a finer bed": ([32, 16, 1], [1, 1, 1], [0.37, 0.23], "hex8", 0),
+    "a coarser bed": ([2, 1, 1], [1, 1, 1], [0.37, 0.23], "hex8", 0),
+    "a finer block": ([2, 1, 1], [4, 4, 1], [0.37, 0.23], "hex8", 0),
+    "a sliced bed": ([8, 1, 1], [2, 1, 1], [0.37, 0.23], "hex8", 0),
+    "tets": ([8, 4, 1], [2, 2, 1], [0.37, 0.23], "tet4", 0),
+    "a turned block": ([8, 4, 1], [2, 2, 1], [0.87, 0.23], "hex8", 30),
 }
 SPEED, WEIGHT = 3.0, 12262.5  # of the block [m/s], [N]
 COHESION = 5e3  # [Pa]
@@ -22,7 +22,7 @@ LAWS = {
     "barton-bandis": "{law: barton-bandis, jrc: 10, jcs: 20 MPa, residual_friction_angle: 25}",
 }  # fmt: skip
 SLAB = {  # cells of a bed of 150 m and 6 m
-    "the same": ([150, 6, 1], [-5, 0]),
+    "the same": ([150, 6, 1], [-5.0, 0.0]),
     "offset": ([150, 6, 1], [-4.63, 0.37]),
     "a finer bed": ([300, 12, 1], [-4.63, 0.37]),
     "a coarser bed": ([30, 1, 1], [-4.63, 0.37]),
@@ -49,14 +49,13 @@ def theory(law, slipped):
 
 def draw(study, law, mesh):
     """Mean force on the bed along the way over 0.2 s [N], slip in the middle [m], energy error."""
-    bed, block, place, more = MESHES[mesh]
-    shape = f"shape: {more.get('shape', 'hex8')}"
+    bed, block, place, shape, angle = MESHES[mesh]
     speed = SPEED if law == "voellmy" else 0.02 if law == "barton-bandis" else 0.2
     simulation = study.simulate(
-        f"model.blocks=[{{group: bed, box: {{size: [8, 4, 1], divisions: {bed}, {shape}}},"
+        f"model.blocks=[{{group: bed, box: {{size: [8, 4, 1], divisions: {bed}, shape: {shape}}},"
         " translate: [-2, -1.5, -1]}, "
-        f"{{group: block, box: {{size: [1, 1, 0.5], divisions: {block}, {shape}}},"
-        f" rotate: {{axis: [0, 0, 1], angle: {more.get('turn', 0)}}}, translate: {[*place, 0]}}}]",
+        f"{{group: block, box: {{size: [1, 1, 0.5], divisions: {block}, shape: {shape}}},"
+        f" rotate: {{axis: [0, 0, 1], angle: {angle}}}, translate: {[*place, 0]}}}]",
         f"loads.velocities.0.velocity=[{speed}, 0, 0]", f"interfaces.default={LAWS[law]}")  # fmt: skip
     nodes = [simulation.build.nodes_of(group) for group in ("bed", "block")]
     simulation.run_until(0.4)
@@ -65,7 +64,8 @@ def draw(study, law, mesh):
         simulation.run_until(simulation.time + 0.005)
         force = simulation.core.fields()["node.reaction"].reshape(-1, 4)[nodes[0], 0].sum()
         rows.append((-force, simulation.fields["displacement"][nodes[1], 0].mean()))
-    return *np.mean(rows, axis=0), simulation.energies["error"]
+    force, slipped = np.mean(rows, axis=0)
+    return force, slipped, simulation.energies["error"]
 
 
 def slide(study, mesh):
