@@ -178,7 +178,7 @@ def lining():
 
 
 def soft():
-    """Bonds that soften and break, loose blocks that leave the domain, maps of the flow."""
+    """Bonds that soften and break, a bed that asks for areas, blocks that leave the domain, maps."""
     case = on_ground(
         [box("ground", [6, 4, 1], [0, 0, -1], divisions=[3, 2, 1]),
          box("block", [1, 2, 2], [4.2, 1, 0.05], divisions=[1, 2, 2], shape="tet4")],
@@ -189,6 +189,7 @@ def soft():
     case["model"]["split"] = {"block": "elements"}
     case["model"]["domain"] = {"min": [-1, -1, -3], "max": [6, 5, 5]}
     case["groups"]["block"]["velocity"] = [6, 0, 0]
+    case["interfaces"]["pairs"][0] |= {"law": "voellmy", "turbulence": 300, "flow_density": 2000}
     case["interfaces"]["pairs"].append(
         {"between": ["block", "block"], "friction_angle": 30, "cohesion": "20 kPa",
          "tensile_strength": "5 kPa", "law": "softening", "fracture_energy_1": 5,
