@@ -41,13 +41,15 @@ void look_at_springs(const Model& m, State& s, const std::vector<Real>& falls, W
   const FaceGeometry geometry = on_host(face_geometry(s));
   const ContactLaws laws = on_host(contact_laws(m, s));
   const auto target = on_host(s.springs.target);
+  const auto rim_action = on_host(s.springs.rim_action);
   const auto reaction = on_host(s.springs.reaction), state = on_host(s.springs.state);
   for (Index x = 0; x < Index(s.search.exposed_face.size()); ++x)
     for (Index slot = 4 * x; slot < 4 * x + 4; ++slot) {
       const Index y = target[slot];
       const Index interface = y < 0 ? 0 : laws.between(geometry, x, y);
       if (y < 0 || !(falls[interface] > 0)) continue;
-      const auto mother = MotherPoint<Real>::at(faces, geometry, m.rules, laws.node_mass, x, slot);
+      const auto mother = MotherPoint<Real>::at(faces, geometry, m.rules, rim_action.data(),
+                                                laws.node_mass, x, slot);
       const Real* weight = reaction.data() + std::size_t(slot) * 8 + 4;
       const FaceVertices<Index> corners = geometry.vertices(y);
       Real inverse_mass = mother.inverse_mass;

@@ -63,6 +63,11 @@ void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
           .numbers = 8,
           .optional = true},
          c.rolling);
+  stored({.name = "spring.rim_action",
+          .unit = "1",
+          .meaning = "action coefficient of a contact held at a rim, else 0",
+          .rows = "slots"},
+         c.rim_action);
   stored({.name = "spring.lost",
           .meaning = "1: a loaded contact was lost by its depth",
           .rows = "slots"},

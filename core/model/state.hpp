@@ -109,7 +109,7 @@ struct BoltState {
 struct SpringState {
   Column<Index> target, target_before;
   Column<Real> state, reaction;  // rows of 8
-  Column<Real> friction, dashpot;
+  Column<Real> friction, dashpot, rim_action;
   Column<Flag> lost, unresolved;
   HistoryColumns history;  // [slot]
   Column<Real> rolling;    // rows of 8 of RollingState; empty where no interface resists rolling

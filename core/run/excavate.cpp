@@ -39,7 +39,7 @@ class KeptForces {
   }
   void add_springs() {
     const auto targets = on_host(s_.springs.target);
-    const auto reaction = on_host(s_.springs.reaction);
+    const auto reaction = on_host(s_.springs.reaction), rim_action = on_host(s_.springs.rim_action);
     for (Index slot = 0; slot < Index(targets.size()); ++slot) {
       const Index target = targets[slot];
       if (target < 0) continue;
@@ -47,8 +47,9 @@ class KeptForces {
       const Real* row = reaction.data() + 8 * std::size_t(slot);
       const Vec3<Real> f = Row::at(row).vector();
       if (leaves(y)) {
-        add(vertex(x, slot % 4), 1 - m_.rules.action, f);
-        for (Index k = 0; k < count; ++k) add(vertex(x, k), m_.rules.action / count, f);
+        const Real action = std::max(m_.rules.action, rim_action[slot]);
+        add(vertex(x, slot % 4), 1 - action, f);
+        for (Index k = 0; k < count; ++k) add(vertex(x, k), action / count, f);
       } else if (leaves(x)) {
         for (Index k = 0; k < vertex_count(y); ++k) add(vertex(y, k), -row[4 + k], f);
       }

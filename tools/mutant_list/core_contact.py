@@ -20,6 +20,22 @@ FAULTS = [
         "tests/core/contact/force/test_contact_area.cpp",
     ),
     Mutant(
+        "rim",
+        "a contact held at a rim acts at its vertex",
+        "core/contact/narrow_phase/target_face.hpp",
+        "springs.rim_action[slot] = action;",
+        "springs.rim_action[slot] = 0;",
+        "tests/core/contact/narrow_phase/test_target_face.cpp",
+    ),
+    Mutant(
+        "rim of stiff ones",
+        "stiff contacts are held at rims too",
+        "core/contact/narrow_phase/target_face.hpp",
+        "static constexpr Real soft = 0.3;",
+        "static constexpr Real soft = 0;",
+        "tests/core/contact/narrow_phase/test_target_face.cpp",
+    ),
+    Mutant(
         "steep",
         "a contact that is hardly pressed meets its target anywhere",
         "core/contact/force/contact_force.hpp",

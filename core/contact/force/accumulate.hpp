@@ -65,11 +65,12 @@ struct AccumulateFaceForces : ContactsOf {
     corner = corner + (weight * Row::at(row)).with_size_of_last();
   }
   CDEM_HD void own(Index m, Index count, Row sum[4]) const {
-    const Real shared = rules.action / Real(count);
     for (Index k = 0; k < count; ++k) {
       if (springs.target[4 * m + k] < 0) continue;
+      const Real action = max_of(rules.action, springs.rim_action[4 * m + k]);
+      const Real shared = action / Real(count);
       const Real* row = springs.reaction + (std::size_t(m) * 4 + k) * 8;
-      add(sum[k], 1.0 - rules.action, row);
+      add(sum[k], 1.0 - action, row);
       if (shared > 0)
         for (Index j = 0; j < count; ++j) add(sum[j], shared, row);
     }

@@ -82,7 +82,8 @@ struct ChangeTargets {
       shape.x[j] = shape.x[j] - moved[j];
     }
     const Frame<Real> frame = shape.frame();
-    const auto mother = MotherPoint<Real>::at(faces, geometry, rules, laws.node_mass, m, slot);
+    const auto mother =
+        MotherPoint<Real>::at(faces, geometry, rules, springs.rim_action, laws.node_mass, m, slot);
     const Projection<Real> foot = project(shape, mother.x_old, frame.n);
     Vec3<Real> way = mother.x - mother.x_old;
     for (Index j = 0; j < 4; ++j) way = way - foot.weight[j] * moved[j];

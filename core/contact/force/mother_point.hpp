@@ -6,7 +6,8 @@
 
 namespace cdem {
 
-/// The acting point: the vertex, moved towards the face's centre by the action coefficient.
+/// The acting point: the vertex, moved towards the face's centre by the action coefficient, or by
+/// more where the contact is held at a rim, see held_at_rim.
 template <class T>
 struct MotherPoint {
   Vec3<T> x, x_old, v;  // now, one step ago; velocity
@@ -15,8 +16,8 @@ struct MotherPoint {
   /// That of a slot (4 * exposed face + vertex) of exposed face m.
   template <class Ids>
   CDEM_HD static MotherPoint at(const FaceColumns& faces, const FaceGeometry& geometry,
-                                const SearchRules& rules, const Real* node_mass, const Ids& m,
-                                const Ids& slot) {
+                                const SearchRules& rules, const Real* rim_action,
+                                const Real* node_mass, const Ids& m, const Ids& slot) {
     const T dt(faces.dt), zero(0.0);
     const Vec3<T> none{zero, zero, zero};
     MotherPoint p{.x = none, .x_old = none, .v = none, .inverse_mass = zero};
@@ -27,7 +28,8 @@ struct MotherPoint {
       p.v = p.v + w * v;
       p.inverse_mass += w * w / look_up(node_mass, node);
     };
-    if (!(rules.action > 0)) {
+    const T action = max_of(T(rules.action), look_up(rim_action, slot));
+    if (!any_of(action > zero)) {
       const auto corner = [&](Index x, Index s) { return geometry.table[x].corner[s % 4]; };
       add(indices_of(corner, m, slot), T(1.0));
       return p;
@@ -35,7 +37,7 @@ struct MotherPoint {
     const FaceVertices<Ids> corners = geometry.vertices(m);
     for (Index j = 0; j < 4; ++j) {
       const auto share = [&](Index x, Index s) {
-        return share_of(rules.action, geometry.table[x].count(), s % 4, j);
+        return share_of(max_of(rules.action, rim_action[s]), geometry.table[x].count(), s % 4, j);
       };
       add(corners.node[j], numbers_of(share, m, slot));
     }

@@ -120,8 +120,8 @@ struct UpdateSpringForces {
     const auto corners = geometry.vertices(target.face);
     const FaceShape<T> shape = faces.shape(corners);
     const Frame<T> frame = shape.frame(geometry.normal(target.face));
-    const auto mother =
-        MotherPoint<T>::at(faces, geometry, rules, laws.node_mass, item.row, item.id);
+    const auto mother = MotherPoint<T>::at(faces, geometry, rules, springs.rim_action,
+                                           laws.node_mass, item.row, item.id);
     const Projection<T> foot = project(shape, mother.x, frame.n);
     FaceShape<T> old_shape = shape;  // one step ago
     Vec3<T> velocity[4];

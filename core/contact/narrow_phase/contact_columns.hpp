@@ -14,6 +14,7 @@ struct SpringColumns {
   Real* friction;        // lost so far  [J]
   Real* dashpot;         // lost in the contact dashpot so far  [J]
   Real* reaction;        // row of 8: force on the mother x y z, stiffness, weights on the target
+  Real* rim_action;      // action coefficient of a contact held at a rim, else 0
   Flag* lost;            // 1: a loaded contact was lost because it penetrated too deep
   Flag* unresolved;      // 1: ResolveTargets has still to find the target of this step
 };

@@ -22,7 +22,7 @@ void visit_faces(State& s, Visit&& visit) {
   SpringState& c = s.springs;
   visit(c.target, 4, Index(-1));
   visit(c.target_before, 4, Index(-1));
-  for (Column<Real>* column : {&c.friction, &c.dashpot}) visit(*column, 4, Real(0));
+  for (Column<Real>* column : {&c.friction, &c.dashpot, &c.rim_action}) visit(*column, 4, Real(0));
   for (Column<Real>* column : {&c.state, &c.reaction}) visit(*column, 4 * 8, Real(0));
   if (c.rolling.size() > 0) visit(c.rolling, 4 * 8, Real(0));
   visit(c.lost, 4, Flag(0));

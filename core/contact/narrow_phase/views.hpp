@@ -35,6 +35,7 @@ inline SpringColumns spring_columns(State& s) {
           .friction = c.friction.data(),
           .dashpot = c.dashpot.data(),
           .reaction = c.reaction.data(),
+          .rim_action = c.rim_action.data(),
           .lost = c.lost.data(),
           .unresolved = c.unresolved.data()};
 }

@@ -21,7 +21,7 @@ struct Blocks : Scene {
   template <class T, class Ids>
   MotherPoint<T> at(const Ids& m, const Ids& slot) const {
     return MotherPoint<T>::at(face_columns(model, state), face_geometry(state), model.rules,
-                              model.mass.data(), m, slot);
+                              state.springs.rim_action.data(), model.mass.data(), m, slot);
   }
 };
 
@@ -82,6 +82,22 @@ TEST_CASE("points of a lane are those of its slots") {
       CHECK(same_bits(pack.inverse_mass.n[j], p.inverse_mass));
     }
   }
+}
+
+TEST_CASE("a contact held at a rim has an action coefficient of its own") {
+  Blocks blocks;
+  blocks.model.rules.action = 0.01;
+  const Index m = 2, corner = on_host(blocks.state.search.exposed)[m].corner[1];
+  on_host(blocks.state.springs.rim_action)[4 * m + 1] = 0.4;
+  Vec center{0, 0, 0};
+  for (Index k = 0; k < 4; ++k)
+    center =
+        center + Real(0.25) * blocks.position(on_host(blocks.state.search.exposed)[m].corner[k]);
+  const Vec vertex = blocks.position(corner);
+  CHECK(distance(blocks.at<Real>(m, 4 * m + 1).x, vertex + Real(0.4) * (center - vertex)) < 5e-15);
+  const Index beside = on_host(blocks.state.search.exposed)[m].corner[2];
+  const Vec other = blocks.position(beside);
+  CHECK(distance(blocks.at<Real>(m, 4 * m + 2).x, other + Real(0.01) * (center - other)) < 5e-15);
 }
 
 }  // namespace cdem::test
