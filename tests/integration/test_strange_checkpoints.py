@@ -3,6 +3,7 @@
 import json
 import math
 
+import numpy as np
 import pytest
 from shared.cases import FALL
 
@@ -78,4 +79,25 @@ def test_arrays_that_cannot_be_are_refused(results, name, value):
     for _ in range(2):
         write_checkpoint(results, arrays, text.decode())
     with pytest.raises(CdemError, match="is damaged"):
+        resume(results)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda array: array.astype(np.float32),
+        lambda array: array[:-1],
+        lambda array: array * math.nan,
+        lambda array: None,
+    ],
+    ids=["kind", "shape", "no numbers", "gone"],
+)
+def test_positions_that_the_run_keeps_itself_are_looked_at(results, change):
+    """`simulation.reference` in single precision was taken, and the results were others."""
+    arrays, text = read_checkpoint(results / "checkpoint.h5")
+    arrays["simulation.reference"] = change(arrays["simulation.reference"])
+    arrays = {name: array for name, array in arrays.items() if array is not None}
+    for _ in range(2):
+        write_checkpoint(results, arrays, text.decode())
+    with pytest.raises(CdemError, match=r"is damaged \(simulation.reference"):
         resume(results)

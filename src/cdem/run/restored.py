@@ -72,6 +72,19 @@ def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:
     return ""
 
 
+def wrong_kept(arrays: Mapping[str, NDArray], own: Mapping[str, NDArray]) -> str:
+    """Name and fault of an array that a run keeps besides those of the core, or ""."""
+    for name, like in own.items():
+        if name not in arrays:
+            return f"{name} is not there"
+        array = arrays[name]
+        if array.dtype != like.dtype or array.shape != like.shape:
+            return f"{name} has another shape or kind of numbers"
+        if not np.isfinite(array).all():
+            return f"{name} holds numbers that are not finite"
+    return ""
+
+
 def wrong_stage(attributes: Attributes) -> str:
     """What is wrong with the stage that a run has come to, or ""."""
     index, stages = attributes.stage_index, attributes.case.get("stages", [])

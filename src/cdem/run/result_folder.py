@@ -33,7 +33,7 @@ from cdem.run.histories import tracks
 from cdem.run.history_file import HistoryFile
 from cdem.run.law_fields import wanted_fields
 from cdem.run.state import Attributes, RunState
-from cdem.run.written_files import LOCK, MARKER, check_replaceable, refuse_links, remove_written
+from cdem.run.written_files import BEGUN, check_replaceable, refuse_links, remove_written
 from cdem.whole_files import disk_error, write_json, write_text
 
 RESULT_FILES = {"case.yaml", "run.log", "summary.json", CHECKPOINT, CHECKPOINT_BEFORE}
@@ -44,7 +44,7 @@ def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) ->
     """Stop before anything is computed if the folder must not be written to."""
     if folder.exists() and not folder.is_dir():
         raise CdemError(f"{folder}: is a file; name another folder with -o")
-    inside = {path.name for path in folder.iterdir()} if folder.exists() else set()
+    inside = _inside(folder) if folder.exists() else set()
     if resume:
         if not has_checkpoint(folder):
             raise CdemError(f"{folder}: no checkpoint to resume from; run without --resume")
@@ -53,6 +53,13 @@ def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) ->
         raise _exists(folder)
     elif inside:
         check_replaceable(folder, case_folder)
+    elif folder.exists():
+        refuse_links(folder)
+
+
+def _inside(folder: Path) -> set[str]:
+    """Names of what a folder holds besides the marks of a run that has begun."""
+    return {path.name for path in folder.iterdir()} - BEGUN
 
 
 def _exists(folder: Path) -> CdemError:
@@ -104,7 +111,7 @@ class Results:
         self._lock.take()
         if not self._new:
             remove_written(self.folder)
-        elif {path.name for path in self.folder.iterdir()} - {MARKER, LOCK}:
+        elif _inside(self.folder):
             raise _exists(self.folder)  # made by another run while this one built its model
         write_text(self.folder / "case.yaml", sim.given_case.dump())
         self.log(sim.audit.text())

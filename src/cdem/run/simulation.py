@@ -461,11 +461,8 @@ class Simulation(RunState):
     def _restore_core(self, path: Path, arrays: dict[str, NDArray], attributes: Attributes) -> None:
         """Hand the arrays of a checkpoint to the core, if it can work with them."""
         followed = {n: arrays.pop(n) for n in list(arrays) if n.startswith(PREFIX)}
-        own = {name: arrays.pop(name) for name in super().kept}
-        wrong = [name for name in own if own[name].shape != self.build.start_position.shape]
-        self.reference = own["simulation.reference"]
-        self.build.born = own.get("simulation.born", self.build.born)
-        fault = f"{wrong[0]} has another shape" if wrong else ""
+        own = {name: arrays.pop(name) for name in super().kept if name in arrays}
+        fault = restored.wrong_kept(own, super().kept)
         fault = fault or restored.wrong_type(self.core, arrays)
         fault = fault or restored.wrong_state(arrays)
         fault = fault or (self.flow.restore(followed) if self.flow else "")
@@ -474,3 +471,5 @@ class Simulation(RunState):
             fault = restored.wrong_array(self.core)
         if fault:
             raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")
+        self.reference = own["simulation.reference"]
+        self.build.born = own.get("simulation.born", self.build.born)

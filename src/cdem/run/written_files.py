@@ -14,6 +14,8 @@ MARKER = ".cdem-results"
 """The file that says that `cdem run` made the folder."""
 LOCK = ".cdem-lock"
 """The file that a run holds while it writes."""
+BEGUN = {MARKER, MARKER + ASIDE, LOCK}
+"""What a run that is killed as it begins leaves: a folder with no more than these holds nothing."""
 FOLDERS = {
     "vtu": ["frame-*.vtu"],  # cdem export
     "frames": ["frame-*.vtkhdf", "elements.h5"],

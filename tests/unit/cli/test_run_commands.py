@@ -28,6 +28,22 @@ def test_run_writes_its_folder_and_guards_it(run_cli, cube_folder):
     assert run_cli("run", "cube.yaml", "--overwrite", "--quiet") == (0, "", "")
 
 
+def test_a_run_killed_as_it_began_is_no_hindrance(run_cli, cube_folder):
+    """Its folder has lock and mark, or half of that; a link there is not followed."""
+    folder = cube_folder / "cube.results"
+    folder.mkdir()
+    (folder / ".cdem-lock").touch()
+    (folder / ".cdem-results.tmp").write_text("cdem run ma")
+    assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
+    other = cube_folder / "other.results"
+    other.mkdir()
+    (cube_folder / "mine").write_text("kept")
+    (other / ".cdem-lock").symlink_to(cube_folder / "mine")
+    status, _, err = run_cli("run", "cube.yaml", "-o", "other.results", "--quiet")
+    assert (status, (cube_folder / "mine").read_text()) == (1, "kept")
+    assert "is a link" in err
+
+
 def test_json_is_all_that_is_on_stdout(run_cli):
     status, out, err = run_cli("run", "cube.yaml", "--json", "-o", "a")
     assert (status, err) == (0, "")
