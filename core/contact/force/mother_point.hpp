@@ -7,7 +7,7 @@
 namespace cdem {
 
 /// The acting point: the vertex, moved towards the face's centre by the action coefficient, or by
-/// more where the contact is held at a rim, see held_at_rim.
+/// more where the contact is held at a rim, see HoldAtRims.
 template <class T>
 struct MotherPoint {
   Vec3<T> x, x_old, v;  // now, one step ago; velocity

@@ -47,6 +47,36 @@ struct FlushFaces {
     });
   }
 
+  /// The face on which the surface goes on from an edge of face f, at a point on it: beyond the rim
+  /// of the body that covers f there, but the one of `spared`; -1 where there is none.
+  CDEM_HD Index beyond_cover(const FaceColumns& faces, const SearchRules& rules, Index f,
+                             const Vec3<Real>& point, Index spared) const {
+    Index found = -1;
+    any_at(faces, rules, f, point, faces.body[spared], [&](const Seam& seam) {
+      for (Index k = 0; k < seam.shape.count() && found < 0; ++k)
+        if (seam.ends_at(k)) found = face_beyond(faces, seam.face, k);
+      return found >= 0;
+    });
+    return found;
+  }
+  /// Does the surface turn up at an edge of face f, at a point on it: rises the face beyond the rim
+  /// of the body that covers f there over `own`, the other face at the edge? Nothing meets the edge
+  /// of such a corner but the faces beside it.
+  CDEM_HD bool turns_up(const FaceColumns& faces, const SearchRules& rules, Index f, Index own,
+                        const Vec3<Real>& point, const Vec3<Real>& along, Index spared) const {
+    return any_at(faces, rules, f, point, faces.body[spared], [&](const Seam& seam) {
+      for (Index k = 0; k < seam.shape.count(); ++k) {
+        if (!seam.ends_at(k)) continue;
+        const Index next = face_beyond(faces, seam.face, k);
+        if (next < 0) continue;
+        const Vec3<Real> to = faces.shape(next).center() - point;
+        const Vec3<Real> out = to - (dot(to, along) / dot(along, along)) * along;
+        if (dot(faces.shape(own).normal(), unit(out)) > rules.cone) return true;
+      }
+      return false;
+    });
+  }
+
  private:
   /// A face that covers a point.
   struct Seam {
@@ -90,11 +120,15 @@ struct FlushFaces {
     const FaceShape<Real> shape = faces.shape(f);
     return shape.inside(seam.point + Real(4.0) * seam.room * out, shape.normal(), seam.room);
   }
-  /// Normal of the face across side k of a face; 0 where there is none.
-  CDEM_HD Vec3<Real> beyond(const FaceColumns& faces, Index face, Index k) const {
+  /// The face across side k of a face of the same block, or -1.
+  CDEM_HD Index face_beyond(const FaceColumns& faces, Index face, Index k) const {
     const Index exposed = faces.face_exposed[face];
     const Index* at = edge_faces + 2 * std::size_t(faces.face_edges[4 * face + k]);
-    const Index across = exposed >= 0 ? faces.across(exposed, k) : at[at[0] == face];
+    return exposed >= 0 ? faces.across(exposed, k) : at[at[0] == face];
+  }
+  /// Its normal; 0 where there is none.
+  CDEM_HD Vec3<Real> beyond(const FaceColumns& faces, Index face, Index k) const {
+    const Index across = face_beyond(faces, face, k);
     return across >= 0 ? faces.shape(across).normal() : Vec3<Real>{0.0, 0.0, 0.0};
   }
 };
@@ -128,9 +162,13 @@ struct HiddenEdges {
       const Index exposed = side[e] / 4, k = side[e] % 4;
       const Index other = geometry.table[side[1 - e] / 4].corner[0];
       const Index at_edge[2] = {exposed_face[exposed], faces.across(exposed, k)};
-      for (const Index f : at_edge)
-        if (f >= 0 && flush.obstruct(faces, rules, f, point[e], e == 0 ? -n : n, other))
+      for (Index i = 0; i < 2; ++i) {
+        const Index f = at_edge[i], own = at_edge[1 - i];
+        if (f < 0) continue;
+        if (flush.obstruct(faces, rules, f, point[e], e == 0 ? -n : n, other)) return true;
+        if (own >= 0 && flush.turns_up(faces, rules, f, own, point[e], along[e], other))
           return true;
+      }
     }
     return false;
   }

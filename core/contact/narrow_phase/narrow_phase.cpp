@@ -3,6 +3,7 @@
 
 #include "core/base/primitives.hpp"
 #include "core/contact/narrow_phase/edge_contacts.hpp"
+#include "core/contact/narrow_phase/soft_rim.hpp"
 #include "core/contact/narrow_phase/views.hpp"
 #include "core/model/phase_timer.hpp"
 
@@ -17,6 +18,7 @@ void find_target_faces(const Model& m, State& s, Queue q) {
   for_each_selected(q, count, UpdateHeldTargets{search});
   for_each_selected(q, count, FilterNewTargets{search});
   for_each_item(q, count, ResolveTargets{search});
+  for_each_item(q, count, HoldAtRims{search});
 }
 
 namespace {

@@ -215,10 +215,7 @@ struct ResolveTargets : FaceSearch {
     FaceList listed = listed_for(slot);
     if (springs.target_before[slot] < 0)
       listed.may_begin = candidates.may_begin + candidates.first[slot];
-    Index target = choose(m, k, listed, springs.lost + slot);
-    if (target < 0 && springs.target_before[slot] >= 0)
-      target = hold_at_rim(m, k, springs.target_before[slot]);
-    springs.target[slot] = target;
+    springs.target[slot] = choose(m, k, listed, springs.lost + slot);
   }
 
   /// The faces of the inner list at the vertex of a slot.
@@ -253,9 +250,7 @@ struct ResolveTargets : FaceSearch {
   }
 
  private:
-  static constexpr Real none = 1e300;    // a gap that is no contact
-  static constexpr Real soft = 0.3;      // of the indentation: a contact is soft that gives more
-  static constexpr Real furthest = 0.9;  // part of the way to the centre of the face, at a rim
+  static constexpr Real none = 1e300;  // a gap that is no contact
 
   /// One vertex that seeks its target.
   struct Seeker {
@@ -353,43 +348,6 @@ struct ResolveTargets : FaceSearch {
   CDEM_HD bool is_of_body(Index node, Index t) const {
     return faces.body[node] == faces.body[faces.vertex(exposed_face[t], 0)];
   }
-  /// Keep a contact on the face whose rim its vertex has passed, where it is soft: the way that it
-  /// would take to bear again is not small against the indentation. Its acting point stays at the
-  /// rim, as far beyond it as the vertex was before. Returns t, or -1.
-  CDEM_HD Index hold_at_rim(Index m, Index k, Index t) const {
-    const Index slot = 4 * m + k, node = faces.vertex(exposed_face[m], k);
-    const ContactState state = ContactState::at(springs.state, slot);
-    const Real length = smaller_length(m, t), far = soft * rules.indentation * length;
-    const Real shear = sqrt_of(state.shear1 * state.shear1 + state.shear2 * state.shear2);
-    if (!(2 * state.energy_s > far * shear)) return -1;
-    const Vec3<Real> n = geometry.normal(t);
-    if (!(dot(geometry.normal(m), n) < -coplanar_faces) || is_of_body(node, t)) return -1;
-    const FaceShape<Real> f = faces.shape(exposed_face[t]);
-    const Vec3<Real> v = faces.nodes.position(node), arm = geometry.center(m) - v;
-    const Real inside = part_inside(f, n, v, arm);
-    if (inside > furthest) return -1;
-    const Real action = rules.action + max_of(inside - rules.indentation, 0.0);
-    const Real gap = project(f, v + action * arm, n).gap;
-    const Real free = state.stress_free_gap;
-    if (gap > 2 * max_of(free, 0.0) || gap < min_of(free, 0.0) - rules.depth * length) return -1;
-    springs.rim_action[slot] = action;
-    return t;
-  }
-  /// The least part of the arm that leads from point v into a face; 2 where none does.
-  CDEM_HD static Real part_inside(const FaceShape<Real>& f, const Vec3<Real>& n,
-                                  const Vec3<Real>& v, const Vec3<Real>& arm) {
-    Real least = 0, most = 1;
-    for (Index k = 0; k < f.count(); ++k) {
-      const Vec3<Real> across = cross(f.x[k + 1 == f.count() ? 0 : k + 1] - f.x[k], n);
-      const Real out = dot(across, v - f.x[k]), rise = dot(across, arm);
-      if (out > 0 && !(out + rise < 0)) return 2;
-      if (out > 0)
-        least = max_of(least, -out / rise);
-      else if (out + rise > 0)
-        most = min_of(most, -out / rise);
-    }
-    return least < most ? least : 2;
-  }
   /// A warped face may reach above its mean plane; a plane one does not.
   CDEM_HD Real above(Index t) const {
     return geometry.is_triangle(t) ? 0.0 : 0.5 * geometry.length(t);
@@ -423,7 +381,7 @@ struct ResolveTargets : FaceSearch {
     for (Index k = 0; k < f.count(); ++k) {
       const Vec3<Real> a = f.x[k], side = f.x[k + 1 == f.count() ? 0 : k + 1] - a;
       if (!outside(a, side, n, p, room)) continue;
-      const Index across = faces.across(t, k);
+      const Index across = inside ? beyond_seam(m, t, k, a, side, p) : faces.across(t, k);
       if (across < 0 || !(inside || faces.face_exposed[across] >= 0)) return false;
       const FaceShape<Real> beyond_it = faces.shape(across);
       const Vec3<Real> u = beyond_it.normal();
@@ -432,6 +390,18 @@ struct ResolveTargets : FaceSearch {
       if (!rises || dot(u, v - a) > 0 || dot(cross(u, side), point - a) < 0) return false;
     }
     return true;
+  }
+  /// The face beyond side k of t that a vertex of m may meet: of a block that lies flush, where one
+  /// covers the face of t's own block there.
+  CDEM_HD Index beyond_seam(Index m, Index t, Index k, const Vec3<Real>& start,
+                            const Vec3<Real>& side, const Vec3<Real>& point) const {
+    const Index across = faces.across(t, k);
+    if (!flush.first || across < 0) return across;
+    const Real along = dot(point - start, side) / dot(side, side);
+    const Vec3<Real> foot = start + min_of(max_of(along, 0.0), 1.0) * side;
+    const Index other =
+        flush.beyond_cover(faces, rules, across, foot, faces.vertex(exposed_face[m], 0));
+    return other >= 0 ? other : across;
   }
   /// Gap of the vertex to face t if it is in contact there on the given terms, else `none`.
   CDEM_HD Real qualify(Index m, Index node, const Vec3<Real>& v, const Vec3<Real>& p, Index t,
