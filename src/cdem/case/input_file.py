@@ -16,7 +16,7 @@ from pathlib import Path
 
 from cdem.errors import CaseError, CdemError
 
-LEAST_SECONDS = 4.0
+LEAST_SECONDS = 3.0
 """So much processor time the reading of any file may take [s]."""
 BYTES_PER_SECOND = 100_000
 """A file so large may take a second more; the slowest reader is ten times as fast [1/s]."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.schema import MassScaling
+from cdem.errors import CaseError
 from cdem.mesh.arrays import same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.flat_arrays import Assembly, Floats, Properties
@@ -80,10 +81,20 @@ class Scaling:
         return float(same_everywhere(np.clip(intact.limit(added), *_steps(intact.largest))))
 
     def wanted(self, asked: MassScaling, safety: float) -> Floats:
-        """What a case asks for, when this share of the stable step is used: as `added`."""
+        """What a case asks for, when this share of the stable step is used: as `added`.
+
+        Raises:
+            CaseError: The step is longer than mass may buy: 100 times the stable one without.
+        """
         limit = np.inf if asked.step is None else asked.step / safety
         if asked.most is not None:
             limit = min(limit, self.limit(asked.most))
+        longest = _steps(max(state.largest for state in self._states) or np.inf)[1]
+        if 0 < longest < limit < np.inf:
+            raise CaseError(
+                f"time.mass_scaling.step: {asked.step:.3g} s is more than 100 times the stable step of "
+                f"the model; write at most {safety * longest:.2g} s, or most: 0.001 in place of it"
+            )
         return self.added(limit)
 
 

@@ -91,7 +91,7 @@ def test_wall_time_is_a_last_resort_and_is_told(ask, monkeypatch):
         ("leave", "a.bin: its reader ended without a word (status 0); mend it"),
         (
             "hang",
-            "a.bin: reading it takes more than 4 s of processor time, as no sound file of its size does; mend it",
+            "a.bin: reading it takes more than 3 s of processor time, as no sound file of its size does; mend it",
         ),
         (
             "loop",
