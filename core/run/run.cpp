@@ -106,9 +106,11 @@ Report report_of(const Model& m, const State& s, const Goal& goal, const Place& 
   if (!place.last && !place.scheduled) return {};
   const Report health = check_health(m, s);
   if (health.outcome != Outcome::steps_done) return health;
+  const bool asks = place.scheduled && goal.unbalance_limit > 0;  // also where the time is up
+  if (asks && unbalance_ratio(m, s) < goal.unbalance_limit) {
+    return {Outcome::converged, -1, s.time};
+  }
   if (s.time >= goal.end_time) return {Outcome::time_reached, -1, s.time};
-  if (!place.scheduled || !(goal.unbalance_limit > 0)) return {};
-  if (unbalance_ratio(m, s) < goal.unbalance_limit) return {Outcome::converged, -1, s.time};
   return {};
 }
 

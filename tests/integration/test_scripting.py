@@ -11,8 +11,8 @@ from cdem import CaseError, CdemError, Simulation
 SLOPE = 30.0  # [deg]
 
 
-def sliding_block():
-    """A block on a slope of 30 degrees, which slides: its friction angle is 10 degrees."""
+def sliding_block(friction_angle=10, stages=None):
+    """A block on a slope of 30 degrees, which slides at a friction angle of 10 degrees."""
     t = np.radians(SLOPE)
     return case(
         [
@@ -20,9 +20,10 @@ def sliding_block():
             {"group": "bed", "box": {"size": [8, 3, 1]}, "translate": [0, 0, -1]},
         ],
         {"block": {}, "bed": {"fix": ["x", "y", "z"]}},
-        interfaces={"default": {"friction_angle": 10}},
+        interfaces={"default": {"friction_angle": friction_angle}},
         loads={"gravity": [9.81 * np.sin(t), 0, -9.81 * np.cos(t)]},
-        stages=[
+        stages=stages
+        or [
             {"name": "slide", "mode": "dynamic", "duration": 0.4, "damping": {"contact": 0.1}},
             {"name": "on", "mode": "dynamic", "duration": 0.1},
         ],
@@ -117,6 +118,18 @@ def test_actions_come_at_multiples_of_their_interval_and_change_no_bits():
     assert late == pytest.approx([0.2, 0.4], abs=1.01 * dt)
     with pytest.raises(CdemError, match="interval must be above 0"):
         sim.every(0, seen.append)
+
+
+@pytest.mark.parametrize("interval", [1e-9, 0.01])
+def test_actions_leave_a_static_stage_where_it_rests(interval):
+    """Also where one comes at every step: a stage that is asked for rest with its time up is at rest."""
+    ends = []
+    for looks in (False, True):
+        sim = Simulation(sliding_block(60, [{"name": "rest", "mode": "static"}]), threads=1)
+        if looks:
+            sim.every(interval, lambda s: s.step_count > 5000)
+        ends.append((sim.run(), sim.step_count))
+    assert ends[0] == ends[1] and ends[0][0] == "converged"
 
 
 def test_an_action_may_end_a_stage(tmp_path):

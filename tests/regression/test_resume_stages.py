@@ -1,13 +1,10 @@
 """A run that is stopped at the end or in the middle of any stage goes on to the same bytes."""
 
-import json
-import shutil
 from functools import partial
-from pathlib import Path
 
 import h5py
 import pytest
-from ruamel.yaml import YAML
+from shared.stopped import StagesOf, content
 
 from cdem import Case, Simulation
 
@@ -216,64 +213,6 @@ def yielding():
 
 
 SCENES = {f.__name__: f for f in (dam, shaken, bolted, tunnel, blown, lining, soft, yielding)}
-FREE = {"wall_time", "version", "host", "date"}
-"""Values that differ between two runs."""
-
-
-def strip(value):
-    """A nest of dicts and lists without values that differ between two runs."""
-    if isinstance(value, dict):
-        return {k: strip(v) for k, v in value.items() if k not in FREE}
-    return [strip(v) for v in value] if isinstance(value, list) else value
-
-
-def content(folder: Path) -> dict[str, object]:
-    """All that a run has left but its log, and its checkpoints, which keep wall times."""
-    found: dict[str, object] = {}
-    for path in sorted(folder.rglob("*")):
-        name = path.relative_to(folder).as_posix()
-        if path.is_dir() or name in ("run.log",) or name.startswith((".", "checkpoint")):
-            continue
-        found[name] = path.read_bytes()
-    found["summary.json"] = strip(json.loads((folder / "summary.json").read_text()))
-    return found
-
-
-class StagesOf:
-    """An unbroken run of a scene, and copies of its folder at the stops of another."""
-
-    def __init__(self, name: str, place: Path) -> None:
-        self.place = place
-        YAML().dump(SCENES[name](), place / "case.yaml")
-        self.case = place / "case.yaml"
-        self.whole = self.run("whole")
-        summary = self.whole["summary.json"]
-        self.stages = [(stage["name"], stage["steps"]) for stage in summary["stages"]]
-
-    def run(self, folder: str, **how) -> dict[str, object]:
-        """Run to the end; what it left."""
-        Simulation(Case.load(self.case), output=self.place / folder, threads=1, **how).run()
-        return content(self.place / folder)
-
-    def stop_at_end(self, stage: str) -> None:
-        """Leave the folder that a kill behind the end of a stage leaves."""
-        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
-        simulation.run_stage(stage)
-        simulation.close()
-
-    def stop_within(self, stage: str, steps: int) -> None:
-        """Leave the folder that a kill leaves some time after a checkpoint within a stage."""
-        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
-        before = [name for name, _ in self.stages][: [n for n, _ in self.stages].index(stage)]
-        if before:
-            simulation.run_stage(before[-1])
-        stopped_at = simulation.step_count + steps // 2
-        with pytest.MonkeyPatch.context() as patch:  # the loop comes back after few steps
-            patch.setattr("cdem.run.simulation.CHUNK_SECONDS", 0.0)
-            simulation.run(should_stop=lambda: simulation.step_count >= stopped_at)
-        simulation.close()
-
-
 SLOW = ("tunnel", "lining", "soft")
 
 
@@ -282,19 +221,15 @@ SLOW = ("tunnel", "lining", "soft")
 )
 def test_a_run_goes_on_from_every_stage_to_the_same_bytes(name, tmp_path):
     """Frames, histories, maps and summary are those of the unbroken run: killed at any stage's end."""
-    runs = StagesOf(name, tmp_path)
+    runs = StagesOf(SCENES[name](), tmp_path)
     for stage, steps in runs.stages:
         for stop in (partial(runs.stop_at_end, stage), partial(runs.stop_within, stage, steps)):
-            shutil.rmtree(tmp_path / "broken", ignore_errors=True)
-            stop()
-            got = runs.run("broken", resume=True)
-            wrong = [n for n in runs.whole | got if runs.whole.get(n) != got.get(n)]
-            assert not wrong, (stage, wrong)
+            assert runs.differing(stop) == [], stage
 
 
 def test_a_run_that_stops_shows_where_it_is(tmp_path):
     """Its last frame is of the moment of the stop; going on in the same process drops it."""
-    runs = StagesOf("dam", tmp_path)
+    runs = StagesOf(SCENES["dam"](), tmp_path)
     simulation = Simulation(Case.load(runs.case), output=tmp_path / "broken", threads=1)
     simulation.run_stage("rest")
     left = iter([False, False, True])

@@ -49,8 +49,8 @@ def write_raster(path, crs=UTM32, cell=10.0, label=True, change=None, **options)
     return path
 
 
-def write_shape(path, ring=RING, crs=UTM32, driver=None, line=False, label=True, **fields):
-    """A polygon, or closed line, in a file of any kind; `ring` is in UTM32."""
+def write_shape(path, ring=RING, crs=UTM32, source=UTM32, line=False, label=True, **fields):
+    """A polygon, or closed line, in a file of any kind; `ring` is in the projection `source`."""
     import pyogrio
     import shapely
 
@@ -58,7 +58,7 @@ def write_shape(path, ring=RING, crs=UTM32, driver=None, line=False, label=True,
         ".gpkg": "GPKG", ".shp": "ESRI Shapefile", ".kml": "KML", ".fgb": "FlatGeobuf",
         ".dxf": "DXF", ".geojson": "GeoJSON",
     }  # fmt: skip
-    points = moved(ring, UTM32, crs) if crs != UTM32 else np.asarray(ring, float)
+    points = moved(ring, source, crs) if crs != source else np.asarray(ring, float)
     shape = shapely.LinearRing(points) if line else shapely.Polygon(points)
     if line:
         shape = shapely.LineString(shape.coords)

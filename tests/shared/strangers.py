@@ -90,6 +90,66 @@ def write_vectors(folder: Path, url: str, secret: Path) -> list[Path]:
     return paths + _write_packed(folder, network) + _write_databases(folder, url, secret)
 
 
+def write_more_vectors(folder: Path, url: str, secret: Path) -> list[Path]:
+    """Descriptions of services, of layers in other files, and of commands that write."""
+    get = (
+        f"<Operation name='GetFeature'><DCP><HTTP><Get href='{url}/wfs'/></HTTP></DCP></Operation>"
+    )
+    kind = "<FeatureTypeList><FeatureType><Name>a</Name></FeatureType></FeatureTypeList>"
+    layer = f"<OGRVRTLayer name='inner'><SrcDataSource>{secret}</SrcDataSource></OGRVRTLayer>"
+    point = {"attributes": {"a": 1}, "geometry": {"x": 1, "y": 2}}
+    field = {"name": "a", "type": "esriFieldTypeString"}
+    gml = (
+        '<?xml version="1.0"?><!DOCTYPE k [<!ENTITY x SYSTEM "file:///etc/passwd">]>'
+        '<ogr:FeatureCollection xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" '
+        f'xsi:schemaLocation="http://ogr.maptools.org/ {url}/x.xsd" '
+        'xmlns:ogr="http://ogr.maptools.org/" xmlns:gml="http://www.opengis.net/gml" '
+        'xmlns:xlink="http://www.w3.org/1999/xlink"><gml:featureMember><ogr:a fid="1">'
+        f'<ogr:n>&x;</ogr:n><ogr:geometryProperty xlink:href="{url}/g"><gml:Point>'
+        "<gml:coordinates>1,2</gml:coordinates></gml:Point></ogr:geometryProperty></ogr:a>"
+        "</gml:featureMember></ogr:FeatureCollection>"
+    )
+    texts = {
+        "wfscap": f"<WFS_Capabilities version='1.1.0'><OperationsMetadata>{get}</OperationsMetadata>"
+        f"{kind}</WFS_Capabilities>",
+        "oapif2": "<OGROAPIFDataSource/>",
+        "vrtbom": f"\ufeff<OGRVRTDataSource>{layer}</OGRVRTDataSource>",
+        "esri": json.dumps({"geometryType": "esriGeometryPoint", "fields": [field],
+                            "features": [point], "exceededTransferLimit": True}),
+        "gmlx": gml,
+    }  # fmt: skip
+    files = {f"{name}.{kind}": text for name, text in texts.items() for kind in KINDS[:-1]}
+    polygon = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}
+    files["gj.dxf"] = json.dumps(polygon)
+    commands = {
+        f"{name}.{kind}": json.dumps({"type": "gdal_streamed_alg", "command_line": command})
+        for name, command in _commands(folder, secret).items()
+        for kind in ("shp", "dxf")
+    }
+    for name, text in (files | commands).items():
+        (folder / name).write_text(text)
+    (folder / "vrt16.kml").write_text("\ufeff<OGRVRTDataSource></OGRVRTDataSource>", "utf-16")
+    return [folder / name for name in (*files, *commands, "vrt16.kml")] + _write_computing(folder)
+
+
+def _commands(folder: Path, secret: Path) -> dict[str, str]:
+    """What GDAL would do in place of reading: write, copy, remove, and run a program."""
+    stream = "write --of=stream streamed"
+    read = f"gdal vector pipeline ! read {secret}"
+    return {
+        "tee": f"{read} ! tee [ write {folder}/tee.geojson ] ! {stream}",
+        "write": f"{read} ! write {folder}/w.geojson",
+        "convert": f"gdal vector convert {secret} {folder}/c.geojson",
+        "external": f"{read} ! external --command 'touch {folder}/ext' ! {stream}",
+        "sql": f"gdal vector sql {secret} --of=stream streamed --dialect SQLITE "
+        "--sql \"select load_extension('x.so')\"",
+        "delete": f"gdal vsi delete {secret}",
+        "copy": f"gdal vsi copy {secret} {folder}/copy",
+        "drop": f"gdal dataset delete {secret}",
+        "edit": f"{read} --update ! {stream}",
+    }
+
+
 def _write_packed(folder: Path, network: str) -> list[Path]:
     contents = {"network.kmz": KML.format(network), "bomb.kmz": KML.format("A" * 200_000_000)}
     for name, text in contents.items():
@@ -116,6 +176,10 @@ def _write_databases(folder: Path, url: str, secret: Path) -> list[Path]:
         "computed": "CREATE TABLE t(fid INTEGER PRIMARY KEY, geom BLOB, n TEXT GENERATED ALWAYS AS "
         "(zeroblob(900000000)) VIRTUAL); INSERT INTO t(fid) VALUES(1);",
     }
+    return _databases(folder, texts)
+
+
+def _databases(folder: Path, texts: dict[str, str]) -> list[Path]:
     for name, text in texts.items():
         base = sqlite3.connect(folder / f"{name}.gpkg")
         base.executescript(SPATIAL + text)
@@ -123,14 +187,33 @@ def _write_databases(folder: Path, url: str, secret: Path) -> list[Path]:
     return [folder / f"{name}.gpkg" for name in texts]
 
 
+def _write_computing(folder: Path) -> list[Path]:
+    """GeoPackages that call a function or a module."""
+    (folder / "inner.csv").write_text("x,y,secret\n1,2,TOPSECRET\n")
+    view = "CREATE VIEW t AS SELECT 1 AS OGC_FID, {} AS n, NULL AS geom;"
+    table = (
+        "PRAGMA writable_schema=1; INSERT INTO sqlite_master(type,name,tbl_name,rootpage,sql) VALUES("
+        f"'table','t','t',0,'CREATE VIRTUAL TABLE t USING VirtualText(''{folder}/inner.csv'',UTF8)');"
+    )
+    texts = {
+        "version": view.format("ogr_version()"),
+        "extension": view.format("load_extension('x.so')"),
+        "virtualtext": table,
+    }
+    return _databases(folder, texts)
+
+
 def write_rasters(folder: Path, url: str, secret: Path) -> list[Path]:
     """Grids that lead elsewhere."""
     wms = escape(f"<GDAL_WMS><Service name='TMS'><ServerUrl>{url}</ServerUrl></Service></GDAL_WMS>")
     sources = {
         "curl": f"/vsicurl/{url}/a.tif", "none": f"/vsicurl/{url}/a.none",
-        "stream": f"/vsicurl_streaming/{url}/a.tif", "query": f"/vsicurl?url={url}/a.none",
-        "http": f"{url}/a.tif", "inline": wms, "wms": f"WMS:{url}/wms", "wcs": f"WCS:{url}/wcs",
+        "ending": f"/vsicurl/{url}/a.tif?x=.none", "stream": f"/vsicurl_streaming/{url}/a.tif",
+        "streamnone": f"/vsicurl_streaming/{url}/a.none", "query": f"/vsicurl?url={url}/a.none",
+        "http": f"{url}/a.tif", "httpnone": f"{url}/a.none", "inline": wms, "wms": f"WMS:{url}/wms", "wcs": f"WCS:{url}/wcs",
         "wmts": f"WMTS:{url}/wmts", "zip": f"/vsizip//vsicurl/{url}/a.zip/x.tif",
+        "zipnone": f"/vsizip/vsicurl/{url}/a.none/x.tif", "gzip": f"/vsigzip//vsicurl/{url}/a.none",
+        "plmosaic": "PLMosaic:", "eedai": "EEDAI:x",
         "s3": "/vsis3/bucket/key", "stacta": f"STACTA:{url}/x.json", "absolute": str(secret),
     }  # fmt: skip
     (folder / "inner.tif").write_text(vrt(f"/vsicurl/{url}/b.tif"))

@@ -1,0 +1,77 @@
+"""Runs that are killed at the end or in the middle of a stage, and what they leave when they go on."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from ruamel.yaml import YAML
+
+from cdem import Case, Simulation
+
+FREE = {"wall_time", "version", "host", "date"}
+"""Values that differ between two runs."""
+
+
+def strip(value):
+    """A nest of dicts and lists without values that differ between two runs."""
+    if isinstance(value, dict):
+        return {k: strip(v) for k, v in value.items() if k not in FREE}
+    return [strip(v) for v in value] if isinstance(value, list) else value
+
+
+def content(folder: Path) -> dict[str, object]:
+    """All that a run has left but its log, and its checkpoints, which keep wall times."""
+    found: dict[str, object] = {}
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder).as_posix()
+        if path.is_dir() or name in ("run.log",) or name.startswith((".", "checkpoint")):
+            continue
+        found[name] = path.read_bytes()
+    found["summary.json"] = strip(json.loads((folder / "summary.json").read_text()))
+    return found
+
+
+class StagesOf:
+    """An unbroken run of a case, and copies of its folder at the stops of another."""
+
+    def __init__(self, case: dict, place: Path) -> None:
+        self.place = place
+        self.case = place / "case.yaml"
+        YAML().dump(case, self.case)
+        self.whole = self.run("whole")
+        summary = self.whole["summary.json"]
+        self.stages = [(stage["name"], stage["steps"]) for stage in summary["stages"]]
+
+    def run(self, folder: str, **how) -> dict[str, object]:
+        """Run to the end; what it left."""
+        Simulation(Case.load(self.case), output=self.place / folder, threads=1, **how).run()
+        return content(self.place / folder)
+
+    def differing(self, stop: Callable[[], None]) -> list[str]:
+        """Names of files of a run that stops and goes on which are not those of the unbroken run."""
+        shutil.rmtree(self.place / "broken", ignore_errors=True)
+        stop()
+        got = self.run("broken", resume=True)
+        return [n for n in self.whole | got if self.whole.get(n) != got.get(n)]
+
+    def stop_at_end(self, stage: str) -> None:
+        """Leave the folder that a kill behind the end of a stage leaves."""
+        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
+        simulation.run_stage(stage)
+        simulation.close()
+
+    def stop_within(self, stage: str, steps: int) -> None:
+        """Leave the folder that a kill leaves some time after a checkpoint within a stage."""
+        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
+        before = [name for name, _ in self.stages][: [n for n, _ in self.stages].index(stage)]
+        if before:
+            simulation.run_stage(before[-1])
+        stopped_at = simulation.step_count + steps // 2
+        with pytest.MonkeyPatch.context() as patch:  # the loop comes back after few steps
+            patch.setattr("cdem.run.simulation.CHUNK_SECONDS", 0.0)
+            simulation.run(should_stop=lambda: simulation.step_count >= stopped_at)
+        simulation.close()
