@@ -94,7 +94,7 @@ nightly: test validate coverage mutants
 	$(BIN)/cdem verify --full
 	$(MAKE) cuda
 
-verify: build
+verify: dev
 	$(BIN)/cdem verify --threads 1
 
 lint: setup
@@ -117,7 +117,7 @@ format: setup
 	$(BIN)/ruff format src tests tools docs/_ext docs/conf.py
 	$(BIN)/clang-format -i $(CPP)
 
-demo: build
+demo: dev
 	mkdir -p demo
 	$(BIN)/cdem new landslide demo --force
 	$(BIN)/cdem run demo/landslide.yaml -o demo/landslide.results --overwrite
@@ -127,7 +127,7 @@ demo: build
 	@echo "Pictures, histories and summary are in demo/landslide.results"
 
 # The site, in build/docs: every page, notebooks run, references made from the code.
-docs: build
+docs: dev
 	$(BIN)/python -m sphinx -q -E -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 

@@ -30,7 +30,7 @@ FAULTS = [
     Mutant(
         "size of the band",
         "softening over strain, not over slip",
-        "core/materials/laws.hpp",
+        "core/materials/flow_by.hpp",
         "size * rows.at(falls_with(k))",
         "rows.at(falls_with(k))",
         "tests/core/materials/test_softening.cpp",

@@ -1,5 +1,5 @@
 // The table of materials: each lane has the law and the constants of its own.
-#include "core/materials/laws.hpp"
+#include "core/materials/flow_by.hpp"
 #include "tests/core/support.hpp"
 
 namespace cdem::test {

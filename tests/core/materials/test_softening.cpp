@@ -1,5 +1,5 @@
 // Strengths that fall with slip: a table, what each strength falls with, a law that softens.
-#include "core/materials/laws.hpp"
+#include "core/materials/flow_by.hpp"
 #include "tests/core/support.hpp"
 
 namespace cdem::test {
