@@ -5,9 +5,6 @@
 #include "core/base/elementary.hpp"
 #include "core/elements/shapes.hpp"
 #include "core/materials/laws.hpp"
-#if defined(__CUDACC__)  // where calls between files cost
-#include "core/materials/flow_by.hpp"
-#endif
 
 namespace cdem {
 

@@ -2,6 +2,9 @@
 // and as CUDA.
 #include "core/elements/corotational.hpp"
 #include "core/elements/tile_loops.hpp"
+#if defined(__CUDACC__)  // calls between files cost there
+#include "core/materials/flow_by.hpp"
+#endif
 
 namespace cdem {
 

@@ -2,6 +2,9 @@
 // CUDA.
 #include "core/base/parallel_loops.hpp"
 #include "core/nodes/fused_block.hpp"
+#if defined(__CUDACC__)  // calls between files cost there
+#include "core/materials/flow_by.hpp"
+#endif
 
 namespace cdem {
 

@@ -2,6 +2,9 @@
 // CUDA.
 #include "core/elements/nodal_dilatation.hpp"
 #include "core/elements/tile_loops.hpp"
+#if defined(__CUDACC__)  // calls between files cost there
+#include "core/materials/flow_by.hpp"
+#endif
 
 namespace cdem {
 

@@ -1,5 +1,5 @@
-// flow_by.hpp - what a block law makes of a trial stress. Included where the laws are instantiated:
-// core/kernels/block_laws.cpp and, as calls between files cost there, every kernel in CUDA.
+// flow_by.hpp - what a block law makes of a trial stress. Included where laws are instantiated:
+// core/kernels/block_laws.cpp, and in CUDA each file of kernels that asks them.
 #pragma once
 
 #include "core/materials/laws.hpp"

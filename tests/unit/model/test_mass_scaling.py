@@ -220,7 +220,7 @@ def test_scaling_that_asks_for_nothing_is_refused(tmp_path):
 def test_a_step_that_takes_boundless_mass_is_refused(tmp_path):
     """5,000 s asked for 1e18 times the mass, whose matrices had no eigenvalues left."""
     case = shaken(tmp_path, cdem=2, time={"mass_scaling": {"step": 5000}})
-    with pytest.raises(CaseError, match="more than 100 times the stable step .* write at most"):
+    with pytest.raises(CaseError, match="is more than 100 times the stable step"):
         cdem.Simulation(case, threads=1)
     bounded = shaken(tmp_path, cdem=2, time={"mass_scaling": {"step": 5000, "most": 0.001}})
     assert cdem.Simulation(bounded, threads=1).core.scalars()["dt"] < 1
