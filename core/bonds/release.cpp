@@ -157,6 +157,7 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
       if (!hinge) stored[i] -= transfer_to_contact(m, s, p, ps, i);
       friction[i] += stored[i];
       stored[i] = 0;
+      clear_corner_rows(s, p, i);
     }
     status[i] = Flag(PairStatus::released);
     jump[i] = 0;

@@ -11,6 +11,7 @@
 #include "core/contact/geometry/views.hpp"
 #include "core/contact/narrow_phase/edge_contacts.hpp"
 #include "core/contact/narrow_phase/edge_pair.hpp"
+#include "core/model/force_sets.hpp"
 #include "core/model/phase_timer.hpp"
 
 namespace cdem {
@@ -468,6 +469,7 @@ void transfer_released_bonds(const Model& m, State& s, Queue q) {
       }
     friction[i] += stored[i];
     stored[i] = 0;
+    clear_corner_rows(s, p, i);
   }
   s.released_overlaps.resize(0);
 }

@@ -98,6 +98,7 @@ void relieve(State& s, const PairSet& p, PairState& ps, const std::vector<Index>
   const auto jump_at_break = on_host(ps.jump_at_break);
   for (const Index i : which) {
     status[i] = Flag(PairStatus::released);
+    clear_corner_rows(s, p, i);
     stored[i] = 0;
     jump[i] = 0;
     jump_at_break[i] = -1;

@@ -1,0 +1,126 @@
+"""Scenes of several stages whose whole state is pinned: water, excavation, flow, a domain."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+import numpy as np
+import yaml
+
+import cdem
+
+SOAKED = """
+title: A bonded dam on a held bed; its reservoir rises, water in the base joint and in pores
+model:
+  blocks:
+    - {group: ground, box: {size: [6, 4, 1], divisions: [3, 2, 1]}, translate: [0, 0, -1]}
+    - {group: dam, box: {size: [2, 2, 3], divisions: [2, 2, 2], shape: tet4}, translate: [2, 1, 0]}
+  split: {dam: elements}
+materials: {r: {density: 2600, poisson_ratio: 0.2, young_modulus: 0.2 GPa, biot: 0.6}}
+groups: {dam: {material: r}, ground: {material: r, fix: [x, y, z]}}
+interfaces:
+  default: {friction_angle: 35, cohesion: 40 kPa, tensile_strength: 10 kPa}
+  pairs: [{between: [ground, dam], friction_angle: 30, name: base}]
+loads: {gravity: [0, 0, -9.81]}
+water:
+  fields:
+    - {interface: base, name: up, formula: "9810 * 3 * max(0, 1 - (x - 2) / 2)",
+       history: [[0, 0], [0.05, 1]], stage: fill}
+  reservoir: {box: {min: [-1, -1, -1], max: [2.01, 9, 9]}, level: [[0, 0], [0.05, 3]], stage: fill}
+stages:
+  - {name: rest, mode: static, tolerance: 0.01}
+  - {name: fill, mode: dynamic, duration: 0.08, damping: {local: 0.1}}
+"""
+
+DUG = """
+title: A room is dug, let go over time and lined; bolts hold its roof, one is cut
+model:
+  blocks:
+    - {group: room, box: {size: [2, 2, 2]}}
+    - {group: spare, box: {size: [2, 2, 2]}, translate: [2, 0, 0]}
+    - {group: rock, box: {size: [2, 2, 2]}, translate: [-2, 0, 0]}
+    - {group: rock, box: {size: [2, 2, 2]}, translate: [4, 0, 0]}
+    - {group: roof, box: {size: [8, 2, 2], divisions: [4, 1, 1]}, translate: [-2, 0, 2]}
+    - {group: rock, box: {size: [8, 2, 2], divisions: [4, 1, 1]}, translate: [-2, 0, -2]}
+materials:
+  r: {density: 2600, poisson_ratio: 0.2, young_modulus: 0.2 GPa}
+  fill: {density: 2000, poisson_ratio: 0.2, young_modulus: 0.05 GPa}
+groups: {rock: {material: r}, roof: {material: r}, room: {material: r}, spare: {material: r}}
+interfaces: {default: {friction_angle: 35, cohesion: 0.3 MPa, tensile_strength: 0.2 MPa}}
+loads:
+  gravity: [0, 0, -9.81]
+  supports:
+    - {surface: {group: rock, normal: [0, 0, -1]}, fix: [x, y, z]}
+bolt_types:
+  bar: {area: 5 cm2, young_modulus: 200 GPa, yield_force: 60 kN,
+        grout: {stiffness: 1.0e+8, strength: 3.0e+3}}
+bolts:
+  - {name: cut, type: bar, points: [[1, 1, 3.8], [1, 1, 0.3]]}
+  - {name: late, type: bar, points: [[3, 1, 3.9], [3, 1, -1.5]], install: dig}
+stages:
+  - {name: rest, mode: static, tolerance: 0.01}
+  - {name: dig, mode: static, tolerance: 0.01, remove: [room], release: {parts: 2, to: 0.5}}
+  - {name: line, mode: dynamic, duration: 0.03, add: [room], set: {groups.room.material: fill},
+     release: {over: 0.02}}
+  - {name: more, mode: dynamic, duration: 0.02, remove: [spare], release: {over: 0.01}}
+"""
+
+FLOWING = """
+title: Weak rock flows under its weight; loose elements of it fall on the heap
+model:
+  blocks:
+    - {group: heap, box: {size: [2, 2, 1], divisions: [3, 3, 2], shape: tet4}}
+    - {group: bricks, box: {size: [2, 2, 0.5], divisions: [2, 2, 1]}, translate: [0, 0, 1.02]}
+  split: {bricks: elements}
+materials:
+  soft: {law: mohr-coulomb, density: 2000, poisson_ratio: 0.3, young_modulus: 20 MPa,
+         friction_angle: 20, cohesion: 2 kPa, tensile_strength: 1 kPa}
+groups: {heap: {material: soft}, bricks: {material: soft, velocity: [0, 0, -3]}}
+interfaces: {default: {friction_angle: 20}}
+elements: {tetrahedra: nodal-mean}
+loads:
+  gravity: [2, 0, -9.81]
+  supports: [{surface: {group: heap, normal: [0, 0, -1]}, fix: [x, y, z]}]
+stages:
+  - {name: fall, mode: dynamic, duration: 0.05, damping: {contact: 0.1}}
+  - {name: go on, mode: dynamic, duration: 0.05, set: {materials.soft.cohesion: 1 kPa}}
+"""
+
+LEAVING = """
+title: Blocks slide off a table, and out of the domain
+model:
+  blocks:
+    - {group: table, box: {size: [6, 4, 1]}, translate: [0, 0, -1]}
+    - {group: train, box: {size: [1, 1, 1], divisions: [2, 2, 2], shape: tet4}, translate: [4.9, 1.5, 0]}
+    - {group: train, box: {size: [1, 1, 1]}, translate: [3.8, 1.4, 0]}
+  domain: {min: [null, null, -1.2], max: [8.0, null, null]}
+  split: {train: elements}
+materials: {rock: {density: 2700, young_modulus: 5 MPa, poisson_ratio: 0.25}}
+groups:
+  table: {material: rock, fix: [x, y, z]}
+  train: {material: rock, velocity: [4, 0, 0]}
+interfaces: {default: {friction_angle: 5, cohesion: 30 kPa, tensile_strength: 10 kPa}}
+loads: {gravity: [0, 0, -9.81]}
+stages:
+  - {name: slide, mode: dynamic, duration: 0.3, damping: {contact: 0.2, stiffness: 0.1}}
+  - {name: go on, mode: dynamic, duration: 0.3, damping: {contact: 0.2, stiffness: 0.1}}
+"""
+
+STAGED = {"soaked": SOAKED, "dug": DUG, "flowing": FLOWING, "leaving": LEAVING}
+
+
+def run_stages(name: str, threads: int) -> cdem.Simulation:
+    """The finished simulation of one of them."""
+    case = cdem.Case.from_dict({"cdem": 2} | yaml.safe_load(STAGED[name]))
+    simulation = cdem.Simulation(case, threads=threads)
+    simulation.run()
+    return simulation
+
+
+def digest_of_state(sim: cdem.Simulation) -> str:
+    """Hash of all that a checkpoint keeps."""
+    whole = hashlib.sha256(json.dumps(sim.core.scalars()).encode())
+    for name, values in sorted(sim.core.fields().items()):
+        whole.update(name.encode() + np.ascontiguousarray(values).tobytes())
+    return whole.hexdigest()[:32]
