@@ -73,10 +73,13 @@ class Lists:
         return pairs(np.minimum(*edges), np.maximum(*edges))
 
     def vertex_faces(self):
-        """Slot and exposed face: in contact, on the inner list, on the outer list."""
+        """Slot and exposed face: in contact, on the inner list, on the outer list.
+
+        A contact that is held at a rim is found by no list: its vertex has left the face.
+        """
         s, r = self.s, self.r
         target = s["spring.target"]
-        slots = np.flatnonzero(target >= 0)
+        slots = np.flatnonzero((target >= 0) & (s["spring.rim_action"] == 0))
         touching = pairs(slots, target[slots])
         inner = ragged(r["inner.first"], r["inner.candidate"])
         outer = ragged(s["outer.slot_first"], s["outer.slot_faces"])

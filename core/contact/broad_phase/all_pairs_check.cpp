@@ -9,6 +9,7 @@
 #include "core/contact/broad_phase/bounding_boxes.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/narrow_phase/side_pairs.hpp"
+#include "core/contact/narrow_phase/soft_rim.hpp"
 #include "core/contact/narrow_phase/views.hpp"
 #include "core/model/phase_timer.hpp"
 
@@ -49,6 +50,7 @@ class AllPairs {
   AllPairs(const Model& model, State& state)
       : m(model),
         springs(on_host(ResolveTargets{face_search(model, state)})),
+        rims(on_host(HoldAtRims{face_search(model, state)})),
         edges(on_host(touching_edges(model, state))),
         hidden(on_host(hidden_edges(model, state))),
         found(on_host(edge_columns(state))),
@@ -94,7 +96,10 @@ class AllPairs {
       std::copy_if(others.begin(), others.end(), std::back_inserter(open),
                    [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
       const FaceList list{open.data(), nullptr, Index(open.size())};
-      missed += springs.springs.target[4 * x + k] != springs.choose(x, k, list, &ignored);
+      Index target = springs.choose(x, k, list, &ignored);
+      const Index before = springs.springs.target_before[4 * x + k];
+      if (target < 0 && before >= 0 && !(rims.action_at_rim(x, k, before) < 0)) target = before;
+      missed += springs.springs.target[4 * x + k] != target;
     }
     return missed;
   }
@@ -129,6 +134,7 @@ class AllPairs {
 
   const Model& m;
   const ResolveTargets springs;
+  const HoldAtRims rims;
   const TouchingEdges edges;
   const HiddenEdges hidden;
   const EdgeColumns found;

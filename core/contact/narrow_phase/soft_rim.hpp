@@ -22,11 +22,6 @@ struct HoldAtRims : FaceSearch {
     }
   }
 
- private:
-  static constexpr Real soft = 0.3;      // of the indentation: a contact is soft that gives more
-  static constexpr Real furthest = 0.9;  // part of the way to the centre of the face
-  static constexpr Real nowhere = 2;     // a part that does not lead into the face
-
   /// The action coefficient of vertex k of exposed face m on face t, if it is held there, or -1.
   CDEM_HD Real action_at_rim(Index m, Index k, Index t) const {
     const Index slot = 4 * m + k, node = faces.vertex(exposed_face[m], k);
@@ -47,6 +42,12 @@ struct HoldAtRims : FaceSearch {
     if (gap > 2 * max_of(free, 0.0) || gap < min_of(free, 0.0) - rules.depth * length) return -1;
     return action;
   }
+
+ private:
+  static constexpr Real soft = 0.3;      // of the indentation: a contact is soft that gives more
+  static constexpr Real furthest = 0.9;  // part of the way to the centre of the face
+  static constexpr Real nowhere = 2;     // a part that does not lead into the face
+
   /// The least part of the arm that leads from point v into a face.
   CDEM_HD static Real part_inside(const FaceShape<Real>& f, const Vec3<Real>& n,
                                   const Vec3<Real>& v, const Vec3<Real>& arm) {
