@@ -113,7 +113,7 @@ def run(study):
             study.check(f"velocity past the strike, {angle} deg, {kind}", within=0.02, unit="1",
                         theory=0, absolute=True,
                         ours=np.linalg.norm(strike(start(study, kind, angle)) - one))  # fmt: skip
-    study.picture("At the kink, on blocks of tets", *pictures[:2])
+    study.picture("At the kink, on blocks of tets and on one cut by a joint", *pictures[:2])
 
 
 def start(study, kind, angle):
