@@ -13,14 +13,14 @@ BEDS = ["one mesh", "two blocks", "a wider floor", "blocks of tets"]
 
 @pytest.mark.parametrize("angle", [40, 20, -10])
 def test_a_kink_between_flush_blocks_is_that_of_one_mesh(angle, tmp_path):
-    """Problem `kink`: speed past the kink as on one mesh. Tolerance: 2 %, of the stiffness of tets."""
+    """Problem `kink`: speed past the kink as on one mesh, measured within 0.16 %."""
     (kink,) = problems(["kink"])
     study, kept = Study(kink.folder, threads=1), []
     for bed in BEDS:
         simulation = study.simulate(*kink.module.settings(bed, angle, tmp_path))
         kept.append(kink.module.pass_kink(simulation)[0])
         assert abs(simulation.energies["error"]) < 3e-3
-    assert kept[1:] == pytest.approx(kept[:1] * 3, rel=0.02)
+    assert kept[1:] == pytest.approx(kept[:1] * 3, rel=5e-3)
 
 
 def test_a_steep_kink_is_that_of_one_mesh(tmp_path):
