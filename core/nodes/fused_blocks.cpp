@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "core/elements/views.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/fused_block.hpp"
 #include "core/nodes/views.hpp"
@@ -136,10 +137,12 @@ void find_fused_blocks(const Model& m, State& s) {
   if (s.nodes.relax_mass.size() > 0 || m.formulation != Formulation::corotational) return;
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
-                         if constexpr (has_fused_kernel<Shape>)
-                           find_fused_elements(m, s, e, es);
-                         else
-                           es.fused.general.assign(es.awake.data(), es.awake.size());
+                         with_flow<Shape>(s, e, es, [&]<class Flow>(const Flow&) {
+                           if constexpr (has_fused_kernel<Shape, Flow>)
+                             find_fused_elements(m, s, e, es);
+                           else
+                             es.fused.general.assign(es.awake.data(), es.awake.size());
+                         });
                        });
   if (nodes.fused.size() == 0) return;
   const Flag* fused = on_host(nodes.fused).data();
