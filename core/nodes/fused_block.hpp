@@ -5,8 +5,8 @@
 #include <type_traits>
 
 #include "core/elements/corotational.hpp"
-#include "core/nodes/loads.hpp"
 #include "core/nodes/mass.hpp"
+#include "core/nodes/ports.hpp"
 
 namespace cdem {
 

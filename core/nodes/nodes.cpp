@@ -71,8 +71,7 @@ SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
   if (damps) s.nodes.damping_force.resize(s.nodes.force.size());
   s.nodes.damped = damps;
   return {.nodes = {s.nodes.motion.data()},
-          .corners = corner_lists(s),
-          .loads = load_columns(m, s),
+          .ports = node_ports(m, s),
           .supports = support_columns(m, s),
           .damping = damping,
           .mass = mass_columns(m, s),
