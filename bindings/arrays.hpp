@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/model/describe.hpp"
+#include "core/model/describe_rows.hpp"
 #include "core/model/describe_scalars.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/run/take_out.hpp"

@@ -24,7 +24,7 @@
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/run/bring_in.hpp"
-#include "core/run/change_bolts.hpp"
+#include "core/run/change_items.hpp"
 #include "core/run/excavate.hpp"
 #include "core/run/run.hpp"
 #include "core/run/take_out.hpp"
@@ -44,12 +44,11 @@ void take_counts(Core& core, const nb::dict& c) {
   m.edge_count = number("edges");
   m.class_count = number("interface_classes");
   m.corner_rows = number("corner_rows");
-  for_each_set(m, core.state, [&](const auto& kind, auto& set, const auto&) {
+  for_each_set(m, core.state, [&]<class Set>(const auto& kind, Set& set, const auto&) {
     const std::string name = kind.name;
     set.count = number((name + ".count").c_str());
     set.stride = padded_stride(set.count);
-    set.corners = kind.corners;
-    set.points = kind.points;
+    if constexpr (!ModuleData<Set>) set.corners = kind.corners, set.points = kind.points;
     set.corner_first = number((name + ".corner_first").c_str());
   });
   const auto wet = [&](WetFaces& w, const std::string& name, Index vertices) {
@@ -184,12 +183,12 @@ void bring_nodes_in(Core& c, Array<Flag> comes, Array<Real> position, const nb::
   bring_in(c.model, c.state, comes.data(), bonded.data());
 }
 
-/// Install or remove bolts, given by a flag for each.
-template <auto change>
-void take_bolts(Core& c, Array<Flag> which) {
-  if (which.ndim() != 1 || which.shape(0) != std::size_t(c.model.bolts.count))
-    throw nb::value_error("one flag for each bolt");
-  change(c.model, c.state, which.data());
+/// Let a stage change the items of a module, given by a flag for each.
+template <class Module, auto change>
+void take_items(Core& c, Array<Flag> which) {
+  if (which.ndim() != 1 || which.shape(0) != std::size_t(given_of<Module>(c.model).count))
+    throw nb::value_error("one flag for each item");
+  change_items<Module, change>(c.model, c.state, which.data());
 }
 
 auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
@@ -288,8 +287,8 @@ void bind_run(nb::class_<Core>& core) {
       .def("take_out", &take_nodes<take_out>, "leaves"_a)
       .def("excavate", &take_nodes<excavate>, "leaves"_a)
       .def("bring_in", &bring_nodes_in, "comes"_a, "position"_a, "arrays"_a, "bonded"_a)
-      .def("install_bolts", &take_bolts<install_bolts>, "which"_a)
-      .def("remove_bolts", &take_bolts<remove_bolts>, "which"_a)
+      .def("install_bolts", &take_items<Bolts, Bolts::install>, "which"_a)
+      .def("remove_bolts", &take_items<Bolts, Bolts::remove>, "which"_a)
       .def(
           "let_go", [](Core& c, Real part, Real end) { let_go(c.state, part, end); }, "part"_a,
           "end_time"_a)

@@ -1,7 +1,6 @@
 // step.cpp - the method on one page. Each call is one folder, and one page of the theory manual.
 #include "core/step.hpp"
 
-#include "core/bolts/bolts.hpp"
 #include "core/bonds/bonds.hpp"
 #include "core/contact/contact.hpp"
 #include "core/elements/elements.hpp"
@@ -11,12 +10,16 @@
 
 namespace cdem {
 
+void act_of_modules(const Model& m, State& s, Queue q) {
+  Modules::for_each([&]<class Module>() { Module::act(m, s, q); });
+}
+
 void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   if (pair_list_is_due(m, s)) rebuild_pair_list(m, s, plan);  // contact/pair_list, bonds/release
   set_loads_and_supports(m, s);                               // nodes/curves
   update_face_geometry(m, s, q);                              // contact/geometry
   update_bond_forces(m, s, q, plan);                          // bonds/                Eq. 13-14
-  update_bolt_forces(m, s, q);                                // bolts/
+  act_of_modules(m, s, q);                                    // model/modules: bolts/
   if (has_contact_pairs(s)) {
     prune_pair_list_if_due(m, s, q);   // contact/pair_list
     find_target_faces(m, s, q);        // contact/narrow_phase  Eq. 6-9

@@ -32,14 +32,18 @@ FOLDERS = [
     "run",
     "kernels",
 ]
+MODULES = ["bolts"]
+"""Nobody outside of them names them, but core/model/modules.hpp."""
 DEEPEST = 8
 
 problems: list[str] = []
 
 
 def folder(path: str) -> str:
-    """Folder of a file of core/, as FOLDERS names it."""
+    """Folder of a file of core/, as FOLDERS names it; the data of a module are part of `model`."""
     name = str(Path(path).relative_to("core").parent)
+    if name in MODULES and Path(path).name in ("data.hpp", "states.hpp"):
+        return "model"
     if name not in FOLDERS:
         sys.exit(f"{path}: give its folder a place in FOLDERS of tools/layers.py")
     return name
@@ -74,11 +78,17 @@ units: dict[str, set[str]] = {unit(path): set() for path in sources}
 for path in sources:
     height = FOLDERS.index(folder(path))
     for other in includes(path):
+        room = str(Path(other).relative_to("core").parent)
+        if room in MODULES and not path.startswith((f"core/{room}/", "core/kernels/")):
+            if path != "core/model/modules.hpp":
+                problems.append(f"{path} may not name the module {room}")
         if FOLDERS.index(folder(other)) > height:
             problems.append(f"{path} may not include {other}, which lies above it")
         if unit(other) != unit(path):
             units[unit(path)].add(unit(other))
     owner = unit(path) + ".hpp" if path.endswith(".cpp") and folder(path) != "kernels" else None
+    if owner and folder(path) in MODULES:
+        owner = str(Path(path).with_name("data.hpp"))
     if owner and next(iter(includes(path)), "") != owner:
         problems.append(f"{path} must include its own header first")
     if folder(path) == "kernels":

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/device.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/device.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 

@@ -1,5 +1,6 @@
 // device.cpp - see device.hpp. Compiled as C++, and as CUDA for the CUDA module.
 #include "core/base/device.hpp"
+#include "core/base/lanes.hpp"
 
 #include <omp.h>
 

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 
-#include "core/base/lanes.hpp"
+#if defined(__CUDACC__)
+#include <cuda_runtime.h>
+#endif
 
 // What a core is built for; a mix does not link, for the device is part of the names of symbols.
 #if defined(CDEM_CUDA)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/device.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 inline namespace CDEM_DEVICE {

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "core/base/device.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/math.hpp"
-#include "core/records/bolt_states.hpp"
+#include "core/bolts/states.hpp"
 
 namespace cdem {
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/bolts/solve_bolts.hpp"
-#include "core/model/force_sets.hpp"
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
 
 namespace cdem {
 
@@ -26,8 +27,8 @@ inline BoltNodeColumns bolt_node_columns(const BoltSet& b, BoltState& bs) {
 }
 
 inline SolveBolt bolt_solver(const Model& m, State& s) {
-  const BoltSet& b = m.bolts;
-  BoltState& bs = s.bolts;
+  const BoltSet& b = given_of<Bolts>(m);
+  BoltState& bs = state_of<Bolts>(s);
   return {.nodes = {s.nodes.motion.data()},
           .first = b.first.data(),
           .crossing_first = b.crossing_first.data(),

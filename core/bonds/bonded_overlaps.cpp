@@ -1,6 +1,9 @@
 // bonded_overlaps.cpp - see bonded_overlaps.hpp.
 #include "core/bonds/bonded_overlaps.hpp"
 
+#include "core/model/model.hpp"
+#include "core/model/state.hpp"
+
 namespace cdem {
 
 Bonded live_overlaps(const Model& m, const State& s) {

@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/model/model.hpp"
-#include "core/model/state.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
+
+struct Model;
+struct State;
 
 /// Faces and vertices that bonds of overlaps hold, hinges left out, as sorted keys.
 struct Bonded {

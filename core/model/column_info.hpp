@@ -35,4 +35,7 @@ struct RowKind {
   const char* meaning;
 };
 
+/// Kind of rows for blocks of `block_size` consecutive rows of another kind, see Blocks.
+inline std::string blocks_of(const std::string& rows) { return rows + "/8"; }
+
 }  // namespace cdem

@@ -3,8 +3,7 @@
 
 #include "core/materials/laws.hpp"
 #include "core/model/column_info.hpp"
-#include "core/model/describe_bolts.hpp"
-#include "core/model/describe_rows.hpp"
+#include "core/model/describe_modules.hpp"
 #include "core/model/describe_water.hpp"
 #include "core/model/force_sets.hpp"
 
@@ -383,8 +382,12 @@ void describe_model(Model& m, State& s, Visit&& visit) {
          .rows = "materials",
          .numbers = material_row},
         m.material_parameters);
-  for_each_set(m, s,
-               [&](const auto& kind, auto& set, auto&) { describe_set(kind.name, set, given); });
+  const auto describe = [&](const auto& kind, auto& set, auto&) {
+    describe_set(kind.name, set, given);
+  };
+  for_each_element_set(m, s, describe);
+  for_each_pair_set(m, s, describe);
+  describe_modules(m, s, given);
   describe_faces(m, given);
   describe_exterior_edges(m, given);
   describe_loads(m, given);

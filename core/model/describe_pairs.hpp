@@ -2,8 +2,10 @@
 #pragma once
 
 #include "core/interfaces/laws.hpp"
-#include "core/model/force_sets.hpp"
+#include "core/model/model.hpp"
+#include "core/model/rebuilds.hpp"
 #include "core/model/row_kinds.hpp"
+#include "core/model/state.hpp"
 
 namespace cdem {
 

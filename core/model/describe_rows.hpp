@@ -1,6 +1,7 @@
 // describe_rows.hpp - the kinds of rows that arrays have, and how many there are of each.
 #pragma once
 
+#include "core/base/parallel.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/row_kinds.hpp"
 
@@ -15,6 +16,7 @@ inline Index end_of(const Column<Index>& starts) {
 /// Visit the rows that the model has: part of `describe_rows`.
 template <class Visit>
 void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
+  static_assert(block_size == 8);  // as blocks_of has it
   const auto blocks = [](Index count) { return (count + block_size - 1) / block_size; };
   const auto total = [](const auto& column) { return Index(column.size()); };
   visit(RowKind{"nodes", "nodes of all blocks"}, m.node_count);
@@ -37,10 +39,7 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   visit(RowKind{"node_tets", "tets of a node, where their dilatation is averaged"},
         total(s.nodal.tet));
   visit(RowKind{"overlap_points", "bond points of overlaps"}, end_of(m.overlaps.point_first));
-  visit(RowKind{"bolt_nodes", "nodes of bolts; bars lead to the next"}, bolt_node_count(m.bolts));
-  visit(RowKind{"bolt_crossings", "joints that bolts cross"}, total(m.bolts.crossing_bar));
-  visit(RowKind{"bolt_points", "nodes of bolts, then two sides of each crossing"},
-        bolt_point_count(m.bolts));
+  Modules::for_each([&]<class Module>() { Module::describe_rows(given_of<Module>(m), visit); });
   visit(RowKind{"corner_rows", "forces of a set on a node; the last one adds nothing"},
         m.corner_rows + 1);
   visit(RowKind{"faces", "exterior faces of all blocks"}, m.face_count);

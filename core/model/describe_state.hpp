@@ -1,11 +1,12 @@
 // describe_state.hpp - the arrays of nodes, elements and bonded pairs.
 #pragma once
 
-#include "core/model/describe_bolts.hpp"
 #include "core/model/describe_elements.hpp"
+#include "core/model/describe_modules.hpp"
 #include "core/model/describe_nodes.hpp"
 #include "core/model/describe_pairs.hpp"
 #include "core/model/describe_water.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -19,9 +20,12 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
   describe_node_forces(s, stored);
   describe_node_lists(s, rebuilt);
   describe_node_sums(s, rebuilt);
-  for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {
+  const auto describe = [&](const auto& kind, const auto& set, auto& state) {
     describe_set(kind.name, set, state, stored, rebuilt);
-  });
+  };
+  for_each_element_set(m, s, describe);
+  for_each_pair_set(m, s, describe);
+  describe_modules(m, s, stored, rebuilt);
   for_each_element_set(m, s, [&](const auto& kind, const ElementSet& e, ElementState& es) {
     describe_tiles(kind.name, e, es.tiles, rebuilt);
   });

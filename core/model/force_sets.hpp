@@ -1,9 +1,8 @@
-// force_sets.hpp - the sets of elements, bonded pairs and bolts, each once, and what loops ask of
+// force_sets.hpp - the sets of elements, bonded pairs and modules, each once, and what loops ask of
 // them.
 //
 // Whatever puts forces on nodes through tiles or corner rows is a set. All loops over sets come
-// from here: a new set is named here, with overloads of what is asked of it below, and has its
-// kernels.
+// from here. What is asked of a module stands in module.hpp.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
-#include "core/records/bolt_states.hpp"
 #include "core/records/energy_terms.hpp"
 
 namespace cdem {
@@ -41,10 +39,9 @@ struct PairKind {
   Index points, corners;
 };
 
-/// Bolts: their name, and how many nodes of the rock a point lies between.
-struct BoltKind {
+/// A module, as the kind of a set.
+struct ModuleKind {
   const char* name;
-  Index points, corners;
 };
 
 /// Call visit(kind, set, state) for every set of elements.
@@ -74,7 +71,9 @@ void for_each_pair_set(M& m, S& s, Visit&& visit) {
 template <class M, class S, class Visit>
 void for_each_row_set(M& m, S& s, Visit&& visit) {
   for_each_pair_set(m, s, visit);
-  visit(BoltKind{.name = "bolts", .points = 0, .corners = 8}, m.bolts, s.bolts);
+  Modules::for_each([&]<class Module>() {
+    visit(ModuleKind{.name = Module::name}, given_of<Module>(m), state_of<Module>(s));
+  });
 }
 
 /// The same for all sets: elements put their forces on nodes through tiles.
@@ -84,13 +83,6 @@ void for_each_set(M& m, S& s, Visit&& visit) {
   for_each_row_set(m, s, visit);
 }
 
-/// Nodes, and points, of all bolts.
-inline Index bolt_node_count(const BoltSet& b) { return Index(b.grout.size() / 2); }
-inline Index bolt_point_count(const BoltSet& b) { return Index(b.stiffness.size()); }
-
-/// Do the faces of the pairs share their vertices? Else they overlap.
-inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
-
 // What host code asks of the items of a set. Each has the arrays of the set on the host, and holds
 // as long as these.
 
@@ -99,22 +91,9 @@ inline auto activity(const PairState& s) {
   return [status = on_host(s.status)](Index pair) { return is_live(PairStatus(status[pair])); };
 }
 
-/// A bolt does while it is installed.
-inline auto activity(const BoltState& s) {
-  return [phases = on_host(s.phase)](Index bolt) {
-    const BoltPhase phase = BoltPhase(phases[bolt]);
-    return phase == BoltPhase::placed || phase == BoltPhase::acting;
-  };
-}
-
-/// for_each_point(bolt, visit) calls visit(point) for the points of a bolt.
-inline auto points_of(const BoltSet& b) {
-  return [first = on_host(b.first), crossing_first = on_host(b.crossing_first),
-          nodes = bolt_node_count(b)](Index bolt, auto&& visit) {
-    for (Index n = first[bolt]; n < first[bolt + 1]; ++n) visit(n);
-    for (Index c = 2 * crossing_first[bolt]; c < 2 * crossing_first[bolt + 1]; ++c)
-      visit(nodes + c);
-  };
+template <ModuleData S>
+auto activity(const S& s) {
+  return S::Module::activity(s);
 }
 
 /// for_each_corner_row(item, visit) calls visit(row) for the corner rows of an item.
@@ -124,11 +103,11 @@ inline auto corner_rows_of(const PairSet& p) {
     for (Index row = first; row < first + p.corners; ++row) visit(row);
   };
 }
-inline auto corner_rows_of(const BoltSet& b) {
-  return [&b, for_each_point = points_of(b)](Index bolt, auto&& visit) {
-    for_each_point(bolt, [&](Index p) {
-      for (Index k = 0; k < b.corners; ++k) visit(b.corner_first + p * b.corners + k);
-    });
+template <ModuleData Given>
+auto corner_rows_of(const Given& given) {
+  return [first = given.corner_first, for_each_row = Given::Module::rows_of(given)](Index item,
+                                                                                    auto&& visit) {
+    for_each_row(item, [&](Index, Index row) { visit(first + row); });
   };
 }
 
@@ -168,12 +147,10 @@ inline auto nodes_of(const Model& m, const PairSet& p) {
     }
   };
 }
-inline auto nodes_of(const Model&, const BoltSet& b) {
-  return [&b, for_each_point = points_of(b), hosts = on_host(b.hosts)](Index bolt, auto&& visit) {
-    for_each_point(bolt, [&](Index p) {
-      for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
-        if (hosts[k] >= 0) visit(hosts[k]);
-    });
+template <ModuleData Given>
+auto nodes_of(const Model&, const Given& given) {
+  return [for_each_row = Given::Module::rows_of(given)](Index item, auto&& visit) {
+    for_each_row(item, [&](Index node, Index) { visit(node); });
   };
 }
 
@@ -201,15 +178,9 @@ inline auto stiffness_of(const Model& m, const PairSet& p) {
           }
       };
 }
-inline auto stiffness_of(const Model&, const BoltSet& b) {
-  return
-      [&b, for_each_point = points_of(b), hosts = on_host(b.hosts),
-       stiffness = on_host(b.stiffness), weights = on_host(b.weights)](Index bolt, auto&& visit) {
-        for_each_point(bolt, [&](Index p) {
-          for (Index k = p * b.corners; k < (p + 1) * b.corners; ++k)
-            if (hosts[k] >= 0) visit(hosts[k], stiffness[p] * std::abs(weights[k]));
-        });
-      };
+template <ModuleData Given>
+auto stiffness_of(const Model&, const Given& given) {
+  return Given::Module::stiffness_of(given);
 }
 
 /// Call visit(term, column) for the columns that the terms of the energy ledger sum, see
@@ -226,11 +197,9 @@ void for_each_energy(const PairState& s, Visit&& visit) {
   visit(energy_term("friction"), s.friction);
   visit(energy_term("fracture"), s.fracture);
 }
-template <class Visit>
-void for_each_energy(const BoltState& s, Visit&& visit) {
-  visit(energy_term("bolts"), s.stored);
-  visit(energy_term("bolt_loss"), s.lost);
-  visit(energy_term("external"), s.jacked);
+template <ModuleData S, class Visit>
+void for_each_energy(const S& s, Visit&& visit) {
+  S::Module::for_each_energy(s, visit);
 }
 
 }  // namespace cdem

@@ -64,23 +64,9 @@ void size(const Model& m, const PairSet& p, PairState& s) {
   init_histories(m, p, s);
 }
 
-void size(const Model&, const BoltSet& b, BoltState& s) {
-  const std::size_t nodes = bolt_node_count(b);
-  s.phase.resize(b.count);
-  const auto phase = on_host(s.phase);
-  const auto waits = on_host(b.waits);
-  for (Index i = 0; i < b.count; ++i)
-    phase[i] = Flag(waits[i] ? BoltPhase::waiting : BoltPhase::placed);
-  for (Column<Real>* column : {&s.slip, &s.grout_free, &s.end_free, &s.grout_force, &s.end_force,
-                               &s.length, &s.bar_free, &s.axial_force})
-    column->resize(nodes);
-  for (Column<Flag>* column :
-       {&s.grout_state, &s.end_state, &s.bar_state, &s.bar_broken, &s.grout_lost})
-    column->resize(nodes);
-  for (Column<Real>* column : {&s.dowel_free, &s.dowel_force})
-    column->resize(4 * b.crossing_bar.size());
-  for (Column<Real>* column : {&s.stored, &s.lost, &s.jacked}) column->resize(b.count);
-  s.scratch.resize(8 * nodes);
+template <ModuleData Given>
+void size(const Model&, const Given& given, auto& state) {
+  Given::Module::size(given, state);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "core/base/column.hpp"
 #include "core/base/math.hpp"
+#include "core/model/modules.hpp"
 #include "core/records/interface.hpp"
 #include "core/records/rules.hpp"
 
@@ -38,6 +39,9 @@ struct PairSet {
   Column<Real> weights_a, weights_b, point_area;
 };
 
+/// Do the faces of the pairs share their vertices? Else they overlap.
+inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
+
 /// Faces with one number of vertices that water may press on, see water/wet_faces.hpp.
 struct WetFaces {
   Index count = 0, stride = 0;
@@ -61,24 +65,6 @@ struct Water {
   Column<Real> node_kept;     // [Pa]
   Index pore_row_first = 0;   // of the rows of elements
   Column<Index> node_first, row;  // rows that a node sums
-};
-
-/// Bolts: chains of nodes, each located in an element of the rock. Points are the nodes of all
-/// bolts, then two for each crossing of a joint: in the block that the bolt leaves and in the next
-/// one.
-struct BoltSet {
-  Index count = 0, stride = 0;
-  Index corners = 0, points = 0;        // nodes that a point lies between; not used
-  Index corner_first = 0;               // first of its rows among the corner forces
-  Column<Index> first, crossing_first;  // nodes and crossings of a bolt
-  Column<Real> properties;              // rows of BoltProperties
-  Column<Flag> waits;                   // 1: not installed at the start
-  Column<Real> grout, end;              // [node][2] stiffness [N/m], limit [N]
-  Column<Index> crossing_bar;           // [crossing] bar that leads across
-  Column<Real> dowel;                   // [crossing][2] stiffness [N/m], limit [N]
-  Column<Index> hosts;                  // [point][8] nodes of the rock, or -1
-  Column<Real> weights;                 // [point][8]
-  Column<Real> stiffness;               // [point] that it puts on the rock at most  [N/m]
 };
 
 struct Model {
@@ -114,9 +100,9 @@ struct Model {
   Column<Real> interface_parameters;  // [interface][parameter_row]
   InterfaceTraits interface_traits;   // what a step asks of them, see note_interfaces
 
-  BoltSet bolts;
+  Modules::Data<GivenPart> modules;
 
-  // corner rows of pairs and bolts at each node; ~row where it takes the opposite of what stands
+  // corner rows of pairs and modules at each node; ~row where it takes the opposite of what stands
   // there
   Index corner_rows = 0;
   Column<Index> corner_first, corner;

@@ -34,7 +34,7 @@ inline constexpr Rebuild rebuilds[] = {
     {"find_fused_blocks", Made::with_another},
     {"release_bonds", Made::in_step},
     {"update_face_geometry", Made::in_step},
-    {"update_bolt_forces", Made::in_step},
+    {"act_of_modules", Made::in_step},
     {"prune_pair_list", Made::in_step},
     {"find_target_faces", Made::in_step},
     {"find_target_edges", Made::in_step},

@@ -1,14 +1,10 @@
 // row_kinds.hpp - names of kinds of rows that belong to another kind.
 #pragma once
 
-#include "core/base/parallel.hpp"
 #include "core/model/column_info.hpp"
 
 namespace cdem {
 
-/// Kind of rows for blocks of `block_size` consecutive rows of another kind, see Blocks.
-inline std::string blocks_of(const std::string& rows) { return rows + "/8"; }
-static_assert(block_size == 8);
 /// Kind of rows for what the nodes of fused elements sum, see FusedRows.
 inline std::string fused_rows_of(const std::string& rows) { return rows + ".fused_rows"; }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/column.hpp"
+#include "core/model/modules.hpp"
 #include "core/records/contact_records.hpp"
 #include "core/records/pair_status.hpp"
 
@@ -29,7 +30,7 @@ struct NodeState {
   Column<Index> general;     // awake blocks of nodes but those of which all are fused
   bool damped = false;       // in the last step, else damping_force does not count
   Column<Index> tile_first;  // rows of tiles that a node sums, see ElementTiles
-  Column<Index> corner_first, corner;  // rows of live pairs and bolts that it sums then
+  Column<Index> corner_first, corner;  // rows of live pairs and modules that it sums then
 };
 
 /// Blocks of elements of which all are fused and have full mass matrices, see
@@ -89,21 +90,6 @@ struct PairState {
   Column<Real> stored, fracture, friction;
   Column<Real> history;  // [variable * points + point][pair], of the pair's law
   Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp
-};
-
-struct BoltState {
-  Column<Flag> phase;                              // BoltPhase  [bolt]
-  Column<Real> slip;                               // of the bolt along its axis  [node]
-  Column<Real> grout_free, end_free;               // slip without force  [node]
-  Column<Real> grout_force, end_force;             // [node]
-  Column<Real> length, bar_free, axial_force;      // of the bar to the next node  [node]
-  Column<Flag> grout_state, end_state, bar_state;  // SliderState  [node]
-  Column<Flag> bar_broken;                         // BarState  [node]
-  Column<Flag> grout_lost;                         // 1: its rock was dug out  [node]
-  Column<Real> dowel_free, dowel_force;            // rows of 4  [crossing]
-  Column<Real> stored, lost, jacked;               // [bolt]
-  Column<Real> scratch;                            // rows of 8, see BoltNodeColumns  [node]
-  Column<Index> awake;                             // blocks of bolts; all are computed
 };
 
 struct SpringState {
@@ -241,7 +227,7 @@ struct State {
   ElementState tet4, pyramid5, wedge6, hex8;
   NodalMeans nodal;
   PairState triangles, quads, overlaps;
-  BoltState bolts;
+  Modules::Data<StatePart> modules;
   Column<Index> released_overlaps;  // their contacts are still to be found in this step
   SpringState springs;
   EdgeState edges;
@@ -249,7 +235,7 @@ struct State {
   ContactAreasState contact_areas;
   SearchState search;
   WaterState water;
-  Column<Real> tile_force, corner_force;      // rows of 4: of tiles; of pairs and bolts
+  Column<Real> tile_force, corner_force;      // rows of 4: of tiles; of pairs and modules
   Column<Real> face_geometry, contact_force;  // rows of 8, 4
   Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]
   Column<Real> load_factor, velocity_factor;  // of the curves in this step

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/bolts/bolts.hpp"
 #include "core/bonds/initial_tractions.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
@@ -37,18 +36,6 @@ void renew_nodal_means(const Model& m, State& s, const Flag* comes) {
     if (comes[nodes[i]]) start[i] = 0;
   for (std::size_t i = 0; i < after.size(); ++i)
     if (comes[i]) after[i] = 0;
-}
-
-/// Bolts that are not installed yet have their grout in blocks that come in.
-void renew_bolts(const BoltSet& b, BoltState& bs, const Flag* out) {
-  const auto first = on_host(b.first);
-  const auto phase = on_host(bs.phase);
-  const auto grout_lost = on_host(bs.grout_lost), bar_broken = on_host(bs.bar_broken);
-  for (Index i = 0; i < b.count; ++i) {
-    if (phase[i] != Flag(BoltPhase::waiting)) continue;
-    for (Index n = first[i]; n < first[i + 1]; ++n) grout_lost[n] = bar_broken[n] = 0;
-    cut_bolt(b, out, bs, i);
-  }
 }
 
 /// Which faces a pair covers: those of which none of the pairs is released.
@@ -101,7 +88,9 @@ void bring_in(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   renew_nodal_means(m, s, comes);
   bond_again(m, s, comes, bonded);
   const auto out = on_host(s.nodes.out);
-  renew_bolts(m.bolts, s.bolts, out.data());
+  Modules::for_each([&]<class Module>() {
+    Module::bring_in(given_of<Module>(m), state_of<Module>(s), out.data());
+  });
   Covered faces = covered_faces(m, s, comes);
   std::vector<Flag> hidden(m.face_count);
   const auto face_nodes = on_host(m.face_nodes);

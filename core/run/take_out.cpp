@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/bolts/bolts.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
 #include "core/diagnostics/energy.hpp"
@@ -105,10 +104,9 @@ void relieve(State& s, const PairSet& p, PairState& ps, const std::vector<Index>
   }
 }
 
-/// The rest of a bolt goes on to hold the rock that stays.
-void relieve(State& s, const BoltSet& b, BoltState& bs, const std::vector<Index>& which) {
-  const auto out = on_host(s.nodes.out);
-  for (const Index bolt : which) cut_bolt(b, out.data(), bs, bolt);
+template <ModuleData Given>
+void relieve(State& s, const Given& given, auto& state, const std::vector<Index>& which) {
+  Given::Module::take_out(given, state, which, on_host(s.nodes.out).data());
 }
 
 }  // namespace

@@ -4,6 +4,14 @@ from mutant_list.mutant import Mutant
 
 FAULTS = [
     Mutant(
+        "bolt step",
+        "bolts do not count in the stable step",
+        "core/bolts/data.hpp",
+        "visit(hosts[k], stiffness[p] * std::abs(weights[k]));",
+        "visit(hosts[k], 0 * stiffness[p] * std::abs(weights[k]));",
+        "tests/validation/test_bolts.py::test_bolts_shorten_the_step",
+    ),
+    Mutant(
         "grout",
         "grout of bolts never slips",
         "core/bolts/chain.hpp",

@@ -13,14 +13,6 @@ FAULTS = [
         "tests/regression/test_bits.py::test_restored_state_continues_the_growth_of_the_time_step",
     ),
     Mutant(
-        "bolt step",
-        "bolts do not count in the stable step",
-        "core/model/force_sets.hpp",
-        "visit(hosts[k], stiffness[p] * std::abs(weights[k]));",
-        "visit(hosts[k], 0 * stiffness[p] * std::abs(weights[k]));",
-        "tests/validation/test_bolts.py::test_bolts_shorten_the_step",
-    ),
-    Mutant(
         "tile places",
         "a tile lists a node again for each of its elements",
         "core/model/tiles.cpp",

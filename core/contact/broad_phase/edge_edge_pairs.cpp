@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/contact/broad_phase/separating_planes.hpp"
 #include "core/contact/narrow_phase/edge_pair.hpp"
 #include "core/contact/narrow_phase/side_pairs.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/contact/broad_phase/edge_edge_pairs.hpp"
+#include "core/contact/broad_phase/separating_planes.hpp"
 #include "core/contact/broad_phase/vertex_face_pairs.hpp"
 #include "core/contact/geometry/views.hpp"
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/contact/broad_phase/separating_planes.hpp"
+
 namespace cdem {
 
 namespace {

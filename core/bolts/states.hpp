@@ -1,4 +1,4 @@
-// bolt_states.hpp - what a bolt, one of its springs, and one of its bars may be.
+// states.hpp - what a bolt, one of its springs, and one of its bars may be.
 #pragma once
 
 #include "core/base/lanes.hpp"
