@@ -19,7 +19,7 @@ def bonded(law, *, box=BOX, split=True, fix=(), **more):
     """A box of bonded elements."""
     return build(
         case(
-            [{"group": "rock", "box": box}], {"rock": {"fix": [*fix]}}, cdem=2, interfaces={"default": law},
+            [{"group": "rock", "box": box}], {"rock": {"fix": [*fix]}}, defaults=True, interfaces={"default": law},
             model={"split": {"rock": "elements"}} if split else {}, **more,
         )
     )  # fmt: skip

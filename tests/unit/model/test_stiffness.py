@@ -77,7 +77,7 @@ def test_the_audit_tells_how_far_blocks_overlap():
     blocks = [{"group": "cube", "box": {"size": [1, 1, 1]}},
               {"group": "floor", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]}]  # fmt: skip
     sim = simulate(
-        blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, cdem=2, **WEIGHT,
+        blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, defaults=True, **WEIGHT,
         interfaces={"default": FRICTION},
         stages=[{"name": "settle", "mode": "static", "tolerance": 1e-6}],
     )  # fmt: skip
@@ -98,7 +98,7 @@ def test_the_audit_tells_of_restitution_where_it_shortens_the_step():
         blocks = [{"group": "cube", "box": {"size": [1, 1, 1]}},
                   {"group": "floor", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]}]  # fmt: skip
         law = FRICTION | {"restitution": restitution} | more
-        return simulate(blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, cdem=2,
+        return simulate(blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, defaults=True,
                         interfaces={"default": law}).audit  # fmt: skip
 
     told = "restitution 0.5 makes them 4 times as stiff in unloading, which shortens the step"
