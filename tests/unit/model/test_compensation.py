@@ -12,10 +12,10 @@ from cdem.model.build import build
 STRONG = {"friction_angle": 30, "cohesion": 1e9, "tensile_strength": 1e9}
 
 
-def bonded(box, *, version=2, nu=0.25, law=STRONG, **more):
+def bonded(box, *, defaults=True, nu=0.25, law=STRONG, **more):
     """A box whose every element is a block."""
     return case(
-        [{"group": "rock", "box": box}], {"rock": {}}, cdem=version,
+        [{"group": "rock", "box": box}], {"rock": {}}, defaults=defaults,
         interfaces={"default": law}, rock={"young_modulus": 1e10, "poisson_ratio": nu},
         model={"split": {"rock": "elements"}}, **more,
     )  # fmt: skip
@@ -80,7 +80,7 @@ def test_a_poissons_ratio_without_room_is_refused():
 @pytest.mark.parametrize(
     "changes",
     [
-        {"version": 1},
+        {"defaults": False},
         {"law": STRONG | {"stiffness_n": "5 E/h"}},
         {"law": STRONG | {"stiffness_s": 1e10}},
         {"law": {"friction_angle": 30}},
