@@ -48,7 +48,6 @@ class Simulation(RunState):
         overwrite: Replace what an existing result folder holds.
         resume: Go on from the checkpoint in the result folder.
         force: Go on though the case has changed in a way that a run cannot change.
-        device: "cpu".
         strict: Refuse a model that `cdem check` warns of, before anything is written.
 
     Raises:
@@ -82,13 +81,8 @@ class Simulation(RunState):
         overwrite: bool = False,
         resume: bool = False,
         force: bool = False,
-        device: str = "cpu",
         strict: bool = False,
     ) -> None:
-        if device != "cpu":
-            raise CdemError(
-                f"device {device!r}: only cpu can be named; CDEM_ISA=cuda chooses a GPU"
-            )
         case = case if isinstance(case, Case) else Case.load(case)
         threads = threads or os.cpu_count() or 1
         native.set_threads(threads)
