@@ -87,7 +87,7 @@ class Block(Part):
     file: Name | None = Field(
         None,
         description="Convex bodies from a file, relative to the case file: each closed surface of an "
-        ".obj or .stl, each cell of a .vtu or .vtk, polyhedra too",
+        ".obj, .stl or .ply, each cell of a .vtu or .vtk, polyhedra too",
     )
     size: Annotated[float, Quantity("m", above=0)] | None = Field(
         None,
