@@ -171,7 +171,11 @@ class Stage(Part):
             raise ValueError("release.parts has no meaning in a dynamic stage; write over")
         if self.mode == "dynamic" and self.duration is None:
             raise ValueError("a dynamic stage needs a duration, e.g. duration: 2.0")
-        # Not by assignment: that would start this check again.
+        return self
+
+    @model_validator(mode="after")
+    def _complete(self) -> Stage:
+        # Not by assignment: that would start these checks again.
         if self.mode == "static":
             self.__dict__["tolerance"] = self.tolerance or 1e-5
             self.__dict__["relax"] = self.relax or "adaptive"
