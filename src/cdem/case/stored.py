@@ -39,8 +39,11 @@ def outdated(data: dict[str, Any]) -> list[tuple[Keys, str]]:
     """What is wrong with a case of `cdem: 1`: which keys it has to write; of others nothing."""
     if not _is_old(data):
         return []
-    keys = [f"{'.'.join(map(str, path))}: {value}" for path, value in chosen(data)]
-    return [(("cdem",), f"1 is gone; remove it, and for the same results write {'; '.join(keys)}")]
+    keys = "; ".join(f"{'.'.join(map(str, path))}: {value}" for path, value in chosen(data))
+    mend = (
+        f", and for the same results write {keys}" if keys else "; the case has all that it chose"
+    )
+    return [(("cdem",), f"1 is gone; remove it{mend}")]
 
 
 def chosen(data: dict[str, Any]) -> Iterator[tuple[Keys, Any]]:

@@ -57,6 +57,11 @@ def test_an_old_case_is_told_once_which_keys_it_has_to_write(tmp_path):
     )
 
 
+def test_an_old_case_that_says_all_itself_has_nothing_to_write():
+    with pytest.raises(CaseError, match=r"^case: cdem: 1 is gone; remove it; the case has all"):
+        Case.from_dict(plain(CASE) | {"cdem": 1})
+
+
 @pytest.mark.parametrize("old", ["stages:", "title: old", "model: {", "groups: {a"])
 def test_an_old_case_that_is_wrong_besides_is_told_both(tmp_path, old):
     (tmp_path / "slope.yaml").write_text(FILE.replace(old, "elements: 5\nwater: x\n" + old))
