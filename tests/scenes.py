@@ -11,6 +11,14 @@ import cdem
 from cdem.mesh import primitives
 
 ROCK = {"density": 2500, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
+PLAIN = {
+    "interface": {"stiffness_n": "10 E/h", "stiffness_s": "10 E/h"},
+    "elements": {"mass": "exact"},
+    "static": {"relax": "local"},
+    "dynamic": {"damping": {"contact": 0}},
+    "tet4": {"cells": "alike"},
+}
+"""What closed forms need: exact masses, no stiffness that is made up for, no damping, equal cells."""
 
 
 def turn(axis, degrees):
@@ -21,19 +29,45 @@ def turn(axis, degrees):
     return np.eye(3) + np.sin(a) * k + (1 - np.cos(a)) * k @ k
 
 
-def case(blocks, groups, *, interfaces=None, rock=None, stages=None, **more):
-    """A case of blocks in groups of one rock; a dynamic stage of 1 s unless told otherwise."""
-    return cdem.Case.from_dict(
-        {
-            "cdem": 1,
-            "model": {"blocks": blocks, **more.pop("model", {})},
-            "materials": {"rock": ROCK | (rock or {})},
-            "groups": {name: {"material": "rock", **entry} for name, entry in groups.items()},
-            "interfaces": interfaces or {"default": {"friction_angle": 0}},
-            "stages": stages or [{"name": "run", "mode": "dynamic", "duration": 1.0}],
-            **more,
-        }
-    )
+def plain(data):
+    """The data of a case with what `PLAIN` has where they say nothing."""
+
+    def stage(entry):
+        own = PLAIN[entry["mode"]]
+        damping = own.get("damping", {}) | entry.get("damping", {})
+        return own | entry | ({"damping": damping} if damping else {})
+
+    def block(entry):
+        box = entry.get("box")
+        return entry | ({"box": PLAIN.get(box.get("shape"), {}) | box} if box else {})
+
+    faces, blocks = data.get("interfaces", {}), data["model"].get("blocks", [])
+    if "default" in faces:  # from which pairs take what they leave out
+        faces = faces | {"default": PLAIN["interface"] | faces["default"]}
+    else:
+        faces = faces | {"pairs": [PLAIN["interface"] | pair for pair in faces.get("pairs", [])]}
+    return data | {
+        "model": data["model"] | {"blocks": [block(entry) for entry in blocks]},
+        "interfaces": faces,
+        "elements": PLAIN["elements"] | data.get("elements", {}),
+        "stages": [stage(entry) for entry in data["stages"]],
+    }
+
+
+def case(blocks, groups, *, interfaces=None, rock=None, stages=None, defaults=False, **more):
+    """A case of blocks in groups of one rock; a dynamic stage of 1 s unless told otherwise.
+
+    It is plain (`PLAIN`), or has the defaults of the program.
+    """
+    data = {
+        "model": {"blocks": blocks, **more.pop("model", {})},
+        "materials": {"rock": ROCK | (rock or {})},
+        "groups": {name: {"material": "rock", **entry} for name, entry in groups.items()},
+        "interfaces": interfaces or {"default": {"friction_angle": 0}},
+        "stages": stages or [{"name": "run", "mode": "dynamic", "duration": 1.0}],
+        **more,
+    }
+    return cdem.Case.from_dict(data if defaults else plain(data))
 
 
 def simulate(blocks, groups, **more):

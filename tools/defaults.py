@@ -115,7 +115,7 @@ def moving():
 def settle(blocks, groups, more, **stage):
     """Displacements at rest, how the stage ended, and the simulation."""
     stage = {"name": "rest", "mode": "static", **stage}
-    sim = cdem.Simulation(case(blocks, groups, cdem=2, stages=[stage], **more), threads=1)
+    sim = cdem.Simulation(case(blocks, groups, defaults=True, stages=[stage], **more), threads=1)
     return sim.run(), sim.fields["displacement"].copy(), sim
 
 
@@ -150,7 +150,7 @@ def motion(_folder):
         words = []
         for safety, damping in ((0.8, {}), (0.4, {}), (0.8, {"contact": 0})):
             stage = {"name": "run", "mode": "dynamic", "duration": duration, "damping": damping}
-            whole = case(blocks, {"a": group} | beds, cdem=2, stages=[stage],
+            whole = case(blocks, {"a": group} | beds, defaults=True, stages=[stage],
                          time={"safety": safety}, **more)  # fmt: skip
             sim = cdem.Simulation(whole, threads=1)
             sim.run()
@@ -165,7 +165,7 @@ def sliding(_folder):
     """Error of the acceleration of a sliding block, and range of its normal force."""
     exact = tilted(37)["gravity"][0] + tilted(37)["gravity"][2] * np.tan(np.radians(21))
     bed = box("bed", [20, 4, 1], (-1, -1, -1), (20, 4, 1))
-    for version in (1, 2):
+    for defaults in (False, True):
         for damping in ({"contact": 0}, {"contact": 0.1}):
             for shape, n in (("hex8", 2), ("tet4", 3)):
                 block = box("a", [2, 2, 2], divisions=(n, n, n), shape=shape)
@@ -175,7 +175,7 @@ def sliding(_folder):
                      "set": {"interfaces.default.friction_angle": 21}},
                 ]  # fmt: skip
                 sim = cdem.Simulation(
-                    case([bed, block], {"a": {}, "bed": FIXED}, cdem=version, stages=stages,
+                    case([bed, block], {"a": {}, "bed": FIXED}, defaults=defaults, stages=stages,
                          interfaces={"default": {"friction_angle": 60}},
                          rock={"young_modulus": 5e9}, loads=tilted(37)),
                     threads=1,
@@ -193,7 +193,7 @@ def sliding(_folder):
                 rate = mass @ sim.fields["velocity"][some, 0] / mass.sum() / 0.6
                 weight = -mass.sum() * tilted(37)["gravity"][2]
                 low, high = min(forces) / weight, max(forces) / weight
-                print(f"cdem: {version} {damping} {shape}: {100 * (rate / exact - 1):+.2f} %, "
+                print(f"{'defaults' if defaults else 'plain'} {damping} {shape}: {100 * (rate / exact - 1):+.2f} %, "
                       f"{low:.1f} to {high:.1f}", flush=True)  # fmt: skip
 
 

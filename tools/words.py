@@ -13,7 +13,6 @@ WIDTH = 100
 PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs", "src")
 CODE = ("core", "bindings", "src", "tests", "tools")
 MADE = ROOT / "docs/problems"  # pages that `make docs` makes of READMEs
-OLD_NAMES = "docs/contributing/names.md"  # its first columns hold what is no longer there
 
 DENIED = {
     r"anew": "again",
@@ -96,11 +95,8 @@ def check_document(path: Path) -> list[str]:
     """Everything that is wrong with a Markdown file."""
     problems = []
     lines = path.read_text().splitlines()
-    old_names = str(path.relative_to(ROOT)) == OLD_NAMES
     for number, (line, prose) in enumerate(zip(lines, without_code(lines), strict=True), 1):
         table = line.startswith("|")
-        if old_names and table:
-            line, prose = (text.split("|", 2)[2] for text in (line, prose))
         found = denied(re.sub(r"\]\([^)]*\)", "]", prose))
         found += check_links(path, prose) + check_paths(path, line)
         if RIDDLE.search(prose):

@@ -11,6 +11,11 @@ from cdem.errors import BackendError
 
 DEVICES = ("cuda", "emulated")
 """Cores that are used only where CDEM_ISA names them: for a GPU, and to look for faults of one."""
+GPU = (
+    "in a clone, with nvcc: pip install . -C cmake.define.CDEM_CUDA=ON; then CDEM_ISA=cuda cdem run "
+    "CASE.yaml"
+)
+"""How to get a core for a GPU, and to use it."""
 
 
 def _is_built(isa: str) -> bool:

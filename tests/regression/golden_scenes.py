@@ -124,9 +124,9 @@ def breaking(threads):
 
 
 @scene
-def version_2(threads):
-    """The same with the defaults of cdem: 2: lumped masses until the last bond breaks."""
-    sim = thrown(threads, 5e4, 400, cdem=2)
+def defaults(threads):
+    """The same with the defaults of the program: lumped masses until the last bond breaks."""
+    sim = thrown(threads, 5e4, 400, defaults=True)
     assert sum(sim.broken.values()) > 10
     lumped = sim.core.rebuilt()["node.lumped"]
     assert lumped.any() and not lumped.all()

@@ -39,7 +39,7 @@ def models():
     whole = {"default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}}
     tets = _box(0, {"size": [4, 3.3, 3], "divisions": [4, 3, 3], "shape": "tet4"})
     split = {"split": {"a": "elements"}}
-    yield "made up for", case([tets], {"a": {}}, cdem=2, interfaces=whole, model=split)
+    yield "made up for", case([tets], {"a": {}}, defaults=True, interfaces=whole, model=split)
     yield "cut", case([_box(0, {"size": [3, 2, 2]})], {"a": {}}, model=cut)
 
 

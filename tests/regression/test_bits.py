@@ -118,10 +118,10 @@ def test_resumed_run_gives_identical_results(tmp_path, whole, stops):
 
 
 def test_a_resumed_run_knows_which_blocks_have_bonds(tmp_path):
-    """With cdem: 2 bonded blocks move lumped masses: not stored, but found again."""
+    """By default bonded blocks move lumped masses: not stored, but found again."""
 
     def cube():
-        return breaking_cube(cdem=2)
+        return breaking_cube(defaults=True)
 
     expected = cdem.Simulation(cube(), threads=2)
     expected.run()

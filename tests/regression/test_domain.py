@@ -202,12 +202,11 @@ def test_other_formulations_and_static_stages_let_blocks_go(way):
 
 
 SLIDE = """\
-cdem: 1
 title: A weak body breaks up on a slope that ends
 model:
   blocks:
     - {group: slope, box: {size: [6, 4, 1], divisions: [3, 2, 1]}, translate: [0, 0, -1]}
-    - {group: body, box: {size: [1.5, 1.5, 1], divisions: [3, 3, 2], shape: tet4},
+    - {group: body, box: {size: [1.5, 1.5, 1], divisions: [3, 3, 2], shape: tet4, cells: alike},
        translate: [1, 1.2, 0]}
     - {group: stone, box: {size: [0.5, 0.5, 0.5]}, translate: [0.2, 0.2, 0]}
   split: {body: elements}
@@ -218,7 +217,7 @@ groups:
   body: {material: rock}
   stone: {material: rock}
 interfaces:
-  default: {friction_angle: 50}
+  default: {friction_angle: 50, stiffness_n: 10 E/h, stiffness_s: 10 E/h}
   pairs:
     - {between: [slope, body], friction_angle: 10}
     - {between: [body, body], friction_angle: 20, cohesion: "3 kPa", tensile_strength: "1 kPa"}
@@ -226,6 +225,7 @@ loads: {gravity: [5.6, 0, -8.0]}     # 35 degrees
 stages:
   - {name: slide, mode: dynamic, duration: 8, until: rest,
      damping: {contact: 0.3, stiffness: 0.1}}
+elements: {mass: exact}
 output: {every: 0.25}
 """
 

@@ -1,7 +1,7 @@
 """Case files that several tests share, as a user would write them."""
 
 INCLINE = """\
-cdem: 1
+cdem: 2
 title: Block on an incline
 units: SI
 model:
@@ -29,7 +29,7 @@ loads:
   supports:
     - {box: {min: [0, 0, 0], max: [1, 1, 1]}, group: bed, fix: [z]}
 stages:
-  - {name: settle, mode: static}
+  - {name: settle, mode: static, relax: local}
   - {name: slide, mode: dynamic, duration: "2 s", damping: {contact: "10 %"},
      set: {interfaces.base.cohesion: 0, loads.gravity.2: -5}}
 contact: {refresh: 50}

@@ -30,7 +30,7 @@ def pulled(blocks, axis, turned=None, group="rock", model=None, part=(-np.inf, n
     ]  # fmt: skip
     sim = cdem.Simulation(
         case(
-            blocks, {group: {}}, cdem=2, interfaces={"default": STRONG},
+            blocks, {group: {}}, defaults=True, interfaces={"default": STRONG},
             rock={"young_modulus": YOUNG, "poisson_ratio": NU},
             model={"split": {group: "elements"}, **(model or {})},
             loads={"tractions": tractions, "gravity": [0, 0, 0]},
@@ -128,7 +128,7 @@ def test_bricks_in_running_bond_are_counted():
         box([4, 1, 1], "hex8", [8, 1, 1])[0] | {"translate": [k % 2, 0, k]} for k in range(6)
     ]
     made = cdem.Simulation(
-        case(courses, {"rock": {}}, cdem=2, interfaces={"default": STRONG},
+        case(courses, {"rock": {}}, defaults=True, interfaces={"default": STRONG},
              model={"split": {"rock": "elements"}}),
     ).build.compensation["rock"]  # fmt: skip
     assert made.stiffening == pytest.approx(1.2, rel=1e-6)

@@ -36,7 +36,7 @@ def pulled(model, group, stress):
     ]
     sim = cdem.Simulation(
         case(
-            model.pop("blocks", []), {group: {}}, cdem=2, interfaces={"default": STRONG},
+            model.pop("blocks", []), {group: {}}, defaults=True, interfaces={"default": STRONG},
             rock={"young_modulus": YOUNG, "poisson_ratio": NU}, model=model,
             loads={"tractions": tractions, "gravity": [0, 0, 0]},
             stages=[{"name": "pull", "mode": "static", "relax": "adaptive", "tolerance": 1e-5}],
@@ -88,7 +88,7 @@ def test_the_ledger_closes_when_bonds_are_released_to_softer_contacts(mass):
     sim = cdem.Simulation(
         case(
             [{"group": "body", "box": cube, "translate": [0, 0, 0.002]}, bed],
-            {"body": {"velocity": [0.2, 0.1, -2]}, "bed": {"fix": ["x", "y", "z"]}}, cdem=2,
+            {"body": {"velocity": [0.2, 0.1, -2]}, "bed": {"fix": ["x", "y", "z"]}}, defaults=True,
             interfaces={"default": STRONG | {"cohesion": 2e5, "tensile_strength": 1e5}},
             rock={"young_modulus": 1e8}, model={"split": {"body": "elements"}},
             loads={"gravity": [0, 0, -9.81]}, elements={"mass": mass},

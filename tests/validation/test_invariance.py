@@ -3,7 +3,7 @@
 import meshio
 import numpy as np
 import pytest
-from scenes import turn
+from scenes import plain, turn
 
 import cdem
 from cdem.mesh import primitives
@@ -46,22 +46,23 @@ def thrown_cube(folder, rotation=None, seed=None, first_nodes=False):
     law = {"friction_angle": 30, "cohesion": "0.6 MPa", "tensile_strength": "0.3 MPa"}
     damping = {"contact": 0.2, "stiffness": 0.1}  # local damping depends on the axes
     case = cdem.Case.from_dict(
-        {
-            "cdem": 1,
-            "model": {"mesh": str(folder / "mesh.msh"), "split": {"body": "elements"}},
-            "materials": {
-                "rock": {"density": 2500, "young_modulus": "20 GPa", "poisson_ratio": 0.25}
-            },
-            "groups": {
-                "body": {"material": "rock", "velocity": (rotation @ [0.1, 0.05, -1]).tolist()},
-                "bed": {"material": "rock", "fix": ["x", "y", "z"]},
-            },
-            "interfaces": {"default": law},
-            "loads": {"gravity": (rotation @ [0, 0, -9.81]).tolist()},
-            # a given step: the automatic one is cut by boxes along the axes
-            "time": {"step": "2 us"},
-            "stages": [{"name": "fall", "mode": "dynamic", "duration": 1, "damping": damping}],
-        }
+        plain(
+            {
+                "model": {"mesh": str(folder / "mesh.msh"), "split": {"body": "elements"}},
+                "materials": {
+                    "rock": {"density": 2500, "young_modulus": "20 GPa", "poisson_ratio": 0.25}
+                },
+                "groups": {
+                    "body": {"material": "rock", "velocity": (rotation @ [0.1, 0.05, -1]).tolist()},
+                    "bed": {"material": "rock", "fix": ["x", "y", "z"]},
+                },
+                "interfaces": {"default": law},
+                "loads": {"gravity": (rotation @ [0, 0, -9.81]).tolist()},
+                # a given step: the automatic one is cut by boxes along the axes
+                "time": {"step": "2 us"},
+                "stages": [{"name": "fall", "mode": "dynamic", "duration": 1, "damping": damping}],
+            }
+        )
     )
     sim = cdem.Simulation(case, threads=1)
     sim.step(STEPS)

@@ -15,7 +15,7 @@ def upper_part(**joint):
     return simulate(
         [{"group": "rock", "box": {"size": [2, 2, 2]}}],
         {"rock": {}},
-        cdem=2,
+        defaults=True,
         rock={"young_modulus": "10 GPa"},
         model={"joints": [{"name": "bed", "origin": [1, 1, 1], **joint}]},
         interfaces={

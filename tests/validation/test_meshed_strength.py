@@ -17,7 +17,7 @@ def test_the_first_bond_breaks_where_the_report_says(tmp_path):
     low, high = ({"min": [-1, -1, z - 1e-6], "max": [2, 2, z + 1e-6]} for z in (0, 1))
     sim = cdem.Simulation(
         case(
-            [], {"default": {}}, cdem=2, model={**mesh, "split": {"default": "elements"}},
+            [], {"default": {}}, defaults=True, model={**mesh, "split": {"default": "elements"}},
             interfaces={"default": {"friction_angle": 30, "cohesion": 4e6, "tensile_strength": 1e6}},
             loads={
                 "gravity": [0, 0, 0],

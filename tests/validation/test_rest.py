@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import case, irregular_tets, simulate
+from scenes import case, irregular_tets, plain, simulate
 
 import cdem
 from cdem.errors import UnstableError
@@ -114,8 +114,7 @@ def test_change_of_the_mass_matrix_between_stages_keeps_the_ledger_closed():
     """Local damping takes lumped masses and the next stage exact ones: the kinetic energy changes."""
     sim = cdem.Simulation(
         cdem.Case.from_dict(
-            {
-                "cdem": 1,
+            plain({
                 "model": {"blocks": [{"group": "a", "box": {"size": [1, 1, 1]}}]},
                 "materials": {
                     "rock": {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.25}
@@ -126,7 +125,7 @@ def test_change_of_the_mass_matrix_between_stages_keeps_the_ledger_closed():
                     {"name": "one", "mode": "dynamic", "duration": 0.01, "damping": {"local": 0.5}},
                     {"name": "two", "mode": "dynamic", "duration": 0.01},
                 ],
-            }
+            })
         )
     )  # fmt: skip
     sim.run()
@@ -275,23 +274,24 @@ def soft_on_stiff(ratio, gravity=9.81, shape="hex8"):
     rock = {"density": 2500, "young_modulus": 10e9, "poisson_ratio": 0.25}
     return cdem.Simulation(
         cdem.Case.from_dict(
-            {
-                "cdem": 1,
-                "model": {
-                    "blocks": [
-                        {"group": "bed", "box": bed, "translate": [-0.5, -0.5, -1]},
-                        {"group": "block", "box": box, "translate": [0, 0, 0]},
-                    ]
-                },
-                "materials": {"hard": rock, "soft": rock | {"young_modulus": 10e9 / ratio}},
-                "groups": {"bed": {"material": "hard"}, "block": {"material": "soft"}},
-                "interfaces": {"default": {"friction_angle": 30}},
-                "loads": {
-                    "gravity": [0, 0, -gravity],
-                    "supports": [{"box": base, "fix": ["x", "y", "z"]}],
-                },
-                "stages": [{"name": "rest", "mode": "static", "relax": "adaptive"}],
-            }
+            plain(
+                {
+                    "model": {
+                        "blocks": [
+                            {"group": "bed", "box": bed, "translate": [-0.5, -0.5, -1]},
+                            {"group": "block", "box": box, "translate": [0, 0, 0]},
+                        ]
+                    },
+                    "materials": {"hard": rock, "soft": rock | {"young_modulus": 10e9 / ratio}},
+                    "groups": {"bed": {"material": "hard"}, "block": {"material": "soft"}},
+                    "interfaces": {"default": {"friction_angle": 30}},
+                    "loads": {
+                        "gravity": [0, 0, -gravity],
+                        "supports": [{"box": base, "fix": ["x", "y", "z"]}],
+                    },
+                    "stages": [{"name": "rest", "mode": "static", "relax": "adaptive"}],
+                }
+            )
         ),
         threads=1,
     )

@@ -44,7 +44,7 @@ def drop(body, e, speed, *, bed=None, law=None, rotation=None, **more):
     sim = simulate(
         [bed or plate(), block],
         {"plate": {"fix": ["x", "y", "z"]}, "body": {"velocity": (-speed * up).tolist()}},
-        cdem=2,
+        defaults=True,
         interfaces={"default": {"friction_angle": 30, "restitution": e, **(law or {})}},
         **more,
     )
@@ -120,7 +120,7 @@ def test_central_impact(e, factor):
     sim = simulate(
         blocks,
         {"a": {"velocity": [1, 0, 0]}, "b": {}},
-        cdem=2,
+        defaults=True,
         interfaces={
             "default": {"friction_angle": 0, "restitution": e, "contact_stiffness": "0.01 E/h"}
         },
@@ -134,14 +134,14 @@ def test_central_impact(e, factor):
     assert b - a == pytest.approx(e, abs=0.02)
 
 
-def at_rest(e, height=1.0, gravity=(0, 0, -9.81), then=None, version=2):
+def at_rest(e, height=1.0, gravity=(0, 0, -9.81), then=None, defaults=True):
     """A block that rests on a plate under gravity, and the way there."""
     block = {"box": {"size": [1, 1, height]}, "translate": [0.013, 0.021, 0]}
     stages = [{"name": "rest", "mode": "static", "relax": "local", "tolerance": 1e-8}]
     sim = simulate(
         [plate(), {"group": "body", **block}],
         {"plate": {"fix": ["x", "y", "z"]}, "body": {}},
-        cdem=version,
+        defaults=defaults,
         interfaces={
             "default": {"friction_angle": 60, "restitution": e, "contact_stiffness": "0.3 GPa/m"}
         },
@@ -211,7 +211,7 @@ def tumble(threads, **more):
             loads={"gravity": [0, 0, -9.81]},
             stages=[{"name": "fall", "mode": "dynamic", "duration": 0.1}],
             output={"every": 0.02},
-            cdem=2,
+            defaults=True,
         ),
         threads=threads,
         **more,

@@ -161,10 +161,15 @@ def test_step_of_scaled_masses_is_stable(tmp_path, model):
     def simulation(**time):
         scaling = {"mass_scaling": {"most": 0.01}}
         return simulate(
-            blocks, groups, interfaces={"default": BOND}, model=model, cdem=2, time=scaling | time
+            blocks,
+            groups,
+            interfaces={"default": BOND},
+            model=model,
+            defaults=True,
+            time=scaling | time,
         )
 
-    free = simulate(blocks, groups, interfaces={"default": BOND}, model=model, cdem=2)
+    free = simulate(blocks, groups, interfaces={"default": BOND}, model=model, defaults=True)
     limit = simulation().core.step_limit()[0]
     assert limit > 1.1 * free.core.step_limit()[0]
     sim = simulation(step=0.98 * limit)

@@ -22,7 +22,7 @@ def wet(blocks, groups=None, *, water, rock=None, **more):
         names["bed"] = {"fix": ["x", "y", "z"]}
     groups = {name: of | (groups or {}).get(name, {}) for name, of in names.items()}
     return case(
-        blocks, groups, cdem=2, water=water, materials={"rock": ROCK | (rock or {})},
+        blocks, groups, defaults=True, water=water, materials={"rock": ROCK | (rock or {})},
         loads={"gravity": [0, 0, -G], **more.pop("loads", {})},
         **{"stages": STATIC} | more,
     )  # fmt: skip

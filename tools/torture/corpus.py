@@ -156,6 +156,9 @@ def _write_bodies(folder: Path) -> None:
     (folder / "body-a.obj").write_text(text)
     skin.write(folder / "body-a.stl", binary=False)
     skin.write(folder / "body-b.stl", binary=True)
+    skin.cells[0].data = skin.cells[0].data.astype("int32")  # PLY has no longer ones
+    skin.write(folder / "body-a.ply", binary=False)
+    skin.write(folder / "body-b.ply", binary=True)
     row = [len(FACES), *(v for face in FACES for v in (len(face), *face))]
     grid = pyvista.UnstructuredGrid([len(row), *row], [pyvista.CellType.POLYHEDRON], corner)
     for name, binary in (("a.vtu", False), ("b.vtu", True), ("a.vtk", False), ("b.vtk", True)):

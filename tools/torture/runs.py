@@ -11,7 +11,6 @@ from pathlib import Path
 
 OF_THE_MACHINE = ("wall_time",)
 CASE = """
-cdem: 1
 title: two blocks fall on a third and break
 model:
   blocks:
@@ -24,15 +23,17 @@ groups:
   floor: {material: rock, fix: [x, y, z]}
   wall: {material: rock, velocity: [0.2, 0, -2]}
 interfaces:
-  default: {friction_angle: 30}
+  default: {friction_angle: 30, stiffness_n: 10 E/h, stiffness_s: 10 E/h}
   pairs:
     - {between: [wall, wall], friction_angle: 30, cohesion: 0.1 MPa, tensile_strength: 0.05 MPa}
 loads:
   gravity: [0, 0, -9.81]
 stages:
-  - {name: rest, mode: static, max_steps: 40}
-  - {name: fall, mode: dynamic, duration: 6 ms}
-  - {name: last, mode: dynamic, duration: 2 ms, set: {interfaces.default.friction_angle: 20}}
+  - {name: rest, mode: static, relax: local, max_steps: 40}
+  - {name: fall, mode: dynamic, duration: 6 ms, damping: {contact: 0}}
+  - {name: last, mode: dynamic, duration: 2 ms, damping: {contact: 0},
+     set: {interfaces.default.friction_angle: 20}}
+elements: {mass: exact}
 output: {every: 20 ms, checkpoint_every: 1e-9}
 histories: [{name: top, group: wall, quantities: [velocity, energy]}]
 """

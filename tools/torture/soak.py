@@ -22,7 +22,6 @@ sys.path.insert(0, str(Path(__file__).parent))
 from state import State, add_option
 
 SMALL = """
-cdem: 1
 model:
   blocks:
     - {group: floor, box: {size: [4, 2, 1], divisions: [4, 2, 1]}}
@@ -33,11 +32,12 @@ groups:
   floor: {material: rock}
   block: {material: rock}
 interfaces:
-  default: {friction_angle: 30}
+  default: {friction_angle: 30, stiffness_n: 10 E/h, stiffness_s: 10 E/h}
 loads:
   gravity: [0, 0, -9.81]
 stages:
   - {name: shake, mode: dynamic, duration: 1000, damping: {contact: 0.2}}
+elements: {mass: exact}
 output: {every: 20}
 """
 SHAKE = {"group": "floor", "velocity": [3, 0.3, 0]}

@@ -47,6 +47,17 @@ class Box(Part):
     shape: Literal["hex8", "wedge6", "pyramid5", "tet4"] = Field(
         "hex8", description="Elements: a cell is 1 hex8, 2 wedge6, 6 pyramid5 or 6 tet4"
     )
+    cells: Literal["mirrored", "alike"] | None = Field(
+        None,
+        description="Of tet4: neighbouring cells are mirror images, which leaves the whole no preferred "
+        "direction (default), or all are divided along the same diagonal",
+    )
+
+    @model_validator(mode="after")
+    def _cells_are_of_tets(self) -> Box:
+        if self.cells is not None and self.shape != "tet4":
+            raise ValueError("cells is of shape: tet4; others are divided in one way")
+        return self
 
 
 class Polyhedron(Part):
@@ -76,7 +87,7 @@ class Block(Part):
     file: Name | None = Field(
         None,
         description="Convex bodies from a file, relative to the case file: each closed surface of an "
-        ".obj or .stl, each cell of a .vtu or .vtk, polyhedra too",
+        ".obj, .stl or .ply, each cell of a .vtu or .vtk, polyhedra too",
     )
     size: Annotated[float, Quantity("m", above=0)] | None = Field(
         None,

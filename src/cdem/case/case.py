@@ -16,6 +16,7 @@ from cdem.case.named_files import files_of
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.source import Source
+from cdem.case.stored import is_stored, outdated, renewed
 from cdem.case.types import Part
 from cdem.errors import CaseError
 
@@ -44,12 +45,13 @@ class Case(CaseParts):
 
     def __init__(self, _source: Source | None = None, **data: Any) -> None:
         source, data = _source or Source(), plain(data, _source or Source())
-        problems: list[checks.Problem] = []
+        problems: list[checks.Problem] = outdated(data)
+        data = renewed(data)
         _refuse_code(data, source)
         try:
             super().__init__(**data)
         except ValidationError as error:
-            problems = problems_of(error, Case)
+            problems += problems_of(error, Case)
             try:  # so that names are checked, too, if all the rest is sound
                 super().__init__(**checks.without(data, problems))
             except ValidationError:
@@ -87,7 +89,7 @@ class Case(CaseParts):
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
         data, source = load_case_data(Path(path), overrides)
-        return cls(_source=source, **data)
+        return cls(_source=source, **(renewed(data) if is_stored(Path(path)) else data))
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Case:

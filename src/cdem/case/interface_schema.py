@@ -70,8 +70,8 @@ class Interface(Part):
         law: str
     stiffness_n: Stiffness = Field(
         AUTO,
-        description="Normal stiffness of bonds: auto (10 E/h; with cdem: 2, between elements that are "
-        "blocks, compensated by their modulus), a number [Pa/m], or '5 E/h'",
+        description="Normal stiffness of bonds: auto (10 E/h; between elements that are blocks a "
+        "stiffness that their modulus makes up for), a number [Pa/m], or '5 E/h'",
     )
     stiffness_s: Stiffness = Field(
         AUTO, description="Shear stiffness of bonds: auto, a number [Pa/m], or '5 E/h'"
@@ -83,8 +83,7 @@ class Interface(Part):
         AUTO,
         description="Normal and shear stiffness of contacts: auto (that of bonds where it is given, "
         "else 1 E/h, in soft rock up to 10 so that blocks overlap by at most 1 % under weight and 2 % "
-        "at the speeds they start with; with cdem: 1 that of bonds), a number [Pa/m], '0.3 E/h', or an "
-        "allowed overlap",
+        "at the speeds they start with), a number [Pa/m], '0.3 E/h', or an allowed overlap",
     )
     restitution: Annotated[
         Annotated[Coefficient, Tag("value")] | Annotated[Restitution, Tag("each")],

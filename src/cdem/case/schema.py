@@ -95,8 +95,8 @@ class Damping(Part):
         None,
         description="Dashpot at each contact without restitution, as a fraction of critical of the two "
         "nodes that touch [1]; how much speed an impact keeps then depends on mass, points and shape: "
-        "for a given coefficient use restitution of the interface. Default 0.1 in a dynamic stage; 0 in "
-        "a static one and with cdem: 1",
+        "for a given coefficient use restitution of the interface. Default 0.1 in a dynamic stage, 0 in "
+        "a static one",
     )
 
 
@@ -140,8 +140,7 @@ class Stage(Part):
     relax: Literal["local", "kinetic", "adaptive"] | None = Field(
         None,
         description="Static only: the way to rest: adaptive (critical damping and scaled masses: the "
-        "fewest steps; default), kinetic (stop at peaks of the kinetic energy), or local damping "
-        "(default with cdem: 1)",
+        "fewest steps; default), kinetic (stop at peaks of the kinetic energy), or local damping",
     )
     remove: list[Name] = Field(
         [], description="Groups that are dug out when the stage begins, and are no part of it"
@@ -172,20 +171,19 @@ class Stage(Part):
             raise ValueError("release.parts has no meaning in a dynamic stage; write over")
         if self.mode == "dynamic" and self.duration is None:
             raise ValueError("a dynamic stage needs a duration, e.g. duration: 2.0")
-        # Not by assignment: that would start this check again.
-        if self.mode == "static":
-            self.__dict__["tolerance"] = self.tolerance or 1e-5
         return self
 
-    def complete(self, version: int) -> None:
-        """Fill in what the case has left out, as this version of the case format has it."""
+    @model_validator(mode="after")
+    def _complete(self) -> Stage:
+        # Not by assignment: that would start these checks again.
         if self.mode == "static":
-            self.__dict__["relax"] = self.relax or ("local" if version == 1 else "adaptive")
+            self.__dict__["tolerance"] = self.tolerance or 1e-5
+            self.__dict__["relax"] = self.relax or "adaptive"
         if self.damping.local is None:
             self.damping.__dict__["local"] = 0.8 if self.relax == "local" else 0.0
         if self.damping.contact is None:
-            steady = self.mode == "dynamic" and version > 1
-            self.damping.__dict__["contact"] = 0.1 if steady else 0.0
+            self.damping.__dict__["contact"] = 0.1 if self.mode == "dynamic" else 0.0
+        return self
 
 
 class Contact(Part):
@@ -223,8 +221,7 @@ class Elements(Part):
     mass: Literal["auto", "exact", "lumped-while-bonded", "lumped"] = Field(
         "auto",
         description="Exact inertia of blocks of few elements; lumped mass of blocks that have bonds, "
-        "exact inertia of others; or lumped mass everywhere. auto: lumped-while-bonded, with cdem: 1 "
-        "exact",
+        "exact inertia of others; or lumped mass everywhere. auto: lumped-while-bonded",
     )
     hexahedra: Literal["full", "one-point"] = Field(
         "full",
@@ -364,9 +361,7 @@ def absent_groups(changes: Sequence[tuple[list[str], list[str]]], begun: int) ->
 class CaseParts(Part):
     """All parts of a case."""
 
-    cdem: Literal[1, 2] = Field(
-        2, description="Version of the case format: defaults differ between versions"
-    )
+    cdem: Literal[2] = Field(2, description="Version of the case format; there is one")
     title: Line = Field("", description="One line for reports")
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
     crs: MapSystem | None = Field(
@@ -397,12 +392,6 @@ class CaseParts(Part):
         """Groups that are not fixed in all directions."""
         return [name for name, group in self.groups.items() if len(set(group.fix)) < 3]
 
-    @model_validator(mode="after")
-    def _complete(self) -> CaseParts:
-        for stage in self.stages:
-            stage.complete(self.cdem)
-        return self
-
     def absent(self, begun: int) -> list[str]:
         """Groups that are no part of the model once so many stages have begun, in any order."""
         return absent_groups([(stage.remove, stage.add) for stage in self.stages], begun)
@@ -410,6 +399,4 @@ class CaseParts(Part):
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:
         """`elements.mass`, what `auto` stands for in it."""
-        if self.elements.mass == "auto":
-            return "exact" if self.cdem == 1 else "lumped-while-bonded"
-        return self.elements.mass
+        return "lumped-while-bonded" if self.elements.mass == "auto" else self.elements.mass

@@ -19,6 +19,7 @@ Recorded = NDArray
 Values = Callable[[Recorded], NDArray]
 
 AXES = ("x", "y", "z")
+MISES = "von_mises_stress"
 TENSOR = ("xx", "yy", "zz", "xy", "yz", "zx")
 YIELDED = ("never", "shear before", "tension before", "shear now", "tension now")
 """Names of the numbers that `yield_class` gives."""
@@ -59,7 +60,7 @@ def principal(stress: NDArray, place: int) -> NDArray:
     return np.linalg.eigvalsh(tensors)[:, 2 - place]
 
 
-def von_mises(stress: NDArray) -> NDArray:
+def von_mises_stress(stress: NDArray) -> NDArray:
     """sqrt(3 J2) of rows xx yy zz xy yz zx."""
     s = np.asarray(stress, float)
     deviator = s[:, :3] - s[:, :3].mean(axis=1, keepdims=True)
@@ -94,7 +95,7 @@ def _of_field(field: OutputField) -> list[Shown]:
     if field.name == "stress":
         return _of_stress("", field) + [
             Shown(
-                "von_mises", "Von Mises stress, sqrt(3 J2)", "Pa", "amount", field.name, von_mises
+                MISES, "Von Mises stress, sqrt(3 J2)", "Pa", "amount", field.name, von_mises_stress
             )
         ]
     if field.name == "effective_stress":

@@ -143,7 +143,7 @@ class Stiffness:
 
 
 AUTO = Stiffness(0.0, relative=True)
-"""What the version of the case chooses."""
+"""What the program chooses."""
 
 
 def _as_list(value: object) -> object:

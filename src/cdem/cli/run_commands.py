@@ -6,10 +6,11 @@ import json
 import shlex
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cdem._core_choice import GPU
 from cdem.cli.options import (
     STOPPED,
     AllowCode,
@@ -20,11 +21,17 @@ from cdem.cli.options import (
     allow_own_laws,
     stop_on_signal,
 )
-from cdem.errors import CdemError, UnstableError
+from cdem.errors import BackendError, CdemError, UnstableError
 
 if TYPE_CHECKING:
     from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
+
+
+def _tell_of_devices(device: str | None) -> None:
+    """Answer `--device`, which other programs have: the compiled core chooses the device."""
+    if device is not None:
+        raise BackendError(f"--device: no such option; a core for a GPU has to be built, {GPU}")
 
 
 def run(
@@ -35,9 +42,7 @@ def run(
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
-    device: Annotated[
-        Literal["cpu", "cuda"], typer.Option(metavar="cpu", help="Where to compute.")
-    ] = "cpu",
+    device: Annotated[str | None, typer.Option(hidden=True, callback=_tell_of_devices)] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
     force: Annotated[
         bool, typer.Option("--force", help="With --resume: go on though the case has changed.")
@@ -71,7 +76,6 @@ def run(
                 output=folder,
                 overwrite=overwrite,
                 resume=resume,
-                device=device,
                 force=force,
                 strict=strict,
             )

@@ -29,7 +29,7 @@ SURFACES = {".ply", ".off", ".svg", ".wkt", ".obj", ".stl"}
 """Formats of meshio that hold no volume elements."""
 HDF5 = {".med", ".h5m", ".cgns", ".hmf", ".xdmf", ".xmf", ".e", ".exo", ".ex2"}
 """Formats that are HDF5, or name HDF5 files."""
-BODIES = {".obj", ".stl"}
+BODIES = {".obj", ".stl", ".ply"}
 """Those from which bodies are read."""
 MEND = "is it whole, and of the kind that its name says?"
 POLYHEDRA = " Polyhedral cells are read with model.blocks: [{group: NAME, file: FILE}]"

@@ -79,7 +79,7 @@ def _block(case: Case, block: Block) -> Mesh:
         piece = read_bodies(case.path_of(block.file), block.group, block.scale or 1)
     elif block.box is not None:
         b = block.box
-        piece = box(block.group, b.size, b.divisions, shape=b.shape, mirrored=case.cdem > 1)
+        piece = box(block.group, b.size, b.divisions, shape=b.shape, mirrored=b.cells != "alike")
     else:
         assert block.polyhedron is not None
         piece = polyhedron(block.group, block.polyhedron.vertices, block.polyhedron.faces)

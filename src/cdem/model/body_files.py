@@ -1,7 +1,8 @@
-"""Bodies from files: closed surfaces (OBJ, STL), convex or filled with tets; polyhedral cells (VTK)."""
+"""Bodies from files: closed surfaces (OBJ, STL, PLY), convex or filled with tets; cells (VTK)."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -25,14 +26,18 @@ Ints = NDArray[np.int64]
 Loops = list[list[int]]
 Body = tuple[str, Floats, Loops, str]  # what to call it, its corners, its faces, its material
 
-SHELLS = (".obj", ".stl")
+SHELLS = (".obj", ".stl", ".ply")
 """Endings of the formats that hold closed surfaces."""
+CELLS = (".vtu", ".vtk")
+"""Of those that hold polyhedral cells."""
 GROWTH = 0.3  # of the edge length of tets per distance from the surface
 CROSSES = (
     "its surface cannot be filled with tets: it crosses itself, or has needles or a double wall"
 )
 SHOWN = 4
 """So many open edges are named."""
+NO_SHAPE = ("vt", "vn", "s", "usemtl", "mtllib")
+"""Words of an OBJ file that say how its faces look; files that they name are not opened."""
 ROUNDED = 1e-6
 """Coordinates in files are rounded to about this part of the largest: STL keeps seven digits."""
 
@@ -41,8 +46,8 @@ def read_bodies(path: Path, group: str, scale: float = 1.0) -> Mesh:
     """Read convex bodies; each becomes a block of tets around its centre.
 
     Args:
-        path: ``.obj`` or ``.stl``: every closed surface is a body; ``.vtu`` or ``.vtk``: every
-            volume cell is, polyhedra too (needs the extra ``viz``).
+        path: ``.obj``, ``.stl`` or ``.ply``: every closed surface is a body; ``.vtu`` or ``.vtk``:
+            every volume cell is, polyhedra too (needs the extra ``viz``).
         group: Group of the bodies; where cell data tell materials apart, it begins their groups.
         scale: Metres for each unit of the file.
 
@@ -50,8 +55,8 @@ def read_bodies(path: Path, group: str, scale: float = 1.0) -> Mesh:
         MeshError: The file cannot be read.
         BodyError: A body is open or not convex; says where.
     """
-    parts, notes, groups = [], list[str](), list[str]()
-    for name, points, faces, kind in _bodies(path, scale):
+    parts, notes, groups, unused = [], list[str](), list[str](), list[str]()
+    for name, points, faces, kind in _bodies(path, scale, unused):
         own = f"{group}_{kind}" if kind else group
         if own not in groups:
             groups.append(own)
@@ -73,7 +78,11 @@ def read_bodies(path: Path, group: str, scale: float = 1.0) -> Mesh:
             raise
     # meshed like what joints cut: bodies that share a face divide it alike
     mesh = to_mesh(join(parts), groups, [], [])
-    mesh.notes += [*notes[:SHOWN], *([f"{len(notes) - SHOWN} more"] if len(notes) > SHOWN else [])]
+    mesh.notes += [
+        *unused,
+        *notes[:SHOWN],
+        *([f"{len(notes) - SHOWN} more"] if len(notes) > SHOWN else []),
+    ]
     if groups != [group]:
         mesh.notes.append(f"{path.name}: groups by its cell data: {', '.join(groups)}")
     return mesh
@@ -83,7 +92,7 @@ def fill_bodies(path: Path, group: str, size: float, scale: float = 1.0) -> Mesh
     """Read closed surfaces, convex or not, and fill each with tets.
 
     Args:
-        path: ``.obj`` or ``.stl``: every closed surface is a body.
+        path: ``.obj``, ``.stl`` or ``.ply``: every closed surface is a body.
         group: Group of the bodies.
         size: Largest edge of the tets inside [m]; the triangles of the surface stay as they are.
         scale: Metres for each unit of the file.
@@ -96,9 +105,9 @@ def fill_bodies(path: Path, group: str, size: float, scale: float = 1.0) -> Mesh
     from cdem.terrain.solid import fill
 
     if path.suffix.lower() not in SHELLS:
-        raise MeshError(f"{path}: size is for surfaces, {' and '.join(SHELLS)}")
-    meshes = []
-    for name, points, faces, _ in _bodies(path, scale):
+        raise MeshError(f"{path}: size is for surfaces, {', '.join(SHELLS)}")
+    meshes, unused = [], list[str]()
+    for name, points, faces, _ in _bodies(path, scale, unused):
         try:
             _refuse_open(points, faces)
             shell = _outward([(f[0], a, b) for f in faces for a, b in pairwise(f[1:])], points)
@@ -115,7 +124,9 @@ def fill_bodies(path: Path, group: str, size: float, scale: float = 1.0) -> Mesh
             raise MeshError(f"{path}: {name}: {CROSSES}")
         of_group = np.zeros(len(tets), np.int32)
         meshes.append(Mesh(xyz, {"tet4": tets}, {"tet4": of_group}, [group]))
-    return merge(meshes)
+    made = merge(meshes)
+    made.notes += unused
+    return made
 
 
 def _volume(shell: Floats) -> float:
@@ -146,21 +157,23 @@ def _outward(triangles: list[tuple[int, int, int]], points: Floats) -> Ints:
     return faces if _volume(points[faces]) > 0 else faces[:, ::-1]
 
 
-def _bodies(path: Path, scale: float) -> list[Body]:
-    """All bodies of a file, in metres."""
+def _bodies(path: Path, scale: float, unused: list[str]) -> list[Body]:
+    """All bodies of a file, in metres; what of it is not used is added to a list."""
     if not is_file(path):
         raise MeshError(f"{path}: no such file; give a path relative to the case file")
     kind = path.suffix.lower()
-    readers = {".obj": _obj, ".stl": _stl, ".vtu": _vtk, ".vtk": _vtk}
-    if kind not in readers:
-        raise MeshError(f"{path}: bodies are read from {', '.join(readers)} files")
-    if readers[kind] is _vtk:
+    if kind in CELLS:
         bodies = list(_vtk(path))
-    else:
+    elif kind in SHELLS:
         with reading(path, MeshError, MEND):
-            bodies = list(readers[kind](path))
+            bodies = list((_obj if kind == ".obj" else _by_meshio)(path, unused))
+    else:
+        raise MeshError(f"{path}: bodies are read from {', '.join((*SHELLS, *CELLS))} files")
     if not bodies:
         raise MeshError(f"{path}: holds no bodies")
+    for name, points, *_ in bodies:
+        if not np.isfinite(points).all():
+            raise MeshError(f"{path}: {name}: a corner has a coordinate that is not finite")
     return [(name, points * scale, faces, kind) for name, points, faces, kind in bodies]
 
 
@@ -236,42 +249,60 @@ def _own(name: str, points: Floats, loops: Loops, kind: str = "") -> Body:
     return name, points[used], faces, kind
 
 
-def _obj(path: Path) -> Iterator[Body]:
+def _obj(path: Path, unused: list[str]) -> Iterator[Body]:
     points, loops, parts, part = [], [], [], ""
+    others: Counter[str] = Counter()
     text = path.read_text(encoding="utf-8", errors="replace")
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.split()
         try:
             if words[:1] == ["v"]:
-                points.append([float(x) for x in words[1:4]])
+                x, y, z = map(float, words[1:4])
+                points.append([x, y, z])
             elif words[:1] in (["o"], ["g"]):
                 part = " ".join(words[1:])
             elif words[:1] == ["f"]:
                 parts.append(part)
                 corners = [int(word.split("/")[0]) for word in words[1:]]
                 loops.append([c - 1 if c > 0 else len(points) + c for c in corners])
+            elif words and words[0] not in NO_SHAPE and not line.startswith("#"):
+                others[words[0]] += 1
         except ValueError:
             raise MeshError(f"{path}:{number}: cannot be read: {line.strip()}") from None
         if words[:1] == ["f"] and not _within(loops[-1], len(points)):
             raise MeshError(f"{path}:{number}: a face needs three or more vertices from above it")
     if not loops:
         raise MeshError(f"{path}: holds no faces")
-    array = np.array(points)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise MeshError(f"{path}: vertices need three coordinates")
-    yield from _surfaces(array, loops, parts)
+    _tell_unused(path, others, unused)
+    yield from _surfaces(np.array(points), loops, parts)
+
+
+def _tell_unused(path: Path, others: Counter[str], unused: list[str]) -> None:
+    if others:
+        kinds = ", ".join(f"{count} of '{kind}'" for kind, count in others.most_common(SHOWN))
+        more = f" and {len(others) - SHOWN} kinds more" if len(others) > SHOWN else ""
+        unused.append(f"{path.name}: only faces are used, not {kinds}{more}")
 
 
 def _within(loop: list[int], count: int) -> bool:
     return len(loop) >= 3 and min(loop) >= 0 and max(loop) < count
 
 
-def _stl(path: Path) -> Iterator[Body]:
+def _by_meshio(path: Path, unused: list[str]) -> Iterator[Body]:
     raw = read_raw(path)
-    triangles = [block.data for block in raw.cells if block.type == "triangle"]
-    if not triangles or not sum(map(len, triangles)):
-        raise MeshError(f"{path}: holds no triangles")
-    yield from _surfaces(np.asarray(raw.points, float), np.concatenate(triangles).tolist())
+    loops: Loops = []
+    others: Counter[str] = Counter()
+    for block in raw.cells:
+        if block.type in ("triangle", "quad") or block.type.startswith("polygon"):
+            loops += np.asarray(block.data).tolist()
+        else:
+            others[block.type] += len(block.data)
+    if not loops:
+        raise MeshError(f"{path}: holds no faces that can be read; is it whole?")
+    if not all(_within(loop, len(raw.points)) for loop in loops):
+        raise MeshError(f"{path}: a face has a vertex that is not there")
+    _tell_unused(path, others, unused)
+    yield from _surfaces(np.asarray(raw.points, float), loops)
 
 
 def _vtk(path: Path) -> Iterator[Body]:

@@ -236,9 +236,7 @@ def compensated_groups(
     interface_of: NDArray[np.int32],
     bonds: NDArray[np.bool_],
 ) -> list[int]:
-    """Groups whose every element is a block, bonded to others with the stiffness left to cdem: 2."""
-    if case.cdem < 2:
-        return []
+    """Groups whose every element is a block, bonded to others with a stiffness left to the program."""
     elements = elements_of_blocks(t)
     kind = t.face_kind[t.pair_faces]
     bonded = np.unique(kind[(kind[:, 0] == kind[:, 1]) & bonds[kind[:, 0], kind[:, 1]], 0])

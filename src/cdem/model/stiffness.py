@@ -1,4 +1,4 @@
-"""Stiffness of bonds and contacts: as the case gives it, by its version, or by an allowed overlap."""
+"""Stiffness of bonds and contacts: as the case gives it, by default, or by an allowed overlap."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def _of_contacts(
         both = Stiffness(overlap_factor(case, law, given, names, height), relative=True)
         return both, both, True
     known = law.stiffness_n != AUTO or law.stiffness_s != AUTO
-    if given == AUTO and (known or case.cdem == 1):
+    if given == AUTO and known:
         return *_of_bonds(law), False
     if given == AUTO:
         factor = max(CONTACT, overlap_factor(case, law, DEEPEST, names, height))

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from cdem.errors import CdemError
 from cdem.mesh.element_volumes import Solids
-from cdem.output.geotiff import NOTHING, Raster
 from cdem.run.flow_maps import TRACE, check_size
+from cdem.terrain.rasters import NOTHING, Raster
 
 Floats = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.output.geotiff import Raster
 from cdem.terrain.heights import extra
+from cdem.terrain.rasters import Raster
 
 WHAT = "runout.gpkg"
 STYLES = "layer_styles"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
@@ -16,54 +15,15 @@ from cdem._version import __version__
 from cdem.case.map_system import look_up
 from cdem.errors import BackendError
 from cdem.terrain.projection import horizontal
+from cdem.terrain.rasters import NOTHING, Raster
 
 Floats = NDArray[np.float64]
 
-NOTHING = -9999.0
-"""What the files hold where there is no value."""
 SHORT, LONG, DOUBLE, ASCII = "H", "I", "d", "s"
 KINDS = {ASCII: 2, SHORT: 3, LONG: 4, DOUBLE: 12}
 PIXEL_IS_AREA = (1025, 0, 1, 1)
 PROJECTED = (1024, 0, 1, 1)
 METRE = (3076, 0, 1, 9001)
-
-
-@dataclass(frozen=True)
-class Raster:
-    """Numbers over a grid in plan.
-
-    Attributes:
-        x: Western edge [m].
-        y: Southern edge [m].
-        cell: Side of a cell [m].
-        values: Shape (rows, columns), from south to north; not a number where there is none.
-    """
-
-    x: float
-    y: float
-    cell: float
-    values: Floats
-
-    @property
-    def north(self) -> float:
-        """Northern edge [m]."""
-        return self.y + len(self.values) * self.cell
-
-    @property
-    def extent(self) -> tuple[float, float, float, float]:
-        """West, east, south and north edge [m]."""
-        return self.x, self.x + self.values.shape[1] * self.cell, self.y, self.north
-
-    @property
-    def rows(self) -> Floats:
-        """Values from north to south, as maps are written."""
-        return np.where(np.isfinite(self.values), self.values, NOTHING)[::-1]
-
-    def middles(self) -> tuple[Floats, Floats]:
-        """x of the columns and y of the rows, at the middles of the cells [m]."""
-        rows, columns = self.values.shape
-        x, y = (self.cell * (np.arange(n, dtype=float) + 0.5) for n in (columns, rows))
-        return self.x + x, self.y + y
 
 
 def write_geotiff(

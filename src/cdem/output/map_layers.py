@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.output.deposit import Deposit
-from cdem.output.geotiff import Raster, write_geotiff
+from cdem.output.geotiff import write_geotiff
 from cdem.run.flow_maps import ARRIVAL, MAXIMA, FlowMaps
+from cdem.terrain.rasters import Raster
 
 Floats = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.output.geotiff import Raster
 from cdem.output.map_layers import LAYERS, Maps, colors_of
+from cdem.terrain.rasters import Raster
 
 Floats = NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from cdem.case.input_file import reading
 from cdem.case.map_system import look_up
 from cdem.errors import CaseError
-from cdem.output.geotiff import Raster
 from cdem.terrain.features import read_features
 from cdem.terrain.heights import extra
 from cdem.terrain.projection import Projection
+from cdem.terrain.rasters import Raster
 
 Floats = NDArray[np.float64]
 

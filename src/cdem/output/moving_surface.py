@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.output_fields import OUTPUT_FIELDS
+from cdem.case.shown_fields import MISES, von_mises_stress
 from cdem.errors import CdemError
 from cdem.output.reader import Surface
 
 NEVER = np.iinfo(np.int32).max
 """Frame in which a face goes that stays."""
-MISES = "von_mises_stress"
-YIELDED = ("has not flowed", "has flowed", "flows now")
+FLOW_LABELS = ("has not flowed", "has flowed", "flows now")
 FLOWS_NOW = 1 + 2 + 16 + 32
 """Bits of the field "yielded" that say that rock flows in this moment."""
 COLORS = 251
@@ -230,7 +230,7 @@ def values_of(surface: Surface, stress: NDArray | None) -> dict[str, NDArray]:
         of = np.asarray(data[f.name])
         values[f.name] = np.linalg.norm(of, axis=1) if of.ndim == 2 else of
     if stress is not None:
-        values[MISES] = von_mises(stress[cells["element"]])
+        values[MISES] = von_mises_stress(stress[cells["element"]])
     if "yielded" in values:
         bits = values["yielded"].astype(np.int64)
         values["yielded"] = np.where(bits & FLOWS_NOW, 2, bits > 0).astype(np.int64)
@@ -239,16 +239,12 @@ def values_of(surface: Surface, stress: NDArray | None) -> dict[str, NDArray]:
     return values
 
 
-def von_mises(stress: NDArray) -> NDArray[np.float64]:
-    """Von Mises stress [Pa] of tensors xx yy zz xy yz zx, shape (n, 6)."""
-    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
-    normal = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2)
-    return np.sqrt(normal + 3 * (xy**2 + yz**2 + zx**2))
-
-
 def fields_of(surface: Surface, values: Mapping[str, NDArray]) -> dict[str, PageField]:
     """The fields of a frame that a page offers, in the order of its list."""
-    labels: dict[str, tuple[str, ...]] = {"yielded": YIELDED, "group": tuple(surface.group_names)}
+    labels: dict[str, tuple[str, ...]] = {
+        "yielded": FLOW_LABELS,
+        "group": tuple(surface.group_names),
+    }
     sets = int(surface.cell_data["joint"].max(initial=0))
     if sets:
         labels["joint"] = ("no joint", *(f"set {k + 1}" for k in range(sets)))

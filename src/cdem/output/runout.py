@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from cdem.errors import CdemError
 from cdem.mesh.element_volumes import Solids
 from cdem.output.deposit import Deposit, checked_cell
-from cdem.output.geotiff import Raster
 from cdem.output.grain_sizes import GrainSizes
 from cdem.output.map_layers import OF_PIECES, OF_VELOCITY, Maps
 from cdem.output.map_picture import View, frame_of, ground_grid
@@ -26,6 +25,7 @@ from cdem.output.runout_measures import EndMotion, crown_of, direction_of, follo
 from cdem.output.runout_result import RunOut
 from cdem.run.flow_maps import FlowMaps
 from cdem.run.flow_recorder import read_maxima
+from cdem.terrain.rasters import Raster
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from cdem.case.stored import MARKER
 from cdem.errors import CdemError
-from cdem.run.written_files import LOCK, MARKER, mark
+from cdem.run.written_files import LOCK, mark
 
 
 class FolderLock:

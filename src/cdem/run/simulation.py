@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from cdem._native import core as native
 from cdem.case.case import Case
+from cdem.case.stored import renewed
 from cdem.errors import CdemError, DiskError, UnstableError
 from cdem.model.audit import Audit
 from cdem.model.fill import nodes_of_groups
@@ -47,7 +48,6 @@ class Simulation(RunState):
         overwrite: Replace what an existing result folder holds.
         resume: Go on from the checkpoint in the result folder.
         force: Go on though the case has changed in a way that a run cannot change.
-        device: "cpu".
         strict: Refuse a model that `cdem check` warns of, before anything is written.
 
     Raises:
@@ -58,7 +58,6 @@ class Simulation(RunState):
     Example:
         >>> import cdem
         >>> case = cdem.Case.from_dict({
-        ...     "cdem": 1,
         ...     "model": {"blocks": [{"group": "cube", "box": {"size": [1, 1, 1]}}]},
         ...     "materials": {"rock": {"density": 2700, "young_modulus": "10 GPa",
         ...                            "poisson_ratio": 0.25}},
@@ -82,13 +81,8 @@ class Simulation(RunState):
         overwrite: bool = False,
         resume: bool = False,
         force: bool = False,
-        device: str = "cpu",
         strict: bool = False,
     ) -> None:
-        if device != "cpu":
-            raise CdemError(
-                f"device {device!r}: only cpu can be named; CDEM_ISA=cuda chooses a GPU"
-            )
         case = case if isinstance(case, Case) else Case.load(case)
         threads = threads or os.cpu_count() or 1
         native.set_threads(threads)
@@ -439,7 +433,9 @@ class Simulation(RunState):
             raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")
         begun = attributes.stage_index + (attributes.stage is not None)
         try:
-            changes = compare(attributes.case, self.given_case.model_dump(mode="json"), begun)
+            changes = compare(
+                renewed(attributes.case), self.given_case.model_dump(mode="json"), begun
+            )
         except (TypeError, ValueError, KeyError, AttributeError) as error:
             raise CdemError(
                 f"{path}: is damaged (its case is none); run the case again with --overwrite"

@@ -7,11 +7,10 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from cdem.case.shown_fields import SHOWN
+from cdem.case.stored import MARKER
 from cdem.errors import CdemError
 from cdem.whole_files import ASIDE, refuse_link, write_text
 
-MARKER = ".cdem-results"
-"""The file that says that `cdem run` made the folder."""
 LOCK = ".cdem-lock"
 """The file that a run holds while it writes."""
 BEGUN = {MARKER, MARKER + ASIDE, LOCK}

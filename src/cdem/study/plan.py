@@ -19,6 +19,7 @@ from cdem.case.source import Source
 from cdem.errors import CaseError
 from cdem.study import sampling
 from cdem.study.run import Run
+from cdem.study.samples import samples
 from cdem.study.study import Study
 
 
@@ -30,11 +31,13 @@ def plan(study: Study, folder: Path) -> list[Run]:
 
     Raises:
         CaseError: The case is wrong, or all runs are.
+        CdemError: The folder holds a sweep whose values are not known.
+        BackendError: The study needs an extra.
     """
     data, source = load_case_data(study.case_file)
     drawn = study.sampling is not None
     runs, first_error = [], None
-    for row in sampling.rows(study):
+    for row in sampling.rows(study, samples(study, folder)):
         try:
             runs.append(_make(study, data, source, row, folder))
         except CaseError as error:

@@ -10,21 +10,24 @@ from typing import Any
 
 import numpy as np
 
+from cdem.errors import BackendError
 from cdem.study.schema import Parameter, Sampling
 from cdem.study.study import Study
 
 Row = dict[str, Any]
 
 
-def rows(study: Study) -> list[Row]:
-    """Value of each parameter for every run, in the parameters' order; the same for the same file.
+def rows(study: Study, draws: list[Row]) -> list[Row]:
+    """Value of each parameter for every run, in the parameters' order.
 
     Lists and grids are combined first; each combination then meets all draws.
+
+    Args:
+        study: The study.
+        draws: Values of the parameters that are drawn; one without any if none is.
     """
     lists = {n: _listed(p) for n, p in study.parameters.items() if not p.is_drawn}
-    drawn = {n: p for n, p in study.parameters.items() if p.is_drawn}
     combined = _combine(lists, study.combine)
-    draws = draw(drawn, study.sampling) if study.sampling else [{}]
     whole = [a | b for a in combined for b in draws]
     return [{name: row[name] for name in study.parameters} for row in whole]
 
@@ -52,19 +55,36 @@ def _combine(lists: dict[str, list[Any]], how: str) -> list[Row]:
 
 
 def draw(parameters: dict[str, Parameter], sampling: Sampling) -> list[Row]:
-    """Draw values, the same for the same seed, count and name of a parameter.
+    """Draw values, the same for the same seed, count and name of a parameter, and the same SciPy.
 
     Latin hypercube: of `count` equally likely parts of each distribution every one gets one value,
     and the parts of different parameters meet in random order (McKay, Beckman & Conover 1979).
+
+    Raises:
+        BackendError: Latin hypercubes need the extra `sweep`.
     """
+    latin = _latin_hypercube() if sampling.method == "latin-hypercube" else None
     columns = {}
     for name, parameter in parameters.items():
         random = np.random.default_rng([sampling.seed, zlib.crc32(name.encode())])
-        u = random.random(sampling.count)
-        if sampling.method == "latin-hypercube":
-            u = (random.permutation(sampling.count) + u) / sampling.count
+        u = (
+            latin(1, seed=random).random(sampling.count)[:, 0]
+            if latin
+            else random.random(sampling.count)
+        )
         columns[name] = [quantile(parameter, float(x)) for x in u]
     return [{n: column[i] for n, column in columns.items()} for i in range(sampling.count)]
+
+
+def _latin_hypercube() -> Any:
+    try:
+        from scipy.stats.qmc import LatinHypercube
+    except ImportError as error:
+        raise BackendError(
+            "sampling: latin-hypercube needs SciPy: pip install 'cdem[sweep]', or write method: "
+            f"monte-carlo ({error})"
+        ) from None
+    return LatinHypercube
 
 
 def quantile(parameter: Parameter, u: float) -> float:

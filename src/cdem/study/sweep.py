@@ -16,6 +16,7 @@ from cdem.study.local_workers import LocalTask, LocalWorkers
 from cdem.study.plan import plan
 from cdem.study.results_table import Table, check_results
 from cdem.study.run import Run
+from cdem.study.samples import SAMPLES, to_keep
 from cdem.study.study import Study
 from cdem.study.worker import finished
 from cdem.whole_files import refuse_link, write_json
@@ -101,7 +102,7 @@ def run_studies(
     runs = [run for table in tables for run in table.runs]
     waiting: dict[str, list[Run]] = {}  # runs of the same case are executed once
     for (study, folder), table in zip(studies, tables, strict=True):
-        _open(folder, study)
+        _open(folder, study, table.runs)
         for run in table.runs:
             run.result = finished(run.task)
             check_results(study, run)
@@ -118,14 +119,16 @@ def run_studies(
     return tables
 
 
-def _open(folder: Path, study: Study) -> None:
-    """Make the folder of the sweep, unless it holds other things."""
+def _open(folder: Path, study: Study, runs: list[Run]) -> None:
+    """Make the folder of the sweep, unless it holds other things; keep what was drawn."""
     if folder.exists() and not folder.is_dir():
         raise CdemError(f"{folder}: is a file; name another folder with -o")
     if folder.exists() and any(folder.iterdir()) and not (folder / "study.json").is_file():
         raise CdemError(f"{folder}: holds other things than a sweep; name another folder with -o")
     folder.mkdir(parents=True, exist_ok=True)
     refuse_link(folder / "plots")
+    if study.sampling:  # first, so that no folder has runs of values that are not kept
+        write_json(folder / SAMPLES, to_keep(study, [run.parameters for run in runs]))
     write_json(folder / "study.json", study.model_dump(mode="json", exclude_unset=True))
 
 

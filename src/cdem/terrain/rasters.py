@@ -1,4 +1,4 @@
-"""Readers of grids of heights: ESRI ASCII by itself; GeoTIFF, VRT and Surfer by GDAL."""
+"""Numbers over a plan; readers of heights: ESRI ASCII by itself; GeoTIFF, VRT and Surfer by GDAL."""
 
 from __future__ import annotations
 
@@ -31,11 +31,51 @@ SURFER = {b"DSAA": "GSAG", b"DSBB": "GSBG", b"DSRB": "GS7BG"}
 KINDS = ".asc (ESRI ASCII), .tif (GeoTIFF), .vrt or .grd"
 MEND = f"a grid is one of {KINDS}"
 WHAT = "terrain file"
+NOTHING = -9999.0
+"""What files hold where there is no value, unless they say otherwise."""
+
+
+@dataclass(frozen=True)
+class Raster:
+    """Numbers over a grid in plan.
+
+    Attributes:
+        x: Western edge [m].
+        y: Southern edge [m].
+        cell: Side of a cell [m].
+        values: Shape (rows, columns), from south to north; not a number where there is none.
+    """
+
+    x: float
+    y: float
+    cell: float
+    values: Floats
+
+    @property
+    def north(self) -> float:
+        """Northern edge [m]."""
+        return self.y + len(self.values) * self.cell
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """West, east, south and north edge [m]."""
+        return self.x, self.x + self.values.shape[1] * self.cell, self.y, self.north
+
+    @property
+    def rows(self) -> Floats:
+        """Values from north to south, as maps are written."""
+        return np.where(np.isfinite(self.values), self.values, NOTHING)[::-1]
+
+    def middles(self) -> tuple[Floats, Floats]:
+        """x of the columns and y of the rows, at the middles of the cells [m]."""
+        rows, columns = self.values.shape
+        x, y = (self.cell * (np.arange(n, dtype=float) + 0.5) for n in (columns, rows))
+        return self.x + x, self.y + y
 
 
 @dataclass
-class Raster:
-    """A grid as its file has it.
+class LabelledGrid:
+    """A grid as its file has it, with what the file says of it.
 
     Attributes:
         grid: Heights, in the units and the projection of the file.
@@ -71,7 +111,7 @@ def read_label(path: Path) -> str | None:
     return _by_gdal(path, driver, lambda head: None)[0]["label"]
 
 
-def read_raster(path: Path, part: Part | None = None) -> Raster:
+def read_raster(path: Path, part: Part | None = None) -> LabelledGrid:
     """Read a grid.
 
     Args:
@@ -105,7 +145,7 @@ def read_raster(path: Path, part: Part | None = None) -> Raster:
     x, _, west, _, y, north = head["place"]
     west, north = west + x * (window[0] + 0.5), north + y * (window[1] + 0.5)
     grid = Grid(west, north + y * (len(values) - 1), (x, -y), values[::-1])
-    return Raster(grid, head["label"], head["unit"])
+    return LabelledGrid(grid, head["label"], head["unit"])
 
 
 def _driver(path: Path) -> str | None:
@@ -222,7 +262,7 @@ def _ascii_grid(path: Path, text: str) -> tuple[dict[str, Any], Floats]:
         raise CaseError(
             f"{path}: holds {len(values)} heights, but its head says {rows} x {columns}"
         )
-    values[values == head.get("nodata_value", -9999.0)] = np.nan
+    values[values == head.get("nodata_value", NOTHING)] = np.nan
     shift = 0.0 if corner else step / 2
     west = head["xllcorner" if corner else "xllcenter"] - shift
     south = head["yllcorner" if corner else "yllcenter"] - shift

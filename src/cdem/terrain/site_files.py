@@ -14,10 +14,10 @@ from cdem.terrain.heights import Grid, extra
 from cdem.terrain.landslide import Landslide
 from cdem.terrain.plan import Plan
 from cdem.terrain.projection import name_of
+from cdem.terrain.rasters import NOTHING
 from cdem.terrain.slbl import OnTriangles
 
 Floats = NDArray[np.float64]
-EMPTY = -9999.0
 BETWEEN = (
     0.8,
     2.0,
@@ -39,12 +39,12 @@ def write_raster(path: Path, grid: Grid, crs: Any | None) -> Path:
     rows, columns = grid.values.shape
     head = {
         "driver": "GTiff", "width": columns, "height": rows, "count": 1, "dtype": "float32",
-        "nodata": EMPTY, "compress": "deflate", "predictor": 3,
+        "nodata": NOTHING, "compress": "deflate", "predictor": 3,
         "transform": extra("rasterio.transform").from_origin(grid.low[0], grid.high[1], *grid.step),
     }  # fmt: skip
     if crs is not None:
         head["crs"] = extra("rasterio.crs").CRS.from_wkt(crs.to_wkt())
-    values = np.where(np.isfinite(grid.values), grid.values, EMPTY)[::-1]
+    values = np.where(np.isfinite(grid.values), grid.values, NOTHING)[::-1]
     with rasterio.open(path, "w", **head) as file:
         file.write(values.astype(np.float32), 1)
         file.units = ("metre",)

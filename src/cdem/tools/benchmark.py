@@ -130,31 +130,31 @@ def run(sizes: list[str], threads: int) -> Iterator[Row]:
 
 
 def seconds() -> Iterator[Row]:
-    """CPU seconds of one thread that a simulated second takes at the defaults of either version of the
-    case format, and at what accuracy."""
+    """CPU seconds of one thread that a simulated second takes, plain and at the defaults, and at what
+    accuracy."""
     little = {"time": {"mass_scaling": {"most": 0.001}}}
     overlap = {"contact_stiffness": {"overlap": 1e-3}}
-    for version in (1, 2):
+    for plain in (True, False):
         regular = cases.bar(SIZES["1e4"], "tet4", **cases.breakable("1 GPa"))
-        yield _cost("P2 regular tets", version, regular, error=True)
+        yield _cost("P2 regular tets", plain, regular, error=True)
     with tempfile.TemporaryDirectory() as place:
-        for version, more in ((1, {}), (2, {}), (2, little)):
+        for plain, more in ((True, {}), (False, {}), (False, little)):
             shaken = cases.irregular(SHAKEN, Path(place)) | more
-            yield _cost("P2 irregular tets", version, shaken, error=True)
-    for version, law in ((1, {}), (2, {}), (2, overlap)):
+            yield _cost("P2 irregular tets", plain, shaken, error=True)
+    for plain, law in ((True, {}), (False, {}), (False, overlap)):
         case = cases.wall(WALL)
         case["interfaces"]["default"] |= law
-        yield _cost("P4 wall" + (", overlap 1e-3" if law else ""), version, case)
+        yield _cost("P4 wall" + (", overlap 1e-3" if law else ""), plain, case)
     for speed in (2, 21):
-        for version in (1, 2):
-            yield _cost(f"P3 rubble, {speed} m/s", version, cases.rubble(RUBBLE, speed / 21), 0.005)
+        for plain in (True, False):
+            yield _cost(f"P3 rubble, {speed} m/s", plain, cases.rubble(RUBBLE, speed / 21), 0.005)
 
 
 def _cost(
-    name: str, version: int, case: dict[str, Any], settle: float = 0.0, *, error: bool = False
+    name: str, plain: bool, case: dict[str, Any], settle: float = 0.0, *, error: bool = False
 ) -> Row:
     """CPU seconds per simulated second, the step, and the error of Young's modulus of the rock."""
-    case = case | {"cdem": version}
+    case = cases.plain(case) if plain else case
     sim, _ = cases.start(case, 1)
     if settle:
         sim.run_until(settle)
@@ -165,11 +165,11 @@ def _cost(
         sim.step(steps)
         costs.append((time.process_time() - began) / (sim.time - at))
     scaled = ", 0.1 % of mass" if "mass_scaling" in case.get("time", {}) else ""
-    row = Row(f"{name}, cdem: {version}{scaled}", f"{sim.audit.counts['elements']:,}",
+    row = Row(f"{name}, {'plain' if plain else 'defaults'}{scaled}", f"{sim.audit.counts['elements']:,}",
               "CPU s/simulated s", statistics.median(costs), min(costs), max(costs), 1)  # fmt: skip
     row.more["step [us]"] = 1e6 * float(sim.core.scalars()["dt"])
     if error:
-        row.more["error of E [%]"] = 100 * modulus_error(version, irregular="mesh" in case["model"])
+        row.more["error of E [%]"] = 100 * modulus_error(plain, irregular="mesh" in case["model"])
     return row
 
 

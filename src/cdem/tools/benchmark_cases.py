@@ -33,6 +33,31 @@ def start(data: dict[str, Any], threads: int) -> tuple[Simulation, float]:
     return sim, built
 
 
+def plain(case: dict[str, Any]) -> dict[str, Any]:
+    """A case of these with exact masses, and bonds and contacts of 10 E/h that nothing makes up for."""
+    interface = {"stiffness_n": "10 E/h", "stiffness_s": "10 E/h"}
+    default = interface | case["interfaces"]["default"]
+    blocks = [_alike(block) for block in case["model"].get("blocks", [])]
+    stages = [_undamped(stage) if stage["mode"] == "dynamic" else stage for stage in case["stages"]]
+    return case | {
+        "model": case["model"] | {"blocks": blocks},
+        "interfaces": {"default": default},
+        "elements": {"mass": "exact"},
+        "stages": stages,
+    }
+
+
+def _alike(block: dict[str, Any]) -> dict[str, Any]:
+    """A box whose cells of tets are all divided along the same diagonal."""
+    tets = block["box"].get("shape") == "tet4"
+    return block | {"box": block["box"] | ({"cells": "alike"} if tets else {})}
+
+
+def _undamped(stage: dict[str, Any]) -> dict[str, Any]:
+    """A stage without damping of contacts, unless it names one."""
+    return stage | {"damping": {"contact": 0} | stage.get("damping", {})}
+
+
 def bar(m: int, shape: str, **more: Any) -> dict[str, Any]:
     """A bar of 8 m x m x m cells of 1 m, held at its left end, that begins to move at 1 mm/s.
 

@@ -17,18 +17,18 @@ from cdem.run.simulation import Simulation
 from cdem.tools import benchmark_cases as cases
 
 
-def modulus_error(version: int, *, irregular: bool) -> float:
+def modulus_error(plain: bool, *, irregular: bool) -> float:
     """Error of Young's modulus of a cube of bonded tets that is pulled along x, in parts of it.
 
     The modulus is the mean of its inner tets and their faces.
 
     Args:
-        version: Of the case format.
+        plain: Whether it is `benchmark_cases.plain`.
         irregular: Whether corners of the tets are moved.
     """
     with tempfile.TemporaryDirectory() as place:
         case = cases.pulled_irregular(Path(place)) if irregular else cases.pulled()
-        sim = Simulation(Case.from_dict(case | {"cdem": version}), threads=1)
+        sim = Simulation(Case.from_dict(cases.plain(case) if plain else case), threads=1)
         sim.run()
     (group,) = case["groups"]
     t, made = sim.build.topology, sim.build.compensation.get(group)

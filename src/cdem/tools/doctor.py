@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 
+from cdem._core_choice import GPU
 from cdem._version import __version__
 from cdem.case import child
 
@@ -72,8 +73,8 @@ def _cuda() -> str:
         works = driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0
         devices = f"{count.value} device(s)" if works else "the NVIDIA driver does not work"
         if module is not None and works and count.value > 0:
-            return f"usable: {devices}"
-    return f"module {'absent' if module is None else 'present'}; {devices}"
+            return f"usable: {devices}; CDEM_ISA=cuda takes it"
+    return f"module {f'absent ({GPU})' if module is None else 'present'}; {devices}"
 
 
 def _opengl() -> str:

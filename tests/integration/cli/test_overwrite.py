@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from cdem.case.stored import MARKER
 from cdem.output.render import can_draw
-from cdem.run.written_files import MARKER
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 COMMANDS = (

@@ -70,6 +70,36 @@ def test_a_stopped_run_goes_on_to_the_same_bytes(run_cli, folder, stopped):
     assert differences(unbroken(folder), stopped) == []
 
 
+def as_stored_before(text: str) -> str:
+    """The case of a run, as JSON or YAML, as it was stored when `cdem: 1` chose what are keys now."""
+    for new, old in {
+        "cdem: 2": "cdem: 1", '"cdem":2': '"cdem":1',
+        "stiffness_n: 10.0 E/h": "stiffness_n: auto", "stiffness_s: 10.0 E/h": "stiffness_s: auto",
+        '"stiffness_n":"10.0 E/h"': '"stiffness_n":"auto"', '"stiffness_s":"10.0 E/h"': '"stiffness_s":"auto"',
+        "mass: exact": "mass: auto", '"mass":"exact"': '"mass":"auto"',
+        "      cells: alike\n": "", ',"cells":"alike"': "", ',"cells":null': "",
+    }.items():  # fmt: skip
+        text = text.replace(new, old)
+    assert "E/h" not in text and "cells" not in text and "exact" not in text
+    return text
+
+
+@pytest.mark.parametrize("case", ["case.yaml", "out/case.yaml"])
+def test_a_run_of_an_old_case_goes_on_to_the_same_bytes(run_cli, folder, case):
+    """With the keys in the case, or with the case that it has stored itself."""
+    text = CASE.replace("divisions: [2, 1, 2]", "divisions: [2, 1, 2], shape: tet4, cells: alike")
+    (folder / "case.yaml").write_text(text)
+    simulation = cdem.Simulation(folder / "case.yaml", threads=1, output=folder / "out")
+    simulation.run_stage("rest")
+    simulation.close()
+    arrays, attributes = read_checkpoint(folder / "out/checkpoint.h5")
+    write_checkpoint(folder / "out", arrays, as_stored_before(attributes.decode()))
+    stored = folder / "out/case.yaml"
+    stored.write_text(as_stored_before(stored.read_text()))
+    assert run_cli("run", case, *WORDS[2:], "--resume") == (0, "", "")
+    assert differences(unbroken(folder), folder / "out") == []
+
+
 def test_a_run_that_has_ended_is_left_as_it_is(run_cli, folder):
     assert run_cli(*WORDS)[0] == 0
     before = {p: (p.stat().st_mtime_ns, p.read_bytes()) for p in Path("out").rglob("*.*[a-z5]")}

@@ -5,6 +5,7 @@ import pytest
 from scenes import case
 
 import cdem
+from cdem import _native
 
 pytest.importorskip("pyvista")
 FALL = [{"name": "fall", "mode": "dynamic", "duration": 0.1}]
@@ -28,6 +29,7 @@ def folder(tmp_path_factory):
 def test_numbers_of_a_run(folder):
     results = cdem.open(folder)
     assert results.summary["status"] == "finished"
+    assert results.summary["device"] == f"{_native.device} ({_native.name})"
     assert results.histories["box.velocity_z [m/s]"][-1] == pytest.approx(-1, rel=0.05)
     assert len(results) == len(results.times) == 3
     assert results.times[-1] == pytest.approx(0.1, abs=2e-3)

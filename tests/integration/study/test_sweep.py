@@ -54,6 +54,20 @@ def slow(folder: Path, seconds: float) -> None:
     )
 
 
+def test_a_sweep_goes_on_with_the_values_that_it_has_drawn(folder, monkeypatch):
+    """Another SciPy draws others."""
+    (folder / "study.yaml").write_text(
+        "case: cube.yaml\nparameters: {groups.cube.velocity.0: {uniform: {low: 1, high: 2}}}\n"
+        "sampling: {count: 2}"
+    )
+    first = run_study("study.yaml", "out", workers=2)
+    written = results_of(Path("out"))
+    monkeypatch.setattr("cdem.study.samples.draw", lambda *_: pytest.fail("drawn again"))
+    again = run_study("study.yaml", "out", workers=2)
+    assert [run.parameters for run in again.runs] == [run.parameters for run in first.runs]
+    assert results_of(Path("out")) == written and len(written) == 2
+
+
 def test_a_sweep_from_the_command_line(run_cli, folder, no_report):
     """Two of six runs fail, the others are those of `cdem run`; asked again, nothing is repeated."""
     status, out, err = run_cli("sweep", "study.yaml", "--workers", "2", "-o", "out")

@@ -197,7 +197,6 @@ def test_residual_values_that_do_not_fit(wrong, told):
 def test_a_pair_takes_from_the_default_what_its_own_law_has():
     case = Case.from_dict(
         {
-            "cdem": 1,
             "model": {"blocks": [{"group": g, "box": {"size": [1, 1, 1]}} for g in ("a", "b")]},
             "materials": {"m": {"density": 2700, "young_modulus": 1e9, "poisson_ratio": 0.25}},
             "groups": {g: {"material": "m"} for g in ("a", "b")},

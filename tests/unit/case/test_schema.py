@@ -61,7 +61,7 @@ import pytest
             "quantities: [velocity, displacement, velocity]",
             "velocity is listed twice",
         ),
-        ("cdem: 1\n", "cdem: 3\n", "slope.yaml:1:1: cdem: must be 1 or 2, got 3"),
+        ("cdem: 2\n", "cdem: 3\n", "slope.yaml:1:1: cdem: must be 2, got 3"),
         (
             "materials:\n",
             "materials: 3\nother:\n",

@@ -18,7 +18,7 @@ STRESS = np.array([[-3e6, -1e6, 2e6, 0, 0, 0], [0, 0, 0, 1e6, 0, 0]])
         ("sigma_3", [-3e6, -1e6]),
         ("stress_zz", [2e6, 0]),
         ("stress_xy", [0, 1e6]),
-        ("von_mises", [np.sqrt(0.5 * (4 + 9 + 25)) * 1e6, np.sqrt(3) * 1e6]),
+        ("von_mises_stress", [np.sqrt(0.5 * (4 + 9 + 25)) * 1e6, np.sqrt(3) * 1e6]),
     ],
 )
 def test_of_stress(name, values):

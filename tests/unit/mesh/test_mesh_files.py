@@ -62,7 +62,8 @@ def test_other_formats_name_no_node_that_is_not_there(tmp_path, kind, node):
         ("a.off", b"OFF\n3 1 0\n0", "a.off: no kind of mesh that is read; .*there are: .avs"),
         ("a.dxf", b"", "a.dxf: no kind of mesh that is read; export the volume elements"),
         ("a.stl", b"solid", r"holds surfaces, .* read with model.blocks: \[{group: NAME, file"),
-        ("a.ply", b"ply", "no kind of mesh that is read"),
+        ("a.off", b"OFF", "no kind of mesh that is read"),
+        ("a.ply", b"ply", "holds surfaces, .* closed convex bodies are read with model.blocks"),
         ("a.msh", b"", "a.msh: cannot be read"),
         (
             "a.post",

@@ -27,6 +27,12 @@ def write_obj(path, points, faces):
     path.write_text("# blocks\n" + "\n".join(lines) + "\n")
 
 
+PLY_HEAD = (
+    "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face {}\nproperty list uchar int vertex_indices\nend_header\n"
+)
+
+
 def triangles(faces):
     return [(f[0], f[m], f[m + 1]) for f in faces for m in range(1, len(f) - 1)]
 
@@ -69,6 +75,38 @@ def test_solids_of_an_stl_that_share_a_face(tmp_path, binary):
     made = read_bodies(tmp_path / "a.stl", "rock", scale=0.001)
     assert len(build_topology(made, {}).block_group) == 2
     assert volume(made) == pytest.approx(2e-9, rel=1e-6)
+
+
+@pytest.mark.parametrize("binary", [True, False])
+def test_ply(tmp_path, binary):
+    """Solids of quadrilaterals and of triangles that share a face."""
+    import meshio
+
+    points, faces = cubes(2)
+    cells = [("quad", np.array(faces[:6])), ("triangle", np.array(triangles(faces[6:])))]
+    meshio.Mesh(points, cells).write(tmp_path / "a.ply", binary=binary)
+    made = read_bodies(tmp_path / "a.ply", "rock", scale=2)
+    assert len(build_topology(made, {}).block_group) == 2
+    assert volume(made) == pytest.approx(16, rel=1e-12)
+
+
+def test_what_of_an_obj_is_not_used_is_told_and_no_other_file_is_opened(tmp_path):
+    write_obj(tmp_path / "a.obj", *cubes())
+    whole = (tmp_path / "a.obj").read_text()
+    (tmp_path / "a.obj").write_text(
+        f"mtllib a.mtl\no stone\n{whole}usemtl grey\ns off\nl 1 2\nl 2 3\ncurv 0 1 1 2\n"
+    )
+    (tmp_path / "a.mtl").mkdir()  # opening it would fail
+    made = read_bodies(tmp_path / "a.obj", "rock")
+    assert made.notes == ["a.obj: only faces are used, not 2 of 'l', 1 of 'curv'"]
+
+
+def test_corners_that_are_not_finite_are_refused(tmp_path):
+    points, faces = cubes()
+    points[7, 2] = np.nan
+    write_obj(tmp_path / "a.obj", points, faces)
+    with pytest.raises(cdem.MeshError, match=r"a.obj: body 0: a corner has .* not finite"):
+        read_bodies(tmp_path / "a.obj", "rock")
 
 
 def test_almost_convex_is_convex_and_told(tmp_path):
@@ -185,10 +223,15 @@ def test_vtk_may_die_of_a_file(tmp_path):
 
 
 @pytest.mark.parametrize("name, text, message", [
-    ("a.txt", "", "bodies are read from .obj, .stl, .vtu, .vtk files"),
-    ("a.obj", "v 1 2\nv x 0 0\n", "a.obj:2: cannot be read"),
+    ("a.txt", "", "bodies are read from .obj, .stl, .ply, .vtu, .vtk files"),
+    ("a.obj", "v 1 2 3\nv x 0 0\n", "a.obj:2: cannot be read"),
+    ("a.obj", "v 1 2 3\nv 1 2\n", "a.obj:2: cannot be read"),
     ("a.obj", "", "holds no faces"),
     ("a.stl", "not one", "a.stl: cannot be read"),
+    ("a.ply", "not one", "a.ply: cannot be read"),
+    ("a.ply", PLY_HEAD.format(3, 0) + "0 0 0\n1 0 0\n0 1 0\n", "holds no faces that can be read"),
+    ("a.ply", PLY_HEAD.format(1, 1) + "0 0 0\n3 0 0 -1\n", "cannot be read|vertex that is not there"),
+    ("a.ply", PLY_HEAD.format(2, 1) + "0 0 0\n1 0 0\n3 0 1 7\n", "a face has a vertex that is not there"),
 ])  # fmt: skip
 def test_files_that_are_no_bodies(tmp_path, name, text, message):
     (tmp_path / name).write_text(text)
@@ -255,5 +298,5 @@ def test_what_cannot_be_filled_is_refused(tmp_path):
     write_obj(tmp_path / "crossed.obj", points, faces)
     with pytest.raises(cdem.MeshError, match=r"body 0: its surface cannot be filled with tets"):
         fill_bodies(tmp_path / "crossed.obj", "rock", 0.7)
-    with pytest.raises(cdem.MeshError, match=r"size is for surfaces, \.obj and \.stl"):
+    with pytest.raises(cdem.MeshError, match=r"size is for surfaces, \.obj, \.stl, \.ply"):
         fill_bodies(tmp_path / "a.vtu", "rock", 0.7)

@@ -12,10 +12,10 @@ from cdem.model.build import build
 STRONG = {"friction_angle": 30, "cohesion": 1e9, "tensile_strength": 1e9}
 
 
-def bonded(box, *, version=2, nu=0.25, law=STRONG, **more):
+def bonded(box, *, defaults=True, nu=0.25, law=STRONG, **more):
     """A box whose every element is a block."""
     return case(
-        [{"group": "rock", "box": box}], {"rock": {}}, cdem=version,
+        [{"group": "rock", "box": box}], {"rock": {}}, defaults=defaults,
         interfaces={"default": law}, rock={"young_modulus": 1e10, "poisson_ratio": nu},
         model={"split": {"rock": "elements"}}, **more,
     )  # fmt: skip
@@ -54,7 +54,7 @@ def test_elements_and_bonds_have_what_was_found(regular):
 def test_irregular_tets_are_found_numerically(tmp_path):
     mesh = irregular_tets(tmp_path / "m.vtk", [6, 6, 6], [6, 6, 6])
     data = case(
-        [], {"default": {}}, cdem=2, interfaces={"default": STRONG},
+        [], {"default": {}}, defaults=True, interfaces={"default": STRONG},
         rock={"young_modulus": 1e10}, model={**mesh, "split": {"default": "elements"}},
     )  # fmt: skip
     made = build(data).compensation["default"]
@@ -80,7 +80,7 @@ def test_a_poissons_ratio_without_room_is_refused():
 @pytest.mark.parametrize(
     "changes",
     [
-        {"version": 1},
+        {"defaults": False},
         {"law": STRONG | {"stiffness_n": "5 E/h"}},
         {"law": STRONG | {"stiffness_s": 1e10}},
         {"law": {"friction_angle": 30}},
@@ -104,7 +104,7 @@ def test_between_two_groups_the_bonds_are_in_series():
     ]  # fmt: skip
     soft = {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.2}
     data = case(
-        blocks, {"a": {}, "b": {"material": "soft"}}, cdem=2, interfaces={"default": STRONG},
+        blocks, {"a": {}, "b": {"material": "soft"}}, defaults=True, interfaces={"default": STRONG},
         materials={"rock": soft | {"young_modulus": 1e10}, "soft": soft},
         model={"split": {"a": "elements", "b": "elements"}},
     )  # fmt: skip
@@ -150,7 +150,7 @@ def test_a_joint_counts_as_free():
     ]  # fmt: skip
     joint = {"between": ["a", "b"], **STRONG, "stiffness_n": 1e9, "stiffness_s": 1e9}
     data = case(
-        halves, {"a": {}, "b": {}}, cdem=2, interfaces={"default": STRONG, "pairs": [joint]},
+        halves, {"a": {}, "b": {}}, defaults=True, interfaces={"default": STRONG, "pairs": [joint]},
         rock={"young_modulus": 1e10}, model={"split": {"a": "elements", "b": "elements"}},
     )  # fmt: skip
     b = build(data)

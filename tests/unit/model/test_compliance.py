@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scenes import plain
 
 from cdem import Case, Simulation
 
@@ -13,27 +14,26 @@ YOUNG = 1e9
 
 def beam(length, cells, split, shape="hex8", load=(0.0, 0.0, 0.0), poisson=0.0) -> Simulation:
     """A bar of 1 m x 1 m along x, clamped at x = 0, with a traction at its end."""
-    case = Case(
-        cdem=1,  # nothing makes up for the bonds
-        model={
+    case = Case.from_dict(plain({  # nothing makes up for the bonds
+        "model": {
             "blocks": [
                 {"group": "bar", "box": {"size": [length, 1, 1], "divisions": cells, "shape": shape}}
             ],
             "split": {"bar": split},
         },
-        materials={"m": {"density": 2500, "young_modulus": YOUNG, "poisson_ratio": poisson}},
-        groups={"bar": {"material": "m"}},
-        interfaces={"default": STRONG},
-        loads={
+        "materials": {"m": {"density": 2500, "young_modulus": YOUNG, "poisson_ratio": poisson}},
+        "groups": {"bar": {"material": "m"}},
+        "interfaces": {"default": STRONG},
+        "loads": {
             "gravity": [0, 0, 0],
             "tractions": [{"surface": {"group": "bar", "normal": [1, 0, 0]}, "traction": list(load)}],
             "supports": [{"box": {"min": [-1e-6] * 3, "max": [1e-6, 2, 2]}, "fix": ["x", "y", "z"]}],
         },
-        stages=[
+        "stages": [
             {"name": "load", "mode": "static", "relax": "adaptive", "tolerance": 1e-5,
              "max_steps": 4000},
         ],
-    )  # fmt: skip
+    }))  # fmt: skip
     return Simulation(case, threads=1)
 
 

@@ -65,11 +65,13 @@ def test_bonds_are_as_stiff_as_the_core_has_them(monkeypatch):
     np.testing.assert_allclose(found[0], sim.core.fields()["node.bond_stiffness"], rtol=1e-13)
 
 
-@pytest.mark.parametrize(("version", "joint", "a", "b"), [(1, 20, 10, 20), (2, 4 / 3, 1, 2)])
-def test_contacts_of_faces_that_touch_and_of_others(monkeypatch, version, joint, a, b):
+@pytest.mark.parametrize(
+    ("defaults", "joint", "a", "b"), [(False, 20, 10, 20), (True, 4 / 3, 1, 2)]
+)
+def test_contacts_of_faces_that_touch_and_of_others(monkeypatch, defaults, joint, a, b):
     """Two cubes on each other, b twice as stiff. A corner has three faces of which each may have four
     contacts on a quarter of its area, and as many that act on it: 2 k / 4. The joint has k of its
-    stiffer side (cdem: 1) or of both in series, the other faces that of a contact with their like.
+    stiffer side, where bonds are given, or of both in series, the other faces that of a contact with their like.
     """
     found = []
     whole = mass_scaling.contact_stiffness
@@ -82,7 +84,7 @@ def test_contacts_of_faces_that_touch_and_of_others(monkeypatch, version, joint,
                 {"group": "a", "box": {"size": [1, 1, 1]}},
                 {"group": "b", "box": {"size": [1, 1, 1]}, "translate": [0, 0, 1]},
             ],
-            {"a": {}, "b": {"material": "hard"}}, cdem=version,
+            {"a": {}, "b": {"material": "hard"}}, defaults=defaults,
             materials={"rock": {"density": 2500, "young_modulus": 1e10, "poisson_ratio": 0.2},
                        "hard": {"density": 2500, "young_modulus": 2e10, "poisson_ratio": 0.2}},
         ),
@@ -96,12 +98,12 @@ def test_contacts_of_faces_that_touch_and_of_others(monkeypatch, version, joint,
     np.testing.assert_allclose(core[at_joint], 0.5e10 * joint, rtol=1e-12)
 
 
-@pytest.mark.parametrize("version", [1, 2])
-def test_the_step_asked_for_is_reached(tmp_path, version):
-    free = cdem.Simulation(shaken(tmp_path, cdem=version), threads=1)
+@pytest.mark.parametrize("defaults", [False, True])
+def test_the_step_asked_for_is_reached(tmp_path, defaults):
+    free = cdem.Simulation(shaken(tmp_path, defaults=defaults), threads=1)
     dt = 1.5 * float(free.core.scalars()["dt"])
     sim = cdem.Simulation(
-        shaken(tmp_path, cdem=version, time={"mass_scaling": {"step": dt}}), threads=1
+        shaken(tmp_path, defaults=defaults, time={"mass_scaling": {"step": dt}}), threads=1
     )
     # faces at the surface count as if they touched something
     assert dt * (1 - 1e-9) < float(sim.core.scalars()["dt"]) < 1.15 * dt
@@ -124,11 +126,13 @@ def test_blocks_of_a_few_elements_reach_the_step_too():
 
 def test_the_step_asked_for_holds_in_rubble(tmp_path):
     """All bonds break at once: every face then has contacts, and every tet its exact inertia."""
-    free = cdem.Simulation(shaken(tmp_path, cdem=2), threads=1)
+    free = cdem.Simulation(shaken(tmp_path, defaults=True), threads=1)
     dt = 2.5 * float(free.core.scalars()["dt"])
     sim, intact = (
         cdem.Simulation(
-            shaken(tmp_path, cdem=2, interface=interface, time={"mass_scaling": {"step": dt}}),
+            shaken(
+                tmp_path, defaults=True, interface=interface, time={"mass_scaling": {"step": dt}}
+            ),
             threads=1,
         )
         for interface in (WEAK, STRONG)
@@ -166,7 +170,7 @@ def test_a_step_that_mass_allows_is_the_longest_for_which_it_suffices(monkeypatc
     monkeypatch.setattr(
         assemble, "Scaling", lambda *of: found.append(mass_scaling.Scaling(*of)) or found[-1]
     )
-    made = shaken(tmp_path, cdem=2) if of == "single elements" else jointed()
+    made = shaken(tmp_path, defaults=True) if of == "single elements" else jointed()
     sim = cdem.Simulation(made, threads=1)
     scaling, intact = found[0], found[0]._states[0]
     for mass in (0.0, 1.0):  # of what 1.3 times the step needs
@@ -178,9 +182,9 @@ def test_a_step_that_mass_allows_is_the_longest_for_which_it_suffices(monkeypatc
 
 
 def test_no_more_mass_is_added_than_was_allowed(tmp_path):
-    free = cdem.Simulation(shaken(tmp_path, cdem=2), threads=1)
+    free = cdem.Simulation(shaken(tmp_path, defaults=True), threads=1)
     sim = cdem.Simulation(
-        shaken(tmp_path, cdem=2, time={"mass_scaling": {"most": 0.001}}), threads=1
+        shaken(tmp_path, defaults=True, time={"mass_scaling": {"most": 0.001}}), threads=1
     )
     whole = free.build.arrays["node.mass"].sum()
     assert sim.build.assembly.added_mass.sum() == pytest.approx(0.001 * whole, rel=1e-6)
@@ -189,7 +193,9 @@ def test_no_more_mass_is_added_than_was_allowed(tmp_path):
         free.build.assembly.limits[1] / free.build.assembly.limits[0]
     )
     assert dt > 1.4 * before
-    both = shaken(tmp_path, cdem=2, time={"mass_scaling": {"most": 0.001, "step": 1.2 * before}})
+    both = shaken(
+        tmp_path, defaults=True, time={"mass_scaling": {"most": 0.001, "step": 1.2 * before}}
+    )
     assert float(cdem.Simulation(both, threads=1).core.scalars()["dt"]) == pytest.approx(
         1.2 * before
     )
@@ -219,8 +225,8 @@ def test_scaling_that_asks_for_nothing_is_refused(tmp_path):
 
 def test_a_step_that_takes_boundless_mass_is_refused(tmp_path):
     """5,000 s asked for 1e18 times the mass, whose matrices had no eigenvalues left."""
-    case = shaken(tmp_path, cdem=2, time={"mass_scaling": {"step": 5000}})
+    case = shaken(tmp_path, defaults=True, time={"mass_scaling": {"step": 5000}})
     with pytest.raises(CaseError, match="is more than 100 times the stable step"):
         cdem.Simulation(case, threads=1)
-    bounded = shaken(tmp_path, cdem=2, time={"mass_scaling": {"step": 5000, "most": 0.001}})
+    bounded = shaken(tmp_path, defaults=True, time={"mass_scaling": {"step": 5000, "most": 0.001}})
     assert cdem.Simulation(bounded, threads=1).core.scalars()["dt"] < 1

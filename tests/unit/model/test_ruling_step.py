@@ -59,7 +59,7 @@ def test_contacts_rule_and_may_be_softer():
 def test_a_little_mass_is_the_first_remedy_of_an_irregular_mesh(tmp_path):
     mesh = irregular_tets(tmp_path / "m.vtk", [4, 4, 4], [4, 4, 4])
     model = {**mesh, "split": {"default": "elements"}}
-    more = {"cdem": 2, "model": model, "interfaces": {"default": STRONG}}
+    more = {"defaults": True, "model": model, "interfaces": {"default": STRONG}}
     free = start([], {"default": {}}, **more)
     said = free.audit.step["remedy"]
     assert said.startswith("0.1 % more mass would make it ")

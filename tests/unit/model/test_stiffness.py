@@ -13,27 +13,29 @@ FRICTION = {"friction_angle": 30}
 POSITION = np.array([[0.0, 0, 0], [1, 1, 26]])
 
 
-def entry(law, version=2, velocity=(0, 0, 0), **more):
+def entry(law, defaults=True, velocity=(0, 0, 0), **more):
     """What the core is told of an interface; rock of E = 10 GPa and 2,500 kg/m3."""
     block = {"group": "a", "box": {"size": [1, 1, 1]}}
-    data = case([block], {"a": {"velocity": list(velocity)}}, cdem=version,
+    data = case([block], {"a": {"velocity": list(velocity)}}, defaults=defaults,
                 interfaces={"default": FRICTION | law}, **more)  # fmt: skip
     return interface_entries(data, [data.interfaces.default], ["a"], POSITION)[0]
 
 
 @pytest.mark.parametrize(
-    ("version", "law", "normal", "shear", "in_series"),
+    ("defaults", "law", "normal", "shear", "in_series"),
     [
-        (1, {}, (0, 10), (0, 10), False),
-        (1, {"stiffness_n": "3 E/h", "stiffness_s": 1e9}, (0, 3), (1e9, 0), False),
-        (1, {"contact_stiffness": "0.5 E/h"}, (0, 0.5), (0, 0.5), True),
-        (2, {}, (0, 1), (0, 1), True),
-        (2, {"stiffness_n": "3 E/h"}, (0, 3), (0, 10), False),  # something is known
-        (2, {"contact_stiffness": "2 GPa/m"}, (2e9, 0), (2e9, 0), True),
+        (False, {}, (0, 10), (0, 10), False),
+        (False, {"stiffness_n": "3 E/h", "stiffness_s": 1e9}, (0, 3), (1e9, 0), False),
+        (False, {"contact_stiffness": "0.5 E/h"}, (0, 0.5), (0, 0.5), True),
+        (True, {}, (0, 1), (0, 1), True),
+        (True, {"stiffness_n": "3 E/h"}, (0, 3), (0, 10), False),  # something is known
+        (True, {"contact_stiffness": "2 GPa/m"}, (2e9, 0), (2e9, 0), True),
     ],
 )
-def test_contacts_have_the_stiffness_of_their_version(version, law, normal, shear, in_series):
-    found = entry(law, version)
+def test_contacts_have_the_stiffness_that_the_case_leaves_to_them(
+    defaults, law, normal, shear, in_series
+):
+    found = entry(law, defaults)
     assert (found["stiffness_n"], found["stiffness_s"]) == (normal, shear)
     assert found["in_series"] is in_series
 
@@ -77,7 +79,7 @@ def test_the_audit_tells_how_far_blocks_overlap():
     blocks = [{"group": "cube", "box": {"size": [1, 1, 1]}},
               {"group": "floor", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]}]  # fmt: skip
     sim = simulate(
-        blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, cdem=2, **WEIGHT,
+        blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, defaults=True, **WEIGHT,
         interfaces={"default": FRICTION},
         stages=[{"name": "settle", "mode": "static", "tolerance": 1e-6}],
     )  # fmt: skip
@@ -98,7 +100,7 @@ def test_the_audit_tells_of_restitution_where_it_shortens_the_step():
         blocks = [{"group": "cube", "box": {"size": [1, 1, 1]}},
                   {"group": "floor", "box": {"size": [3, 3, 1]}, "translate": [-1, -1, -1]}]  # fmt: skip
         law = FRICTION | {"restitution": restitution} | more
-        return simulate(blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, cdem=2,
+        return simulate(blocks, {"cube": {}, "floor": {"fix": ["x", "y", "z"]}}, defaults=True,
                         interfaces={"default": law}).audit  # fmt: skip
 
     told = "restitution 0.5 makes them 4 times as stiff in unloading, which shortens the step"

@@ -17,12 +17,13 @@ from cdem.errors import CdemError
 from cdem.mesh import primitives
 from cdem.mesh.element_volumes import Solids
 from cdem.output import runout
-from cdem.output.geotiff import Raster, epsg_of, write_geotiff
+from cdem.output.geotiff import epsg_of, write_geotiff
 from cdem.output.grain_sizes import GrainSizes
 from cdem.output.map_layers import LAYERS, raster_style
 from cdem.output.map_picture import hillshade
 from cdem.output.runout_measures import EndMotion
 from cdem.output.travel import Path, energy_line, lengths
+from cdem.terrain.rasters import Raster
 
 SPEED, TIME, FRAMES = 2.0, 1.0, 20
 

@@ -24,7 +24,8 @@ def test_lists_and_grids_combine(study, combine, expected):
         study(
             "parameters: {a.b: [1, 2, 3], c.d: {grid: {first: 5, last: 7, count: 3}}}\n"
             f"combine: {combine}"
-        )
+        ),
+        [{}],
     )
     assert [(row["a.b"], row["c.d"]) for row in found] == expected
 

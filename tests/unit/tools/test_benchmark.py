@@ -50,12 +50,12 @@ def test_a_simulated_second_has_its_cost_and_its_accuracy(monkeypatch):
     assert len(rows) == 12
     for row in rows.values():
         assert row.rate > 0
-    steps = [rows[f"P4 wall, cdem: {version}"].more["step [us]"] for version in (1, 2)]
+    steps = [rows[f"P4 wall, {kind}"].more["step [us]"] for kind in ("plain", "defaults")]
     assert steps[1] > 2 * steps[0]
     # of a cube of 6 x 6 x 6 cells; bonds of 10 E/h make it 1 + 6 / (3 * 10) times as soft
     errors = [
-        rows[f"P2 regular tets, cdem: {version}"].more["error of E [%]"] for version in (1, 2)
+        rows[f"P2 regular tets, {kind}"].more["error of E [%]"] for kind in ("plain", "defaults")
     ]
     assert errors[0] == pytest.approx(100 * (1 / 1.2 - 1), abs=0.1)
     assert abs(errors[1]) < 1e-3
-    assert abs(rows["P2 irregular tets, cdem: 2, 0.1 % of mass"].more["error of E [%]"]) < 0.3
+    assert abs(rows["P2 irregular tets, defaults, 0.1 % of mass"].more["error of E [%]"]) < 0.3

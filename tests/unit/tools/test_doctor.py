@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from cdem import __version__
 from cdem.tools import doctor
 
@@ -19,3 +21,16 @@ def test_doctor_says_who_chose_the_core(monkeypatch):
     core, usable = doctor._core()
     assert usable
     assert " is used, as CDEM_ISA says; built for " in core
+
+
+def test_doctor_says_how_to_get_a_core_for_a_gpu(monkeypatch):
+    monkeypatch.setattr(doctor.importlib.util, "find_spec", lambda name: None)
+    said = doctor._cuda()
+    assert "pip install . -C cmake.define.CDEM_CUDA=ON; then CDEM_ISA=cuda cdem run" in said
+
+
+def test_the_manual_has_the_same_commands():
+    page = (Path(__file__).parents[3] / "docs/install.md").read_text()
+    assert (
+        "pip install . -C cmake.define.CDEM_CUDA=ON " in page and "CDEM_ISA=cuda cdem run" in page
+    )

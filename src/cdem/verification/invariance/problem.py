@@ -65,7 +65,8 @@ def scenes():
     less = ["interfaces.a.friction_angle=5", "interfaces.b.friction_angle=7"]
     bars = [f"model.blocks.{i}.box={{size: [20, 0.5, 0.5], divisions: [40, 1, 1]}}" for i in (0, 1)]
     stiff = ["materials.rock.young_modulus=10 GPa", "interfaces.default.friction_angle=45",
-             "cdem=1", *only(0.003)]  # fmt: skip
+             "interfaces.default.stiffness_n=10 E/h", "interfaces.default.stiffness_s=10 E/h",
+             "elements.mass=exact", *only(0.003)]  # fmt: skip
     # held along no axis alone; nu = 0 keeps the bars straight
     pulse = [*bars, "model.blocks.0.translate=[-20, 0, 0]", "groups.left.fix=[]",
              "groups.right.fix=[]", "loads.velocities.0.components=[x, y, z]",
