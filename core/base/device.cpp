@@ -1,6 +1,5 @@
 // device.cpp - see device.hpp. Compiled as C++, and as CUDA for the CUDA module.
 #include "core/base/device.hpp"
-#include "core/base/lanes.hpp"
 
 #include <omp.h>
 
@@ -8,6 +7,8 @@
 #include <cstring>
 #include <new>
 #include <stdexcept>
+
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 inline namespace CDEM_DEVICE {

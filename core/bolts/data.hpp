@@ -124,6 +124,7 @@ struct Bolts {
   template <class Visit>
   static void describe(auto& b, State& s, const Visit& visit) {
     describe_given(b, visit.given);
+    describe_points(b, visit.given);
     describe_state(s, visit.stored, visit.rebuilt);
   }
 
@@ -172,6 +173,8 @@ struct Bolts {
            .rows = "bolt_crossings",
            .numbers = 2},
           b.dowel);
+  }
+  static void describe_points(auto& b, const auto& given) {
     given({.name = "bolts.hosts",
            .meaning = "nodes of the rock that a point lies between; -1: none",
            .rows = "bolt_points",
