@@ -140,7 +140,7 @@ def test_any_split_gives_the_same_bits(whole, case_file):
     folder = case_file.parent / "split"
     simulation = cdem.Simulation(case_file, threads=1, output=folder)
     seen = 0
-    for time in np.arange(0.06, 1.4, 0.06):
+    for time in np.arange(0.06, 1.4, 0.12):
         simulation.run_until(time)
         simulation.checkpoint()
         simulation.close()

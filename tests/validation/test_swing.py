@@ -14,7 +14,7 @@ SIDE = PROBLEM.SIDE
     "shape, divisions",
     [
         ("hex8", 1),
-        ("tet4", 2),
+        pytest.param("tet4", 2, marks=pytest.mark.slow),
         pytest.param("hex8", 4, marks=pytest.mark.slow),
         pytest.param("wedge6", 2, marks=pytest.mark.slow),
         pytest.param("pyramid5", 2, marks=pytest.mark.slow),
