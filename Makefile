@@ -47,9 +47,9 @@ coverage: setup
 	$(BIN)/python -m gcovr --delete --gcov-suspicious-hits-threshold 0 --filter core/ \
 	  --sort uncovered-percent build/coverage
 
-# Faults planted one by one must each fail a test; with T=name some of them.
+# Faults planted one by one must each fail a test; with T=name some of them. Cut off, it goes on.
 mutants: setup
-	$(BIN)/python tools/mutants.py $(T)
+	$(BIN)/python tools/mutants.py --state build/mutants/faults.json $(T)
 
 # What may happen to a run and to its input, in parts; see docs/results.md.
 PARTS := damage cases files kills small landslide faults-kill faults-EIO faults-ENOSPC

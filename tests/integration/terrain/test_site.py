@@ -164,7 +164,7 @@ def test_rockfall_on_bare_ground_runs(tmp_path, monkeypatch, run_cli):
             shutil.copy(file, tmp_path)
     monkeypatch.chdir(tmp_path)
     status, out, err = run_cli(
-        "mesh", "landslide.yaml", "-o", "ground.msh", "--set", "sizes.body=12"
+        "mesh", "landslide.yaml", "-o", "ground.msh", "--set", "sizes.body=20"
     )
     assert status == 0, err
     assert "ground_bedrock" in out and "bed:" not in out

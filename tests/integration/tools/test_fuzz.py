@@ -12,7 +12,10 @@ FUZZ = Path(__file__).parents[3] / "tools/torture/fuzz.py"
 ALL_WELL = "0 tracebacks, 0 hangs over 5 s, 0 aborts, 0 empty messages"
 
 
-@pytest.mark.parametrize(("kind", "count"), [("cases", 150), ("files", 60)])
+@pytest.mark.parametrize(("kind", "count"), [
+    ("cases", 60), ("files", 30),
+    pytest.param("cases", 150, marks=pytest.mark.slow), pytest.param("files", 60, marks=pytest.mark.slow),
+])  # fmt: skip
 def test_mutated_files_are_read_or_refused(tmp_path, kind, count):
     if kind == "files":
         pytest.importorskip("pyvista", reason="needs the extra 'viz'")
