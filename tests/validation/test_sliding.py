@@ -108,7 +108,7 @@ def test_dilating_joint_rises_by_tan_psi_times_slip(bed):
 
 def test_acceleration_over_separate_flush_blocks():
     """Tolerance: the block chatters as it crosses seams; by round-off the fit is off by 4e-6 to 7e-5."""
-    measured, theory, _ = slide(FLUSH, 35, 20, rock={"young_modulus": "1 GPa"})
+    measured, theory, _ = slide(FLUSH, 35, 20)
     assert measured == pytest.approx(theory, rel=3e-4)
 
 
@@ -126,16 +126,17 @@ def test_acceleration_over_small_steps_down(down, within):
         {"group": "bed", "box": {"size": [1, 4, 1]}, "translate": [i, 0, -1 - down * i]}
         for i in range(8)
     ]
-    measured, theory, _ = slide(bed, 35, 20, rock={"young_modulus": "1 GPa"})
+    measured, theory, _ = slide(bed, 35, 20)
     assert measured == pytest.approx(theory, rel=within)
 
 
-@pytest.mark.parametrize("kind", ["rail", pytest.param("turned rail", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["rail", "turned rail"])
 def test_acceleration_on_rails_touched_by_edges_alone(kind):
     """Fig. 18: a slider lies across rails that run down the slope; theta 45, phi 30: 2.9315 m/s2.
 
     (With the paper's g = 9.8 that is 2.928.) Tolerance: sliding edges chatter, which is chaotic; by
-    round-off a fit over 0.7 s is off by 2e-5 to 8e-5.
+    round-off a fit over 0.7 s is off by 2e-5 to 8e-5. Problem `crossed` has the rail within 2e-4.
     """
     rail = {"size": [12, 0.3, 0.3]}
     if kind == "rail":
@@ -151,8 +152,7 @@ def test_acceleration_on_rails_touched_by_edges_alone(kind):
             }
             for y in (0.5, 3.5)
         ]
-    measured, theory, _ = slide(beds, 45, 30, size=(1, 5, 0.4), start=(0.3, -0.4, 0), time=0.8,
-                                rock={"young_modulus": "1 GPa"})  # fmt: skip
+    measured, theory, _ = slide(beds, 45, 30, size=(1, 5, 0.4), start=(0.3, -0.4, 0), time=0.8)
     assert measured == pytest.approx(theory, rel=3e-4)
 
 

@@ -39,6 +39,7 @@ def test_a_part_finds_its_results_again(state, tmp_path):
 def test_fuzzing_that_is_killed_goes_on_to_the_same_counts(tmp_path):
     """As many inputs of each kind as in one go; a third time nothing is left to do."""
     words = [sys.executable, str(TOOLS / "fuzz.py"), "cases", "16", "--seed", "5"]
+    words += ["--corpus", str(tmp_path / "corpus")]
     whole = subprocess.run([*words, "--out", tmp_path / "a"], capture_output=True, text=True)
     path = tmp_path / "part.json"
     words += ["--out", str(tmp_path / "b"), "--state", str(path)]
