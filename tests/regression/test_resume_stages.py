@@ -211,7 +211,7 @@ def yielding():
 
 
 SCENES = {f.__name__: f for f in (dam, shaken, bolted, tunnel, blown, lining, soft, yielding)}
-SLOW = ("tunnel", "lining", "soft")
+SLOW = ("tunnel", "lining", "soft", "yielding")
 
 
 @pytest.mark.parametrize(

@@ -344,7 +344,10 @@ def fuzz(
     seeds = folder / "seeds"
     shutil.rmtree(seeds, ignore_errors=True)
     seeds.mkdir(parents=True)
-    (parts.write_cases if kind == "cases" else parts.write_files)(seeds)
+    if kind == "cases":
+        parts.write_cases(seeds)  # inputs of the corpus may name files of these
+    elif count:
+        parts.write_files(seeds)
     tally = Tally(State(path, [kind, count, seed], dict(FRESH)))
     known, again = len(kept(corpus)), Tally(State(None, [], dict(FRESH)))
     while again.done < known:

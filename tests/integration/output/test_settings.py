@@ -10,8 +10,8 @@ import pytest
 
 pytest.importorskip("pyvista")
 PROGRAM = [sys.executable, "-c", "from cdem.cli import main; main()"]
-WORDS = [["plot", "cube.results"], ["render", "cube.results"], ["doctor"]]
-MORE = [["check", "cube.yaml", "--picture", "model.png"]]
+WORDS = [["plot", "cube.results"], ["render", "cube.results"]]
+MORE = [["check", "cube.yaml", "--picture", "model.png"], ["doctor"]]
 
 
 def run(*words: str) -> subprocess.CompletedProcess[str]:

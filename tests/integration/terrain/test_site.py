@@ -31,7 +31,6 @@ def question(folder, **changes):
     return Question(folder / "dem.tif", folder / "outline.kml", folder / "site", **changes)
 
 
-@pytest.mark.usefixtures("short_estimate")
 def test_two_files_in_degrees_become_a_case_that_runs(maps, run_cli):
     words = ["site", "dem.tif", "outline.kml", "--depth", "40 m", "--size", "60", "--cell", "20"]
     status, out, err = run_cli(*words)

@@ -125,7 +125,8 @@ def test_a_bowl_under_a_slope_comes_out_all_round():
     assert not any(name.startswith("wall_") for name in solid.surfaces)
 
 
-# no shrinking: each example is a mesh
+# no shrinking: each example is a mesh; the slab above is the quick one
+@pytest.mark.slow
 @settings(max_examples=4, deadline=None, derandomize=True, phases=[Phase.generate])
 @given(
     dip=st.floats(0, 45), azimuth=st.floats(0, 360), deep=st.floats(6, 18), turn=st.floats(0, 90)

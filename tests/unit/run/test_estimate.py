@@ -18,6 +18,11 @@ from cdem.run.estimate import StageEstimate, estimate
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
 
+@pytest.fixture(autouse=True)
+def short_estimate():
+    """Speeds are measured here as for users."""
+
+
 @of_the_cpu
 def test_the_estimate_is_the_time_that_a_run_takes():
     """Within a factor of 2; a busy machine is given three chances."""
