@@ -341,15 +341,15 @@ def fuzz(
     kind: str, count: int, seed: int, folder: Path, corpus: Path, path: Path | None = None
 ) -> tuple[Tally, Tally]:
     """Feed the corpus, then so many inputs; `path` is of the state file of these."""
+    tally = Tally(State(path, [kind, count, seed], dict(FRESH)))
+    known, again = len(kept(corpus)), Tally(State(None, [], dict(FRESH)))
     seeds = folder / "seeds"
     shutil.rmtree(seeds, ignore_errors=True)
     seeds.mkdir(parents=True)
-    if kind == "cases":
+    if kind == "cases" and (known or tally.done < count):
         parts.write_cases(seeds)  # inputs of the corpus may name files of these
-    elif count:
+    elif tally.done < count:
         parts.write_files(seeds)
-    tally = Tally(State(path, [kind, count, seed], dict(FRESH)))
-    known, again = len(kept(corpus)), Tally(State(None, [], dict(FRESH)))
     while again.done < known:
         run_batch(kind, None, known - again.done, folder, corpus, again)
     while tally.done < count:
