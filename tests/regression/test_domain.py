@@ -235,7 +235,7 @@ def slide(tmp_path, monkeypatch, no_report):
     """Words that run the landslide in a folder of its own."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "slide.yaml").write_text(SLIDE)
-    return ("run", "slide.yaml", "--threads", "2")
+    return ("run", "slide.yaml", "--threads", "1")
 
 
 @pytest.mark.slow  # quick: test_a_fall_as_fast_as_a_wave_is_said_to_be_a_fall
