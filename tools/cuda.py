@@ -25,8 +25,7 @@ WHEELS = "nvidia-cuda-nvcc nvidia-cuda-runtime nvidia-cuda-cccl"
 # Kernels of tets, bonds, contacts and nodes: the most registers with which as many threads run at
 # once as do now, and the most bytes of them that may be spilled to memory.
 LIMITS = {
-    "AdvanceFused<Tet4, false, NoFlow>": (128, 0),
-    "AdvanceFused<Tet4, true, NoFlow>": (128, 0),
+    "AdvanceFused<Tet4, NoFlow>": (128, 0),
     "AdvanceNodes": (96, 0),
     "ChangeTargets": (168, 0),
     "ConformingBonds<3>, BrittleAlone": (168, 0),

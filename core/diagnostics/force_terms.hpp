@@ -1,7 +1,7 @@
 // force_terms.hpp - what acts on the nodes, and what their round-off makes.
 #pragma once
 
-#include "core/nodes/loads.hpp"
+#include "core/nodes/ports.hpp"
 #include "core/nodes/supports.hpp"
 
 namespace cdem {

@@ -13,12 +13,8 @@ namespace cdem {
 template void for_each_item(Queue, Index, const ChangeTargets&);
 template void for_each_selected(
     Queue, Index, const WithLaws<UpdateSpringForces<ElasticUnloading>, BrittleAlone>&);
-template void for_each_selected(
-    Queue, Index, const WithLaws<UpdateSpringForces<HystereticUnloading>, BrittleAlone>&);
 template void for_each_lane(Queue, Index,
                             const WithLaws<UpdateEdgeForces<ElasticUnloading>, BrittleAlone>&);
-template void for_each_lane(Queue, Index,
-                            const WithLaws<UpdateEdgeForces<HystereticUnloading>, BrittleAlone>&);
 template void for_each_selected(
     Queue, Index, const WithLaws<UpdateSpringForces<ElasticUnloading>, InterfaceLaws>&);
 template void for_each_selected(

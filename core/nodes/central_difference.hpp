@@ -2,9 +2,8 @@
 // differences.
 #pragma once
 
-#include "core/nodes/corner_rows.hpp"
-#include "core/nodes/loads.hpp"
 #include "core/nodes/mass.hpp"
+#include "core/nodes/ports.hpp"
 #include "core/nodes/supports.hpp"
 #include "core/records/rules.hpp"
 
@@ -13,8 +12,7 @@ namespace cdem {
 /// Sum the forces on each node in a fixed order, and add the damping force.
 struct SumNodeForces {
   InMotion nodes;
-  CornerLists corners;
-  LoadColumns loads;
+  NodePorts ports;
   SupportColumns supports;
   NodeDamping damping;
   MassColumns mass;
@@ -26,9 +24,7 @@ struct SumNodeForces {
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
-    Row f = corners.sum(i, loads.at(i));
-    for (Index c = corners.contact_first[i]; c < corners.contact_first[i + 1]; ++c)
-      f = f + corners.contact_force.at(corners.contact_corner[c]);
+    Row f = ports.sum(i);
     if (unbalance) {
       const Row free = supports.without_given(i, f);
       unbalance[i] = abs_of(free.n[0]) + abs_of(free.n[1]) + abs_of(free.n[2]);

@@ -2,9 +2,11 @@
 // one kernel.
 #pragma once
 
+#include <type_traits>
+
 #include "core/elements/corotational.hpp"
-#include "core/nodes/loads.hpp"
 #include "core/nodes/mass.hpp"
+#include "core/nodes/ports.hpp"
 
 namespace cdem {
 
@@ -25,22 +27,25 @@ struct FusedRows {
   }
 };
 
-/// Elements of these shapes have a fused kernel: it reads and writes their nodes by fours.
-template <class Shape>
-inline constexpr bool has_fused_kernel = Shape::nodes % 4 == 0;
+/// Elements of these shapes have a fused kernel: it reads and writes their nodes by fours. Of
+/// elements whose rock flows tets alone: a block of one hexahedron that flows is rare.
+template <class Shape, class Flow = NoFlow>
+inline constexpr bool has_fused_kernel =
+    Shape::nodes % 4 == 0 && (std::is_same_v<Flow, NoFlow> || Shape::nodes == 4);
 
 /// Force and motion of single-element blocks without load, support, contact or damping: no other
 /// block reads or writes their nodes in this pass, so nothing is stored in between. The
 /// arithmetic is that of SumNodeForces and MoveNodes, with lumped masses or with the full matrix.
-template <class Shape, bool lumped, class Flow = NoFlow>
+template <class Shape, class Flow = NoFlow>
 struct AdvanceFused {
-  static_assert(has_fused_kernel<Shape>);
+  static_assert(has_fused_kernel<Shape, Flow>);
   static constexpr Index count = Shape::nodes;
   CorotationalForce<Shape, FollowRotation, Flow> element;
   FusedRows rows;
   InForces bond_force;
   LoadColumns loads;
   MassColumns mass;
+  bool lumped;          // none of the blocks moves with its full matrix
   Real dt_before, dt;   // of the last step and of this one  [s]
   Real* motion;         // row of 8
   Real* work_external;  // [node] of gravity so far  [J]
@@ -65,7 +70,7 @@ struct AdvanceFused {
     const T kick(0.5 * (dt_before + dt)), zero(0.0);
     for (Index k = 0; k < count; ++k) {
       Vec3<T> a = f[k];
-      if constexpr (!lumped) {
+      if (!lumped) {
         const auto matrix = look_up(mass.mass_row_first, first);
         T inverse[count];
         read(mass.inverse, after(matrix, count * k), inverse);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "core/elements/views.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/fused_block.hpp"
 #include "core/nodes/views.hpp"
@@ -21,33 +22,22 @@ struct Elements {
   MassColumns mass = on_host(mass_columns(m, s));
   OnHost<const Index> nodes = on_host(e.nodes), support = on_host(m.support),
                       block_first = on_host(m.block_first), block_count = on_host(m.block_count),
-                      load_first = on_host(m.load_first), water_first = on_host(m.water.node_first),
-                      corner_first = on_host(s.nodes.corner_first),
-                      contact_first = on_host(s.search.contact_first);
-  OnHost<const Real> relief = on_host(s.nodes.relief);
+                      corner_first = on_host(s.nodes.corner_first);
+  NodePorts ports = on_host(node_ports(m, s));
   Index corners = e.corners;
 
   Index first_node(Index i) const { return nodes[i]; }
   /// The rows that a node sums after those of its element.
   Range bond_rows(Index node) const { return {corner_first[node], corner_first[node + 1]}; }
-  /// Does any load but gravity act on nodes from `first` to before `last`?
-  bool is_loaded(Index first, Index last) const {
-    bool any = load_first[first] < load_first[last];
-    any |= water_first.size() > 0 && water_first[first] < water_first[last];
-    for (std::size_t k = 4 * std::size_t(first); k < 4 * std::size_t(last); ++k)
-      any |= relief.size() > 0 && relief[k] != 0;
-    return any;
-  }
   bool is_lumped(Index i) const { return mass.row(first_node(i)) < 0; }
   bool is_fused(Index i) const {
-    const Index first = first_node(i), last = first + corners, row = mass.row(first);
-    if (block_first[first] != first || block_count[first] != corners || is_loaded(first, last) ||
-        contact_first[first] < contact_first[last])
-      return false;
+    const Index first = first_node(i), row = mass.row(first);
+    if (block_first[first] != first || block_count[first] != corners) return false;
     for (Index k = 0; k < corners; ++k) {
       const Index node = first + k;
-      if (nodes[std::size_t(k) * e.stride + i] != node || support[node] >= 0 ||
-          mass.row(node) != (row < 0 ? row : row + corners * k) || mass.held(node))
+      if (nodes[std::size_t(k) * e.stride + i] != node || !ports.is_plain(node) ||
+          support[node] >= 0 || mass.row(node) != (row < 0 ? row : row + corners * k) ||
+          mass.held(node))
         return false;
     }
     return true;
@@ -136,10 +126,12 @@ void find_fused_blocks(const Model& m, State& s) {
   if (s.nodes.relax_mass.size() > 0 || m.formulation != Formulation::corotational) return;
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
-                         if constexpr (has_fused_kernel<Shape>)
-                           find_fused_elements(m, s, e, es);
-                         else
-                           es.fused.general.assign(es.awake.data(), es.awake.size());
+                         with_flow<Shape>(s, e, es, [&]<class Flow>(const Flow&) {
+                           if constexpr (has_fused_kernel<Shape, Flow>)
+                             find_fused_elements(m, s, e, es);
+                           else
+                             es.fused.general.assign(es.awake.data(), es.awake.size());
+                         });
                        });
   if (nodes.fused.size() == 0) return;
   const Flag* fused = on_host(nodes.fused).data();

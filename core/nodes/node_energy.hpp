@@ -1,8 +1,8 @@
 // node_energy.hpp - energy of the nodes at the time of the forces.
 #pragma once
 
-#include "core/nodes/loads.hpp"
 #include "core/nodes/mass.hpp"
+#include "core/nodes/ports.hpp"
 #include "core/nodes/supports.hpp"
 
 namespace cdem {

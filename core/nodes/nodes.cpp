@@ -28,9 +28,9 @@ Real* step_change_if_any(State& s) {
   return s.dt != s.dt_last ? s.nodes.step_change.data() : nullptr;
 }
 
-template <class Shape, bool lumped, class Flow>
+template <class Shape, class Flow>
 void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, const ElementSet& e,
-                   ElementState& es, const Flow& flow) {
+                   ElementState& es, const Flow& flow, bool lumped) {
   const FusedBlocks& fused = es.fused;
   const Column<Index>& blocks = lumped ? fused.lumped : fused.blocks;
   const CorotationalForce<Shape, FollowRotation, Flow> element{
@@ -39,29 +39,29 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
       .dt = s.dt,
       .damping_work = {es.damping_work.data(), e.stride},
       .flow = flow};
-  for_each_lane(
-      q, e.count, awake(plan, blocks),
-      AdvanceFused<Shape, lumped, Flow>{.element = element,
-                                        .rows = {fused.row_first.data(), fused.row.data()},
-                                        .bond_force = {s.corner_force.data()},
-                                        .loads = load_columns(m, s),
-                                        .mass = mass_columns(m, s),
-                                        .dt_before = s.dt_last,
-                                        .dt = s.dt,
-                                        .motion = s.nodes.motion.data(),
-                                        .work_external = s.nodes.work_external.data(),
-                                        .step_change = step_change_if_any(s)});
+  for_each_lane(q, e.count, awake(plan, blocks),
+                AdvanceFused<Shape, Flow>{.element = element,
+                                          .rows = {fused.row_first.data(), fused.row.data()},
+                                          .bond_force = {s.corner_force.data()},
+                                          .loads = load_columns(m, s),
+                                          .mass = mass_columns(m, s),
+                                          .lumped = lumped,
+                                          .dt_before = s.dt_last,
+                                          .dt = s.dt,
+                                          .motion = s.nodes.motion.data(),
+                                          .work_external = s.nodes.work_external.data(),
+                                          .step_change = step_change_if_any(s)});
 }
 
 void advance_fused_blocks(const Model& m, State& s, Queue q, const StepPlan& plan) {
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
-                         if constexpr (has_fused_kernel<Shape>) {
-                           with_flow<Shape>(s, e, es, [&](const auto& flow) {
-                             advance_fused<Shape, false>(m, s, q, plan, e, es, flow);
-                             advance_fused<Shape, true>(m, s, q, plan, e, es, flow);
-                           });
-                         }
+                         with_flow<Shape>(s, e, es, [&]<class Flow>(const Flow& flow) {
+                           if constexpr (has_fused_kernel<Shape, Flow>) {
+                             advance_fused<Shape>(m, s, q, plan, e, es, flow, false);
+                             advance_fused<Shape>(m, s, q, plan, e, es, flow, true);
+                           }
+                         });
                        });
 }
 
@@ -71,8 +71,7 @@ SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
   if (damps) s.nodes.damping_force.resize(s.nodes.force.size());
   s.nodes.damped = damps;
   return {.nodes = {s.nodes.motion.data()},
-          .corners = corner_lists(s),
-          .loads = load_columns(m, s),
+          .ports = node_ports(m, s),
           .supports = support_columns(m, s),
           .damping = damping,
           .mass = mass_columns(m, s),

@@ -1,7 +1,7 @@
 // relaxing_node.hpp - a node in adaptive relaxation.
 #pragma once
 
-#include "core/nodes/loads.hpp"
+#include "core/nodes/ports.hpp"
 #include "core/nodes/supports.hpp"
 
 namespace cdem {

@@ -7,6 +7,7 @@
 #include "core/model/block_lists.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/fused_blocks.hpp"
+#include "core/nodes/views.hpp"
 
 namespace cdem {
 
@@ -70,9 +71,9 @@ void find_awake(const Model& m, State& s) {
   leave_averaged(s, s.tet4.awake);
   s.nodes.sleeps.resize(m.node_count);
   const auto sleeps = on_host(s.nodes.sleeps);
-  const auto load_first = on_host(m.load_first);
+  const NodePorts ports = on_host(node_ports(m, s));
   for (Index i = 0; i < m.node_count; ++i)
-    sleeps[i] = fixed[i] && !pulled[i] && load_first[i] == load_first[i + 1];
+    sleeps[i] = fixed[i] && !pulled[i] && !ports.is_loaded(i);
   list_awake_nodes(m, s);
 }
 

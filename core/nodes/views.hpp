@@ -3,9 +3,8 @@
 
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
-#include "core/nodes/corner_rows.hpp"
-#include "core/nodes/loads.hpp"
 #include "core/nodes/mass.hpp"
+#include "core/nodes/ports.hpp"
 #include "core/nodes/supports.hpp"
 
 namespace cdem {
@@ -49,7 +48,7 @@ inline LoadColumns load_columns(const Model& m, const State& s) {
           .curve_value = s.load_factor.data(),
           .relief = s.nodes.relief.size() > 0 ? s.nodes.relief.data() : nullptr,
           .relief_part = s.relief.part,
-          .water = s.nodes.water.size() > 0 ? s.nodes.water.data() : nullptr};
+          .applied = s.nodes.water.size() > 0 ? s.nodes.water.data() : nullptr};
 }
 
 inline CornerLists corner_lists(const State& s) {
@@ -61,6 +60,12 @@ inline CornerLists corner_lists(const State& s) {
           .contact_first = s.search.contact_first.data(),
           .contact_corner = s.search.contact_corner.data(),
           .contact_force = {s.contact_force.data()}};
+}
+
+inline NodePorts node_ports(const Model& m, const State& s) {
+  return {.loads = load_columns(m, s),
+          .applied_first = m.water.node_first.size() > 0 ? m.water.node_first.data() : nullptr,
+          .corners = corner_lists(s)};
 }
 
 }  // namespace cdem

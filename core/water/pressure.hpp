@@ -1,8 +1,8 @@
 // pressure.hpp - pressure of water, and its forces on faces and in the pores of elements.
 #pragma once
 
+#include "core/base/views.hpp"
 #include "core/elements/shapes.hpp"
-#include "core/nodes/corner_rows.hpp"
 
 namespace cdem {
 

@@ -67,21 +67,29 @@ stages:
 """
 
 FLOWING = """
-title: Weak rock flows under its weight; loose elements of it fall on the heap
+title: Weak rock flows under its weight; loose elements of it fall on the heap; a cube of them sags
 model:
   blocks:
     - {group: heap, box: {size: [2, 2, 1], divisions: [3, 3, 2], shape: tet4}}
     - {group: bricks, box: {size: [2, 2, 0.5], divisions: [2, 2, 1]}, translate: [0, 0, 1.02]}
-  split: {bricks: elements}
+    - {group: cube, box: {size: [4, 4, 4], divisions: [4, 4, 4], shape: tet4}, translate: [0, 4, 0]}
+  split: {bricks: elements, cube: elements}
 materials:
   soft: {law: mohr-coulomb, density: 2000, poisson_ratio: 0.3, young_modulus: 20 MPa,
          friction_angle: 20, cohesion: 2 kPa, tensile_strength: 1 kPa}
-groups: {heap: {material: soft}, bricks: {material: soft, velocity: [0, 0, -3]}}
-interfaces: {default: {friction_angle: 20}}
+groups:
+  heap: {material: soft}
+  bricks: {material: soft, velocity: [0, 0, -3]}
+  cube: {material: soft}
+interfaces:
+  default: {friction_angle: 20}
+  pairs: [{between: [cube, cube], friction_angle: 20, cohesion: 1 MPa, tensile_strength: 1 MPa}]
 elements: {tetrahedra: nodal-mean}
 loads:
   gravity: [2, 0, -9.81]
-  supports: [{surface: {group: heap, normal: [0, 0, -1]}, fix: [x, y, z]}]
+  supports:
+    - {surface: {group: heap, normal: [0, 0, -1]}, fix: [x, y, z]}
+    - {surface: {group: cube, normal: [-1, 0, 0]}, fix: [x, y, z]}
 stages:
   - {name: fall, mode: dynamic, duration: 0.05, damping: {contact: 0.1}}
   - {name: go on, mode: dynamic, duration: 0.05, set: {materials.soft.cohesion: 1 kPa}}

@@ -97,6 +97,27 @@ def test_a_sunken_block_presses_less_on_its_bed(shape):
         assert carried == pytest.approx(force, rel=2e-5)  # the block is squeezed a little
 
 
+@pytest.mark.parametrize("parts", [[600], [1, 199, 400]], ids=["at once", "in parts"])
+def test_held_rock_carries_its_water_at_any_time(parts):
+    """A bed that is held in all directions under water that rises: its supports carry its weight
+    and the pressure on its top, 4 m2 times gamma (level - 1 m), in whatever calls the run is made."""
+    rise = [[0, 2.0], [0.5, 12.0]]
+    sim = start(
+        [box("bed", size=[2, 2, 1], divisions=[2, 2, 1])],
+        water={"reservoir": {"box": {"min": [-1, -1, 0.9], "max": [5, 5, 50]}, "level": rise}},
+        stages=[{"name": "rise", "mode": "dynamic", "duration": 0.4}],
+    )
+    for steps in parts:
+        sim.step(steps)
+    last = sim.time / sim.step_count
+    level = 2 + 20 * (sim.time - last)  # the forces of a step are those of its begin
+    fields = sim.core.fields()
+    carried = fields["node.reaction"].reshape(-1, 4)[:, 2].sum()
+    right = 4 * 2600 * G + 4 * UNIT * (level - 1)
+    assert carried == pytest.approx(right, rel=1e-12)
+    assert carried + water_on(sim)[2] == pytest.approx(4 * 2600 * G, rel=1e-12)
+
+
 def test_a_floating_block_bobs():
     """T = 2 pi sqrt(m / (rho_w g A)); energy stays."""
     block = box("block", [0, 0, -0.4])

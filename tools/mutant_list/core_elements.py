@@ -1,8 +1,16 @@
 """Faults in `core/elements`."""
 
-from mutant_list.mutant import Mutant
+from mutant_list.mutant import PINNED, Mutant
 
 FAULTS = [
+    Mutant(
+        "nodal mean",
+        "the mean dilatation of a tet from two of its nodes",
+        "core/elements/nodal_dilatation.hpp",
+        "return Number<I>(0.25) * ((at(0) + at(1)) + (at(2) + at(3)));",
+        "return Number<I>(0.5) * (at(0) + at(1));",
+        f"{PINNED}[flowing-1]",
+    ),
     Mutant(
         "lame",
         "Lame constants swapped",

@@ -1,8 +1,40 @@
 """Faults in `core/nodes`."""
 
-from mutant_list.mutant import Mutant
+from mutant_list.mutant import PINNED, Mutant
 
 FAULTS = [
+    Mutant(
+        "port",
+        "the fused kernel moves nodes on which water acts",
+        "core/nodes/ports.hpp",
+        "return !is_loaded(node) && ",
+        "return ",
+        "tests/core/nodes/test_ports.cpp",
+    ),
+    Mutant(
+        "wet support",
+        "held rock under water sleeps",
+        "core/nodes/ports.hpp",
+        "    if (applied_first && applied_first[node] < applied_first[node + 1]) return true;\n",
+        "",
+        "tests/validation/test_water.py::test_held_rock_carries_its_water_at_any_time",
+    ),
+    Mutant(
+        "kept forces",
+        "kept forces are let go at once, whatever the case asks for",
+        "core/nodes/curves.cpp",
+        "s.relief.part = s.relief.at(s.loads_time);",
+        "s.relief.part = 0;",
+        f"{PINNED}[dug-1]",
+    ),
+    Mutant(
+        "fused flow",
+        "the fused kernel forgets that rock flows",
+        "core/nodes/nodes.cpp",
+        "      .flow = flow};",
+        "      .flow = Flow{}};",
+        f"{PINNED}[flowing-1]",
+    ),
     Mutant(
         "curve",
         "curves interpolated from the wrong end",
@@ -39,7 +71,7 @@ FAULTS = [
         "sleep",
         "a fixed node that carries a load sleeps",
         "core/nodes/sleep.cpp",
-        "fixed[i] && !pulled[i] && load_first[i] == load_first[i + 1]",
+        "fixed[i] && !pulled[i] && !ports.is_loaded(i)",
         "fixed[i] && !pulled[i]",
         "tests/core/nodes/test_sleep.cpp",
     ),
@@ -88,8 +120,8 @@ FAULTS = [
         "fused matrix",
         "fused blocks with lumped masses use the mass matrix",
         "core/nodes/fused_block.hpp",
-        "      if constexpr (!lumped) {",
-        "      if constexpr (true) {",
+        "      if (!lumped) {",
+        "      if (true) {",
         "tests/core/nodes/test_fused_block.cpp",
     ),
     Mutant(

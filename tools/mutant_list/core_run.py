@@ -1,8 +1,32 @@
 """Faults in `core/run`."""
 
-from mutant_list.mutant import Mutant
+from mutant_list.mutant import PINNED, Mutant
 
 FAULTS = [
+    Mutant(
+        "dug contacts",
+        "forces of contacts with rock that is dug out are not kept",
+        "core/run/excavate.cpp",
+        "    kept.add_springs();\n",
+        "",
+        f"{PINNED}[dug-1]",
+    ),
+    Mutant(
+        "left friction",
+        "friction of blocks that have left is lost from the ledger",
+        "core/run/take_out.cpp",
+        "      s.taken_out_friction += friction[slot];\n",
+        "",
+        f"{PINNED}[leaving-1]",
+    ),
+    Mutant(
+        "left work",
+        "what damping will have done on nodes that have left stays in the ledger",
+        "core/run/take_out.cpp",
+        "    work_damping[i] -= sample[4 * i + 2];\n",
+        "",
+        f"{PINNED}[leaving-1]",
+    ),
     Mutant(
         "bare walls",
         "faces that fill covers can still be touched",

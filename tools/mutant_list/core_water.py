@@ -1,8 +1,24 @@
 """Faults in `core/water`."""
 
-from mutant_list.mutant import Mutant
+from mutant_list.mutant import PINNED, Mutant
 
 FAULTS = [
+    Mutant(
+        "level",
+        "a level that does not rise",
+        "core/water/water.cpp",
+        "now[0] = given[0] + given[5] * lift;",
+        "now[0] = given[0];",
+        f"{PINNED}[soaked-1]",
+    ),
+    Mutant(
+        "work of water",
+        "work of water by the force after the step alone",
+        "core/water/pressure.hpp",
+        "const Row mean = 0.5 * (Row::at(own) + sum);",
+        "const Row mean = sum;",
+        f"{PINNED}[soaked-1]",
+    ),
     Mutant(
         "clipped",
         "water that presses on all of a face of which a part is dry",

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 FAILURE = "tests/validation/test_failure.py::"
+PINNED = "tests/regression/test_golden.py::test_results_are_those_pinned"
 
 
 class Mutant(NamedTuple):

@@ -1,6 +1,8 @@
 // force.cpp - see force.hpp.
 #include "core/contact/force/force.hpp"
 
+#include <type_traits>
+
 #include "core/base/primitives.hpp"
 #include "core/contact/force/accumulate.hpp"
 #include "core/contact/force/change_of_target.hpp"
@@ -16,6 +18,16 @@ namespace cdem {
 
 namespace {
 
+/// Call launch(kernel) with the kernel for the laws that a model has. One that unloads otherwise
+/// than it loads has a kernel for all laws only: few models have it.
+template <template <class> class Unloading, class Kernel, class Launch>
+void with_laws_of(const InterfaceTable& table, const Kernel& kernel, const Launch& launch) {
+  if constexpr (std::is_same_v<Unloading<Real>, HystereticUnloading<Real>>)
+    launch(WithLaws<Kernel, InterfaceLaws>{kernel});
+  else
+    with_laws(table, kernel, launch);
+}
+
 template <template <class> class Unloading>
 void update_spring_forces(const Model& m, State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
@@ -29,14 +41,14 @@ void update_spring_forces(const Model& m, State& s, Queue q) {
                               .rules = m.rules,
                               .laws = laws,
                               .springs = springs});
-  with_laws(laws.interfaces,
-            UpdateSpringForces<Unloading>{.faces = faces,
-                                          .geometry = geometry,
-                                          .rules = m.rules,
-                                          .laws = laws,
-                                          .springs = springs,
-                                          .history = history_rows(s.springs.history)},
-            [&](const auto& kernel) { for_each_selected(q, count, kernel); });
+  with_laws_of<Unloading>(laws.interfaces,
+                          UpdateSpringForces<Unloading>{.faces = faces,
+                                                        .geometry = geometry,
+                                                        .rules = m.rules,
+                                                        .laws = laws,
+                                                        .springs = springs,
+                                                        .history = history_rows(s.springs.history)},
+                          [&](const auto& kernel) { for_each_selected(q, count, kernel); });
 }
 
 template <template <class> class Unloading>
@@ -47,15 +59,15 @@ void update_edge_forces(const Model& m, State& s, Queue q) {
   s.edges.contact_history.law.renew(width > 0 ? contacts : 0);
   const HistoryRows sides = history_rows(s.edges.side_history),
                     own = history_rows(s.edges.contact_history);
-  with_laws(interface_table(m),
-            UpdateEdgeForces<Unloading>{.faces = face_columns(m, s),
-                                        .geometry = face_geometry(s),
-                                        .laws = contact_laws(m, s),
-                                        .state_before = s.edges.old_state.data(),
-                                        .edges = edge_columns(s),
-                                        .side_history = sides,
-                                        .contact_history = own},
-            [&](const auto& kernel) { for_each_lane(q, contacts, kernel); });
+  with_laws_of<Unloading>(interface_table(m),
+                          UpdateEdgeForces<Unloading>{.faces = face_columns(m, s),
+                                                      .geometry = face_geometry(s),
+                                                      .laws = contact_laws(m, s),
+                                                      .state_before = s.edges.old_state.data(),
+                                                      .edges = edge_columns(s),
+                                                      .side_history = sides,
+                                                      .contact_history = own},
+                          [&](const auto& kernel) { for_each_lane(q, contacts, kernel); });
   if (width > 0)
     for_each_item(q, Index(s.search.exposed_face.size()),
                   MergeSideHistories{edge_columns(s), sides, own});

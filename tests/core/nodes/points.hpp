@@ -78,7 +78,19 @@ struct Points {
             .curve_value = curve.data(),
             .relief = nullptr,
             .relief_part = 1,
-            .water = nullptr};
+            .applied = nullptr};
+  }
+  NodePorts ports() const {
+    return {.loads = loads(),
+            .applied_first = nullptr,
+            .corners = {.tile_first = tile_first.data(),
+                        .tile_force = {tile_force.data()},
+                        .first = corner_first.data(),
+                        .corner = corner.data(),
+                        .corner_force = {corner_force.data()},
+                        .contact_first = contact_first.data(),
+                        .contact_corner = contact_corner.data(),
+                        .contact_force = {contact_force.data()}}};
   }
   MassColumns mass_columns() const {
     return {.lumped = false,
@@ -93,22 +105,10 @@ struct Points {
   }
   bool damps() const { return damping.local > 0 || damping.mass > 0; }
   SumNodeForces sum_kernel() {
-    return {{motion.data()},
-            {tile_first.data(),
-             {tile_force.data()},
-             corner_first.data(),
-             corner.data(),
-             {corner_force.data()},
-             contact_first.data(),
-             contact_corner.data(),
-             {contact_force.data()}},
-            loads(),
-            supports(),
-            damping,
-            mass_columns(),
-            0.5 * (dt_before + dt),
-            force.data(),
-            damps() ? damping_force.data() : nullptr,
+    return {{motion.data()}, ports(),
+            supports(),      damping,
+            mass_columns(),  0.5 * (dt_before + dt),
+            force.data(),    damps() ? damping_force.data() : nullptr,
             unbalance.data()};
   }
   MoveNodes move_kernel() {
