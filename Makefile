@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants torture sanitize package nightly verify lint format demo docs cuda emulated devices serial clean
+.PHONY: setup build dev check test validate coverage mutants benchmark torture sanitize package nightly verify lint format demo docs cuda emulated devices serial clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -47,9 +47,13 @@ coverage: setup
 	$(BIN)/python -m gcovr --delete --gcov-suspicious-hits-threshold 0 --filter core/ \
 	  --sort uncovered-percent build/coverage
 
-# Faults planted one by one must each fail a test; with T=name some of them.
+# Faults planted one by one must each fail a test; with T=name some of them. Cut off, it goes on.
 mutants: setup
-	$(BIN)/python tools/mutants.py $(T)
+	$(BIN)/python tools/mutants.py --state build/mutants/faults.json $(T)
+
+# Speeds at this commit on this machine, a point of docs/benchmark_history.jsonl.
+benchmark: dev
+	$(BIN)/python tools/benchmark_history.py
 
 # What may happen to a run and to its input, in parts; see docs/results.md.
 PARTS := damage cases files kills small landslide faults-kill faults-EIO faults-ENOSPC

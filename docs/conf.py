@@ -24,6 +24,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
     "sphinxcontrib.bibtex",
+    "benchmark_history",
     "case_reference",
     "command_reference",
     "mathml",

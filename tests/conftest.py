@@ -38,9 +38,9 @@ def no_report(monkeypatch):
     monkeypatch.setattr(run_commands, "write_report", lambda folder: None)
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def short_estimate(monkeypatch):
-    """`cdem check` measures the speed by few steps: the test looks at something else."""
+    """`cdem check` measures the speed by few steps; test_estimate.py, which looks at it, does not."""
     from cdem.run import estimate
 
     monkeypatch.setattr(estimate, "SECONDS", 0.02)

@@ -2,15 +2,19 @@
 
 Works on a copy of the tracked files in build/mutants, with its own build folder. For each fault it
 builds what changed and runs the quickest test that should fail; a fault that passes it meets the
-whole quick suite, pinned results last. Ends with status 1 if a fault survives, no longer fits the
-code or runs into the time limit.
+whole quick suite, pinned results last, and then the slow tests. Ends with status 1 if a fault
+survives, no longer fits the code or runs into the time limit.
 
-`python tools/mutants.py name...` plants only those; `--write` puts the table in docs/mutants.md;
-`--check`, which is part of `make lint`, only looks whether all still fit the code.
+With `--state FILE` it goes on where it was cut off: a fault is planted again only if its text, the
+file that it is planted in, or its test with the helpers of tests has changed since.
+
+`python tools/mutants.py name...` plants only those; `--write` puts the table of all that the state
+knows in docs/mutants.md; `--check`, which is part of `make lint`, only looks whether all still fit
+the code.
 """
 
 import argparse
-import datetime
+import hashlib
 import os
 import re
 import shutil
@@ -18,11 +22,16 @@ import subprocess
 import sys
 import time
 import venv
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "torture"))
 
 from mutant_list import MUTANTS, Mutant
+from state import State, add_option
 
 ROOT = Path(__file__).resolve().parent.parent
 TREE = ROOT / "build" / "mutants"
@@ -45,6 +54,8 @@ SUITE = ("tests/unit", "tests/integration", "tests/validation", "tests/regressio
 PYTEST_FAILURE = r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$"
 CORE_FAILURE = r"^\S*?(tests/core/\S+):\d+:\nTEST CASE: *(.+)$"
 OWN_LAWS = "tests/validation/test_own_laws.py"  # skipped in the suite: another core, built last
+HELPERS = ("tests/conftest.py", "tests/scenes.py", "tests/shared/*.py", "tests/core/*.hpp")
+"""What tests of a kind share: a change of it lets all faults of this kind be planted again."""
 LIMIT = 400  # of one test, and LIMIT_SUITE of all  [s]
 LIMIT_SUITE = 7200
 
@@ -153,7 +164,7 @@ def fails_suite(mutant: Mutant) -> str:
     if not test:
         build((*MODULE, "--own-laws"))
         test = failed((*PYTEST, OWN_LAWS), LIMIT_SUITE)
-    return test
+    return test or failed((*PYTEST, "-m", "slow", *SUITE), LIMIT_SUITE)
 
 
 def fits(mutant: Mutant) -> bool:
@@ -198,6 +209,46 @@ def outcome_of(mutant: Mutant) -> Outcome:
     return Outcome(mutant, test, problem, time.monotonic() - start)
 
 
+def key_of(mutant: Mutant, caught_by: str) -> str:
+    """Digest of a fault and of the files that its outcome depends on.
+
+    Args:
+        mutant: The fault.
+        caught_by: The test that has caught it, or nothing.
+    """
+    shared = [h for h in HELPERS if h.endswith(".hpp") == is_core_test(mutant.test)]
+    tests = {word.partition("::")[0] for word in [*mutant.test.split(), caught_by]}
+    paths = {ROOT / mutant.file, *(path for h in shared for path in ROOT.glob(h))}
+    paths |= {ROOT / test for test in tests if test and (ROOT / test).is_file()}
+    digest = hashlib.sha256(repr(tuple(mutant)).encode())
+    for path in sorted(paths):
+        digest.update(str(path.relative_to(ROOT)).encode() + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def done(state: State, mutant: Mutant) -> dict[str, Any] | None:
+    """What the state knows of a fault, unless it or what it depends on has changed.
+
+    One that was not caught is tried again at another commit.
+    """
+    known = state.known.get(mutant.name)
+    if not known or (known["problem"] and known["commit"] != state.now):
+        return None
+    return known if known["key"] == key_of(mutant, known["test"]) else None
+
+
+def keep(state: State, outcome: Outcome) -> None:
+    """Put an outcome into the state."""
+    state.known[outcome.mutant.name] = {
+        "key": key_of(outcome.mutant, outcome.test),
+        "test": outcome.test,
+        "problem": outcome.problem,
+        "seconds": outcome.seconds,
+        "commit": state.now,
+    }
+    state.keep()
+
+
 def check_sound(mutants: Iterable[Mutant]) -> None:
     """Without a fault all tests pass; end if they do not."""
     build((*MODULE, "--tests"))
@@ -218,25 +269,48 @@ def short(test: str) -> str:
     return f"{Path(file).name}::{plain}"
 
 
-def table(outcomes: Sequence[Outcome], commit: str) -> str:
-    """The page of all faults."""
-    caught = sum(bool(o.test) for o in outcomes)
+def table(state: State, mutants: Sequence[Mutant]) -> str:
+    """The page of all faults that the state knows."""
+    found = {m.name: known for m in mutants if (known := done(state, m))}
+    commits = Counter(known["commit"] for known in found.values())
+    caught = sum(bool(known["test"]) for known in found.values())
+    at = ", ".join(f"{count} at {commit}" for commit, count in commits.items())
     lines = [
         "# Planted faults",
         "",
         "Written by `tools/mutants.py --write`. Each fault is planted alone, in one line of the code;",
         "the first test that fails has caught it. Seconds are those of build and test.",
         "",
-        f"Commit {commit}, {datetime.date.today()}: {len(outcomes)} of {len(MUTANTS)} faults planted, "
-        f"{caught} caught.",
+        f"{len(found)} of {len(mutants)} faults planted since they, their file or their test changed, "
+        f"{caught} caught;",
+        f"by commit: {at or 'none'}.",
         "",
-        "| fault | file | caught by | s |",
-        "|---|---|---|--:|",
+        "| fault | file | caught by | s | commit |",
+        "|---|---|---|--:|---|",
     ]
-    for o in outcomes:
-        by = f"`{short(o.test)}`" if o.test else f"**{o.problem.splitlines()[0]}**"
-        lines.append(f"| {o.mutant.fault} | `{o.mutant.file}` | {by} | {o.seconds:.0f} |")
+    for mutant in mutants:
+        if known := found.get(mutant.name):
+            by = f"`{short(known['test'])}`" if known["test"] else f"**{first_line(known)}**"
+            row = (mutant.fault, f"`{mutant.file}`", by, f"{known['seconds']:.0f}", known["commit"])
+            lines.append(f"| {' | '.join(row)} |")
     return "\n".join(lines) + "\n"
+
+
+def first_line(known: dict[str, Any]) -> str:
+    """Why a fault was not caught."""
+    return known["problem"].splitlines()[0]
+
+
+def plant(state: State, mutants: Sequence[Mutant]) -> None:
+    """Plant faults, and keep what became of each."""
+    TREE.mkdir(parents=True, exist_ok=True)
+    copy_tree()
+    make_environment()
+    check_sound(mutants)
+    for mutant in mutants:
+        last = outcome_of(mutant)
+        keep(state, last)
+        print(f"{mutant.name}: {last.test or last.problem} ({last.seconds:.0f} s)", flush=True)
 
 
 def main() -> None:
@@ -245,6 +319,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", help="only these faults")
     parser.add_argument("--write", action="store_true", help="put the table in docs/mutants.md")
     parser.add_argument("--check", action="store_true", help="only look whether they fit the code")
+    add_option(parser)
     wants = parser.parse_args()
     if wants.check:
         sys.exit("".join(f"{m.name}: not once in {m.file}\n" for m in MUTANTS if not fits(m)) or 0)
@@ -252,22 +327,14 @@ def main() -> None:
     if unknown:
         sys.exit(f"no such faults: {', '.join(sorted(unknown))}")
     mutants = [m for m in MUTANTS if not wants.names or m.name in wants.names]
-    changed = " with changes" if git("status", "--porcelain", "-uno") else ""
-    commit = git("rev-parse", "--short", "HEAD").strip() + changed
-    TREE.mkdir(parents=True, exist_ok=True)
-    copy_tree()
-    make_environment()
-    check_sound(mutants)
-    outcomes = []
-    for mutant in mutants:
-        outcomes.append(outcome_of(mutant))
-        last = outcomes[-1]
-        print(f"{mutant.name}: {last.test or last.problem} ({last.seconds:.0f} s)", flush=True)
-    page = table(outcomes, commit)
+    state = State(wants.state, [], {})
+    if left := [m for m in mutants if not done(state, m)]:
+        plant(state, left)
+    page = table(state, MUTANTS)
     print(f"\n{page}")
     if wants.write:
         (ROOT / "docs" / "mutants.md").write_text(page)
-    sys.exit(any(o.problem for o in outcomes))
+    sys.exit(any(state.known[m.name]["problem"] for m in mutants))
 
 
 if __name__ == "__main__":

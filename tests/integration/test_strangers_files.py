@@ -40,15 +40,22 @@ def listener():
 
 
 @pytest.mark.parametrize(
-    ("write", "read", "count"),
+    ("write", "read", "count", "taken"),
     [
-        (strangers.write_vectors, read_features, 54),
-        pytest.param(strangers.write_more_vectors, read_features, 48, marks=pytest.mark.slow),
-        (strangers.write_rasters, read_raster, 33),
-        (strangers.write_meshes, read_mesh, 5),
+        # of 7 descriptions under 6 endings each description and each ending, and all the others
+        (strangers.write_vectors, read_features, 54, [*range(0, 42, 5), *range(42, 54)]),
+        pytest.param(strangers.write_vectors, read_features, 54, range(54), marks=pytest.mark.slow),
+        pytest.param(
+            strangers.write_more_vectors, read_features, 48, range(48), marks=pytest.mark.slow
+        ),
+        (strangers.write_rasters, read_raster, 33, range(33)),
+        (strangers.write_meshes, read_mesh, 5, range(5)),
     ],
+    ids=["vectors", "all vectors", "more vectors", "rasters", "meshes"],
 )
-def test_no_file_leads_elsewhere_or_to_no_end(tmp_path, monkeypatch, listener, write, read, count):
+def test_no_file_leads_elsewhere_or_to_no_end(
+    tmp_path, monkeypatch, listener, write, read, count, taken
+):
     url, seen = listener
     monkeypatch.setenv("AWS_S3_ENDPOINT", url.removeprefix("http://"))
     folder = tmp_path / "case"
@@ -60,7 +67,7 @@ def test_no_file_leads_elsewhere_or_to_no_end(tmp_path, monkeypatch, listener, w
     paths = write(folder, url, secret)
     assert len(paths) == count
     before = sorted(os.listdir(folder))
-    for path in paths:
+    for path in (paths[k] for k in taken):
         began = time.process_time()
         children = os.times()
         with pytest.raises(CdemError) as caught:

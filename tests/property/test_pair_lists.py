@@ -109,7 +109,7 @@ class Lists:
 
 
 @pytest.mark.parametrize("shapes", list(combinations_with_replacement(SHAPES, 2)), ids="-".join)
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_contacts_are_on_the_inner_list_and_that_on_the_outer(shapes, seed):
     """A step raises if the lists hide a contact that a search of all pairs finds."""
     sim = tumbling(shapes, seed)

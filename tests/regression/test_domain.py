@@ -140,7 +140,7 @@ def test_any_split_gives_the_same_bits(whole, case_file):
     folder = case_file.parent / "split"
     simulation = cdem.Simulation(case_file, threads=1, output=folder)
     seen = 0
-    for time in np.arange(0.06, 1.4, 0.06):
+    for time in np.arange(0.06, 1.4, 0.12):
         simulation.run_until(time)
         simulation.checkpoint()
         simulation.close()
@@ -230,15 +230,23 @@ output: {every: 0.25}
 """
 
 
-def test_a_landslide_off_the_edge_comes_to_its_end(tmp_path, monkeypatch, run_cli, no_report):
-    """Without the domain its fall ends the run at the speed of the P wave."""
+@pytest.fixture
+def slide(tmp_path, monkeypatch, no_report):
+    """Words that run the landslide in a folder of its own."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "slide.yaml").write_text(SLIDE)
-    words = ("run", "slide.yaml", "--threads", "2")
+    return ("run", "slide.yaml", "--threads", "1")
+
+
+@pytest.mark.slow  # quick: test_a_fall_as_fast_as_a_wave_is_said_to_be_a_fall
+def test_without_the_domain_its_fall_ends_the_run_at_the_speed_of_the_wave(run_cli, slide):
     on = ("--set", "model.domain=null", "--set", "stages.0.until=null", "-o", "open")
-    status, _, err = run_cli(*words, *on)
+    status, _, err = run_cli(*slide, *on)
     assert status == 3 and "or let model.domain take such blocks out" in err
-    status, out, err = run_cli(*words)
+
+
+def test_a_landslide_off_the_edge_comes_to_its_end(tmp_path, run_cli, slide):
+    status, out, err = run_cli(*slide)
     lost = json.loads((tmp_path / "slide.results/summary.json").read_text())["taken_out"]
     but = f"but for {lost['body']['blocks']} blocks of group body that left the domain"
     assert (status, out) == (0, f"at rest, {but}; results are in slide.results\n")

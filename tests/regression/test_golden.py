@@ -31,8 +31,18 @@ def test_renewed_hashes_have_their_line_in_the_changelog():
     assert PINNED["reason"] and PINNED["reason"] in (ROOT / "CHANGELOG.md").read_text()
 
 
-@pytest.mark.parametrize("threads", [1, 3])
-@pytest.mark.parametrize("name", SCENES)
+DEAR = ("landslide", "leaving", "flowing", "rubble", "version_2")
+"""Scenes of seconds: on one thread quick tests run them with other instruction sets only."""
+
+
+@pytest.mark.parametrize(
+    ("name", "threads"),
+    [
+        pytest.param(name, n, marks=[pytest.mark.slow] * (n == 1 and name in DEAR))
+        for name in SCENES
+        for n in (1, 3)
+    ],
+)
 def test_results_are_those_pinned(name, threads):
     """Results on one and on three threads have the pinned hash."""
     assert digest(name, threads) == PINNED["scenes"][name]

@@ -65,6 +65,7 @@ loads:
   tractions: [{surface: {group: wall, normal: [1, 0, 0]}, traction: [-1000, 0, 0]}]
   velocities: [{group: loose, velocity: [0.1, 0, 0], components: [x]}]
 stages: [{name: push, mode: dynamic, duration: "5 ms"}]
+output: {every: "1 ms"}
 """
 FALL = """\
 model: {blocks: [{group: cube, box: {size: [1, 1, 1]}}]}

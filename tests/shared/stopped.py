@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -64,14 +65,19 @@ class StagesOf:
         simulation.run_stage(stage)
         simulation.close()
 
-    def stop_within(self, stage: str, steps: int) -> None:
-        """Leave the folder that a kill leaves some time after a checkpoint within a stage."""
-        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
-        before = [name for name, _ in self.stages][: [n for n, _ in self.stages].index(stage)]
-        if before:
-            simulation.run_stage(before[-1])
-        stopped_at = simulation.step_count + steps // 2
-        with pytest.MonkeyPatch.context() as patch:  # the loop comes back after few steps
-            patch.setattr("cdem.run.simulation.CHUNK_SECONDS", 0.0)
-            simulation.run(should_stop=lambda: simulation.step_count >= stopped_at)
-        simulation.close()
+    def stops(self) -> Iterator[tuple[str, Callable[[], None]]]:
+        """Run once, and stop in the middle and at the end of each stage.
+
+        Yields:
+            Where it stopped, and a function that leaves the folder that a kill there leaves.
+        """
+        simulation = Simulation(Case.load(self.case), output=self.place / "stopped", threads=1)
+        leave = partial(shutil.copytree, self.place / "stopped", self.place / "broken")
+        for stage, steps in self.stages:
+            stopped_at = simulation.step_count + steps // 2
+            with pytest.MonkeyPatch.context() as patch:  # the loop comes back after few steps
+                patch.setattr("cdem.run.simulation.CHUNK_SECONDS", 0.0)
+                simulation.run(should_stop=lambda at=stopped_at: simulation.step_count >= at)
+            yield f"within {stage}", leave
+            simulation.run_stage(stage)
+            yield f"at the end of {stage}", leave

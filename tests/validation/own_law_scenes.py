@@ -14,7 +14,7 @@ import numpy as np
 
 ROOT = Path(__file__).parents[2]
 GRAVITY = {"gravity": [0, 0, -10.0]}
-PEAK, RESIDUAL, SLIP = 40.0, 20.0, 0.05
+PEAK, RESIDUAL, SLIP = 40.0, 20.0, 0.0125
 WEAK = {
     "law": "weakening",
     "friction_angle": PEAK,
@@ -66,7 +66,7 @@ def slider(**interface):
             {
                 "name": "slide",
                 "mode": "dynamic",
-                "duration": 1.4,
+                "duration": 0.35,
                 "damping": damping,
                 "set": {"loads.velocities.0.velocity": [SPEED, 0, 0]},
             },
@@ -88,7 +88,7 @@ def springs():
     sim.run_stage("settle")
     bed = sim.build.nodes_of("bed")
     seen = []
-    for end in np.arange(0.25, 1.6, 0.05):
+    for end in np.arange(0.2125, 0.55, 0.0125):
         sim.run_until(end)
         force = sim.core.fields()["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
         weight = 0.4 * 2500 * 10  # of the block; the bed carries its own as well
@@ -258,6 +258,7 @@ def results():
         def case():
             short = slider().case
             short.stages[0].duration, short.stages[1].duration = 0.02, 0.2
+            short.output.every = 0.05
             return short
 
         whole = cdem.Simulation(case(), output=f"{folder}/a", threads=1)

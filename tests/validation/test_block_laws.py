@@ -94,6 +94,7 @@ def mixed():
         {g: {"velocity": [5, 0, -30], "material": g} for g in laws},
         loads={"supports": [FLOOR | {"surface": {"group": g, "normal": [0, 0, -1]}} for g in laws]},
         stages=[{"name": "hit", "mode": "dynamic", "duration": 0.02}],
+        output={"every": 0.005},
         materials={g: {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.25} | law
                    for g, law in laws.items()},
     )  # fmt: skip
@@ -146,7 +147,7 @@ def test_large_strain_is_told_and_ends_a_run(tmp_path):
     top = {"surface": {"group": "rock", "normal": [0, 0, 1]}, "components": ["z"],
            "velocity": [0, 0, -2]}  # fmt: skip
     parts = {"rock": rock, "loads": {"supports": [FLOOR], "velocities": [top]},
-             "time": {"energy_error": "any"}}  # fmt: skip
+             "time": {"energy_error": "any"}, "output": {"every": 0.05}}  # fmt: skip
 
     def press(time, folder):
         stage = {

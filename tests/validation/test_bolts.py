@@ -13,7 +13,7 @@ BAR = {
 PULL = {"name": "pull", "mode": "dynamic", "duration": 0.02}
 
 
-def cubes(*stages, bolts=None, kind=BAR, shape="tet4", remove=False, **more):
+def cubes(*stages, bolts=None, kind=BAR, shape="tet4", every=None, **more):
     """A held cube of 2 m and two more beside it, each with bolts across its joint; the last is
     drawn along the bolts and, half as fast, across them."""
     blocks = [
@@ -43,6 +43,7 @@ def cubes(*stages, bolts=None, kind=BAR, shape="tet4", remove=False, **more):
                 "bolts": [{"name": f"b{k}", "type": "bar"} | b for k, b in enumerate(bolts)],
                 "loads": {"gravity": [0, 0, -9.81], "velocities": [velocity]},
                 "stages": list(stages or [PULL]),
+                "output": {"every": every},
             }
         ),
         **{"threads": 1, **more},
@@ -100,13 +101,13 @@ def test_a_resumed_run_goes_on_with_the_same_bits(tmp_path, at):
         {"points": [[5.7, 1.3, 1.4], [1.5, 1.2, 0.8]], "plate": True, "pretension": 5e4,
          "install": "again"},
     ]  # fmt: skip
-    whole = cubes(*stages, bolts=bolts)
+    whole = cubes(*stages, bolts=bolts, every=0.005)
     whole.run()
-    broken = cubes(*stages, bolts=bolts, output=tmp_path / "r")
+    broken = cubes(*stages, bolts=bolts, every=0.005, output=tmp_path / "r")
     broken.run_until(at)
     broken.checkpoint()
     broken.results.release()
-    again = cubes(*stages, bolts=bolts, output=tmp_path / "r", resume=True)
+    again = cubes(*stages, bolts=bolts, every=0.005, output=tmp_path / "r", resume=True)
     again.run()
     assert digest(again) == digest(whole)
 

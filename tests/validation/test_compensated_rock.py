@@ -67,7 +67,8 @@ def test_regular_tets(side):
     np.testing.assert_allclose(found, elastic(), atol=1e-6 / YOUNG)
 
 
-@SIDES
+@pytest.mark.slow
+@pytest.mark.parametrize("side", [6, 8])
 def test_irregular_tets(tmp_path, side):
     """The isotropic part: 3 sum C_nn + 2 sum C_cross + sum C_ss = 15 / E; sum over normals 1 / K."""
     mesh = irregular_tets(tmp_path / "m.vtk", [side] * 3, [side] * 3)

@@ -204,7 +204,7 @@ def test_nonconforming_interface_opens_uniformly(low, high):
     np.testing.assert_allclose(jump, traction / k_n, rtol=5e-8)
 
 
-@pytest.mark.parametrize("divisions", [1, 2])
+@pytest.mark.parametrize("divisions", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_bending_strength_of_vertex_bonds(divisions):
     """Springs at the corners are a trapezoidal rule: they bear (1 + 2 / n^2) T b^3 / 6 in bending.
 

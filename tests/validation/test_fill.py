@@ -178,7 +178,7 @@ def test_the_walls_of_a_hole_in_bonded_rock_are_shown():
 
 def test_the_bits_do_not_depend_on_threads_or_resume(tmp_path):
     stages = [add(max_steps=400), {"name": "on", "mode": "dynamic", "duration": 0.05}]
-    case = SITU_STRESS | {"interfaces": {"default": BOND}}
+    case = SITU_STRESS | {"interfaces": {"default": BOND}, "output": {"every": 0.02}}
     whole = column(*stages, case=case)
     whole.run()
     results = tmp_path / "results"

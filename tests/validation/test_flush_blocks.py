@@ -11,7 +11,7 @@ from cdem.verification.runner import Study, problems
 BEDS = ["one mesh", "two blocks", "a wider floor", "blocks of tets"]
 
 
-@pytest.mark.parametrize("angle", [40, 20, -10])
+@pytest.mark.parametrize("angle", [40, pytest.param(20, marks=pytest.mark.slow), -10])
 def test_a_kink_between_flush_blocks_is_that_of_one_mesh(angle, tmp_path):
     """Problem `kink`: speed past the kink as on one mesh, measured within 0.16 %."""
     (kink,) = problems(["kink"])

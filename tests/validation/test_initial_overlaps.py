@@ -41,7 +41,9 @@ def on_floor(depth, shape, at=(0.0, 0.0)):
 
 
 @pytest.mark.parametrize("shape", ["tet4", "hex8"])
-@pytest.mark.parametrize("depth", [0.0, 1e-4, 0.01, 0.05, 0.07])
+@pytest.mark.parametrize(
+    "depth", [0.0, pytest.param(1e-4, marks=pytest.mark.slow), 0.01, pytest.param(0.05, marks=pytest.mark.slow), 0.07]
+)  # fmt: skip
 def test_shallow_overlaps_are_held_under_gravity(depth, shape):
     """The cube settles by less than 1 mm in 0.1 s, in which it would fall by 49 mm."""
     sim = scene(*on_floor(depth, shape))

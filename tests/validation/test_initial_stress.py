@@ -41,6 +41,7 @@ def slider(cells, bed, pull=PULL, friction=FRICTION, **more):
                     {"groups": ["bed"], "stress": [0, 0, -25e3, 0, 0, 0]},
                 ],
                 "stages": [{"name": "slide", "mode": "dynamic", "duration": 0.3}],
+                "output": {"every": 0.1},
             }
         ),
         **{"threads": 1, **more},

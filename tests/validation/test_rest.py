@@ -9,7 +9,7 @@ from cdem.errors import UnstableError
 from cdem.output.reader import SurfaceSeries
 
 BOND = {"friction_angle": 30, "cohesion": "1 GPa", "tensile_strength": "1 GPa"}
-SLOPE = [{"group": "slope", "box": {"size": [22, 15, 16], "divisions": [22, 15, 16]}}]
+SLOPE = [{"group": "slope", "box": {"size": [22, 15, 16], "divisions": [11, 8, 8]}}]
 TETS = [{"group": "slope", "box": {"size": [3, 3, 3], "divisions": [3, 3, 3], "shape": "tet4"}}]
 
 
@@ -74,8 +74,8 @@ def test_column_vibrates_with_its_own_mass_after_relaxation(tmp_path):
     assert abs(sim.energies["error"]) < 1e-3
 
 
-def test_adaptive_relaxation_of_5280_hexahedra():
-    """At most a third of the steps of local damping 0.8 (481 against 1,921), the same displacements."""
+def test_adaptive_relaxation_of_704_hexahedra():
+    """At most a third of the steps of local damping 0.8, the same displacements."""
     local, expected, _ = settle("local", SLOPE, "one")
     steps, found, error = settle("adaptive", SLOPE, "one")
     assert steps <= local / 3

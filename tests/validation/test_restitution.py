@@ -209,7 +209,7 @@ def tumble(threads, **more):
                 }
             },
             loads={"gravity": [0, 0, -9.81]},
-            stages=[{"name": "fall", "mode": "dynamic", "duration": 0.1}],
+            stages=[{"name": "fall", "mode": "dynamic", "duration": 0.08}],
             output={"every": 0.02},
             defaults=True,
         ),

@@ -215,7 +215,7 @@ def heap(threads, **more):
             {"plate": {"fix": ["x", "y", "z"]}, "stones": {"velocity": [2, 0.5, -6]}},
             interfaces={"default": {"friction_angle": 30, "rolling_resistance": 0.2}},
             loads={"gravity": [0, 0, -GRAVITY]},
-            stages=[{"name": "fall", "mode": "dynamic", "duration": 0.25}],
+            stages=[{"name": "fall", "mode": "dynamic", "duration": 0.15}],
             output={"every": 0.05},
             defaults=True,
         ),

@@ -64,16 +64,22 @@ FLUSH = [
 ]
 
 
-@pytest.mark.parametrize("bed", BEDS)
+@pytest.mark.parametrize(
+    "bed", ["one face", *(pytest.param(bed, marks=pytest.mark.slow) for bed in list(BEDS)[1:])]
+)
 def test_acceleration_does_not_depend_on_the_mesh_of_the_bed(bed):
-    """Tolerance: vibration that is left at the start of the fit, 1e-6."""
+    """Tolerance: vibration that is left at the start of the fit, 1e-6.
+
+    Problem `sliding` has all beds within 5e-5; the bed of hexahedra is in the test below.
+    """
     measured, theory, _ = slide(BEDS[bed], 30, 10)
     assert measured == pytest.approx(theory, rel=5e-6)
 
 
 def test_acceleration_does_not_depend_on_the_frame():
     """The bed of 20 x 8 hexahedra rotated by 77 degrees; tolerance as above."""
-    measured, theory, _ = slide(BEDS["20 x 8 hexahedra"], 30, 10, rotation=([1, 2, 3], 77.0))
+    measured, theory, _ = slide(BEDS["20 x 8 hexahedra"], 30, 10, rotation=([1, 2, 3], 77.0),
+                                rock={"young_modulus": "2 GPa"})  # fmt: skip
     assert measured == pytest.approx(theory, rel=5e-6)
 
 
@@ -113,7 +119,7 @@ def test_acceleration_of_a_meshed_block_over_flush_blocks():
     assert measured == pytest.approx(theory, rel=3e-4)
 
 
-@pytest.mark.parametrize("down, within", [(1e-6, 1e-4), pytest.param(1e-5, 5e-4, marks=pytest.mark.slow), (1e-4, 2e-3)])  # fmt: skip
+@pytest.mark.parametrize("down, within", [(1e-6, 1e-4), pytest.param(1e-5, 5e-4, marks=pytest.mark.slow), pytest.param(1e-4, 2e-3, marks=pytest.mark.slow)])  # fmt: skip
 def test_acceleration_over_small_steps_down(down, within):
     """A step down each metre. Tolerance: the vibration that a step causes grows with its height."""
     bed = [
@@ -124,12 +130,13 @@ def test_acceleration_over_small_steps_down(down, within):
     assert measured == pytest.approx(theory, rel=within)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["rail", "turned rail"])
 def test_acceleration_on_rails_touched_by_edges_alone(kind):
     """Fig. 18: a slider lies across rails that run down the slope; theta 45, phi 30: 2.9315 m/s2.
 
     (With the paper's g = 9.8 that is 2.928.) Tolerance: sliding edges chatter, which is chaotic; by
-    round-off a fit over 0.7 s is off by 2e-5 to 8e-5.
+    round-off a fit over 0.7 s is off by 2e-5 to 8e-5. Problem `crossed` has the rail within 2e-4.
     """
     rail = {"size": [12, 0.3, 0.3]}
     if kind == "rail":
@@ -174,7 +181,7 @@ def test_acceleration_over_a_slightly_uneven_bed(monkeypatch):
 @pytest.mark.parametrize(
     "bed, within",
     [
-        ("20 x 8 hexahedra", 1e-4),
+        pytest.param("20 x 8 hexahedra", 1e-4, marks=pytest.mark.slow),
         ("2,016 tets", 0.01),
         pytest.param("flush blocks", 2e-5, marks=pytest.mark.slow),
     ],

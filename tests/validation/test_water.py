@@ -391,7 +391,7 @@ def test_threads_and_resume_change_no_bit(tmp_path):
     made = wet(
         blocks, water={"reservoir": {"level": [[0, 1], [0.05, 3]]}}, rock={"young_modulus": 1e8},
         model={"joints": [j | {"group": "rock"} for j in joints]},
-        stages=[{"name": "a", "mode": "dynamic", "duration": 0.05}],
+        stages=[{"name": "a", "mode": "dynamic", "duration": 0.05}], output={"every": 0.02},
     )  # fmt: skip
     whole = cdem.Simulation(made, threads=1)
     whole.run()

@@ -1,8 +1,10 @@
 """Feed mutated files to every reader: `fuzz.py cases 20000 --seed 1`, `fuzz.py files 10000`.
 
-Each input is made from the seed and its number alone. A batch runs in a process of its own; one that
-dies or hangs is counted, and the next begins behind it. What fails is kept in a folder. Prints one
-line of counts, and ends with status 1 if anything failed.
+First come the inputs of the corpus, which once failed. Each other input is made from the seed and
+its number alone. A batch runs in a process of its own; one that dies or hangs is counted, and the
+next begins behind it. An input that fails is kept in the corpus, where `git add tests/corpus` makes
+it part of the tests; why it failed is kept in the folder after `--out`. Prints a line of counts, and
+ends with status 1 if anything failed.
 """
 
 from __future__ import annotations
@@ -27,10 +29,11 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-import corpus
+import corpus as parts
 import mutations
 from state import State, add_option
 
+CORPUS = Path(__file__).parents[2] / "tests/corpus"
 SLOW = 5.0
 """Seconds of processor time above which an input counts as a hang."""
 SILENT = 30.0
@@ -107,7 +110,8 @@ def read_case(path: Path) -> None:
     from cdem.study.study import Study
     from cdem.terrain.landslide import Landslide
 
-    sound = path.with_name(path.name.replace("-now-", "-")).read_text()
+    seed = path.with_name(path.name.replace("-now-", "-"))  # none for an input of the corpus
+    sound = (seed if seed.exists() else path).read_text(errors="replace")
     if "\nparameters:" in sound:
         study = Study.load(path)
         if run_count(study) <= 20:
@@ -174,8 +178,8 @@ def read_file(path: Path) -> None:
         read_outline(path)
 
 
-def work(kind: str, seed: int, first: int, count: int, folder: Path) -> None:
-    """Feed a batch of inputs, and say of each what came of it."""
+def work(kind: str, seed: int | None, first: int, count: int, folder: Path, corpus: Path) -> None:
+    """Feed a batch of inputs, and say of each what came of it; without a seed those of the corpus."""
     words = os.fdopen(os.dup(1), "w")
     silent = os.open(os.devnull, os.O_WRONLY)
     os.dup2(silent, 1)
@@ -185,7 +189,7 @@ def work(kind: str, seed: int, first: int, count: int, folder: Path) -> None:
     read: Callable[[Path], None] = read_case if kind == "cases" else read_file
     seeds = seeds_of(folder / "seeds")
     for number in range(first, first + count):
-        name, raw = make(kind, seed, number, seeds)
+        name, raw = given(kind, seed, number, seeds, corpus)
         path = folder / "seeds" / f"{name.split('-')[0]}-now-{name.partition('-')[2]}"
         path.write_bytes(raw)
         print(f"begin {number}", file=words, flush=True)
@@ -196,12 +200,12 @@ def work(kind: str, seed: int, first: int, count: int, folder: Path) -> None:
             what = "refused" if str(error) else "nameless"
         except BaseException:
             what = "traceback"
-            keep(folder, number, name, raw, traceback.format_exc())
+            keep(folder, corpus, number, seed, name, raw, traceback.format_exc())
         seconds = spent() - began
         path.unlink()
         if seconds > SLOW:
             what = "hang"
-            keep(folder, number, name, raw, f"{seconds:.1f} s")
+            keep(folder, corpus, number, seed, name, raw, f"{seconds:.1f} s")
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1000
         print(f"end {number} {what} {seconds:.3f} {memory}", file=words, flush=True)
 
@@ -217,12 +221,33 @@ def seeds_of(folder: Path) -> list[Path]:
     return [p for p in sorted(folder.iterdir()) if "-" in p.name and "-now-" not in p.name]
 
 
-def keep(folder: Path, number: int, name: str, raw: bytes, why: str) -> None:
-    """Keep an input that failed, and what happened."""
-    kept = folder / "failed"
-    kept.mkdir(exist_ok=True)
-    (kept / f"{number}-{name}").write_bytes(raw)
-    (kept / f"{number}.txt").write_text(why)
+def kept(corpus: Path) -> list[Path]:
+    """Inputs of a corpus."""
+    return sorted(corpus.glob("*-*"))
+
+
+def given(
+    kind: str, seed: int | None, number: int, seeds: list[Path], corpus: Path
+) -> tuple[str, bytes]:
+    """Input of a number, made from a seed, or without one that of the corpus."""
+    if seed is not None:
+        return make(kind, seed, number, seeds)
+    path = kept(corpus)[number]
+    return path.name, path.read_bytes()
+
+
+def keep(
+    folder: Path, corpus: Path, number: int, seed: int | None, name: str, raw: bytes, why: str
+) -> None:
+    """Keep an input that failed in the corpus, and what happened in the folder."""
+    if seed is not None:
+        corpus.mkdir(parents=True, exist_ok=True)
+        first, _, rest = name.partition("-")
+        name = f"{first}-{seed}_{number}-{rest}"
+        (corpus / name).write_bytes(raw)
+    failed = folder / "failed"
+    failed.mkdir(exist_ok=True)
+    (failed / f"{name}.txt").write_text(why)
 
 
 # ------------------------------------------------------------------ batches
@@ -269,11 +294,14 @@ class Tally:
         )
 
 
-def run_batch(kind: str, seed: int, count: int, folder: Path, tally: Tally) -> None:
+def run_batch(
+    kind: str, seed: int | None, count: int, folder: Path, corpus: Path, tally: Tally
+) -> None:
     """Run the next inputs in a process until it ends, dies or hangs."""
     first = tally.done
-    command = [sys.executable, __file__, kind, str(count), "--seed", str(seed)]
-    command += ["--out", str(folder), "--first", str(first), "--worker"]
+    command = [sys.executable, __file__, kind, str(count), "--corpus", str(corpus)]
+    command += ["--out", str(folder), "--first", str(first)]
+    command += ["--worker", "corpus" if seed is None else str(seed)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, bufsize=1)
     assert process.stdout is not None
     said: queue.Queue[str] = queue.Queue()
@@ -292,7 +320,8 @@ def run_batch(kind: str, seed: int, count: int, folder: Path, tally: Tally) -> N
     status = process.wait()
     if open_now >= 0:
         what = "hang" if status == -9 else "abort"
-        keep(folder, open_now, *make(kind, seed, open_now, seeds_of(folder / "seeds")), what)
+        name, raw = given(kind, seed, open_now, seeds_of(folder / "seeds"), corpus)
+        keep(folder, corpus, open_now, seed, name, raw, what)
         tally.take(what)
     elif status or tally.done < first + count:
         raise SystemExit(f"a worker ended with status {status} between two inputs")
@@ -305,17 +334,27 @@ def _listen(stream: Any, said: queue.Queue[str]) -> None:
     said.put("")
 
 
-def fuzz(kind: str, count: int, seed: int, folder: Path, path: Path | None = None) -> Tally:
-    """Feed so many inputs; `path` is of the state file."""
+FRESH: dict[str, Any] = {"counts": {}, "slowest": 0.0, "memory": 0}
+
+
+def fuzz(
+    kind: str, count: int, seed: int, folder: Path, corpus: Path, path: Path | None = None
+) -> tuple[Tally, Tally]:
+    """Feed the corpus, then so many inputs; `path` is of the state file of these."""
+    tally = Tally(State(path, [kind, count, seed], dict(FRESH)))
+    known, again = len(kept(corpus)), Tally(State(None, [], dict(FRESH)))
     seeds = folder / "seeds"
     shutil.rmtree(seeds, ignore_errors=True)
     seeds.mkdir(parents=True)
-    (corpus.write_cases if kind == "cases" else corpus.write_files)(seeds)
-    fresh = {"counts": {}, "slowest": 0.0, "memory": 0}
-    tally = Tally(State(path, [kind, count, seed], fresh))
+    if kind == "cases" and (known or tally.done < count):
+        parts.write_cases(seeds)  # inputs of the corpus may name files of these
+    elif tally.done < count:
+        parts.write_files(seeds)
+    while again.done < known:
+        run_batch(kind, None, known - again.done, folder, corpus, again)
     while tally.done < count:
-        run_batch(kind, seed, min(BATCH, count - tally.done), folder, tally)
-    return tally
+        run_batch(kind, seed, min(BATCH, count - tally.done), folder, corpus, tally)
+    return tally, again
 
 
 def main() -> int:
@@ -324,19 +363,24 @@ def main() -> int:
     parser.add_argument("kind", choices=("cases", "files"))
     parser.add_argument("count", type=int)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, help="folder of inputs that failed")
+    parser.add_argument("--out", type=Path, help="folder of words on inputs that failed")
+    parser.add_argument("--corpus", type=Path, help="folder of inputs that failed")
     parser.add_argument("--first", type=int, default=0, help=argparse.SUPPRESS)
-    parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--worker", help=argparse.SUPPRESS)
     add_option(parser)
     a = parser.parse_args()
     folder = a.out or Path(tempfile.mkdtemp(prefix="cdem-fuzz-"))
+    corpus = a.corpus or CORPUS / a.kind
     if a.worker:
-        work(a.kind, a.seed, a.first, a.count, folder)
+        seed = None if a.worker == "corpus" else int(a.worker)
+        work(a.kind, seed, a.first, a.count, folder, corpus)
         return 0
-    tally = fuzz(a.kind, a.count, a.seed, folder, a.state)
-    where = f"; failed inputs are in {folder / 'failed'}" if tally.failed else ""
+    tally, again = fuzz(a.kind, a.count, a.seed, folder, corpus, a.state)
+    failed = tally.failed or again.failed
+    where = f"; see {folder / 'failed'} and {corpus}" if failed else ""
     print(f"{a.count} {a.kind}, seed {a.seed}: {tally.text()}{where}")
-    return int(tally.failed)
+    print(f"{again.done} {a.kind} of the corpus: {'some fail' if again.failed else 'all well'}")
+    return int(failed)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What a part of torture has done so far, in a file: a part that is cut off goes on from it."""
+"""What a part of torture, or `tools/mutants.py`, has done so far, in a file: it goes on from it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ class State:
 
     Attributes:
         known: Results so far.
+        now: Commit of the checkout.
     """
 
     def __init__(self, path: Path | None, asked: list[Any], fresh: dict[str, Any]) -> None:
         self._path, self._asked, self._commits = path, asked, []
         self.known = fresh
-        self._now = _commit()
+        self.now = commit()
         if path and path.exists():
             found = json.loads(path.read_text())
             if found["asked"] != asked:
@@ -35,8 +36,8 @@ class State:
 
     def keep(self) -> None:
         """Write the file: whole, or not at all."""
-        if self._now not in self._commits:
-            self._commits.append(self._now)
+        if self.now not in self._commits:
+            self._commits.append(self.now)
         if self._path is None:
             return
         self._path.parent.mkdir(parents=True, exist_ok=True)
@@ -55,6 +56,7 @@ def add_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--state", type=Path, help="file of what is done: go on from it")
 
 
-def _commit() -> str:
+def commit() -> str:
+    """Commit of the checkout, with a mark if it has changes."""
     command = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty"]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()

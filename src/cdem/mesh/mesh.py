@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.bodies_schema import Rotate
 from cdem.mesh.arrays import found_in, lengths, matrix_product
 from cdem.mesh.element_shapes import NODES
+
+if TYPE_CHECKING:
+    from cdem.case.bodies_schema import Rotate
 
 Floats = NDArray[np.float64]
 

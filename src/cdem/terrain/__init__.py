@@ -14,10 +14,24 @@ Example:
     16000.0
 """
 
-from cdem.terrain.landslide import Landslide
-from cdem.terrain.plan import make_plan
-from cdem.terrain.report import measure, text, write
-from cdem.terrain.solid import Solid, make_solid
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cdem.terrain.landslide import Landslide
+    from cdem.terrain.report import measure, text, write
+    from cdem.terrain.solid import Solid
+
+# The module of each public name, imported at first use: processes that read a file need none of it.
+_HOMES = {
+    "Landslide": "cdem.terrain.landslide",
+    "Solid": "cdem.terrain.solid",
+    "measure": "cdem.terrain.report",
+    "text": "cdem.terrain.report",
+    "write": "cdem.terrain.report",
+}
 
 __all__ = ["Landslide", "Solid", "make_mesh", "measure", "text", "write"]
 
@@ -30,4 +44,15 @@ def make_mesh(landslide: Landslide) -> Solid:
         MeshError: The space cannot be filled with tets.
         BackendError: The extra `terrain` is not installed.
     """
+    from cdem.terrain.plan import make_plan
+    from cdem.terrain.solid import make_solid
+
     return make_solid(landslide, make_plan(landslide))
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'cdem.terrain' has no attribute {name!r}")
+    value = getattr(importlib.import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value

@@ -32,7 +32,7 @@ def test_a_case_takes_the_sets_as_they_are(run_cli, table):
     assert out.endswith("joints.yaml\njoints.png\n")
     assert (table / "joints.png").read_bytes().startswith(b"\x89PNG")
     part = YAML(typ="safe").load((table / "joints.yaml").read_text())
-    part["model"]["blocks"] = [{"group": "rock", "box": {"size": [8, 8, 8]}}]
+    part["model"]["blocks"] = [{"group": "rock", "box": {"size": [5, 5, 5]}}]
     part["interfaces"]["default"] = {"friction_angle": 40}
     part["materials"] = {"rock": {"density": 2600, "young_modulus": 1e9, "poisson_ratio": 0.2}}
     part["groups"] = {"rock": {"material": "rock"}}

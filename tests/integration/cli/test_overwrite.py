@@ -19,8 +19,13 @@ COMMANDS = (
 
 
 def test_what_all_commands_write_is_replaced(run_cli, cube_folder):
-    fields = ("--set", "output.fields=[displacement, velocity, piece]")
-    assert run_cli("run", "cube.yaml", "-o", "out", *fields)[0] == 0
+    settings = (
+        "--set",
+        "output.fields=[displacement, velocity, piece]",
+        "--set",
+        "output.every=5 ms",
+    )
+    assert run_cli("run", "cube.yaml", "-o", "out", *settings)[0] == 0
     for command, *options in COMMANDS:
         if command != "render" or can_draw():
             assert run_cli(command, "out", *options)[0] == 0

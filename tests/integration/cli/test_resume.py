@@ -278,16 +278,16 @@ def test_a_full_disk_is_one_message_and_the_run_can_go_on(run_cli, folder):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the shim is for Linux")
-@pytest.mark.parametrize("how", ["kill", "ENOSPC"])
-def test_a_fault_in_any_call_leaves_a_folder_that_opens_and_resumes(how):
+def test_a_fault_in_any_call_leaves_a_folder_that_opens_and_resumes():
     """A few of the calls; `make torture` tries all of them."""
     pytest.importorskip("vtk")
-    command = [sys.executable, str(TOOLS / "faults.py"), "--every", "601", "--how", how]
+    command = [sys.executable, str(TOOLS / "faults.py"), "--every", "997"]
+    command += ["--how", "kill", "--how", "ENOSPC"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize(("bits", "bends"), [(17, 5), pytest.param(49, 12, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("bits", "bends"), [(9, 3), pytest.param(49, 12, marks=pytest.mark.slow)])
 def test_damaged_checkpoints_neither_crash_nor_pass(bits, bends):
     """A few damages; `make torture` tries thousands."""
     command = [sys.executable, str(TOOLS / "damage.py"), "--bits", str(bits)]

@@ -49,7 +49,7 @@ def test_the_same_discs_in_four_files(name):
 @pytest.mark.parametrize(
     ("case", "area"), [("d_adfne_csv", 133.0), ("d_semi_csv", 133.0), ("d_polygons_dat", 120.7)]
 )
-def test_discs_of_every_file_cut_the_box_alike(run_cli, short_estimate, case, area):
+def test_discs_of_every_file_cut_the_box_alike(run_cli, case, area):
     """Areas within the box: of 200,000 points drawn on each disc [m2]. Tolerance: tets of 1 m."""
     status, out, _ = run_cli("check", str(FAULTS / f"field2/{case}.yaml"))
     assert status == 0 and "joint set m: 12 discs, 12 of them meet blocks" in out
@@ -57,7 +57,7 @@ def test_discs_of_every_file_cut_the_box_alike(run_cli, short_estimate, case, ar
 
 
 @pytest.mark.parametrize("file", ["two.obj", "two.stl"])
-def test_two_solids_are_two_blocks(run_cli, tmp_path, monkeypatch, short_estimate, file):
+def test_two_solids_are_two_blocks(run_cli, tmp_path, monkeypatch, file):
     text = (FAULTS / "field/two.yaml").read_text().replace("two.obj", str(FAULTS / "field" / file))
     (tmp_path / "two.yaml").write_text(text)
     status, out, _ = run_cli("check", str(tmp_path / "two.yaml"), "--json")
@@ -66,7 +66,7 @@ def test_two_solids_are_two_blocks(run_cli, tmp_path, monkeypatch, short_estimat
     assert rock["blocks"] == 2 and rock["volume"] == pytest.approx(2)
 
 
-def test_millimetres_are_asked_for_and_scaled(run_cli, tmp_path, short_estimate):
+def test_millimetres_are_asked_for_and_scaled(run_cli, tmp_path):
     status, _, err = run_cli("check", str(MM))
     assert status == 1 and "spans 1,489 x 1,089 x 709.1 m" in err and "scale: 0.001" in err
     text = (MM).read_text()

@@ -60,7 +60,7 @@ def test_a_cable_that_has_yielded_stays_slack():
     assert slack > 10 and max(seen) < 0.01
 
 
-def test_e_of_a_bonded_slice_is_that_of_the_case_as_check_tells(run_cli, short_estimate):
+def test_e_of_a_bonded_slice_is_that_of_the_case_as_check_tells(run_cli):
     """It once was 0.93 of that of the case, told as +0 %; across, where no bonds are, 1.2 is told."""
     name = "bonded_hex_slice_modulus"
     status, out, _ = run_cli("check", str(FAULTS / f"physics/{name}.yaml"))

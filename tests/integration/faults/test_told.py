@@ -29,7 +29,7 @@ CASE = {
 
 
 @pytest.fixture
-def check(run_cli, tmp_path, monkeypatch, short_estimate):
+def check(run_cli, tmp_path, monkeypatch):
     """Check a case with changes; returns all that is printed."""
     monkeypatch.chdir(tmp_path)
 
@@ -46,14 +46,14 @@ ROCKFALL = FAULTS / "field2/rockfall_200MPa_too_deep.yaml"
 STIFFER = FAULTS / "field2/rockfall_2GPa_ok_many_frames.yaml"
 
 
-def test_a_fall_names_the_stiffness_that_it_needs(run_cli, short_estimate):
+def test_a_fall_names_the_stiffness_that_it_needs(run_cli):
     # 5.9e8 Pa/m let the boulder go through; 1.2e9 Pa/m stops it
     _, out, _ = run_cli("check", str(ROCKFALL))
     assert "group boulder may fall 116 m, to 47.6 m/s" in out
     assert "contact_stiffness: 1.2e+09 Pa/m" in out
 
 
-def test_a_fall_onto_rock_that_is_stiff_enough_is_no_doubt(run_cli, short_estimate):
+def test_a_fall_onto_rock_that_is_stiff_enough_is_no_doubt(run_cli):
     status, out, _ = run_cli("check", str(STIFFER))
     assert status == 0 and "warning" not in out
 
@@ -79,7 +79,7 @@ def test_a_fall_onto_stiff_rock_ends_on_it_with_a_frame_of_every_second(tmp_path
     assert times == pytest.approx([*range(int(sim.time) + 1), sim.time], abs=1e-3)
 
 
-def test_bonded_joints_that_stay_dry(run_cli, short_estimate):
+def test_bonded_joints_that_stay_dry(run_cli):
     _, out, _ = run_cli("check", str(FAULTS / "newcomer/roadcut.yaml"))
     assert "no water presses in bedding, cross until bonds break (wet: auto)" in out
     assert (
@@ -87,7 +87,7 @@ def test_bonded_joints_that_stay_dry(run_cli, short_estimate):
     )
 
 
-def test_a_pulse_that_a_static_stage_uses_up_is_refused_and_mended_as_told(run_cli, short_estimate):
+def test_a_pulse_that_a_static_stage_uses_up_is_refused_and_mended_as_told(run_cli):
     """The top of `col` then moves as that of `col_dyn`, without the static stage: 0.12 m/s, not 8e-5."""
     status, out, err = run_cli("check", str(FAULTS / "newcomer/col.yaml"))
     assert (status, out) == (1, "") and err.count("\n") == 1
@@ -124,7 +124,7 @@ def test_a_pulse_that_a_static_stage_uses_up_is_refused_and_mended_as_told(run_c
         ("newcomer/residual", "no water presses in bedding, cross until bonds break (wet: auto)"),
     ],
 )
-def test_cases_of_factors_are_checked(run_cli, short_estimate, name, said):
+def test_cases_of_factors_are_checked(run_cli, name, said):
     """No more than `check` is tested here: what `critical` answers is another matter.
 
     These inputs are those of PH13 and PH14, whose factors of safety belong to the issue on rest.

@@ -16,7 +16,6 @@ def has(image, color: str) -> bool:
     return bool((image == rgb).all(axis=2).any())
 
 
-@pytest.mark.usefixtures("short_estimate")
 def test_the_picture_shows_and_names_everything(run_cli, wall_folder, monkeypatch):
     if not can_draw():
         pytest.skip("no OpenGL")

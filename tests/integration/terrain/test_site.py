@@ -31,7 +31,6 @@ def question(folder, **changes):
     return Question(folder / "dem.tif", folder / "outline.kml", folder / "site", **changes)
 
 
-@pytest.mark.usefixtures("short_estimate")
 def test_two_files_in_degrees_become_a_case_that_runs(maps, run_cli):
     words = ["site", "dem.tif", "outline.kml", "--depth", "40 m", "--size", "60", "--cell", "20"]
     status, out, err = run_cli(*words)
@@ -164,7 +163,7 @@ def test_rockfall_on_bare_ground_runs(tmp_path, monkeypatch, run_cli):
             shutil.copy(file, tmp_path)
     monkeypatch.chdir(tmp_path)
     status, out, err = run_cli(
-        "mesh", "landslide.yaml", "-o", "ground.msh", "--set", "sizes.body=12"
+        "mesh", "landslide.yaml", "-o", "ground.msh", "--set", "sizes.body=20"
     )
     assert status == 0, err
     assert "ground_bedrock" in out and "bed:" not in out

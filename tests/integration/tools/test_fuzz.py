@@ -12,13 +12,17 @@ FUZZ = Path(__file__).parents[3] / "tools/torture/fuzz.py"
 ALL_WELL = "0 tracebacks, 0 hangs over 5 s, 0 aborts, 0 empty messages"
 
 
-@pytest.mark.parametrize(("kind", "count"), [("cases", 150), ("files", 60)])
+@pytest.mark.parametrize(("kind", "count"), [
+    ("cases", 60), ("files", 30),
+    pytest.param("cases", 150, marks=pytest.mark.slow), pytest.param("files", 60, marks=pytest.mark.slow),
+])  # fmt: skip
 def test_mutated_files_are_read_or_refused(tmp_path, kind, count):
     if kind == "files":
         pytest.importorskip("pyvista", reason="needs the extra 'viz'")
         pytest.importorskip("rasterio", reason="needs the extra 'terrain'")
         pytest.importorskip("scipy", reason="needs the extra 'terrain'")
     command = [sys.executable, FUZZ, kind, str(count), "--seed", "7", "--out", tmp_path]
+    command += ["--corpus", tmp_path / "corpus"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert ALL_WELL in done.stdout and done.stdout.startswith(f"{count} {kind}, seed 7: ")
@@ -47,8 +51,25 @@ def test_what_fails_is_counted_and_kept(tmp_path, monkeypatch):
     )
     monkeypatch.setattr(fuzz, "__file__", str(worker))
     monkeypatch.setattr(fuzz, "SILENT", 2.0)
-    tally = fuzz.fuzz("cases", 8, 1, tmp_path)
+    tally, _ = fuzz.fuzz("cases", 8, 1, tmp_path, tmp_path / "corpus")
     assert tally.counts == {"read": 2, "traceback": 2, "abort": 2, "hang": 2} and tally.failed
-    kept = {path.name.split("-")[0].split(".")[0] for path in (tmp_path / "failed").iterdir()}
-    assert kept == {"1", "2", "3", "5", "6", "7"}
-    assert "ZeroDivisionError" in (tmp_path / "failed/1.txt").read_text()
+    names = [path.name for path in fuzz.kept(tmp_path / "corpus")]
+    assert sorted(name.split("-")[1].split("_")[1] for name in names) == list("123567")
+    (why,) = (tmp_path / "failed").glob("*-1_1-*.txt")
+    assert "ZeroDivisionError" in why.read_text()
+    tally, again = fuzz.fuzz("cases", 0, 1, tmp_path, tmp_path / "corpus")  # the same fail again
+    assert again.done == 6 and again.counts["abort"] == 1 and again.failed and not tally.failed
+    assert [path.name for path in fuzz.kept(tmp_path / "corpus")] == names
+
+
+@pytest.mark.parametrize("kind", ["cases", "files"])
+def test_the_corpus_is_read_or_refused(tmp_path, kind):
+    """Inputs that failed once; `tests/corpus/README.md` says where they are from."""
+    count = len(list((FUZZ.parents[2] / "tests/corpus" / kind).glob("*-*")))
+    if kind == "files":
+        pytest.importorskip("pyvista", reason="needs the extra 'viz'")
+        pytest.importorskip("laspy", reason="needs the extra 'lidar'")
+    command = [sys.executable, FUZZ, kind, "0", "--out", tmp_path]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert count > 5 and f"{count} {kind} of the corpus: all well" in done.stdout

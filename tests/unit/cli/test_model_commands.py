@@ -8,7 +8,7 @@ import pytest
 
 from cdem import Case
 
-pytestmark = pytest.mark.usefixtures("cube_folder", "short_estimate")
+pytestmark = pytest.mark.usefixtures("cube_folder")
 
 
 def test_check_reports_and_changes_nothing(run_cli, cube_folder):

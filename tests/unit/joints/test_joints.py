@@ -137,7 +137,7 @@ output: {frames: false}
 """
 
 
-@pytest.mark.usefixtures("short_estimate", "no_report")
+@pytest.mark.usefixtures("no_report")
 def test_a_jointed_case_is_checked_and_run(run_cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rock.yaml").write_text(CASE)

@@ -239,7 +239,6 @@ def test_files_that_are_no_bodies(tmp_path, name, text, message):
         read_bodies(tmp_path / name, "rock")
 
 
-@pytest.mark.usefixtures("short_estimate")
 def test_a_case_with_bodies_from_a_file(run_cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_obj(tmp_path / "cube.obj", *cubes())

@@ -25,7 +25,7 @@ def test_interfaces_follow_the_joint_then_the_groups():
     assert (table == [[1, 1, 0, 1]] * 4).all()  # what touches a face of set b has its law
 
 
-def test_only_what_can_touch_needs_an_interface(run_cli, cube_folder, short_estimate):
+def test_only_what_can_touch_needs_an_interface(run_cli, cube_folder):
     alone = CUBE.replace("interfaces: {default: {friction_angle: 30}}\n", "")
     (cube_folder / "alone.yaml").write_text(alone)
     assert run_cli("check", "alone.yaml")[0] == 0

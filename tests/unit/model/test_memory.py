@@ -36,9 +36,9 @@ def write(path: Path, cells, shape="hex8", split="connected", cohesion=0) -> Pat
     ("cells", "shape", "split", "cohesion"),
     [
         ([30, 30, 30], "hex8", "connected", 0),
-        ([15, 15, 15], "tet4", "elements", 0),
+        pytest.param([15, 15, 15], "tet4", "elements", 0, marks=pytest.mark.slow),
         ([16, 16, 16], "tet4", "elements", 1e6),
-        ([18, 18, 18], "wedge6", "elements", 1e6),
+        pytest.param([18, 18, 18], "wedge6", "elements", 1e6, marks=pytest.mark.slow),
     ],
 )
 def test_the_need_is_the_peak_of_a_process_that_builds_the_model(

@@ -317,7 +317,7 @@ def test_runs_without_velocity_and_pieces_are_measured_without(tmp_path):
     stages = [{"name": "fly", "mode": "dynamic", "duration": 0.01}]
     folder = run(
         tmp_path / "r", [box("cube", [1, 1, 1], [0, 0, 0])], moving, stages=stages,
-        output={"fields": []},
+        output={"fields": [], "every": 0.002},
     )  # fmt: skip
     found = runout.measure(folder, sections=[(1.0, -9, 1.0, 9)])
     assert found.centre_travel == pytest.approx(found.history["time"][-1], rel=1e-6)

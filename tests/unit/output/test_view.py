@@ -97,10 +97,10 @@ def test_an_address_that_is_none_is_answered_in_silence(server, capfd):
 
 
 def test_connections_that_stay_open_keep_few_threads_and_not_for_long(server, monkeypatch):
-    """300 of them ask for nothing, or for a letter now and then."""
+    """120 of them ask for nothing, or for a letter now and then."""
     monkeypatch.setattr(view, "PATIENCE", 1.0)
     before = threading.active_count()
-    there = [socket.create_connection((HERE, server.server_port)) for _ in range(300)]
+    there = [socket.create_connection((HERE, server.server_port)) for _ in range(120)]
     try:
         time.sleep(0.5)
         assert threading.active_count() <= before + 2 * view.MOST_THREADS

@@ -34,10 +34,10 @@ def factor(study, *settings, far=2e-4):
 
 
 def run(study):
-    """Without a bolt, and with one of 40 kN; the tension for a factor of 1.5 when full."""
+    """Without a bolt, and with one of 40 kN; more angles, and the tension for a factor of 1.5 when full."""
     study.check("factor of safety without a bolt", theory=theory(0, 0), ours=factor(study, "bolts=[]"),
                 within=2e-3)  # fmt: skip
-    for angle in (0, 15, 30):
+    for angle in (0, 15, 30) if study.full else (0, 30):
         study.check(f"factor of safety, bolt at {angle} deg", theory=theory(40e3, angle),
                     ours=factor(study, bolt(angle)), within=5e-3)  # fmt: skip
     study.check("factor of safety, bolt not tensioned", theory=theory(40e3, 30),

@@ -4,6 +4,7 @@ import numpy as np
 
 from cdem.output.render import snapshot
 
+QUICK = False  # 40 s; quick are `softening_joint` in shear and `dcb`, a crack that runs
 LENGTHS = (0.39, 0.43)
 """Lengths of the crack between which force and energy are compared [m]."""
 WIDTH, HEIGHT, HALF = 0.02, 0.05, 0.5

@@ -52,11 +52,12 @@ def only(duration, contact=0.1):
     return [f"stages=[{{name: go, mode: dynamic, duration: {duration}, damping: {damping}}}]"]
 
 
-def resting(lower, upper):
+def resting(lower, upper, quick=True):
     """One of the six contact types: it goes down by micrometres, so the last digits count more."""
     [types] = problems(["contact_types"])
     settings = [*types.module.LOWER[lower], *types.module.UPPER[upper], *only(0.02, 0.25)]
-    return Scene("../contact_types/case.yaml", settings, frame=2e-8, noise=1e-6, step=5e-4)
+    return Scene("../contact_types/case.yaml", settings, frame=2e-8, noise=1e-6, step=5e-4,
+                 quick=quick)  # fmt: skip
 
 
 def scenes():
@@ -89,29 +90,30 @@ def scenes():
         "wedge that slides": Scene("../wedge/case.yaml", [*less, *only(0.1)], step=1e-3),
         "block on a slope": Scene("../friction/case.yaml", stiff, frame=2e-8),
         "column that topples": Scene(
-            "../toppling/case.yaml", ["loads.gravity=[2.704, 0, -9.43]", *only(0.2)], step=5e-4
+            "../toppling/case.yaml", ["loads.gravity=[2.704, 0, -9.43]", *only(0.2)], step=5e-4,
+            quick=False,
         ),
-        "shaken block": Scene("../newmark/case.yaml", only(0.65), step=1e-3),
+        "shaken block": Scene("../newmark/case.yaml", only(0.65), step=1e-3, quick=False),
         "pulse across a joint": Scene("../joint_wave/case.yaml", pulse, frame=1e-8, bonds=True,
                                       step=5e-4, quick=False),
         "tower that is tilted": Scene("../tower/case.yaml", ["loads.gravity=[4.905, 0, -8.496]",
-                                                            *only(0.05)]),
+                                                            *only(0.05)], quick=False),
         # feet that stand on quadrilaterals at a gap of zero: round-off decides which step is the first
         "arch that is too thin": Scene("../arch/case.yaml", [thin, *only(0.02)], frame=2e-4,
-                                       noise=1e-5, step=2e-3),
+                                       noise=1e-5, step=2e-3, quick=False),
         "columns on a stepped base": Scene("../goodman_bray/case.yaml", [
             columns, "interfaces.default.friction_angle=30", *only(0.02)], quick=False,
             frame=5e-8, noise=1e-7),
         "slide along an apparent dip": Scene("../apparent_dip/case.yaml", [
             "loads.gravity=[0, 0, -9.81]", "interfaces.bed.friction_angle=10",
-            "interfaces.wall.friction_angle=5", *only(0.05)]),
+            "interfaces.wall.friction_angle=5", *only(0.05)], quick=False),
         "row of dominoes": Scene("../dominoes/case.yaml", [*row, *only(0.08, 2)], noise=1.3e-7,
                                  quick=False),
         "face on face": resting("face", "face"),
-        "edge on face": resting("face", "edge"),
+        "edge on face": resting("face", "edge", quick=False),
         "vertex on face": resting("face", "vertex"),
         "edge on edge": resting("edge", "edge"),
-        "vertex on edge": resting("edge", "vertex"),
+        "vertex on edge": resting("edge", "vertex", quick=False),
         "vertex on vertex": tip,
     }  # fmt: skip
 

@@ -32,8 +32,8 @@ def filled_to(part):
 
 
 def run(study):
-    """Strength reduction with the crack dry, full, and filled by quarters."""
-    parts, found = (0.0, 0.25, 0.5, 0.75, 1.0) if study.full else (0.0, 0.5, 1.0), []
+    """Strength reduction with the crack dry and full; filled by quarters when full."""
+    parts, found = (0.0, 0.25, 0.5, 0.75, 1.0) if study.full else (0.0, 1.0), []
     for part in parts:
         ours = find_critical(study.case(*filled_to(part)), strength_reduction(), (0.8, 2.5),
                              tolerance=5e-4, threads=study.threads).value  # fmt: skip
