@@ -79,9 +79,9 @@ for path in sources:
     height = FOLDERS.index(folder(path))
     for other in includes(path):
         room = str(Path(other).relative_to("core").parent)
-        if room in MODULES and not path.startswith((f"core/{room}/", "core/kernels/")):
-            if path != "core/model/modules.hpp":
-                problems.append(f"{path} may not name the module {room}")
+        may_name = (f"core/{room}/", "core/kernels/", "core/model/modules.hpp")
+        if room in MODULES and not path.startswith(may_name):
+            problems.append(f"{path} may not name the module {room}")
         if FOLDERS.index(folder(other)) > height:
             problems.append(f"{path} may not include {other}, which lies above it")
         if unit(other) != unit(path):
