@@ -1,4 +1,4 @@
-// bolts.cpp - see data.hpp.
+// data.cpp - see data.hpp.
 #include "core/bolts/data.hpp"
 
 #include "core/base/parallel.hpp"
