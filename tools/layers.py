@@ -86,7 +86,8 @@ for path in sources:
             problems.append(f"{path} may not include {other}, which lies above it")
         if unit(other) != unit(path):
             units[unit(path)].add(unit(other))
-    owner = unit(path) + ".hpp" if path.endswith(".cpp") and folder(path) != "kernels" else None
+    own = path.endswith(".cpp") and folder(path) != "kernels"
+    owner = path.removesuffix(".cpp") + ".hpp" if own else None
     if owner and next(iter(includes(path)), "") != owner:
         problems.append(f"{path} must include its own header first")
     if folder(path) == "kernels":
