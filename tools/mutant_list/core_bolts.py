@@ -38,7 +38,7 @@ FAULTS = [
     Mutant(
         "cut bolt",
         "a bolt keeps its grout in rock that was dug out",
-        "core/bolts/bolts.cpp",
+        "core/bolts/data.cpp",
         "    grout_lost[n] = 1;",
         "    grout_lost[n] = 0;",
         "tests/validation/test_bolts.py::test_what_is_dug_out_takes_its_part_of_a_bolt_along",
