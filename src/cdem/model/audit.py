@@ -20,7 +20,7 @@ from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
-from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles
+from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles, unlike_sides
 from cdem.model.meshed_strength import meshed_strengths, strength_text
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
@@ -207,6 +207,7 @@ class Audit:
         out += weak_bridges(b, {row["joint"] for row in self.interfaces})
         out += idle_bonds(b)
         out += uneven_tiles(b)
+        out += unlike_sides(b)
         out += idle_water(b, self.water)
         out += dry_bonds(b, {row["joint"] for row in self.interfaces if row["joint"]})
         unheld = self._unheld_blocks()

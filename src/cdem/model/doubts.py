@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from cdem.case.interface_schema import Interface, InterfacePair
 from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.types import AUTO, Stiffness
 from cdem.mesh.arrays import lengths
 from cdem.mesh.topology import Topology
 from cdem.model.build import Build
+from cdem.model.interfaces import interfaces_of, name_of
 
 Floats = NDArray[np.float64]
 
@@ -21,6 +23,8 @@ COMPARED = 2_000
 """Vertices and faces on each side that are compared for a gap; the nearest by their boxes."""
 UNEVEN = 4
 """Ratio of contact areas over the faces that a body may slide on, from which it is told of."""
+ALIKE = 0.9
+"""Part of a joint's stiffness that its contacts have, from which nothing is said of it."""
 FACING = -0.9
 """Cosine of the normals of faces that lie on each other."""
 
@@ -149,6 +153,46 @@ def uneven_tiles(build: Build) -> Iterator[str]:
             f"{most / least:.2g} times: where it slides over their seams without being lifted, it "
             "goes down by up to half its settlement at each. Make these faces alike, or larger"
         )
+
+
+def unlike_sides(build: Build) -> Iterator[str]:
+    """Say where contacts have less of a soft joint's given stiffness, since its two sides are meshed
+    differently.
+
+    A vertex has the smaller of both faces' area over their vertices, and half the stiffness is that
+    of either side: (1 + q) / 2 of k A for q as the ratio of both, 0.56 for nine faces on one.
+    """
+    t, a = build.topology, build.arrays
+    laws, _ = interfaces_of(build.case, build.group_names)
+    coarse = np.repeat(np.arange(len(t.face_nodes)), np.diff(a["flush.first"]))
+    fine = a["flush.face"]
+    share = a["face.area"] / (t.face_nodes >= 0).sum(axis=1)
+    ratio = share[fine] / share[coarse]
+    coarse, fine, ratio = (x[ratio < 1] for x in (coarse, fine, ratio))
+    classes = a["face.interface_class"]
+    between = a["interface.of"].reshape(classes.max() + 1, -1)[classes[coarse], classes[fine]]
+    rock = np.minimum(a["face.stiffness"][coarse], a["face.stiffness"][fine])
+    for number in np.unique(between):
+        given = [k for k in _given_stiffness(laws[number]) if not k.relative]
+        of_it = between == number
+        if not given or min(k.value for k in given) >= rock[of_it].min():
+            continue
+        part = (1 + np.average(ratio[of_it], weights=a["face.area"][fine[of_it]])) / 2
+        if part > ALIKE:
+            continue
+        names = sorted({t.group_names[t.face_group[f[of_it][0]]] for f in (coarse, fine)})
+        yield (
+            f"interface {name_of(laws[number])}: faces of {' and '.join(names)} lie on each other and "
+            f"differ in size; where they are not bonded the joint has about {part:.2g} of the stiffness "
+            "that is given. Mesh both sides alike, or give more"
+        )
+
+
+def _given_stiffness(law: Interface) -> list[Stiffness]:
+    """Stiffnesses of contacts that a case gives."""
+    own = law.contact_stiffness
+    several = [law.stiffness_n, law.stiffness_s] if own == AUTO else [own]
+    return [k for k in several if isinstance(k, Stiffness) and k != AUTO]
 
 
 def _normals(t: Topology, faces: NDArray) -> Floats:

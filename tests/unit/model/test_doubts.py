@@ -140,3 +140,30 @@ def test_tiles_whose_areas_differ_are_told_where_a_larger_face_lies_on_them(seco
     said = [text for text in told(case) if "areas" in text]
     assert len(said) == (expected is not None)
     assert not expected or (expected in said[0] and "group block lies on faces of bed" in said[0])
+
+
+@pytest.mark.parametrize(
+    ("cells", "stiffness", "part"),
+    [
+        (1, "10 MPa/m", None),
+        (2, "10 MPa/m", "0.62"),
+        (3, "10 MPa/m", "0.56"),
+        (3, "100 GPa/m", None),
+        (3, "1 E/h", None),
+    ],
+)
+def test_a_soft_joint_between_unlike_faces_is_told_with_the_stiffness_it_has(
+    cells, stiffness, part
+):
+    """A block on one of the same outline: (1 + 1 / n^2) / 2 of k A for n x n faces on one."""
+    bed = {"group": "bed", "box": {"size": [2, 2, 1]}}
+    block = {
+        "group": "block",
+        "box": {"size": [2, 2, 1], "divisions": [cells, cells, 1]},
+        "translate": [0, 0, 1],
+    }
+    joint = {"friction_angle": 30, "stiffness_n": "100 GPa/m", "stiffness_s": stiffness}
+    told = Simulation(resting([bed, block], {"default": joint}), threads=1).audit.warnings
+    told = [line for line in told if "differ in size" in line]
+    assert len(told) == (part is not None)
+    assert not part or f"has about {part} of the stiffness" in told[0]
