@@ -29,10 +29,10 @@ FAULTS = [
     ),
     Mutant(
         "fused flow",
-        "the fused kernel forgets that rock flows",
+        "fused blocks whose rock flows do not move",
         "core/nodes/nodes.cpp",
-        "      .flow = flow};",
-        "      .flow = Flow{}};",
+        "if constexpr (has_fused_kernel<Shape, Flow>) {",
+        "if constexpr (has_fused_kernel<Shape, Flow> && std::is_same_v<Flow, NoFlow>) {",
         f"{PINNED}[flowing-1]",
     ),
     Mutant(
