@@ -13,7 +13,7 @@ crs: EPSG:32632
 model:
   blocks:
     - {group: low, box: {size: [4, 2, 1], divisions: [2, 1, 1]}}
-    - {group: rock, box: {size: [4, 2, 2], divisions: [2, 1, 1], shape: tet4}, translate: [0, 0, 1]}
+    - {group: rock, box: {size: [4, 2, 2], divisions: [2, 1, 1], shape: tet4, cells: alike}, translate: [0, 0, 1]}
     - {group: late, box: {size: [1, 1, 1]}, translate: [1, 0, 3],
        rotate: {axis: [0, 0, 1], angle: 0, origin: [0, 0, 0]}}
     - {group: plug, polyhedron: {vertices: [[9, 0, 0], [10, 0, 0], [9, 1, 0], [9, 0, 1]],
