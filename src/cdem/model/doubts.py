@@ -169,8 +169,8 @@ def unlike_sides(build: Build) -> Iterator[str]:
     share = a["face.area"] / (t.face_nodes >= 0).sum(axis=1)
     ratio = share[fine] / share[coarse]
     coarse, fine, ratio = (x[ratio < 1] for x in (coarse, fine, ratio))
-    classes = a["face.interface_class"]
-    between = a["interface.of"].reshape(classes.max() + 1, -1)[classes[coarse], classes[fine]]
+    classes, count = a["face.interface_class"], build.assembly.counts["interface_classes"]
+    between = a["interface.of"].reshape(count, count)[classes[coarse], classes[fine]]
     rock = np.minimum(a["face.stiffness"][coarse], a["face.stiffness"][fine])
     for number in np.unique(between):
         given = [k for k in _given_stiffness(laws[number]) if not k.relative]
