@@ -9,7 +9,7 @@ FAULTS = [
         "core/elements/nodal_dilatation.hpp",
         "return Number<I>(0.25) * ((at(0) + at(1)) + (at(2) + at(3)));",
         "return Number<I>(0.5) * (at(0) + at(1));",
-        f"{PINNED}[flowing-1]",
+        f"{PINNED}[flowing-3]",
     ),
     Mutant(
         "lame",

@@ -33,7 +33,7 @@ FAULTS = [
         "core/nodes/nodes.cpp",
         "if constexpr (has_fused_kernel<Shape, Flow>) {",
         "if constexpr (has_fused_kernel<Shape, Flow> && std::is_same_v<Flow, NoFlow>) {",
-        f"{PINNED}[flowing-1]",
+        f"{PINNED}[flowing-3]",
     ),
     Mutant(
         "curve",

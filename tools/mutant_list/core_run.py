@@ -17,7 +17,7 @@ FAULTS = [
         "core/run/take_out.cpp",
         "      s.taken_out_friction += friction[slot];\n",
         "",
-        f"{PINNED}[leaving-1]",
+        f"{PINNED}[leaving-3]",
     ),
     Mutant(
         "left work",
@@ -25,7 +25,7 @@ FAULTS = [
         "core/run/take_out.cpp",
         "    work_damping[i] -= sample[4 * i + 2];\n",
         "",
-        f"{PINNED}[leaving-1]",
+        f"{PINNED}[leaving-3]",
     ),
     Mutant(
         "bare walls",
