@@ -143,7 +143,7 @@ cuda: setup
 # What a GPU would not forgive, looked for on the CPU: the tests of the core, and the golden scenes
 # that take a second or two, or with T=path those tests in Python.
 QUICK := tests/regression/test_golden.py \
-  -k "pinned and not (3 or landslide or rubble or version_2 or flowing or leaving)"
+  -k "pinned and not (3 or landslide or rubble or defaults or flowing or leaving)"
 emulated: setup
 	$(BIN)/python tools/build.py --emulated
 	build/emulated/core_tests

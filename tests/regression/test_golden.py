@@ -31,7 +31,7 @@ def test_renewed_hashes_have_their_line_in_the_changelog():
     assert PINNED["reason"] and PINNED["reason"] in (ROOT / "CHANGELOG.md").read_text()
 
 
-DEAR = ("landslide", "leaving", "flowing", "rubble", "version_2")
+DEAR = ("landslide", "leaving", "flowing", "rubble", "defaults")
 """Scenes of seconds: on one thread quick tests run them with other instruction sets only."""
 
 
