@@ -7,6 +7,45 @@
 
 namespace cdem {
 
+/// What of them joints keep, and which faces lie on them: part of `describe_wet`.
+template <class Visit>
+void describe_wet_joints(const char* rows, WetFaces& w, Visit&& given) {
+  const std::string set = std::string(rows) + ".";
+  given({.name = set + "kept",
+         .unit = "Pa",
+         .meaning = "pressure at a vertex that fields keep, at the start",
+         .rows = rows,
+         .numbers = w.vertices,
+         .layout = Layout::columns,
+         .optional = true,
+         .changes = Changes::with_stage},
+        w.kept);
+  given({.name = set + "aperture",
+         .unit = "m",
+         .meaning = "up to which an open joint keeps its water",
+         .rows = rows,
+         .changes = Changes::with_stage},
+        w.aperture);
+  given({.name = set + "pair_first",
+         .meaning = "what lies on a face at the start",
+         .rows = rows,
+         .layout = Layout::starts,
+         .refers_to = {set + "pairs"},
+         .changes = Changes::with_stage},
+        w.pair_first);
+  given({.name = set + "mate",
+         .meaning = "face that lies on it at the start",
+         .rows = set + "pairs",
+         .refers_to = {"faces"},
+         .changes = Changes::with_stage},
+        w.mate);
+  given({.name = set + "pair",
+         .meaning = "3 times their pair, plus its kind: triangles, quads, overlaps; -1: none",
+         .rows = set + "pairs",
+         .changes = Changes::with_stage},
+        w.pair);
+}
+
 /// Faces that water may press on: part of `describe_model`.
 template <class Visit>
 void describe_wet(const char* rows, WetFaces& w, Visit&& given) {
@@ -43,39 +82,7 @@ void describe_wet(const char* rows, WetFaces& w, Visit&& given) {
          .rows = rows,
          .changes = Changes::with_stage},
         w.bonded);
-  given({.name = set + "kept",
-         .unit = "Pa",
-         .meaning = "pressure at a vertex that fields keep, at the start",
-         .rows = rows,
-         .numbers = w.vertices,
-         .layout = Layout::columns,
-         .optional = true,
-         .changes = Changes::with_stage},
-        w.kept);
-  given({.name = set + "aperture",
-         .unit = "m",
-         .meaning = "up to which an open joint keeps its water",
-         .rows = rows,
-         .changes = Changes::with_stage},
-        w.aperture);
-  given({.name = set + "pair_first",
-         .meaning = "what lies on a face at the start",
-         .rows = rows,
-         .layout = Layout::starts,
-         .refers_to = {set + "pairs"},
-         .changes = Changes::with_stage},
-        w.pair_first);
-  given({.name = set + "mate",
-         .meaning = "face that lies on it at the start",
-         .rows = set + "pairs",
-         .refers_to = {"faces"},
-         .changes = Changes::with_stage},
-        w.mate);
-  given({.name = set + "pair",
-         .meaning = "3 times their pair, plus its kind: triangles, quads, overlaps; -1: none",
-         .rows = set + "pairs",
-         .changes = Changes::with_stage},
-        w.pair);
+  describe_wet_joints(rows, w, given);
 }
 
 /// Water: part of `describe_model`.
