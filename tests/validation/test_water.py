@@ -79,7 +79,7 @@ def test_pores_turn_with_the_rock():
     c, s = np.cos(np.radians(50)), np.sin(np.radians(50))
     x = sim.motion[:, :3]
     x[:] = x @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-    sim.core.find_water()
+    sim.core.find_applied()
     force = sim.core.fields()["node.water"].reshape(-1, 4)[:, :3]
     np.testing.assert_allclose(force, np.tile([0, 0, UNIT / 8], (8, 1)), atol=1e-9 * UNIT)
 

@@ -57,27 +57,16 @@ def water_of(
         "water.node_field": node_field,
         "water.node_kept": tables.kept(node_field, t.node_position),
     }
-    owner, row = [], []
-    first = 0
     for kind, corners in (("triangles", 3), ("quads", 4)):
         some = faces.of(t, corners)
         nodes = t.face_nodes[some.face][:, :corners]
         _wet_set(f"wet_{kind}", some, nodes, t, tables, stride(len(nodes)), out)
         out.counts[f"wet_{kind}.count"] = len(nodes)
-        owner.append(nodes.ravel())
-        row.append(first + np.arange(nodes.size))
-        first += nodes.size
-    for shape, nodes in t.element_nodes.items():
+    for shape in t.element_nodes:
         out.arrays[f"{shape}.values"] = np.zeros(0)
         if biot.any():
             one = bool(len(out.arrays[f"{shape}.hourglass"]))
             out.arrays[f"{shape}.values"] = element_shapes.point_values(shape, one=one).ravel()
-            owner.append(nodes.ravel())
-            row.append(first + out.counts[f"{shape}.corner_first"] + np.arange(nodes.size))
-    out.arrays["water.node_first"], out.arrays["water.row"] = ragged(
-        np.concatenate(owner).astype(np.int64), np.concatenate(row).astype(np.int32),
-        len(t.node_position),
-    )  # fmt: skip
     _weigh(case, t, names, tables, node_field, out)
 
 
@@ -85,7 +74,7 @@ def _no_water(out: Assembly, stride: Stride) -> None:
     real, whole = np.zeros(0), np.zeros(0, np.int32)
     for name in ("fields", "biot", "node_kept"):
         out.arrays[f"water.{name}"] = real
-    for name in ("field_curve", "node_field", "node_first", "row"):
+    for name in ("field_curve", "node_field"):
         out.arrays[f"water.{name}"] = whole
     for kind in ("triangles", "quads"):
         out.counts[f"wet_{kind}.count"] = 0
