@@ -81,7 +81,6 @@ inline std::set<std::string> without_modules(Core& core, const Views& arrays) {
                        ArrayVisit{visit, skip, skip_rebuilt});
     });
   });
-  look([&](const auto& visit) { describe_water(core.model.water, visit); });
   return missing;
 }
 

@@ -20,6 +20,7 @@
 #include "core/elements/report.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
+#include "core/nodes/applied.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
@@ -28,7 +29,6 @@
 #include "core/run/excavate.hpp"
 #include "core/run/run.hpp"
 #include "core/run/take_out.hpp"
-#include "core/water/water.hpp"
 
 using namespace nb::literals;
 
@@ -44,25 +44,17 @@ void take_counts(Core& core, const nb::dict& c) {
   m.edge_count = number("edges");
   m.class_count = number("interface_classes");
   m.corner_rows = number("corner_rows");
-  for_each_set(m, core.state, [&]<class Set>(const auto& kind, Set& set, const auto&) {
+  const auto take = [&](const auto& kind, auto& set, const auto&) {
     const std::string name = kind.name;
-    if constexpr (ModuleData<Set>)
-      if (!c.contains((name + ".count").c_str())) return;
     set.count = number((name + ".count").c_str());
     set.stride = padded_stride(set.count);
-    if constexpr (!ModuleData<Set>) set.corners = kind.corners, set.points = kind.points;
+    set.corners = kind.corners, set.points = kind.points;
     set.corner_first = number((name + ".corner_first").c_str());
-  });
-  const auto wet = [&](WetFaces& w, const std::string& name, Index vertices) {
-    const std::string count = "wet_" + name + ".count";
-    w.count = c.contains(count.c_str()) ? number(count.c_str()) : 0;
-    w.stride = padded_stride(w.count);
-    w.vertices = vertices;
   };
-  wet(m.water.triangles, "triangles", 3);
-  wet(m.water.quads, "quads", 4);
-  m.water.quads.row_first = 3 * m.water.triangles.count;
-  m.water.pore_row_first = m.water.quads.row_first + 4 * m.water.quads.count;
+  for_each_element_set(m, core.state, take);
+  for_each_pair_set(m, core.state, take);
+  const auto if_said = [&](const char* name) { return c.contains(name) ? number(name) : 0; };
+  Modules::for_each([&]<class Module>() { Module::take_counts(given_of<Module>(m), if_said); });
   for_each_pair_set(m, core.state, [&](const auto& kind, PairSet& p, const PairState&) {
     const std::string points = std::string(kind.name) + ".points";  // of ragged point tables
     p.point_stride = c.contains(points.c_str()) ? padded_stride(number(points.c_str())) : p.stride;
@@ -265,7 +257,7 @@ void bind_setup(nb::class_<Core>& core) {
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
       .def("bond_places", &bond_place_arrays)
-      .def("find_water", [](Core& c) { change_water(c.model, c.state); })
+      .def("find_applied", [](Core& c) { change_applied(c.model, c.state); })
       .def("set_initial_tractions", &set_tractions, "stress"_a, "bonded"_a)
       .def("restore", &restore)
       .def("prepare",

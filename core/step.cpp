@@ -5,21 +5,17 @@
 #include "core/contact/contact.hpp"
 #include "core/elements/elements.hpp"
 #include "core/elements/nodal_mean.hpp"
+#include "core/nodes/applied.hpp"
 #include "core/nodes/nodes.hpp"
-#include "core/water/water.hpp"
 
 namespace cdem {
-
-void act_of_modules(const Model& m, State& s, Queue q) {
-  Modules::for_each([&]<class Module>() { Module::act(m, s, q); });
-}
 
 void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   if (pair_list_is_due(m, s)) rebuild_pair_list(m, s, plan);  // contact/pair_list, bonds/release
   set_loads_and_supports(m, s);                               // nodes/curves
   update_face_geometry(m, s, q);                              // contact/geometry
   update_bond_forces(m, s, q, plan);                          // bonds/                Eq. 13-14
-  act_of_modules(m, s, q);                                    // model/modules: bolts/
+  act_of_modules(m, s, q, Stage::before_contacts);            // model/modules
   if (has_contact_pairs(s)) {
     prune_pair_list_if_due(m, s, q);   // contact/pair_list
     find_target_faces(m, s, q);        // contact/narrow_phase  Eq. 6-9
@@ -28,7 +24,7 @@ void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   }
   check_against_all_pairs(m, s);                             // contact/broad_phase
   if (has_contact_pairs(s)) update_contact_forces(m, s, q);  // contact/force         Eq. 13-14
-  update_water(m, s, q);                                     // water/
+  act_of_modules(m, s, q, Stage::after_contacts);            // model/modules, nodes/applied
   update_nodal_means(m, s, q);                               // elements/nodal_mean
   update_element_forces(m, s, q, plan);                      // elements/             Eq. 2
   advance_nodes(m, s, q, plan);                              // nodes/

@@ -32,7 +32,7 @@ FOLDERS = [
     "run",
     "kernels",
 ]
-MODULES = ["bolts"]
+MODULES = ["bolts", "water"]
 """Nobody outside of them names them, but core/model/modules.hpp."""
 DEEPEST = 8
 

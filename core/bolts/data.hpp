@@ -8,6 +8,7 @@
 #include "core/bolts/states.hpp"
 #include "core/model/column_info.hpp"
 #include "core/records/energy_terms.hpp"
+#include "core/records/module_ports.hpp"
 
 namespace cdem {
 
@@ -20,7 +21,7 @@ struct State;
 /// one.
 struct BoltSet {
   using Module = Bolts;
-  Index count = 0, stride = 0;
+  Index count = 0;
   Index corner_first = 0;               // first of its rows among the corner forces
   Column<Index> first, crossing_first;  // nodes and crossings of a bolt
   Column<Real> properties;              // rows of BoltProperties
@@ -68,8 +69,14 @@ struct Bolts {
   using Given = BoltSet;
   using State = BoltState;
   static constexpr const char* name = "bolts";
+  static constexpr Port port = Port::rows;
+  static constexpr Stage stage = Stage::before_contacts;
   static constexpr Index rows = 8;  // of a point: nodes of the rock that it lies between
 
+  static void take_counts(Given& b, const auto& number) {
+    b.count = number("bolts.count");
+    b.corner_first = number("bolts.corner_first");
+  }
   static void size(const Given& b, State& s);
   /// A bolt acts while it is installed.
   static auto activity(const State& s) {

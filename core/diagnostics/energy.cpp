@@ -48,9 +48,13 @@ Energies sum_terms(const Model& m, const State& s) {
   Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];
   e.terms[energy_term("kinetic")] = sample(0);
   e.terms[energy_term("step_change")] = column_sum(q, s.nodes.step_change) - sample(3);
-  e.terms[energy_term("water")] = column_sum(q, s.nodes.work_water);  // a load like the others
-  e.terms[energy_term("external")] =
-      column_sum(q, s.nodes.work_external) - sample(1) - e.terms[energy_term("water")];
+  Real& external = e.terms[energy_term("external")];
+  external = column_sum(q, s.nodes.work_external) - sample(1);
+  Modules::for_each_of<Port::applied>([&]<class Module>() {  // loads with a term of their own
+    const Real work = column_sum(q, applied_of<Module>(s).work);
+    e.terms[energy_term(Module::name)] = work;
+    external -= work;
+  });
   e.terms[energy_term("damping")] = column_sum(q, s.nodes.work_damping) - sample(2) +
                                     s.stopped_energy + column_sum(q, s.springs.dashpot) +
                                     column_sum(q, s.edges.dashpot) + s.taken_out_dashpot;

@@ -5,6 +5,7 @@
 #include "core/nodes/node_energy.hpp"
 #include "core/nodes/node_frequency.hpp"
 #include "core/nodes/relaxing_node.hpp"
+#include "core/nodes/sum_applied.hpp"
 
 namespace cdem {
 
@@ -16,6 +17,7 @@ template Most most(Queue, Index, const NodeFrequency&);
 template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Column<Index>&,
                         Column<Index>&);
 template void for_each_item(Queue, Index, const SampleNodes&);
+template void for_each_item(Queue, Index, const SumApplied&);
 template Real exact_sum(Queue, Index, const KineticEnergy&);
 template Real exact_sum(Queue, Index, const StopNode&);
 template void for_each_item(Queue, Index, const RememberNode&);

@@ -12,6 +12,5 @@ template void for_each_lane(Queue, Index, const PressInPores<Wedge6>&);
 template void for_each_lane(Queue, Index, const PressInPores<Hex8>&);
 template void for_each_lane(Queue, Index, const PressInPores<Hex8OnePoint>&);
 template void for_each_item(Queue, Index, const PoresOfNodes&);
-template void for_each_item(Queue, Index, const SumWaterForces&);
 
 }  // namespace cdem

@@ -4,7 +4,6 @@
 #include "core/materials/laws.hpp"
 #include "core/model/column_info.hpp"
 #include "core/model/describe_modules.hpp"
-#include "core/model/describe_water.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -460,7 +459,6 @@ void describe_model(Model& m, State& s, Visit&& visit) {
   describe_face_sizes(m, given);
   describe_exterior_edges(m, given);
   describe_loads(m, given);
-  describe_water(m.water, given);
 }
 
 }  // namespace cdem

@@ -4,6 +4,7 @@
 #include "core/model/column_info.hpp"
 #include "core/model/model.hpp"
 #include "core/model/rebuilds.hpp"
+#include "core/model/row_kinds.hpp"
 #include "core/model/state.hpp"
 
 namespace cdem {
@@ -33,6 +34,60 @@ void describe_modules(const Model& m, State& s, const Stored& stored, const Rebu
   Modules::for_each([&]<class Module>() {
     Module::describe(given_of<Module>(m), state_of<Module>(s), ArrayVisit{skip, stored, rebuilt});
   });
+}
+/// Forces that a module applies: part of `describe_applied`.
+template <class Stored, class Rebuilt>
+void describe_forces(const std::string& name, AppliedForces& of, const Stored& stored,
+                     const Rebuilt& rebuilt) {
+  stored({.name = "node." + name,
+          .unit = "N, -",
+          .meaning = "force that the module applies, x y z, and a pad",
+          .rows = "nodes",
+          .numbers = 4,
+          .parts = {{"force", 3}, ""},
+          .optional = true},
+         of.sum);
+  stored({.name = "node.work_" + name,
+          .unit = "J",
+          .meaning = "work of this force",
+          .rows = "nodes",
+          .optional = true},
+         of.work);
+  rebuilt("act_of_modules",
+          {.name = name + ".force",
+           .unit = "N, -",
+           .meaning = "force on a vertex of a face or a node of an element, and a pad",
+           .rows = applied_rows_of(name),
+           .numbers = 4,
+           .parts = {{"force", 3}, ""}},
+          of.rows);
+  rebuilt("list_applied",
+          {.name = name + ".node_first",
+           .meaning = "rows that a node sums",
+           .rows = "nodes",
+           .layout = Layout::starts,
+           .refers_to = {applied_lists_of(name)},
+           .optional = true},
+          of.first);
+  rebuilt("list_applied",
+          {.name = name + ".row",
+           .meaning = "row that the node adds",
+           .rows = applied_lists_of(name),
+           .refers_to = {applied_rows_of(name)}},
+          of.row);
+}
+/// Call the same for the forces that modules apply, with their names.
+template <class Stored, class Rebuilt>
+void describe_applied(State& s, const Stored& stored, const Rebuilt& rebuilt) {
+  Modules::for_each_of<Port::applied>([&]<class Module>() {
+    describe_forces(Module::name, applied_of<Module>(s), stored, rebuilt);
+  });
+  rebuilt("list_applied",
+          {.name = "node.has_applied",
+           .meaning = "1: modules apply forces to it",
+           .rows = "nodes",
+           .optional = true},
+          s.nodes.has_applied);
 }
 
 }  // namespace cdem

@@ -40,6 +40,13 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
         total(s.nodal.tet));
   visit(RowKind{"overlap_points", "bond points of overlaps"}, end_of(m.overlaps.point_first));
   Modules::for_each([&]<class Module>() { Module::describe_rows(given_of<Module>(m), visit); });
+  Modules::for_each_of<Port::applied>([&]<class Module>() {
+    const AppliedForces& of = applied_of<Module>(s);
+    visit(RowKind{applied_rows_of(Module::name), "forces of a module on nodes"},
+          total(of.rows) / 4);
+    visit(RowKind{applied_lists_of(Module::name), "rows of the module that a node sums"},
+          end_of(of.first));
+  });
   visit(RowKind{"corner_rows", "forces of a set on a node; the last one adds nothing"},
         m.corner_rows + 1);
   visit(RowKind{"faces", "exterior faces of all blocks"}, m.face_count);
@@ -53,16 +60,6 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));
   visit(RowKind{"loads", "forces on nodes"}, end_of(m.load_first));
   visit(RowKind{"supports", "nodes of which a component is given"}, total(m.support_component) / 3);
-  visit(RowKind{"wet_triangles", "triangles that water may press on"}, m.water.triangles.count);
-  visit(RowKind{"wet_quads", "quadrilaterals that water may press on"}, m.water.quads.count);
-  visit(RowKind{"wet_triangles.pairs", "faces that lie on wet triangles at the start"},
-        end_of(m.water.triangles.pair_first));
-  visit(RowKind{"wet_quads.pairs", "faces that lie on wet quadrilaterals at the start"},
-        end_of(m.water.quads.pair_first));
-  visit(RowKind{"water_fields", "pressure fields; the last one is dry"}, total(m.water.fields) / 8);
-  visit(RowKind{"water_rows", "forces of water on faces and in elements"},
-        m.water.pore_row_first + (m.water.biot.size() > 0 ? element_corner_count(m, s) : 0));
-  visit(RowKind{"node_water", "rows of water that a node sums"}, end_of(m.water.node_first));
   visit(RowKind{"curves", "histories of loads and supports"}, Index(m.curve_time.size()));
 }
 

@@ -1,5 +1,5 @@
-// force_sets.hpp - the sets of elements, bonded pairs and modules, each once, and what loops ask of
-// them.
+// force_sets.hpp - the sets of elements, bonded pairs and modules with rows, each once, and what
+// loops ask of them.
 //
 // Whatever puts forces on nodes through tiles or corner rows is a set. All loops over sets come
 // from here. What is asked of a module stands in module.hpp.
@@ -71,7 +71,7 @@ void for_each_pair_set(M& m, S& s, Visit&& visit) {
 template <class M, class S, class Visit>
 void for_each_row_set(M& m, S& s, Visit&& visit) {
   for_each_pair_set(m, s, visit);
-  Modules::for_each([&]<class Module>() {
+  Modules::for_each_of<Port::rows>([&]<class Module>() {
     visit(ModuleKind{.name = Module::name}, given_of<Module>(m), state_of<Module>(s));
   });
 }

@@ -5,6 +5,7 @@
 
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
+#include "core/model/applied_lists.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/tiles.hpp"
 
@@ -110,6 +111,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   make_room_for_rises(m, s);
   list_tiles(m, s);
+  list_applied(m, s);
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
   // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero

@@ -42,31 +42,6 @@ struct PairSet {
 /// Do the faces of the pairs share their vertices? Else they overlap.
 inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
 
-/// Faces with one number of vertices that water may press on, see water/wet_faces.hpp.
-struct WetFaces {
-  Index count = 0, stride = 0;
-  Index vertices = 0, row_first = 0;  // of a face; first of its rows among the forces of water
-  Column<Index> nodes;                // [vertex][face]
-  Column<Index> face, joint, open;    // [face] the last two: fields in a joint and in the open
-  Column<Flag> bonded;                // [face] 1: water of the joint presses while bonds hold
-  Column<Real> kept;                  // [vertex][face] see WaterFields  [Pa]
-  Column<Real> aperture;              // [face] up to which an open joint keeps its water  [m]
-  // what lies on it at the start: face, and 3 * pair + kind, in the order of the sets, or -1
-  Column<Index> pair_first, mate, pair;
-};
-
-/// Water, see water/. Without fields there is none; the last one is dry.
-struct Water {
-  WetFaces triangles, quads;
-  Column<Real> fields;        // rows of 8: as WaterFields, but c without lift, and per lift  [Pa]
-  Column<Index> field_curve;  // [field][2] lift, factor
-  Column<Real> biot;          // [material]; empty: no rock has pores
-  Column<Index> node_field;   // of the pores
-  Column<Real> node_kept;     // [Pa]
-  Index pore_row_first = 0;   // of the rows of elements
-  Column<Index> node_first, row;  // rows that a node sums
-};
-
 struct Model {
   // nodes
   Index node_count = 0;
@@ -115,8 +90,6 @@ struct Model {
   Column<Flag> support_component;
   Column<Real> support_velocity;
   std::vector<std::vector<Real>> curve_time, curve_factor;
-
-  Water water;
 
   // rules
   Formulation formulation = Formulation::corotational;

@@ -5,10 +5,19 @@
 // a struct with
 //
 //   static constexpr const char* name;             of its items, and before those of its arrays
+//   static constexpr Port port;                    how its forces come to nodes
+//   static constexpr Stage stage;                  when in a step it acts
 //   struct Given, State;                           its arrays in the model and in the state; each
 //                                                  says `using Module =` whose they are
+//   static void take_counts(given, number);        how many items: number("name"), 0 if not said
 //   static void describe(given, state, visit);     visit.given, visit.stored, visit.rebuilt(array)
 //   static void describe_rows(given, visit);       visit(kind, count) of kinds of rows of its own
+//   static void act(model, state, queue);          write its rows
+//
+// Forces between nodes, Port::rows: each node adds the rows of its items, and the module books
+// their energy. Given has `count`, and `corner_first`, the first of its rows among the corner
+// forces.
+//
 //   static void size(given, state);                room for the state at the start
 //   static auto activity(state);                   is_active(item): does it act on its nodes?
 //   static auto rows_of(given);                    for_each_row(item, visit): visit(node, row) of
@@ -16,25 +25,41 @@
 //   static auto stiffness_of(given);               for_each_stiffness(item, visit):
 //                                                  visit(node, stiffness at most  [N/m])
 //   static void for_each_energy(state, visit);     visit(term, column), see energy_term
-//   static void act(model, state, queue);          write its rows, before contacts act
 //   static void take_out(given, state, items, out);  nodes of these items are out now
 //   static void bring_in(given, state, out);         blocks have come in
 //
-// Given has `count`, `stride`, and `corner_first`, the first of its rows among the corner forces.
-// What follows from the rows is the engine's: who sums them, fused kernel, sleep, stable step,
-// ledger, checkpoint. No file outside the folder of a module names it, but modules.hpp, tests, and
-// the bindings of what a stage does to it.
+// Forces from outside, Port::applied: `act` writes a row for each vertex that it loads into
+// applied_of<Module>(state).rows, and zero where the node is out. The engine sums them on nodes,
+// books their work by the term with the name of the module, and lets what it loses at an excavation
+// act on as it does with other forces.
+//
+//   static bool is_there(given);                   does the case have it?
+//   static std::vector<Index> row_nodes(model, state);  node of each of its rows
+//
+// What follows is the engine's: who sums the rows, fused kernel, sleep, stable step, ledger,
+// checkpoint. No file outside the folder of a module names it, but modules.hpp, tests, and the
+// bindings of what a stage does to it.
 #pragma once
 
 #include <concepts>
+#include <vector>
 
+#include "core/base/column.hpp"
 #include "core/base/device.hpp"
-#include "core/model/column_info.hpp"
+#include "core/records/module_ports.hpp"
 
 namespace cdem {
 
 struct Model;
 struct State;
+
+/// Forces that a module of Port::applied puts on nodes.
+struct AppliedForces {
+  Column<Real> rows;         // rows of 4: what `act` writes  [N]
+  Column<Index> first, row;  // [node + 1], those that a node sums, see list_applied
+  Column<Real> sum;          // row of 4 a node  [N]
+  Column<Real> work;         // [node]  [J]
+};
 
 /// Arrays of a module.
 template <class Data>
@@ -45,26 +70,38 @@ struct AnyVisit {
   template <class... All>
   void operator()(const All&...) const {}
 };
+/// Any numbers by name, for the concepts.
+struct AnyNumber {
+  Index operator()(const char*) const { return 0; }
+};
 
 template <class M>
-concept HasItsData = requires(const typename M::Given& given, typename M::State& state) {
+concept HasItsData = requires(const typename M::Given& given, typename M::Given& taken,
+                              typename M::State& state, const Model& model, State& all) {
   { M::name } -> std::convertible_to<const char*>;
-  { given.count + given.stride + given.corner_first } -> std::same_as<Index>;
+  { M::port } -> std::convertible_to<Port>;
+  { M::stage } -> std::convertible_to<Stage>;
   requires std::same_as<typename M::Given::Module, M> && std::same_as<typename M::State::Module, M>;
-  M::size(given, state);
+  M::take_counts(taken, AnyNumber{});
   M::describe_rows(given, AnyVisit{});
+  M::act(model, all, Queue{});
 };
 template <class M>
-concept PutsRows = requires(const typename M::Given& given, const typename M::State& state,
-                            const Model& model, State& all) {
+concept PutsRows = requires(const typename M::Given& given, typename M::State& state) {
+  { given.count + given.corner_first } -> std::same_as<Index>;
+  M::size(given, state);
   { M::activity(state)(Index(0)) } -> std::convertible_to<bool>;
   M::rows_of(given)(Index(0), AnyVisit{});
   M::for_each_energy(state, AnyVisit{});
-  M::act(model, all, Queue{});
 };
 template <class M>
 concept KnowsItsStiffness =
     requires(const typename M::Given& given) { M::stiffness_of(given)(Index(0), AnyVisit{}); };
+template <class M>
+concept Applies = requires(const typename M::Given& given, const Model& model, const State& all) {
+  { M::is_there(given) } -> std::convertible_to<bool>;
+  { M::row_nodes(model, all) } -> std::same_as<std::vector<Index>>;
+};
 
 /// The arrays of one module, as a base with a type of its own.
 template <class Module>
@@ -75,15 +112,23 @@ template <class Module>
 struct StatePart {
   typename Module::State state;
 };
+template <class Module>
+  requires(Module::port == Port::applied)
+struct StatePart<Module> {
+  typename Module::State state;
+  AppliedForces applied;
+};
 
 /// Every module once; the data of each, one after the other.
 template <class... Modules>
 struct ModuleList {
   static_assert((HasItsData<Modules> && ...), "a module needs its name, its data, and their size");
-  static_assert((PutsRows<Modules> && ...),
-                "a module says who acts, on which nodes, at which cost");
-  static_assert((KnowsItsStiffness<Modules> && ...),
+  static_assert(((Modules::port != Port::rows || PutsRows<Modules>) && ...),
+                "forces between nodes: who acts, on which nodes, at which cost");
+  static_assert(((Modules::port != Port::rows || KnowsItsStiffness<Modules>) && ...),
                 "forces between nodes need stiffness_of: the step is found from it");
+  static_assert(((Modules::port != Port::applied || Applies<Modules>) && ...),
+                "applied forces: is it there, and which node has each row");
 
   template <template <class> class Part>
   struct Data : Part<Modules>... {};
@@ -92,6 +137,13 @@ struct ModuleList {
   template <class Visit>
   static void for_each(Visit&& visit) {
     (visit.template operator()<Modules>(), ...);
+  }
+  /// The same for those of one port.
+  template <Port port, class Visit>
+  static void for_each_of(Visit&& visit) {
+    for_each([&]<class Module>() {
+      if constexpr (Module::port == port) visit.template operator()<Module>();
+    });
   }
 };
 
@@ -105,12 +157,21 @@ auto& given_of(M& model) {
     return static_cast<GivenPart<Module>&>(part).given;
 }
 template <class Module, class S>
-auto& state_of(S& state) {
+auto& part_of(S& state) {
   auto& part = state.modules;
   if constexpr (std::is_const_v<S>)
-    return static_cast<const StatePart<Module>&>(part).state;
+    return static_cast<const StatePart<Module>&>(part);
   else
-    return static_cast<StatePart<Module>&>(part).state;
+    return static_cast<StatePart<Module>&>(part);
+}
+template <class Module, class S>
+auto& state_of(S& state) {
+  return part_of<Module>(state).state;
+}
+/// What a module of Port::applied has put on nodes.
+template <class Module, class S>
+auto& applied_of(S& state) {
+  return part_of<Module>(state).applied;
 }
 
 }  // namespace cdem

@@ -3,9 +3,10 @@
 
 #include "core/bolts/data.hpp"
 #include "core/model/module.hpp"
+#include "core/water/data.hpp"
 
 namespace cdem {
 
-using Modules = ModuleList<Bolts>;
+using Modules = ModuleList<Bolts, Water>;
 
 }  // namespace cdem

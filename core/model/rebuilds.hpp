@@ -23,6 +23,7 @@ struct Rebuild {
 /// the begin of a stage reads of the last step cannot be made again: a checkpoint keeps it.
 inline constexpr Rebuild rebuilds[] = {
     {"list_tiles", Made::at_start},
+    {"list_applied", Made::at_start},
     {"list_nodal_means", Made::after_resume},
     {"find_loads_and_supports", Made::after_resume},
     {"list_exposed", Made::after_resume},
@@ -39,7 +40,6 @@ inline constexpr Rebuild rebuilds[] = {
     {"find_target_faces", Made::in_step},
     {"find_target_edges", Made::in_step},
     {"update_contact_forces", Made::in_step},
-    {"update_water", Made::in_step},
     {"update_nodal_means", Made::in_step},
     {"update_element_forces", Made::in_step},
     {"report_elements", Made::in_step},

@@ -12,4 +12,8 @@ inline std::string fused_rows_of(const std::string& rows) { return rows + ".fuse
 inline std::string tiles_of(const std::string& rows) { return rows + ".tiles"; }
 inline std::string tile_nodes_of(const std::string& rows) { return rows + ".tile_nodes"; }
 
+/// Kinds of rows for what a module applies to nodes, and for what a node sums of it.
+inline std::string applied_rows_of(const std::string& module) { return module + "_rows"; }
+inline std::string applied_lists_of(const std::string& module) { return "node_" + module; }
+
 }  // namespace cdem

@@ -25,7 +25,7 @@ struct NodeState {
   Column<Flag> lumped;              // 1: its block has bonds, see list_lumped; empty: none has
   Column<Flag> out;                 // 1: taken out, see run/take_out.hpp; empty: none is
   Column<Real> relief;              // rows of 4, see run/excavate.hpp; empty: none
-  Column<Real> water, work_water;   // rows of 4; see water/; empty: there is none
+  Column<Flag> has_applied;  // 1: modules apply forces to it, see nodes/applied.hpp; or empty
   Column<Flag> fused;        // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
   Column<Index> general;     // awake blocks of nodes but those of which all are fused
   bool damped = false;       // in the last step, else damping_force does not count
@@ -185,14 +185,6 @@ struct SearchState {
 /// What the wall time of steps is counted by.
 enum class Phase { rebuild, search, contact, element, node };
 
-/// What water does in a step, see water/.
-struct WaterState {
-  Column<Real> fields;                       // rows of 8, see WaterFields
-  Column<Index> triangle_field, quad_field;  // [vertex][face] that presses on it
-  Column<Real> force;                        // rows of 4  [N]
-  Column<Real> node_pressure;                // in the pores  [Pa]
-};
-
 /// How what was dug out ceases to bear: the part of its forces that is left, over time.
 struct Relief {
   Real begin = 0, end = 0;  // [s]
@@ -234,7 +226,6 @@ struct State {
   ContactsByTargetState contacts_by_target;
   ContactAreasState contact_areas;
   SearchState search;
-  WaterState water;
   Column<Real> tile_force, corner_force;      // rows of 4: of tiles; of pairs and modules
   Column<Real> face_geometry, contact_force;  // rows of 8, 4
   Column<Real> node_potential, node_bonds;    // stiffness that contacts may have, bonds have  [N/m]

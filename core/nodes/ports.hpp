@@ -16,7 +16,7 @@ struct LoadColumns {
   const Real* curve_value;   // [curve] factors at the time of this step
   const Real* relief;        // row of 4 a node, see run/excavate.hpp; null: none  [N]
   Real relief_part;          // that is left in this step
-  const Real* applied;       // row of 4 a node: of water; null: none  [N]
+  const Real* applied;       // row of 4 a node, sum of what modules apply; null: none  [N]
 
   CDEM_HD Row at(Index node) const {
     Row f = gravity_mass[node] * Row::of(gravity.x, gravity.y, gravity.z);
@@ -55,7 +55,7 @@ struct CornerLists {
 /// answer. The order of the sum is part of the results.
 struct NodePorts {
   LoadColumns loads;
-  const Index* applied_first;  // [node + 1] rows of applied forces; null: none
+  const Flag* has_applied;  // [node] may modules apply forces to it? null: to none
   CornerLists corners;
 
   CDEM_HD Row sum(Index node) const { return corners.sum(node, loads.at(node)); }
@@ -68,7 +68,7 @@ struct NodePorts {
   /// not of values: a pressure may begin in a later step.
   CDEM_HD bool is_loaded(Index node) const {
     if (loads.load_first[node] < loads.load_first[node + 1]) return true;
-    if (applied_first && applied_first[node] < applied_first[node + 1]) return true;
+    if (has_applied && has_applied[node]) return true;
     if (!loads.relief) return false;
     const Vec3<Real> kept = Row::at(loads.relief + std::size_t(node) * 4).vector();
     return kept.x != 0 || kept.y != 0 || kept.z != 0;

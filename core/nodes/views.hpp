@@ -39,6 +39,15 @@ inline SupportColumns support_columns(const Model& m, const State& s) {
           .curve_velocity = s.velocity_factor.data()};
 }
 
+/// Sum of what modules apply, rows of 4; null: none is there.
+inline const Real* applied_forces(const State& s) {
+  const Real* sum = nullptr;
+  Modules::for_each_of<Port::applied>([&]<class Module>() {
+    if (applied_of<Module>(s).sum.size() > 0) sum = applied_of<Module>(s).sum.data();
+  });
+  return sum;
+}
+
 inline LoadColumns load_columns(const Model& m, const State& s) {
   return {.gravity = m.gravity,
           .gravity_mass = m.gravity_mass.data(),
@@ -48,7 +57,7 @@ inline LoadColumns load_columns(const Model& m, const State& s) {
           .curve_value = s.load_factor.data(),
           .relief = s.nodes.relief.size() > 0 ? s.nodes.relief.data() : nullptr,
           .relief_part = s.relief.part,
-          .applied = s.nodes.water.size() > 0 ? s.nodes.water.data() : nullptr};
+          .applied = applied_forces(s)};
 }
 
 inline CornerLists corner_lists(const State& s) {
@@ -64,7 +73,7 @@ inline CornerLists corner_lists(const State& s) {
 
 inline NodePorts node_ports(const Model& m, const State& s) {
   return {.loads = load_columns(m, s),
-          .applied_first = m.water.node_first.size() > 0 ? m.water.node_first.data() : nullptr,
+          .has_applied = s.nodes.has_applied.size() > 0 ? s.nodes.has_applied.data() : nullptr,
           .corners = corner_lists(s)};
 }
 

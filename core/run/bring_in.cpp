@@ -8,8 +8,8 @@
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/nodes/applied.hpp"
 #include "core/run/take_out.hpp"
-#include "core/water/water.hpp"
 
 namespace cdem {
 
@@ -88,7 +88,7 @@ void bring_in(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   renew_nodal_means(m, s, comes);
   bond_again(m, s, comes, bonded);
   const auto out = on_host(s.nodes.out);
-  Modules::for_each([&]<class Module>() {
+  Modules::for_each_of<Port::rows>([&]<class Module>() {
     Module::bring_in(given_of<Module>(m), state_of<Module>(s), out.data());
   });
   Covered faces = covered_faces(m, s, comes);
@@ -103,7 +103,7 @@ void bring_in(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   sort_exposed(s);
   s.taken_out += before - stored_energy(m, s);
   list_pairs_of_exposed(m, s, {.everything_awake = true}, true);
-  change_water(m, s);
+  change_applied(m, s);
 }
 
 }  // namespace cdem

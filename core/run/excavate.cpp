@@ -6,8 +6,8 @@
 
 #include "core/contact/geometry/views.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/nodes/applied.hpp"
 #include "core/run/take_out.hpp"
-#include "core/water/water.hpp"
 
 namespace cdem {
 
@@ -131,7 +131,7 @@ void excavate(Model& m, State& s, const Flag* leaves) {
   s.relief = {};
   take_out(m, s, leaves);
   if (s.step == 0) return;
-  const std::vector<Real> change = change_water(m, s);
+  const std::vector<Real> change = change_applied(m, s);
   const auto now = on_host(s.nodes.relief);
   for (std::size_t k = 0; k < change.size(); ++k)
     if (!leaves[k / 4]) now[k] -= change[k];

@@ -7,7 +7,7 @@
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
 #include "core/diagnostics/energy.hpp"
-#include "core/materials/laws.hpp"
+#include "core/model/describe_model.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -29,16 +29,15 @@ Index holding_support(Model& m) {
 }
 
 /// Row of a material without stiffness: it has neither stress nor energy, however deformed.
-Index slack_material(Model& m) {
+Index slack_material(Model& m, State& s) {
   const Index count = Index(m.material_lambda.size());
   const bool known = count > 0 && on_host(m.material_mu)[count - 1] == 0;
   const Index row = known ? count - 1 : count;
-  m.material_lambda.resize(row + 1);
-  m.material_mu.resize(row + 1);
-  m.material_law.resize(row + 1);
-  // a stage that changes these gives them for the materials of the case alone
-  m.material_parameters.resize(std::size_t(row + 1) * material_row);
-  if (m.water.biot.size() > 0) m.water.biot.resize(row + 1);
+  // all of them: a stage that changes some gives those for the materials of the case alone
+  describe_model(m, s, [&](const ColumnInfo& info, auto& column) {
+    if (info.rows == "materials" && column.size() > 0)
+      column.resize(std::size_t(row + 1) * info.numbers);
+  });
   return row;
 }
 
@@ -161,9 +160,9 @@ void take_out(Model& m, State& s, const Flag* leaves) {
   list_pairs_of_exposed(m, s, {.everything_awake = true}, true);
 }
 
-void hold_taken_out(Model& m, const State& s) {
+void hold_taken_out(Model& m, State& s) {
   if (s.nodes.out.size() == 0) return;
-  const Index support = holding_support(m), slack = slack_material(m);
+  const Index support = holding_support(m), slack = slack_material(m, s);
   const auto out = on_host(s.nodes.out);
   const auto support_row = on_host(m.support), mass_row = on_host(m.mass_row_first);
   const auto load_first = on_host(m.load_first);

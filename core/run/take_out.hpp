@@ -15,7 +15,7 @@ namespace cdem {
 void take_out(Model& model, State& state, const Flag* leaves);
 
 /// Hold what has been taken out, after Python has handed over arrays of the model.
-void hold_taken_out(Model& model, const State& state);
+void hold_taken_out(Model& model, State& state);
 
 /// Hide faces, given by a flag for each; what their contacts have lost stays in the ledger.
 void hide_faces(State& state, const std::vector<Flag>& hidden);

@@ -16,7 +16,7 @@ class Vertices {
  public:
   Vertices(const Model& m, const State& s, const WetFaces& w)
       : w_(w),
-        dry_(Index(m.water.fields.size() / 8) - 1),
+        dry_(Index(given_of<Water>(m).fields.size() / 8) - 1),
         face_nodes_(on_host(m.face_nodes)),
         face_exposed_(on_host(s.search.face_exposed)),
         exposed_face_(on_host(s.search.exposed_face)),
@@ -131,8 +131,9 @@ void find_wet_faces(const Model& m, State& s) {
 #pragma omp parallel for schedule(static, 128) if (w.count >= worth_threads)
     for (Index f = 0; f < w.count; ++f) vertices.find(f, fields.data(), w.stride);
   };
-  find(m.water.triangles, s.water.triangle_field);
-  find(m.water.quads, s.water.quad_field);
+  const WaterSet& w = given_of<Water>(m);
+  find(w.triangles, state_of<Water>(s).triangle_field);
+  find(w.quads, state_of<Water>(s).quad_field);
 }
 
 }  // namespace cdem

@@ -5,7 +5,7 @@ from mutant_list.mutant import PINNED, Mutant
 FAULTS = [
     Mutant(
         "port",
-        "the fused kernel moves nodes on which water acts",
+        "the fused kernel moves nodes on which modules act",
         "core/nodes/ports.hpp",
         "return !is_loaded(node) && ",
         "return ",
@@ -15,7 +15,7 @@ FAULTS = [
         "wet support",
         "held rock under water sleeps",
         "core/nodes/ports.hpp",
-        "    if (applied_first && applied_first[node] < applied_first[node + 1]) return true;\n",
+        "    if (has_applied && has_applied[node]) return true;\n",
         "",
         "tests/validation/test_water.py::test_held_rock_carries_its_water_at_any_time",
     ),

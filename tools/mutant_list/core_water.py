@@ -6,7 +6,7 @@ FAULTS = [
     Mutant(
         "level",
         "a level that does not rise",
-        "core/water/water.cpp",
+        "core/water/data.cpp",
         "now[0] = given[0] + given[5] * lift;",
         "now[0] = given[0];",
         f"{PINNED}[soaked-1]",
@@ -14,7 +14,7 @@ FAULTS = [
     Mutant(
         "work of water",
         "work of water by the force after the step alone",
-        "core/water/pressure.hpp",
+        "core/nodes/sum_applied.hpp",
         "const Row mean = 0.5 * (Row::at(own) + sum);",
         "const Row mean = sum;",
         f"{PINNED}[soaked-1]",

@@ -194,7 +194,7 @@ def build(case: Case) -> Build:
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(at)
     under = set_initial_stress(case, topology, names, laws, core)
-    core.find_water()
+    core.find_applied()
     built = Build(
         case,
         merged,

@@ -60,7 +60,6 @@ class WaterModel(Module):
             for shape in t.element_nodes:
                 one = bool(len(out.arrays[f"{shape}.hourglass"]))
                 out.arrays[f"{shape}.values"] = element_shapes.point_values(shape, one=one).ravel()
-        _list_rows(t, bool(biot.any()), out)
         _weigh(parts, tables, node_field)
 
     def refuse_change(self, case: Case, was: dict[str, int], now: dict[str, int]) -> None:
@@ -81,23 +80,6 @@ class WaterModel(Module):
 def _materials(parts: Parts) -> list[Material]:
     """Of the groups, by index."""
     return [parts.case.materials[parts.case.groups[name].material] for name in parts.names]
-
-
-def _list_rows(t: Topology, pores: bool, out: Assembly) -> None:
-    """List the rows of water that each node sums: of wet faces, then of elements with pores."""
-    owner, row, first = [], [], 0
-    for kind, corners in (("triangles", 3), ("quads", 4)):
-        nodes = t.face_nodes[out.arrays[f"wet_{kind}.face"]][:, :corners]
-        owner.append(nodes.ravel())
-        row.append(first + np.arange(nodes.size))
-        first += nodes.size
-    for shape, nodes in t.element_nodes.items() if pores else ():
-        owner.append(nodes.ravel())
-        row.append(first + out.counts[f"{shape}.corner_first"] + np.arange(nodes.size))
-    out.arrays["water.node_first"], out.arrays["water.row"] = ragged(
-        np.concatenate(owner).astype(np.int64), np.concatenate(row).astype(np.int32),
-        len(t.node_position),
-    )  # fmt: skip
 
 
 @dataclass

@@ -126,7 +126,7 @@ class Simulation(RunState):
         if names := self.case.absent(0):
             comes = nodes_of_groups(self.build.topology, names)
             self.core.take_out(comes.astype(np.int8))
-            self.core.find_water()
+            self.core.find_applied()
 
     # ------------------------------------------------------------------ running
 

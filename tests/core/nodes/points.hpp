@@ -82,7 +82,7 @@ struct Points {
   }
   NodePorts ports() const {
     return {.loads = loads(),
-            .applied_first = nullptr,
+            .has_applied = nullptr,
             .corners = {.tile_first = tile_first.data(),
                         .tile_force = {tile_force.data()},
                         .first = corner_first.data(),

@@ -14,8 +14,8 @@ struct Ports {
   const Real tiles[4] = {1e20, 0, 0, 0}, rows[8] = {1, 2, 3, 0, 1e20, 20, 30, 0};
   const Real contacts[4] = {5, 6, 7, 8};
   const Index tile_first[4] = {0, 0, 0, 1}, first[4] = {0, 0, 0, 2}, corner[2] = {~1, 0};
-  const Index applied_first[4] = {0, 0, 1, 1}, contact_first[4] = {0, 0, 0, 1},
-              contact_corner[1] = {0};
+  const Index contact_first[4] = {0, 0, 0, 1}, contact_corner[1] = {0};
+  const Flag has_applied[3] = {0, 1, 0};
   NodePorts ports{
       .loads = {.gravity = {0, 0, -10},
                 .gravity_mass = mass,
@@ -26,7 +26,7 @@ struct Ports {
                 .relief = nullptr,
                 .relief_part = 0.25,
                 .applied = nullptr},
-      .applied_first = nullptr,
+      .has_applied = nullptr,
       .corners = {
           tile_first, {tiles}, first, corner, {rows}, contact_first, contact_corner, {contacts}}};
 };
@@ -54,7 +54,7 @@ TEST_CASE("rows of tiles come first, then those of bonds with their sign, then c
 TEST_CASE("each port answers whether it leaves a node plain, and whether it loads it") {
   // A new port does not compile here: it needs its line in sum, in is_plain and in is_loaded.
   const Ports quiet;
-  [[maybe_unused]] const auto& [loads, applied_first, corners] = quiet.ports;
+  [[maybe_unused]] const auto& [loads, has_applied, corners] = quiet.ports;
   CHECK((quiet.ports.is_plain(0) && !quiet.ports.is_loaded(0)));
   CHECK((!quiet.ports.is_plain(1) && quiet.ports.is_loaded(1)));   // curves
   CHECK((!quiet.ports.is_plain(2) && !quiet.ports.is_loaded(2)));  // contacts
@@ -62,10 +62,10 @@ TEST_CASE("each port answers whether it leaves a node plain, and whether it load
   const Index no_loads[4] = {};
   p.ports.loads.load_first = no_loads;
   CHECK((p.ports.is_plain(1) && !p.ports.is_loaded(1)));
-  p.ports.applied_first = p.applied_first;  // though its row is still zero
+  p.ports.has_applied = p.has_applied;  // though its row is still zero
   CHECK((!p.ports.is_plain(1) && p.ports.is_loaded(1)));
   CHECK((p.ports.is_plain(0) && !p.ports.is_loaded(0)));
-  p.ports.applied_first = nullptr;
+  p.ports.has_applied = nullptr;
   p.ports.loads.relief = p.relief;
   CHECK((!p.ports.is_plain(1) && p.ports.is_loaded(1)));
   CHECK((p.ports.is_plain(0) && !p.ports.is_loaded(0)));

@@ -97,7 +97,7 @@ support.component support.curve support.row support.velocity
 """
 """What every stage hands over that sets anything."""
 WATER = """
-water.biot water.field_curve water.fields water.node_field water.node_first water.node_kept water.row
+water.biot water.field_curve water.fields water.node_field water.node_kept
 wet_quads.aperture wet_quads.bonded wet_quads.face wet_quads.joint wet_quads.kept wet_quads.mate
 wet_quads.nodes wet_quads.open wet_quads.pair wet_quads.pair_first
 wet_triangles.aperture wet_triangles.bonded wet_triangles.face wet_triangles.joint

@@ -1,0 +1,31 @@
+// sum_applied.hpp - the sum of the applied forces of a module on each node, and its work.
+#pragma once
+
+#include "core/base/views.hpp"
+
+namespace cdem {
+
+/// Sum rows on each node in a fixed order, and their work: that of the mean of the forces before
+/// and after a step on its way.
+struct SumApplied {
+  InMotion nodes;
+  const Index* first;  // [node + 1]
+  const Index* row;
+  InForces rows;
+  Real dt;      // of the last step  [s]
+  Real* force;  // row of 4  [N]
+  Real* work;   // [node]  [J]
+
+  CDEM_HD void operator()(One node) const {
+    const Index i = node.i;
+    if (first[i] == first[i + 1]) return;
+    Row sum = Row::zero();
+    for (Index c = first[i]; c < first[i + 1]; ++c) sum = sum + rows.at(row[c]);
+    Real* own = force + std::size_t(i) * 4;
+    const Row mean = 0.5 * (Row::at(own) + sum);
+    work[i] += dt * dot(mean.vector(), nodes.velocity(i));
+    sum.store(own);
+  }
+};
+
+}  // namespace cdem
