@@ -5,6 +5,8 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,6 +26,11 @@ struct Core {
   State state;
 };
 
+using Dict = nb::typed<nb::dict, nb::str, nb::any>;
+using Dicts = nb::typed<nb::list, Dict>;
+/// Flat arrays that Python may write into, by name.
+using Views = nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy>>;
+
 template <class T>
 using Array = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
 
@@ -41,11 +48,11 @@ inline nb::object view(Column<ExposedRow>& column, nb::handle owner) {
 
 /// Numbers that Python owns from here on.
 template <class T>
-nb::object array_of(std::vector<T>&& numbers) {
+nb::ndarray<nb::numpy, T> array_of(std::vector<T>&& numbers) {
   auto* kept = new std::vector<T>(std::move(numbers));
   const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   const std::size_t shape[1] = {kept->size()};
-  return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), 1, shape, owner));
+  return nb::ndarray<nb::numpy, T>(kept->data(), 1, shape, owner);
 }
 
 template <class T>
@@ -54,10 +61,35 @@ void copy(nb::handle from, Column<T>& column) {
   column.assign(array.data(), array.size());
 }
 
-/// Copy every array of the model from a dict of flat arrays; a missing one is our own mistake.
-inline void take_model(Core& core, const nb::dict& arrays) {
+/// Names of the arrays of modules of which the dict has none: a case that lacks what they are of.
+inline std::set<std::string> without_modules(Core& core, const Views& arrays) {
+  std::set<std::string> missing;
+  const auto look = [&](auto&& describe) {
+    std::set<std::string> names;
+    bool given = false;
+    describe([&](const ColumnInfo& info, const auto&) {
+      names.insert(info.name);
+      given = given || arrays.contains(info.name.c_str());
+    });
+    if (!given) missing.merge(names);
+  };
+  Modules::for_each([&]<class Module>() {
+    look([&](const auto& visit) {
+      const auto skip = [](const ColumnInfo&, const auto&) {};
+      const auto skip_rebuilt = [](RebuiltBy, const ColumnInfo&, const auto&) {};
+      Module::describe(given_of<Module>(core.model), state_of<Module>(core.state),
+                       ArrayVisit{visit, skip, skip_rebuilt});
+    });
+  });
+  return missing;
+}
+
+/// Copy every array of the model from a dict of flat arrays. Those of a module may be missing, all
+/// of them; another missing one is our own mistake.
+inline void take_model(Core& core, const Views& arrays) {
+  const std::set<std::string> missing = without_modules(core, arrays);
   describe_model(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    copy(arrays[info.name.c_str()], column);
+    if (!missing.contains(info.name)) copy(arrays[info.name.c_str()], column);
   });
   for_each_element_set(core.model, core.state,
                        [](const auto& kind, ElementSet& e, const ElementState&) {
@@ -66,27 +98,32 @@ inline void take_model(Core& core, const nb::dict& arrays) {
 }
 
 /// Views of the model's arrays; only until one of them is changed.
-inline nb::dict model_arrays(nb::handle_t<Core> self) {
+inline Views model_arrays(nb::handle_t<Core> self) {
   Core& core = nb::cast<Core&>(self);
-  nb::dict arrays;
+  Views arrays;
   describe_model(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
     arrays[info.name.c_str()] = view(column, self);
   });
   return arrays;
 }
 
-/// Copy those arrays of the model that the dict holds: what a stage may change.
-inline void update_model(Core& core, const nb::dict& arrays) {
+/// Copy those arrays of the model that the dict holds; one that no stage may change is our own
+/// mistake.
+inline void update_model(Core& core, const Views& arrays) {
+  std::size_t taken = 0;
   describe_model(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    if (arrays.contains(info.name.c_str())) copy(arrays[info.name.c_str()], column);
+    if (info.changes == Changes::never || !arrays.contains(info.name.c_str())) return;
+    copy(arrays[info.name.c_str()], column);
+    ++taken;
   });
+  if (taken != arrays.size()) throw nb::key_error("an array that no stage may change");
   hold_taken_out(core.model, core.state);
 }
 
 /// Views of the arrays that a checkpoint keeps; only until one of them is resized.
-inline nb::dict stored_arrays(nb::handle_t<Core> self) {
+inline Views stored_arrays(nb::handle_t<Core> self) {
   Core& core = nb::cast<Core&>(self);
-  nb::dict arrays;
+  Views arrays;
   describe_stored(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
     arrays[info.name.c_str()] = view(column, self);
   });
@@ -94,31 +131,55 @@ inline nb::dict stored_arrays(nb::handle_t<Core> self) {
 }
 
 /// Views of the arrays that the core rebuilds from the others; the same holds for them.
-inline nb::dict rebuilt_arrays(nb::handle_t<Core> self) {
+inline Views rebuilt_arrays(nb::handle_t<Core> self) {
   Core& core = nb::cast<Core&>(self);
-  nb::dict arrays;
+  Views arrays;
   describe_rebuilt(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
     arrays[info.name.c_str()] = view(column, self);
   });
   return arrays;
 }
 
-inline nb::dict dict_of(const ColumnInfo& info, const char* origin, const char* rebuilt_by) {
+inline Dict dict_of(const ColumnInfo& info, const char* origin, const char* rebuilt_by) {
   static constexpr const char* layouts[] = {"rows", "columns", "starts"};
-  nb::list refers_to;
+  static constexpr const char* changes[] = {"never", "with_stage", "with_places"};
+  nb::list refers_to, parts;
   for (const std::string& kind : info.refers_to) refers_to.append(kind);
-  nb::dict one;
+  for (const Part& part : info.parts)
+    if (part.name) parts.append(nb::make_tuple(part.name, part.numbers));
+  Dict one;
   one["name"] = info.name, one["unit"] = info.unit, one["meaning"] = info.meaning;
-  one["rows"] = info.rows, one["numbers"] = info.numbers;
+  one["rows"] = info.rows, one["numbers"] = info.numbers, one["parts"] = parts;
   one["layout"] = layouts[int(info.layout)];
   one["refers_to"] = refers_to, one["opposite"] = info.opposite;
-  one["optional"] = info.optional, one["origin"] = origin, one["rebuilt_by"] = rebuilt_by;
+  one["optional"] = info.optional, one["changes"] = changes[int(info.changes)];
+  one["origin"] = origin, one["rebuilt_by"] = rebuilt_by;
   return one;
 }
 
+/// View of one array, only until it is changed or resized, and what it holds.
+inline nb::typed<nb::tuple, nb::ndarray<nb::numpy>, Dict> array_by_name(nb::handle_t<Core> self,
+                                                                        const std::string& name) {
+  Core& core = nb::cast<Core&>(self);
+  nb::object found;
+  const auto look = [&](const ColumnInfo& info, auto& column, const char* origin,
+                        const char* by = "") {
+    if (info.name == name) found = nb::make_tuple(view(column, self), dict_of(info, origin, by));
+  };
+  describe(
+      core.model, core.state,
+      [&](const ColumnInfo& info, auto& column) { look(info, column, "given"); },
+      [&](const ColumnInfo& info, auto& column) { look(info, column, "stored"); },
+      [&](RebuiltBy by, const ColumnInfo& info, auto& column) {
+        look(info, column, "rebuilt", by.rebuild().name);
+      });
+  if (!found.is_valid()) throw nb::key_error(name.c_str());
+  return nb::cast<nb::tuple>(found);
+}
+
 /// What every array holds, and where it comes from.
-inline nb::list describe_arrays(Core& core) {
-  nb::list infos;
+inline Dicts describe_arrays(Core& core) {
+  Dicts infos;
   describe(
       core.model, core.state,
       [&](const ColumnInfo& info, const auto&) { infos.append(dict_of(info, "given", "")); },
@@ -130,8 +191,8 @@ inline nb::list describe_arrays(Core& core) {
 }
 
 /// The kinds of rows that arrays have: name, meaning, and how many there are now.
-inline nb::list describe_row_kinds(Core& core) {
-  nb::list kinds;
+inline Dicts describe_row_kinds(Core& core) {
+  Dicts kinds;
   describe_rows(core.model, core.state, [&](const RowKind& kind, Index count) {
     nb::dict one;
     one["name"] = kind.name, one["meaning"] = kind.meaning, one["count"] = count;
@@ -141,7 +202,7 @@ inline nb::list describe_row_kinds(Core& core) {
 }
 
 /// Bring back every array and scalar of a checkpoint.
-inline void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars) {
+inline void restore(Core& core, const Views& arrays, const Dict& scalars) {
   describe_stored(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
     copy(arrays[info.name.c_str()], column);
   });
@@ -150,15 +211,15 @@ inline void restore(Core& core, const nb::dict& arrays, const nb::dict& scalars)
   });
 }
 
-inline nb::dict scalars(Core& core) {
-  nb::dict numbers;
+inline Dict scalars(Core& core) {
+  Dict numbers;
   describe_scalars(
       core.state, [&](const ScalarInfo& info, const auto& number) { numbers[info.name] = number; });
   return numbers;
 }
 
-inline nb::list scalar_infos(Core& core) {
-  nb::list infos;
+inline Dicts scalar_infos(Core& core) {
+  Dicts infos;
   describe_scalars(core.state, [&](const ScalarInfo& info, const auto&) {
     nb::dict one;
     one["name"] = info.name, one["unit"] = info.unit, one["meaning"] = info.meaning;

@@ -121,18 +121,18 @@ const char* name_of(Outcome outcome) {
 /// A term that is zero whatever happens is not told of.
 bool is_told(const EnergyTerm& term) { return any_law_flows || !term.needs_flow; }
 
-nb::dict energy_ledger(const Core& core) {
+nb::typed<nb::dict, nb::str, double> energy_ledger(const Core& core) {
   const Energies e = energies(core.model, core.state);
-  nb::dict ledger;
+  nb::typed<nb::dict, nb::str, double> ledger;
   for (std::size_t k = 0; k < energy_term_count; ++k)
     if (is_told(energy_terms[k])) ledger[energy_terms[k].name] = e.terms[k];
   ledger["start"] = e.start, ledger["error"] = e.error;
   return ledger;
 }
 
-nb::list energy_term_infos() {
+Dicts energy_term_infos() {
   static constexpr const char* kinds[] = {"stored", "lost", "supplied", "hidden"};
-  nb::list infos;
+  Dicts infos;
   for (const EnergyTerm& term : energy_terms) {
     if (!is_told(term)) continue;
     nb::dict one;
@@ -169,7 +169,7 @@ void take_nodes(Core& c, Array<Flag> leaves) {
 }
 
 /// Bring whole blocks in, given by a flag for each node, with arrays of the model that go with it.
-void bring_nodes_in(Core& c, Array<Flag> comes, Array<Real> position, const nb::dict& arrays,
+void bring_nodes_in(Core& c, Array<Flag> comes, Array<Real> position, const Views& arrays,
                     Array<Flag> bonded) {
   if (comes.ndim() != 1 || comes.shape(0) != std::size_t(c.model.node_count))
     throw nb::value_error("one flag for each node");
@@ -202,10 +202,10 @@ auto run_core(Core& c, std::int64_t steps, Real end_time, Real unbalance_limit,
 }
 
 /// Mean stress of all elements by shape.
-nb::dict stress(nb::handle_t<Core> self) {
+Views stress(nb::handle_t<Core> self) {
   Core& c = nb::cast<Core&>(self);
   report_stress(c.model, c.state);
-  nb::dict tables;
+  Views tables;
   for_each_element_set(c.model, c.state,
                        [&](const auto& kind, const ElementSet&, ElementState& es) {
                          tables[kind.name] = view(es.stress, self);
@@ -214,10 +214,10 @@ nb::dict stress(nb::handle_t<Core> self) {
 }
 
 /// What has yielded in all elements by shape; empty where no material flows.
-nb::dict yielded(nb::handle_t<Core> self) {
+Views yielded(nb::handle_t<Core> self) {
   Core& c = nb::cast<Core&>(self);
   report_stress(c.model, c.state);
-  nb::dict tables;
+  Views tables;
   for_each_element_set(c.model, c.state,
                        [&](const auto& kind, const ElementSet&, ElementState& es) {
                          tables[kind.name] = view(es.yielded, self);
@@ -303,14 +303,11 @@ void bind_views(nb::class_<Core>& core) {
   core.def("model", &model_arrays)
       .def("fields", &stored_arrays)
       .def("rebuilt", &rebuilt_arrays)
+      .def("array", &array_by_name, "name"_a)
       .def("scalars", &scalars)
       .def("describe", &describe_arrays)
       .def("describe_rows", &describe_row_kinds)
       .def("describe_scalars", &scalar_infos)
-      .def("node_force",
-           [](nb::handle_t<Core> self) {
-             return view(nb::cast<Core&>(self).state.nodes.force, self);
-           })
       .def("yielded", &yielded, "What has yielded in each element now and ever, by shape.")
       .def("stress", &stress);
 }

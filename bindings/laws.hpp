@@ -114,7 +114,8 @@ inline Real curve_end(const std::string& law, const nb::dict& values, Real stiff
 }
 
 /// Factors on the strength of pairs, from rows of two faces.
-inline nb::object weibull_factors(Array<Index> faces, std::uint64_t seed, Real shape, Real mean) {
+inline nb::ndarray<nb::numpy, Real> weibull_factors(Array<Index> faces, std::uint64_t seed,
+                                                    Real shape, Real mean) {
   std::vector<Real> factors;
   for (std::size_t i = 0; i + 1 < faces.size(); i += 2)
     factors.push_back(weibull_factor(seed, faces.data()[i], faces.data()[i + 1], shape, mean));

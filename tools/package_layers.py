@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent / "src"
 # Folders, lowest first: a module imports from its own folder and those before it. The modules of
 # the package itself stand where they belong.
 FOLDERS = [
-    "_version errors units whole_files _instruction_sets _core_choice own_laws _native",
+    "_version errors units whole_files _instruction_sets _core_choice own_laws _core _native rows",
     "case",
     "mesh",
     "joints",
@@ -72,7 +72,8 @@ def resolve(name: str, modules: dict[str, Path]) -> str:
 
 def main() -> None:
     """Print what is wrong and fail, or say nothing."""
-    modules = {name_of(path): path for path in sorted((ROOT / "cdem").rglob("*.py"))}
+    sources = [*(ROOT / "cdem").rglob("*.py"), *(ROOT / "cdem").rglob("*.pyi")]
+    modules = {name_of(path): path for path in sorted(sources)}
     graph = {module: set(imports(module, path, modules)) for module, path in modules.items()}
     problems = [
         f"{module} may not import {other}, which lies above it"

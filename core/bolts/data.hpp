@@ -153,7 +153,9 @@ struct Bolts {
            .unit = "N, N, N, 1, N",
            .meaning = "E A, yield in tension and in compression, strain at rupture, pretension",
            .rows = Bolts::name,
-           .numbers = 5},
+           .numbers = 5,
+           .parts = {"axial_stiffness", "yield_force", "compressive_force", "rupture_strain",
+                     "pretension"}},
           b.properties);
     given({.name = "bolts.waits", .meaning = "1: not installed at the start", .rows = Bolts::name},
           b.waits);
@@ -161,13 +163,15 @@ struct Bolts {
            .unit = "N/m, N",
            .meaning = "stiffness and limit of the grout at a node",
            .rows = "bolt_nodes",
-           .numbers = 2},
+           .numbers = 2,
+           .parts = {"stiffness", "limit"}},
           b.grout);
     given({.name = "bolts.end",
            .unit = "N/m, N",
            .meaning = "the same of the plate or the anchor",
            .rows = "bolt_nodes",
-           .numbers = 2},
+           .numbers = 2,
+           .parts = {"stiffness", "limit"}},
           b.end);
     given({.name = "bolts.crossing_bar",
            .meaning = "bar that leads across a joint, by its first node",
@@ -178,7 +182,8 @@ struct Bolts {
            .unit = "N/m, N",
            .meaning = "stiffness and limit of the dowel",
            .rows = "bolt_crossings",
-           .numbers = 2},
+           .numbers = 2,
+           .parts = {"stiffness", "limit"}},
           b.dowel);
   }
   static void describe_points(auto& b, const auto& given) {
@@ -228,15 +233,19 @@ struct Bolts {
            b.phase);
     describe_nodes(b, stored);
     const auto of_crossing = [&](const char* name, const char* unit, const char* meaning,
-                                 Column<Real>& numbers) {
-      stored(
-          {.name = name, .unit = unit, .meaning = meaning, .rows = "bolt_crossings", .numbers = 4},
-          numbers);
+                                 const char* part, Column<Real>& numbers) {
+      stored({.name = name,
+              .unit = unit,
+              .meaning = meaning,
+              .rows = "bolt_crossings",
+              .numbers = 4,
+              .parts = {{part, 3}, ""}},
+             numbers);
     };
-    of_crossing("bolts.dowel_free", "m", "shift at which the dowel is free, and a pad",
+    of_crossing("bolts.dowel_free", "m, -", "shift at which the dowel is free, and a pad", "shift",
                 b.dowel_free);
-    of_crossing("bolts.dowel_force", "N", "its force on the block that the bolt leaves, and a pad",
-                b.dowel_force);
+    of_crossing("bolts.dowel_force", "N, -",
+                "its force on the block that the bolt leaves, and a pad", "force", b.dowel_force);
     const auto of_bolt = [&](const char* name, const char* meaning, Column<Real>& numbers) {
       stored({.name = name, .unit = "J", .meaning = meaning, .rows = Bolts::name}, numbers);
     };
@@ -246,10 +255,11 @@ struct Bolts {
     rebuilt(
         "act_of_modules",
         {.name = "bolts.scratch",
-         .unit = "m, and of the solver",
+         .unit = "m, m, of the solver, -",
          .meaning = "place of a node x y z, length of its bar, three numbers of the solver, a pad",
          .rows = "bolt_nodes",
-         .numbers = 8},
+         .numbers = 8,
+         .parts = {{"place", 3}, "length", {"solver", 3}, ""}},
         b.scratch);
     rebuilt("find_awake",
             {.name = "bolts.awake",

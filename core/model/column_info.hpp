@@ -15,18 +15,35 @@ enum class Layout {
   starts,   // where the list of each row begins, and where the last one ends
 };
 
+/// When a stage of a run may hand an array of the model over again.
+enum class Changes {
+  never,
+  with_stage,   // in every stage that changes a value of the case
+  with_places,  // where groups come in besides, which are free of stress where they lie then
+};
+
+/// Numbers of a row that mean one thing, a component each; a pad has the name "".
+struct Part {
+  constexpr Part(const char* part = nullptr, Index components = 1)
+      : name(part), numbers(components) {}
+  const char* name;
+  Index numbers;
+};
+
 /// What an array holds. Kinds of rows are listed in describe_rows.
 struct ColumnInfo {
   std::string name = {};
-  const char* unit = "1";
+  const char* unit = "1";  // of all numbers, or one for each part, with commas between
   const char* meaning = "";
   std::string rows = {};  // kind of its rows; none: a list with a length of its own
   Index numbers = 1;      // of a row
+  Part parts[8] = {};     // what they are, one after the other; none: they all mean the same
   Layout layout = Layout::rows;
   // kind of rows that its indices mean: one for all numbers, or one for each; -1 means none
   std::array<std::string, 4> refers_to = {};
   bool opposite = false;  // index ~i means the opposite of what stands in row i
   bool optional = false;  // empty where nothing asks for it
+  Changes changes = Changes::never;
 };
 
 /// A kind of rows.

@@ -36,11 +36,18 @@ void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
           .refers_to = {"exposed"}},
          c.target_before);
   stored({.name = "spring.state",
-          .unit = "N, m, N, N, m, J, J, m",
+          .unit = "N, m, N, m, J, J, m",
           .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies, "
                      "approach",
           .rows = "slots",
-          .numbers = 8},
+          .numbers = 8,
+          .parts = {"force_n",
+                    "penetration",
+                    {"shear", 2},
+                    "stress_free_gap",
+                    "energy_n",
+                    "energy_s",
+                    "approach"}},
          c.state);
   stored({.name = "spring.friction", .unit = "J", .meaning = "frictional work", .rows = "slots"},
          c.friction);
@@ -50,17 +57,19 @@ void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
           .rows = "slots"},
          c.dashpot);
   stored({.name = "spring.reaction",
-          .unit = "N, N, N, N/m, 1, 1, 1, 1",
+          .unit = "N, N/m, 1",
           .meaning = "force on the mother, stiffness, weights on the target",
           .rows = "slots",
-          .numbers = 8},
+          .numbers = 8,
+          .parts = {{"force", 3}, "stiffness", {"weights", 4}}},
          c.reaction);
   stored({.name = "spring.rolling",
-          .unit = "N m, N m, J, N m, N m, N m, N m, -",
+          .unit = "N m, J, N m, N m, -",
           .meaning =
               "couple in the frame of the target, stored energy, stiffness, couple on the mother",
           .rows = "slots",
           .numbers = 8,
+          .parts = {{"couple_of_target", 2}, "energy", "stiffness", {"couple", 3}, ""},
           .optional = true},
          c.rolling);
   stored({.name = "spring.rim_action",
@@ -92,21 +101,31 @@ void describe_edges(EdgeState& e, Stored&& stored) {
           .meaning = "mother side, target face, target edge, place one step ago or -1",
           .rows = "edge_contacts",
           .numbers = 4,
+          .parts = {"mother_side", "target", "target_edge", "before"},
           .refers_to = {"slots", "exposed", "edges", "old_edge_states"}},
          e.contact);
   stored({.name = "edge.state",
-          .unit = "N, m, N, N, m, J, J, m",
+          .unit = "N, m, N, m, J, J, m",
           .meaning = "normal force, penetration, shear forces, stress-free gap, stored energies, "
                      "approach",
           .rows = "edge_contacts",
-          .numbers = 8},
+          .numbers = 8,
+          .parts = {"force_n",
+                    "penetration",
+                    {"shear", 2},
+                    "stress_free_gap",
+                    "energy_n",
+                    "energy_s",
+                    "approach"}},
          e.state);
-  stored({.name = "edge.reaction",
-          .unit = "N, N, N, N/m, 1, 1, J, J",
-          .meaning = "force on the mother, stiffness, places on both sides, losses of the step",
-          .rows = "edge_contacts",
-          .numbers = 8},
-         e.reaction);
+  stored(
+      {.name = "edge.reaction",
+       .unit = "N, N/m, 1, 1, J, J",
+       .meaning = "force on the mother, stiffness, places on both sides, losses of the step",
+       .rows = "edge_contacts",
+       .numbers = 8,
+       .parts = {{"force", 3}, "stiffness", "mother_place", "target_place", "friction", "dashpot"}},
+      e.reaction);
   stored({.name = "edge.friction", .unit = "J", .meaning = "frictional work", .rows = "exposed"},
          e.friction);
   stored({.name = "edge.dashpot",
@@ -135,14 +154,22 @@ void describe_found_edges(EdgeState& e, Rebuilt&& rebuilt) {
            .meaning = "edge.contact, one step ago",
            .rows = "old_edge_contacts",
            .numbers = 4,
+           .parts = {"mother_side", "target", "target_edge", "before"},
            .refers_to = {"slots", "exposed", "edges", ""}},
           e.old_contact);
   rebuilt("find_target_edges",
           {.name = "edge.old_state",
-           .unit = "N, m, N, N, m, J, J, m",
+           .unit = "N, m, N, m, J, J, m",
            .meaning = "edge.state, one step ago",
            .rows = "old_edge_states",
-           .numbers = 8},
+           .numbers = 8,
+           .parts = {"force_n",
+                     "penetration",
+                     {"shear", 2},
+                     "stress_free_gap",
+                     "energy_n",
+                     "energy_s",
+                     "approach"}},
           e.old_state);
   rebuilt(
       "find_target_edges",
@@ -182,14 +209,16 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
            .unit = "m, -, 1, m",
            .meaning = "centre x y z, sharp sides as bits, normal x y z, L (< 0: quadrilateral)",
            .rows = "exposed",
-           .numbers = 8},
+           .numbers = 8,
+           .parts = {{"center", 3}, "sharp_sides", {"normal", 3}, "length"}},
           s.face_geometry);
   rebuilt("update_contact_forces",
           {.name = "exposed.contact_force",
            .unit = "N, N/m",
            .meaning = "force x y z of all contacts on a vertex, and their stiffness",
            .rows = "slots",
-           .numbers = 4},
+           .numbers = 4,
+           .parts = {{"force", 3}, "stiffness"}},
           s.contact_force);
   rebuilt("update_contact_forces",
           {.name = "contacts_by_target.first",
@@ -211,7 +240,8 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
        .unit = "N/m, m, 1, -",
        .meaning = "stiffness of the contacts of a face, highest stress-free gap, is one pressed",
        .rows = "exposed",
-       .numbers = 4 * asked},
+       .numbers = 4 * asked,
+       .parts = {"stiffness", "stress_free_gap", "pressed", ""}},
       s.contact_areas.touching);
   rebuilt("update_contact_forces",
           {.name = "contact_area.per_stiffness",

@@ -11,56 +11,75 @@ namespace cdem {
 /// Nodes and their masses: part of `describe_model`.
 template <class Visit>
 void describe_nodes(Model& m, Visit&& given) {
-  given({.name = "node.block", .meaning = "number of its block", .rows = "nodes"}, m.node_block);
+  given({.name = "node.block",
+         .meaning = "number of its block",
+         .rows = "nodes",
+         .changes = Changes::with_stage},
+        m.node_block);
   given({.name = "node.place",
          .meaning = "label shared by nodes that began at the same place",
          .rows = "nodes",
-         .refers_to = {"nodes"}},
+         .refers_to = {"nodes"},
+         .changes = Changes::with_stage},
         m.node_place);
-  given(
-      {.name = "node.mass", .unit = "kg", .meaning = "row sum of the mass matrix", .rows = "nodes"},
-      m.mass);
+  given({.name = "node.mass",
+         .unit = "kg",
+         .meaning = "row sum of the mass matrix",
+         .rows = "nodes",
+         .changes = Changes::with_stage},
+        m.mass);
   given({.name = "node.gravity_mass",
          .unit = "kg",
          .meaning = "mass that gravity acts on",
-         .rows = "nodes"},
+         .rows = "nodes",
+         .changes = Changes::with_stage},
         m.gravity_mass);
   given({.name = "node.lumped_frequency_squared",
          .unit = "1/s2",
          .meaning = "bound from its elements with lumped masses",
-         .rows = "nodes"},
+         .rows = "nodes",
+         .changes = Changes::with_stage},
         m.lumped_frequency_squared);
   given({.name = "node.frequency_squared",
          .unit = "1/s2",
          .meaning = "bound from its elements with the masses that move",
-         .rows = "nodes"},
+         .rows = "nodes",
+         .changes = Changes::with_stage},
         m.frequency_squared);
   given({.name = "node.mass_row_first",
          .meaning = "start of its row of the mass matrix, or -1: lumped",
          .rows = "nodes",
-         .refers_to = {"mass_entries"}},
+         .refers_to = {"mass_entries"},
+         .changes = Changes::with_stage},
         m.mass_row_first);
   given({.name = "node.mass_axis_stride",
          .meaning = "entries between the inverses of two axes; 0: one for all",
-         .rows = "nodes"},
+         .rows = "nodes",
+         .changes = Changes::with_stage},
         m.mass_axis_stride);
   given({.name = "node.block_first",
          .meaning = "first node of its block",
          .rows = "nodes",
-         .refers_to = {"nodes"}},
+         .refers_to = {"nodes"},
+         .changes = Changes::with_stage},
         m.block_first);
-  given({.name = "node.block_count", .meaning = "nodes of its block", .rows = "nodes"},
+  given({.name = "node.block_count",
+         .meaning = "nodes of its block",
+         .rows = "nodes",
+         .changes = Changes::with_stage},
         m.block_count);
   given({.name = "node.inverse_mass_bound",
          .unit = "1/kg",
          .meaning = "largest eigenvalue of the inverse mass matrix",
-         .rows = "nodes"},
+         .rows = "nodes",
+         .changes = Changes::with_stage},
         m.inverse_mass_bound);
   given({.name = "node.least_mass",
          .unit = "kg",
          .meaning = "diagonal below the mass matrix, of models with added mass",
          .rows = "nodes",
-         .optional = true},
+         .optional = true,
+         .changes = Changes::with_stage},
         m.least_mass);
 }
 
@@ -69,11 +88,13 @@ template <class Visit>
 void describe_node_rows(Model& m, Visit&& given) {
   given({.name = "mass.inverse",
          .meaning = "inverse mass matrices times the mass of each row's node",
-         .rows = "mass_entries"},
+         .rows = "mass_entries",
+         .changes = Changes::with_stage},
         m.mass_inverse);
   given({.name = "mass.matrix",
          .meaning = "mass matrices over the mass of each row's node",
-         .rows = "mass_entries"},
+         .rows = "mass_entries",
+         .changes = Changes::with_stage},
         m.mass_matrix);
   given({.name = "corner.first",
          .meaning = "corner rows of all pairs and bolts at a node",
@@ -104,29 +125,34 @@ void describe_set(const char* rows, ElementSet& e, Visit&& given) {
          .meaning = "material of an element",
          .rows = rows,
          .layout = Layout::columns,
-         .refers_to = {"materials"}},
+         .refers_to = {"materials"},
+         .changes = Changes::with_places},
         e.material);
   given({.name = set + "gradient",
          .unit = "1/m",
          .meaning = "dN/dX of nodes 1.. at the Gauss points of the stress-free mesh",
          .rows = rows,
          .numbers = e.points * (e.corners - 1) * 3,
-         .layout = Layout::columns},
+         .layout = Layout::columns,
+         .changes = Changes::with_places},
         e.gradient);
   given({.name = set + "volume",
          .unit = "m3",
          .meaning = "weight times Jacobian of the Gauss points",
          .rows = rows,
          .numbers = e.points,
-         .layout = Layout::columns},
+         .layout = Layout::columns,
+         .changes = Changes::with_places},
         e.volume);
   given({.name = set + "hourglass",
          .unit = "m, N/m",
          .meaning = "moments of the four modes, and their stiffness",
          .rows = rows,
          .numbers = 13,
+         .parts = {{"moments", 12}, "stiffness"},
          .layout = Layout::columns,
-         .optional = true},
+         .optional = true,
+         .changes = Changes::with_places},
         e.hourglass);
   given({.name = set + "nodal_mean",
          .meaning = "1: its dilatation is averaged at its nodes",
@@ -197,20 +223,24 @@ void describe_set(const char* rows, PairSet& p, Visit&& given) {
          .unit = "m2",
          .meaning = "area that the faces share",
          .rows = rows,
-         .layout = Layout::columns},
+         .layout = Layout::columns,
+         .changes = Changes::with_places},
         p.area);
   given({.name = set + "stiffness",
-         .unit = "Pa/m",
+         .unit = "Pa/m, Pa/m",
          .meaning = "normal and shear stiffness",
          .rows = rows,
          .numbers = 2,
-         .layout = Layout::columns},
+         .parts = {"normal", "shear"},
+         .layout = Layout::columns,
+         .changes = Changes::with_stage},
         p.stiffness);
   given({.name = set + "strength",
          .meaning = "factor on cohesion and tensile strength",
          .rows = rows,
          .layout = Layout::columns,
-         .optional = true},
+         .optional = true,
+         .changes = Changes::with_stage},
         p.strength);
   describe_points(set, rows, p, given);
 }
@@ -242,28 +272,38 @@ void describe_faces(Model& m, Visit&& given) {
   given({.name = "face.length",
          .unit = "m",
          .meaning = "L: mean distance from the centre to the vertices",
-         .rows = "faces"},
+         .rows = "faces",
+         .changes = Changes::with_places},
         m.face_length);
   given({.name = "face.reach",
          .unit = "m",
          .meaning = "a little more than the distance from the centre to the farthest vertex",
-         .rows = "faces"},
+         .rows = "faces",
+         .changes = Changes::with_places},
         m.face_reach);
-  given({.name = "face.area", .unit = "m2", .meaning = "area", .rows = "faces"}, m.face_area);
+  given({.name = "face.area",
+         .unit = "m2",
+         .meaning = "area",
+         .rows = "faces",
+         .changes = Changes::with_places},
+        m.face_area);
   given({.name = "face.height",
          .unit = "m",
          .meaning = "height of the element behind it",
-         .rows = "faces"},
+         .rows = "faces",
+         .changes = Changes::with_places},
         m.face_height);
   given({.name = "face.stiffness",
          .unit = "Pa/m",
          .meaning = "Young's modulus of the element behind it over its height",
-         .rows = "faces"},
+         .rows = "faces",
+         .changes = Changes::with_places},
         m.face_stiffness);
   given({.name = "face.radius",
          .unit = "m",
          .meaning = "radius of a sphere of the volume of its block; 1e300: the block cannot move",
-         .rows = "faces"},
+         .rows = "faces",
+         .changes = Changes::with_places},
         m.face_radius);
   given(
       {.name = "face.initially_exposed", .meaning = "1: not bonded at the start", .rows = "faces"},
@@ -323,40 +363,48 @@ void describe_loads(Model& m, Visit&& given) {
          .meaning = "loads of a node",
          .rows = "nodes",
          .layout = Layout::starts,
-         .refers_to = {"loads"}},
+         .refers_to = {"loads"},
+         .changes = Changes::with_stage},
         m.load_first);
   given({.name = "load.curve",
          .meaning = "curve that scales the load",
          .rows = "loads",
-         .refers_to = {"curves"}},
+         .refers_to = {"curves"},
+         .changes = Changes::with_stage},
         m.load_curve);
   given({.name = "load.force",
-         .unit = "N",
+         .unit = "N, -",
          .meaning = "force x y z, and a pad",
          .rows = "loads",
-         .numbers = 4},
+         .numbers = 4,
+         .parts = {{"force", 3}, ""},
+         .changes = Changes::with_stage},
         m.load_force);
   given({.name = "support.row",
          .meaning = "support of a node, or -1",
          .rows = "nodes",
-         .refers_to = {"supports"}},
+         .refers_to = {"supports"},
+         .changes = Changes::with_stage},
         m.support);
   given({.name = "support.component",
          .meaning = "1: the velocity is given along this axis",
          .rows = "supports",
-         .numbers = 3},
+         .numbers = 3,
+         .changes = Changes::with_stage},
         m.support_component);
   given({.name = "support.curve",
          .meaning = "curve that scales the velocity",
          .rows = "supports",
          .numbers = 3,
-         .refers_to = {"curves"}},
+         .refers_to = {"curves"},
+         .changes = Changes::with_stage},
         m.support_curve);
   given({.name = "support.velocity",
          .unit = "m/s",
          .meaning = "given velocity",
          .rows = "supports",
-         .numbers = 3},
+         .numbers = 3,
+         .changes = Changes::with_stage},
         m.support_velocity);
 }
 
@@ -369,17 +417,26 @@ void describe_model(Model& m, State& s, Visit&& visit) {
   given({.name = "material.lambda",
          .unit = "Pa",
          .meaning = "first Lame constant",
-         .rows = "materials"},
+         .rows = "materials",
+         .changes = Changes::with_places},
         m.material_lambda);
-  given({.name = "material.mu", .unit = "Pa", .meaning = "shear modulus", .rows = "materials"},
+  given({.name = "material.mu",
+         .unit = "Pa",
+         .meaning = "shear modulus",
+         .rows = "materials",
+         .changes = Changes::with_places},
         m.material_mu);
-  given({.name = "material.law", .meaning = "number of the block law", .rows = "materials"},
+  given({.name = "material.law",
+         .meaning = "number of the block law",
+         .rows = "materials",
+         .changes = Changes::with_places},
         m.material_law);
   given({.name = "material.parameters",
          .unit = "see the law",
          .meaning = "parameters of the block law",
          .rows = "materials",
-         .numbers = material_row},
+         .numbers = material_row,
+         .changes = Changes::with_stage},
         m.material_parameters);
   const auto describe = [&](const auto& kind, auto& set, auto&) {
     describe_set(kind.name, set, given);

@@ -40,10 +40,11 @@ template <class Stored, class Rebuilt>
 void describe_forces(const std::string& name, AppliedForces& of, const Stored& stored,
                      const Rebuilt& rebuilt) {
   stored({.name = "node." + name,
-          .unit = "N",
+          .unit = "N, -",
           .meaning = "force that the module applies, x y z, and a pad",
           .rows = "nodes",
           .numbers = 4,
+          .parts = {{"force", 3}, ""},
           .optional = true},
          of.sum);
   stored({.name = "node.work_" + name,
@@ -54,10 +55,11 @@ void describe_forces(const std::string& name, AppliedForces& of, const Stored& s
          of.work);
   rebuilt("act_of_modules",
           {.name = name + ".force",
-           .unit = "N",
+           .unit = "N, -",
            .meaning = "force on a vertex of a face or a node of an element, and a pad",
            .rows = applied_rows_of(name),
-           .numbers = 4},
+           .numbers = 4,
+           .parts = {{"force", 3}, ""}},
           of.rows);
   rebuilt("list_applied",
           {.name = name + ".node_first",

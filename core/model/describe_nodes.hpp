@@ -10,10 +10,11 @@ namespace cdem {
 template <class Stored>
 void describe_motion(NodeState& n, Stored&& stored) {
   stored({.name = "node.motion",
-          .unit = "m, m/s",
+          .unit = "m, -, m/s, -",
           .meaning = "position x y z, pad, velocity x y z, pad",
           .rows = "nodes",
-          .numbers = 8},
+          .numbers = 8,
+          .parts = {{"position", 3}, "", {"velocity", 3}, ""}},
          n.motion);
   stored({.name = "node.work_external",
           .unit = "J",
@@ -31,16 +32,18 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes"},
          n.step_change);
   stored({.name = "node.reaction",
-          .unit = "N",
+          .unit = "N, -",
           .meaning = "force of its support, and a pad",
           .rows = "nodes",
-          .numbers = 4},
+          .numbers = 4,
+          .parts = {{"force", 3}, ""}},
          n.reaction);
   stored({.name = "node.relax",
-          .unit = "N, m/s",
+          .unit = "N, 1, m/s, -",
           .meaning = "force, slowing down and velocity of the last step, of adaptive relaxation",
           .rows = "nodes",
           .numbers = 8,
+          .parts = {{"force", 3}, "left", {"velocity", 3}, ""},
           .optional = true},
          n.relax);
   stored({.name = "node.relax_mass",
@@ -70,10 +73,11 @@ void describe_taken_out(NodeState& n, Stored&& stored) {
           .optional = true},
          n.out);
   stored({.name = "node.relief",
-          .unit = "N",
+          .unit = "N, -",
           .meaning = "force of what was dug out, x y z, of which a part may be left",
           .rows = "nodes",
           .numbers = 4,
+          .parts = {{"force", 3}, ""},
           .optional = true},
          n.relief);
 }
@@ -82,10 +86,11 @@ void describe_taken_out(NodeState& n, Stored&& stored) {
 template <class Stored>
 void describe_samples(NodeState& n, Stored&& stored) {
   stored({.name = "node.sample",
-          .unit = "J",
+          .unit = "J, J, J, -",
           .meaning = "kinetic energy; external and damping work of the half step to come; pad",
           .rows = "nodes",
-          .numbers = 4},
+          .numbers = 4,
+          .parts = {"kinetic", "external", "damping", ""}},
          n.sample);
   stored({.name = "node.unbalance",
           .unit = "N",
@@ -102,7 +107,8 @@ void describe_node_forces(State& s, Stored&& stored) {
           .unit = "N, N/m",
           .meaning = "force x y z, stiffness of its contacts",
           .rows = "nodes",
-          .numbers = 4},
+          .numbers = 4,
+          .parts = {{"force", 3}, "contact_stiffness"}},
          n.force);
   stored({.name = "node.contact_stiffness",
           .unit = "N/m",
@@ -115,10 +121,11 @@ void describe_node_forces(State& s, Stored&& stored) {
           .rows = "nodes"},
          s.node_bonds);
   stored({.name = "node.damping_force",
-          .unit = "N",
+          .unit = "N, -",
           .meaning = "damping force x y z, and a pad",
           .rows = "nodes",
           .numbers = 4,
+          .parts = {{"force", 3}, ""},
           .optional = true},
          n.damping_force);
 }

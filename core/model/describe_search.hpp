@@ -78,6 +78,7 @@ void describe_outer_faces(OuterList& outer, Stored&& stored) {
           .meaning = "node of the vertex, and exposed face",
           .rows = "outer_vertex_faces",
           .numbers = 2,
+          .parts = {"node", "face"},
           .layout = Layout::columns,
           .refers_to = {"nodes", "exposed"}},
          outer.vf_pairs);
@@ -122,7 +123,8 @@ void describe_predicted(OuterList& outer, Stored&& stored, Rebuilt&& rebuilt) {
           .unit = "m, m2, m/s, m",
           .meaning = "position at the rebuild, skin squared, predicted velocity, skin",
           .rows = "predicted",
-          .numbers = 8},
+          .numbers = 8,
+          .parts = {{"position", 3}, "skin_squared", {"velocity", 3}, "skin"}},
          outer.predicted);
   rebuilt("place_predicted_nodes",
           {.name = "outer.node_predicted",
@@ -186,7 +188,8 @@ void describe_inner_faces(InnerList& inner, Rebuilt&& rebuilt) {
            .unit = "m, m2, m/s, m",
            .meaning = "position when it was made, skin squared, predicted velocity, skin",
            .rows = "predicted",
-           .numbers = 8},
+           .numbers = 8,
+           .parts = {{"position", 3}, "skin_squared", {"velocity", 3}, "skin"}},
           inner.predicted);
   rebuilt("prune_pair_list",
           {.name = "inner.skin", .unit = "m", .meaning = "skin of a node", .rows = "nodes"},

@@ -98,22 +98,31 @@ struct Water {
            .numbers = w.vertices,
            .layout = Layout::columns,
            .refers_to = {"nodes"},
-           .optional = true},
+           .optional = true,
+           .changes = Changes::with_stage},
           w.nodes);
-    given({.name = set + "face", .meaning = "face", .rows = rows, .refers_to = {"faces"}}, w.face);
+    given({.name = set + "face",
+           .meaning = "face",
+           .rows = rows,
+           .refers_to = {"faces"},
+           .changes = Changes::with_stage},
+          w.face);
     given({.name = set + "joint",
            .meaning = "field of the water in its joint",
            .rows = rows,
-           .refers_to = {"water_fields"}},
+           .refers_to = {"water_fields"},
+           .changes = Changes::with_stage},
           w.joint);
     given({.name = set + "open",
            .meaning = "field of the water where the face is free",
            .rows = rows,
-           .refers_to = {"water_fields"}},
+           .refers_to = {"water_fields"},
+           .changes = Changes::with_stage},
           w.open);
     given({.name = set + "bonded",
            .meaning = "1: water of the joint presses while bonds hold, too",
-           .rows = rows},
+           .rows = rows,
+           .changes = Changes::with_stage},
           w.bonded);
     given({.name = set + "kept",
            .unit = "Pa",
@@ -121,68 +130,81 @@ struct Water {
            .rows = rows,
            .numbers = w.vertices,
            .layout = Layout::columns,
-           .optional = true},
+           .optional = true,
+           .changes = Changes::with_stage},
           w.kept);
     given({.name = set + "aperture",
            .unit = "m",
            .meaning = "up to which an open joint keeps its water",
-           .rows = rows},
+           .rows = rows,
+           .changes = Changes::with_stage},
           w.aperture);
     given({.name = set + "pair_first",
            .meaning = "what lies on a face at the start",
            .rows = rows,
            .layout = Layout::starts,
-           .refers_to = {set + "pairs"}},
+           .refers_to = {set + "pairs"},
+           .changes = Changes::with_stage},
           w.pair_first);
     given({.name = set + "mate",
            .meaning = "face that lies on it at the start",
            .rows = set + "pairs",
-           .refers_to = {"faces"}},
+           .refers_to = {"faces"},
+           .changes = Changes::with_stage},
           w.mate);
     given({.name = set + "pair",
            .meaning = "3 times their pair, plus its kind: triangles, quads, overlaps; -1: none",
-           .rows = set + "pairs"},
+           .rows = set + "pairs",
+           .changes = Changes::with_stage},
           w.pair);
   }
   static void describe_given(auto& w, const auto& given) {
     given(
         {.name = "water.fields",
-         .unit = "Pa, Pa/m",
+         .unit = "Pa, Pa/m, 1, Pa/m, -",
          .meaning = "pressure at the origin, its slope x y z, 1 where points keep theirs, pressure "
                     "for each metre of lift, two pads",
          .rows = "water_fields",
-         .numbers = 8},
+         .numbers = 8,
+         .parts = {"pressure", {"slope", 3}, "keeps", "per_lift", {"", 2}},
+         .changes = Changes::with_stage},
         w.fields);
     given({.name = "water.field_curve",
            .meaning = "curves of lift [m] and factor",
            .rows = "water_fields",
            .numbers = 2,
-           .refers_to = {"curves"}},
+           .parts = {"lift", "factor"},
+           .refers_to = {"curves"},
+           .changes = Changes::with_stage},
           w.field_curve);
     given({.name = "water.biot",
            .meaning = "Biot's coefficient of a material",
            .rows = "materials",
-           .optional = true},
+           .optional = true,
+           .changes = Changes::with_stage},
           w.biot);
     given({.name = "water.node_field",
            .meaning = "field of the water in the pores",
            .rows = "nodes",
            .refers_to = {"water_fields"},
-           .optional = true},
+           .optional = true,
+           .changes = Changes::with_stage},
           w.node_field);
     given({.name = "water.node_kept",
            .unit = "Pa",
            .meaning = "pressure in the pores that fields keep, at the start",
            .rows = "nodes",
-           .optional = true},
+           .optional = true,
+           .changes = Changes::with_stage},
           w.node_kept);
   }
   static void describe_state(State& s, const auto& w, const auto& stored, const auto& rebuilt) {
     stored({.name = "water.fields_now",
-            .unit = "Pa, Pa/m",
+            .unit = "Pa, Pa/m, 1, 1, -",
             .meaning = "pressure fields in this step, see WaterFields",
             .rows = "water_fields",
-            .numbers = 8},
+            .numbers = 8,
+            .parts = {"pressure", {"slope", 3}, "keeps", "factor", {"", 2}}},
            s.fields);
     const auto of_vertices = [&](const std::string& rows, Index vertices, Column<Index>& field) {
       stored({.name = rows + ".field",

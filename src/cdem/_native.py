@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+from typing import TYPE_CHECKING
 
 from cdem import own_laws
 from cdem._core_choice import built, choose
@@ -20,11 +21,14 @@ headers = own_laws.allowed()
 """Headers of users whose laws this core has."""
 digests = own_laws.digests(headers)
 """SHA-256 of each, by its name."""
-core = (
-    own_laws.import_core(headers, name)
-    if headers
-    else importlib.import_module(f"cdem._core_{name}")
-)
+if TYPE_CHECKING:
+    from cdem import _core as core  # src/cdem/_core.pyi, of all of them
+else:
+    core = (
+        own_laws.import_core(headers, name)
+        if headers
+        else importlib.import_module(f"cdem._core_{name}")
+    )
 try:
     device = core.device_name()
     """"cpu", "emulated", or the name of the GPU."""

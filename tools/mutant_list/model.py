@@ -79,8 +79,8 @@ FAULTS = [
         "scaled bolts",
         "mass scaling that does not count bolts",
         "src/cdem/model/mass_scaling.py",
-        "bolts = p.bolts.node_stiffness(len(t.node_position))",
-        "bolts = 0",
+        "springs = bonds + out.module_stiffness + contact",
+        "springs = bonds + contact",
         "tests/validation/test_bolts.py::test_bolts_shorten_the_step",
     ),
     Mutant(
@@ -183,8 +183,8 @@ FAULTS = [
         "rock stays strong",
         "a factor of safety does not reach the core's materials",
         "src/cdem/model/build.py",
-        '        "material.parameters")  # fmt: skip\n',
-        "        )\n",
+        "if key in changing}",
+        'if key in changing - {"material.parameters"}}',
         "tests/validation/test_mohr_coulomb.py::test_factor_of_safety_of_a_loaded_column",
     ),
     Mutant(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
 from cdem.model.mass_scaling import OFFER, Scaling
 from cdem.model.masses import Geometry, node_masses
+from cdem.model.module import Module
 
 Stride = Callable[[int], int]
 """The core's function from item count to table stride."""
@@ -22,13 +23,16 @@ DEFORMED = 1.5
 """How much larger than in the stress-free mesh a face may become."""
 
 
-def assemble(topology: Topology, properties: Properties, padded_stride: Stride) -> Assembly:
-    """Build every array that the core's `take_model` wants.
+def assemble(
+    topology: Topology, properties: Properties, padded_stride: Stride, modules: Collection[Module]
+) -> Assembly:
+    """Build every array that the core's `take_model` wants, but those of modules.
 
     Args:
         topology: Blocks, elements, faces and pairs.
         properties: What the case says about them.
         padded_stride: The core's function from item count to table stride.
+        modules: Those of the model, whose corner rows follow those of pairs.
     """
     out = Assembly()
     out.counts = {
@@ -44,13 +48,9 @@ def assemble(topology: Topology, properties: Properties, padded_stride: Stride) 
     _elements(topology, properties, padded_stride, out)
     _faces(topology, properties, out)
     _pairs(topology, properties, padded_stride, out)
-    out.arrays |= properties.bolts.arrays
-    out.counts |= {
-        "bolts.count": len(properties.bolts.bolts),
-        "bolts.corner_first": out.counts["corner_rows"],
-    }
-    out.counts["corner_rows"] += len(properties.bolts.owner)
-    _corners(topology, properties.bolts.owner, out)
+    _corners(topology, modules, out)
+    nodes = len(topology.node_position)
+    out.module_stiffness = sum((m.node_stiffness(nodes) for m in modules), np.zeros(nodes))
     if properties.added_mass is None:
         _scale_masses(topology, properties, out)
     return out
@@ -90,6 +90,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
         out.arrays[f"{shape}.gradient"] = table(flat.T, stride)
         out.arrays[f"{shape}.volume"] = table(volume.T, stride)
         out.arrays[f"{shape}.hourglass"] = table(hourglass.T, stride)
+        out.arrays[f"{shape}.values"] = np.zeros(0)  # asked for by water in pores
         out.arrays[f"{shape}.nodal_mean"] = table(_averaged(t, p, shape), stride)
         out.counts[f"{shape}.count"] = count
         out.counts[f"{shape}.corner_first"] = row
@@ -263,7 +264,8 @@ def _strength(faces: Ints, interface: Ints, p: Properties, stride: int) -> Float
     return table(factor[None], stride)
 
 
-def _corners(t: Topology, bolt_hosts: Ints, out: Assembly) -> None:
+def _corners(t: Topology, modules: Collection[Module], out: Assembly) -> None:
+    """List the corner rows of each node: those of pairs, then those of modules."""
     owner, row = [], []
     for kind, n in (("triangles", 3), ("quads", 4)):
         count = out.counts[f"{kind}.count"]
@@ -275,8 +277,14 @@ def _corners(t: Topology, bolt_hosts: Ints, out: Assembly) -> None:
     used = nodes >= 0
     owner.append(nodes[used])
     row.append(out.counts["overlaps.corner_first"] + np.flatnonzero(used))
-    owner.append(bolt_hosts[bolt_hosts >= 0])
-    row.append(out.counts["bolts.corner_first"] + np.flatnonzero(bolt_hosts >= 0))
+    for module in modules:
+        nodes = module.corner_nodes()
+        if not len(nodes):
+            continue
+        owner.append(nodes[nodes >= 0])
+        row.append(out.counts["corner_rows"] + np.flatnonzero(nodes >= 0))
+        out.counts[f"{module.name}.corner_first"] = out.counts["corner_rows"]
+        out.counts["corner_rows"] += len(nodes)
     first, listed = ragged(
         np.concatenate(owner).astype(np.int64), np.concatenate(row).astype(np.int32),
         len(t.node_position),

@@ -15,7 +15,6 @@ from cdem.case.laws import BLOCK_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
-from cdem.model.bolts import bolt_counts
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
@@ -25,7 +24,7 @@ from cdem.model.meshed_strength import meshed_strengths, strength_text
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.slips import slips
-from cdem.model.wetted import dry_bonds, idle_water, water_text, wetted
+from cdem.model.wetted import dry_bonds, idle_water
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
@@ -65,8 +64,7 @@ class Audit:
         self.contacts = contact_interfaces(build)
         self.compensation = self._compensation()
         self.discs = disc_areas(build)
-        self.water = wetted(build)
-        self.bolts = bolt_counts(build.bolts)
+        self.modules = {name: module.report(build) for name, module in build.modules.items()}
         self.step = self._step()
         self.warnings = self._warnings()
 
@@ -172,7 +170,8 @@ class Audit:
             *a.pair_faces.values(),
             exposed[_pairs_of(sources, core["outer.faces_acting_on"])],
         ]
-        joined = np.concatenate([t.face_block[np.concatenate(pairs)], b.bolts.joined_blocks()])
+        by_modules = [module.joined_blocks() for module in b.modules.values()]
+        joined = np.concatenate([t.face_block[np.concatenate(pairs)], *by_modules])
         out = np.isin(t.block_group, [b.group_names.index(name) for name in b.case.absent(0)])
         joined = joined[~out[joined].any(axis=1)]
         held = out.copy()  # what a later stage adds needs nothing before
@@ -208,7 +207,7 @@ class Audit:
         out += idle_bonds(b)
         out += uneven_tiles(b)
         out += unlike_sides(b)
-        out += idle_water(b, self.water)
+        out += idle_water(b, self.modules["water"])
         out += dry_bonds(b, {row["joint"] for row in self.interfaces if row["joint"]})
         unheld = self._unheld_blocks()
         out += slips(b, self._threads, unheld)
@@ -282,8 +281,7 @@ class Audit:
             "meshed_strength": self.meshed_strength,
             "contacts": self.contacts,
             "discs": self.discs,
-            "water": self.water,
-            "bolts": self.bolts,
+            **self.modules,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
             "memory_bytes": self.memory,
@@ -320,8 +318,8 @@ class Audit:
         lines += [""] * bool(self.discs) + disc_lines(self.discs)
         lines += self._stiffness_text()
         lines += self._initial_text()
-        lines += water_text(self.water)
-        lines += self._bolts_text()
+        for name, module in self._build.modules.items():
+            lines += module.lines(self.modules[name])
         s = self.step
         lines += [
             "",
@@ -373,18 +371,6 @@ class Audit:
             lines.append(
                 f"    {initial.cut:,} points of joints and bonds cannot bear it and begin with what their "
                 f"strength allows: up to {initial.most_cut:.3g} Pa less (near {place})"
-            )
-        return lines
-
-    def _bolts_text(self) -> list[str]:
-        """Bolts by type."""
-        lines = ["", "  bolts"] if self.bolts else []
-        for name, of in self.bolts.items():
-            count = "1 bolt" if of["bolts"] == 1 else f"{of['bolts']:,} bolts"
-            lines.append(
-                f"    {name}: {count}, {of['length']:.6g} m, {of['nodes']:,} nodes, parts of "
-                f"{of['shortest']:.3g} m or more, {of['crossings']:,} crossings of joints; up to "
-                f"{of['stiffness']:.3g} N/m on the rock"
             )
         return lines
 

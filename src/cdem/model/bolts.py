@@ -14,8 +14,8 @@ from cdem.errors import CaseError
 from cdem.mesh.paths import Pass, passes, walk, weights_in
 from cdem.mesh.topology import Topology
 from cdem.model.bolt_places import Polyline, polylines
-
-Floats = NDArray[np.float64]
+from cdem.model.flat_arrays import Floats, Ints
+from cdem.model.module import Built, Module, Parts
 
 HOSTS = 8
 """Nodes of the rock that a point of a bolt lies between, at most."""
@@ -76,46 +76,61 @@ class Bolt:
         self.grouted.append(grouted)
 
 
-def _no_arrays() -> dict[str, NDArray]:
-    """Arrays of the core where there are no bolts."""
-    starts = {f"bolts.{key}": np.zeros(1, np.int32) for key in ("first", "crossing_first")}
-    types: dict[str, type] = {"waits": np.int8, "crossing_bar": np.int32, "hosts": np.int32}
-    reals = ("weights", "properties", "dowel", "grout", "end", "stiffness")
-    types |= dict.fromkeys(reals, float)
-    return starts | {f"bolts.{key}": np.zeros(0, kind) for key, kind in types.items()}
-
-
 @dataclass
-class BoltModel:
+class BoltModel(Module):
     """All bolts of a model, and the arrays of the core.
 
     Attributes:
         bolts: One by one, in the order of the core.
-        arrays: Flat arrays by name.
-        owner: Node of the rock of each corner row, -1 where there is none, shape (points * 8,).
+        arrays: Flat arrays by name; none where there are no bolts.
     """
 
+    name = "bolts"
     bolts: list[Bolt] = field(default_factory=list)
-    arrays: dict[str, NDArray] = field(default_factory=_no_arrays)
-    owner: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    arrays: dict[str, NDArray] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, case: Case, t: Topology, names: list[str]) -> BoltModel:
+        """Cut the bolts of a case into nodes, and make the arrays of the core.
+
+        Raises:
+            CaseError: A bolt is not in the rock.
+        """
+        if not case.bolts:
+            return cls()
+        bolts = [
+            _cut(case, t, line, case.bolt_types[case.bolts[line.entry].type])
+            for line in polylines(case, t, names)
+        ]
+        rock = [case.materials[case.groups[name].material] for name in names]
+        return cls(bolts, _arrays(case, t, bolts, np.array([m.young_modulus for m in rock])))
 
     @property
-    def first(self) -> NDArray[np.int32]:
+    def first(self) -> Ints:
         """First node of each bolt, and their number."""
-        return self.arrays["bolts.first"]
+        return self.arrays["bolts.first"] if self.bolts else np.zeros(1, np.int32)
+
+    def add_arrays(self, parts: Parts) -> None:
+        if self.bolts:
+            parts.assembly.counts["bolts.count"] = len(self.bolts)
+            parts.assembly.arrays |= self.arrays
+
+    def corner_nodes(self) -> Ints:
+        return self.arrays["bolts.hosts"] if self.bolts else super().corner_nodes()
 
     def node_stiffness(self, nodes: int) -> Floats:
         """What bolts put on each node of the rock at most, installed or not [N/m], shape (nodes,)."""
-        total = np.zeros(nodes)
-        used = self.owner >= 0
-        shares = np.repeat(self.arrays["bolts.stiffness"], HOSTS) * np.abs(
-            self.arrays["bolts.weights"]
-        )
-        np.add.at(total, self.owner[used], shares[used])
+        total = super().node_stiffness(nodes)
+        if self.bolts:
+            owner, weights = self.arrays["bolts.hosts"], self.arrays["bolts.weights"]
+            shares = np.repeat(self.arrays["bolts.stiffness"], HOSTS) * np.abs(weights)
+            np.add.at(total, owner[owner >= 0], shares[owner >= 0])
         return total
 
-    def joined_blocks(self) -> NDArray[np.int32]:
+    def joined_blocks(self) -> Ints:
         """Pairs of blocks that a bolt of the start joins, shape (pairs, 2)."""
+        if not self.bolts:
+            return super().joined_blocks()
         pairs = [
             [side.block for side in crossing.sides]
             for bolt, waits in zip(self.bolts, self.arrays["bolts.waits"], strict=True)
@@ -132,21 +147,35 @@ class BoltModel:
         """1 for the bolts that a stage installs or removes."""
         return np.array([getattr(b.entry, when) == stage for b in self.bolts], np.int8)
 
+    def report(self, build: Built) -> dict[str, dict[str, Any]]:
+        """What the audit says of bolts, by type."""
+        out: dict[str, dict[str, Any]] = {}
+        for bolt, first in zip(self.bolts, self.first, strict=False):
+            of = out.setdefault(
+                bolt.entry.type,
+                {"bolts": 0, "length": 0.0, "nodes": 0, "crossings": 0, "shortest": np.inf, "stiffness": 0.0},
+            )  # fmt: skip
+            parts = np.linalg.norm(np.diff(bolt.places, axis=0), axis=1)
+            stiffness = self.arrays["bolts.stiffness"][first : first + len(bolt.places)]
+            of["bolts"] += 1
+            of["length"] += bolt.length
+            of["nodes"] += len(bolt.places)
+            of["crossings"] += len(bolt.crossings)
+            of["shortest"] = min(of["shortest"], float(parts.min(initial=np.inf)))
+            of["stiffness"] = max(of["stiffness"], float(stiffness.max(initial=0.0)))
+        return out
 
-def bolts_of(case: Case, t: Topology, names: list[str]) -> BoltModel:
-    """Cut the bolts of a case into nodes, and make the arrays of the core.
-
-    Raises:
-        CaseError: A bolt is not in the rock.
-    """
-    if not case.bolts:
-        return BoltModel()
-    bolts = [
-        _cut(case, t, line, case.bolt_types[case.bolts[line.entry].type])
-        for line in polylines(case, t, names)
-    ]
-    young = np.array([case.materials[case.groups[name].material].young_modulus for name in names])
-    return _arrays(case, t, bolts, young)
+    def lines(self, report: dict[str, dict[str, Any]]) -> list[str]:
+        """Bolts by type."""
+        lines = ["", "  bolts"] if report else []
+        for name, of in report.items():
+            count = "1 bolt" if of["bolts"] == 1 else f"{of['bolts']:,} bolts"
+            lines.append(
+                f"    {name}: {count}, {of['length']:.6g} m, {of['nodes']:,} nodes, parts of "
+                f"{of['shortest']:.3g} m or more, {of['crossings']:,} crossings of joints; up to "
+                f"{of['stiffness']:.3g} N/m on the rock"
+            )
+        return lines
 
 
 def part_length(kind: BoltType, length: float) -> float:
@@ -261,8 +290,8 @@ def _dowel(kind: BoltType, crossing: Crossing, young: Floats) -> tuple[float, fl
     return kind.dowel.stiffness or float(beam), kind.dowel.strength or 0.5 * kind.yield_force
 
 
-def _arrays(case: Case, t: Topology, bolts: list[Bolt], young: Floats) -> BoltModel:
-    """Flat arrays of the core."""
+def _arrays(case: Case, t: Topology, bolts: list[Bolt], young: Floats) -> dict[str, NDArray]:
+    """Flat arrays of the core, by name."""
     rows: dict[str, list[Any]] = {
         key: [] for key in ("properties", "grout", "end", "crossing_bar", "dowel", "stiffness")
     }
@@ -304,7 +333,7 @@ def _arrays(case: Case, t: Topology, bolts: list[Bolt], young: Floats) -> BoltMo
     }
     for key in ("grout", "end", "stiffness"):
         arrays[key] = np.concatenate(rows[key]).ravel()
-    return BoltModel(bolts, {f"bolts.{key}": value for key, value in arrays.items()}, hosts.ravel())
+    return {f"bolts.{key}": value for key, value in arrays.items()}
 
 
 def _springs(bolt: Bolt, axial: float) -> tuple[Floats, Floats]:
@@ -346,23 +375,3 @@ def _located(t: Topology, points: list[tuple[Pass, Floats]]) -> tuple[NDArray[np
         hosts[k, : len(nodes)] = nodes
         weights[k, : len(nodes)] = shares
     return hosts, weights
-
-
-def bolt_counts(model: BoltModel) -> dict[str, dict[str, Any]]:
-    """What the audit says of bolts, by type."""
-    out: dict[str, dict[str, Any]] = {}
-    stiffness = model.arrays["bolts.stiffness"]
-    for bolt, first in zip(model.bolts, model.first, strict=False):
-        of = out.setdefault(
-            bolt.entry.type,
-            {"bolts": 0, "length": 0.0, "nodes": 0, "crossings": 0, "shortest": np.inf, "stiffness": 0.0},
-        )  # fmt: skip
-        parts = np.linalg.norm(np.diff(bolt.places, axis=0), axis=1)
-        of["bolts"] += 1
-        of["length"] += bolt.length
-        of["nodes"] += len(bolt.places)
-        of["crossings"] += len(bolt.crossings)
-        of["shortest"] = min(of["shortest"], float(parts.min(initial=np.inf)))
-        most = stiffness[first : first + len(bolt.places)].max(initial=0.0)
-        of["stiffness"] = max(of["stiffness"], float(most))
-    return out

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,14 +18,13 @@ from cdem.case.laws import BLOCK_LAWS
 from cdem.case.schema import Material
 from cdem.case.softening import tables_of
 from cdem.errors import CaseError
-from cdem.mesh import element_shapes
 from cdem.mesh.blocks import build_topology, snap_mates
 from cdem.mesh.extent import check_extent
 from cdem.mesh.mesh import Mesh
 from cdem.mesh.topology import Topology
 from cdem.model.assemble import assemble
 from cdem.model.bodies import check_groups, read_model
-from cdem.model.bolts import BoltModel, bolts_of
+from cdem.model.bolts import BoltModel
 from cdem.model.compensation import (
     Compensation,
     compensate,
@@ -46,11 +45,16 @@ from cdem.model.interfaces import (
 )
 from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
+from cdem.model.module import Module, Parts
+from cdem.model.modules import modules_of
 from cdem.model.options import options_of, pairs_loose_joints
 from cdem.model.snap_back import check_fall, check_softening
 from cdem.model.stiffness import bond_row, interface_entries
 from cdem.model.supports import driven_nodes, held_components, supports_of
-from cdem.model.water import water_of
+from cdem.rows import rows_of
+
+if TYPE_CHECKING:
+    from cdem._core import Core
 
 Floats = NDArray[np.float64]
 
@@ -84,21 +88,21 @@ class Build:
         paired: Whether such faces that touch are pairs: those that were bonded, and all where
             `pairs_loose_joints`.
         initial: Under what stress the rock begins; None: under none.
-        bolts: Bolts in the rock, and which stage installs and removes them.
+        modules: What acts on nodes besides, by its name.
     """
 
     case: Case
     mesh: Mesh
     topology: Topology
     assembly: Assembly
-    core: Any  # Core of the module for this machine's instruction set
+    core: Core
     curves: Curves
     start_position: Floats
     compensation: dict[str, Compensation]
     bonded: NDArray[np.bool_]
     paired: NDArray[np.bool_]
     initial: InitialState | None
-    bolts: BoltModel
+    modules: dict[str, Module]
 
     def __post_init__(self) -> None:
         self.born = self.start_position
@@ -117,6 +121,13 @@ class Build:
             digest.update(shape.encode() + cells.tobytes() + self.mesh.cell_group[shape].tobytes())
         digest.update(self.arrays["water.node_kept"].tobytes())  # from files; empty where dry
         return digest.hexdigest()
+
+    @property
+    def bolts(self) -> BoltModel:
+        """Bolts in the rock, and which stage installs and removes them."""
+        bolts = self.modules[BoltModel.name]
+        assert isinstance(bolts, BoltModel)
+        return bolts
 
     @property
     def group_names(self) -> list[str]:
@@ -169,15 +180,17 @@ def build(case: Case) -> Build:
     groups = compensated_groups(case, topology, names, laws, interface_of, bonds)
     between = made_up_between(laws, interface_of, bonds, groups)
     made_up = compensate(case, topology, names, groups, between)
-    bolts = bolts_of(case, topology, names)
+    modules = modules_of(case, topology, names)
     at = topology.node_position
-    parts = _assemble(case, topology, at, laws, interface_of, paired, made_up, curves, None, bolts)
+    parts = _assemble(
+        case, topology, at, laws, interface_of, paired, made_up, curves, None, modules
+    )
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
     parts.arrays.clear()  # the core has its own
     _share(topology, core.model())
     hand_over(core, curves, {})
-    core.set_interfaces(interface_entries(case, laws, names, at))
+    core.set_interfaces(parts.interfaces)
     core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
     core.start(at)
     under = set_initial_stress(case, topology, names, laws, core)
@@ -194,7 +207,7 @@ def build(case: Case) -> Build:
         bonds,
         paired,
         under,
-        bolts,
+        modules,
     )
     _set_motion(built)
     return built
@@ -202,9 +215,11 @@ def build(case: Case) -> Build:
 
 def _set_motion(built: Build) -> None:
     """Give groups the velocities that they begin with, and driven nodes those of their supports."""
-    motion = built.core.fields()["node.motion"].reshape(-1, 8)
-    set_velocities(built.case, built.topology, built.group_names, built.arrays["node.mass"], motion)
-    lost = start_on_supports(built.arrays, built.curves, motion)
+    velocity = rows_of(built.core, "node.motion").velocity
+    set_velocities(
+        built.case, built.topology, built.group_names, built.arrays["node.mass"], velocity
+    )
+    lost = start_on_supports(built.core, built.curves, velocity)
     groups = built.node_groups()
     for group in np.unique(groups[lost]):
         count, of = (lost & (groups == group)).sum(), (groups == group).sum()
@@ -231,7 +246,7 @@ def _assemble(
     made_up: dict[str, Compensation],
     curves: Curves,
     added_mass: Floats | None,
-    bolts: BoltModel,
+    modules: dict[str, Module],
 ) -> Assembly:
     """Arrays of the core, with supports and loads as the case has them now.
 
@@ -268,16 +283,19 @@ def _assemble(
         safety=case.time.safety,
         added_mass=added_mass,
         one_point=case.elements.hexahedra == "one-point",
-        bolts=bolts,
     )
     at_birth = replace(topology, node_position=born)
-    parts = assemble(at_birth, properties, native.padded_stride)
+    parts = assemble(at_birth, properties, native.padded_stride, modules.values())
+    parts.interfaces = entries
     check_fall(case, topology, laws, parts)
     check_softening(case, topology, names, parts)
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
-    water_of(case, topology, names, laws, interface_of, curves, native.padded_stride, parts)
+    for module in modules.values():
+        module.add_arrays(
+            Parts(case, topology, laws, interface_of, curves, native.padded_stride, parts)
+        )
     return parts
 
 
@@ -312,20 +330,11 @@ def _law_row(material: Material) -> list[float]:
     return native.material_numbers(material.law, numbers, tables_of(material))
 
 
-KEPT = ("support.", "load.", "water.", "wet_", "mass.", "node.", "triangles.s", "quads.s", "overlaps.s",
-        "material.parameters")  # fmt: skip
-"""Arrays of the core, or how their names begin, that a stage may change."""
-OF_PLACES = ("material.", *(f"{shape}.{key}" for shape in element_shapes.NODES for key in (
-    "material", "gradient", "volume", "hourglass")),
-    *(f"{kind}.area" for kind in ("triangles", "quads", "overlaps")),
-    *(f"face.{key}" for key in ("length", "reach", "area", "height", "stiffness", "radius")))  # fmt: skip
-"""Those that change besides when groups come in, which are free of stress where they lie then."""
-
-
 def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
     """Arrays of the core that follow from the parts of a case that a stage may change.
 
-    Supports change the inverse mass matrices of small blocks, so those are made again too.
+    Their description says which they are (`ColumnInfo::changes`). The assembly of the model gets the
+    interfaces that the case has now. Supports change the inverse mass matrices of small blocks, so those are made again too.
 
     Args:
         built: The model; its case as it is now.
@@ -350,13 +359,11 @@ def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
         built.compensation,
         built.curves,
         built.assembly.added_mass,
-        built.bolts,
+        built.modules,
     )
-    for kind in ("triangles", "quads"):
-        if parts.counts[f"wet_{kind}.count"] != built.assembly.counts[f"wet_{kind}.count"]:
-            raise CaseError(
-                f"{case.where('water')}: a stage cannot change which joints and faces may be wet at all; "
-                "begin with wet: always or broken, and a level that is too low"
-            )
-    kept = KEPT + (OF_PLACES if places else ())
-    return {key: value for key, value in parts.arrays.items() if key.startswith(kept)}
+    for module in built.modules.values():
+        module.refuse_change(case, built.assembly.counts, parts.counts)
+    built.assembly.interfaces = parts.interfaces
+    when = {"with_stage", "with_places"} if places else {"with_stage"}
+    changing = {info["name"] for info in built.core.describe() if info["changes"] in when}
+    return {key: value for key, value in parts.arrays.items() if key in changing}

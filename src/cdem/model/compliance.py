@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cdem.mesh.arrays import components, found_in, in_pieces, lengths
 from cdem.model.build import Build
+from cdem.rows import rows_of
 
 Floats = NDArray[np.float64]
 
@@ -38,8 +39,7 @@ def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
         faces = a.pair_faces[kind]
         if len(faces) == 0:
             continue
-        stride = len(build.arrays[f"{kind}.interface"])
-        normal = build.arrays[f"{kind}.stiffness"].reshape(2, stride)[0, : len(faces)]
+        normal = rows_of(build.core, f"{kind}.stiffness").normal
         area = build.arrays[f"{kind}.area"][: len(faces)]
         soft = _softness(build, kind)
         group = np.sort(t.face_group[faces], axis=1)
@@ -87,8 +87,8 @@ def _softness(build: Build, kind: str) -> Floats:
     """
     t, case = build.topology, build.case
     faces = build.assembly.pair_faces[kind]
-    stride = len(build.arrays[f"{kind}.interface"])
-    k_n, k_s = build.arrays[f"{kind}.stiffness"].reshape(2, stride)[:, : len(faces), None]
+    stiffness = rows_of(build.core, f"{kind}.stiffness")
+    k_n, k_s = stiffness.normal[:, None], stiffness.shear[:, None]
     area = build.arrays[f"{kind}.area"][: len(faces), None]
     rock = [case.materials[case.groups[name].material] for name in build.group_names]
     young = np.array([m.young_modulus for m in rock])

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from cdem._core import Core
 
 
 class Curve(NamedTuple):
@@ -57,7 +60,7 @@ def add_curve(
     return len(curves) - 1
 
 
-def hand_over(core: Any, curves: Curves, begins: Mapping[str, float]) -> None:
+def hand_over(core: Core, curves: Curves, begins: Mapping[str, float]) -> None:
     """Give the core the curves as they are while no other stage begins.
 
     Args:

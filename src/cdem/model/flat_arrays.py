@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 from cdem.case.schema import MassScaling
 from cdem.mesh.arrays import first_of_each
 from cdem.mesh.element_shapes import lame_constants
-from cdem.model.bolts import BoltModel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -54,7 +54,6 @@ class Properties:
         one_point: Whether hexahedra have one Gauss point and hourglass springs.
         nodal_mean: Whether tets of blocks of several average their dilatation at the nodes, shape
             (groups,).
-        bolts: Bolts in the rock.
     """
 
     density: Floats
@@ -81,7 +80,6 @@ class Properties:
     safety: float = 1.0
     added_mass: Floats | None = None
     one_point: bool = False
-    bolts: BoltModel = field(default_factory=BoltModel)
 
     @property
     def lame(self) -> Floats:
@@ -103,13 +101,16 @@ class Properties:
 class Assembly:
     """Flat arrays of the model by name, counts, and what the audit wants to know.
 
-    `added_mass` is that of mass scaling by node, `least_mass` a diagonal that is no more than the mass
+    `interfaces` are those of the core, `module_stiffness` is what modules put on each node at most
+    [N/m]. `added_mass` is that of mass scaling by node, `least_mass` a diagonal that is no more than the mass
     matrix of each block, `limits` the stable step without it and with 0.1 %
     of mass added [s], `free_mass` that of the nodes that are not held [kg].
     """
 
     arrays: dict[str, NDArray] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
+    interfaces: list[dict[str, Any]] = field(default_factory=list)
+    module_stiffness: Floats = field(default_factory=lambda: np.zeros(0))
     element_mass: dict[str, Floats] = field(default_factory=dict)
     element_volume: dict[str, Floats] = field(default_factory=dict)
     element_frequency: dict[str, Floats] = field(default_factory=dict)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,9 @@ from cdem.model.curves import constant
 from cdem.model.options import pairs_loose_joints
 from cdem.model.overburden import weight_above
 from cdem.model.water_fields import WaterTables
+
+if TYPE_CHECKING:
+    from cdem._core import Core
 
 Floats = NDArray[np.float64]
 
@@ -60,7 +63,7 @@ class InitialState:
 
 
 def set_initial_stress(
-    case: Case, t: Topology, names: list[str], laws: list[Interface], core: Any
+    case: Case, t: Topology, names: list[str], laws: list[Interface], core: Core
 ) -> InitialState | None:
     """Put the rock of a started core under the stress that its case asks for.
 
@@ -97,7 +100,7 @@ def set_initial_stress(
     return InitialState(lowest, highest, cut, most, at, field.pulled())
 
 
-def _set_elements(t: Topology, field: _Field, core: Any) -> tuple[list[float], list[float]]:
+def _set_elements(t: Topology, field: _Field, core: Core) -> tuple[list[float], list[float]]:
     """Write inelastic strains -C^-1 : S0; returns lowest and highest normal stresses."""
     arrays, state = core.model(), core.fields()
     lame, shear = arrays["material.lambda"], arrays["material.mu"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,10 @@ from cdem.model.curves import Curves, add_curve
 from cdem.model.faces import face_areas
 from cdem.model.flat_arrays import Assembly, Floats, ragged
 from cdem.model.selection import select_faces
+from cdem.rows import rows_of
+
+if TYPE_CHECKING:
+    from cdem._core import Core
 
 
 def drop_gravity(case: Case, topology: Topology, names: list[str], parts: Assembly) -> None:
@@ -53,16 +57,16 @@ def tractions_of(
 
 
 def set_velocities(
-    case: Case, topology: Topology, names: list[str], mass: Floats, motion: Floats
+    case: Case, topology: Topology, names: list[str], mass: Floats, velocity: Floats
 ) -> None:
-    """Write the initial velocities of the groups into the core's rows of motion.
+    """Write the initial velocities of the groups.
 
     Args:
         case: The case.
         topology: The model, at its start.
         names: Names of the groups, by index.
         mass: Of each node [kg].
-        motion: Rows of the core: position, then velocity from the fifth number on; is changed.
+        velocity: Of each node [m/s], shape (nodes, 3); is changed.
     """
     groups = topology.block_group[topology.node_block]
     for name, group in case.groups.items():
@@ -70,30 +74,30 @@ def set_velocities(
         x = topology.node_position[nodes]
         center = (mass[nodes, None] * x).sum(axis=0) / mass[nodes].sum()
         spin = np.cross(np.asarray(group.angular_velocity, float), x - center)
-        motion[nodes, 4:7] = np.asarray(group.velocity, float) + spin
+        velocity[nodes] = np.asarray(group.velocity, float) + spin
 
 
-def start_on_supports(
-    arrays: Mapping[str, NDArray], curves: Curves, motion: Floats
-) -> NDArray[np.bool_]:
+def start_on_supports(core: Core, curves: Curves, velocity: Floats) -> NDArray[np.bool_]:
     """Let supported components begin with the velocity that their support gives: no jolt.
 
     Args:
-        arrays: Of the core.
+        core: The compiled core.
         curves: Of the model.
-        motion: Rows of the core: position, then velocity from the fifth number on; is changed.
+        velocity: Of each node [m/s], shape (nodes, 3); is changed.
 
     Returns:
         Nodes that had another velocity, not zero, of their own, shape (nodes,).
     """
-    nodes = np.flatnonzero(arrays["support.row"] >= 0)
-    row = arrays["support.row"][nodes]
-    factor = np.array([curve.at_start for curve in curves])
-    given = arrays["support.component"].reshape(-1, 3)[row].astype(bool)
-    velocity = arrays["support.velocity"].reshape(-1, 3)[row]
-    velocity = velocity * factor[arrays["support.curve"].reshape(-1, 3)[row]]
-    own = motion[nodes, 4:7]
-    lost = np.zeros(len(motion), bool)
-    lost[nodes] = (given & (own != 0) & (own != velocity)).any(axis=1)
-    motion[nodes, 4:7] = np.where(given, velocity, own)
+    support = core.model()["support.row"]
+    nodes = np.flatnonzero(support >= 0)
+    component, speed, curve = (
+        rows_of(core, f"support.{key}").numbers[support[nodes]]
+        for key in ("component", "velocity", "curve")
+    )
+    given = component.astype(bool)
+    driven = speed * np.array([one.at_start for one in curves])[curve]
+    own = velocity[nodes]
+    lost = np.zeros(len(velocity), bool)
+    lost[nodes] = (given & (own != 0) & (own != driven)).any(axis=1)
+    velocity[nodes] = np.where(given, driven, own)
     return lost

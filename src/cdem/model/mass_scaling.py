@@ -40,15 +40,14 @@ class Scaling:
         self.free_mass = float(out.arrays["node.mass"][~held].sum())
         exposed = out.arrays["face.initially_exposed"].astype(bool)
         bonds = bond_stiffness(t, out)
-        bolts = p.bolts.node_stiffness(len(t.node_position))
-        springs = bonds + bolts + contact_stiffness(t, p, out, exposed)
+        springs = bonds + out.module_stiffness + contact_stiffness(t, p, out, exposed)
         self._states = [_Needs(t, p, out, springs, True)]
         breaking = _breaking_faces(t, p, out)
         if breaking.any():
             springs = bond_stiffness(t, out, p.breaks) + contact_stiffness(
                 t, p, out, exposed | breaking, any_mate=True
             )
-            self._states.append(_Needs(t, p, out, springs + bolts, False))
+            self._states.append(_Needs(t, p, out, springs + out.module_stiffness, False))
 
     def added(self, limit: float) -> Floats:
         """Mass to add for a stable step [s] to each node [kg], shape (nodes,)."""

@@ -37,6 +37,7 @@ from cdem.model.compensation import (
 )
 from cdem.model.homogenize import BondedTets, displacements, jumps
 from cdem.model.interfaces import interfaces_of, strength_factors_of, that_may_break
+from cdem.rows import rows_of
 
 Floats = NDArray[np.float64]
 
@@ -210,7 +211,7 @@ def _elastic_state(build: Build, name: str, pairs: NDArray[np.intp]) -> tuple[El
     first = build.assembly.pair_faces["triangles"][:, 0]
     place = np.zeros(len(t.face_nodes), np.intp)
     place[first] = np.arange(len(first))
-    stiffness = build.arrays["triangles.stiffness"][place[t.pair_faces[tets.pair, 0]]]
+    stiffness = rows_of(build.core, "triangles.stiffness").normal[place[t.pair_faces[tets.pair, 0]]]
     mean = float(stiffness.mean())
     u = displacements(tets, rock.young_modulus, rock.poisson_ratio, mean)
     return ElasticState(tets, mean * jumps(tets, u), counted_tets(tets)), mean

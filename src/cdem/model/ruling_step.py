@@ -8,6 +8,7 @@ import numpy as np
 
 from cdem.case.types import AUTO
 from cdem.model.build import Build
+from cdem.rows import rows_of
 
 PLURAL = {"element": "elements", "bond": "bonds", "contact": "contacts"}
 GAIN = 1.1
@@ -48,7 +49,7 @@ def ruling_step(build: Build) -> RulingStep:
     """What rules the step of a model as it is now."""
     limit, node, elements, springs, bonds = build.core.step_limit()
     t = build.topology
-    x, y, z = build.core.fields()["node.motion"].reshape(-1, 8)[node, :3].tolist()
+    x, y, z = rows_of(build.core, "node.motion").position[node].tolist()
     of = np.array([elements, springs * bonds, springs * (1 - bonds)])
     shares = dict(zip(PLURAL, (of / of.sum()).tolist(), strict=True))
     return RulingStep(

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.case import Case
-from cdem.case.interface_schema import Interface
 from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.schema import Material
+from cdem.errors import CaseError
 from cdem.mesh import element_shapes
 from cdem.mesh.topology import Topology
-from cdem.model.curves import Curves
 from cdem.model.faces import face_normals
 from cdem.model.flat_arrays import Assembly, Floats, ragged, table
+from cdem.model.module import Built, Module, Parts
 from cdem.model.water_fields import WaterTables
+from cdem.model.wetted import water_text, wetted
 
 OPEN = 0.05
 """Joints keep their water up to this part of the length of a face."""
@@ -24,68 +26,60 @@ FLUSH = 0.9
 """Cosine between the normals of faces that make one wall of a joint."""
 KINDS = ("triangles", "quads", "overlaps")
 """Of pairs, in the order of the core."""
-Stride = Callable[[int], int]
 
 
-def water_of(
-    case: Case,
-    t: Topology,
-    names: list[str],
-    laws: list[Interface],
-    interface_of: NDArray[np.integer],
-    curves: Curves,
-    stride: Stride,
-    out: Assembly,
-) -> None:
-    """Put the arrays of water into an assembly; empty ones where the case has none.
+@dataclass
+class WaterModel(Module):
+    """Water of a model: its arrays follow from the case as it is in each stage."""
 
-    Raises:
-        CaseError: An entry cannot be read.
-    """
-    if case.water is None:
-        _no_water(out, stride)
-        return
-    tables = WaterTables(case, t, names, curves)
-    biot = np.array([case.materials[case.groups[name].material].biot for name in names])
-    faces = _joints(case, t, names, laws, interface_of, biot, tables, out)
-    rows, field_curve = tables.rows()
-    node_field = tables.in_pores(t.node_position, t.block_group[t.node_block])
-    out.arrays |= {
-        "water.fields": rows,
-        "water.field_curve": field_curve,
-        "water.biot": biot if biot.any() else np.zeros(0),
-        "water.node_field": node_field,
-        "water.node_kept": tables.kept(node_field, t.node_position),
-    }
-    for kind, corners in (("triangles", 3), ("quads", 4)):
-        some = faces.of(t, corners)
-        nodes = t.face_nodes[some.face][:, :corners]
-        _wet_set(f"wet_{kind}", some, nodes, t, tables, stride(len(nodes)), out)
-        out.counts[f"wet_{kind}.count"] = len(nodes)
-    for shape in t.element_nodes:
-        out.arrays[f"{shape}.values"] = np.zeros(0)
+    name = "water"
+
+    @classmethod
+    def of(cls, case: Case, t: Topology, names: list[str]) -> WaterModel:
+        return cls()
+
+    def add_arrays(self, parts: Parts) -> None:
+        if parts.case.water is None:
+            return
+        t, out = parts.topology, parts.assembly
+        tables = WaterTables(parts.case, t, parts.names, parts.curves)
+        biot = np.array([m.biot for m in _materials(parts)])
+        faces = _joints(parts, biot, tables)
+        rows, field_curve = tables.rows()
+        node_field = tables.in_pores(t.node_position, t.block_group[t.node_block])
+        out.arrays |= {
+            "water.fields": rows,
+            "water.field_curve": field_curve,
+            "water.biot": biot if biot.any() else np.zeros(0),
+            "water.node_field": node_field,
+            "water.node_kept": tables.kept(node_field, t.node_position),
+        }
+        for kind, corners in (("triangles", 3), ("quads", 4)):
+            _wet_set(f"wet_{kind}", corners, faces.of(t, corners), tables, parts)
         if biot.any():
-            one = bool(len(out.arrays[f"{shape}.hourglass"]))
-            out.arrays[f"{shape}.values"] = element_shapes.point_values(shape, one=one).ravel()
-    _weigh(case, t, names, tables, node_field, out)
+            for shape in t.element_nodes:
+                one = bool(len(out.arrays[f"{shape}.hourglass"]))
+                out.arrays[f"{shape}.values"] = element_shapes.point_values(shape, one=one).ravel()
+        _weigh(parts, tables, node_field)
+
+    def refuse_change(self, case: Case, was: dict[str, int], now: dict[str, int]) -> None:
+        keys = ("wet_triangles.count", "wet_quads.count")
+        if [was.get(key) for key in keys] != [now.get(key) for key in keys]:
+            raise CaseError(
+                f"{case.where('water')}: a stage cannot change which joints and faces may be wet at all; "
+                "begin with wet: always or broken, and a level that is too low"
+            )
+
+    def report(self, build: Built) -> dict[str, Any] | None:
+        return wetted(build)
+
+    def lines(self, report: dict[str, Any] | None) -> list[str]:
+        return water_text(report)
 
 
-def _no_water(out: Assembly, stride: Stride) -> None:
-    real, whole = np.zeros(0), np.zeros(0, np.int32)
-    for name in ("fields", "biot", "node_kept"):
-        out.arrays[f"water.{name}"] = real
-    for name in ("field_curve", "node_field"):
-        out.arrays[f"water.{name}"] = whole
-    for kind in ("triangles", "quads"):
-        out.counts[f"wet_{kind}.count"] = 0
-        for name in ("kept", "aperture"):
-            out.arrays[f"wet_{kind}.{name}"] = real
-        for name in ("nodes", "face", "joint", "open", "pair", "mate"):
-            out.arrays[f"wet_{kind}.{name}"] = whole
-        out.arrays[f"wet_{kind}.bonded"] = np.zeros(0, np.int8)
-        out.arrays[f"wet_{kind}.pair_first"] = np.zeros(1, np.int32)
-    for shape in element_shapes.NODES:
-        out.arrays[f"{shape}.values"] = real
+def _materials(parts: Parts) -> list[Material]:
+    """Of the groups, by index."""
+    return [parts.case.materials[parts.case.groups[name].material] for name in parts.names]
 
 
 @dataclass
@@ -126,26 +120,18 @@ class _Faces:
         )  # fmt: skip
 
 
-def _joints(
-    case: Case,
-    t: Topology,
-    names: list[str],
-    laws: list[Interface],
-    interface_of: NDArray[np.integer],
-    biot: Floats,
-    tables: WaterTables,
-    out: Assembly,
-) -> _Faces:
+def _joints(parts: Parts, biot: Floats, tables: WaterTables) -> _Faces:
     """All faces on which one of the fields may press."""
+    t, names, out = parts.topology, parts.names, parts.assembly
     count = len(t.face_nodes)
     face, mate, pair = _mates(t, out)
     kinds = t.face_kind[face], t.face_kind[mate]
-    interface = interface_of[kinds[0], kinds[1]]
+    interface = parts.interface_of[kinds[0], kinds[1]]
     groups = t.face_group[face], t.face_group[mate]
     # of each mate: its joint's field, and whether bonds keep it dry
     rows = np.stack([interface, *groups], axis=1)
     unique, which = np.unique(rows, axis=0, return_inverse=True)
-    found = [_of_joint(case, names, laws, biot, tables, row.tolist()) for row in unique]
+    found = [_of_joint(parts, biot, tables, row.tolist()) for row in unique]
     field = np.array([f for f, _ in found], np.int32)[which.ravel()] if found else face
     wet = np.array([w for _, w in found], bool)[which.ravel()] if found else face.astype(bool)
     # the first mate of a face decides; faces without have the field of their group's joints
@@ -174,26 +160,16 @@ def _middles(t: Topology) -> Floats:
     return (x * used[:, :, None]).sum(axis=1) / used.sum(axis=1)[:, None]
 
 
-def _of_joint(
-    case: Case,
-    names: list[str],
-    laws: list[Interface],
-    biot: Floats,
-    tables: WaterTables,
-    row: list[int],
-) -> tuple[int, bool]:
+def _of_joint(parts: Parts, biot: Floats, tables: WaterTables, row: list[int]) -> tuple[int, bool]:
     """Field of a joint with this interface between two groups, and whether it is wet while bonded."""
     interface, a, b = row
-    name = (
-        case.interfaces.pairs[interface].name
-        if 0 <= interface < len(case.interfaces.pairs)
-        else None
-    )
-    field = tables.in_joint([names[a], names[b]], name)
+    pairs = parts.case.interfaces.pairs
+    name = pairs[interface].name if 0 <= interface < len(pairs) else None
+    field = tables.in_joint([parts.names[a], parts.names[b]], name)
     entry = tables.entry(field)
     wet = "auto" if entry is None else entry.wet
     if wet == "auto":
-        law = laws[interface] if interface >= 0 else None
+        law = parts.laws[interface] if interface >= 0 else None
         strong = law is not None and INTERFACE_LAWS[law.law].bonds(law)
         wet = "broken" if strong and not (biot[a] or biot[b]) else "always"
     return _unless_never(tables, field), wet == "always"
@@ -250,20 +226,16 @@ def _beside(
     return found[new, 0], found[new, 1]
 
 
-def _wet_set(
-    name: str,
-    faces: _Faces,
-    nodes: NDArray[np.integer],
-    t: Topology,
-    tables: WaterTables,
-    stride: int,
-    out: Assembly,
-) -> None:
-    count = len(nodes)
+def _wet_set(name: str, corners: int, faces: _Faces, tables: WaterTables, parts: Parts) -> None:
+    """Add the faces of so many corners that water may press on."""
+    t = parts.topology
+    nodes = t.face_nodes[faces.face][:, :corners]
+    count, stride = len(nodes), parts.stride(len(nodes))
+    parts.assembly.counts[f"{name}.count"] = count
     points = t.node_position[nodes.ravel()]
     kept = tables.kept(np.repeat(faces.joint, nodes.shape[1]), points).reshape(nodes.shape)
     first = np.searchsorted(faces.mate_of, np.arange(count + 1))
-    out.arrays |= {
+    parts.assembly.arrays |= {
         f"{name}.nodes": table(nodes.T.astype(np.int32), stride),
         f"{name}.kept": table(kept.T, stride),
         f"{name}.face": faces.face.astype(np.int32),
@@ -277,18 +249,11 @@ def _wet_set(
     }
 
 
-def _weigh(
-    case: Case,
-    t: Topology,
-    names: list[str],
-    tables: WaterTables,
-    node_field: NDArray[np.integer],
-    out: Assembly,
-) -> None:
+def _weigh(parts: Parts, tables: WaterTables, node_field: NDArray[np.integer]) -> None:
     """Give elements with water in the middle their saturated weight."""
-    materials = [case.materials[case.groups[name].material] for name in names]
+    t, materials = parts.topology, _materials(parts)
     more = np.array([(m.saturated_density or m.density) - m.density for m in materials])
-    more *= [case.groups[name].gravity for name in names]
+    more *= [parts.case.groups[name].gravity for name in parts.names]
     for shape, nodes in t.element_nodes.items():
         extra = more[t.element_group[shape]]
         if not extra.any():
@@ -296,4 +261,4 @@ def _weigh(
         corners = t.node_position[nodes]
         wet = tables.pressure(node_field[nodes[:, 0]], corners.mean(axis=1)) > 0
         masses = element_shapes.mass_matrices(shape, corners, extra * wet).sum(axis=2)
-        np.add.at(out.arrays["node.gravity_mass"], nodes, masses)
+        np.add.at(parts.assembly.arrays["node.gravity_mass"], nodes, masses)

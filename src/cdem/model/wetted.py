@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.model.build import Build
+from cdem.model.module import Built
+from cdem.rows import rows_of
+
+if TYPE_CHECKING:
+    from cdem._core import Core
 
 
-def wetted(build: Build) -> dict[str, Any] | None:
+def wetted(build: Built) -> dict[str, Any] | None:
     """What water does at the start: wet faces, their area, the force on what is free to move.
 
     Returns:
@@ -26,7 +30,7 @@ def wetted(build: Build) -> dict[str, Any] | None:
         faces += int(wet.sum())
         area += float(arrays["face.area"][face][wet].sum())
         most = max(most, float(pressure.max(initial=0.0)))
-    force = build.core.fields()["node.water"].reshape(-1, 4)[:, :3]
+    force = rows_of(build.core, "node.water").force
     free = arrays["support.row"][: len(force)] < 0
     biot = arrays["water.biot"]
     return {
@@ -39,7 +43,7 @@ def wetted(build: Build) -> dict[str, Any] | None:
 
 
 def face_pressures(
-    build: Build, position: NDArray[np.float64]
+    build: Built, position: NDArray[np.float64]
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.float64]]]:
     """Faces that may be wet, and the pressure of water at their vertices [Pa], shape (vertices, faces).
 
@@ -47,20 +51,29 @@ def face_pressures(
         build: A model with water.
         position: Of its nodes [m], shape (nodes, 3).
     """
-    arrays, now = build.arrays, build.core.fields()
-    rows = now["water.fields_now"].reshape(-1, 8)
-    for kind, corners in (("triangles", 3), ("quads", 4)):
-        count = build.assembly.counts[f"wet_{kind}.count"]
-        if not count:
-            continue
-        nodes = arrays[f"wet_{kind}.nodes"].reshape(corners, -1)[:, :count]
-        row = rows[now[f"wet_{kind}.field"].reshape(corners, -1)[:, :count]]
-        kept = arrays[f"wet_{kind}.kept"].reshape(corners, -1)[:, :count]
-        at = position[nodes]
-        pressure = row[..., 5] * (
-            row[..., 0] + (row[..., 1:4] * at).sum(axis=-1) + row[..., 4] * kept
+    core = build.core
+    for kind in ("wet_triangles", "wet_quads"):
+        nodes, field, kept = (
+            rows_of(core, f"{kind}.{key}").numbers.T for key in ("nodes", "field", "kept")
         )
-        yield arrays[f"wet_{kind}.face"][:count], np.maximum(pressure, 0.0)
+        pressure = signed_pressure(core, field, position[nodes], kept)
+        yield build.arrays[f"{kind}.face"], np.maximum(pressure, 0.0)
+
+
+def signed_pressure(
+    core: Core, field: NDArray[np.int32], at: NDArray[np.float64], kept: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Pressure of fields as they are in this step, below zero above the water [Pa].
+
+    Args:
+        core: That of a model with water.
+        field: Of each point.
+        at: Where it is [m], one axis more.
+        kept: What it keeps of the start where its field does so [Pa].
+    """
+    now = rows_of(core, "water.fields_now")
+    linear = now.pressure[field] + (now.slope[field] * at).sum(axis=-1)
+    return now.factor[field] * (linear + now.keeps[field] * kept)
 
 
 def water_text(water: dict[str, Any] | None) -> list[str]:
@@ -78,7 +91,7 @@ def water_text(water: dict[str, Any] | None) -> list[str]:
     return lines
 
 
-def idle_water(build: Build, water: dict[str, Any] | None) -> list[str]:
+def idle_water(build: Built, water: dict[str, Any] | None) -> list[str]:
     """A warning where the water that `wetted` looked for does nothing."""
     if water is None or water["highest_pressure"] or water["porous_groups"]:
         return []
@@ -92,7 +105,7 @@ def idle_water(build: Build, water: dict[str, Any] | None) -> list[str]:
     ]
 
 
-def dry_bonds(build: Build, bonded: set[str]) -> list[str]:
+def dry_bonds(build: Built, bonded: set[str]) -> list[str]:
     """A warning where water lies at joints that hold by bonds, which let none in until they break.
 
     Args:

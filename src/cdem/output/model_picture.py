@@ -11,6 +11,7 @@ from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.interfaces import interfaces_of
 from cdem.output.render import load_pyvista, snapshot
 from cdem.output.scene import MATTE, View, add_rock, color, labels, new_plotter, take
+from cdem.rows import rows_of
 
 if TYPE_CHECKING:
     from cdem.errors import BodyError
@@ -120,10 +121,9 @@ def _groups(panel: _Panel, sim: RunState) -> None:
 
 def _held(panel: _Panel, sim: RunState) -> None:
     """Dots at the nodes of outer faces that are held or driven, one colour for each way."""
-    arrays = sim.build.arrays
-    row = arrays["support.row"]
-    component = arrays["support.component"].reshape(-1, 3)
-    driven = (arrays["support.velocity"].reshape(-1, 3) != 0).any(axis=1)
+    row = sim.build.arrays["support.row"]
+    component = rows_of(sim.core, "support.component").numbers
+    driven = (rows_of(sim.core, "support.velocity").numbers != 0).any(axis=1)
     outer = np.unique(sim.build.topology.face_nodes)
     nodes = outer[(outer >= 0) & (row[outer] >= 0)]
     ways = np.column_stack([component[row[nodes]], driven[row[nodes]]])
@@ -139,12 +139,11 @@ def _held(panel: _Panel, sim: RunState) -> None:
 
 def _loads(panel: _Panel, sim: RunState) -> None:
     """Arrows of the nodal forces that come from tractions, the largest at full length."""
-    arrays = sim.build.arrays
-    first = arrays["load.first"]
+    first = sim.build.arrays["load.first"]
     nodes = np.repeat(np.arange(len(first) - 1), np.diff(first))
     if len(nodes) == 0:
         return
-    force = arrays["load.force"].reshape(-1, 4)[:, :3]
+    force = rows_of(sim.core, "load.force").force
     arrows = force / np.linalg.norm(force, axis=1).max() * ARROW * panel.size
     tips = sim.build.start_position[nodes]
     cloud = panel.pyvista.PolyData(tips - arrows)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.model.bolts import HOSTS
+from cdem.rows import rows_of
 from cdem.run.state import RunState
 
 Lines = tuple[NDArray[np.float64], NDArray[np.int32], dict[str, NDArray], dict[str, NDArray]]
@@ -21,12 +21,13 @@ def bolt_lines(sim: RunState) -> Lines:
     (0 holds, 1 and 2 slips). Fields of bars: `axial_force`, tension positive [N], `bar_state`
     (0 elastic, 1 and 2 yields in tension and compression, 3 ruptured, 4 cut), `bolt`.
     """
-    state, arrays = sim.core.fields(), sim.build.arrays
-    first = arrays["bolts.first"]
+    state, first = sim.core.fields(), sim.build.arrays["bolts.first"]
     bolt = np.repeat(np.arange(len(first) - 1), np.diff(first))
-    hosts = arrays["bolts.hosts"].reshape(-1, HOSTS)[: len(bolt)]
-    weights = arrays["bolts.weights"].reshape(-1, HOSTS)[: len(bolt)]
-    places = np.einsum("ph,phx->px", weights, sim.motion[:, :3][np.maximum(hosts, 0)])
+    hosts = rows_of(sim.core, "bolts.hosts").numbers[: len(bolt)]
+    weights = rows_of(sim.core, "bolts.weights").numbers[: len(bolt)]
+    places = np.einsum(
+        "ph,phx->px", weights, rows_of(sim.core, "node.motion").position[np.maximum(hosts, 0)]
+    )
     shown = np.isin(state["bolts.phase"], ACTS)[bolt]
     number = np.cumsum(shown) - 1
     bars = np.flatnonzero(shown[:-1] & (bolt[:-1] == bolt[1:])) if len(bolt) else bolt

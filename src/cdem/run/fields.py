@@ -12,7 +12,8 @@ from cdem.case.laws import STATES
 from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
 from cdem.mesh.arrays import components
 from cdem.model.interfaces import bonded_pairs, interfaces_of
-from cdem.model.wetted import face_pressures
+from cdem.model.wetted import face_pressures, signed_pressure
+from cdem.rows import rows_of
 from cdem.run.law_fields import state_of, yielded_of
 from cdem.run.state import RunState
 
@@ -58,7 +59,7 @@ def surface_of(
     on_nodes = {field.name for field in OUTPUT_FIELDS if field.on == "nodes"}
     element = t.face_element[faces]
     return (
-        sim.motion[used, :3],
+        rows_of(sim.core, "node.motion").position[used],
         number[nodes],
         {name: of[used] for name, of in values.items() if name in on_nodes},
         {name: of[element] for name, of in values.items() if name not in on_nodes}
@@ -74,7 +75,7 @@ def surface_of(
 def _water_pressure(sim: RunState) -> NDArray[np.float64]:
     """Pressure of water on each face, mean of its vertices [Pa]."""
     pressure = np.zeros(len(sim.build.topology.face_nodes))
-    for face, at_vertices in face_pressures(sim.build, sim.motion[:, :3]):
+    for face, at_vertices in face_pressures(sim.build, rows_of(sim.core, "node.motion").position):
         pressure[face] = at_vertices.mean(axis=0)
     return pressure
 
@@ -82,13 +83,13 @@ def _water_pressure(sim: RunState) -> NDArray[np.float64]:
 @output_field("displacement")
 def displacement_of(sim: RunState) -> NDArray[np.float64]:
     """Displacement of each node since the last reset [m], shape (nodes, 3)."""
-    return sim.motion[:, :3] - sim.reference
+    return rows_of(sim.core, "node.motion").position - sim.reference
 
 
 @output_field("velocity")
 def velocity_of(sim: RunState) -> NDArray[np.float64]:
     """Velocity of each node [m/s], shape (nodes, 3)."""
-    return sim.motion[:, 4:7]
+    return rows_of(sim.core, "node.motion").velocity
 
 
 @output_field("node")
@@ -124,16 +125,16 @@ def out_of(sim: RunState) -> NDArray[np.int8]:
 def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """Bonded pairs of faces, shape (pairs, 2), and the part of each one's bond points that holds."""
     b = sim.build
-    state = sim.core.fields()
     faces, intact = [], []
-    for kind, points in (("triangles", 3), ("quads", 4)):
-        pairs = b.assembly.counts[f"{kind}.count"]
+    for kind in ("triangles", "quads"):
         faces.append(b.assembly.pair_faces[kind])
-        intact.append(state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].mean(axis=0))
+        intact.append(rows_of(sim.core, f"{kind}.bond").numbers.T.mean(axis=0))
     if b.assembly.counts["overlaps.count"]:
         first = b.topology.overlap_first
         faces.append(b.topology.overlap_faces)
-        intact.append(np.add.reduceat(state["overlaps.bond"], first[:-1]) / np.diff(first))
+        intact.append(
+            np.add.reduceat(sim.core.fields()["overlaps.bond"], first[:-1]) / np.diff(first)
+        )
     return np.concatenate(faces), np.concatenate(intact)
 
 
@@ -165,7 +166,7 @@ def opening_of(sim: RunState) -> NDArray[np.float64]:
 
 def _apart(sim: RunState) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Slip and opening of each pair of faces whose vertices met at the start [m]; the most of them."""
-    t, at = sim.build.topology, sim.motion[:, :3]
+    t, at = sim.build.topology, rows_of(sim.core, "node.motion").position
     first, second = t.face_nodes[t.pair_faces[:, 0]], t.face_nodes[t.pair_faces[:, 1]]
     corners = (first >= 0).sum(axis=1, keepdims=True)
     place = (t.pair_shift[:, None] - np.arange(first.shape[1])) % corners
@@ -221,11 +222,9 @@ def pore_pressure_of(sim: RunState) -> NDArray[np.float64]:
     """Pressure of the water in the ground [Pa], mean of the nodes of each element, as `stress_of`."""
     if sim.case.water is None:
         return np.zeros(len(group_of(sim)))
-    arrays, at = sim.build.arrays, sim.motion[:, :3]
-    rows = sim.core.fields()["water.fields_now"].reshape(-1, 8)[arrays["water.node_field"]]
-    pressure = rows[:, 5] * (
-        rows[:, 0] + (rows[:, 1:4] * at).sum(axis=1) + rows[:, 4] * arrays["water.node_kept"]
-    )
+    arrays, at = sim.build.arrays, rows_of(sim.core, "node.motion").position
+    field, kept = arrays["water.node_field"], arrays["water.node_kept"]
+    pressure = signed_pressure(sim.core, field, at, kept)
     elements = sim.build.topology.element_nodes.values()
     return np.concatenate([np.maximum(pressure, 0.0)[nodes].mean(axis=1) for nodes in elements])
 
@@ -233,10 +232,8 @@ def pore_pressure_of(sim: RunState) -> NDArray[np.float64]:
 @output_field("effective_stress")
 def effective_stress_of(sim: RunState) -> NDArray[np.float64]:
     """Mean stress that the law of each element gives [Pa], as `stress_of`."""
-    tables = sim.core.stress()
-    counts = sim.build.assembly.counts
-    rows = [tables[shape].reshape(6, -1)[:, : counts[f"{shape}.count"]].T for shape in tables]
-    return np.concatenate(rows)
+    shapes = sim.core.stress()
+    return np.concatenate([rows_of(sim.core, f"{shape}.stress").numbers for shape in shapes])
 
 
 def visible_faces(sim: RunState) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
@@ -245,13 +242,11 @@ def visible_faces(sim: RunState) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     Those of blocks that have left the domain are not among them.
     """
     b = sim.build
-    state = sim.core.fields()
     glued = np.zeros(len(b.topology.face_nodes), bool)
     bonded = glued.copy()
-    for kind, points in (("triangles", 3), ("quads", 4)):
-        pairs = b.assembly.counts[f"{kind}.count"]
+    for kind in ("triangles", "quads"):
         faces = b.assembly.pair_faces[kind]
-        intact = state[f"{kind}.bond"].reshape(points, -1)[:, :pairs].any(axis=0)
+        intact = rows_of(sim.core, f"{kind}.bond").numbers.any(axis=1)
         intact &= ~sim.out[b.topology.face_block[faces]].any(axis=1)
         glued[faces[intact].ravel()] = True
         bonded[faces.ravel()] = True

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cdem.errors import CdemError
 from cdem.mesh.element_volumes import Solids
 from cdem.mesh.hdf5_links import refuse_links
+from cdem.rows import rows_of
 from cdem.run.fields import block_of, group_of, pieces_of
 from cdem.run.flow_maps import LAYERS, FlowMaps, Moment
 from cdem.run.state import RunState, StageState
@@ -89,12 +90,14 @@ class FlowRecorder:
             CdemError: The maps would be huge.
         """
         stays = ~sim.out[self._block]
-        solids = Solids.of(sim.motion[:, :3], self._cells).only(stays)
-        velocity = sim.motion[:, 4:7]
-        mean = np.concatenate([velocity[nodes].mean(axis=1) for nodes in self._cells.values()])
+        motion = rows_of(sim.core, "node.motion")
+        solids = Solids.of(motion.position, self._cells).only(stays)
+        mean = np.concatenate(
+            [motion.velocity[nodes].mean(axis=1) for nodes in self._cells.values()]
+        )
         piece = pieces_of(sim)[self._chosen][stays]
         self.maps.take_in(Moment(sim.time, solids, mean[stays], self._mass[stays], piece))
-        speed = float(np.linalg.norm(velocity[self._nodes, :2], axis=1).max(initial=0.0))
+        speed = float(np.linalg.norm(motion.velocity[self._nodes, :2], axis=1).max(initial=0.0))
         fall = max(FALL, float(np.linalg.norm([float(g) for g in sim.case.loads.gravity])))
         way = STEP * self.maps.cell
         self.due = sim.time + (np.sqrt(speed**2 + 2 * fall * way) - speed) / fall

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CaseError
+from cdem.rows import rows_of
 from cdem.run.state import RunState
 
 
@@ -56,14 +57,14 @@ def _of_bolts(
         "plate_force": ("bolts.end_force", heads, "N"),
     }
 
-    def largest(column: str, rows: NDArray[np.intp]) -> float:
-        values = sim.core.fields()[column][rows]
+    def largest(column: str, some: NDArray[np.intp]) -> float:
+        values = sim.core.fields()[column][some]
         return float(values[np.abs(values).argmax()])
 
     return [
-        (f"{name}.{q} [{unit}]", lambda c=column, r=rows: largest(c, r))
+        (f"{name}.{q} [{unit}]", lambda c=column, s=some: largest(c, s))
         for q in quantities
-        for column, rows, unit in [columns[q]]
+        for column, some, unit in [columns[q]]
     ]
 
 
@@ -72,7 +73,7 @@ def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.
     if quantity == "force":  # of supports, which is what a user measures at a loading plate
         return fields["reaction"][nodes].sum(axis=0)
     if quantity == "water_force":
-        return sim.core.fields()["node.water"].reshape(-1, 4)[nodes, :3].sum(axis=0)
+        return rows_of(sim.core, "node.water").force[nodes].sum(axis=0)
     name = "position" if quantity == "centroid" else quantity
     mass = fields["mass"][nodes]
     return (mass[:, None] * fields[name][nodes]).sum(axis=0) / mass.sum()

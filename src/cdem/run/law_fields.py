@@ -12,6 +12,7 @@ from cdem.case.case import Case
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, STATES, Law
 from cdem.case.output_fields import OF_WATER, YIELDED
 from cdem.model.interfaces import interfaces_of
+from cdem.rows import rows_of
 from cdem.run.state import RunState
 
 NOW = 0x33
@@ -120,9 +121,10 @@ def large_strains(sim: RunState) -> list[LargeStrain]:
 
 def _middle(sim: RunState, element: int) -> list[float]:
     """Where the middle of an element is, counted over the shapes one after the other."""
+    position = rows_of(sim.core, "node.motion").position
     for nodes in sim.build.topology.element_nodes.values():
         if element < len(nodes):
-            middle: list[float] = sim.motion[nodes[element], :3].mean(axis=0).tolist()
+            middle: list[float] = position[nodes[element]].mean(axis=0).tolist()
             return middle
         element -= len(nodes)
     raise IndexError(element)
@@ -184,7 +186,7 @@ def _bonds(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]
         else:
             points = {"triangles": 3, "quads": 4}[kind]
             most = history.reshape(points, -1)[:, :pairs].max(axis=0)
-        faces = b.arrays[f"{kind}.faces"].reshape(-1, 2)[:pairs]
+        faces = rows_of(sim.core, f"{kind}.faces").numbers
         own = numbers[b.arrays[f"{kind}.interface"][:pairs]] == law
         found += [(faces[own, side], most[own]) for side in (0, 1)]
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from cdem.errors import CdemError
 from cdem.run.flow_recorder import PREFIX
 from cdem.run.history_file import SUM_DIGITS
 from cdem.run.state import Attributes, RunState, StageState
+
+if TYPE_CHECKING:
+    from cdem._core import Core
 
 
 def check_model(
@@ -64,7 +67,7 @@ def check_model(
         )
 
 
-def wrong_type(core: Any, arrays: Mapping[str, NDArray]) -> str:
+def wrong_type(core: Core, arrays: Mapping[str, NDArray]) -> str:
     """Name and fault of an array whose kind of numbers is not that of the core's, or ""."""
     for name, own in core.fields().items():
         if arrays[name].dtype != own.dtype or arrays[name].ndim != 1:
@@ -175,7 +178,7 @@ def wrong_state(arrays: Mapping[str, NDArray]) -> str:
     return ""
 
 
-def wrong_array(core: Any) -> str:
+def wrong_array(core: Core) -> str:
     """Name and fault of a stored array with a wrong length or an index out of range, or ""."""
     infos, arrays = core.describe(), core.fields()
     kept = {info["rows"] for info in infos if info["origin"] != "rebuilt"}
@@ -196,7 +199,8 @@ def fault_of(info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int])
         array: Its numbers.
         counts: How many rows there are of each kind; references to other kinds are not looked at.
     """
-    may_be_empty = info["optional"] or info["origin"] == "rebuilt"
+    absent = info["origin"] == "given" and counts.get(info["rows"]) == 0  # of a module not there
+    may_be_empty = absent or info["optional"] or info["origin"] == "rebuilt"
     if len(array) == 0 and may_be_empty:
         return ""
     if info["rows"] and len(array) != (length := length_of(info, counts)):

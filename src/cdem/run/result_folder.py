@@ -16,6 +16,7 @@ from pydantic import ValidationError
 
 from cdem.case.output_fields import CARRIED, OUTPUT_FIELDS, OutputField
 from cdem.errors import CdemError, DiskError
+from cdem.rows import rows_of
 from cdem.run.bolt_fields import bolt_lines
 from cdem.run.checkpoint import (
     CHECKPOINT,
@@ -228,7 +229,9 @@ class Results:
         nodes, elements = (
             {f.name: values[f.name] for f in kept if f.on == on} for on in ("nodes", "elements")
         )
-        volume.append(self.frames, sim.time, sim.motion[:, :3], nodes, elements)
+        volume.append(
+            self.frames, sim.time, rows_of(sim.core, "node.motion").position, nodes, elements
+        )
         polygons = surface_of(sim, {f.name: values[f.name] for f in shown})
         surface.append(self.frames, sim.time, *polygons)
         if self._bolts is not None:

@@ -15,8 +15,8 @@ from cdem.model.build import change
 from cdem.model.curves import constant, hand_over
 from cdem.model.fill import folded, nodes_of_groups, places
 from cdem.model.interfaces import bonded_pairs, interfaces_of
-from cdem.model.stiffness import interface_entries
 from cdem.model.supports import held_components, supports_of
+from cdem.rows import rows_of
 from cdem.run.state import RunState, Setting, StageState
 
 STATIC_RECORD_STEPS = 200
@@ -81,8 +81,9 @@ def update_core(sim: RunState, index: int) -> None:
             f"{names[i]!r} and {names[j]!r} was not bonded at the start (cohesion and "
             "tensile_strength 0), so it cannot be given strength now; start with a strength"
         )
-    sim.core.set_interfaces(interface_entries(sim.case, laws, names, b.start_position))
-    sim.core.update_model(change(b))
+    arrays = change(b)
+    sim.core.set_interfaces(b.assembly.interfaces)
+    sim.core.update_model(arrays)
     hand_over(sim.core, b.curves, sim.begins)
     sim.core.set_gravity([float(g) for g in sim.case.loads.gravity])
     sim.keep_case()
@@ -159,7 +160,7 @@ def fill(sim: RunState, names: list[str]) -> None:
     """Bring groups in, free of stress where they lie between the rock as it is now."""
     b, t = sim.build, sim.build.topology
     comes, out = nodes_of_groups(t, names), sim.core.fields()["node.out"] != 0
-    moved = sim.motion[:, :3] - b.start_position
+    moved = rows_of(sim.core, "node.motion").position - b.start_position
     held = held_components(supports_of(sim.case, t, b.group_names, constant()))
     lie = places(t, comes, ~out, held, moved)
     if (node := folded(t, lie, comes)) >= 0:
@@ -244,6 +245,9 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
         steps = min(steps, rules.max_steps - done)
     if stage.mode == "static":
         steps = min(steps, STATIC_RECORD_STEPS - done % STATIC_RECORD_STEPS)
+        assert (
+            rules.tolerance is not None and rules.relax is not None
+        )  # the case has filled them in
         over = sim.begins[stage.name] + last_change(sim.case, stage.name)
         changes = sim.time < over  # no rest before its curves are over
         report = sim.core.run(

@@ -18,6 +18,7 @@ from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
 from cdem.model.domain import leaving
+from cdem.rows import rows_of
 from cdem.run.changes import differences
 from cdem.run.groups import Group, groups_of
 from cdem.run.rest import Departure, Motion, Quiet, fallen, middles, rigid_motion
@@ -222,7 +223,7 @@ class RunState:
     @property
     def motion(self) -> NDArray[np.float64]:
         """The core's rows of position and velocity, each and a pad; a view of shape (nodes, 8)."""
-        return self.core.fields()["node.motion"].reshape(-1, 8)
+        return rows_of(self.core, "node.motion").numbers
 
     @property
     def fields(self) -> dict[str, NDArray[np.float64]]:
@@ -232,13 +233,13 @@ class RunState:
         from the last reset; "force" [N] is the last unbalanced force, "reaction" [N] that of
         supports; "mass" [kg]. To move nodes on purpose, write into `motion`.
         """
-        state, motion = self.core.fields(), self.motion
+        motion = rows_of(self.core, "node.motion")
         found = {
-            "position": motion[:, :3],
-            "velocity": motion[:, 4:7],
-            "displacement": motion[:, :3] - self.reference,
-            "force": self.core.node_force().reshape(-1, 4)[:, :3],
-            "reaction": state["node.reaction"].reshape(-1, 4)[:, :3],
+            "position": motion.position,
+            "velocity": motion.velocity,
+            "displacement": motion.position - self.reference,
+            "force": rows_of(self.core, "node.force").force,
+            "reaction": rows_of(self.core, "node.reaction").force,
             "mass": self.build.arrays["node.mass"].view(),
         }
         for values in found.values():
@@ -257,27 +258,18 @@ class RunState:
         Semi-springs, then semi-edges: "kind" (0 spring, 1 edge), "mother_face", "target_face" (face
         ids), "force_n" [N, compression positive], "force" [N, on the mother, shape (contacts, 3)].
         """
-        s = self.core.fields()
-        exposed = s["search.exposed_face"]
-        target = s["spring.target"]
+        core, s = self.core, self.core.fields()
+        exposed, target = s["search.exposed_face"], s["spring.target"]
         slots = np.flatnonzero(target >= 0)
-        edges = s["edge.contact"].reshape(-1, 4)
+        springs, edges = rows_of(core, "spring.state"), rows_of(core, "edge.state")
+        on_vertices, on_sides = rows_of(core, "spring.reaction"), rows_of(core, "edge.reaction")
+        crossing = rows_of(core, "edge.contact")
         return {
-            "kind": np.repeat([0, 1], [len(slots), len(edges)]),
-            "mother_face": exposed[np.concatenate([slots, edges[:, 0]]) // 4],
-            "target_face": exposed[np.concatenate([target[slots], edges[:, 1]])],
-            "force_n": np.concatenate(
-                [
-                    s["spring.state"].reshape(-1, 8)[slots, 0],
-                    s["edge.state"].reshape(-1, 8)[:, 0],
-                ]
-            ),
-            "force": np.concatenate(
-                [
-                    s["spring.reaction"].reshape(-1, 8)[slots, :3],
-                    s["edge.reaction"].reshape(-1, 8)[:, :3],
-                ]
-            ),
+            "kind": np.repeat([0, 1], [len(slots), len(crossing.target)]),
+            "mother_face": exposed[np.concatenate([slots, crossing.mother_side]) // 4],
+            "target_face": exposed[np.concatenate([target[slots], crossing.target])],
+            "force_n": np.concatenate([springs.force_n[slots], edges.force_n]),
+            "force": np.concatenate([on_vertices.force[slots], on_sides.force]),
         }
 
     @property
@@ -301,7 +293,8 @@ class RunState:
     def fallen(self) -> NDArray[np.intp]:
         """Blocks that have fallen past the edge of the model, and fall on."""
         first, gravity = self.build.topology.block_first_node, self.case.loads.gravity
-        below = fallen(first, self.build.start_position, self.motion[:, :3], gravity)
+        position = rows_of(self.core, "node.motion").position
+        below = fallen(first, self.build.start_position, position, gravity)
         return below[~self.out[below]]
 
     @property
@@ -336,7 +329,7 @@ class RunState:
         Returns:
             The first block of each group of which none had before.
         """
-        t, found, position = self.build.topology, [], self.motion[:, :3]
+        t, found, position = self.build.topology, [], rows_of(self.core, "node.motion").position
         known = {(departure.group, departure.out) for departure in self.departures}
         gone, below = self.take_out(), self.fallen
         falls = below, self.rigid_motion.speed[below] if len(below) else np.zeros(0)

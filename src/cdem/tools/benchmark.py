@@ -19,6 +19,7 @@ import numpy as np
 from cdem._native import core as native
 from cdem._native import name as native_name
 from cdem._version import __version__
+from cdem.rows import rows_of
 from cdem.run.simulation import Simulation
 from cdem.tools import benchmark_cases as cases
 from cdem.tools.benchmark_errors import modulus_error, wave_error
@@ -181,7 +182,7 @@ def tets_shared(m: int, threads: int) -> Row:
     # gradients, volume, places of nodes, material
     moved: float = 9 * 8 + 8 + 4 * 4 + 4
     # a tile finds its nodes and their rows, reads motion and writes rows; nodes read these
-    moved += len(sim.core.rebuilt()["tile.force"]) / 4 / tets * (2 * 4 + 64 + 2 * 32)
+    moved += len(rows_of(sim.core, "tile.force").numbers) / tets * (2 * 4 + 64 + 2 * 32)
     # a node reads six lists and two masses, books work and force, and moves
     moved += len(sim.fields["mass"]) / tets * (6 * 4 + 2 * 8 + 2 * 8 + 32 + 2 * 64)
     row.more["B/tet moved"] = moved

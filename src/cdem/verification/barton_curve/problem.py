@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from cdem.rows import rows_of
+
 AREA = 1.0
 """Of the cube of 1 m, whose vertices alone touch [m2]."""
 PRESSURES = (0.1, 0.5, 1, 2, 5, 10, 50)  # [MPa]
@@ -27,7 +29,7 @@ def tractions(simulation):
     """Shear and normal traction on the joint in the next step [Pa]."""
     bed = simulation.build.nodes_of("bed")
     simulation.step(1)
-    force = simulation.core.fields()["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+    force = rows_of(simulation.core, "node.reaction").force[bed].sum(axis=0)
     return -force[0] / AREA, abs(force[2]) / AREA
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from cdem.output.render import snapshot
+from cdem.rows import rows_of
 from cdem.run.fields import stress_of
 from cdem.verification import plane
 
@@ -115,9 +116,8 @@ def press(simulation, down_to=0.9):
 
 def broken_places(simulation):
     """Middles of the faces with broken bonds over the radius, x and z, shape (faces, 2)."""
-    pairs = simulation.build.assembly.counts["quads.count"]
-    bond = simulation.core.fields()["quads.bond"].reshape(4, -1)[:, :pairs]
-    faces = simulation.build.assembly.pair_faces["quads"][(bond < 0.5).any(axis=0), 0]
+    bond = rows_of(simulation.core, "quads.bond").numbers
+    faces = simulation.build.assembly.pair_faces["quads"][(bond < 0.5).any(axis=1), 0]
     x = simulation.build.start_position[simulation.build.topology.face_nodes[faces]].mean(axis=1)
     return x[:, [0, 2]] / RADIUS
 

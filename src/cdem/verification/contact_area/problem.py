@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from cdem.rows import rows_of
+
 MESHES = {  # divisions of bed and block, where the block lies, elements, and how far it is turned
     "the same": ([8, 4, 1], [1, 1, 1], [0, -0.5], "hex8", 0),
     "offset": ([8, 4, 1], [1, 1, 1], [0.37, 0.23], "hex8", 0),
@@ -62,7 +64,7 @@ def draw(study, law, mesh):
     rows = []
     while simulation.time < 0.6:
         simulation.run_until(simulation.time + 0.005)
-        force = simulation.core.fields()["node.reaction"].reshape(-1, 4)[nodes[0], 0].sum()
+        force = rows_of(simulation.core, "node.reaction").force[nodes[0], 0].sum()
         rows.append((-force, simulation.fields["displacement"][nodes[1], 0].mean()))
     force, slipped = np.mean(rows, axis=0)
     return force, slipped, simulation.energies["error"]

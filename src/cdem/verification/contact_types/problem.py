@@ -3,6 +3,7 @@
 import numpy as np
 
 from cdem.output.render import snapshot
+from cdem.rows import rows_of
 
 LOWER = {  # the topmost face, edge (along y) or vertex at the origin
     "face": ["model.blocks.0.translate=[-0.5, -0.5, -1]"],
@@ -56,11 +57,10 @@ def run(study):
                     absolute=True)  # fmt: skip
         study.check(f"{upper} on {lower}: semi-edges", theory=edges, ours=counts[1], within=0,
                     absolute=True)  # fmt: skip
-        state = simulation.core.fields()
-        spring_sunk = state["spring.state"].reshape(-1, 8)[:, 1]
-        edge_force, edge_sunk = state["edge.state"].reshape(-1, 8)[:, :2].T
-        acting = (spring_sunk[state["spring.target"] >= 0] if springs
-                  else edge_sunk[edge_force > 0])  # fmt: skip
+        core = simulation.core
+        touch, edge = core.fields()["spring.target"] >= 0, rows_of(core, "edge.state")
+        acting = (rows_of(core, "spring.state").penetration[touch] if springs
+                  else edge.penetration[edge.force_n > 0])  # fmt: skip
         study.check(f"{upper} on {lower}: penetration", unit="m", theory=depth, ours=acting.mean(),
                     within=2e-8)  # fmt: skip
     simulation = study.simulate(*LOWER["vertex"], *UPPER["vertex"], "loads.gravity=[0, 0, 0]",

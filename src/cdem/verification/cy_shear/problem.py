@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cdem.rows import rows_of
 from cdem.run.law_fields import state_of
 
 AREA = 0.5
@@ -41,7 +42,7 @@ def shear(simulation):
         moved = simulation.fields["displacement"][block, 0].mean()
         slip = state_of(simulation, "joint_slip").max()
         simulation.step(1)
-        force = simulation.core.fields()["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+        force = rows_of(simulation.core, "node.reaction").force[bed].sum(axis=0)
         rows.append((simulation.time, moved, -force[0] / AREA, abs(force[2]) / AREA, slip))
     return np.array(rows).T
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from cdem.output.render import snapshot
+from cdem.rows import rows_of
 
 LENGTH, SIDE = 10.0, 1.0  # [m]
 SPEED = 1e-3  # of the greatest motion at the start [m/s]
@@ -68,7 +69,7 @@ def shape(kind, x):
 def frequency(simulation, kind):
     """From the zero crossings of what moves as the mode does, over `PERIODS` [Hz]."""
     motion = shape(kind, simulation.build.start_position)
-    simulation.motion[:, 4:7] = SPEED * motion
+    rows_of(simulation.core, "node.motion").velocity[:] = SPEED * motion
     weight = simulation.fields["mass"][:, None] * motion
     period = 1 / theory(kind, simulation.case.materials["rock"])
     steps = max(1, int(period / 64 / simulation.core.scalars()["dt"]))  # about 64 rows a period

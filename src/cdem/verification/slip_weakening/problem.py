@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from cdem.rows import rows_of
+
 SPEED = 0.002
 """At which the top of the cube is drawn while the joint slips [m/s]."""
 
@@ -31,10 +33,10 @@ def draw(simulation):
     return np.array(rows).T
 
 
-def mean_slip(state):
+def mean_slip(core):
     """Mean slip of the vertices that carry the cube [m]."""
-    carries = state["spring.state"].reshape(-1, 8)[:, 0] > 0
-    return state["spring.history"].reshape(len(carries), -1)[carries, 0].mean()
+    carries = rows_of(core, "spring.state").force_n > 0
+    return rows_of(core, "spring.history").numbers[carries, 0].mean()
 
 
 def run(study):
@@ -53,7 +55,7 @@ def run(study):
         inside = (slip > 0.002) & (slip < 0.008)
         rate_most = np.gradient(slip, time)[inside].max() / SPEED
         if np.isfinite(rate):
-            slipped = mean_slip(simulation.core.fields())
+            slipped = mean_slip(simulation.core)
             left = np.tan(np.radians(law.residual_friction_angle))
             study.check("stable: loading over critical stiffness", theory=1.5, within=0.01,
                         ours=stiffness / critical)  # fmt: skip

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from cdem.rows import rows_of
+
 STIFFNESS, FRICTION, PRESSURE = 1e8, np.tan(np.radians(60)), 1e6  # [Pa/m], [1], [Pa]
 ONWARD, RETURN = [[0, 0], [0.2, 0], [0.21, 1]], [[0, 0], [0.2, 0], [0.21, 1], [0.36, 1], [0.37, -1]]
 WAYS = {  # divisions, speed, its history, times
@@ -27,7 +29,7 @@ def shear(study, way):
     rows = []
     for time in times:
         simulation.run_until(time)
-        reaction = simulation.core.fields()["node.reaction"].reshape(-1, 4)[lower, :2]
+        reaction = rows_of(simulation.core, "node.reaction").force[lower, :2]
         rows.append(
             (simulation.fields["displacement"][upper, :2].mean(axis=0), -reaction.sum(axis=0))
         )

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cdem.rows import rows_of
 from cdem.run.law_fields import state_of
 
 ANGLES = (0, 20, 45, 70, 90)
@@ -30,7 +31,7 @@ def lead(simulation, end):
     while simulation.time < end - 1e-9 and sum(simulation.broken.values()) == 0:
         moved = simulation.fields["displacement"][block].mean(axis=0)
         simulation.step(1)  # its forces are those of the place where it began
-        force = -simulation.core.fields()["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+        force = -rows_of(simulation.core, "node.reaction").force[bed].sum(axis=0)
         rows.append((moved[0], moved[2], force[0], force[2]))
     return np.array(rows).T
 
@@ -72,7 +73,7 @@ def run(study):
     law, rows = simulation.case.interfaces.default, []
     bed, block = (simulation.build.nodes_of(group) for group in ("bed", "block"))
     while simulation.time < 0.1 - 1e-9 and simulation.run_until(simulation.time + 1e-4):
-        force = simulation.core.fields()["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+        force = rows_of(simulation.core, "node.reaction").force[bed].sum(axis=0)
         bonded = simulation.core.fields()["quads.status"][0]
         rows.append((simulation.fields["displacement"][block, 0].mean(), -force[0], bonded))
     moved, shear, bonded = np.array(rows).T

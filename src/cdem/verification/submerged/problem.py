@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from cdem.rows import rows_of
+
 DRY = "water.reservoir.level=-10"
 TURN = "rotate: {axis: [1, 2, 3], angle: 40}"
 
@@ -24,7 +26,7 @@ def blocks(shape, turned=False):
 
 def water_on(simulation, group):
     """Sum of the forces of water on a group [N]."""
-    force = simulation.core.fields()["node.water"].reshape(-1, 4)[:, :3]
+    force = rows_of(simulation.core, "node.water").force
     return force[simulation.build.nodes_of(group)].sum(axis=0)
 
 

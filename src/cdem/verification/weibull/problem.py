@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from cdem.rows import rows_of
+
 LENGTHS = (1, 2, 4, 8, 16)
 """Pairs in a chain."""
 
@@ -20,9 +22,9 @@ def strengths(simulation, strength, stiffness):
     found, step = np.full(pairs, np.nan), simulation.core.scalars()["dt"]
     while np.isnan(found).any():
         simulation.step(1)
-        bond = simulation.core.fields()["quads.bond"].reshape(4, -1)[:, :pairs]
+        bond = rows_of(simulation.core, "quads.bond").numbers
         pulled = stiffness * (simulation.step_count - 0.5) * step  # at 1 m/s, between two steps
-        found[np.isnan(found) & (bond[0] == 0)] = pulled / strength
+        found[np.isnan(found) & (bond[:, 0] == 0)] = pulled / strength
     return found
 
 

@@ -1,0 +1,56 @@
+"""Arrays of the core as rows of numbers, by the names of their parts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from cdem._core import Core
+
+
+class Rows:
+    """An array of the core as rows of numbers: `rows_of(core, "spring.state").force_n`.
+
+    The parts that its description names (`Core.describe`) are attributes: views of the core, until
+    it changes the array. Shape (rows,), or (rows, components) of a part of several numbers. Pads
+    have no name.
+
+    Attributes:
+        numbers: All numbers of the rows, shape (rows, numbers); a view, too.
+    """
+
+    numbers: NDArray[Any]
+
+    def __init__(self, core: Core, name: str) -> None:
+        array, info = core.array(name)
+        self._name, self._parts = name, info["parts"]
+        if info["layout"] == "columns":
+            kinds = {kind["name"]: kind["count"] for kind in core.describe_rows()}
+            self.numbers = array.reshape(info["numbers"], -1)[:, : kinds[info["rows"]]].T
+        else:
+            self.numbers = array.reshape(-1, info["numbers"])
+
+    def __getattr__(self, part: str) -> NDArray[Any]:
+        first = 0
+        for name, numbers in self._parts:
+            if name and name == part:
+                own = self.numbers[:, first : first + numbers]
+                return own if numbers > 1 else own[:, 0]
+            first += numbers
+        names = ", ".join(name for name, _ in self._parts if name) or "none, but numbers"
+        raise AttributeError(f"{self._name} has no part {part!r}; it has: {names}")
+
+
+def rows_of(core: Core, name: str) -> Rows:
+    """An array of model or state as rows, see `Rows`.
+
+    Args:
+        core: The compiled core.
+        name: Of the array, as `Core.describe` has it.
+
+    Raises:
+        KeyError: There is no such array.
+    """
+    return Rows(core, name)
