@@ -85,6 +85,25 @@ inline std::set<std::string> without_modules(Core& core, const Views& arrays) {
   return missing;
 }
 
+/// Names of the stored arrays of modules that the case does not have.
+inline std::vector<std::string> absent_fields(Core& core) {
+  std::vector<std::string> names;
+  const auto note = [&](const ColumnInfo& info, const auto&) { names.push_back(info.name); };
+  const auto skip = [](const ColumnInfo&, const auto&) {};
+  const auto skip_rebuilt = [](RebuiltBy, const ColumnInfo&, const auto&) {};
+  Modules::for_each([&]<class Module>() {
+    auto& given = given_of<Module>(core.model);
+    if constexpr (Module::port == Port::applied) {
+      if (Module::is_there(given)) return;
+      describe_forces(Module::name, applied_of<Module>(core.state), note, skip_rebuilt);
+    } else if (given.count > 0) {
+      return;
+    }
+    Module::describe(given, state_of<Module>(core.state), ArrayVisit{skip, note, skip_rebuilt});
+  });
+  return names;
+}
+
 /// Copy every array of the model from a dict of flat arrays. Those of a module may be missing, all
 /// of them; another missing one is our own mistake.
 inline void take_model(Core& core, const Views& arrays) {
@@ -201,10 +220,10 @@ inline Dicts describe_row_kinds(Core& core) {
   return kinds;
 }
 
-/// Bring back every array and scalar of a checkpoint.
+/// Bring back the arrays and scalars of a checkpoint.
 inline void restore(Core& core, const Views& arrays, const Dict& scalars) {
   describe_stored(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    copy(arrays[info.name.c_str()], column);
+    if (arrays.contains(info.name.c_str())) copy(arrays[info.name.c_str()], column);
   });
   describe_scalars(core.state, [&]<class T>(const ScalarInfo& info, T& number) {
     number = nb::cast<T>(scalars[info.name]);

@@ -282,6 +282,15 @@ void bind_run(nb::class_<Core>& core) {
       .def("take_out", &take_nodes<take_out>, "leaves"_a)
       .def("excavate", &take_nodes<excavate>, "leaves"_a)
       .def("bring_in", &bring_nodes_in, "comes"_a, "position"_a, "arrays"_a, "bonded"_a)
+      .def(
+          "begin_surfaces",
+          [](Core& c, Array<Flag> which) {
+            if (which.ndim() != 1 ||
+                which.shape(0) != std::size_t(given_of<Surface>(c.model).count))
+              throw nb::value_error("one flag for each entry");
+            Surface::begin(c.model, c.state, which.data());
+          },
+          "which"_a)
       .def("install_bolts", &take_items<Bolts, Bolts::install>, "which"_a)
       .def("remove_bolts", &take_items<Bolts, Bolts::remove>, "which"_a)
       .def(
@@ -302,6 +311,8 @@ void bind_run(nb::class_<Core>& core) {
 void bind_views(nb::class_<Core>& core) {
   core.def("model", &model_arrays)
       .def("fields", &stored_arrays)
+      .def("absent_fields", &absent_fields,
+           "Names of stored arrays of what the case does not have.")
       .def("rebuilt", &rebuilt_arrays)
       .def("array", &array_by_name, "name"_a)
       .def("scalars", &scalars)
@@ -365,6 +376,10 @@ NB_MODULE(CDEM_MODULE, module) {
   module.def("interface_laws", &declarations<InterfaceLaws>,
              "What the interface laws say of themselves.");
   module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
+  module.def("surface_laws", &declarations<SurfaceLaws>,
+             "What the surface laws say of themselves.");
+  module.def("surface_contradiction", &contradiction<SurfaceLaws>, "law"_a, "parameters"_a);
+  module.def("surface_numbers", &surface_numbers, "law"_a, "parameters"_a);
   module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);
   module.def("interface_curve_end", &curve_end, "law"_a, "parameters"_a, "stiffness_n"_a);
   module.def("interface_steepest_fall", &steepest_fall, "law"_a, "parameters"_a);

@@ -14,6 +14,7 @@
 #include "core/materials/laws.hpp"
 #include "core/model/init_state.hpp"
 #include "core/model/interface_table.hpp"
+#include "core/surface/laws.hpp"
 
 namespace cdem {
 
@@ -88,6 +89,18 @@ inline std::vector<Real> material_numbers(const std::string& law, const nb::dict
           add_pieces(row, k, nb::cast<nb::list>(softening[Law<Real>::softening[k]]));
   });
   return row;
+}
+
+/// Number of a surface law, and the row of numbers that kernels read of an entry.
+inline std::pair<Index, std::vector<Real>> surface_numbers(const std::string& law,
+                                                           const nb::dict& values) {
+  std::pair<Index, std::vector<Real>> of{0, std::vector<Real>(surface_row)};
+  with_law<SurfaceLaws>(law, [&]<template <class> class Law, Index number>() {
+    const auto numbers = numbers_of_law<Law<Real>>(values);
+    std::copy(numbers.begin(), numbers.end(), of.second.begin());
+    of.first = number;
+  });
+  return of;
 }
 
 /// How fast the strength of an interface law falls, normal and in shear  [Pa/m].

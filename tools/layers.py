@@ -20,6 +20,7 @@ FOLDERS = [
     "elements",
     "nodes",
     "water",
+    "surface",
     "contact/narrow_phase",
     "contact/force",
     "bonds",
@@ -32,7 +33,7 @@ FOLDERS = [
     "run",
     "kernels",
 ]
-MODULES = ["bolts", "water"]
+MODULES = ["bolts", "water", "surface"]
 """Nobody outside of them names them, but core/model/modules.hpp."""
 DEEPEST = 8
 

@@ -141,15 +141,13 @@ struct Bolts {
            .meaning = "nodes of a bolt",
            .rows = Bolts::name,
            .layout = Layout::starts,
-           .refers_to = {"bolt_nodes"},
-           .optional = true},
+           .refers_to = {"bolt_nodes"}},
           b.first);
     given({.name = "bolts.crossing_first",
            .meaning = "crossings of a bolt with joints",
            .rows = Bolts::name,
            .layout = Layout::starts,
-           .refers_to = {"bolt_crossings"},
-           .optional = true},
+           .refers_to = {"bolt_crossings"}},
           b.crossing_first);
     given({.name = "bolts.properties",
            .unit = "N, N, N, 1, N",

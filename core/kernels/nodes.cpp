@@ -18,6 +18,7 @@ template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Colum
                         Column<Index>&);
 template void for_each_item(Queue, Index, const SampleNodes&);
 template void for_each_item(Queue, Index, const SumApplied&);
+template void for_each_item(Queue, Index, const AddApplied&);
 template Real exact_sum(Queue, Index, const KineticEnergy&);
 template Real exact_sum(Queue, Index, const StopNode&);
 template void for_each_item(Queue, Index, const RememberNode&);

@@ -23,8 +23,10 @@ void list_rows(Index node_count, const std::vector<Index>& node, AppliedForces& 
 }  // namespace
 
 void list_applied(const Model& m, State& s) {
+  Index modules = 0;
   Modules::for_each_of<Port::applied>([&]<class Module>() {
     if (!Module::is_there(given_of<Module>(m))) return;
+    ++modules;
     AppliedForces& of = applied_of<Module>(s);
     list_rows(m.node_count, Module::row_nodes(m, s), of);
     s.nodes.has_applied.resize(m.node_count);
@@ -32,6 +34,7 @@ void list_applied(const Model& m, State& s) {
     const auto first = on_host(of.first);
     for (Index i = 0; i < m.node_count; ++i) has[i] |= first[i] < first[i + 1];
   });
+  if (modules > 1) s.nodes.applied.resize(4 * std::size_t(m.node_count));
 }
 
 }  // namespace cdem

@@ -82,6 +82,15 @@ void describe_applied(State& s, const Stored& stored, const Rebuilt& rebuilt) {
   Modules::for_each_of<Port::applied>([&]<class Module>() {
     describe_forces(Module::name, applied_of<Module>(s), stored, rebuilt);
   });
+  rebuilt("add_applied",
+          {.name = "node.applied",
+           .unit = "N, -",
+           .meaning = "sum of what several modules apply, x y z, and a pad",
+           .rows = "nodes",
+           .numbers = 4,
+           .parts = {{"force", 3}, ""},
+           .optional = true},
+          s.nodes.applied);
   rebuilt("list_applied",
           {.name = "node.has_applied",
            .meaning = "1: modules apply forces to it",

@@ -112,6 +112,10 @@ void init_state(const Model& m, State& s, const Real* position) {
   make_room_for_rises(m, s);
   list_tiles(m, s);
   list_applied(m, s);
+  Modules::for_each_of<Port::applied>([&]<class Module>() {
+    if constexpr (requires { Module::start(m, s); })
+      if (Module::is_there(given_of<Module>(m))) Module::start(m, s);
+  });
   const std::size_t rows = 4 * std::size_t(m.corner_rows);
   s.corner_force.resize(rows + 4);
   // the row that adds nothing, see FusedRows: x + -0 is x, whatever the sign of a zero

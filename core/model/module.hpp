@@ -29,12 +29,16 @@
 //   static void bring_in(given, state, out);         blocks have come in
 //
 // Forces from outside, Port::applied: `act` writes a row for each vertex that it loads into
-// applied_of<Module>(state).rows, and zero where the node is out. The engine sums them on nodes,
-// books their work by the term with the name of the module, and lets what it loses at an excavation
-// act on as it does with other forces.
+// applied_of<Module>(state).rows. The engine sums them on nodes that are not out, books their work
+// by the term with the name of the module, and lets what it loses at an excavation act on as it
+// does with other forces.
 //
 //   static bool is_there(given);                   does the case have it?
 //   static std::vector<Index> row_nodes(model, state);  node of each of its rows
+//   static void start(model, state);               if any: what it knows at the start
+//   static void renew(model, state, comes);        if any: nodes with flag 1 have come in
+//   static auto stiffness_of(given);               if any: for_each_stiffness(visit):
+//                                                  visit(node, stiffness at most  [N/m])
 //
 // What follows is the engine's: who sums the rows, fused kernel, sleep, stable step, ledger,
 // checkpoint. No file outside the folder of a module names it, but modules.hpp, tests, and the

@@ -3,10 +3,11 @@
 
 #include "core/bolts/data.hpp"
 #include "core/model/module.hpp"
+#include "core/surface/data.hpp"
 #include "core/water/data.hpp"
 
 namespace cdem {
 
-using Modules = ModuleList<Bolts, Water>;
+using Modules = ModuleList<Bolts, Water, Surface>;
 
 }  // namespace cdem

@@ -22,27 +22,17 @@ struct Rebuild {
 /// All of them; `prepare` calls those of `after_resume` in this order. What a frame, a history or
 /// the begin of a stage reads of the last step cannot be made again: a checkpoint keeps it.
 inline constexpr Rebuild rebuilds[] = {
-    {"list_tiles", Made::at_start},
-    {"list_applied", Made::at_start},
-    {"list_nodal_means", Made::after_resume},
-    {"find_loads_and_supports", Made::after_resume},
-    {"list_exposed", Made::after_resume},
-    {"list_corners", Made::after_resume},
-    {"list_lumped", Made::after_resume},
-    {"place_predicted_nodes", Made::after_resume},
-    {"find_awake", Made::after_resume},
-    {"list_awake_nodes", Made::with_another},
-    {"find_fused_blocks", Made::with_another},
-    {"release_bonds", Made::in_step},
-    {"update_face_geometry", Made::in_step},
-    {"act_of_modules", Made::in_step},
-    {"prune_pair_list", Made::in_step},
-    {"find_target_faces", Made::in_step},
-    {"find_target_edges", Made::in_step},
-    {"update_contact_forces", Made::in_step},
-    {"update_nodal_means", Made::in_step},
-    {"update_element_forces", Made::in_step},
-    {"report_elements", Made::in_step},
+    {"list_tiles", Made::at_start},           {"list_applied", Made::at_start},
+    {"list_nodal_means", Made::after_resume}, {"find_loads_and_supports", Made::after_resume},
+    {"list_exposed", Made::after_resume},     {"list_corners", Made::after_resume},
+    {"list_lumped", Made::after_resume},      {"place_predicted_nodes", Made::after_resume},
+    {"add_applied", Made::after_resume},      {"find_awake", Made::after_resume},
+    {"list_awake_nodes", Made::with_another}, {"find_fused_blocks", Made::with_another},
+    {"release_bonds", Made::in_step},         {"update_face_geometry", Made::in_step},
+    {"act_of_modules", Made::in_step},        {"prune_pair_list", Made::in_step},
+    {"find_target_faces", Made::in_step},     {"find_target_edges", Made::in_step},
+    {"update_contact_forces", Made::in_step}, {"update_nodal_means", Made::in_step},
+    {"update_element_forces", Made::in_step}, {"report_elements", Made::in_step},
 };
 
 /// One of these functions; a name that is not in the list does not compile.

@@ -25,6 +25,7 @@ struct NodeState {
   Column<Flag> lumped;              // 1: its block has bonds, see list_lumped; empty: none has
   Column<Flag> out;                 // 1: taken out, see run/take_out.hpp; empty: none is
   Column<Real> relief;              // rows of 4, see run/excavate.hpp; empty: none
+  Column<Real> applied;             // rows of 4, sum of several modules; empty where one is there
   Column<Flag> has_applied;  // 1: modules apply forces to it, see nodes/applied.hpp; or empty
   Column<Flag> fused;        // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
   Column<Index> general;     // awake blocks of nodes but those of which all are fused

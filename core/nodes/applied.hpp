@@ -13,6 +13,9 @@ namespace cdem {
 /// last step.
 void act_of_modules(const Model& model, State& state, Queue queue, Stage stage);
 
+/// Add what modules apply to each node, where there is more than one of them.
+void add_applied(const Model& model, State& state);
+
 /// Find applied forces at the start, or after blocks were taken out: no time passes. Returns the
 /// change of the force on each node, rows of 4 [N]; none where there are none.
 std::vector<Real> change_applied(const Model& model, State& state);

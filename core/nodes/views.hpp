@@ -41,6 +41,7 @@ inline SupportColumns support_columns(const Model& m, const State& s) {
 
 /// Sum of what modules apply, rows of 4; null: none is there.
 inline const Real* applied_forces(const State& s) {
+  if (s.nodes.applied.size() > 0) return s.nodes.applied.data();
   const Real* sum = nullptr;
   Modules::for_each_of<Port::applied>([&]<class Module>() {
     if (applied_of<Module>(s).sum.size() > 0) sum = applied_of<Module>(s).sum.data();

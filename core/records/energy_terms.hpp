@@ -50,6 +50,7 @@ inline constexpr EnergyTerm energy_terms[] = {
      .kind = EnergyKind::supplied,
      .meaning = "work of loads, gravity and supports"},
     {.name = "water", .kind = EnergyKind::supplied, .meaning = "work of water pressure"},
+    {.name = "surface", .kind = EnergyKind::supplied, .meaning = "work of surface laws"},
 };
 inline constexpr std::size_t energy_term_count = std::size(energy_terms);
 

@@ -103,6 +103,9 @@ void bring_in(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   sort_exposed(s);
   s.taken_out += before - stored_energy(m, s);
   list_pairs_of_exposed(m, s, {.everything_awake = true}, true);
+  Modules::for_each_of<Port::applied>([&]<class Module>() {
+    if constexpr (requires { Module::renew(m, s, comes); }) Module::renew(m, s, comes);
+  });
   change_applied(m, s);
 }
 

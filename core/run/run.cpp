@@ -10,6 +10,7 @@
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/nodal_mean.hpp"
 #include "core/model/rebuilds.hpp"
+#include "core/nodes/applied.hpp"
 #include "core/nodes/corner_lists.hpp"
 #include "core/nodes/curves.hpp"
 #include "core/nodes/masses.hpp"
@@ -29,13 +30,10 @@ struct AfterResume {
 
 /// In the order of `rebuilds`.
 constexpr AfterResume after_resume[] = {
-    {"list_nodal_means", list_nodal_means},
-    {"find_loads_and_supports", find_loads_and_supports},
-    {"list_exposed", list_exposed},
-    {"list_corners", list_corners},
-    {"list_lumped", list_lumped},
-    {"place_predicted_nodes", place_predicted_nodes},
-    {"find_awake", find_awake},
+    {"list_nodal_means", list_nodal_means}, {"find_loads_and_supports", find_loads_and_supports},
+    {"list_exposed", list_exposed},         {"list_corners", list_corners},
+    {"list_lumped", list_lumped},           {"place_predicted_nodes", place_predicted_nodes},
+    {"add_applied", add_applied},           {"find_awake", find_awake},
 };
 
 consteval bool is_complete() {

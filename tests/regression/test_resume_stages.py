@@ -46,11 +46,19 @@ def static(name, steps=100, **more):
 
 
 def dam():
-    """Water that rises while a static stage runs, and the load of a curve."""
+    """Water that rises while a static stage runs, and pressures, one of which waits for its stage."""
     case = on_ground(
         [box("ground", [6, 6, 1], [0, 0, -1], divisions=[2, 2, 1]),
          box("block", [2, 2, 3], [2, 2, 0], divisions=[2, 2, 2], shape="tet4")],
         [static("rest"), dynamic("fill"), static("stand", set={"interfaces.base.friction_angle": 40})],
+        loads={
+            "gravity": DOWN,
+            "surfaces": [
+                {"surface": {"group": "block", "normal": [0, 0, 1]}, "pressure": "5 kPa"},
+                {"surface": {"group": "block", "normal": [1, 0, 0]}, "pressure": "9 kPa",
+                 "history": [[0, 0], [0.03, 1]], "stage": "fill"},
+            ],
+        },
         water={
             "fields": [{"name": "up", "interface": "base", "formula": "9810*3*max(0,1-(x-2)/2)",
                         "history": [[0, 0], [0.05, 1]], "stage": "rest"}],

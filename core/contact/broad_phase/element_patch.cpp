@@ -15,7 +15,7 @@ namespace cdem {
 namespace {
 
 /// What the lists ask of exposed faces.
-struct Surface {
+struct ElementSurface {
   const Model& m;
   const State& s;
   FaceColumns faces = on_host(face_columns(m, s));
@@ -29,7 +29,7 @@ struct Surface {
 };
 
 /// Deepest contact of a face: its targets may lie this far outside its path  [m].
-Real deepest_gap(const Surface& of, Index place) {
+Real deepest_gap(const ElementSurface& of, Index place) {
   Real deepest = 0;
   for (std::size_t k = 4 * std::size_t(place); k < 4 * std::size_t(place) + 4; ++k)
     if (of.target[k] >= 0) {
@@ -43,7 +43,7 @@ Real deepest_gap(const Surface& of, Index place) {
   return 2 * deepest;
 }
 
-ExposedFace exposed_face(const Surface& of, Index place) {
+ExposedFace exposed_face(const ElementSurface& of, Index place) {
   ExposedFace e;
   e.face = of.exposed_face[place];
   e.block = of.block[e.face];
@@ -99,7 +99,7 @@ Indented indented_at(const Model& m, const ExposedFace& face, Index side) {
 }
 
 /// All of a patch but its faces.
-void complete(const Surface& of, const Unset<ExposedFace>& exposed, Patch& p) {
+void complete(const ElementSurface& of, const Unset<ExposedFace>& exposed, Patch& p) {
   p.box = Box::nothing();
   for (Index i = 0; i < p.face_count; ++i) {
     const ExposedFace& e = exposed[p.face[i]];
@@ -146,7 +146,7 @@ void complete(const Surface& of, const Unset<ExposedFace>& exposed, Patch& p) {
 }  // namespace
 
 void list_exposed_faces(const Model& m, const State& s, Unset<ExposedFace>& exposed) {
-  const Surface surface{m, s};
+  const ElementSurface surface{m, s};
   const Index count = Index(surface.exposed_face.size());
   exposed.resize(count);
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
@@ -174,7 +174,7 @@ void list_patches(const Model& m, const State& s, const Unset<ExposedFace>& expo
   }
   const Index count = Index(faces.size());
   patches.resize(count);
-  const Surface surface{m, s};
+  const ElementSurface surface{m, s};
 #pragma omp parallel for schedule(static) if (count >= worth_threads)
   for (Index p = 0; p < count; ++p) {
     Patch& patch = patches[p] = {};

@@ -33,6 +33,10 @@ void sum_stiffness(const Model& m, State& s) {
     for (Index i = 0; i < set.count; ++i)
       if (is_active(i)) for_each_stiffness(i, [&](Index node, Real k) { bonds[node] += k; });
   });
+  Modules::for_each_of<Port::applied>([&]<class Module>() {
+    if constexpr (requires { Module::stiffness_of(given_of<Module>(m)); })
+      Module::stiffness_of(given_of<Module>(m))([&](Index node, Real k) { bonds[node] += k; });
+  });
   const FaceColumns faces = on_host(face_columns(m, s));
   const ContactLaws laws = on_host(contact_laws(m, s));
   const FaceGeometry geometry = on_host(face_geometry(s));

@@ -12,6 +12,7 @@ from pydantic import PrivateAttr, ValidationError
 from cdem import _native
 from cdem.case import checks, plausible
 from cdem.case.explain import explain, problems_of
+from cdem.case.history_file import with_histories
 from cdem.case.named_files import files_of
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
 from cdem.case.schema import CaseParts, Stage
@@ -45,6 +46,7 @@ class Case(CaseParts):
 
     def __init__(self, _source: Source | None = None, **data: Any) -> None:
         source, data = _source or Source(), plain(data, _source or Source())
+        data = with_histories(data, source)
         problems: list[checks.Problem] = outdated(data)
         data = renewed(data)
         _refuse_code(data, source)
@@ -141,7 +143,8 @@ class Case(CaseParts):
             if isinstance(node, Part):
                 part, keep = node, depth
         field, inner = str(keys[keep]), keys[keep + 1 :]
-        new = replace_at(getattr(part, field), inner, plain(value, self._source))
+        given = with_histories({str(keys[-1]): plain(value, self._source)}, self._source)
+        new = replace_at(getattr(part, field), inner, given[str(keys[-1])])
         try:
             setattr(part, field, new)
         except ValidationError as error:

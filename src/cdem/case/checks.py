@@ -57,9 +57,16 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _groups(case)
     yield from _excavation(case)
     yield from _bolts(case)
+    yield from _surfaces(case)
     yield from _curves(case)
     yield from _joints(case)
     yield from _unique_names(case)
+
+
+def _surfaces(case: CaseParts) -> Iterator[Problem]:
+    for i, history in enumerate(case.histories):
+        if "surface_force" in history.quantities and not case.loads.surfaces:
+            yield ("histories", i, "quantities"), "surface_force needs loads.surfaces in the case"
 
 
 def _water(case: CaseParts) -> Iterator[Problem]:
@@ -257,7 +264,7 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
         if joint.group is not None:
             yield ("model", "joints", i, "group"), joint.group
     yield from _listed_names(case)
-    for kind in ("tractions", "velocities", "supports"):
+    for kind in ("tractions", "surfaces", "velocities", "supports"):
         for i, load in enumerate(getattr(case.loads, kind)):
             if getattr(load, "group", None) is not None:
                 yield ("loads", kind, i, "group"), load.group

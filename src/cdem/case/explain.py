@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS
 from cdem.case.source import Keys, Source
 from cdem.errors import CaseError
 from cdem.units import describe
@@ -163,7 +163,9 @@ MISPLACED = {
 
 def unknown_key(key: str, known: Iterable[str]) -> str:
     """Say that a key is unknown, and what may be meant: that of another law, or one like it."""
+    known = list(known)
     kind = BLOCK_LAWS if "density" in known else INTERFACE_LAWS
+    kind = SURFACE_LAWS if "surface" in known else kind
     laws = [law.name for law in kind.values() if key in {p.name for p in law.parameters}]
     if laws and "law" in known:
         return f"unknown key; it belongs to law: {' or '.join(laws)}"

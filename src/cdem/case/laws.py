@@ -177,6 +177,7 @@ def _declared(laws: list[dict[str, Any]]) -> dict[str, Law]:
 
 INTERFACE_LAWS = _declared(native.interface_laws())
 BLOCK_LAWS = _declared(native.block_laws())
+SURFACE_LAWS = _declared(native.surface_laws())
 STATES = {
     variable.name: variable
     for law in (*BLOCK_LAWS.values(), *INTERFACE_LAWS.values())
@@ -196,6 +197,13 @@ def block_contradiction(part: Part) -> str:
     """Why the parameters of a material do not fit each other, or nothing."""
     law = BLOCK_LAWS[part.__dict__["law"]]
     why = native.block_contradiction(law.name, law.numbers(part))
+    return why.format(**law.values(part))
+
+
+def surface_contradiction(part: Part) -> str:
+    """Why the parameters of a surface law do not fit each other, or nothing."""
+    law = SURFACE_LAWS[part.__dict__["law"]]
+    why = native.surface_contradiction(law.name, law.numbers(part))
     return why.format(**law.values(part))
 
 

@@ -1,13 +1,14 @@
-"""What acts on the bodies of a case from outside: gravity, tractions, driven and held nodes."""
+"""What acts on the bodies of a case from outside: gravity, surfaces, driven and held nodes."""
 
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 
 from cdem.case.bodies_schema import exactly_one
+from cdem.case.laws import SURFACE_LAWS, choice, models, surface_contradiction
 from cdem.case.types import (
     Acceleration3,
     Direction3,
@@ -21,7 +22,26 @@ from cdem.case.types import (
 
 Axis = Literal["x", "y", "z"]
 Axes = list[Axis]
-History = list[tuple[Annotated[float, Quantity("s")], Annotated[float, Quantity("1")]]]
+Rows = list[tuple[Annotated[float, Quantity("s")], Annotated[float, Quantity("1")]]]
+_CELL = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+_NAMED = {
+    "type": "object",
+    "properties": {"file": {"type": "string", "description": "Text with two columns"}},
+    "required": ["file"],
+    "additionalProperties": False,
+}
+History = Annotated[
+    Rows,
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "array", "minItems": 1, "items": {"type": "array", "items": _CELL}},
+                _NAMED,
+            ]
+        }
+    ),
+]
+"""Rows of time and factor; a case may name a file of them, see `history_file`."""
 
 
 class FacesOfGroup(Part):
@@ -63,6 +83,8 @@ class Region(Part):
 class Timed(Part):
     """Something with curves over time: under `history`, of a factor, or `level`, of heights."""
 
+    acts_from_stage: ClassVar[bool] = False
+    """Whether it begins to act in its stage, so that this stands for itself."""
     stage: Name | None = Field(
         None,
         description="Stage from whose begin the times of history or of a level count; before it the "
@@ -84,7 +106,7 @@ class Timed(Part):
                 raise ValueError(
                     f"{key}: times must be at least 0, the begin of stage {self.stage}"
                 )
-        if self.stage is not None and not self.curves:
+        if self.stage is not None and not self.curves and not self.acts_from_stage:
             raise ValueError("stage says from when a curve counts: give it with a history or level")
         return self
 
@@ -93,7 +115,8 @@ class _Factored(Timed):
     history: History | None = Field(
         None,
         min_length=1,
-        description="Factor over time, linear between: [[time [s], factor [1]], ...]",
+        description="Factor over time, linear between: [[time [s], factor [1]], ...], or "
+        "{file: NAME} of two columns",
     )
 
 
@@ -102,6 +125,32 @@ class Traction(_Factored):
 
     surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
     traction: Stress3 = Field(description="Force per area [Pa]")
+
+
+class SurfaceLoad(_Factored):
+    """A law that acts on faces as they lie now; its parameters come with the model of the law."""
+
+    acts_from_stage: ClassVar[bool] = True
+    if TYPE_CHECKING:
+        law: str
+    surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
+    stage: Name | None = Field(
+        None,
+        description="Stage at whose begin it starts to act, and from which the times of its history "
+        "and the displacements of its faces count; by default all from the start of the run",
+    )
+
+    @model_validator(mode="after")
+    def _parameters_fit(self) -> SurfaceLoad:
+        if why := surface_contradiction(self):
+            raise ValueError(why)
+        return self
+
+
+if TYPE_CHECKING:
+    AnySurfaceLoad = SurfaceLoad
+else:
+    AnySurfaceLoad = choice(models(SurfaceLoad, SURFACE_LAWS), SURFACE_LAWS)
 
 
 class PrescribedVelocity(_Factored):
@@ -141,6 +190,11 @@ class Loads(Part):
     """What acts on the bodies from outside."""
 
     gravity: Acceleration3 = Field([0.0, 0.0, 0.0], description="Acceleration of gravity [m/s2]")
-    tractions: list[Traction] = Field([], description="Stresses on faces")
+    tractions: list[Traction] = Field(
+        [], description="Stresses on faces, in directions that stay, per area of the start"
+    )
+    surfaces: list[AnySurfaceLoad] = Field(
+        [], description="Laws on faces, which follow them: pressure, and laws of your own"
+    )
     velocities: list[PrescribedVelocity] = Field([], description="Driven nodes")
     supports: list[Support] = Field([], description="Held nodes")

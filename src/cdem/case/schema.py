@@ -320,7 +320,7 @@ class HistoryPoint(Part):
     )
     quantities: list[
         Literal[
-            "centroid", "displacement", "velocity", "energy", "force", "water_force",
+            "centroid", "displacement", "velocity", "energy", "force", "water_force", "surface_force",
             "axial_force", "slip", "plate_force",
         ]
     ] = Field(min_length=1, description="What to follow; the last three of a bolt")  # fmt: skip

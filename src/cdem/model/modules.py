@@ -6,9 +6,10 @@ from cdem.case.case import Case
 from cdem.mesh.topology import Topology
 from cdem.model.bolts import BoltModel
 from cdem.model.module import Module
+from cdem.model.surface import SurfaceModel
 from cdem.model.water import WaterModel
 
-MODULES: tuple[type[Module], ...] = (BoltModel, WaterModel)
+MODULES: tuple[type[Module], ...] = (BoltModel, WaterModel, SurfaceModel)
 """Every module once, as in `core/model/modules.hpp`."""
 
 

@@ -64,7 +64,7 @@ def _plot_energies(plt: Any, folder: Path, time: NDArray, columns: dict[str, NDA
         2, 1, figsize=(6.4, 5.2), sharex=True, height_ratios=[3, 1]
     )
     for term in ENERGY_TERMS:
-        values = columns[term.column]
+        values = columns.get(term.column, np.zeros(1))
         if np.abs(values).max() > 0:
             upper.plot(time, values, label=term.name, lw=1.4)
     upper.set(ylabel="energy [J]")

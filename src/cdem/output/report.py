@@ -34,7 +34,9 @@ def info(folder: Path) -> str:
     e = s["energies"]
     if e:
         lines.append(f"  energy closing error {closing(e)}")
-        lines.append("  " + ", ".join(f"{t.name} {e[t.name]:.4g} J" for t in ENERGY_TERMS))
+        lines.append(
+            "  " + ", ".join(f"{t.name} {e[t.name]:.4g} J" for t in ENERGY_TERMS if t.name in e)
+        )
     if s["unbalance_ratio"] is not None:
         lines.append(f"  unbalance ratio {s['unbalance_ratio']:.3g}")
     lines.append(

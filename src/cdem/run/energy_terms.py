@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cdem._native import core as native
+from cdem.case.case import Case
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,16 @@ class EnergyTerm:
         return f"{self.name} {self.kind} [J]"
 
 
+OF_SURFACES = "surface"
+"""The term of surface laws: only a case that has some tells it."""
+
 ENERGY_TERMS = [
     EnergyTerm(term["name"], "energy" if term["kind"] in ("stored", "hidden") else "work")
     for term in native.energy_terms()
 ]
 """As the core lists them."""
+
+
+def terms_of(case: Case) -> list[EnergyTerm]:
+    """Those that the files of a case tell."""
+    return [term for term in ENERGY_TERMS if case.loads.surfaces or term.name != OF_SURFACES]

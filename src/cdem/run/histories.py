@@ -17,6 +17,7 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
     """Column name and value of everything that the case's histories follow."""
     units = {
         "centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N", "water_force": "N",
+        "surface_force": "N",
     }  # fmt: skip
     out: list[tuple[str, Any]] = []
     position = sim.build.start_position
@@ -74,6 +75,8 @@ def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.
         return fields["reaction"][nodes].sum(axis=0)
     if quantity == "water_force":
         return rows_of(sim.core, "node.water").force[nodes].sum(axis=0)
+    if quantity == "surface_force":
+        return rows_of(sim.core, "node.surface").force[nodes].sum(axis=0)
     name = "position" if quantity == "centroid" else quantity
     mass = fields["mass"][nodes]
     return (mass[:, None] * fields[name][nodes]).sum(axis=0) / mass.sum()

@@ -58,6 +58,8 @@ def check_model(
     own |= {name for name in arrays if name.startswith(PREFIX)}
     other = set(arrays) - own | set(attributes.core)
     other ^= set(run.core.fields()) | set(run.core.scalars())
+    # a case without a module goes on from what a cdem without it wrote
+    other -= set(run.core.absent_fields()) - set(arrays)
     if other or (attributes.version != __version__ and not force):
         fields = f" and holds other fields ({', '.join(sorted(other)[:3])}, ...)" if other else ""
         raise CdemError(
@@ -70,7 +72,7 @@ def check_model(
 def wrong_type(core: Core, arrays: Mapping[str, NDArray]) -> str:
     """Name and fault of an array whose kind of numbers is not that of the core's, or ""."""
     for name, own in core.fields().items():
-        if arrays[name].dtype != own.dtype or arrays[name].ndim != 1:
+        if name in arrays and (arrays[name].dtype != own.dtype or arrays[name].ndim != 1):
             return f"{name} holds {arrays[name].dtype}, not a row of {own.dtype}"
     return ""
 
@@ -107,7 +109,7 @@ def wrong_stage(attributes: Attributes) -> str:
 MOST_STEPS = 2**53
 """More steps than any run does."""
 RANGES = {"node.out": 1, "bolts.phase": 3, "triangles.status": 2, "quads.status": 2,
-          "overlaps.status": 2}  # fmt: skip
+          "overlaps.status": 2, "surface.begun": 1}  # fmt: skip
 """Highest number of arrays that tell states apart; the lowest is 0."""
 
 
@@ -169,7 +171,7 @@ def _wrong_time(attributes: Attributes, stage: StageState) -> str:
 def wrong_state(arrays: Mapping[str, NDArray]) -> str:
     """Name and fault of an array of which a value cannot be, or ""."""
     for name, most in RANGES.items():
-        values = arrays[name]
+        values = arrays.get(name, np.zeros(0))
         if len(values) and (values.min() < 0 or values.max() > most):
             return f"{name} holds other numbers than 0 to {most}"
     for name in ("node.motion", "node.force", "corner.force"):
@@ -199,7 +201,8 @@ def fault_of(info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int])
         array: Its numbers.
         counts: How many rows there are of each kind; references to other kinds are not looked at.
     """
-    may_be_empty = info["optional"] or info["origin"] == "rebuilt"
+    absent = info["origin"] == "given" and counts.get(info["rows"]) == 0  # of a module not there
+    may_be_empty = absent or info["optional"] or info["origin"] == "rebuilt"
     if len(array) == 0 and may_be_empty:
         return ""
     if info["rows"] and len(array) != (length := length_of(info, counts)):

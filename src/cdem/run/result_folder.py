@@ -26,7 +26,7 @@ from cdem.run.checkpoint import (
     read_checkpoint,
     write_checkpoint,
 )
-from cdem.run.energy_terms import ENERGY_TERMS
+from cdem.run.energy_terms import terms_of
 from cdem.run.fields import surface_of, values_of
 from cdem.run.folder_lock import FolderLock
 from cdem.run.frame_files import FrameFiles, SurfaceFiles
@@ -150,7 +150,7 @@ class Results:
         self.tracks = tracks(sim)
         columns = [
             "time [s]", "step",
-            *(term.column for term in ENERGY_TERMS),
+            *(term.column for term in terms_of(sim.case)),
             "energy error", "unbalance ratio", "broken tension", "broken shear",
         ]  # fmt: skip
         columns += [name for name, _ in self.tracks]
@@ -197,7 +197,7 @@ class Results:
         e = sim.energies
         broken = sim.broken
         row = [sim.time, sim.step_count]
-        row += [e[term.name] for term in ENERGY_TERMS]
+        row += [e[term.name] for term in terms_of(sim.case)]
         row += [e["error"], sim.core.unbalance_ratio(), broken["tension"], broken["shear"]]
         row += [value() for _, value in self.tracks]
         self._history.append(row)

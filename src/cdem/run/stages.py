@@ -101,6 +101,7 @@ def begin(sim: RunState) -> StageState:
     if stage.remove:
         excavate(sim, stage.remove)
     change_bolts(sim, stage.name)
+    begin_surfaces(sim, stage.name)
     sim.core.change_mass(is_lumped(stage))
     apply_settings(sim, index)
     hand_over(sim.core, sim.build.curves, sim.begins)
@@ -193,6 +194,13 @@ def change_bolts(sim: RunState, stage: str) -> None:
         sim.core.remove_bolts(leave)
     if come.any() and sim.stage_index > 0:
         sim.core.install_bolts(come)
+
+
+def begin_surfaces(sim: RunState, stage: str) -> None:
+    """Let surface laws act that wait for a stage; those of the first act already."""
+    come = np.array([item.stage == stage for item in sim.case.loads.surfaces], np.int8)
+    if come.any() and sim.stage_index > 0:
+        sim.core.begin_surfaces(come)
 
 
 def release_part(sim: RunState, stage: StageState) -> bool:

@@ -12,6 +12,7 @@ TEST_CASE("work of applied forces is that of the mean force on the way of the la
                        .first = first,
                        .row = row,
                        .rows = {out},
+                       .out = nullptr,
                        .dt = 0.1,
                        .force = force,
                        .work = &work};

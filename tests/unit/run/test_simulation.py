@@ -39,6 +39,36 @@ def test_a_checkpoint_of_another_version_with_the_same_fields_can_be_forced(run_
     assert run_cli("run", "cube.yaml", "--resume", "--force", "--quiet")[0] == 0
 
 
+@pytest.mark.parametrize("pressed", [False, True])
+def test_a_checkpoint_may_lack_the_arrays_of_what_its_case_does_not_have(
+    run_cli, cube_folder, pressed
+):
+    """One of a cdem before surface laws resumes, to the same bytes; where they act it is refused."""
+    case = yaml.safe_load(FALL)
+    if pressed:
+        entry = {"surface": {"group": "cube", "normal": [0, 0, 1]}, "pressure": 10}
+        case["loads"]["surfaces"] = [entry]
+    (cube_folder / "cube.yaml").write_text(yaml.safe_dump(case))
+    simulation = cdem.Simulation(cdem.Case.load("cube.yaml"), output="part", threads=1)
+    simulation.run(should_stop=lambda: simulation.step_count >= 5)
+    simulation.close()
+    arrays, text = read_checkpoint(cube_folder / "part/checkpoint.h5")
+    lacks = {n: a for n, a in arrays.items() if "surface" not in n}
+    assert len(lacks) < len(arrays)
+    write_checkpoint(cube_folder / "part", lacks, text)
+    status, _, err = run_cli("run", "cube.yaml", "-o", "part", "--resume", "--quiet")
+    if pressed:
+        assert status == 1 and "holds other fields" in err and "surface" in err
+        return
+    assert status == 0, err
+    assert run_cli("run", "cube.yaml", "-o", "whole", "--quiet")[0] == 0
+    whole, part = (
+        read_checkpoint(cube_folder / folder / "checkpoint.h5")[0] for folder in ("whole", "part")
+    )
+    assert whole.keys() == part.keys()
+    assert all((whole[name] == array).all() for name, array in part.items())
+
+
 def test_a_run_leaves_the_case_of_its_caller_alone():
     case = cdem.Case(
         model={"blocks": [{"group": "rock", "box": {"size": [1, 1, 1]}}]},

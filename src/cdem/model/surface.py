@@ -1,0 +1,107 @@
+"""Surface laws for the core: the faces that each entry of the case acts on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cdem._native import core as native
+from cdem.case.case import Case
+from cdem.case.laws import SURFACE_LAWS
+from cdem.errors import CaseError
+from cdem.mesh.topology import Topology
+from cdem.model.curves import add_curve
+from cdem.model.faces import face_areas
+from cdem.model.flat_arrays import table
+from cdem.model.module import Built, Module, Parts
+from cdem.model.selection import select_faces
+
+KINDS = {"surface_triangles": 3, "surface_quads": 4}
+"""Sets of faces of the core, and how many vertices theirs have."""
+
+
+@dataclass
+class SurfaceModel(Module):
+    """Surface laws of a model.
+
+    Attributes:
+        entries: What no stage may change, by entry: surface, law, stage.
+        found: Faces of each entry and their area at the start [m2].
+    """
+
+    name = "surface"
+    entries: list[tuple[Any, ...]] | None = None
+    found: list[tuple[int, float]] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, case: Case, t: Topology, names: list[str]) -> SurfaceModel:
+        return cls()
+
+    def add_arrays(self, parts: Parts) -> None:
+        case, t, out = parts.case, parts.topology, parts.assembly
+        self._refuse_others(case)
+        items = case.loads.surfaces
+        if not items:
+            return
+        faces = [
+            select_faces(case, t, parts.names, item.surface, f"loads.surfaces.{i}")
+            for i, item in enumerate(items)
+        ]
+        of_law = [
+            native.surface_numbers(item.law, SURFACE_LAWS[item.law].numbers(item)) for item in items
+        ]
+        curves = [add_curve(item.history, item.stage, parts.curves) for item in items]
+        first = case.stages[0].name
+        out.counts["surface.count"] = len(items)
+        out.arrays |= {
+            "surface.law": np.array([law for law, _ in of_law], np.int32),
+            "surface.curve": np.array(curves, np.int32),
+            "surface.parameters": np.array([row for _, row in of_law], float).ravel(),
+            "surface.waits": np.array([i.stage not in (None, first) for i in items], np.int8),
+        }
+        face = np.concatenate(faces)
+        entry = np.repeat(np.arange(len(items)), [len(f) for f in faces])
+        area = face_areas(t.node_position, t.face_nodes[face])
+        self.found = [(len(f), float(area[entry == i].sum())) for i, f in enumerate(faces)]
+        corners = (t.face_nodes[face] >= 0).sum(axis=1)
+        for kind, vertices in KINDS.items():
+            some = corners == vertices
+            stride = parts.stride(int(some.sum()))
+            out.counts[f"{kind}.count"] = int(some.sum())
+            nodes = t.face_nodes[face[some]][:, :vertices].T.astype(np.int32)
+            out.arrays |= {
+                f"{kind}.nodes": table(nodes, stride),
+                f"{kind}.entry": table(entry[some][None].astype(np.int32), stride),
+                f"{kind}.area": area[some],
+            }
+
+    def _refuse_others(self, case: Case) -> None:
+        """Refuse other entries than those of the start.
+
+        Raises:
+            CaseError: A stage has changed them.
+        """
+        entries = [(item.surface, item.law, item.stage) for item in case.loads.surfaces]
+        if self.entries is None:
+            self.entries = entries
+        if entries != self.entries:
+            raise CaseError(
+                f"{case.where('loads.surfaces')}: loads.surfaces: a stage can change the parameters and the "
+                "history of an entry, not its surface, law or stage; write another entry with stage:"
+            )
+
+    def report(self, build: Built) -> list[dict[str, Any]]:
+        items = build.case.loads.surfaces
+        return [
+            {"law": item.law, "stage": item.stage, "faces": faces, "area": area}
+            for item, (faces, area) in zip(items, self.found, strict=True)
+        ]
+
+    def lines(self, report: list[dict[str, Any]]) -> list[str]:
+        return [
+            f"  {one['law']} acts on {one['faces']:,} faces, {one['area']:.6g} m2"
+            + (f", from the begin of {one['stage']}" if one["stage"] else "")
+            for one in report
+        ]
