@@ -30,6 +30,7 @@ using Dict = nb::typed<nb::dict, nb::str, nb::any>;
 using Dicts = nb::typed<nb::list, Dict>;
 /// Flat arrays that Python may write into, by name.
 using Views = nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy>>;
+using ViewAndDict = nb::typed<nb::tuple, nb::ndarray<nb::numpy>, Dict>;
 
 template <class T>
 using Array = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
@@ -177,10 +178,9 @@ inline Dict dict_of(const ColumnInfo& info, const char* origin, const char* rebu
 }
 
 /// View of one array, only until it is changed or resized, and what it holds.
-inline nb::typed<nb::tuple, nb::ndarray<nb::numpy>, Dict> array_by_name(nb::handle_t<Core> self,
-                                                                        const std::string& name) {
+inline ViewAndDict array_by_name(nb::handle_t<Core> self, const std::string& name) {
   Core& core = nb::cast<Core&>(self);
-  nb::object found;
+  ViewAndDict found;
   const auto look = [&](const ColumnInfo& info, auto& column, const char* origin,
                         const char* by = "") {
     if (info.name == name) found = nb::make_tuple(view(column, self), dict_of(info, origin, by));
@@ -192,8 +192,8 @@ inline nb::typed<nb::tuple, nb::ndarray<nb::numpy>, Dict> array_by_name(nb::hand
       [&](RebuiltBy by, const ColumnInfo& info, auto& column) {
         look(info, column, "rebuilt", by.rebuild().name);
       });
-  if (!found.is_valid()) throw nb::key_error(name.c_str());
-  return nb::cast<nb::tuple>(found);
+  if (found.size() == 0) throw nb::key_error(name.c_str());
+  return found;
 }
 
 /// What every array holds, and where it comes from.

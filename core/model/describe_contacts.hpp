@@ -23,8 +23,8 @@ void describe_history(const std::string& set, HistoryColumns& history, Stored&& 
 }
 
 /// Contacts of semi-springs: part of `describe_contacts`.
-template <class Stored, class Rebuilt>
-void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
+template <class Stored>
+void describe_springs(SpringState& c, Stored&& stored) {
   stored({.name = "spring.target",
           .meaning = "exposed face in contact, or -1",
           .rows = "slots",
@@ -49,6 +49,11 @@ void describe_springs(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
                     "energy_s",
                     "approach"}},
          c.state);
+}
+
+/// What they have lost, and what holds some of them: part of `describe_contacts`.
+template <class Stored, class Rebuilt>
+void describe_spring_losses(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
   stored({.name = "spring.friction", .unit = "J", .meaning = "frictional work", .rows = "slots"},
          c.friction);
   stored({.name = "spring.dashpot",
@@ -255,7 +260,8 @@ void describe_forces(State& s, Rebuilt&& rebuilt) {
 /// Call stored(info, column) or rebuilt(by, info, column) for every array of contacts.
 template <class Stored, class Rebuilt>
 void describe_contacts(State& s, Stored&& stored, Rebuilt&& rebuilt) {
-  describe_springs(s.springs, stored, rebuilt);
+  describe_springs(s.springs, stored);
+  describe_spring_losses(s.springs, stored, rebuilt);
   describe_history("spring", s.springs.history, stored);
   describe_edges(s.edges, stored);
   describe_history("edge", s.edges.side_history, stored);

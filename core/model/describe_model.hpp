@@ -34,6 +34,11 @@ void describe_nodes(Model& m, Visit&& given) {
          .rows = "nodes",
          .changes = Changes::with_stage},
         m.gravity_mass);
+}
+
+/// Bounds of the frequencies of nodes, and rows of their mass matrices: part of `describe_model`.
+template <class Visit>
+void describe_inertia(Model& m, Visit&& given) {
   given({.name = "node.lumped_frequency_squared",
          .unit = "1/s2",
          .meaning = "bound from its elements with lumped masses",
@@ -269,6 +274,11 @@ void describe_faces(Model& m, Visit&& given) {
          .meaning = "element behind it, counted through all sets of elements",
          .rows = "faces"},
         m.face_element);
+}
+
+/// Sizes of exterior faces: part of `describe_model`.
+template <class Visit>
+void describe_face_sizes(Model& m, Visit&& given) {
   given({.name = "face.length",
          .unit = "m",
          .meaning = "L: mean distance from the centre to the vertices",
@@ -413,6 +423,7 @@ template <class Visit>
 void describe_model(Model& m, State& s, Visit&& visit) {
   const auto given = [&](const ColumnInfo& info, auto& column) { visit(info, column); };
   describe_nodes(m, given);
+  describe_inertia(m, given);
   describe_node_rows(m, given);
   given({.name = "material.lambda",
          .unit = "Pa",
@@ -445,6 +456,7 @@ void describe_model(Model& m, State& s, Visit&& visit) {
   for_each_pair_set(m, s, describe);
   describe_modules(m, s, given);
   describe_faces(m, given);
+  describe_face_sizes(m, given);
   describe_exterior_edges(m, given);
   describe_loads(m, given);
 }

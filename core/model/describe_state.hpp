@@ -31,16 +31,18 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
   describe_nodal_means(s.nodal, stored, rebuilt);
   rebuilt("update_element_forces",
           {.name = "tile.force",
-           .unit = "N",
+           .unit = "N, -",
            .meaning = "force of the elements of a tile on a node, and a pad",
            .rows = "tile_rows",
-           .numbers = 4},
+           .numbers = 4,
+           .parts = {{"force", 3}, ""}},
           s.tile_force);
   stored({.name = "corner.force",
-          .unit = "N",
+          .unit = "N, -",
           .meaning = "force of a pair or a bolt on a node, and a pad",
           .rows = "corner_rows",
-          .numbers = 4},
+          .numbers = 4,
+          .parts = {{"force", 3}, ""}},
          s.corner_force);
   rebuilt("release_bonds",
           {.name = "overlaps.released",

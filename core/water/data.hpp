@@ -124,6 +124,10 @@ struct Water {
            .rows = rows,
            .changes = Changes::with_stage},
           w.bonded);
+    describe_joints(rows, w, given);
+  }
+  static void describe_joints(const char* rows, auto& w, const auto& given) {
+    const std::string set = std::string(rows) + ".";
     given({.name = set + "kept",
            .unit = "Pa",
            .meaning = "pressure at a vertex that fields keep, at the start",
@@ -144,6 +148,7 @@ struct Water {
            .rows = rows,
            .layout = Layout::starts,
            .refers_to = {set + "pairs"},
+           .optional = true,
            .changes = Changes::with_stage},
           w.pair_first);
     given({.name = set + "mate",

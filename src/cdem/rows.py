@@ -26,11 +26,14 @@ class Rows:
     def __init__(self, core: Core, name: str) -> None:
         array, info = core.array(name)
         self._name, self._parts = name, info["parts"]
-        if info["layout"] == "columns":
+        numbers = info["numbers"]
+        if not numbers:  # nothing asks for it
+            self.numbers = array.reshape(0, 0)
+        elif info["layout"] == "columns":
             kinds = {kind["name"]: kind["count"] for kind in core.describe_rows()}
-            self.numbers = array.reshape(info["numbers"], -1)[:, : kinds[info["rows"]]].T
+            self.numbers = array.reshape(numbers, -1)[:, : kinds[info["rows"]]].T
         else:
-            self.numbers = array.reshape(-1, info["numbers"])
+            self.numbers = array.reshape(-1, numbers)
 
     def __getattr__(self, part: str) -> NDArray[Any]:
         first = 0

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scenes import simulate
 
+from cdem.rows import rows_of
+
 SHAPES = ("tet4", "pyramid5", "wedge6", "hex8")
 DIVISIONS = {"tet4": [1, 1, 2], "pyramid5": [1, 1, 1], "wedge6": [1, 1, 2], "hex8": [2, 2, 1]}
 STEPS = 300
@@ -60,8 +62,8 @@ class Lists:
     """Pairs that a simulation's lists hold now, as sets."""
 
     def __init__(self, sim):
-        self.s, self.r = sim.core.fields(), sim.core.rebuilt()
-        self.face_edges = sim.core.model()["face.edges"].reshape(-1, 4)
+        self.core, self.s, self.r = sim.core, sim.core.fields(), sim.core.rebuilt()
+        self.face_edges = rows_of(sim.core, "face.edges").numbers
 
     def edges_of(self, side):
         """Edges of the mesh that sides of exposed faces are."""
@@ -87,24 +89,22 @@ class Lists:
 
     def edge_edges(self):
         """Two edges of the mesh: in contact, on the inner list, on the outer list."""
-        s, r = self.s, self.r
-        contact = s["edge.contact"].reshape(-1, 4)
-        edges = self.edges_of(contact[:, 0]), contact[:, 2]
+        contact = rows_of(self.core, "edge.contact")
+        edges = self.edges_of(contact.mother_side), contact.target_edge
         touching = pairs(np.minimum(*edges), np.maximum(*edges))
-        count = len(r["inner.near_edges"])
-        sides = r["inner.edge_sides"].reshape(4, -1)[:, :count]
-        first_side = s["outer.ee_sides"].reshape(-1, 2)[:, 0]
-        listed = s["outer.ee_pairs"].reshape(2, -1)[:, : len(s["outer.ee_codes"])]
+        sides = rows_of(self.core, "inner.edge_sides").numbers.T
+        first_side = rows_of(self.core, "outer.ee_sides").numbers[:, 0]
+        listed = rows_of(self.core, "outer.ee_pairs").numbers.T
         outer = self.unordered(first_side[listed[0]], first_side[listed[1]])
         return touching, self.unordered(sides[0], sides[2]), outer
 
     def faces(self):
         """Target and mother face: in contact, and on the list of faces that may act on another."""
-        s = self.s
-        contact, target = s["edge.contact"].reshape(-1, 4), s["spring.target"]
+        s, contact = self.s, rows_of(self.core, "edge.contact")
+        target = s["spring.target"]
         slots = np.flatnonzero(target >= 0)
         touching = pairs(target[slots], slots // 4)
-        touching |= pairs(contact[:, 1], contact[:, 0] // 4)
+        touching |= pairs(contact.target, contact.mother_side // 4)
         return touching, ragged(s["outer.acting_first"], s["outer.faces_acting_on"])
 
 

@@ -53,6 +53,16 @@ def test_columns_are_rows_without_what_pads_them(sim):
     assert rows_of(sim.core, "triangles.bond").numbers.shape == (len(pairs), 3)
 
 
+def test_every_array_has_its_rows(sim):
+    """Those that nothing asks for have none."""
+    sim.step(1)
+    counts = {kind["name"]: kind["count"] for kind in sim.core.describe_rows()}
+    for info in sim.core.describe():
+        numbers, rows = rows_of(sim.core, info["name"]).numbers, info["rows"]
+        if numbers.size and rows and info["layout"] != "starts":
+            assert numbers.shape == (counts[rows], info["numbers"]), info["name"]
+
+
 def test_what_is_not_there_is_told(sim):
     with pytest.raises(KeyError, match=r"node.spin"):
         rows_of(sim.core, "node.spin")

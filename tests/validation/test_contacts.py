@@ -5,6 +5,7 @@ import pytest
 from scenes import case, mean_velocity, meeting_cubes, simulate, turn
 
 import cdem
+from cdem.rows import rows_of
 
 KINDS = [
     ("face", "face"),
@@ -46,9 +47,9 @@ def test_contact_types_carry_the_weight(lower, upper, seed):
     area, exposed = sim.build.arrays["face.area"], state["search.exposed_face"]
     share = area / (t.face_nodes >= 0).sum(axis=1) * K_N  # k_n A / N
     slots = np.flatnonzero(state["spring.target"] >= 0)
-    forces = 0.5 * share[exposed[slots // 4]] * state["spring.state"].reshape(-1, 8)[slots, 1]
-    mothers = state["edge.contact"].reshape(-1, 4)[:, 0] // 4
-    crossing = share[exposed[mothers]] * state["edge.state"].reshape(-1, 8)[:, 1]
+    forces = 0.5 * share[exposed[slots // 4]] * rows_of(sim.core, "spring.state").penetration[slots]
+    mothers = rows_of(sim.core, "edge.contact").mother_side // 4
+    crossing = share[exposed[mothers]] * rows_of(sim.core, "edge.state").penetration
     predicted = np.concatenate([forces, crossing])
     np.testing.assert_allclose(sim.contacts["force_n"], predicted, rtol=2e-15)
     if "edge" not in (lower, upper):  # one normal for all: the weight itself
@@ -240,10 +241,12 @@ def test_an_edge_contact_keeps_its_history_from_face_to_face():
         sim.motion[:, :3] = now
         sim.motion[:, 4:7] = (now - before) / sim.core.scalars()["dt_last"]
         sim.step(1)
-        contacts = sim.core.fields()["edge.contact"].reshape(-1, 4)
+        contacts = rows_of(sim.core, "edge.contact")
         if before is not start:
-            assert len(contacts) == 4
-            assert (contacts[:, 3] >= 0).all()
-        targets |= {(m, e, f) for m, f, e, _ in contacts}
+            assert len(contacts.before) == 4
+            assert (contacts.before >= 0).all()
+        targets |= set(
+            zip(contacts.mother_side, contacts.target_edge, contacts.target, strict=True)
+        )
         before = now
     assert len(targets) > len({(m, e) for m, e, _ in targets})  # faces did change

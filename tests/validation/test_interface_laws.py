@@ -5,6 +5,7 @@ import pytest
 from scenes import case, digest, simulate
 
 import cdem
+from cdem.rows import rows_of
 from cdem.run.law_fields import state_of
 
 STIFFNESS = {"stiffness_n": "1e11 Pa/m", "stiffness_s": "1e11 Pa/m"}
@@ -37,9 +38,8 @@ class Shear:
 
     def tractions(self):
         """Shear and normal traction on the joint of 1 m2 [Pa], compression positive."""
-        state = self.sim.core.fields()
         bed = self.sim.build.nodes_of("bed")
-        force = state["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+        force = rows_of(self.sim.core, "node.reaction").force[bed].sum(axis=0)
         return abs(force[0]), abs(force[2])
 
 
@@ -260,9 +260,9 @@ def contacts_of(sim, law):
     rows, slips = [], []
     for kind, wall in (
         ("spring", np.flatnonzero(state["spring.target"] >= 0)),
-        ("edge", state["edge.contact"].reshape(-1, 4)[:, 0]),
+        ("edge", rows_of(sim.core, "edge.contact").mother_side),
     ):
-        of_kind = state[f"{kind}.state"].reshape(-1, 8)
+        of_kind = rows_of(sim.core, f"{kind}.state").numbers
         rows.append(of_kind[wall] if kind == "spring" else of_kind)
         slips.append(np.zeros(len(wall)))
         if law in REMEMBERED and len(wall):

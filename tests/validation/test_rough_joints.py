@@ -8,6 +8,7 @@ from scenes import case, digest, simulate
 
 import cdem
 from cdem import CaseError
+from cdem.rows import rows_of
 from cdem.run.law_fields import state_of
 
 ROUGH = {"law": "barton-bandis", "jrc": 10, "jcs": "50 MPa", "residual_friction_angle": 28}
@@ -54,7 +55,7 @@ def stressed(law, sigma, history, threads=1):
 def joint_force(sim):
     """Shear and normal force on the joint [N]."""
     bed = sim.build.nodes_of("bed")
-    force = sim.core.fields()["node.reaction"].reshape(-1, 4)[bed].sum(axis=0)
+    force = rows_of(sim.core, "node.reaction").force[bed].sum(axis=0)
     return abs(force[0]), abs(force[2])
 
 
@@ -170,8 +171,7 @@ def test_friction_that_falls_faster_than_a_step_can_follow_is_told(velocity, tol
     assert len(texts) == told
     if told:
         assert "friction of interface default falls" in texts[0]
-        state = sim.core.fields()
-        force = state["spring.state"].reshape(-1, 8)[:, 0].max()
+        force = rows_of(sim.core, "spring.state").force_n.max()
         fall = (np.tan(np.radians(40)) - np.tan(np.radians(20))) / velocity
         most = fall * force * sim.core.scalars()["dt"] * 2 / sim.fields["mass"].min()
         now = max(one[1] for one in sim.core.fast_weakenings())

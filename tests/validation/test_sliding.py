@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from scenes import mean_velocity, simulate, turn
 
+from cdem.rows import rows_of
+
 GRAVITY = 9.81
 
 
@@ -226,8 +228,8 @@ def test_contact_force_is_continuous_at_seams(bed, within):
         sim.step(1)
         state = sim.core.fields()
         target = state["spring.target"].copy()
-        force = state["spring.reaction"].reshape(-1, 8)[:, :3].copy()
-        total = -state["node.reaction"].reshape(-1, 4)[:, 2].sum()
+        force = rows_of(sim.core, "spring.reaction").force.copy()
+        total = -rows_of(sim.core, "node.reaction").force[:, 2].sum()
         if before is not None:
             last_target, last_force, last_total = before
             moved_on = (target != last_target) & (target >= 0) & (last_target >= 0)

@@ -7,6 +7,7 @@ import pytest
 from scenes import case, digest
 
 import cdem
+from cdem.rows import rows_of
 from cdem.run.fields import surface_of
 
 G = 9.81
@@ -34,7 +35,7 @@ def start(*args, **kwargs):
 
 def water_on(sim, group=None):
     """Sum of the forces of water on a group [N]."""
-    force = sim.core.fields()["node.water"].reshape(-1, 4)[:, :3]
+    force = rows_of(sim.core, "node.water").force
     return force[sim.build.nodes_of(group)].sum(axis=0) if group else force.sum(axis=0)
 
 
@@ -80,7 +81,7 @@ def test_pores_turn_with_the_rock():
     x = sim.motion[:, :3]
     x[:] = x @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
     sim.core.find_applied()
-    force = sim.core.fields()["node.water"].reshape(-1, 4)[:, :3]
+    force = rows_of(sim.core, "node.water").force
     np.testing.assert_allclose(force, np.tile([0, 0, UNIT / 8], (8, 1)), atol=1e-9 * UNIT)
 
 
@@ -111,8 +112,7 @@ def test_held_rock_carries_its_water_at_any_time(parts):
         sim.step(steps)
     last = sim.time / sim.step_count
     level = 2 + 20 * (sim.time - last)  # the forces of a step are those of its begin
-    fields = sim.core.fields()
-    carried = fields["node.reaction"].reshape(-1, 4)[:, 2].sum()
+    carried = rows_of(sim.core, "node.reaction").force[:, 2].sum()
     right = 4 * 2600 * G + 4 * UNIT * (level - 1)
     assert carried == pytest.approx(right, rel=1e-12)
     assert carried + water_on(sim)[2] == pytest.approx(4 * 2600 * G, rel=1e-12)

@@ -318,8 +318,7 @@ class Audit:
         lines += [""] * bool(self.discs) + disc_lines(self.discs)
         lines += self._stiffness_text()
         lines += self._initial_text()
-        for name, module in self._build.modules.items():
-            lines += module.lines(self.modules[name])
+        lines += self._modules_text()
         s = self.step
         lines += [
             "",
@@ -373,6 +372,11 @@ class Audit:
                 f"strength allows: up to {initial.most_cut:.3g} Pa less (near {place})"
             )
         return lines
+
+    def _modules_text(self) -> list[str]:
+        """What modules do."""
+        modules = self._build.modules.items()
+        return [line for name, module in modules for line in module.lines(self.modules[name])]
 
     def _stiffness_text(self) -> list[str]:
         """What makes up for bonds, and how far contacts overlap."""

@@ -292,10 +292,9 @@ def _assemble(
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= tractions_of(case, topology, names, curves)
+    given = Parts(case, topology, laws, interface_of, curves, native.padded_stride, parts)
     for module in modules.values():
-        module.add_arrays(
-            Parts(case, topology, laws, interface_of, curves, native.padded_stride, parts)
-        )
+        module.add_arrays(given)
     return parts
 
 

@@ -11,6 +11,7 @@ import pytest
 from shared.faults import FAULTS, fault
 
 from cdem import Case, Simulation
+from cdem.rows import rows_of
 from cdem.study.critical import find_critical, strength_reduction
 
 
@@ -23,8 +24,7 @@ def begin(case: dict | str, settings: tuple[str, ...] = ()) -> Simulation:
 
 def reaction(sim: Simulation, group: str) -> np.ndarray:
     """Force of all that holds a group [N]."""
-    rows = sim.core.fields()["node.reaction"].reshape(-1, 4)[sim.build.nodes_of(group), :3]
-    return rows.sum(axis=0)
+    return rows_of(sim.core, "node.reaction").force[sim.build.nodes_of(group)].sum(axis=0)
 
 
 @pytest.mark.parametrize("name", ["voellmy_drag_0.5", "voellmy_slice_drag_1.5"])
