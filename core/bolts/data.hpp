@@ -141,13 +141,15 @@ struct Bolts {
            .meaning = "nodes of a bolt",
            .rows = Bolts::name,
            .layout = Layout::starts,
-           .refers_to = {"bolt_nodes"}},
+           .refers_to = {"bolt_nodes"},
+           .optional = true},
           b.first);
     given({.name = "bolts.crossing_first",
            .meaning = "crossings of a bolt with joints",
            .rows = Bolts::name,
            .layout = Layout::starts,
-           .refers_to = {"bolt_crossings"}},
+           .refers_to = {"bolt_crossings"},
+           .optional = true},
           b.crossing_first);
     given({.name = "bolts.properties",
            .unit = "N, N, N, 1, N",

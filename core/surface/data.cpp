@@ -11,7 +11,7 @@ namespace cdem {
 
 namespace {
 
-/// Note where a face lies, and let its law begin anew.
+/// Note where a face lies, and let its law begin again.
 class Begin {
  public:
   Begin(const cdem::State& s, const SurfaceSet& g, const SurfaceFaces& faces, SurfacePoints& points)

@@ -148,6 +148,7 @@ struct Water {
            .rows = rows,
            .layout = Layout::starts,
            .refers_to = {set + "pairs"},
+           .optional = true,
            .changes = Changes::with_stage},
           w.pair_first);
     given({.name = set + "mate",

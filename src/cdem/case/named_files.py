@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from cdem.case.history_file import is_file_of_history
 
 OF_WATER = ("surface", "table")
-WITH_HISTORY = ("tractions", "surfaces", "velocities")
 SET_OF_WATER = re.compile(rf"water\.fields\.[^.]+\.(?:{'|'.join(OF_WATER)})")
 
 Places = list[tuple[Any, str | int]]
@@ -28,24 +28,23 @@ def files_of(data: dict[str, Any]) -> Places:
         places += [(one, "file") for one in [*_mappings(model.get("blocks")), *_mappings(discs)]]
     if isinstance(water, dict):
         places += [(one, key) for one in _mappings(water.get("fields")) for key in OF_WATER]
-    places += [(one, "file") for one in _histories(data)]
+    places += _histories(data)
     for changes in _mappings([stage.get("set") for stage in _mappings(data.get("stages"))]):
         places += [(changes, path) for path in changes if SET_OF_WATER.fullmatch(str(path))]
-        places += [
-            (one, "file") for path, one in changes.items() if is_file_of_history(str(path), one)
-        ]
     return [(holder, key) for holder, key in places if _names_one(holder, key)]
 
 
-def _histories(data: dict[str, Any]) -> list[dict[str, Any]]:
-    """Histories of loads and of water that name a file."""
-    loads, water = (data.get(key) for key in ("loads", "water"))
-    entries: list[dict[str, Any]] = []
-    if isinstance(loads, dict):
-        entries += [one for key in WITH_HISTORY for one in _mappings(loads.get(key))]
-    if isinstance(water, dict):
-        entries += [*_mappings(water.get("fields")), *_mappings([water.get("reservoir")])]
-    return [one["history"] for one in entries if is_file_of_history("history", one.get("history"))]
+def _histories(value: Any) -> Iterator[tuple[Any, str | int]]:
+    """Histories that name a file, wherever they stand: also what a stage sets."""
+    if isinstance(value, dict):
+        for key, one in value.items():
+            if is_file_of_history(str(key), one):
+                yield one, "file"
+            else:
+                yield from _histories(one)
+    elif isinstance(value, list):
+        for one in value:
+            yield from _histories(one)
 
 
 def _names_one(holder: Any, key: str | int) -> bool:

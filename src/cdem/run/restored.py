@@ -201,8 +201,7 @@ def fault_of(info: Mapping[str, Any], array: NDArray, counts: Mapping[str, int])
         array: Its numbers.
         counts: How many rows there are of each kind; references to other kinds are not looked at.
     """
-    absent = info["origin"] == "given" and counts.get(info["rows"]) == 0  # of a module not there
-    may_be_empty = absent or info["optional"] or info["origin"] == "rebuilt"
+    may_be_empty = info["optional"] or info["origin"] == "rebuilt"
     if len(array) == 0 and may_be_empty:
         return ""
     if info["rows"] and len(array) != (length := length_of(info, counts)):

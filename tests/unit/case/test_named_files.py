@@ -8,14 +8,23 @@ def test_all_files_of_a_case_are_found():
     data = {
         "own_laws": ["clay.hpp", 3],
         "model": {"mesh": "a.msh", "blocks": [body], "joints": [{"name": "d", "discs": discs}, 3]},
-        "water": {"fields": [{"level": 3}, {"surface": "dry.asc"}, {"table": "p.csv"}]},
+        "water": {
+            "fields": [{"level": 3}, {"surface": "dry.asc"}, {"table": "p.csv"}],
+            "reservoir": {"history": {"file": "tide.csv"}},
+        },
+        "loads": {
+            "tractions": [{"history": [[0, 1]]}, {"history": {"file": "quay.csv"}}],
+            "surfaces": [{"history": {"file": "blast.csv"}}, {"history": {"files": "no.csv"}}],
+        },
         "stages": [
             {"name": "dry"},
             {"name": "wet", "set": {"water.fields.1.surface": "wet.asc", "water.fields.1.lift": 1}},
+            {"name": "on", "set": {"loads.surfaces.0.history": {"file": "late.csv"}}},
         ],
     }
     assert [holder[key] for holder, key in files_of(data)] == [
-        "clay.hpp", "a.msh", "rock.obj", "discs.csv", "dry.asc", "p.csv", "wet.asc",
+        "clay.hpp", "a.msh", "rock.obj", "discs.csv", "dry.asc", "p.csv",
+        "tide.csv", "quay.csv", "blast.csv", "late.csv", "wet.asc",
     ]  # fmt: skip
 
 

@@ -31,10 +31,12 @@ def dry():
 
 
 @pytest.mark.parametrize("name", [kind.name for kind in MODULES])
-def test_each_module_has_the_same_name_everywhere(name):
-    assert (ROOT / f"core/{name}/data.hpp").exists()
-    assert (ROOT / f"src/cdem/model/{name}.py").exists()
-    assert list((ROOT / "tests").glob(f"*/**/test_{name}.py"))
+def test_each_module_has_its_files(name):
+    for path in (
+        f"core/{name}/data.hpp", f"src/cdem/case/{name}_schema.py", f"src/cdem/model/{name}.py",
+        f"docs/{name}.md", f"docs/theory/{name}.md", f"tests/validation/test_{name}.py",
+    ):  # fmt: skip
+        assert (ROOT / path).exists(), path
 
 
 def test_the_core_has_the_same_modules_in_the_same_order():
