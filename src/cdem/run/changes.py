@@ -111,7 +111,12 @@ def _other_start(then: dict[str, Any], now: dict[str, Any]) -> Iterator[Differen
 
 
 def differences(then: Any, now: Any, path: str = "") -> Iterator[Difference]:
-    """Places where two nests of dicts and lists differ, in order."""
+    """Places where two nests of dicts and lists differ, in order.
+
+    A key that `then` did not know yet says nothing where its list is empty now.
+    """
+    if isinstance(then, dict) and isinstance(now, dict):
+        now = {key: value for key, value in now.items() if key in then or value not in ([], {})}
     if isinstance(then, list) and isinstance(now, list):
         then, now = dict(enumerate(then)), dict(enumerate(now))
     if isinstance(then, dict) and isinstance(now, dict):

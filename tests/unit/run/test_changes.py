@@ -105,3 +105,14 @@ def test_a_stage_goes_on_if_its_end_has_moved_away(key, longer, shorter):
     for value, is_longer in ((longer, True), (shorter, False)):
         now = changed(f"stages.2.{key}", value)
         assert compare(then, now, begun=3).longer == is_longer
+
+
+def test_a_key_that_the_run_did_not_know_yet_is_no_change_where_it_is_empty():
+    """A run of an earlier cdem goes on; where the key says something, it is another case."""
+    now = deepcopy(CASE)
+    now["loads"] = {}
+    now["model"]["surfaces"] = []
+    assert compare(CASE, now, begun=1).refused == []
+    now["model"]["surfaces"] = [{"law": "pressure"}]
+    (found,) = compare(CASE, now, begun=1).refused
+    assert found[0].startswith("model.surfaces")
