@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import meshio
 import numpy as np
 import pytest
@@ -73,7 +71,9 @@ def test_thrust_follows_a_body_that_spins():
     mass = sim.fields["mass"].sum()
     while sim.time < 0.15:  # 4.5 rad
         sim.step(50)
-        turned = spin * (sim.time - 0.5 * sim.core.scalars()["dt_last"])  # velocities lag half a step
+        turned = spin * (
+            sim.time - 0.5 * sim.core.scalars()["dt_last"]
+        )  # velocities lag half a step
         expected = -pressure / (mass * spin) * np.array([np.sin(turned), 1 - np.cos(turned), 0])
         got = momenta(sim)[0] / mass
         # reached 1.3e-3, in proportion to the step: the first one does not turn yet
@@ -196,7 +196,9 @@ def test_a_blast_in_a_spherical_cavity_sends_the_wave_of_sharpe(tmp_path):
     fine = np.linspace(0, 1.5e-3, 30001)
     most = np.abs(np.array(seen)).max(axis=0)
     exact = np.array([np.abs(q).max() for r in (1, 2) for q in sharpe(r, fine)])
-    assert exact == pytest.approx([2.22718e-3, 8.2699, 0.81297e-3, 3.5720], rel=1e-4)  # computed before
+    assert exact == pytest.approx(
+        [2.22718e-3, 8.2699, 0.81297e-3, 3.5720], rel=1e-4
+    )  # computed before
     errors = most / exact - 1
     assert np.abs(errors[[0, 2]]).max() < 0.02, errors
     assert np.abs(errors[[1, 3]]).max() < 0.07, errors
