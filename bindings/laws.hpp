@@ -152,7 +152,7 @@ nb::list declarations() {
       nb::dict d;
       d["name"] = p.name, d["symbol"] = p.symbol;
       d["unit"] = p.unit, d["meaning"] = p.meaning;
-      d["at_least"] = p.at_least;
+      d["at_least"] = std::isfinite(p.at_least) ? nb::cast(p.at_least) : nb::none();
       d["below"] = std::isfinite(p.below) ? nb::cast(p.below) : nb::none();
       d["at_most"] = std::isfinite(p.at_most) ? nb::cast(p.at_most) : nb::none();
       d["default"] = std::isnan(p.otherwise) ? nb::none() : nb::cast(p.otherwise);

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
+from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS, Law
 from cdem.case.output_fields import OUTPUT_FIELDS
 from cdem.case.plausible import RANGES, written
 from cdem.verification.runner import problems
@@ -30,7 +30,7 @@ def law_rows(key: str, law: Law) -> list[str]:
         upper += "" if p.at_most is None else f", at most {p.at_most:g}"
         default = "required" if p.default is None else f"{p.default:g}".replace("inf", "no limit")
         default = default if p.like is None else f"`{p.like}`"
-        limits = f"at least {p.at_least:g}{upper}"
+        limits = "any" if p.at_least is None else f"at least {p.at_least:g}{upper}"
         if p.choices:
             limits, default = (
                 ", ".join(f"`{word}`" for word in p.choices.split()),
@@ -48,6 +48,8 @@ def laws_table() -> str:
         rows += law_rows("interface", law)
     for law in BLOCK_LAWS.values():
         rows += law_rows("material", law)
+    for law in SURFACE_LAWS.values():
+        rows += law_rows("surface", law)
     return "\n".join([*rows, ""])
 
 

@@ -297,6 +297,58 @@ def copies():
     assert differences(one, other) == []
 
 
+def foundation():
+    """A cube on springs to the ground: it settles by m g / (k A), swings with (k A / m)^1/2, tears off.
+
+    Thrown up by v it rises on the springs to the pull T that they bear, at T / k, and leaves with
+    (v^2 - (w T / k)^2)^1/2. A wedge on triangles beside it does the same.
+    """
+    from scenes import simulate
+
+    mass, modulus, strength, thrown = 2500.0, 1e6, 1e4, 0.3
+    spin = np.sqrt(modulus / mass)
+    entry = {"law": "foundation", "modulus": modulus}
+    blocks = [
+        {"group": name, "box": {"size": [1, 1, 1], "shape": shape}, "translate": [3 * i, 0, 0]}
+        for i, (name, shape) in enumerate((("cube", "hex8"), ("wedge", "tet4")))
+    ]
+
+    def stand(**more):
+        down = [{"surface": {"group": b["group"], "normal": [0, 0, -1]}} | entry for b in blocks]
+        groups = {b["group"]: {"velocity": [0, 0, more.pop("up", 0)]} for b in blocks[:1]}
+        groups |= {"wedge": dict(groups["cube"])}
+        extra = {"tensile_strength": strength} if more.pop("tears", False) else {}
+        surfaces = {"surfaces": [one | extra for one in down]}
+        return simulate(
+            blocks, groups, rock={"young_modulus": 1e10, "density": mass},
+            loads=surfaces | more.pop("loads", {}), **more,
+        )  # fmt: skip
+
+    rest = {"name": "rest", "mode": "static", "tolerance": 1e-7, "relax": "adaptive"}
+    sim = stand(loads=GRAVITY, stages=[rest])
+    sim.run()
+    down = sim.fields["displacement"][:, 2]
+    assert np.allclose(down, -mass * 10 / modulus, rtol=2e-3), down
+    sim = stand(up=thrown)
+    for end in np.linspace(0.01, 0.3, 12):
+        sim.run_until(end)
+        for group in ("cube", "wedge"):
+            up = sim.fields["displacement"][sim.build.nodes_of(group), 2].mean()
+            # reached 3e-4: the cube is an elastic one
+            assert abs(up - thrown / spin * np.sin(spin * sim.time)) < 2e-3 * thrown / spin, end
+    # what the springs have taken from the motion
+    total = -sum(sim.energies[name] for name in ("kinetic", "strain")) + sim.energies["surface"]
+    assert abs(total + mass * thrown**2) < 1e-3 * mass * thrown**2, sim.energies
+    sim = stand(up=thrown, tears=True)
+    sim.run_until(0.2)
+    left = np.sqrt(thrown**2 - (spin * strength / modulus) ** 2)
+    for group in ("cube", "wedge"):
+        speed = sim.fields["velocity"][sim.build.nodes_of(group), 2].mean()
+        assert abs(speed - left) < 0.02 * left, (group, speed, left)
+    lost = [sim.core.fields()[f"surface_{kind}.history"] for kind in ("quads", "triangles")]
+    assert [int((one > 0).sum()) for one in lost] == [4, 6], lost
+
+
 def pinned():
     """Print the hashes of the pinned scenes, which have none of these laws: test_golden.py."""
     sys.path.insert(0, str(ROOT / "tests" / "regression"))

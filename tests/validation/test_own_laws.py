@@ -22,7 +22,8 @@ CORE = Path(__file__).parents[2] / "build" / "core"
 
 
 @pytest.mark.parametrize(
-    "scene", ["springs", "edges", "bonds", "two_laws", "plasticity", "results", "copies"]
+    "scene",
+    ["springs", "edges", "bonds", "two_laws", "plasticity", "foundation", "results", "copies"],
 )
 def test_a_law_in_one_header(scene):
     """See the docstring of each scene for theory and tolerance."""

@@ -80,6 +80,8 @@ def write_files(folder: Path) -> None:
     _write_meshes(folder)
     _write_bodies(folder)
     _write_terrain(folder)
+    (folder / "history-a.csv").write_text("# blast\ntime [ms]; factor [%]\n0; 0\n0.5; 100\n2; 30\n")
+    (folder / "history-b.txt").write_text("0 0\n0.5\t1e0\n2 -.3\n")
 
 
 def _write_meshes(folder: Path) -> None:

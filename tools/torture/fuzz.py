@@ -150,9 +150,11 @@ def _few_planes(case: Any, boxes: list[Any]) -> bool:
 
 
 def read_file(path: Path) -> None:
-    """Read a mesh, bodies, contours, a grid or an outline, and do the first thing that follows."""
+    """Read a mesh, bodies, contours, a grid, a history, an outline, and do what follows first."""
     import numpy as np
 
+    from cdem.case.history_file import with_histories
+    from cdem.case.source import Source
     from cdem.mesh.blocks import build_topology
     from cdem.mesh.mesh_files import read_mesh
     from cdem.model.body_files import read_bodies
@@ -171,6 +173,8 @@ def read_file(path: Path) -> None:
         Lines(read_lines(path), 5.0)
     elif kind == "grid":
         read_grid(path)
+    elif kind == "history":
+        with_histories({"history": {"file": path.name}}, Source(file=str(path)))
     elif kind == "cloud":
         box = np.zeros(2), np.full(2, 9.0)
         read_cloud(path, Projection(None), None, box, 1.0, "ground")

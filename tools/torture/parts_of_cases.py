@@ -136,6 +136,7 @@ stages: [{name: d, mode: dynamic, duration: 0.01}]
 """
 BESIDE = {
     "pressures.csv": "x,y,z,pressure\n0,0,0,1e4\n9,0,0,1e4\n0,9,0,1e4\n0,0,9,0\n9,9,9,0\n",
+    "factor.csv": "time [ms], factor [%]\n0, 0\n5, 100\n",
     "discs.csv": "x,y,z,dip,dip_direction,radius\n1,1,1,30,90,1\n",
     "heights.asc": "ncols 3\nnrows 3\nxllcorner -5\nyllcorner -5\ncellsize 10\n" + "1 1 1\n" * 3,
 }
@@ -156,7 +157,7 @@ IN_PARTS = {"mb", "s", "a"}
 
 def of_laws() -> dict[str, dict[str, Any]]:
     """A case for each law, by its name: every parameter is given."""
-    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
+    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS
 
     found = {}
     for laws, place, name in (
@@ -173,6 +174,13 @@ def of_laws() -> dict[str, dict[str, Any]]:
             }
             case[place][name] |= OF_LAWS.get(law.name, {})
             found[law.name] = case
+    for law in SURFACE_LAWS.values():
+        case = _two_blocks()
+        entry = {"surface": {"group": "high", "normal": [0, 0, 1]}, "law": law.name}
+        entry |= {p.name: _value(p) for p in law.parameters}
+        named = entry | {"history": {"file": "factor.csv"}, "stage": "move"}
+        case["loads"] = case.get("loads", {}) | {"surfaces": [entry, named]}
+        found[law.name] = case
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from cdem.case.bodies_schema import exactly_one
-from cdem.case.loads_schema import Surface
+from cdem.case.surface_schema import Surface
 from cdem.case.types import Direction3, FileName, Length3, Name, Part, Quantity
 
 Force = Annotated[float, Quantity("N", above=0)]

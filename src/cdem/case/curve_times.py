@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from cdem.case.loads_schema import Timed
 from cdem.case.schema import CaseParts, Stage
+from cdem.case.timed_schema import Timed
 
 Keys = tuple[str | int, ...]
 Problem = tuple[Keys, str]  # path, what is wrong

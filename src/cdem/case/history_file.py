@@ -11,7 +11,7 @@ from cdem.errors import CaseError
 from cdem.units import to_number
 
 COLUMNS = (("time", "s"), ("factor", "1"))
-"""Names of the columns of a file of two, and the unit of a case."""
+"""Columns of such a file, and their units in a case."""
 MEND = (
     "a history is text with two columns, time and factor, with a comma, a semicolon or blanks "
     "between, and in its first line, if they are not s and 1, their units: time [ms], factor"

@@ -21,7 +21,7 @@ class Parameter:
         symbol: In formulas.
         unit: Unit in a case.
         meaning: What it is.
-        at_least: Lowest value allowed [unit].
+        at_least: Lowest value allowed [unit], or None.
         below: Limit that it must stay below [unit], or None.
         at_most: Highest value allowed [unit], or None.
         default: Value where the case is silent, infinity for a strength without a limit, or None.
@@ -38,7 +38,7 @@ class Parameter:
     symbol: str
     unit: str
     meaning: str
-    at_least: float
+    at_least: float | None
     below: float | None
     at_most: float | None
     default: float | None

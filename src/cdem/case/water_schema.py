@@ -8,7 +8,8 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from cdem.case.bodies_schema import exactly_one
 from cdem.case.formula import Formula
-from cdem.case.loads_schema import History, Region, Timed
+from cdem.case.loads_schema import Region
+from cdem.case.timed_schema import History, Timed
 from cdem.case.types import Angle, Length3, Line, Name, Part, Quantity
 
 Height = Annotated[float, Quantity("m")]

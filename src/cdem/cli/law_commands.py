@@ -23,10 +23,11 @@ SHOWN = 20
 
 @law.command("list")
 def list_laws() -> None:
-    """List the laws of blocks and of interfaces, each with what it is."""
-    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
+    """List the laws of blocks, interfaces and surfaces, each with its meaning."""
+    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS
 
-    for kind, laws in (("materials", BLOCK_LAWS), ("interfaces", INTERFACE_LAWS)):
+    kinds = {"materials": BLOCK_LAWS, "interfaces": INTERFACE_LAWS, "loads.surfaces": SURFACE_LAWS}
+    for kind, laws in kinds.items():
         print(kind)
         for one in laws.values():
             print(f"  {one.name:<20}{one.meaning}")
@@ -35,7 +36,7 @@ def list_laws() -> None:
 @law.command("new")
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Of small letters, digits and -.")],
-    kind: Annotated[Literal["block", "interface"], typer.Option(help="Kind of law.")],
+    kind: Annotated[Literal["block", "interface", "surface"], typer.Option(help="Kind of law.")],
     folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
 ) -> None:

@@ -28,7 +28,12 @@ LAW = re.compile(
 )
 INCLUDE = re.compile(r"^\s*(?:#|%:)\s*(?:include\w*|import|embed)(.*)$", re.MULTILINE)
 KNOWN = re.compile(r'\s*(?:<\w+(?:\.h)?>|"core/(?:\w+/)*\w+\.hpp")\s*')
-ANSWERS = {"BLOCK": re.compile(r"\bflow\s*\("), "INTERFACE": re.compile(r"\brespond\s*\(")}
+ANSWERS = {
+    "BLOCK": re.compile(r"\bflow\s*\("),
+    "INTERFACE": re.compile(r"\brespond\s*\(\s*const\s+JointInput\b"),
+    "SURFACE": re.compile(r"\brespond\s*\(\s*const\s+SurfacePoint\b"),
+}
+"""What a law of each kind answers."""
 BUILD, LOCK = "build", "lock"
 """Folders of builds begin so, among the libraries; the lock in each."""
 SHOWN = 8
@@ -43,7 +48,7 @@ class Header:
         path: The file.
         structure: Name of its structure.
         law: Name of the law in a case.
-        kind: "BLOCK" or "INTERFACE".
+        kind: Of `ANSWERS`.
     """
 
     path: Path
@@ -81,7 +86,8 @@ class Header:
         kinds = [kind for kind, answer in ANSWERS.items() if answer.search(text)]
         if len(kinds) != 1:
             raise CaseError(
-                f"{path}: {structure} needs flow (of blocks) or respond (of interfaces)"
+                f"{path}: {structure} needs flow (of blocks), or respond to a const JointInput (of "
+                "interfaces) or a const SurfacePoint (of surfaces)"
             )
         return cls(path.resolve(), structure, law, kinds[0])
 
@@ -91,7 +97,7 @@ def new_law(name: str, kind: str, folder: Path, *, force: bool) -> list[Path]:
 
     Args:
         name: Of the law, e.g. ``"my-clay"``.
-        kind: "block" or "interface".
+        kind: "block", "interface" or "surface".
         folder: Where to.
         force: Whether files that exist are replaced.
 
@@ -137,11 +143,11 @@ def build(files: list[Path]) -> Path:
         CaseError: A header is wrong, or does not compile.
         BackendError: There is no compiler, or another tool is missing.
     """
-    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
+    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS
 
     headers = [Header.read(path) for path in files]
     for number, header in enumerate(headers):
-        others = {*BLOCK_LAWS, *INTERFACE_LAWS, *(h.law for h in headers[:number])}
+        others = {*BLOCK_LAWS, *INTERFACE_LAWS, *SURFACE_LAWS, *(h.law for h in headers[:number])}
         if header.law in others:
             raise CaseError(
                 f"{header.path}: there is a law {header.law} already; name it otherwise"

@@ -1,0 +1,60 @@
+"""Surfaces of a case, and laws that act on them from outside."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from cdem.case.laws import SURFACE_LAWS, choice, models, surface_contradiction
+from cdem.case.timed_schema import Factored
+from cdem.case.types import Direction3, Name, Part
+
+
+class FacesOfGroup(Part):
+    """The outer faces of a group that look in one direction."""
+
+    group: Name = Field(description="Group")
+    normal: Direction3 = Field(description="Outward normal of the faces [1]")
+
+    @model_validator(mode="after")
+    def _normal_has_a_direction(self) -> FacesOfGroup:
+        if not any(self.normal):
+            raise ValueError("normal must not be [0, 0, 0]")
+        return self
+
+
+def _surface_kind(value: object) -> str:
+    return "faces" if isinstance(value, dict | FacesOfGroup) else "name"
+
+
+Surface = Annotated[
+    Annotated[Name, Tag("name")] | Annotated[FacesOfGroup, Tag("faces")],
+    Discriminator(_surface_kind),
+]
+
+
+class SurfaceLoad(Factored):
+    """A law that acts on faces as they lie now; its parameters come with the model of the law."""
+
+    acts_from_stage: ClassVar[bool] = True
+    if TYPE_CHECKING:
+        law: str
+    surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
+    stage: Name | None = Field(
+        None,
+        description="Stage at whose begin it starts to act, and from which the times of its history "
+        "and the displacements of its faces count; by default all from the start of the run",
+    )
+
+    @model_validator(mode="after")
+    def _parameters_fit(self) -> SurfaceLoad:
+        if why := surface_contradiction(self):
+            raise ValueError(why)
+        return self
+
+
+if TYPE_CHECKING:
+    AnySurfaceLoad = SurfaceLoad
+else:
+    AnySurfaceLoad = choice(models(SurfaceLoad, SURFACE_LAWS), SURFACE_LAWS)

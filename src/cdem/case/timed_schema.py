@@ -1,0 +1,73 @@
+"""What has curves over time: factors, and heights of water."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, ClassVar
+
+from pydantic import Field, WithJsonSchema, model_validator
+
+from cdem.case.types import Name, Part, Quantity
+
+Rows = list[tuple[Annotated[float, Quantity("s")], Annotated[float, Quantity("1")]]]
+_CELL = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+_NAMED = {
+    "type": "object",
+    "properties": {"file": {"type": "string", "description": "Text with two columns"}},
+    "required": ["file"],
+    "additionalProperties": False,
+}
+History = Annotated[
+    Rows,
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "array", "minItems": 1, "items": {"type": "array", "items": _CELL}},
+                _NAMED,
+            ]
+        }
+    ),
+]
+"""Rows of time and factor; a case may name a file of them, see `history_file`."""
+
+
+class Timed(Part):
+    """Something with curves over time: under `history`, of a factor, or `level`, of heights."""
+
+    acts_from_stage: ClassVar[bool] = False
+    """Whether it begins to act in its stage, so that this stands for itself."""
+    stage: Name | None = Field(
+        None,
+        description="Stage from whose begin the times of history or of a level count; before it the "
+        "first value holds. By default they count from the start of the run",
+    )
+
+    @property
+    def curves(self) -> dict[str, list[tuple[float, float]]]:
+        """Rows of time [s] and value of its curves, by key."""
+        values = {key: getattr(self, key, None) for key in ("history", "level")}
+        return {key: rows for key, rows in values.items() if isinstance(rows, list)}
+
+    @model_validator(mode="after")
+    def _times_increase(self) -> Timed:
+        for key, rows in self.curves.items():
+            if any(later <= earlier for (earlier, _), (later, _) in pairwise(rows)):
+                raise ValueError(f"{key}: times must increase")
+            if self.stage is not None and rows[0][0] < 0:
+                raise ValueError(
+                    f"{key}: times must be at least 0, the begin of stage {self.stage}"
+                )
+        if self.stage is not None and not self.curves and not self.acts_from_stage:
+            raise ValueError("stage says from when a curve counts: give it with a history or level")
+        return self
+
+
+class Factored(Timed):
+    """Something whose factor has a history."""
+
+    history: History | None = Field(
+        None,
+        min_length=1,
+        description="Factor over time, linear between: [[time [s], factor [1]], ...], or "
+        "{file: NAME} of two columns",
+    )
