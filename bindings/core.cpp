@@ -22,6 +22,7 @@
 #include "core/model/init_state.hpp"
 #include "core/nodes/applied.hpp"
 #include "core/nodes/curves.hpp"
+#include "core/nodes/ground.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/run/bring_in.hpp"
@@ -289,6 +290,10 @@ void bind_run(nb::class_<Core>& core) {
                 which.shape(0) != std::size_t(given_of<Surface>(c.model).count))
               throw nb::value_error("one flag for each entry");
             Surface::begin(c.model, c.state, which.data());
+            list_ground(c.model, c.state);
+            list_lumped(c.model, c.state);
+            list_awake_nodes(c.model, c.state);
+            renew_step(c.model, c.state);
           },
           "which"_a)
       .def("install_bolts", &take_items<Bolts, Bolts::install>, "which"_a)

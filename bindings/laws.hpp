@@ -144,7 +144,8 @@ nb::list declarations() {
     law["name"] = Law<Real>::text.name;
     law["meaning"] = Law<Real>::text.meaning;
     law["flows"] = false;
-    law["curved"] = false;
+    law["curved"] = law["absorbs"] = false;
+    if constexpr (requires { Law<Real>::impedance(nullptr, Impedance{}); }) law["absorbs"] = true;
     if constexpr (requires { Law<Real>::curve_end(nullptr, Real(0)); }) law["curved"] = true;
     if constexpr (requires { Law<Real>::inelastic; }) law["flows"] = Law<Real>::inelastic;
     nb::list parameters, state;

@@ -55,6 +55,8 @@ Energies sum_terms(const Model& m, const State& s) {
     e.terms[energy_term(Module::name)] = work;
     external -= work;
   });
+  e.terms[energy_term("radiated")] =
+      column_sum(q, s.nodes.radiated) - column_sum(q, s.nodes.radiated_sample);
   e.terms[energy_term("damping")] = column_sum(q, s.nodes.work_damping) - sample(2) +
                                     s.stopped_energy + column_sum(q, s.springs.dashpot) +
                                     column_sum(q, s.edges.dashpot) + s.taken_out_dashpot;

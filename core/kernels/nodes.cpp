@@ -10,8 +10,11 @@
 namespace cdem {
 
 template void for_each_item(Queue, Index, Blocks, const SumNodeForces&);
-template void for_each_item(Queue, Index, Blocks, const MoveNodes&);
-template void for_each_item(Queue, Index, Blocks, const AdvanceNodes&);
+template void for_each_item(Queue, Index, Blocks, const MoveNodes<NoDashpots>&);
+template void for_each_item(Queue, Index, Blocks, const MoveNodes<Dashpots>&);
+template void for_each_item(Queue, Index, Blocks, const AdvanceNodes<NoDashpots>&);
+template void for_each_item(Queue, Index, Blocks, const AdvanceNodes<Dashpots>&);
+template void for_each_item(Queue, Index, const SampleDashpots&);
 template void for_each_item(Queue, Index, const NodeMomentum&);
 template Most most(Queue, Index, const NodeFrequency&);
 template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Column<Index>&,

@@ -76,6 +76,45 @@ void describe_forces(const std::string& name, AppliedForces& of, const Stored& s
            .refers_to = {applied_rows_of(name)}},
           of.row);
 }
+/// Dashpots to the ground: part of `describe_applied`.
+template <class Stored, class Rebuilt>
+void describe_ground(State& s, const Stored& stored, const Rebuilt& rebuilt) {
+  const auto work = [&](const char* name, const char* meaning, Column<Real>& column) {
+    stored({.name = name, .unit = "J", .meaning = meaning, .rows = "nodes", .optional = true},
+           column);
+  };
+  work("node.radiated", "work of its dashpots to the ground", s.nodes.radiated);
+  work("node.radiated_sample", "what of it is of the half step to come", s.nodes.radiated_sample);
+  rebuilt("list_ground",
+          {.name = "ground.row",
+           .meaning = "row of the dashpots of a node, or -1",
+           .rows = "nodes",
+           .refers_to = {"dashed_nodes"},
+           .optional = true},
+          s.ground.row);
+  rebuilt("list_ground",
+          {.name = "ground.node",
+           .meaning = "node that has dashpots",
+           .rows = "dashed_nodes",
+           .refers_to = {"nodes"}},
+          s.ground.node);
+  rebuilt("list_ground",
+          {.name = "ground.matrix",
+           .unit = "kg/s, -",
+           .meaning = "its dashpots, xx yy zz xy yz zx, and two pads",
+           .rows = "dashed_nodes",
+           .numbers = 8,
+           .parts = {{"dashpots", 6}, {"", 2}}},
+          s.ground.matrix);
+  rebuilt("advance_nodes",
+          {.name = "ground.force",
+           .unit = "N, -",
+           .meaning = "force of its dashpots, and a pad",
+           .rows = "dashed_nodes",
+           .numbers = 4,
+           .parts = {{"force", 3}, ""}},
+          s.ground.force);
+}
 /// Call the same for the forces that modules apply, with their names.
 template <class Stored, class Rebuilt>
 void describe_applied(State& s, const Stored& stored, const Rebuilt& rebuilt) {
@@ -91,6 +130,7 @@ void describe_applied(State& s, const Stored& stored, const Rebuilt& rebuilt) {
            .parts = {{"force", 3}, ""},
            .optional = true},
           s.nodes.applied);
+  describe_ground(s, stored, rebuilt);
   rebuilt("list_applied",
           {.name = "node.has_applied",
            .meaning = "1: modules apply forces to it",

@@ -60,6 +60,7 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
   visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));
   visit(RowKind{"loads", "forces on nodes"}, end_of(m.load_first));
   visit(RowKind{"supports", "nodes of which a component is given"}, total(m.support_component) / 3);
+  visit(RowKind{"dashed_nodes", "nodes with dashpots to the ground"}, total(s.ground.node));
   visit(RowKind{"curves", "histories of loads and supports"}, Index(m.curve_time.size()));
 }
 

@@ -27,11 +27,19 @@ struct NodeState {
   Column<Real> relief;              // rows of 4, see run/excavate.hpp; empty: none
   Column<Real> applied;             // rows of 4, sum of several modules; empty where one is there
   Column<Flag> has_applied;  // 1: modules apply forces to it, see nodes/applied.hpp; or empty
+  Column<Real> radiated, radiated_sample;  // work of dashpots, see SampleDashpots; or empty
   Column<Flag> fused;        // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
   Column<Index> general;     // awake blocks of nodes but those of which all are fused
   bool damped = false;       // in the last step, else damping_force does not count
   Column<Index> tile_first;  // rows of tiles that a node sums, see ElementTiles
   Column<Index> corner_first, corner;  // rows of live pairs and modules that it sums then
+};
+
+/// Dashpots between nodes and the ground, see nodes/ground.hpp; empty where there are none.
+struct GroundState {
+  Column<Index> row, node;  // [node] row or -1, and node of each row
+  Column<Real> matrix;      // rows of 8, see Dashpots  [kg/s]
+  Column<Real> force;       // rows of 4, made in every step  [N]
 };
 
 /// Blocks of elements of which all are fused and have full mass matrices, see
@@ -217,6 +225,7 @@ struct State {
   bool ledger_started = false;
   Relief relief;
   NodeState nodes;
+  GroundState ground;
   ElementState tet4, pyramid5, wedge6, hex8;
   NodalMeans nodal;
   PairState triangles, quads, overlaps;

@@ -2,6 +2,7 @@
 // differences.
 #pragma once
 
+#include "core/nodes/dashpots.hpp"
 #include "core/nodes/mass.hpp"
 #include "core/nodes/ports.hpp"
 #include "core/nodes/supports.hpp"
@@ -63,6 +64,7 @@ struct SumNodeForces {
 /// kinetic energy, central differences keep the sum of all energies exactly when forces are linear
 /// and the step does not change. A change of the step takes 1/4 (dt - dt_before) f . (v_after -
 /// v_before) from that sum, see SampleNodes: the rest is exact again.
+template <class Dashing = NoDashpots>
 struct MoveNodes {
   MassColumns mass;
   LoadColumns loads;
@@ -76,13 +78,14 @@ struct MoveNodes {
   Real* work_damping;         // [node] taken out by damping so far  [J]
   Real* step_change;          // [node] hidden by changes of the step so far  [J]; null where this
                               // step is as long as the last one
+  [[no_unique_address]] Dashing ground{};
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;
     Real* r = motion + std::size_t(i) * 8;
     const Row v0 = Row::at(r + 4);
     const Real kick = 0.5 * (dt_before + dt);
-    const Row v1 = supports.with_given(i, v0 + kick * acceleration(i));
+    const Row v1 = supports.with_given(i, v0 + change(i, v0, kick));
     v1.store(r + 4);
     (Row::at(r) + dt * v1).store(r);
     const Row way = 0.5 * (dt_before * v0 + dt * v1);
@@ -92,6 +95,12 @@ struct MoveNodes {
     work_external[i] += dot(external.vector(), way.vector());
     if (damping_force)
       work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way.vector());
+    if constexpr (Dashing::any)
+      if (ground.act_on(i)) {
+        const Row drag = ground.force_on(i);
+        ground.radiated[i] -= dot(drag.vector(), way.vector());
+        support = support + drag;
+      }
     if (step_change) {
       const Row acting = Row::at(force + std::size_t(i) * 4) + support;
       step_change[i] += 0.25 * (dt - dt_before) * dot(acting.vector(), (v1 - v0).vector());
@@ -99,6 +108,13 @@ struct MoveNodes {
   }
 
  private:
+  CDEM_HD Row change(Index i, const Row& v0, Real kick) const {
+    if constexpr (Dashing::any)
+      if (ground.act_on(i))
+        return ground.change(i, supports, Row::at(force + std::size_t(i) * 4), v0,
+                             mass.mass[i] / kick);
+    return kick * acceleration(i);
+  }
   CDEM_HD Row acceleration(Index i) const {
     const Index row = mass.row(i);
     if (row < 0) return (Row::at(force + std::size_t(i) * 4) / mass.mass[i]).xyz();
@@ -142,9 +158,10 @@ struct MoveNodes {
 /// Both at once, for a step in which nothing looks at the forces in between: what the sum leaves is
 /// still in cache when the motion wants it. Nodes that share a mass matrix go together, with the
 /// first of them.
+template <class Dashing = NoDashpots>
 struct AdvanceNodes {
   SumNodeForces sum;
-  MoveNodes move;
+  MoveNodes<Dashing> move;
   const Flag* fused;  // [node] 1: moved by AdvanceFused; null where none is
 
   CDEM_HD void operator()(One node) const {

@@ -54,19 +54,20 @@ void change_mass(Model& m, State& s, bool lumped) {
 }
 
 void list_lumped(const Model& m, State& s) {
-  if (!m.lumped_while_bonded) {
+  if (!m.lumped_while_bonded && s.ground.node.size() == 0) {
     if (s.nodes.lumped.size() > 0) book_change(m, s, [&] { s.nodes.lumped.resize(0); });
     return;
   }
-  std::vector<Flag> bonded(m.node_count), lumped(m.node_count);  // the first by block's first node
+  std::vector<Flag> whole(m.node_count), lumped(m.node_count);  // the first by block's first node
   const auto block_first = on_host(m.block_first);
+  for (const Index node : on_host(s.ground.node)) whole[block_first[node]] = 1;
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
     const auto is_active = activity(ps);
     const auto for_each_node = nodes_of(m, p);
-    for (Index i = 0; i < p.count; ++i)
-      if (is_active(i)) for_each_node(i, [&](Index node) { bonded[block_first[node]] = 1; });
+    for (Index i = 0; i < p.count && m.lumped_while_bonded; ++i)
+      if (is_active(i)) for_each_node(i, [&](Index node) { whole[block_first[node]] = 1; });
   });
-  for (Index i = 0; i < m.node_count; ++i) lumped[i] = bonded[block_first[i]];
+  for (Index i = 0; i < m.node_count; ++i) lumped[i] = whole[block_first[i]];
   const auto change = [&] { s.nodes.lumped.assign(lumped); };
   if (s.nodes.lumped.size() == 0)  // of a new or a restored state: nothing changes
     change();

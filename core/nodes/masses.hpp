@@ -13,7 +13,8 @@ Real energy_of_motion(const Model& model, const State& state);
 /// damping, and taken from the last sample.
 void change_mass(Model& model, State& state, bool lumped);
 
-/// Where the model wants it, list the nodes of blocks with bonds that are not released: they move
+/// List the nodes of blocks with dashpots to the ground, which move lumped masses, and, where the
+/// model wants it, of blocks with bonds that are not released: they move
 /// lumped masses, which allow a step more than twice as long, and move the full mass matrix from
 /// the release of the last bond of their block on. That keeps velocities; what kinetic energy it
 /// takes is booked as damping. Call it whenever pairs have been released.

@@ -81,7 +81,8 @@ SumNodeForces node_forces(const Model& m, State& s, bool sampled) {
           .unbalance = sampled ? s.nodes.unbalance.data() : nullptr};
 }
 
-MoveNodes node_motion(const Model& m, State& s) {
+template <class Dashing>
+MoveNodes<Dashing> node_motion(const Model& m, State& s, const Dashing& ground) {
   return {.mass = mass_columns(m, s),
           .loads = load_columns(m, s),
           .supports = support_columns(m, s),
@@ -93,7 +94,17 @@ MoveNodes node_motion(const Model& m, State& s) {
           .reaction = s.nodes.reaction.data(),
           .work_external = s.nodes.work_external.data(),
           .work_damping = s.nodes.work_damping.data(),
-          .step_change = step_change_if_any(s)};
+          .step_change = step_change_if_any(s),
+          .ground = ground};
+}
+
+/// Call act(dashpots), or act(NoDashpots) where no node has any.
+template <class Act>
+void with_dashpots(State& s, const Act& act) {
+  if (s.ground.node.size() > 0)
+    act(dashpots(s));
+  else
+    act(NoDashpots{});
 }
 
 void sample_before(const Model& m, State& s, Queue q) {
@@ -113,6 +124,12 @@ void sample_after(const Model& m, State& s, Queue q) {
                             .dt_before = s.dt_last,
                             .dt = s.dt,
                             .sample = s.nodes.sample.data()});
+  for_each_item(q, Index(s.ground.node.size()),
+                SampleDashpots{.node = s.ground.node.data(),
+                               .nodes = {s.nodes.motion.data()},
+                               .force = s.ground.force.data(),
+                               .dt = s.dt,
+                               .sample = s.nodes.radiated_sample.data()});
   finish(q);
 }
 
@@ -122,7 +139,9 @@ void sum_then_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
   for_each_item(q, m.node_count, nodes, node_forces(m, s, true));
   if (plan.stop_motion) stop_motion(m, s);
   if (plan.sample) sample_before(m, s, q);
-  for_each_item(q, m.node_count, nodes, node_motion(m, s));
+  with_dashpots(s, [&](const auto& ground) {
+    for_each_item(q, m.node_count, nodes, node_motion(m, s, ground));
+  });
   finish(q);
   if (plan.sample) sample_after(m, s, q);
 }
@@ -132,8 +151,12 @@ void sum_and_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
   const bool fuses = fuses_blocks(s, plan);
   if (fuses) advance_fused_blocks(m, s, q, plan);
   const SumNodeForces sum = node_forces(m, s, plan.everything_awake);
-  for_each_item(q, m.node_count, awake(plan, fuses ? s.nodes.general : s.nodes.awake),
-                AdvanceNodes{sum, node_motion(m, s), fuses ? s.nodes.fused.data() : nullptr});
+  const Blocks nodes = awake(plan, fuses ? s.nodes.general : s.nodes.awake);
+  with_dashpots(s, [&]<class Dashing>(const Dashing& ground) {
+    for_each_item(q, m.node_count, nodes,
+                  AdvanceNodes<Dashing>{sum, node_motion(m, s, ground),
+                                        fuses ? s.nodes.fused.data() : nullptr});
+  });
   finish(q);
 }
 

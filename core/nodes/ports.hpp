@@ -56,6 +56,7 @@ struct CornerLists {
 struct NodePorts {
   LoadColumns loads;
   const Flag* has_applied;  // [node] may modules apply forces to it? null: to none
+  const Index* ground;      // [node] row of its dashpots, see nodes/dashpots.hpp, or -1; null: none
   CornerLists corners;
 
   CDEM_HD Row sum(Index node) const { return corners.sum(node, loads.at(node)); }
@@ -69,6 +70,7 @@ struct NodePorts {
   CDEM_HD bool is_loaded(Index node) const {
     if (loads.load_first[node] < loads.load_first[node + 1]) return true;
     if (has_applied && has_applied[node]) return true;
+    if (ground && ground[node] >= 0) return true;
     if (!loads.relief) return false;
     const Vec3<Real> kept = Row::at(loads.relief + std::size_t(node) * 4).vector();
     return kept.x != 0 || kept.y != 0 || kept.z != 0;

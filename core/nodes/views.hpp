@@ -3,6 +3,7 @@
 
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
+#include "core/nodes/dashpots.hpp"
 #include "core/nodes/mass.hpp"
 #include "core/nodes/ports.hpp"
 #include "core/nodes/supports.hpp"
@@ -72,9 +73,17 @@ inline CornerLists corner_lists(const State& s) {
           .contact_force = {s.contact_force.data()}};
 }
 
+inline Dashpots dashpots(State& s) {
+  return {.row = s.ground.row.data(),
+          .matrix = s.ground.matrix.data(),
+          .force = s.ground.force.data(),
+          .radiated = s.nodes.radiated.data()};
+}
+
 inline NodePorts node_ports(const Model& m, const State& s) {
   return {.loads = load_columns(m, s),
           .has_applied = s.nodes.has_applied.size() > 0 ? s.nodes.has_applied.data() : nullptr,
+          .ground = s.ground.row.size() > 0 ? s.ground.row.data() : nullptr,
           .corners = corner_lists(s)};
 }
 

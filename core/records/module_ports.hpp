@@ -1,7 +1,15 @@
 // module_ports.hpp - how, and when in a step, a module acts on nodes.
 #pragma once
 
+#include "core/base/lanes.hpp"
+
 namespace cdem {
+
+/// A dashpot between a node and the ground: its symmetric matrix, xx yy zz xy yz zx  [kg/s].
+struct NodeDashpot {
+  Index node;
+  Real matrix[6];
+};
 
 /// How the forces of a module come to nodes.
 enum class Port {

@@ -13,6 +13,7 @@
 #include "core/nodes/applied.hpp"
 #include "core/nodes/corner_lists.hpp"
 #include "core/nodes/curves.hpp"
+#include "core/nodes/ground.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/nodes.hpp"
 #include "core/nodes/sleep.hpp"
@@ -30,10 +31,15 @@ struct AfterResume {
 
 /// In the order of `rebuilds`.
 constexpr AfterResume after_resume[] = {
-    {"list_nodal_means", list_nodal_means}, {"find_loads_and_supports", find_loads_and_supports},
-    {"list_exposed", list_exposed},         {"list_corners", list_corners},
-    {"list_lumped", list_lumped},           {"place_predicted_nodes", place_predicted_nodes},
-    {"add_applied", add_applied},           {"find_awake", find_awake},
+    {"list_nodal_means", list_nodal_means},
+    {"find_loads_and_supports", find_loads_and_supports},
+    {"list_exposed", list_exposed},
+    {"list_corners", list_corners},
+    {"list_ground", list_ground},
+    {"list_lumped", list_lumped},
+    {"place_predicted_nodes", place_predicted_nodes},
+    {"add_applied", add_applied},
+    {"find_awake", find_awake},
 };
 
 consteval bool is_complete() {
@@ -52,6 +58,7 @@ void prepare(const Model& m, State& s) {
   if (s.built_step < 0) {
     list_nodal_means(m, s);
     find_loads_and_supports(m, s);
+    list_ground(m, s);
     rebuild_pair_list(m, s, {.everything_awake = true});
     s.dt_last = s.dt;
     return;

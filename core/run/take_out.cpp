@@ -2,6 +2,7 @@
 #include "core/run/take_out.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/contact/narrow_phase/exposed_faces.hpp"
@@ -62,6 +63,9 @@ void stop_nodes(NodeState& n, const std::vector<Index>& which) {
     step_change[i] -= sample[4 * i + 3];
     unbalance[i] = 0;
   }
+  const auto radiated = on_host(n.radiated), radiated_sample = on_host(n.radiated_sample);
+  for (const std::size_t i : which)
+    if (radiated.size() > 0) radiated[i] -= std::exchange(radiated_sample[i], 0);
   const auto zero = [&](Column<Real>& rows, std::size_t width, std::size_t from) {
     const auto numbers = on_host(rows);
     for (const std::size_t i : which)

@@ -116,6 +116,38 @@ Real Surface::stiffness_of_entry(const Given& g, Index entry) {
   return stiffness;
 }
 
+std::vector<NodeDashpot> Surface::dashpots(const Given& g, const State& s) {
+  const auto law = on_host(g.law);
+  const auto parameters = on_host(g.parameters);
+  const auto begun = on_host(s.begun);
+  std::vector<NodeDashpot> found;
+  for (const SurfaceFaces* faces : {&g.triangles, &g.quads}) {
+    const auto nodes = on_host(faces->nodes), entry = on_host(faces->entry);
+    const auto area = on_host(faces->area), normal = on_host(faces->normal),
+               rock = on_host(faces->impedance);
+    for (std::size_t f = 0; f < std::size_t(faces->count); ++f) {
+      const Index e = entry[f];
+      if (!begun[e]) continue;
+      SurfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+        if constexpr (requires { Law<Real>::impedance(nullptr, Impedance{}); }) {
+          if (law[e] != number) return;
+          const Impedance z = Law<Real>::impedance(parameters.data() + std::size_t(e) * surface_row,
+                                                   {rock[2 * f], rock[2 * f + 1]});
+          const Real share = area[f] / faces->vertices, more = z.normal - z.shear;
+          const Real x = normal[3 * f], y = normal[3 * f + 1], w = normal[3 * f + 2];
+          for (Index k = 0; k < faces->vertices; ++k)
+            found.push_back(
+                {.node = nodes[std::size_t(k) * faces->stride + f],
+                 .matrix = {share * (z.shear + more * x * x), share * (z.shear + more * y * y),
+                            share * (z.shear + more * w * w), share * more * x * y,
+                            share * more * y * w, share * more * w * x}});
+        }
+      });
+    }
+  }
+  return found;
+}
+
 std::vector<Index> Surface::row_nodes(const Model& m, const cdem::State&) {
   const SurfaceSet& g = given_of<Surface>(m);
   std::vector<Index> node;

@@ -22,6 +22,8 @@ struct SurfaceFaces {
   Column<Index> nodes;                // [vertex][face]
   Column<Index> entry;                // [face]
   Column<Real> area;                  // [face] at the start  [m2]
+  Column<Real> normal;                // [face] rows of 3: outward, at the start
+  Column<Real> impedance;             // [face] rows of 2: of the rock behind it, see Impedance
 };
 
 /// Entries of the case, each a law with its parameters and a curve, and the faces they act on.
@@ -73,6 +75,8 @@ struct Surface {
   static void renew(const Model& model, cdem::State& state, const Flag* comes);
   /// Entries with flag 1 begin to act: displacements count from here.
   static void begin(const Model& model, cdem::State& state, const Flag* which);
+  /// Dashpots of laws that have begun to act, vertex by vertex.
+  static std::vector<NodeDashpot> dashpots(const Given& g, const State& s);
   /// for_each_stiffness(visit) calls visit(node, stiffness [N/m]) for what laws stiffen nodes by.
   static auto stiffness_of(const Given& g) {
     return [&g](auto&& visit) {
@@ -160,6 +164,19 @@ struct Surface {
                  .rows = rows,
                  .optional = true},
                 faces.area);
+    visit.given({.name = rows + ".normal",
+                 .meaning = "outward normal at the start",
+                 .rows = rows,
+                 .numbers = 3,
+                 .optional = true},
+                faces.normal);
+    visit.given({.name = rows + ".impedance",
+                 .unit = "kg/(m2 s)",
+                 .meaning = "of the rock behind it, along the normal and across",
+                 .rows = rows,
+                 .numbers = 2,
+                 .optional = true},
+                faces.impedance);
     visit.stored({.name = rows + ".place",
                   .unit = "m",
                   .meaning = "place of each vertex when the entry began to act, x y z",

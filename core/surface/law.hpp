@@ -11,6 +11,10 @@
 // and, where it resists being displaced, the stiffness from which the stable step follows:
 //
 //   static Real stiffness(const Real* parameters);             [Pa/m]
+//
+// and, where it is a dashpot to the ground, along the normal of the start and across it:
+//
+//   static Impedance impedance(const Real* parameters, const Impedance& rock);
 #pragma once
 
 #include <array>
@@ -19,6 +23,11 @@
 #include "core/records/law_declaration.hpp"
 
 namespace cdem {
+
+/// Density times wave speeds, along a normal and across it  [kg/(m2 s)].
+struct Impedance {
+  Real normal, shear;
+};
 
 /// A vertex of a face on which a law acts.
 template <class T>

@@ -3,6 +3,7 @@
 
 #include "core/records/law_list.hpp"
 #include "core/surface/pressure.hpp"
+#include "core/surface/quiet.hpp"
 #if defined(CDEM_OWN_SURFACE_LAW)  // a law that is built beside those of the list
 #include CDEM_OWN_SURFACE_HEADER
 #endif
@@ -11,9 +12,9 @@ namespace cdem {
 
 /// Every surface law; a new one is one header and its name here.
 #if defined(CDEM_OWN_SURFACE_LAW)
-using SurfaceLaws = LawList<Pressure, CDEM_OWN_SURFACE_LAW>;
+using SurfaceLaws = LawList<Pressure, Quiet, CDEM_OWN_SURFACE_LAW>;
 #else
-using SurfaceLaws = LawList<Pressure>;
+using SurfaceLaws = LawList<Pressure, Quiet>;
 #endif
 
 /// Numbers of the parameters of an entry: whole fours.

@@ -203,3 +203,106 @@ def test_a_blast_in_a_spherical_cavity_sends_the_wave_of_sharpe(tmp_path):
     assert np.abs(errors[[0, 2]]).max() < 0.02, errors
     assert np.abs(errors[[1, 3]]).max() < 0.07, errors
     assert abs(sim.energies["error"]) < 1e-3
+
+
+# ------------------------------------------------------------------ quiet faces
+
+WAVE_ROCK = {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.25}
+P_WAVE, S_WAVE = np.sqrt(1.2e9 / 2500), np.sqrt(0.4e9 / 2500)
+CELLS, PER_WAVE = 100, 10
+
+
+def column(axis, ends, shape="hex8"):
+    """A bar of cells of 1 m along x in which a burst of waves along an axis runs up from x = 0.
+
+    The foot is quiet; its traction is 2 z v_up. `ends` are laws at the other end.
+    """
+    speed = P_WAVE if axis == "x" else S_WAVE
+    period = PER_WAVE / speed
+    times = np.linspace(0, 8 * period, 801)
+    burst = np.sin(2 * np.pi * times / period) * 0.5 * (1 - np.cos(np.pi * times / (4 * period)))
+    foot = {"surface": {"group": "bar", "normal": [-1, 0, 0]}}
+    head = {"surface": {"group": "bar", "normal": [1, 0, 0]}}
+    traction = [2 * 2500 * speed * 1e-3 if axis == own else 0 for own in "xyz"]
+    loads = {
+        "surfaces": [foot | {"law": "quiet"}, *(head | law for law in ends)],
+        "tractions": [foot | {"traction": traction, "history": list(zip(times, burst, strict=True))}],
+        "supports": [{"box": {"min": [-9, -9, -9], "max": [999, 9, 9]},
+                      "fix": [a for a in "xyz" if a != axis]}],
+    }  # fmt: skip
+    bar = {"size": [CELLS, 1, 1], "divisions": [CELLS, 1, 1], "shape": shape}
+    duration = (2 * CELLS + 8 * PER_WAVE) / speed + 4 * period
+    stages = [{"name": "shake", "mode": "dynamic", "duration": duration}]
+    model = case([{"group": "bar", "box": bar}], {"bar": {}}, materials={"rock": WAVE_ROCK},
+                 loads=loads, stages=stages, elements={"mass": "lumped"})  # fmt: skip
+    return cdem.Simulation(model, threads=1), speed
+
+
+def reflected(axis, ends, shape="hex8"):
+    """Amplitude that comes back, over that which came; the simulation, and c dt / h."""
+    sim, speed = column(axis, ends, shape)
+    middle = np.abs(sim.build.start_position[:, 0] - CELLS / 2) < 1e-6
+    seen = []
+    while sim.stage_index == 0 and sim.time < sim.case.stages[0].duration:
+        sim.step(2)
+        seen.append((sim.time, sim.fields["velocity"][middle, "xyz".index(axis)].mean()))
+    times, v = np.array(seen).T
+    came = times < (CELLS / 2 + 9 * PER_WAVE) / speed
+    assert np.abs(v[came]).max() == pytest.approx(1e-3, rel=0.03)
+    return np.abs(v[~came]).max() / np.abs(v[came]).max(), sim, speed * sim.core.scalars()["dt"]
+
+
+def formula(courant, per_wave=PER_WAVE):
+    """What a lumped column with an implicit dashpot at its end sends back, by the discrete wave."""
+    half_step = np.pi * courant / per_wave  # w dt / 2
+    half_cell = np.arcsin(np.sin(half_step) / courant)  # k h / 2
+    sums = np.cos(half_cell) + np.cos(half_step)
+    return abs(np.cos(half_cell) - np.cos(half_step)) / sums
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_a_quiet_face_sends_back_what_the_discrete_wave_says(axis):
+    """P 1.0 % and S 2.0 % with ten cells a wave length; the work of the dashpots closes the ledger."""
+    back, sim, courant = reflected(axis, [{"law": "quiet"}])
+    assert back == pytest.approx(formula(courant), rel=0.1)
+    energies = sim.energies
+    assert energies["radiated"] > 0.99 * energies["external"] > 0
+    assert abs(energies["error"]) < 1e-6
+
+
+def test_a_part_of_the_impedance_reflects_as_acoustics_says():
+    """R = (1 - a) / (1 + a), and that of the mesh."""
+    back, _, _ = reflected("x", [{"law": "quiet", "part": 0.5}])
+    assert back == pytest.approx(1 / 3, rel=0.03)
+
+
+def test_quiet_faces_lean_at_any_angle_and_add_up():
+    """Dashpots are a matrix: a cube turned anyhow, with all faces quiet, loses its motion alike."""
+    ends = []
+    for turn in ({"axis": [0, 0, 1], "angle": 0}, {"axis": [1, 2, 3], "angle": 50}):
+        r = rotation(turn)
+        faces = [{"surface": {"group": "a", "normal": list(r @ n)}, "law": "quiet"} for n in AXES]
+        sim = simulate(
+            [CUBE[0] | {"rotate": turn}], {"a": {"velocity": list(r @ [1.0, 0.2, 0.1])}},
+            rock=WAVE_ROCK, loads={"surfaces": faces}, elements={"mass": "lumped"},
+        )  # fmt: skip
+        sim.step(40)
+        ends.append(momenta(sim)[0] @ r)
+        assert abs(sim.energies["error"]) < 1e-6
+        assert 0 < np.linalg.norm(ends[-1]) < 0.9 * 2500
+    assert np.abs(ends[0] - ends[1]).max() < 1e-9 * 2500
+
+
+def rotation(turn):
+    """Matrix of a rotation about an axis by an angle [deg] (Rodrigues)."""
+    axis = np.array(turn["axis"], float) / np.linalg.norm(turn["axis"])
+    angle = np.radians(turn["angle"])
+    cross = np.cross(np.eye(3), axis)
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def test_a_quiet_face_is_refused_where_the_rock_would_creep_off():
+    faces = [{"surface": {"group": "a", "normal": [0, 0, -1]}, "law": "quiet"}]
+    stages = [{"name": "rest", "mode": "static", "tolerance": 1e-3}]
+    with pytest.raises(cdem.errors.CaseError, match=r"surfaces\.0\.law: quiet has dashpots"):
+        case(CUBE, {"a": {}}, loads={"surfaces": faces}, stages=stages)

@@ -10,7 +10,7 @@ from typing import Any
 
 from cdem.case.curve_times import last_dynamic, least_time, over_early, timed
 from cdem.case.input_file import is_file
-from cdem.case.laws import BLOCK_LAWS, block_contradiction
+from cdem.case.laws import BLOCK_LAWS, SURFACE_LAWS, block_contradiction
 from cdem.case.map_system import why_not
 from cdem.case.plausible import doubts
 from cdem.case.schema import CaseParts, Stage
@@ -64,6 +64,18 @@ def _names(case: CaseParts) -> Iterator[Problem]:
 
 
 def _surfaces(case: CaseParts) -> Iterator[Problem]:
+    names = [stage.name for stage in case.stages]
+    for i, entry in enumerate(case.loads.surfaces):
+        if not SURFACE_LAWS[entry.law].absorbs or entry.stage not in (None, *names):
+            continue
+        rest = case.stages[0 if entry.stage is None else names.index(entry.stage) :]
+        if static := next((s.name for s in rest if s.mode == "static"), None):
+            yield (
+                ("loads", "surfaces", i, "law"),
+                f"{entry.law} has dashpots, which hold nothing at rest: the rock would creep off in the "
+                f"static stage {static}; let it begin with a later stage (stage: NAME) behind all static "
+                "ones, and hold the faces with supports that this stage takes away",
+            )
     for i, history in enumerate(case.histories):
         if "surface_force" in history.quantities and not case.loads.surfaces:
             yield ("histories", i, "quantities"), "surface_force needs loads.surfaces in the case"

@@ -95,6 +95,7 @@ class Law:
         meaning: One sentence.
         flows: Of a block law: whether it ever gives inelastic strain.
         curved: Of an interface law: whether its joints close by a curve.
+        absorbs: Of a surface law: whether it has dashpots to the ground.
         parameters: In the order of the core.
         state: In the order of the core.
         softening: Of a block law: the names of the strengths that may fall.
@@ -104,6 +105,7 @@ class Law:
     meaning: str
     flows: bool
     curved: bool
+    absorbs: bool
     parameters: tuple[Parameter, ...]
     state: tuple[StateVariable, ...]
     softening: tuple[str, ...] = ()
@@ -167,6 +169,7 @@ def _declared(laws: list[dict[str, Any]]) -> dict[str, Law]:
             law["meaning"],
             law["flows"],
             law["curved"],
+            law["absorbs"],
             tuple(Parameter(**p) for p in law["parameters"]),
             tuple(StateVariable(**v) for v in law["state"]),
             tuple(law["softening"]),

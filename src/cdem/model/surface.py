@@ -11,10 +11,11 @@ from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.laws import SURFACE_LAWS
 from cdem.errors import CaseError
+from cdem.mesh.element_shapes import lame_constants
 from cdem.mesh.topology import Topology
 from cdem.model.curves import add_curve
-from cdem.model.faces import face_areas
-from cdem.model.flat_arrays import table
+from cdem.model.faces import face_areas, face_normals
+from cdem.model.flat_arrays import Floats, table
 from cdem.model.module import Built, Module, Parts
 from cdem.model.selection import select_faces
 
@@ -64,6 +65,8 @@ class SurfaceModel(Module):
         face = np.concatenate(faces)
         entry = np.repeat(np.arange(len(items)), [len(f) for f in faces])
         area = face_areas(t.node_position, t.face_nodes[face])
+        normal = face_normals(t.node_position, t.face_nodes[face])
+        impedance = _impedances(parts)[t.face_group[face]]
         self.found = [(len(f), float(area[entry == i].sum())) for i, f in enumerate(faces)]
         corners = (t.face_nodes[face] >= 0).sum(axis=1)
         for kind, vertices in KINDS.items():
@@ -75,6 +78,8 @@ class SurfaceModel(Module):
                 f"{kind}.nodes": table(nodes, stride),
                 f"{kind}.entry": table(entry[some][None].astype(np.int32), stride),
                 f"{kind}.area": area[some],
+                f"{kind}.normal": normal[some].ravel(),
+                f"{kind}.impedance": impedance[some].ravel(),
             }
 
     def _refuse_others(self, case: Case) -> None:
@@ -105,3 +110,15 @@ class SurfaceModel(Module):
             + (f", from the begin of {one['stage']}" if one["stage"] else "")
             for one in report
         ]
+
+
+def _impedances(parts: Parts) -> Floats:
+    """Density times speed of P and S waves of the rock of each group [kg/(m2 s)], shape (groups, 2)."""
+    case = parts.case
+    rocks = [case.materials[case.groups[name].material] for name in parts.names]
+    density = np.array([rock.density for rock in rocks])
+    young, poisson = (
+        np.array([getattr(r, k) for r in rocks]) for k in ("young_modulus", "poisson_ratio")
+    )
+    first, shear = lame_constants(young, poisson)
+    return np.sqrt(density * np.stack([first + 2 * shear, shear])).T

@@ -27,8 +27,8 @@ class EnergyTerm:
         return f"{self.name} {self.kind} [J]"
 
 
-OF_SURFACES = "surface"
-"""The term of surface laws: only a case that has some tells it."""
+OF_SURFACES = ("surface", "radiated")
+"""Terms of surface laws: only a case that has some tells them."""
 
 ENERGY_TERMS = [
     EnergyTerm(term["name"], "energy" if term["kind"] in ("stored", "hidden") else "work")
@@ -39,4 +39,4 @@ ENERGY_TERMS = [
 
 def terms_of(case: Case) -> list[EnergyTerm]:
     """Those that the files of a case tell."""
-    return [term for term in ENERGY_TERMS if case.loads.surfaces or term.name != OF_SURFACES]
+    return [term for term in ENERGY_TERMS if case.loads.surfaces or term.name not in OF_SURFACES]

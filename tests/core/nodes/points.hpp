@@ -83,6 +83,7 @@ struct Points {
   NodePorts ports() const {
     return {.loads = loads(),
             .has_applied = nullptr,
+            .ground = nullptr,
             .corners = {.tile_first = tile_first.data(),
                         .tile_force = {tile_force.data()},
                         .first = corner_first.data(),
@@ -111,7 +112,7 @@ struct Points {
             force.data(),    damps() ? damping_force.data() : nullptr,
             unbalance.data()};
   }
-  MoveNodes move_kernel() {
+  MoveNodes<> move_kernel() {
     return {mass_columns(),
             loads(),
             supports(),
@@ -127,7 +128,8 @@ struct Points {
   }
   /// Both in one pass.
   void advance() {
-    const AdvanceNodes kernel{sum_kernel(), move_kernel(), fused.empty() ? nullptr : fused.data()};
+    const AdvanceNodes<> kernel{sum_kernel(), move_kernel(),
+                                fused.empty() ? nullptr : fused.data()};
     for (Index i = 0; i < count; ++i) kernel(One{i});
   }
 };

@@ -27,6 +27,7 @@ struct Ports {
                 .relief_part = 0.25,
                 .applied = nullptr},
       .has_applied = nullptr,
+      .ground = nullptr,
       .corners = {
           tile_first, {tiles}, first, corner, {rows}, contact_first, contact_corner, {contacts}}};
 };
@@ -54,7 +55,7 @@ TEST_CASE("rows of tiles come first, then those of bonds with their sign, then c
 TEST_CASE("each port answers whether it leaves a node plain, and whether it loads it") {
   // A new port does not compile here: it needs its line in sum, in is_plain and in is_loaded.
   const Ports quiet;
-  [[maybe_unused]] const auto& [loads, has_applied, corners] = quiet.ports;
+  [[maybe_unused]] const auto& [loads, has_applied, ground, corners] = quiet.ports;
   CHECK((quiet.ports.is_plain(0) && !quiet.ports.is_loaded(0)));
   CHECK((!quiet.ports.is_plain(1) && quiet.ports.is_loaded(1)));   // curves
   CHECK((!quiet.ports.is_plain(2) && !quiet.ports.is_loaded(2)));  // contacts
@@ -66,6 +67,11 @@ TEST_CASE("each port answers whether it leaves a node plain, and whether it load
   CHECK((!p.ports.is_plain(1) && p.ports.is_loaded(1)));
   CHECK((p.ports.is_plain(0) && !p.ports.is_loaded(0)));
   p.ports.has_applied = nullptr;
+  const Index dashed[3] = {-1, 0, -1};
+  p.ports.ground = dashed;
+  CHECK((!p.ports.is_plain(1) && p.ports.is_loaded(1)));
+  CHECK((p.ports.is_plain(0) && !p.ports.is_loaded(0)));
+  p.ports.ground = nullptr;
   p.ports.loads.relief = p.relief;
   CHECK((!p.ports.is_plain(1) && p.ports.is_loaded(1)));
   CHECK((p.ports.is_plain(0) && !p.ports.is_loaded(0)));
