@@ -105,7 +105,8 @@ def test_energy_ledger_closes_for_a_cube_that_breaks():
     assert abs(sim.energies["error"]) < 5e-4
 
 
-@pytest.mark.parametrize("friction_angle", [pytest.param(0, marks=pytest.mark.slow), 30])
+@pytest.mark.slow  # quick: the test before
+@pytest.mark.parametrize("friction_angle", [0, 30])
 def test_closing_error_of_breaking_rock_falls_with_the_time_step(friction_angle):
     """The cube above: the closing error falls from 1.4e-4 at 0.4 of the stable step to 2e-5.
 
