@@ -212,7 +212,7 @@ def test_bending_strength_of_vertex_bonds(divisions):
     """
     n, strength = divisions, 10e3
     share = (1 + 2 / n**2) / 6  # of 1e4, when the bonds should break
-    curve = [0, 4, 4 + 8 * share], [0, 0.9 * share, 1.1 * share]  # at last by 1/40 in a second
+    curve = [0, 4, 4 + 16 * share], [0, 0.8 * share, 1.2 * share]  # at last by 1/40 in a second
     shape = {"size": [1, 1, 1], "divisions": [n, 1, 1]}
     sim = simulate(
         [

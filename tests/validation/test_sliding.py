@@ -60,7 +60,7 @@ BEDS = {
 
 
 FLUSH = [
-    {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]} for i in range(8)
+    {"group": "bed", "box": {"size": [0.5, 4, 1]}, "translate": [0.5 * i, 0, -1]} for i in range(16)
 ]
 
 
