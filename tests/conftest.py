@@ -1,5 +1,7 @@
 """Fixtures of all tests; tests import what they share from this folder."""
 
+import importlib
+import json
 import sys
 from pathlib import Path
 
@@ -38,12 +40,47 @@ def no_report(monkeypatch):
     monkeypatch.setattr(run_commands, "write_report", lambda folder: None)
 
 
+@pytest.fixture
+def no_sheets(monkeypatch):
+    """`cdem runout` draws nothing: for tests of what it says."""
+    from cdem.output.runout_result import RunOut
+
+    monkeypatch.setattr(RunOut, "draw", lambda self, folder: [])
+
+
 @pytest.fixture(autouse=True)
 def short_estimate(monkeypatch):
     """`cdem check` measures the speed by few steps; test_estimate.py, which looks at it, does not."""
     from cdem.run import estimate
 
     monkeypatch.setattr(estimate, "SECONDS", 0.02)
+
+
+@pytest.fixture(autouse=True)
+def quick_pictures(monkeypatch):
+    """Pictures made in the process of a test have rough edges; those of pages and commands have smooth ones."""
+    from cdem.output import scene
+
+    monkeypatch.setattr(scene, "SMOOTH", False)
+
+
+@pytest.fixture
+def readers_here(monkeypatch):
+    """GDAL reads in the process of the test, with all its drivers.
+
+    unit/terrain has tests of the processes that read, and of what they drop.
+    """
+    from cdem.case import aside
+    from cdem.case.input_file import reading
+    from cdem.terrain import gdal
+
+    def read(module, path, mend, kind, asked, size=None, reply=None):
+        monkeypatch.setattr(aside, "ask", lambda head: reply(json.loads(json.dumps(head))))
+        with reading(path, kind, mend, size):
+            return importlib.import_module(module).read(path, json.loads(json.dumps(asked)))
+
+    monkeypatch.setattr(aside, "read", read)
+    monkeypatch.setattr(gdal, "keep_drivers", lambda *_: None)
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ import hashlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -53,6 +54,11 @@ PYTEST = (
 SUITE = ("tests/unit", "tests/integration", "tests/validation", "tests/regression")
 PYTEST_FAILURE = r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$"
 CORE_FAILURE = r"^\S*?(tests/core/\S+):\d+:\nTEST CASE: *(.+)$"
+CRASHES = {
+    -s for s in (signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGBUS, signal.SIGILL)
+}
+CRASHED_IN = r'File ".*(tests/\S+\.py)", line \d+ in (test_\w+)$'
+"""A line of the stack that Python writes where pytest ends by one of these signals."""
 OWN_LAWS = "tests/validation/test_own_laws.py"  # skipped in the suite: another core, built last
 HELPERS = ("tests/conftest.py", "tests/scenes.py", "tests/shared/*.py", "tests/core/*.hpp")
 """What tests of a kind share: a change of it lets all faults of this kind be planted again."""
@@ -144,13 +150,22 @@ def command_of(test: str) -> tuple[str, ...]:
 
 
 def failed(command: Sequence[str], limit: float) -> str:
-    """Name of the first test that fails, or nothing."""
+    """Name of the first test that fails, or nothing.
+
+    A crash is a failure, whether or not it says of which test. Other signals come from outside.
+    """
     done = run(command, limit)
     if done.returncode == 0:
         return ""
-    for pattern in (PYTEST_FAILURE, CORE_FAILURE):
-        if found := re.search(pattern, done.stdout, re.MULTILINE):
+    for pattern, said in (
+        (PYTEST_FAILURE, done.stdout),
+        (CORE_FAILURE, done.stdout),
+        (CRASHED_IN, done.stderr),
+    ):
+        if found := re.search(pattern, said, re.MULTILINE):
             return "::".join(found.groups())
+    if done.returncode in CRASHES:
+        return command[-1]
     raise Stale(f"{command[-1]} ends with status {done.returncode}:\n{done.stdout[-3000:]}")
 
 

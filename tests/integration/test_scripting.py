@@ -21,6 +21,7 @@ def sliding_block(friction_angle=10, stages=None):
         ],
         {"block": {}, "bed": {"fix": ["x", "y", "z"]}},
         interfaces={"default": {"friction_angle": friction_angle}},
+        rock={"young_modulus": "1 GPa"},
         loads={"gravity": [9.81 * np.sin(t), 0, -9.81 * np.cos(t)]},
         stages=stages
         or [

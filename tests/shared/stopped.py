@@ -43,13 +43,14 @@ class StagesOf:
         self.place = place
         self.case = place / "case.yaml"
         YAML().dump(case, self.case)
+        self._read = Case.load(self.case)  # once: the text takes as long as a short run
         self.whole = self.run("whole")
         summary = self.whole["summary.json"]
         self.stages = [(stage["name"], stage["steps"]) for stage in summary["stages"]]
 
     def run(self, folder: str, **how) -> dict[str, object]:
         """Run to the end; what it left."""
-        Simulation(Case.load(self.case), output=self.place / folder, threads=1, **how).run()
+        Simulation(self._read, output=self.place / folder, threads=1, **how).run()
         return content(self.place / folder)
 
     def differing(self, stop: Callable[[], None]) -> list[str]:
@@ -61,7 +62,7 @@ class StagesOf:
 
     def stop_at_end(self, stage: str) -> None:
         """Leave the folder that a kill behind the end of a stage leaves."""
-        simulation = Simulation(Case.load(self.case), output=self.place / "broken", threads=1)
+        simulation = Simulation(self._read, output=self.place / "broken", threads=1)
         simulation.run_stage(stage)
         simulation.close()
 
@@ -71,7 +72,7 @@ class StagesOf:
         Yields:
             Where it stopped, and a function that leaves the folder that a kill there leaves.
         """
-        simulation = Simulation(Case.load(self.case), output=self.place / "stopped", threads=1)
+        simulation = Simulation(self._read, output=self.place / "stopped", threads=1)
         leave = partial(shutil.copytree, self.place / "stopped", self.place / "broken")
         for stage, steps in self.stages:
             stopped_at = simulation.step_count + steps // 2

@@ -56,7 +56,7 @@ def slider(**interface):
         ],
         {"block": {}, "bed": {"fix": ["x", "y", "z"]}},
         interfaces={"default": WEAK | interface},
-        rock={"young_modulus": "1 GPa"},
+        rock={"young_modulus": "0.2 GPa"},
         loads={
             **GRAVITY,
             "velocities": [{"group": "block", "velocity": [0, 0, 0], "components": ["x"]}],
@@ -94,7 +94,7 @@ def springs():
         weight = 0.4 * 2500 * 10  # of the block; the bed carries its own as well
         seen.append((SPEED * (sim.time - 0.2), abs(force[0]) / weight))
     moved, ratio = np.array(seen).T
-    # the shear springs stretch by about 5e-6 m; the block still rocks a little
+    # the shear springs stretch by about 3e-5 m; the block still rocks a little
     assert np.allclose(ratio, tangent(moved), rtol=0.02), np.c_[moved, ratio, tangent(moved)]
     state = sim.core.fields()
     slip, has = remembered(state, "spring")

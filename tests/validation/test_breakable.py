@@ -105,7 +105,8 @@ def test_energy_ledger_closes_for_a_cube_that_breaks():
     assert abs(sim.energies["error"]) < 5e-4
 
 
-@pytest.mark.parametrize("friction_angle", [pytest.param(0, marks=pytest.mark.slow), 30])
+@pytest.mark.slow  # quick: the test before
+@pytest.mark.parametrize("friction_angle", [0, 30])
 def test_closing_error_of_breaking_rock_falls_with_the_time_step(friction_angle):
     """The cube above: the closing error falls from 1.4e-4 at 0.4 of the stable step to 2e-5.
 
@@ -166,7 +167,7 @@ def test_time_step_drops_at_once_and_grows_by_one_percent():
     assert change.max() == pytest.approx(1.01, abs=5e-16)
 
 
-@pytest.mark.parametrize("seed", [1, 3])
+@pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.slow), 3])
 def test_many_contacts_on_one_node_stay_stable(seed):
     """48 tets are thrown at a meshed bed at 0.8 of the stable step, four throws a seed.
 
@@ -355,7 +356,7 @@ def test_a_lid_turned_aside_on_its_last_bond_point_falls_or_is_borne(base):
     The lid, a cube, is turned by 90 degrees about the bond point at its corner. If it then lies
     beside the base, it hangs by that point and swings: after a time t its centre is at least 0.3 g
     t2 / 2 lower. Three broken points whose two sides are up to 1.4 m apart held it up. If the base
-    is below it, contacts bear it; it sinks by its settlement, 2 rho g h / k_n = 1e-6 m at most.
+    is below it, contacts bear it; it sinks by its settlement, 2 rho g h / k_n = 1e-5 m at most.
     """
     g, t, low = 9.81, 0.2, {"beside": 0, "below": -1.5}[base]
     sim = simulate(
@@ -364,6 +365,7 @@ def test_a_lid_turned_aside_on_its_last_bond_point_falls_or_is_borne(base):
             {"group": "lid", "box": {"size": [1, 1, 1]}},
         ],
         {"base": {"fix": ["x", "y", "z"]}, "lid": {}},
+        rock={"young_modulus": "1 GPa"},
         loads={"gravity": [0, 0, -g]},
         interfaces={"default": {"friction_angle": 30, "cohesion": 1e15, "tensile_strength": 1e15}},
         stages=[{"name": "hang", "mode": "dynamic", "duration": t}],
@@ -382,6 +384,6 @@ def test_a_lid_turned_aside_on_its_last_bond_point_falls_or_is_borne(base):
         assert fallen > 0.3 * g * t**2 / 2
         assert abs(sim.energies["error"]) < 1e-3
     else:
-        assert 0 < fallen < 3e-6
+        assert 0 < fallen < 3e-5
         assert (sim.contacts["kind"] == 0).sum() > 3
     assert sim.core.fields()["overlaps.status"][0] == 2

@@ -15,7 +15,7 @@ from cdem.model.compensation import bonded_tets
 from cdem.model.homogenize import STATES, means
 
 YOUNG, NU = 1e10, 0.25
-SIDES = pytest.mark.parametrize("side", [6, pytest.param(8, marks=pytest.mark.slow)])
+SIDES = pytest.mark.parametrize("side", [5, pytest.param(8, marks=pytest.mark.slow)])
 STRONG = {"friction_angle": 30, "cohesion": 1e12, "tensile_strength": 1e12}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -24,19 +25,26 @@ def refuse_links(
     """
     import h5py
 
-    waiting, seen = [group], set()
+    def lies_elsewhere(how: Any) -> bool:
+        return how.get_layout() == h5py.h5d.VIRTUAL or how.get_external_count() > 0
+
+    waiting, seen = [group.id], set()
     while waiting:
         inside = waiting.pop()
         for name in inside:
-            link = inside.get(name, getlink=True)
-            if isinstance(link, h5py.ExternalLink):
-                if not allowed or link.filename != allowed:
-                    raise kind(f"{path}: {name} leads to another file, {link.filename[:80]!r}")
-                continue
-            one = inside[name] if isinstance(link, h5py.HardLink) else None
-            if isinstance(one, h5py.Group):
-                where = h5py.h5o.get_info(one.id).addr
+            link = inside.links.get_info(name).type
+            if link == h5py.h5l.TYPE_EXTERNAL:
+                leads_to = os.fsdecode(inside.links.get_val(name)[0])
+                if not allowed or leads_to != allowed:
+                    raise kind(
+                        f"{path}: {name.decode(errors='replace')} leads to another file, {leads_to[:80]!r}"
+                    )
+            one = h5py.h5o.open(inside, name) if link == h5py.h5l.TYPE_HARD else None
+            if isinstance(one, h5py.h5g.GroupID):
+                where = h5py.h5o.get_info(one).addr
                 waiting += [] if where in seen else [one]
                 seen.add(where)
-            elif isinstance(one, h5py.Dataset) and (one.is_virtual or one.external):
-                raise kind(f"{path}: the numbers of {name} lie in another file")
+            elif isinstance(one, h5py.h5d.DatasetID) and lies_elsewhere(one.get_create_plist()):
+                raise kind(
+                    f"{path}: the numbers of {name.decode(errors='replace')} lie in another file"
+                )

@@ -16,6 +16,8 @@ SIZE = (1100, 760)
 """Width and height of a view, without the strip below it [pixels]."""
 LOWEST = 300
 """A view is at least so high [pixels]."""
+SMOOTH = True
+"""Every pixel is the mean of many, which is most of the time of a picture."""
 MARGIN = 1.06
 """The view is so much wider or higher than what it frames."""
 NEUTRAL = "#e2dccf"
@@ -175,7 +177,8 @@ def take(plotter: Any, view: View, *, occlusion: bool = False) -> Image:
     if occlusion:
         radius = REACH * view.height
         plotter.enable_ssao(radius=radius, bias=BIAS * radius, kernel_size=32, blur=True)
-    plotter.enable_anti_aliasing("ssaa")
+    if SMOOTH:
+        plotter.enable_anti_aliasing("ssaa")
     image = plotter.screenshot(return_img=True)
     plotter.close()
     return image

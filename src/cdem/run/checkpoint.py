@@ -5,9 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
-import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
@@ -45,10 +44,12 @@ def write_checkpoint(folder: Path, arrays: Mapping[str, NDArray], attributes: st
     """
     import h5py
 
+    from cdem.run.datasets import put
+
     with replaced(folder / CHECKPOINT, keep=folder / CHECKPOINT_BEFORE) as file:
         with h5py.File(file, "w", userblock_size=HEAD_BYTES) as hdf5:
             for name, values in arrays.items():
-                hdf5.create_dataset(name.replace(".", "/"), data=values)
+                put(hdf5, name.replace(".", "/"), values)
             # as a dataset, because an HDF5 attribute may not exceed 64 kB
             hdf5[ATTRIBUTES] = attributes
         head = _head(file)
@@ -64,11 +65,7 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
     """
     import h5py
 
-    arrays: dict[str, NDArray] = {}
-
-    def keep(name: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset) and name != ATTRIBUTES:
-            arrays[name.replace("/", ".")] = np.asarray(item[()])
+    from cdem.run.datasets import read_all
 
     try:
         with path.open("rb") as file:
@@ -77,7 +74,8 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
             file.seek(0)
             with h5py.File(file, "r") as hdf5:
                 refuse_links(hdf5, path)
-                hdf5.visititems(keep)
+                stored = read_all(hdf5, but=ATTRIBUTES)
+                arrays = {name.replace("/", "."): values for name, values in stored}
                 attributes = bytes(hdf5[ATTRIBUTES][()])
     except FileNotFoundError:
         raise DamagedError(f"{path}: is not there") from None

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from cdem.mesh.element_shapes import NODES
 from cdem.mesh.hdf5_links import refuse_links
+from cdem.run.datasets import put
 from cdem.whole_files import ASIDE, replaced
 
 VTK_TYPES = {"tet4": 10, "pyramid5": 14, "wedge6": 13, "hex8": 12}
@@ -151,7 +152,8 @@ class _Series:
         with _replaced_hdf5(self.path) as hdf5:
             root = self._root(hdf5)
             for k, name in enumerate(COUNTS):
-                root[name] = [f.counts[k] for f in (frames if self.moves_cells else frames[:1])]
+                some = frames if self.moves_cells else frames[:1]
+                put(root, name, np.array([f.counts[k] for f in some], int))
             for name in self.shared:
                 root[name] = h5py.ExternalLink(f"{self.folder.name}/{ELEMENTS}", name)
             names = sorted(set.intersection(*(set(f.datasets) for f in frames))) if frames else []
@@ -172,21 +174,17 @@ class _Series:
         moves = self.moves_cells
         steps = root.create_group("Steps")
         steps.attrs["NSteps"] = count
-        steps["Values"] = np.array([frame.time for frame in frames], float)
-        steps["NumberOfParts"] = np.ones(count, int)
-        steps["PartOffsets"] = np.arange(count) if moves else none
-        steps["PointOffsets"] = points
-        steps["CellOffsets"] = (cells if moves else none).reshape(-1, 1)
-        steps["ConnectivityIdOffsets"] = (ids if moves else none).reshape(-1, 1)
-        for name in names:
+        put(steps, "Values", np.array([frame.time for frame in frames], float))
+        put(steps, "NumberOfParts", np.ones(count, int))
+        put(steps, "PartOffsets", np.arange(count) if moves else none)
+        put(steps, "PointOffsets", points)
+        put(steps, "CellOffsets", (cells if moves else none).reshape(-1, 1))
+        put(steps, "ConnectivityIdOffsets", (ids if moves else none).reshape(-1, 1))
+        rows = {name: _starts([f.datasets[name][0][0] for f in frames]) for name in names}
+        for name, starts in [*rows.items(), *((name, none) for name in self.shared)]:
             kind, _, field_name = name.partition("/")
             if field_name:
-                rows = [frame.datasets[name][0][0] for frame in frames]
-                steps.require_group(f"{kind}Offsets")[field_name] = _starts(rows)
-        for name in self.shared:
-            kind, _, field_name = name.partition("/")
-            if field_name:
-                steps.require_group(f"{kind}Offsets")[field_name] = none
+                put(steps, f"{kind}Offsets/{field_name}", starts)
 
     # ------------------------------------------------------------------ resuming
 
@@ -351,12 +349,8 @@ def _starts(counts: Sequence[int]) -> NDArray[np.int64]:
 
 def _put(root: h5py.Group, name: str, values: NDArray) -> None:
     """Write a dataset with checksums, which HDF5 keeps for chunks only."""
-    if not values.size:
-        root.create_dataset(name, data=values)
-        return
-    rows = max(1, CHUNK_BYTES // values[0].nbytes)
-    chunks = (min(rows, len(values)), *values.shape[1:])
-    root.create_dataset(name, data=values, chunks=chunks, fletcher32=True)
+    rows = max(1, CHUNK_BYTES // values[0].nbytes) if values.size else 0
+    put(root, name, values, (min(rows, len(values)), *values.shape[1:]) if rows else None)
 
 
 def _put_names(dataset: h5py.Dataset, names: Sequence[str]) -> None:

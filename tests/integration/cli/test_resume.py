@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -35,17 +36,30 @@ def folder(tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
-@pytest.fixture
-def stopped(folder) -> Path:
-    """A result folder of a run that stopped in the middle of its second stage."""
+@pytest.fixture(scope="module")
+def stop(tmp_path_factory) -> Path:
+    """A result folder of a run that stopped in the middle of its second stage. None changes it."""
+    folder = tmp_path_factory.mktemp("stop")
+    (folder / "case.yaml").write_text(CASE)
     simulation = cdem.Simulation(folder / "case.yaml", threads=1, output=folder / "out")
     simulation.run_stage("rest")
     left = iter([False, False, True])
     assert simulation.run(should_stop=lambda: next(left)) == "stopped"
+    simulation.close()
     return folder / "out"
 
 
-def unbroken(folder: Path) -> Path:
+@pytest.fixture
+def stopped(folder, stop) -> Path:
+    """A copy of it that a test may change."""
+    return Path(shutil.copytree(stop, folder / "out"))
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> Path:
+    """A result folder of a run without a stop. None changes it."""
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "case.yaml").write_text(CASE)
     cdem.Simulation(folder / "case.yaml", threads=1, output=folder / "whole").run()
     return folder / "whole"
 
@@ -55,19 +69,19 @@ def summary_of(results: Path) -> dict:
 
 
 @pytest.mark.parametrize("stages", [["rest"], ["rest", "fall"], ["rest", "fall", "last"]])
-def test_a_run_that_ended_right_after_a_stage_goes_on_to_the_same_bytes(folder, stages):
+def test_a_run_that_ended_right_after_a_stage_goes_on_to_the_same_bytes(folder, whole, stages):
     """What a history row needs of the step before is in the checkpoint, too."""
     simulation = cdem.Simulation(folder / "case.yaml", threads=1, output=folder / "out")
     for stage in stages:
         simulation.run_stage(stage)
     simulation.close()
     cdem.Simulation(folder / "case.yaml", threads=1, output=folder / "out", resume=True).run()
-    assert differences(unbroken(folder), folder / "out") == []
+    assert differences(whole, folder / "out") == []
 
 
-def test_a_stopped_run_goes_on_to_the_same_bytes(run_cli, folder, stopped):
+def test_a_stopped_run_goes_on_to_the_same_bytes(run_cli, whole, stopped):
     assert run_cli(*WORDS, "--resume") == (0, "", "")
-    assert differences(unbroken(folder), stopped) == []
+    assert differences(whole, stopped) == []
 
 
 def as_stored_before(text: str) -> str:
@@ -97,7 +111,8 @@ def test_a_run_of_an_old_case_goes_on_to_the_same_bytes(run_cli, folder, case):
     stored = folder / "out/case.yaml"
     stored.write_text(as_stored_before(stored.read_text()))
     assert run_cli("run", case, *WORDS[2:], "--resume") == (0, "", "")
-    assert differences(unbroken(folder), folder / "out") == []
+    cdem.Simulation(folder / "case.yaml", threads=1, output=folder / "whole").run()
+    assert differences(folder / "whole", folder / "out") == []
 
 
 def test_a_run_that_has_ended_is_left_as_it_is(run_cli, folder):
@@ -146,7 +161,7 @@ def test_a_forced_change_is_logged(run_cli, stopped):
     assert "in the middle of the run (--force)" in (stopped / "run.log").read_text()
 
 
-def test_the_checkpoint_before_is_used_when_the_last_is_damaged(run_cli, folder, stopped):
+def test_the_checkpoint_before_is_used_when_the_last_is_damaged(run_cli, whole, stopped):
     path = stopped / "checkpoint.h5"
     content = bytearray(path.read_bytes())
     content[-100] ^= 1
@@ -156,7 +171,7 @@ def test_the_checkpoint_before_is_used_when_the_last_is_damaged(run_cli, folder,
     assert (
         "checkpoint.h5: is damaged (its checksum is another); going on from the one before" in err
     )
-    assert differences(unbroken(folder), stopped) == []
+    assert differences(whole, stopped) == []
 
 
 @pytest.mark.parametrize(
@@ -188,7 +203,7 @@ def test_two_damaged_checkpoints_are_one_message(run_cli, stopped):
     assert (status, out) == (1, "") and err.count("is damaged") == 2 and err.count("\n") == 1
 
 
-def test_lost_tails_of_histories_and_frames_are_told_and_the_run_goes_on(run_cli, folder, stopped):
+def test_lost_tails_of_histories_and_frames_are_told_and_the_run_goes_on(run_cli, whole, stopped):
     """As after a power cut on a disk that lies about what it has stored."""
     rows = (stopped / "histories.csv").read_text().splitlines(keepends=True)
     (stopped / "histories.csv").write_text("".join(rows[:-2]) + rows[-2][:10])
@@ -198,7 +213,7 @@ def test_lost_tails_of_histories_and_frames_are_told_and_the_run_goes_on(run_cli
     assert status == 0
     assert "histories.csv: 2 rows are lost" in err
     assert "frames.vtkhdf: frames 1 are lost" in err and "surface.vtkhdf: frames 1" in err
-    assert set(differences(unbroken(folder), stopped)) == {
+    assert set(differences(whole, stopped)) == {
         "surface/frame-0001.vtkhdf is in one only",
         "checkpoint.h5 differs",  # it counts the rows
         "frames.vtkhdf differs",
@@ -227,15 +242,15 @@ def test_a_flipped_bit_of_a_frame_is_told_at_resume_and_when_it_is_read(run_cli,
     assert len((FrameSeries if series == "frames" else SurfaceSeries)(stopped)) == len(frames) - 1
 
 
-def test_a_flipped_bit_of_a_history_is_told_and_its_row_is_lost(run_cli, folder, stopped):
+def test_a_flipped_bit_of_a_history_is_told_and_its_row_is_lost(run_cli, whole, stopped):
     path = stopped / "histories.csv"
     lines = path.read_bytes().splitlines(keepends=True)
     lines[1] = bytes([lines[1][0] ^ 1]) + lines[1][1:]  # a digit becomes another
     path.write_bytes(b"".join(lines))
     status, _, err = run_cli(*WORDS[:-1], "--resume")
     assert status == 0 and "histories.csv: 1 rows are lost" in err
-    whole = (unbroken(folder) / "histories.csv").read_bytes().splitlines()
-    assert path.read_bytes().splitlines() == [whole[0], *whole[2:]]
+    rows = (whole / "histories.csv").read_bytes().splitlines()
+    assert path.read_bytes().splitlines() == [rows[0], *rows[2:]]
 
 
 def test_two_runs_cannot_write_into_one_folder(run_cli, folder):
@@ -265,7 +280,7 @@ def test_a_failed_start_lets_go_of_the_folder(stopped, folder):
     assert cdem.Simulation(case, output=stopped, resume=True, force=True).run() == "finished"
 
 
-def test_a_full_disk_is_one_message_and_the_run_can_go_on(run_cli, folder):
+def test_a_full_disk_is_one_message_and_the_run_can_go_on(run_cli, folder, whole):
     """A limit on the size of files has the same effect on each of them."""
     limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (90_000, -1))"
     program = [sys.executable, "-c", f"{limit}; from cdem.cli import main; main()"]
@@ -274,23 +289,23 @@ def test_a_full_disk_is_one_message_and_the_run_can_go_on(run_cli, folder):
     assert "checkpoint.h5: cannot be written (File too large). Mend this" in done.stderr
     assert done.stderr.count("\n") == 1
     assert run_cli(*WORDS, "--overwrite")[0] == 0
-    assert differences(unbroken(folder), Path("out")) == []
+    assert differences(whole, Path("out")) == []
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the shim is for Linux")
-def test_a_fault_in_any_call_leaves_a_folder_that_opens_and_resumes():
-    """A few of the calls; `make torture` tries all of them."""
+@pytest.mark.parametrize("how", ["kill", pytest.param("ENOSPC", marks=pytest.mark.slow)])
+def test_a_fault_in_any_call_leaves_a_folder_that_opens_and_resumes(how):
+    """A few of the calls; `make torture` tries all of them. A full disk is tried above, too."""
     pytest.importorskip("vtk")
     command = [sys.executable, str(TOOLS / "faults.py"), "--every", "997"]
-    command += ["--how", "kill", "--how", "ENOSPC"]
+    command += ["--how", how]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize(("bits", "bends"), [(9, 3), pytest.param(49, 12, marks=pytest.mark.slow)])
-def test_damaged_checkpoints_neither_crash_nor_pass(bits, bends):
+@pytest.mark.slow  # quick: test_checkpoint.py, test_strange_checkpoints.py
+def test_damaged_checkpoints_neither_crash_nor_pass():
     """A few damages; `make torture` tries thousands."""
-    command = [sys.executable, str(TOOLS / "damage.py"), "--bits", str(bits)]
-    command += ["--bends", str(bends)]
+    command = [sys.executable, str(TOOLS / "damage.py"), "--bits", "49", "--bends", "12"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -128,7 +128,7 @@ def test_wrong_result_names_stop_a_sweep_and_lose_nothing(folder, cluster):
 
 
 def test_a_worker_that_is_killed_is_replaced(folder, cluster):
-    slow(folder, 0.5)
+    slow(folder, 0.25)
     killed: list[int] = []
 
     def kill_one() -> bool:
@@ -146,7 +146,7 @@ def test_a_worker_that_is_killed_is_replaced(folder, cluster):
 def test_a_scheduler_that_is_killed_is_said_and_the_sweep_goes_on(folder, cluster):
     from distributed import LocalCluster
 
-    slow(folder, 0.5)
+    slow(folder, 0.25)
 
     def end() -> bool:
         if results_of(folder / "out"):
@@ -165,7 +165,7 @@ def test_a_scheduler_that_is_killed_is_said_and_the_sweep_goes_on(folder, cluste
 
 
 def test_a_local_worker_that_is_killed_is_replaced(folder):
-    slow(folder, 0.5)
+    slow(folder, 0.25)
     killed: list[int] = []
 
     def kill_one() -> bool:
@@ -193,7 +193,7 @@ def test_workers_import_nothing_from_the_current_folder(folder):
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_a_sweep_that_is_killed_goes_on(folder, cluster, number):
     """What was finished is not repeated; no worker stays behind."""
-    slow(folder, 0.5)
+    slow(folder, 0.25)
     program = [sys.executable, "-c", "from cdem.cli import main; main()"]
     child = subprocess.Popen(
         [*program, "sweep", "study.yaml", "--workers", "2", "-o", "out"],

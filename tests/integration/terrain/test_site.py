@@ -16,6 +16,7 @@ from cdem.terrain.site import Question, make_site, surface_of
 
 rasterio = pytest.importorskip("rasterio", reason="needs the extra 'terrain'")
 pytest.importorskip("netgen", reason="needs the extra 'terrain'")
+pytestmark = pytest.mark.usefixtures("readers_here")  # not so in test_solid.py
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -16,15 +17,20 @@ ALL_WELL = "0 tracebacks, 0 hangs over 5 s, 0 aborts, 0 empty messages"
     ("cases", 60), ("files", 30),
     pytest.param("cases", 150, marks=pytest.mark.slow), pytest.param("files", 60, marks=pytest.mark.slow),
 ])  # fmt: skip
-def test_mutated_files_are_read_or_refused(tmp_path, kind, count):
+def test_inputs_that_failed_once_and_mutated_ones_are_read_or_refused(tmp_path, kind, count):
+    """`tests/corpus/README.md` says where the first are from."""
     if kind == "files":
         pytest.importorskip("pyvista", reason="needs the extra 'viz'")
         pytest.importorskip("rasterio", reason="needs the extra 'terrain'")
         pytest.importorskip("scipy", reason="needs the extra 'terrain'")
+        pytest.importorskip("laspy", reason="needs the extra 'lidar'")
+    corpus = Path(shutil.copytree(FUZZ.parents[2] / "tests/corpus" / kind, tmp_path / "corpus"))
+    failed_once = len(list(corpus.glob("*-*")))
     command = [sys.executable, FUZZ, kind, str(count), "--seed", "7", "--out", tmp_path]
-    command += ["--corpus", tmp_path / "corpus"]
+    command += ["--corpus", corpus]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+    assert failed_once > 5 and f"{failed_once} {kind} of the corpus: all well" in done.stdout
     assert ALL_WELL in done.stdout and done.stdout.startswith(f"{count} {kind}, seed 7: ")
     read, refused = (int(done.stdout.split(": ")[1].split()[i]) for i in (0, 2))
     assert read + refused == count and read > 2 and refused > 2
@@ -60,16 +66,3 @@ def test_what_fails_is_counted_and_kept(tmp_path, monkeypatch):
     tally, again = fuzz.fuzz("cases", 0, 1, tmp_path, tmp_path / "corpus")  # the same fail again
     assert again.done == 6 and again.counts["abort"] == 1 and again.failed and not tally.failed
     assert [path.name for path in fuzz.kept(tmp_path / "corpus")] == names
-
-
-@pytest.mark.parametrize("kind", ["cases", "files"])
-def test_the_corpus_is_read_or_refused(tmp_path, kind):
-    """Inputs that failed once; `tests/corpus/README.md` says where they are from."""
-    count = len(list((FUZZ.parents[2] / "tests/corpus" / kind).glob("*-*")))
-    if kind == "files":
-        pytest.importorskip("pyvista", reason="needs the extra 'viz'")
-        pytest.importorskip("laspy", reason="needs the extra 'lidar'")
-    command = [sys.executable, FUZZ, kind, "0", "--out", tmp_path]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert count > 5 and f"{count} {kind} of the corpus: all well" in done.stdout

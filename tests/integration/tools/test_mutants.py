@@ -83,3 +83,29 @@ def test_planting_that_is_killed_goes_on(root):
     with (root / "src/code.py").open("a") as file:
         file.write("line4 = 4\n")
     assert plant(root) == (0, "123")
+
+
+@pytest.fixture
+def mutants(monkeypatch, tmp_path):
+    """The program, whose copy is an empty folder."""
+    monkeypatch.syspath_prepend(str(TOOLS))
+    import mutants
+
+    monkeypatch.setattr(mutants, "TREE", tmp_path)
+    return mutants
+
+
+def test_a_crash_is_a_failure_of_the_test_that_crashed(mutants, tmp_path):
+    """A wrong access ends pytest before it names a test; Python still writes where it was."""
+    file = tmp_path / "tests/unit/test_access.py"
+    file.parent.mkdir(parents=True)
+    file.write_text("import ctypes\n\n\ndef test_it():\n    ctypes.string_at(0)\n")
+    command = (sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests")
+    assert mutants.failed(command, 60) == "tests/unit/test_access.py::test_it"
+
+
+def test_a_crash_without_a_name_is_of_the_command(mutants):
+    """Unless the signal comes from outside: then nothing is known of the fault."""
+    assert mutants.failed(("sh", "-c", "kill -ABRT $$"), 60) == "kill -ABRT $$"
+    with pytest.raises(mutants.Stale, match="ends with status -15"):
+        mutants.failed(("sh", "-c", "kill -TERM $$"), 60)

@@ -138,7 +138,7 @@ output: {every: 0.2}
 
 
 @pytest.fixture
-def slide(cube_folder):
+def slide(cube_folder, no_sheets):
     (cube_folder / "slide.yaml").write_text(SLIDE)
     return cube_folder
 
