@@ -46,19 +46,11 @@ def static(name, steps=100, **more):
 
 
 def dam():
-    """Water that rises while a static stage runs, and pressures, one of which waits for its stage."""
+    """Water that rises while a static stage runs, and the load of a curve."""
     case = on_ground(
         [box("ground", [6, 6, 1], [0, 0, -1], divisions=[2, 2, 1]),
          box("block", [2, 2, 3], [2, 2, 0], divisions=[2, 2, 2], shape="tet4")],
         [static("rest"), dynamic("fill"), static("stand", set={"interfaces.base.friction_angle": 40})],
-        loads={
-            "gravity": DOWN,
-            "surfaces": [
-                {"surface": {"group": "block", "normal": [0, 0, 1]}, "pressure": "5 kPa"},
-                {"surface": {"group": "block", "normal": [1, 0, 0]}, "pressure": "9 kPa",
-                 "history": [[0, 0], [0.03, 1]], "stage": "fill"},
-            ],
-        },
         water={
             "fields": [{"name": "up", "interface": "base", "formula": "9810*3*max(0,1-(x-2)/2)",
                         "history": [[0, 0], [0.05, 1]], "stage": "rest"}],
@@ -74,7 +66,7 @@ def dam():
 
 
 def shaken():
-    """Curves that count from stages: static ones and those with what comes and goes, too."""
+    """Curves and surface laws that count from stages: static ones, and those with what comes and goes."""
     wait = {"history": [[0, 0.2], [0.013, 1], [0.03, 0.5], [0.07, 0]]}
     case = on_ground(
         [box("ground", [6, 6, 1], [0, 0, -1], divisions=[2, 2, 1]),
@@ -98,6 +90,12 @@ def shaken():
         {"surface": {"group": "ground", "normal": [0, 0, -1]}, "velocity": [0.3, 0, 0],
          "components": ["x"], "stage": "shake", "history": [[0, 0], [0.01, 1], [0.02, 0]]}
     ]  # fmt: skip
+    case["loads"]["surfaces"] = [
+        {"surface": {"group": "fill", "normal": [0, 0, 1]}, "pressure": "5 kPa"},
+        {"surface": {"group": "block", "normal": [1, 0, 0]}, "pressure": "9 kPa", "stage": "go"}
+        | wait,
+        {"surface": {"group": "block", "normal": [0, 1, 0]}, "law": "quiet", "stage": "back"},
+    ]
     return case
 
 
