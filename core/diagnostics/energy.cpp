@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/primitives.hpp"
-#include "core/diagnostics/energy_terms.hpp"
+#include "core/diagnostics/contact_energy.hpp"
 #include "core/diagnostics/round_off.hpp"
 #include "core/model/force_sets.hpp"
 

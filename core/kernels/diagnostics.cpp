@@ -1,7 +1,7 @@
 // diagnostics.cpp - primitives over kernels of this folder, instantiated. Compiled as C++, and as
 // CUDA.
 #include "core/base/primitive_loops.hpp"
-#include "core/diagnostics/energy_terms.hpp"
+#include "core/diagnostics/contact_energy.hpp"
 #include "core/diagnostics/force_terms.hpp"
 #include "core/diagnostics/node_health.hpp"
 

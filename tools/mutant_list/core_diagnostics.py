@@ -14,7 +14,7 @@ FAULTS = [
     Mutant(
         "edge_energy",
         "shear energy of semi-edges not in the ledger",
-        "core/diagnostics/energy_terms.hpp",
+        "core/diagnostics/contact_energy.hpp",
         "sum += edge.energy_n + edge.energy_s;",
         "sum += edge.energy_n;",
         "tests/core/contact/force/test_accumulate.cpp",

@@ -1,4 +1,4 @@
-// energy_terms.hpp - what contacts hold, for the terms of the ledger.
+// contact_energy.hpp - what contacts hold, for the terms of the ledger.
 #pragma once
 
 #include "core/records/contact_records.hpp"
