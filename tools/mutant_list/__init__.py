@@ -15,6 +15,7 @@ from mutant_list import (
     core_nodes,
     core_records,
     core_run,
+    core_surface,
     core_water,
     joints,
     mesh,
@@ -30,6 +31,7 @@ from mutant_list.mutant import Mutant
 PYTHON = [package, case, mesh, joints, model, run, output, study, screening]
 CORE = [
     bindings,
+    core_surface,
     core_water,
     core_diagnostics,
     core_contact,
