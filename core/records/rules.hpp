@@ -17,7 +17,9 @@ struct SearchRules {
   Real opposing = 0.02;       // faces touch only if n_m . n_t < -opposing
   Real cone = 0.05;           // slack of the normal-cone tests (a sine)
   Real approach_steps = 1.5;  // see entry
-  Real lifted = 0;            // [m] gap up to which contacts that have dilated are kept, at most
+  // a filter has so much more room than the rule that decides: round-off loses no contact
+  static constexpr Real filter_room = 1.000001;
+  Real lifted = 0;  // [m] gap up to which contacts that have dilated are kept, at most
 };
 
 /// Damping of the nodes' motion.

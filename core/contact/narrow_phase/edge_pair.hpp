@@ -159,12 +159,13 @@ struct FilterEdgePairs {
   }
   template <class I, class T, class Ids>
   CDEM_HD AtSide<T> at_side(I p, const Edges<T>& edges, const Ids& code, Index e, Index i) const {
-    const T none(0.0), steepest(1.000001 * rules.cone * rules.cone);
+    const T none(0.0), steepest(rules.filter_room * rules.cone * rules.cone);
     const auto face = indices_of([](Index side) { return side / 4; }, pairs.sides.at(2 * e + i, p));
     const auto of = geometry.row(face);
     const Vec3<T>&x = edges.x[e], &d = edges.d[e], c = e == 0 ? edges.c : -edges.c;
     const auto held = InIndices{pairs.held, pairs.stride}.at(2 * e + i, p);
-    const T slack = select(is_none(held), none, T(1.000001 * crossing_slack(rules.indentation)));
+    const T slack =
+        select(is_none(held), none, T(rules.filter_room * crossing_slack(rules.indentation)));
     const Vec3<T> start = x + T(rules.indentation) * (of.center - x);
     const Vec3<T> into = cross(of.normal, d);
     const T forward = dot(edges.c, into);

@@ -16,6 +16,18 @@ struct FaceSearch {
   SearchRules rules;
   SpringColumns springs;
   FlushFaces flush;
+
+  /// How deep a vertex may have come to a face within the steps that rules.approach_steps says.
+  template <class T, class Ids>
+  CDEM_HD T approach(const Vec3<T>& normal, const Ids& node,
+                     const FaceVertices<Ids>& corners) const {
+    const auto velocity = [&](Index k) { return faces.nodes.velocity(corners.node[k]); };
+    const Vec3<T> sum = velocity(0) + velocity(1) + velocity(2);
+    const Vec3<T> mean =
+        select(corners.quad(), T(1.0 / 4.0) * (sum + velocity(3)), T(1.0 / 3.0) * sum);
+    return T(rules.approach_steps * faces.dt) *
+           abs_of(dot(normal, faces.nodes.velocity(node) - mean));
+  }
 };
 
 /// Begin the search of a step: what was the target is now that of one step ago.
@@ -107,10 +119,11 @@ struct FilterNewTargets : FaceSearch {
     auto begins = inside;
     if (any_of(inside)) {
       const T gap = project(shape, c.v, c.normal).gap;
-      const T entry = T(1.000001 * rules.entry) * c.length;  // and room for round-off
+      const T entry = T(rules.filter_room * rules.entry) * c.length;
       begins = begins & !(gap > zero);
       if (any_of(begins & (gap < -entry)))
-        begins = begins & !(gap < -entry - T(1.000001) * approach(c, node, corners));
+        begins =
+            begins & !(gap < -entry - T(rules.filter_room) * approach(c.normal, node, corners));
     }
     if (!any_of(deep)) return mark(item, begins);
     // a vertex deeper than a contact may begin must be inside the block
@@ -118,23 +131,14 @@ struct FilterNewTargets : FaceSearch {
   }
 
  private:
+  static constexpr Real for_round_off = 1e-6;  // of a length, and of a sine
+
   template <class I, class M>
   CDEM_HD void mark(const I& item, const M& may) const {
     for_lanes(item, [&](Index lane, Index m, Index c) {
       candidates.may_begin[c] = holds(may, lane);
       if (holds(may, lane)) springs.unresolved[4 * m + vertex_of(candidates.first, m, c)] = 1;
     });
-  }
-  template <class T, class Ids>
-  CDEM_HD T approach(const VertexFace<T>& c, const Ids& node,
-                     const FaceVertices<Ids>& corners) const {
-    const Vec3<T> v0 = faces.nodes.velocity(corners.node[0]),
-                  v1 = faces.nodes.velocity(corners.node[1]),
-                  v2 = faces.nodes.velocity(corners.node[2]),
-                  v3 = faces.nodes.velocity(corners.node[3]), sum = v0 + v1 + v2;
-    const Vec3<T> mean = select(corners.quad(), T(1.0 / 4.0) * (sum + v3), T(1.0 / 3.0) * sum);
-    return T(rules.approach_steps * faces.dt) *
-           abs_of(dot(c.normal, faces.nodes.velocity(node) - mean));
   }
   template <class Ids>
   CDEM_HD auto rises(const Ids& candidate) const {
@@ -145,7 +149,7 @@ struct FilterNewTargets : FaceSearch {
   template <class T, class Ids>
   CDEM_HD Truth<T> behind_corner(const VertexFace<T>& c, const Ids& m, const Ids& t,
                                  const FaceShape<T>& shape, const T& room) const {
-    const T slack = T(1e-6) * c.length, sine(1e-6);  // for round-off
+    const T slack = T(for_round_off) * c.length, sine(for_round_off);
     Truth<T> found = c.opposes;
     for (Index k = 0; k < 4; ++k) {
       const Vec3<T> a = shape.x[k], side = shape.x[k == 3 ? 0 : k + 1] - a;
@@ -236,8 +240,9 @@ struct ResolveTargets : FaceSearch {
       if (plane > near + s.lifted || plane < -rules.depth * length - near) continue;
       if (!beside(s.p, t, rules.tolerance * length)) continue;
       // shallower contacts may begin whatever the approach
-      const bool flat = geometry.is_triangle(t) && plane > -0.9 * rules.entry * length;
-      const Real entry = rules.entry * length + (flat ? 0.0 : approach(s.node, t)) + s.turn_depth;
+      const bool flat = geometry.is_triangle(t) && plane > -surely_shallow * rules.entry * length;
+      const Real near_by = flat ? 0.0 : approach(geometry.normal(t), s.node, geometry.vertices(t));
+      const Real entry = rules.entry * length + near_by + s.turn_depth;
       const bool penetration = s.free && plane < -entry && encloses(t, s, plane);
       const Real limit = penetration ? deepest_inside(t, length) : entry;
       const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, penetration});
@@ -250,7 +255,9 @@ struct ResolveTargets : FaceSearch {
   }
 
  private:
-  static constexpr Real none = 1e300;  // a gap that is no contact
+  static constexpr Real none = 1e300;          // a gap that is no contact
+  static constexpr Real surely_shallow = 0.9;  // part of the entry that needs no look at velocities
+  static constexpr Real turn = 1.5;  // a loaded spring enters its next face by so much of its depth
 
   /// One vertex that seeks its target.
   struct Seeker {
@@ -293,8 +300,7 @@ struct ResolveTargets : FaceSearch {
       return s;
     }
     const Real old_gap = plane_gap(s.v, current);
-    // a loaded spring may enter its next face as deep as it leaves the last
-    if (loaded && old_gap < 0) s.turn_depth = -1.5 * old_gap;
+    if (loaded && old_gap < 0) s.turn_depth = -turn * old_gap;
     if (loaded && is_below(s.p, current, old_gap, depth)) *lost = 1;
     return s;
   }
@@ -351,16 +357,6 @@ struct ResolveTargets : FaceSearch {
   /// A warped face may reach above its mean plane; a plane one does not.
   CDEM_HD Real above(Index t) const {
     return geometry.is_triangle(t) ? 0.0 : 0.5 * geometry.length(t);
-  }
-  CDEM_HD Real approach(Index node, Index t) const {
-    const Index face = exposed_face[t];
-    Vec3<Real> target_velocity{0.0, 0.0, 0.0};
-    const Index count = faces.vertex_count(face);
-    for (Index j = 0; j < count; ++j)
-      target_velocity = target_velocity + faces.nodes.velocity(faces.vertex(face, j));
-    const Vec3<Real> relative =
-        faces.nodes.velocity(node) - Real(1.0) / Real(count) * target_velocity;
-    return rules.approach_steps * faces.dt * abs_of(dot(geometry.normal(t), relative));
   }
   /// Cheap part of the inside test: P lies within reach of the face's centre.
   CDEM_HD bool beside(const Vec3<Real>& p, Index t, Real tolerance) const {
