@@ -70,16 +70,16 @@ def readers_here(monkeypatch):
 
     unit/terrain has tests of the processes that read, and of what they drop.
     """
-    from cdem.case import aside
+    from cdem.case import reader_process
     from cdem.case.input_file import reading
     from cdem.terrain import gdal
 
     def read(module, path, mend, kind, asked, size=None, reply=None):
-        monkeypatch.setattr(aside, "ask", lambda head: reply(json.loads(json.dumps(head))))
+        monkeypatch.setattr(reader_process, "ask", lambda head: reply(json.loads(json.dumps(head))))
         with reading(path, kind, mend, size):
             return importlib.import_module(module).read(path, json.loads(json.dumps(asked)))
 
-    monkeypatch.setattr(aside, "read", read)
+    monkeypatch.setattr(reader_process, "read", read)
     monkeypatch.setattr(gdal, "keep_drivers", lambda *_: None)
 
 

@@ -14,10 +14,10 @@ FAULTS = [
     Mutant(
         "fill stays",
         "what comes in lies where it lay at the start",
-        "src/cdem/model/fill.py",
+        "src/cdem/model/backfill.py",
         "return np.where(comes[:, None], t.node_position + way, t.node_position)",
         "return t.node_position",
-        "tests/validation/test_fill.py",
+        "tests/validation/test_backfill.py",
     ),
     Mutant(
         "old rest",
@@ -25,7 +25,7 @@ FAULTS = [
         "src/cdem/model/build.py",
         "at_birth = replace(topology, node_position=born)",
         "at_birth = replace(topology, node_position=topology.node_position)",
-        "tests/validation/test_fill.py",
+        "tests/validation/test_backfill.py",
     ),
     Mutant(
         "absent weight",
@@ -33,7 +33,7 @@ FAULTS = [
         "src/cdem/model/initial_stress.py",
         "np.where(self.absent, 0.0, [m.density for m in self._materials])",
         "np.array([m.density for m in self._materials])",
-        "tests/validation/test_fill.py",
+        "tests/validation/test_backfill.py",
     ),
     Mutant(
         "azimuth",

@@ -17,7 +17,7 @@ FAULTS = [
         "src/cdem/run/fields.py",
         "intact &= ~sim.out[b.topology.face_block[faces]].any(axis=1)",
         "intact &= True",
-        "tests/validation/test_fill.py",
+        "tests/validation/test_backfill.py",
     ),
     Mutant(
         "bolts of a stage",

@@ -1,8 +1,8 @@
-"""The process that reads meshes in HDF5 files, see `cdem.case.aside`."""
+"""The process that reads meshes in HDF5 files, see `cdem.case.reader_process`."""
 
 from __future__ import annotations
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.mesh.mesh_arrays import to_arrays
 from cdem.mesh.mesh_files import MEND, read_here
 
@@ -10,4 +10,4 @@ if __name__ == "__main__":
     import h5py  # noqa: F401  # loading takes more time than reading may
     import meshio  # noqa: F401
 
-    aside.answer(lambda path, _: to_arrays(read_here(path)), MEND)
+    reader_process.answer(lambda path, _: to_arrays(read_here(path)), MEND)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.case.input_file import is_file, reading, refuse_entities
 from cdem.errors import MeshError
 from cdem.mesh.arrays import in_pieces
@@ -63,7 +63,7 @@ def read_mesh(path: str | Path) -> Mesh:
         raise MeshError(f"{path}: no such mesh file; give a path relative to the case file")
     _refuse_surfaces(path, _kind(path))
     if _kind(path) in HDF5:
-        return from_arrays(aside.read("cdem.mesh.hdf5_mesh", path, MEND))
+        return from_arrays(reader_process.read("cdem.mesh.hdf5_mesh", path, MEND))
     return read_here(path)
 
 

@@ -19,8 +19,8 @@ from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
-from cdem.model.doubts import crowded_edges, idle_bonds, uneven_tiles, unlike_sides
 from cdem.model.meshed_strength import meshed_strengths, strength_text
+from cdem.model.model_warnings import crowded_edges, idle_bonds, uneven_tiles, unlike_sides
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.slips import slips

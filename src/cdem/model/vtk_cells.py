@@ -1,4 +1,4 @@
-"""Volume cells of VTK files, polyhedra too; read aside, see `cdem.case.aside`."""
+"""Volume cells of VTK files, polyhedra too; read aside, see `cdem.case.reader_process`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.case.input_file import refuse_entities
 from cdem.errors import MeshError
 from cdem.mesh.mesh_files import MEND, cell_groups
@@ -22,7 +22,7 @@ def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]
     Raises:
         MeshError: The file cannot be read, or pyvista is missing.
     """
-    read = aside.read("cdem.model.vtk_cells", path, MEND)
+    read = reader_process.read("cdem.model.vtk_cells", path, MEND)
     points, sizes, corners = read["points"], read["sizes"], read["corners"]
     wrong = (corners < 0) | (corners >= len(points))
     if (read["faces"] < 4).any() or (sizes < 3).any() or wrong.any():
@@ -34,7 +34,7 @@ def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]
         yield f"cell {number}", points, loops[first:end], kind
 
 
-def _cells(path: Path) -> aside.Arrays:
+def _cells(path: Path) -> reader_process.Arrays:
     import pyvista
 
     refuse_entities(path)
@@ -67,4 +67,4 @@ if __name__ == "__main__":
         import pyvista  # noqa: F401  # loading it takes more memory and time than reading may
     except ImportError:
         raise SystemExit("bodies in VTK files need pyvista; pip install 'cdem[viz]'") from None
-    aside.answer(lambda path, _: _cells(path), MEND)
+    reader_process.answer(lambda path, _: _cells(path), MEND)

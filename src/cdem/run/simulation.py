@@ -17,7 +17,7 @@ from cdem.case.case import Case
 from cdem.case.stored import renewed
 from cdem.errors import CdemError, DiskError, UnstableError
 from cdem.model.audit import Audit
-from cdem.model.fill import nodes_of_groups
+from cdem.model.backfill import nodes_of_groups
 from cdem.model.overlaps import adopt_overlaps
 from cdem.run import failures, restored, shown, stages
 from cdem.run.actions import Act, Action

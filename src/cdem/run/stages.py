@@ -11,9 +11,9 @@ from cdem.case.curve_times import last_change, last_dynamic, over_early
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
+from cdem.model.backfill import folded, nodes_of_groups, places
 from cdem.model.build import change
 from cdem.model.curves import constant, hand_over
-from cdem.model.fill import folded, nodes_of_groups, places
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.supports import held_components, supports_of
 from cdem.rows import rows_of

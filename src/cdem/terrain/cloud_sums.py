@@ -1,6 +1,6 @@
 """Heights of a point cloud summed by cells; as a program the process that unpacks LAZ.
 
-The decompressor of LAZ ends the whole program at some damaged files; see `cdem.case.aside`.
+The decompressor of LAZ ends the whole program at some damaged files; see `cdem.case.reader_process`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.case.map_system import look_up
 from cdem.errors import CaseError
 from cdem.terrain.projection import moved
@@ -20,7 +20,7 @@ CHUNK = 1_000_000  # points that are held at a time
 GROUND = 2  # class of ground points (ASPRS)
 
 
-def cell_sums(path: Path, file: Any, asked: dict[str, Any]) -> aside.Arrays:
+def cell_sums(path: Path, file: Any, asked: dict[str, Any]) -> reader_process.Arrays:
     """Sum the heights of the points of an open cloud in each cell of a grid.
 
     Args:
@@ -54,7 +54,7 @@ def cell_sums(path: Path, file: Any, asked: dict[str, Any]) -> aside.Arrays:
     return {"total": total, "count": count, "taken": np.array(taken)}
 
 
-def _unpack(path: Path, asked: dict[str, Any]) -> aside.Arrays:
+def _unpack(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
     import laspy
 
     try:
@@ -71,4 +71,4 @@ if __name__ == "__main__":
     import lazrs  # noqa: F401
     import pyproj  # noqa: F401
 
-    aside.answer(_unpack, MEND)
+    reader_process.answer(_unpack, MEND)

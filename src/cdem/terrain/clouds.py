@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.case.input_file import is_file, reading
 from cdem.errors import BackendError, CaseError
 from cdem.terrain.cloud_sums import MEND, cell_sums
@@ -70,7 +70,9 @@ def read_cloud(
         }
         sums = None if head.are_points_compressed else cell_sums(path, file, asked)
     if sums is None:
-        sums = aside.read("cdem.terrain.cloud_sums", path, MEND, kind=CaseError, asked=asked)
+        sums = reader_process.read(
+            "cdem.terrain.cloud_sums", path, MEND, kind=CaseError, asked=asked
+        )
     total, count = sums["total"], sums["count"]
     if not sums["taken"] and head.point_count:
         raise CaseError(

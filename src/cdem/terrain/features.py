@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.case.input_file import is_file, read_text, reading
 from cdem.errors import CaseError
 from cdem.terrain.heights import extra
@@ -110,7 +110,9 @@ def _by_gdal(path: Path, layer: str | None) -> Features:
             extra(name)
     with tempfile.TemporaryDirectory(prefix="cdem-read-") as folder:
         asked = {"layer": layer, "folder": folder}
-        read = aside.read("cdem.terrain.gdal_features", path, MEND, kind=CaseError, asked=asked)
+        read = reader_process.read(
+            "cdem.terrain.gdal_features", path, MEND, kind=CaseError, asked=asked
+        )
     found = json.loads(read["text"].tobytes())
     return Features(
         [(geometry, properties) for geometry, properties in found["items"]], found["label"]

@@ -1,7 +1,7 @@
 """GDAL shut in: only the drivers that a file needs, in a process that reads nothing else.
 
 Drivers of GDAL follow links to other files and into the net, and guess the kind of a file from its
-content. So the process that reads (`cdem.case.aside`) drops all drivers but those of the kind that
+content. So the process that reads (`cdem.case.reader_process`) drops all drivers but those of the kind that
 the file's ending and first bytes name.
 """
 

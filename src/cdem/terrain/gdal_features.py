@@ -1,4 +1,4 @@
-"""The process that reads lines and polygons by GDAL, see `cdem.case.aside` and `cdem.terrain.gdal`."""
+"""The process that reads lines and polygons by GDAL, see `cdem.case.reader_process` and `cdem.terrain.gdal`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 import numpy as np
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.errors import CaseError
 from cdem.terrain.features import MEND
 
@@ -36,7 +36,7 @@ UNPACKED = 100
 """A KMZ unpacks to at most so many times its size, and a million bytes more."""
 
 
-def read(path: Path, asked: dict[str, Any]) -> aside.Arrays:
+def read(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
     """Read all features of a file, or of the layer that ``asked["layer"]`` names.
 
     Returns:
@@ -187,4 +187,4 @@ if __name__ == "__main__":
     import pyogrio  # noqa: F401
     import shapely  # noqa: F401
 
-    aside.answer(read, MEND)
+    reader_process.answer(read, MEND)

@@ -1,4 +1,4 @@
-"""The process that reads grids by GDAL, see `cdem.case.aside` and `cdem.terrain.gdal`."""
+"""The process that reads grids by GDAL, see `cdem.case.reader_process` and `cdem.terrain.gdal`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.errors import CaseError
 from cdem.terrain.rasters import MEND
 
@@ -22,7 +22,7 @@ OPTIONS = {
 }
 
 
-def read(path: Path, asked: dict[str, Any]) -> aside.Arrays:
+def read(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
     """Read a grid, or the part that the process which asks wants of it.
 
     Args:
@@ -51,7 +51,7 @@ def read(path: Path, asked: dict[str, Any]) -> aside.Arrays:
         raise CaseError(f"{path}: not a {name}: {error}") from None
 
 
-def _read(file: Any) -> aside.Arrays:
+def _read(file: Any) -> reader_process.Arrays:
     place = file.transform
     head = {
         "place": [place.a, place.b, place.c, place.d, place.e, place.f],
@@ -59,7 +59,7 @@ def _read(file: Any) -> aside.Arrays:
         "label": file.crs and file.crs.to_wkt(),
         "unit": (file.units[0] or "").strip(),
     }
-    left, top, columns, rows = aside.ask(head)
+    left, top, columns, rows = reader_process.ask(head)
     if not columns:
         return {}
     window = ((top, top + rows), (left, left + columns))
@@ -70,4 +70,4 @@ def _read(file: Any) -> aside.Arrays:
 if __name__ == "__main__":
     import rasterio  # noqa: F401  # loading takes more time than reading may
 
-    aside.answer(read, MEND)
+    reader_process.answer(read, MEND)

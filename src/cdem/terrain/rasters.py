@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.case.input_file import is_file, read_text, reading, size_of
 from cdem.case.map_system import look_up
 from cdem.errors import BackendError, CaseError
@@ -187,7 +187,7 @@ def _by_gdal(
             copy = Path(folder) / "grid.vrt"
             copy.write_text(text, encoding="utf-8")
             asked["vrt"], size = str(copy), size + sum(file.stat().st_size for file in files)
-        read = aside.read(
+        read = reader_process.read(
             "cdem.terrain.gdal_grids", path, MEND, CaseError, asked, size=size, reply=reply
         )
     return heads[0], read.get("values", np.zeros((0, 0)))

@@ -121,5 +121,5 @@ def test_damaged_clouds_are_read_or_refused_in_one_line(tmp_path):
 
 def test_plain_points_are_read_without_another_process(tmp_path, monkeypatch):
     path = write_cloud(tmp_path / "a.las")
-    monkeypatch.setattr("cdem.case.aside.read", None)
+    monkeypatch.setattr("cdem.case.reader_process.read", None)
     assert rms(heights(path)[0]) < 0.4

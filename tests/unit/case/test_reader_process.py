@@ -5,13 +5,13 @@ import sys
 import numpy as np
 import pytest
 
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.errors import CaseError, MeshError
 
 READER = """
 import os, re, time
 import numpy as np
-from cdem.case import aside
+from cdem.case import reader_process
 from cdem.errors import MeshError
 from cdem.case import input_file
 input_file.LEAST_SECONDS = 0.2
@@ -28,7 +28,7 @@ def act(path, asked):
     if text == "wait":  # as on a busy machine: no processor time is taken
         time.sleep(2)
     if text == "ask":
-        return {"told": np.array(aside.ask({"size": 3}))}
+        return {"told": np.array(reader_process.ask({"size": 3}))}
     if text == "leave":
         os._exit(0)
     if text == "refuse":
@@ -40,7 +40,7 @@ def act(path, asked):
     return {"read": np.frombuffer(text.encode(), np.uint8)}
 
 if __name__ == "__main__":
-    aside.answer(act, "mend it")
+    reader_process.answer(act, "mend it")
 """
 
 
@@ -54,7 +54,9 @@ def ask(tmp_path, monkeypatch):
     def ask(text, **more):
         path = tmp_path / "a.bin"
         path.write_text(text)
-        return aside.read("reader_of_a_test", path.relative_to(tmp_path), "mend it", **more)
+        return reader_process.read(
+            "reader_of_a_test", path.relative_to(tmp_path), "mend it", **more
+        )
 
     return ask
 
@@ -75,8 +77,8 @@ def test_what_the_answer_raises_passes(ask):
 
 
 def test_wall_time_is_a_last_resort_and_is_told(ask, monkeypatch):
-    monkeypatch.setattr(aside, "START", 0.0)
-    monkeypatch.setattr(aside, "PATIENCE", 0.1)
+    monkeypatch.setattr(reader_process, "START", 0.0)
+    monkeypatch.setattr(reader_process, "PATIENCE", 0.1)
     with pytest.raises(MeshError, match=r"no answer in 0 s; is the machine or the disk busy\?"):
         ask("wait")
 

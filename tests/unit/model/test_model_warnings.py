@@ -9,7 +9,7 @@ from cdem import Case, CaseError, Simulation
 from cdem.errors import MeshError, ModelError
 from cdem.mesh.blocks import build_topology
 from cdem.mesh.primitives import box
-from cdem.model.doubts import crowded_edges
+from cdem.model.model_warnings import crowded_edges
 
 BONDED = {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}
 
