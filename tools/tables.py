@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+from cdem._native import core as native
 from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS, Law
 from cdem.case.output_fields import OUTPUT_FIELDS
 from cdem.case.plausible import RANGES, written
@@ -76,11 +77,32 @@ def problems_table() -> str:
     return "\n".join([*rows, ""])
 
 
+def arrays_table() -> str:
+    """The arrays of the core with several numbers a row, and the parts of a row."""
+    rows = ["| array | a row for each of | parts of a row | meaning |", "|---|---|---|---|"]
+    for info in native.Core().describe():
+        units = [unit.strip() for unit in info["unit"].split(",")]
+        if not info["parts"]:
+            continue
+        units = units * len(info["parts"]) if len(units) == 1 else units
+        named = [
+            (f"`{name}`" if name else "pad")
+            + (f" ({numbers})" if numbers > 1 else "")
+            + (f" {unit}" if name and unit != "1" else "")
+            for (name, numbers), unit in zip(info["parts"], units, strict=True)
+        ]
+        rows.append(
+            f"| `{info['name']}` | {info['rows']} | {', '.join(named)} | {info['meaning']} |"
+        )
+    return "\n".join([*rows, ""])
+
+
 TABLES = {
     "manual.md": problems_table,
     "output_fields.md": fields_table,
     "laws.md": laws_table,
     "checks.md": checks_table,
+    "contributing/arrays.md": arrays_table,
 }
 
 

@@ -65,13 +65,13 @@ struct PairColumns {
   /// What the law of a pair remembers of point k of `points`; the point's number is its row.
   template <class Laws, class I, class T>
   CDEM_HD void load_history(I p, Index k, Index points, T* state) const {
-    const bool any = interfaces.remembers;
+    const bool any = interfaces.has_state;
     for (Index v = 0; v < Laws::most_state; ++v)
       state[v] = any ? history.at(v * points + k, p) : T(0.0);
   }
   template <class Laws, class I, class M, class T>
   CDEM_HD void store_history(I p, Index k, Index points, const M& live, const T* state) const {
-    if (!interfaces.remembers) return;
+    if (!interfaces.has_state) return;
     for (Index v = 0; v < Laws::most_state; ++v)
       history.set(v * points + k, p, select(live, state[v], history.at(v * points + k, p)));
   }

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "core/base/primitives.hpp"
-#include "core/bonds/has_jumped.hpp"
-#include "core/bonds/lets_go.hpp"
+#include "core/bonds/broken_pairs.hpp"
 #include "core/bonds/transfer_to_contact.hpp"
 #include "core/bonds/views.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
@@ -20,7 +19,7 @@ namespace {
 /// each other by this part of the indentation; by the whole indentation, at once.
 constexpr Real release_part = 0.1;
 
-LetsGo lets_go(const Model& m, const PairSet& p, const PairState& s, Real part) {
+HasMovedFar has_moved_by(const Model& m, const PairSet& p, const PairState& s, Real part) {
   return {.part = part,
           .status = s.status.data(),
           .jump = s.jump.data(),
@@ -30,7 +29,7 @@ LetsGo lets_go(const Model& m, const PairSet& p, const PairState& s, Real part) 
 
 bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
   return any_item({}, p.count, HasJumped{{s.jump.data(), 0}}) &&
-         any_item({}, p.count, lets_go(m, p, s, m.rules.indentation));
+         any_item({}, p.count, has_moved_by(m, p, s, m.rules.indentation));
 }
 
 /// The pairs for which a kernel holds, ascending.
@@ -141,7 +140,7 @@ void open_overlap_hinges(const Model& m, State& s) {
 /// Returns whether any was released.
 bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
   const std::vector<Index> released =
-      pairs_where(p, lets_go(m, p, ps, release_part * m.rules.indentation));
+      pairs_where(p, has_moved_by(m, p, ps, release_part * m.rules.indentation));
   const auto faces = on_host(p.faces);
   const auto status = on_host(ps.status);
   const auto stored = on_host(ps.stored), friction = on_host(ps.friction);

@@ -132,11 +132,11 @@ struct Brittle {
       limit = limit_of(shear_limit(normal, coheres));
     }
     const auto slides = slips(squared, limit);
-    const auto lets_go = slides & (normal < none);
-    elastic = select(lets_go, none, elastic);
-    normal = select(lets_go, none, normal);
+    const auto separates = slides & (normal < none);
+    elastic = select(separates, none, elastic);
+    normal = select(separates, none, normal);
     const T kept = select(slides, limit / sqrt_of(squared), all);
-    const T keep = select(parts | lets_go, none, kept);
+    const T keep = select(parts | separates, none, kept);
     const T shear1 = keep * try1, shear2 = keep * try2;
     return {.elastic = elastic,
             .normal = normal,

@@ -55,7 +55,7 @@ CDEM_HD inline JointAnswer<T> respond_with_history(const InterfaceTable& table,
   T state[Laws::most_state + 1];
   for (T& number : state) number = T(0.0);
   if constexpr (Laws::most_state > 0) {
-    if (table.remembers)
+    if (table.has_state)
       Laws::for_each([&]<template <class> class Law, Index number>() {
         if (!table.has(number)) return;
         T own[Laws::most_state];
@@ -66,7 +66,7 @@ CDEM_HD inline JointAnswer<T> respond_with_history(const InterfaceTable& table,
   }
   const JointAnswer<T> answer = joint_laws<Laws>(table, interface).respond(in, state);
   if constexpr (Laws::most_state > 0) {
-    if (table.remembers) after.store(to, table.law_of(interface), state);
+    if (table.has_state) after.store(to, table.law_of(interface), state);
   }
   return answer;
 }

@@ -37,7 +37,7 @@ inline InterfaceTable table_of(const Interface* interfaces, std::size_t count,
   InterfaceTable table{interfaces, parameters, 0, 0, false};
   for (std::size_t i = 0; i < count; ++i) table.laws |= 1u << interfaces[i].law;
   InterfaceLaws::for_each([&]<template <class> class Law, Index number>() {
-    table.remembers |= state_count<Law> > 0 && table.has(number);
+    table.has_state |= state_count<Law> > 0 && table.has(number);
     if (is_curved<Law> && table.has(number)) table.curved |= 1u << number;
   });
   return table;

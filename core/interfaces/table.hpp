@@ -12,7 +12,7 @@ struct InterfaceTable {
   const Real* parameters;  // [interface][parameter_row]
   unsigned laws;           // those that any interface has, as bits
   unsigned curved;         // those of them whose joints close by a curve, as bits
-  bool remembers;          // has one of them state?
+  bool has_state;          // has one of them state?
 
   CDEM_HD bool has(Index law) const { return (laws >> law & 1) != 0; }
   /// Are all brittle, the first law of the list?

@@ -1,14 +1,13 @@
 // bonds.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
 #include "core/base/primitive_loops.hpp"
 #include "core/bonds/bonded_pairs.hpp"
-#include "core/bonds/has_jumped.hpp"
-#include "core/bonds/lets_go.hpp"
+#include "core/bonds/broken_pairs.hpp"
 
 namespace cdem {
 
 template bool any_item(Queue, Index, const HasJumped&);
-template bool any_item(Queue, Index, const LetsGo&);
-template void select_items(Queue, Index, const LetsGo&, Column<Index>&);
+template bool any_item(Queue, Index, const HasMovedFar&);
+template void select_items(Queue, Index, const HasMovedFar&, Column<Index>&);
 template void select_items(Queue, Index, const HoldsInPart&, Column<Index>&);
 template void for_each_lane(Queue, Index, Blocks,
                             const WithLaws<ConformingBonds<3>, BrittleAlone>&);

@@ -38,7 +38,7 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
 }
 
 void init_histories(const Model& m, const PairSet& p, PairState& s) {
-  if (!m.interface_traits.remembers) return;
+  if (!m.interface_traits.has_state) return;
   s.history.resize(InterfaceLaws::most_state * std::size_t(p.points) * p.point_stride);
   const BeginHistory begin(m, p, s);
   const auto first = on_host(p.point_first);
@@ -107,7 +107,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   n.body.resize(count);
   for (HistoryColumns* history :
        {&s.springs.history, &s.edges.side_history, &s.edges.contact_history})
-    history->width = m.interface_traits.remembers ? InterfaceLaws::most_state : 0;
+    history->width = m.interface_traits.has_state ? InterfaceLaws::most_state : 0;
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   make_room_for_rises(m, s);
   list_tiles(m, s);

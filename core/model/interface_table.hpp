@@ -19,7 +19,7 @@ inline void note_interfaces(Model& m) {
   m.interface_traits = {
       .laws = table.laws,
       .curved = table.curved,
-      .remembers = table.remembers,
+      .has_state = table.has_state,
       .hysteretic = table.curved != 0 || any([](const Interface& i) { return i.is_hysteretic(); }),
       .rolls = any([](const Interface& i) { return i.rolling_resistance > 0; }),
       .ask_area = any([](const Interface& i) { return i.asks_area; })};
@@ -27,7 +27,7 @@ inline void note_interfaces(Model& m) {
 
 inline InterfaceTable interface_table(const Model& m) {
   const InterfaceTraits& t = m.interface_traits;
-  return {m.interfaces.data(), m.interface_parameters.data(), t.laws, t.curved, t.remembers};
+  return {m.interfaces.data(), m.interface_parameters.data(), t.laws, t.curved, t.has_state};
 }
 
 }  // namespace cdem

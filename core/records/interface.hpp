@@ -36,7 +36,7 @@ struct Interface {
 /// What all interfaces of a model have together.
 struct InterfaceTraits {
   unsigned laws = 0, curved = 0;  // see InterfaceTable
-  bool remembers = false;         // the same
+  bool has_state = false;         // the same
   bool hysteretic = false;        // does any ask for restitution, or close by a curve?
   bool rolls = false;             // does any resist rolling?
   bool ask_area = false;          // does any ask for the area of contacts?

@@ -79,7 +79,7 @@ void stop_nodes(NodeState& n, const std::vector<Index>& which) {
   for (const std::size_t i : which) relax[8 * i + 3] = 1;
 }
 
-void relieve(State&, const ElementSet& e, ElementState& es, const std::vector<Index>& which) {
+void unload(State&, const ElementSet& e, ElementState& es, const std::vector<Index>& which) {
   const auto energy = on_host(es.energy), point_stress = on_host(es.point_stress);
   for (const Index i : which) {
     energy[i] = 0;
@@ -89,7 +89,7 @@ void relieve(State&, const ElementSet& e, ElementState& es, const std::vector<In
 }
 
 /// The faces of a pair can be touched then; those that are out are hidden afterwards.
-void relieve(State& s, const PairSet& p, PairState& ps, const std::vector<Index>& which) {
+void unload(State& s, const PairSet& p, PairState& ps, const std::vector<Index>& which) {
   const auto is_active = activity(ps);
   const auto faces = on_host(p.faces);
   for (const Index i : which)
@@ -108,7 +108,7 @@ void relieve(State& s, const PairSet& p, PairState& ps, const std::vector<Index>
 }
 
 template <ModuleData Given>
-void relieve(State& s, const Given& given, auto& state, const std::vector<Index>& which) {
+void unload(State& s, const Given& given, auto& state, const std::vector<Index>& which) {
   Given::Module::take_out(given, state, which, on_host(s.nodes.out).data());
 }
 
@@ -152,7 +152,7 @@ void take_out(Model& m, State& s, const Flag* leaves) {
     std::vector<Index> which;
     for (Index i = 0; i < set.count; ++i)
       if (is_out(i)) which.push_back(i);
-    relieve(s, set, state, which);
+    unload(s, set, state, which);
   });
   std::vector<Flag> hidden(m.face_count);
   const auto face_nodes = on_host(m.face_nodes);

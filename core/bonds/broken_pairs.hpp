@@ -1,24 +1,33 @@
-// lets_go.hpp - which bonded pairs are to be released, and which have become hinges.
+// broken_pairs.hpp - which broken pairs have moved, and which pairs are bonded in part.
 #pragma once
 
-#include "core/base/math.hpp"
+#include "core/base/views.hpp"
 #include "core/records/pair_status.hpp"
 
 namespace cdem {
 
+/// Has a pair moved since it broke?
+struct HasJumped {
+  InTable jump;  // [pair], of broken points  [m]
+  template <class I>
+  CDEM_HD auto operator()(I item) const {
+    return jump.at(0, item) > Number<I>(0.0);
+  }
+};
+
 /// Has a broken pair moved by more than a part of its length?
-struct LetsGo {
+struct HasMovedFar {
   Real part;
   const Flag* status;
-  const Real* jump;    // [pair] of what is broken  [m]
+  const Real* jump;    // [pair] of broken points  [m]
   const Index* faces;  // [pair][2]
   const Real* face_length;
 
   CDEM_HD bool operator()(One pair) const {
-    const Real way = jump[pair.i];
-    if (!is_live(PairStatus(status[pair.i])) || !(way > 0)) return false;
+    const Real moved = jump[pair.i];
+    if (!is_live(PairStatus(status[pair.i])) || !(moved > 0)) return false;
     const Real length = min_of(face_length[faces[2 * pair.i + 1]], face_length[faces[2 * pair.i]]);
-    return way > part * length;
+    return moved > part * length;
   }
 };
 
