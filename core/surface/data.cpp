@@ -56,10 +56,19 @@ void for_each_faces(const SurfaceSet& g, SurfaceState& s, const Visit& visit) {
   visit(g.quads, s.quads);
 }
 
-void size(const SurfaceFaces& faces, SurfacePoints& points) {
+/// Numbers of a vertex that laws remember; none where no law of the case does.
+Index state_of_vertex(const SurfaceSet& g) {
+  bool any = false;
+  SurfaceLaws::for_each([&]<template <class> class Law, Index number>() {
+    for (const Index law : on_host(g.law)) any |= state_count<Law> > 0 && law == number;
+  });
+  return any ? SurfaceLaws::most_state : 0;
+}
+
+void size(const SurfaceFaces& faces, SurfacePoints& points, Index states) {
   const std::size_t row = std::size_t(faces.vertices) * faces.stride;
   points.place.resize(3 * row);
-  points.history.resize(SurfaceLaws::most_state * row);
+  points.history.resize(states * row);
 }
 
 /// Factor of every entry in this step, and whether it acts.
@@ -82,7 +91,7 @@ template <Index count>
 void act_on(cdem::State& all, Queue q, const SurfaceSet& g, const SurfaceFaces& faces,
             SurfacePoints& points) {
   const SurfaceState& s = state_of<Surface>(all);
-  size(faces, points);  // a checkpoint may come without
+  size(faces, points, state_of_vertex(g));  // a checkpoint may come without
   Real* rows = applied_of<Surface>(all).rows.data() + 4 * std::size_t(faces.row_first);
   for_each_lane(q, faces.count,
                 ActOnFaces<SurfaceLaws, count>{.nodes = {all.nodes.motion.data()},
@@ -164,7 +173,8 @@ void Surface::start(const Model& m, cdem::State& all) {
   const SurfaceSet& g = given_of<Surface>(m);
   SurfaceState& s = state_of<Surface>(all);
   s.begun.resize(g.count);
-  for_each_faces(g, s, [](const auto& faces, auto& points) { size(faces, points); });
+  const Index states = state_of_vertex(g);
+  for_each_faces(g, s, [&](const auto& faces, auto& points) { size(faces, points, states); });
   const auto waits = on_host(g.waits);
   std::vector<Flag> now(g.count);
   for (Index e = 0; e < g.count; ++e) now[e] = !waits[e];

@@ -179,7 +179,8 @@ def of_laws() -> dict[str, dict[str, Any]]:
         entry = {"surface": {"group": "high", "normal": [0, 0, 1]}, "law": law.name}
         entry |= {p.name: _value(p) for p in law.parameters}
         named = entry | {"history": {"file": "factor.csv"}, "stage": "move"}
-        case["loads"] = case.get("loads", {}) | {"surfaces": [entry, named]}
+        entries = [named] if law.absorbs else [entry, named]
+        case["loads"] = case.get("loads", {}) | {"surfaces": entries}
         found[law.name] = case
     return found
 
