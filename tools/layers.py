@@ -74,6 +74,19 @@ def unit(path: str) -> str:
     return path if path.endswith("/data.cpp") else path.rsplit(".", 1)[0]
 
 
+def hint(path: str, other: str) -> str:
+    """Why a file that counts as part of `model` may not include another, where that is no module yet."""
+    if folder(path) != "model":
+        return ""
+    if Path(path).parent == Path(other).parent:
+        return (
+            ": the data of a module are part of core/model, so include it in the .cpp of the module"
+        )
+    if Path(other).name == "data.hpp":
+        return ": if its folder is a module, add it to MODULES of tools/layers.py"
+    return ""
+
+
 sources = [str(path) for path in sorted(Path("core").rglob("*.[hc]pp"))]
 units: dict[str, set[str]] = {unit(path): set() for path in sources}
 for path in sources:
@@ -84,7 +97,9 @@ for path in sources:
         if room in MODULES and not path.startswith(may_name):
             problems.append(f"{path} may not name the module {room}")
         if FOLDERS.index(folder(other)) > height:
-            problems.append(f"{path} may not include {other}, which lies above it")
+            problems.append(
+                f"{path} may not include {other}, which lies above it{hint(path, other)}"
+            )
         if unit(other) != unit(path):
             units[unit(path)].add(unit(other))
     own = path.endswith(".cpp") and folder(path) != "kernels"

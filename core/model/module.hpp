@@ -14,9 +14,10 @@
 //   static void describe_rows(given, visit);       visit(kind, count) of kinds of rows of its own
 //   static void act(model, state, queue);          write its rows
 //
-// Forces between nodes, Port::rows: each node adds the rows of its items, and the module books
-// their energy. Given has `count`, and `corner_first`, the first of its rows among the corner
-// forces.
+// Forces between nodes, or nodes and the ground, Port::rows: each node adds the rows of its items,
+// and the module books their energy. Given has `count`, and `corner_first`, the first of its rows
+// among the corner forces. State has `Column<Index> awake`, blocks of items whose nodes can move,
+// which find_awake lists. Its items are a kind of rows with the name of the module.
 //
 //   static void size(given, state);                room for the state at the start
 //   static auto activity(state);                   is_active(item): does it act on its nodes?
@@ -25,8 +26,9 @@
 //   static auto stiffness_of(given);               for_each_stiffness(item, visit):
 //                                                  visit(node, stiffness at most  [N/m])
 //   static void for_each_energy(state, visit);     visit(term, column), see energy_term
-//   static void take_out(given, state, items, out);  nodes of these items are out now
-//   static void bring_in(given, state, out);         blocks have come in
+//   static void take_out(given, state, items, out);  nodes of these items are out now: what they
+//                                                  had stored goes into a term of losses
+//   static void bring_in(given, state, out);       blocks have come in
 //
 // Forces from outside, Port::applied: `act` writes a row for each vertex that it loads into
 // applied_of<Module>(state).rows. The engine sums them on nodes that are not out, books their work
@@ -88,16 +90,21 @@ concept HasItsData = requires(const typename M::Given& given, typename M::Given&
   { M::stage } -> std::convertible_to<Stage>;
   requires std::same_as<typename M::Given::Module, M> && std::same_as<typename M::State::Module, M>;
   M::take_counts(taken, AnyNumber{});
+  M::describe(taken, state, AnyVisit{});
   M::describe_rows(given, AnyVisit{});
   M::act(model, all, Queue{});
 };
 template <class M>
-concept PutsRows = requires(const typename M::Given& given, typename M::State& state) {
+concept PutsRows = requires(const typename M::Given& given, typename M::State& state,
+                            const std::vector<Index>& items, const Flag* out) {
   { given.count + given.corner_first } -> std::same_as<Index>;
+  { (state.awake) } -> std::same_as<Column<Index>&>;
   M::size(given, state);
   { M::activity(state)(Index(0)) } -> std::convertible_to<bool>;
   M::rows_of(given)(Index(0), AnyVisit{});
   M::for_each_energy(state, AnyVisit{});
+  M::take_out(given, state, items, out);
+  M::bring_in(given, state, out);
 };
 template <class M>
 concept KnowsItsStiffness =
@@ -124,16 +131,26 @@ struct StatePart<Module> {
   AppliedForces applied;
 };
 
+/// Whether a module answers all that is asked of its port. The compiler then names the one that is
+/// missing, or that takes other arguments.
+template <class M, Port = M::port>
+struct Answers {
+  static_assert(HasItsData<M>, "a module lacks one of the answers at the top of module.hpp");
+  static_assert(PutsRows<M>, "Port::rows lacks one of its answers, see the top of module.hpp");
+  static_assert(KnowsItsStiffness<M>, "Port::rows needs stiffness_of: the step is found from it");
+  static constexpr bool checked = true;
+};
+template <class M>
+struct Answers<M, Port::applied> {
+  static_assert(HasItsData<M>, "a module lacks one of the answers at the top of module.hpp");
+  static_assert(Applies<M>, "Port::applied lacks one of its answers, see the top of module.hpp");
+  static constexpr bool checked = true;
+};
+
 /// Every module once; the data of each, one after the other.
 template <class... Modules>
 struct ModuleList {
-  static_assert((HasItsData<Modules> && ...), "a module needs its name, its data, and their size");
-  static_assert(((Modules::port != Port::rows || PutsRows<Modules>) && ...),
-                "forces between nodes: who acts, on which nodes, at which cost");
-  static_assert(((Modules::port != Port::rows || KnowsItsStiffness<Modules>) && ...),
-                "forces between nodes need stiffness_of: the step is found from it");
-  static_assert(((Modules::port != Port::applied || Applies<Modules>) && ...),
-                "applied forces: is it there, and which node has each row");
+  static_assert((Answers<Modules>::checked && ...));
 
   template <template <class> class Part>
   struct Data : Part<Modules>... {};
