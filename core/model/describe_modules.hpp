@@ -16,6 +16,8 @@ struct ArrayVisit {
   const Stored& stored;
   const Rebuilt& rebuilt;
 };
+template <class Given, class Stored, class Rebuilt>
+ArrayVisit(const Given&, const Stored&, const Rebuilt&) -> ArrayVisit<Given, Stored, Rebuilt>;
 
 /// Call given(info, column) for what modules have in the model.
 template <class Visit>
