@@ -13,7 +13,7 @@ GUARDS = {
     "YAML is read as plain data": "unit/case/test_yaml_text.py::test_what_is_refused",
     "Formulas of a study": "unit/case/test_formula.py::test_a_formula_reaches_nothing_but_numbers",
     "Nothing is unpickled.": "integration/docs/test_security_page.py::test_nothing_is_unpickled",
-    "No process that cdem starts": "unit/case/test_aside.py::"
+    "No process that cdem starts": "unit/case/test_reader_process.py::"
     "test_nothing_is_imported_from_the_current_folder",
     "Laws of users are code.": LAWS + "test_code_is_refused_in_one_line",
     "A case that names some": LAWS + "test_code_is_refused_in_one_line",
@@ -39,10 +39,10 @@ GUARDS = {
     "Meshes in several files": STRANGERS,
     "Time and memory of reading": "unit/case/test_input_file.py::"
     "test_a_small_file_does_not_take_gigabytes",
-    "What takes more": "unit/case/test_aside.py::test_what_goes_wrong_is_one_message",
+    "What takes more": "unit/case/test_reader_process.py::test_what_goes_wrong_is_one_message",
     "Time is that of the processor": "unit/case/test_input_file.py::"
     "test_processor_time_counts_not_that_of_a_clock_on_the_wall",
-    "GDAL, HDF5, VTK and LAZ": "unit/case/test_aside.py::test_what_goes_wrong_is_one_message",
+    "GDAL, HDF5, VTK and LAZ": "unit/case/test_reader_process.py::test_what_goes_wrong_is_one_message",
     "A local sweep has no ports.": "integration/study/test_sweep.py::"
     "test_a_sweep_that_is_killed_goes_on",
     "Its workers are spoken": "integration/study/test_sweep.py::"
