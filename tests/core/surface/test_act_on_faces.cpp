@@ -29,8 +29,8 @@ using TestedLaws = LawList<Pressure, Tether>;
 /// Faces anywhere, each of an entry of its own.
 template <Index count>
 struct AnyFaces {
-  static constexpr Index faces = 3 * lanes + 1, nodes = count * faces;
-  static constexpr Index stride = 4 * lanes;
+  static constexpr Index faces = 25, nodes = count * faces;  // and one is left over
+  static constexpr Index stride = 32;
   std::vector<Real> motion = std::vector<Real>(8 * nodes), place, state;
   std::vector<Index> face_nodes = std::vector<Index>(count * stride),
                      entry = std::vector<Index>(stride);
