@@ -15,7 +15,9 @@ groups:
   bed: {material: rock, fix: [x, y, z]}
   block: {material: soft, velocity: [2, 0.3, 0]}
 interfaces: {default: {law: voellmy, friction_angle: 15, turbulence: 500, flow_density: 2500}}
-loads: {gravity: [0, 0, -10]}
+loads:
+  gravity: [0, 0, -10]
+  surfaces: [{surface: {group: block, normal: [0, 0, 1]}, law: pressure, pressure: 3 kPa}]
 stages: [{name: slide, mode: dynamic, duration: "0.15 s"}]
 output: {frames: false}
 """
@@ -24,6 +26,7 @@ output: {frames: false}
 def flow(prefix: str = "", own_laws: str = "[]") -> str:
     """The case with laws of this prefix; `own_laws` are their headers."""
     text = FLOW.replace("mohr-", f"{prefix}mohr-").replace("voellmy", f"{prefix}voellmy")
+    text = text.replace("law: pressure", f"law: {prefix}pressure")
     return text.replace("own_laws: []", f"own_laws: {own_laws}")
 
 

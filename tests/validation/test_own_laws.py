@@ -37,11 +37,12 @@ def test_a_law_in_one_header(scene):
 
 @pytest.fixture(scope="module")
 def copies(tmp_path_factory):
-    """Copies of two built-in laws in the package's folders, in a library by cdem law build."""
+    """Copies of three built-in laws in the package's folders, in a library by cdem law build."""
     folder, core = tmp_path_factory.mktemp("laws"), sources() / "core"
     for path, structure, name in (
         ("materials/mohr_coulomb.hpp", "MohrCoulomb", "mohr-coulomb"),
         ("interfaces/voellmy.hpp", "Voellmy", "voellmy"),
+        ("surface/pressure.hpp", "Pressure", "pressure"),
     ):
         text = re.sub(rf"\b{structure}\b", f"Copied{structure}", (core / path).read_text())
         text = text.replace(f'"{name}"', f'"copied-{name}"')
@@ -51,7 +52,7 @@ def copies(tmp_path_factory):
     return folder
 
 
-HEADERS = ["copied_mohr_coulomb.hpp", "copied_voellmy.hpp"]
+HEADERS = ["copied_mohr_coulomb.hpp", "copied_voellmy.hpp", "copied_pressure.hpp"]
 
 
 def cdem(folder, *words):
