@@ -26,6 +26,7 @@ output: {frames: false}
 def flow(prefix: str = "", own_laws: str = "[]") -> str:
     """The case with laws of this prefix; `own_laws` are their headers."""
     text = FLOW.replace("mohr-", f"{prefix}mohr-").replace("voellmy", f"{prefix}voellmy")
+    text = text.replace("pressure: 3", f"{prefix}pressure: 3")  # its parameter has its name
     text = text.replace("law: pressure", f"law: {prefix}pressure")
     return text.replace("own_laws: []", f"own_laws: {own_laws}")
 
