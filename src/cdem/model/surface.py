@@ -33,16 +33,15 @@ class SurfaceModel(Module):
     """
 
     name = "surface"
-    entries: list[tuple[Any, ...]] | None = None
+    entries: list[tuple[Any, ...]] = field(default_factory=list)
     found: list[tuple[int, float]] = field(default_factory=list)
 
     @classmethod
     def of(cls, case: Case, t: Topology, names: list[str]) -> SurfaceModel:
-        return cls()
+        return cls(_entries(case))
 
     def add_arrays(self, parts: Parts) -> None:
         case, t, out = parts.case, parts.topology, parts.assembly
-        self._refuse_others(case)
         items = case.loads.surfaces
         if not items:
             return
@@ -82,16 +81,8 @@ class SurfaceModel(Module):
                 f"{kind}.impedance": impedance[some].ravel(),
             }
 
-    def _refuse_others(self, case: Case) -> None:
-        """Refuse other entries than those of the start.
-
-        Raises:
-            CaseError: A stage has changed them.
-        """
-        entries = [(item.surface, item.law, item.stage) for item in case.loads.surfaces]
-        if self.entries is None:
-            self.entries = entries
-        if entries != self.entries:
+    def refuse_change(self, case: Case, was: dict[str, int], now: dict[str, int]) -> None:
+        if _entries(case) != self.entries:
             raise CaseError(
                 f"{case.where('loads.surfaces')}: loads.surfaces: a stage can change the parameters and the "
                 "history of an entry, not its surface, law or stage; write another entry with stage:"
@@ -110,6 +101,11 @@ class SurfaceModel(Module):
             + (f", from the begin of {one['stage']}" if one["stage"] else "")
             for one in report
         ]
+
+
+def _entries(case: Case) -> list[tuple[Any, ...]]:
+    """Surface, law and stage of every entry."""
+    return [(item.surface, item.law, item.stage) for item in case.loads.surfaces]
 
 
 def _impedances(parts: Parts) -> Floats:
