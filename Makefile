@@ -109,6 +109,8 @@ lint: setup
 	$(BIN)/python tools/members.py
 	$(BIN)/python tools/mutants.py --check
 	$(BIN)/python tools/package_layers.py
+	$(BIN)/python tools/drawing.py --check
+	$(BIN)/python tools/walks.py --check
 	$(BIN)/python tools/words.py --all
 	$(BIN)/mypy src/cdem
 	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools docs/_ext

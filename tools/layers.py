@@ -5,39 +5,39 @@ And every test_*.cpp of tests/core/ mirrors a file of core/.
 
 import re
 import sys
+from collections.abc import Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
-# Folders, lowest first: a file includes its own folder and those before it.
-FOLDERS = [
-    "base",
-    "records",
-    "materials",
-    "interfaces",
-    "model",
-    "contact/geometry",
-    "elements",
-    "nodes",
-    "water",
-    "surface",
-    "contact/narrow_phase",
-    "contact/force",
-    "bonds",
-    "bolts",
-    "contact/broad_phase",
-    "contact/pair_list",
-    "contact",
-    "diagnostics",
-    ".",
-    "run",
-    "kernels",
-]
+FOLDERS = {
+    "base": "numbers, loops of each device, exact sums",
+    "records": "rows of the arrays",
+    "materials": "block laws, one file each",
+    "interfaces": "joint laws, one file each",
+    "model": "all arrays, described; the modules",
+    "contact/geometry": "faces and edges as they are now",
+    "elements": "forces of elements",
+    "nodes": "sums, motion, time step, supports",
+    "water": "module: pressures in open joints",
+    "surface": "module: surface laws, one file each",
+    "contact/narrow_phase": "targets of vertices and edges",
+    "contact/force": "semi-springs and semi-edges",
+    "bonds": "bonded pairs, failure, release",
+    "bolts": "module: anchors",
+    "contact/broad_phase": "pairs that may touch soon",
+    "contact/pair_list": "when and how pairs are listed",
+    "contact": "one header for all of contact",
+    "diagnostics": "energies, unbalanced force, health",
+    ".": "step.cpp: the method on one page",
+    "run": "time loop, rebuilds, excavation",
+    "kernels": "kernels, compiled for every device",
+}
+"""Folders with their contents, lowest first: a file includes its own folder and those before it."""
+HEIGHT = {name: height for height, name in enumerate(FOLDERS)}
 MODULES = ["bolts", "water", "surface"]
 """Nobody outside of them names them, but core/model/modules.hpp."""
 DEEPEST = 8
-
-problems: list[str] = []
 
 
 def folder(path: str) -> str:
@@ -87,43 +87,58 @@ def hint(path: str, other: str) -> str:
     return ""
 
 
-sources = [str(path) for path in sorted(Path("core").rglob("*.[hc]pp"))]
-units: dict[str, set[str]] = {unit(path): set() for path in sources}
-for path in sources:
-    height = FOLDERS.index(folder(path))
+def sources() -> list[str]:
+    """Files of core/."""
+    return [str(path) for path in sorted(Path("core").rglob("*.[hc]pp"))]
+
+
+def problems_of(path: str) -> Iterator[str]:
+    """Includes of a file that break a rule."""
     for other in includes(path):
         room = str(Path(other).relative_to("core").parent)
         may_name = (f"core/{room}/", "core/kernels/", "core/model/modules.hpp")
         if room in MODULES and not path.startswith(may_name):
-            problems.append(f"{path} may not name the module {room}")
-        if FOLDERS.index(folder(other)) > height:
-            problems.append(
-                f"{path} may not include {other}, which lies above it{hint(path, other)}"
-            )
-        if unit(other) != unit(path):
-            units[unit(path)].add(unit(other))
-    own = path.endswith(".cpp") and folder(path) != "kernels"
-    owner = path.removesuffix(".cpp") + ".hpp" if own else None
-    if owner and next(iter(includes(path)), "") != owner:
-        problems.append(f"{path} must include its own header first")
+            yield f"{path} may not name the module {room}"
+        if HEIGHT[folder(other)] > HEIGHT[folder(path)]:
+            yield f"{path} may not include {other}, which lies above it{hint(path, other)}"
+    owner = path.removesuffix(".cpp") + ".hpp"
+    if path.endswith(".cpp") and folder(path) != "kernels" and includes(path)[:1] != (owner,):
+        yield f"{path} must include its own header first"
     if folder(path) == "kernels":
         for other in sorted(closure(path)):
             if other.startswith("core/model/"):
-                problems.append(f"{path} is a kernel and may not reach {other}")
+                yield f"{path} is a kernel and may not reach {other}"
 
-try:
-    TopologicalSorter(units).prepare()
-except CycleError as cycle:
-    problems.append("units include each other: " + " -> ".join(cycle.args[1]))
 
-for path in sorted(Path("tests/core").rglob("test_*.cpp")):
-    mirrored = (
-        Path("core") / path.relative_to("tests/core").parent / path.stem.removeprefix("test_")
-    )
-    if not any(mirrored.parent.glob(f"{mirrored.name}.[hc]pp")):
-        problems.append(f"{path} mirrors nothing: there is no {mirrored}.hpp or .cpp")
+def cycles() -> Iterator[str]:
+    """Units that include each other."""
+    units: dict[str, set[str]] = {unit(path): set() for path in sources()}
+    for path in sources():
+        units[unit(path)] |= {unit(other) for other in includes(path)} - {unit(path)}
+    try:
+        TopologicalSorter(units).prepare()
+    except CycleError as cycle:
+        yield "units include each other: " + " -> ".join(cycle.args[1])
 
-deepest = max(sources, key=depth) if not problems else ""
-if deepest and depth(deepest) > DEEPEST:
-    problems.append(f"{deepest}: includes are {depth(deepest)} deep, more than {DEEPEST}")
-sys.exit("\n".join(problems) or 0)
+
+def tests_without_file() -> Iterator[str]:
+    """Tests that mirror no file of core/."""
+    for path in sorted(Path("tests/core").rglob("test_*.cpp")):
+        place = Path("core") / path.relative_to("tests/core").parent
+        mirrored = place / path.stem.removeprefix("test_")
+        if not any(place.glob(f"{mirrored.name}.[hc]pp")):
+            yield f"{path} mirrors nothing: there is no {mirrored}.hpp or .cpp"
+
+
+def main() -> None:
+    """Print what is wrong and fail, or say nothing."""
+    problems = [problem for path in sources() for problem in problems_of(path)]
+    problems += [*cycles(), *tests_without_file()]
+    deepest = max(sources(), key=depth) if not problems else ""
+    if deepest and depth(deepest) > DEEPEST:
+        problems.append(f"{deepest}: includes are {depth(deepest)} deep, more than {DEEPEST}")
+    sys.exit("\n".join(problems) or 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -11,24 +11,26 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent / "src"
 
-# Folders, lowest first: a module imports from its own folder and those before it. The modules of
-# the package itself stand where they belong.
-FOLDERS = [
-    "_version errors units whole_files _instruction_sets _core_choice own_laws _core _native rows",
-    "case",
-    "mesh",
-    "joints",
-    "terrain",
-    "model",
-    "run",
-    "output",
-    "study",
-    "screening",
-    "verification",
-    "tools",
-    "cli",
-    "__init__ __main__",
-]
+FOLDERS = {
+    "_version errors units whole_files _instruction_sets _core_choice own_laws _core _native rows": "",
+    "case": "the input: keys, types, checks, errors",
+    "mesh": "elements, blocks, faces, edges; mesh files",
+    "joints": "joint sets cut bodies into blocks",
+    "terrain": "maps and grids to a meshed site",
+    "model": "from a case to the arrays of the core",
+    "run": "stages, progress, result folder, resume",
+    "output": "text, plots, pictures, files, viewer",
+    "study": "sweeps, factor of safety, tests of laws",
+    "screening": "closed-form factors of safety over maps",
+    "verification": "problems with a known answer",
+    "tools": "doctor, benchmark, build of own laws",
+    "cli": "the commands",
+    "__init__ __main__": "",
+}
+"""Folders with their contents, lowest first: a module imports from its own folder and earlier ones.
+
+The modules of the package itself stand where they belong.
+"""
 
 
 def name_of(path: Path) -> str:
@@ -70,11 +72,16 @@ def resolve(name: str, modules: dict[str, Path]) -> str:
     return name
 
 
-def main() -> None:
-    """Print what is wrong and fail, or say nothing."""
+def graph_of_imports() -> dict[str, set[str]]:
+    """Every module of cdem with those that it imports."""
     sources = [*(ROOT / "cdem").rglob("*.py"), *(ROOT / "cdem").rglob("*.pyi")]
     modules = {name_of(path): path for path in sorted(sources)}
-    graph = {module: set(imports(module, path, modules)) for module, path in modules.items()}
+    return {module: set(imports(module, path, modules)) for module, path in modules.items()}
+
+
+def main() -> None:
+    """Print what is wrong and fail, or say nothing."""
+    graph = graph_of_imports()
     problems = [
         f"{module} may not import {other}, which lies above it"
         for module, others in graph.items()
