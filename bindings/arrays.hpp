@@ -228,6 +228,8 @@ inline void restore(Core& core, const Views& arrays, const Dict& scalars) {
   describe_scalars(core.state, [&]<class T>(const ScalarInfo& info, T& number) {
     number = nb::cast<T>(scalars[info.name]);
   });
+  core.state.search.inner.known = core.state.search.inner.held_known = false;  // of another state
+  core.state.search.joined_faces = -1;
 }
 
 inline Dict scalars(Core& core) {

@@ -25,6 +25,7 @@
 #include "core/nodes/ground.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/time_step.hpp"
+#include "core/rest/rest.hpp"
 #include "core/run/bring_in.hpp"
 #include "core/run/change_items.hpp"
 #include "core/run/excavate.hpp"
@@ -280,6 +281,13 @@ void bind_setup(nb::class_<Core>& core) {
 void bind_run(nb::class_<Core>& core) {
   core.def("run", &run_core, "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0,
            "check_interval"_a = 20, "relaxation"_a = "none")
+      .def(
+          "solve_for_rest",
+          [](Core& c, Real limit) {
+            const RestFound found = solve_for_rest(c.model, c.state, limit);
+            return std::make_tuple(found.rounds, found.iterations, found.before, found.after);
+          },
+          "unbalance_limit"_a)
       .def("take_out", &take_nodes<take_out>, "leaves"_a)
       .def("excavate", &take_nodes<excavate>, "leaves"_a)
       .def("bring_in", &bring_nodes_in, "comes"_a, "position"_a, "arrays"_a, "bonded"_a)

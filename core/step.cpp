@@ -10,7 +10,7 @@
 
 namespace cdem {
 
-void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
+void update_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
   if (pair_list_is_due(m, s)) rebuild_pair_list(m, s, plan);  // contact/pair_list, bonds/release
   set_loads_and_supports(m, s);                               // nodes/curves
   update_face_geometry(m, s, q);                              // contact/geometry
@@ -27,8 +27,12 @@ void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   act_of_modules(m, s, q, Stage::after_contacts);            // model/modules, nodes/applied
   update_nodal_means(m, s, q);                               // elements/nodal_mean
   update_element_forces(m, s, q, plan);                      // elements/             Eq. 2
-  advance_nodes(m, s, q, plan);                              // nodes/
-  advance_clock(m, s);                                       // nodes/time_step
+}
+
+void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
+  update_forces(m, s, q, plan);
+  advance_nodes(m, s, q, plan);  // nodes/
+  advance_clock(m, s);           // nodes/time_step
 }
 
 }  // namespace cdem

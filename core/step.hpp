@@ -8,6 +8,9 @@
 
 namespace cdem {
 
+/// Find all forces where the nodes are now; those of fused blocks only where the plan samples.
+void update_forces(const Model& model, State& state, Queue queue, const StepPlan& plan);
+
 /// Advance the state by one time step: contacts, elements, nodes.
 void step(const Model& model, State& state, Queue queue, const StepPlan& plan);
 

@@ -30,6 +30,7 @@ FOLDERS = {
     "contact": "one header for all of contact",
     "diagnostics": "energies, unbalanced force, health",
     ".": "step.cpp: the method on one page",
+    "rest": "equilibrium by a solve: tangent, multigrid, Newton",
     "run": "time loop, rebuilds, excavation",
     "kernels": "kernels, compiled for every device",
 }

@@ -162,6 +162,11 @@ void sum_and_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
 
 }  // namespace
 
+void sum_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
+  for_each_item(q, m.node_count, awake(plan, s.nodes.awake), node_forces(m, s, true));
+  finish(q);
+}
+
 void advance_nodes(const Model& m, State& s, Queue q, const StepPlan& plan) {
   const PhaseTimer timer(s, Phase::node);
   if (s.nodes.relax.size() > 0) slow_heavier_nodes(m, s);

@@ -14,6 +14,9 @@ namespace cdem {
 /// between where the plan says so.
 void advance_nodes(const Model& model, State& state, Queue queue, const StepPlan& plan);
 
+/// Sum the forces on every node, and move none.
+void sum_forces(const Model& model, State& state, Queue queue, const StepPlan& plan);
+
 /// Does damping act on the nodes?
 bool damps_nodes(const Model& model, const State& state);
 

@@ -137,10 +137,11 @@ class Stage(Part):
         False, description="Zero the displacements when the stage begins"
     )
     damping: Damping = Field(Damping(), description="Damping")
-    relax: Literal["local", "kinetic", "adaptive"] | None = Field(
+    relax: Literal["local", "kinetic", "adaptive", "solve"] | None = Field(
         None,
-        description="Static only: the way to rest: adaptive (critical damping and scaled masses: the "
-        "fewest steps; default), kinetic (stop at peaks of the kinetic energy), or local damping",
+        description="Static only: the way to rest: adaptive (critical damping and scaled masses; "
+        "default), solve (begin from the equilibrium of elements, bonds and contacts in touch, go on "
+        "as adaptive), kinetic (stop at peaks of the kinetic energy), or local damping",
     )
     remove: list[Name] = Field(
         [], description="Groups that are dug out when the stage begins, and are no part of it"

@@ -252,7 +252,11 @@ class Simulation(RunState):
         self.check_case()
         if self.flow:
             until = min(until, self.flow.due)
-        return self._guard(partial(stages.advance, self, stage, steps, until))
+        solved = stage.solved
+        outcome = self._guard(partial(stages.advance, self, stage, steps, until))
+        if stage.solved not in ("", solved) and self.results:
+            self.results.log(f"{stage.name}: {stage.solved}")
+        return outcome
 
     def summary(self, status: str) -> dict[str, Any]:
         """What summary.json says."""

@@ -46,6 +46,8 @@ class StageState:
         quiet: Rest of a dynamic stage that ends with it: see `Quiet`.
         parts: Of a static stage with `release`: how many have been let go.
         held: Part of the forces of what was dug out that was left when the stage began [1].
+        solved: Of a static stage with `relax: solve`: what its solve has reached since its forces
+            last changed, or nothing.
     """
 
     name: str
@@ -62,6 +64,7 @@ class StageState:
     quiet: Quiet = field(default_factory=Quiet)
     parts: int = 0
     held: float = 0.0
+    solved: str = ""
 
     def note(self, step: int, unbalance: float) -> str:
         """What a user should know about a static stage that does not come to rest, or nothing."""
