@@ -8,6 +8,7 @@
 
 #include "bindings/arrays.hpp"
 #include "bindings/laws.hpp"
+#include "bindings/solve.hpp"
 #include "core/base/device.hpp"
 #include "core/base/emulated.hpp"
 #include "core/base/machine_limits.hpp"
@@ -404,6 +405,7 @@ NB_MODULE(CDEM_MODULE, module) {
   module.def("device_name", &device_name);
   module.def("energy_terms", &energy_term_infos,
              "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");
+  module.def("solve_blocks", &solve_blocks, "system"_a, "right"_a, "part"_a, "most_iterations"_a);
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,
              "Memory bandwidth of a triad over arrays of so many bytes together [B/s].");

@@ -8,8 +8,6 @@ namespace cdem {
 
 namespace {
 
-constexpr int most_iterations = 200;
-
 Real dot(Queue q, const Column<Real>& a, const Column<Real>& b) {
   return exact_sum(q, Index(a.size() / 3), DotOfThree{a.data(), b.data()});
 }
@@ -21,7 +19,8 @@ void combine(Queue q, Real a, const Column<Real>& x, Real b, Column<Real>& y) {
 
 }  // namespace
 
-int solve_by_gradients(Queue q, Multigrid& inverse, Real part, GradientVectors& v) {
+int solve_by_gradients(Queue q, Multigrid& inverse, Real part, int most_iterations,
+                       GradientVectors& v) {
   for (Column<Real>* one : {&v.x, &v.z, &v.p, &v.product}) one->renew(v.r.size());
   set_all(q, Index(v.x.size()), v.x.data(), 0.0);
   const Real limit = part * part * dot(q, v.r, v.r);

@@ -12,7 +12,9 @@ struct GradientVectors {
 
 /// Solve for `vectors.x` until the residual, in `vectors.r` and at the start the right side, has
 /// become this part of what it was. The same bits on any number of threads. Returns how many
-/// iterations that took, or -1 where the matrix has no answer for this right side.
-int solve_by_gradients(Queue queue, Multigrid& inverse, Real part, GradientVectors& vectors);
+/// iterations that took, or -1: the matrix has no answer for this right side, or `most_iterations`
+/// are too few.
+int solve_by_gradients(Queue queue, Multigrid& inverse, Real part, int most_iterations,
+                       GradientVectors& vectors);
 
 }  // namespace cdem

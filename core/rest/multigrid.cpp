@@ -5,7 +5,6 @@
 
 #include "core/base/primitives.hpp"
 #include "core/rest/products.hpp"
-#include "core/rest/tangent.hpp"
 
 namespace cdem {
 
@@ -15,15 +14,10 @@ constexpr Index solved_directly = 400;  // numbers of the last level
 constexpr std::size_t most_levels = 16;
 constexpr int sweeps = 2;  // on all levels but the first, before and after the coarser ones
 
-/// Consecutive rows that are smoothed together: the nodes of a small block, else each by itself.
-std::vector<Index> groups_of_nodes(const Model& m) {
-  constexpr Index small = 8;  // nodes
-  const auto block_first = on_host(m.block_first), block_count = on_host(m.block_count);
-  std::vector<Index> first{0};
-  for (Index i = 0; i < m.node_count;) {
-    i += block_first[i] == i && block_count[i] <= small ? block_count[i] : 1;
-    first.push_back(3 * i);
-  }
+/// The numbers of a vector at which groups of rows begin.
+std::vector<Index> numbers_of_groups(const std::vector<Index>& group_first) {
+  std::vector<Index> first;
+  for (const Index row : group_first) first.push_back(3 * row);
   return first;
 }
 
@@ -102,7 +96,7 @@ void finish_level(Level& level, const std::vector<Index>& groups) {
 }
 
 /// From points to the nodes that are there: as far as they may move.
-BlockRows points_to_nodes(const Tangent& t) {
+BlockRows points_to_nodes(const NodeSystem& t) {
   const Index nodes = t.matrix.rows();
   BlockRows up{.height = 3, .width = 3, .columns = t.points};
   std::vector<Index> first(nodes + 1);
@@ -118,25 +112,23 @@ BlockRows points_to_nodes(const Tangent& t) {
   return up;
 }
 
-/// Places of points, and which of their components may move.
-RigidModes modes_of_points(const Model& m, const State& s, const Tangent& t) {
-  const auto motion = on_host(s.nodes.motion);
+/// Rigid motions of the points; a component may move if that of one of its nodes may.
+RigidModes modes_of_points(const NodeSystem& t) {
   std::vector<Vec3<Real>> place(t.points);
   std::vector<Flag> free(3 * std::size_t(t.points));
-  for (Index i = 0; i < m.node_count; ++i) {
-    const Real* x = &motion[8 * std::size_t(i)];
-    place[t.point[i]] = {x[0], x[1], x[2]};
+  for (std::size_t i = 0; i < t.place.size(); ++i) {
+    place[t.point[i]] = t.place[i];
     for (Index k = 0; k < 3; ++k)
-      if (t.free[3 * std::size_t(i) + k]) free[3 * std::size_t(t.point[i]) + k] = 1;
+      if (t.free[3 * i + k]) free[3 * std::size_t(t.point[i]) + k] = 1;
   }
   return rigid_modes(place, free);
 }
 
 }  // namespace
 
-Multigrid::Multigrid(const Model& m, State& s, Tangent&& t) {
+Multigrid::Multigrid(NodeSystem&& t) {
   const Transfer transfer;
-  RigidModes modes = modes_of_points(m, s, t);
+  RigidModes modes = modes_of_points(t);
   const auto add_coarser = [&](BlockRows&& up) {
     Level& above = levels_.back();
     above.up = std::move(up);
@@ -145,12 +137,12 @@ Multigrid::Multigrid(const Model& m, State& s, Tangent&& t) {
     levels_.emplace_back();
     levels_.back().matrix = std::move(coarse);
   };
-  const bool shares_points = t.points < m.node_count;
+  const bool shares_points = t.points < t.matrix.rows();
   BlockRows to_nodes;
   if (shares_points) to_nodes = points_to_nodes(t);
   levels_.emplace_back();
   levels_.back().matrix = std::move(t.matrix);
-  finish_level(levels_.back(), groups_of_nodes(m));
+  finish_level(levels_.back(), numbers_of_groups(t.group_first));
   if (shares_points) {
     add_coarser(std::move(to_nodes));
     finish_level(levels_.back(), groups_of_rows(levels_.back().matrix));

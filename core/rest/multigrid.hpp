@@ -1,17 +1,13 @@
-// multigrid.hpp - an approximate inverse of the tangent: smoothing in blocks of elements, and ever
-// coarser spaces below.
+// multigrid.hpp - an approximate inverse of a system of nodes: smoothing in blocks of elements, and
+// ever coarser spaces below.
 #pragma once
 
 #include <vector>
 
 #include "core/rest/aggregation.hpp"
-#include "core/rest/block_rows.hpp"
+#include "core/rest/node_system.hpp"
 
 namespace cdem {
-
-struct Model;
-struct State;
-struct Tangent;
 
 /// A matrix with what smooths its residuals.
 struct Level {
@@ -27,8 +23,8 @@ struct Level {
 /// aggregates, until few numbers are left, which are solved for directly.
 class Multigrid {
  public:
-  /// Takes the matrix of the tangent.
-  Multigrid(const Model& model, State& state, Tangent&& tangent);
+  /// Takes the matrix of the system.
+  explicit Multigrid(NodeSystem&& system);
 
   const BlockRows& matrix() const { return levels_.front().matrix; }
   /// z = M^-1 r, about A^-1 r.

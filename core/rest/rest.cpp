@@ -20,6 +20,7 @@ namespace {
 
 constexpr int most_rounds = 12;
 constexpr Real astray = 30;  // times the unbalance of the start, where blocks have run into others
+constexpr int most_iterations = 200;  // of a round
 constexpr Real part_of_round = 1e-3;  // to which a round brings the residual of its linear system
 
 /// While one lives nothing depends on velocities, for these are those of a jump.
@@ -59,9 +60,9 @@ class Newton {
  public:
   Newton(Model& m, State& s) : model_(&m), state_(&s) {
     const Transfer transfer;
-    Tangent tangent = tangent_of(m, s);
+    NodeSystem tangent = tangent_of(m, s);
     free_.assign(tangent.free);
-    inverse_ = std::make_unique<Multigrid>(m, s, std::move(tangent));
+    inverse_ = std::make_unique<Multigrid>(std::move(tangent));
   }
 
   /// Returns the iterations of the linear system; 0, or -1 where it has no answer: nothing moves.
@@ -72,7 +73,8 @@ class Newton {
     vectors_.r.renew(before_.size());
     for (Real* out : {before_.data(), vectors_.r.data()})
       for_each_item(q, m.node_count, UnbalancedForce{s.nodes.force.data(), free_.data(), out});
-    const int iterations = solve_by_gradients(q, *inverse_, part_of_round, vectors_);
+    const int iterations =
+        solve_by_gradients(q, *inverse_, part_of_round, most_iterations, vectors_);
     if (iterations <= 0) return iterations;
     for_each_item(q, m.node_count,
                   MoveToRest{.way = vectors_.x.data(),

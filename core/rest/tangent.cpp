@@ -150,7 +150,7 @@ std::vector<Flag> free_components(const Model& m, const State& s, const BlockRow
 }
 
 /// Nodes that intact points of conforming pairs hold together are one point.
-void find_points(const Model& m, State& s, Tangent& t) {
+void find_points(const Model& m, State& s, NodeSystem& t) {
   Joined joined(m.node_count);
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
     if (!conforms(p)) return;
@@ -171,8 +171,20 @@ void find_points(const Model& m, State& s, Tangent& t) {
   }
 }
 
+/// The nodes of a small block are smoothed together, others one by one.
+std::vector<Index> groups_of_nodes(const Model& m) {
+  constexpr Index small = 8;  // nodes
+  const auto block_first = on_host(m.block_first), block_count = on_host(m.block_count);
+  std::vector<Index> first{0};
+  for (Index i = 0; i < m.node_count;) {
+    i += block_first[i] == i && block_count[i] <= small ? block_count[i] : 1;
+    first.push_back(i);
+  }
+  return first;
+}
+
 /// Let components that may not move stand by themselves.
-void hold(Tangent& t) {
+void hold(NodeSystem& t) {
   const auto first = on_host(t.matrix.first), column = on_host(t.matrix.column);
   const auto block = on_host(t.matrix.block);
   for (Index row = 0; row < t.matrix.rows(); ++row)
@@ -185,15 +197,20 @@ void hold(Tangent& t) {
 
 }  // namespace
 
-Tangent tangent_of(const Model& m, State& s) {
+NodeSystem tangent_of(const Model& m, State& s) {
   const Transfer transfer;
-  Tangent t;
+  NodeSystem t;
   t.matrix.columns = m.node_count;
   find_entries(m, s, t.matrix);
   add_blocks(m, s, t.matrix);
   t.free = free_components(m, s, t.matrix);
   find_points(m, s, t);
   hold(t);
+  t.group_first = groups_of_nodes(m);
+  for (Index i = 0; i < m.node_count; ++i) {
+    const Real* x = on_host(s.nodes.motion).data() + 8 * std::size_t(i);
+    t.place.push_back({x[0], x[1], x[2]});
+  }
   return t;
 }
 

@@ -49,6 +49,8 @@ def energy_terms() -> list[dict[str, Any]]:
     Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.
     """
 
+def solve_blocks(system: dict, right: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], part: float, most_iterations: int) -> NDArray[numpy.float64]: ...
+
 def set_threads(count: int) -> None: ...
 
 def measure_bandwidth(bytes: int) -> float:

@@ -222,6 +222,34 @@ def adaptive(threads):
     return sim
 
 
+@scene
+def solved(threads):
+    """Bonded tets on a bed with a joint are solved for; then a part is dug out, and solved again."""
+    column = box("a", [2, 1, 3], [0, 0, 0], [4, 2, 6], "tet4")
+    beside = box("b", [1, 1, 3], [2, 0, 0], [1, 1, 3])
+    foot = box("foot", [4, 2, 0.5], [-0.5, -0.5, -0.5], [3, 2, 1])
+    joint = {"between": ["a", "foot"], "friction_angle": 40}
+    rest = {"mode": "static", "relax": "solve", "tolerance": 1e-6, "max_steps": 300}
+    sim = cdem.Simulation(
+        case(
+            [column, beside, foot],
+            {"a": {}, "b": {}, "foot": FIXED},
+            interfaces={"default": STRONG, "pairs": [joint]},
+            rock=SOFT,
+            loads=WEIGHT,
+            stages=[{"name": "rest", **rest}, {"name": "dig", **rest, "remove": ["b"]}],
+            model={"split": {"a": "elements"}},
+        ),
+        threads=threads,
+    )
+    solutions = []
+    while not sim.is_over:
+        sim.run_stage(sim.case.stages[sim.stage_index].name)
+        solutions.append(sim.ended_stage.solved)
+    assert all(text.startswith("solved") for text in solutions), solutions
+    return sim
+
+
 SHAPES = ("tet4", "pyramid5", "wedge6", "hex8")
 FORMULATIONS = ("corotational", "incremental", "paper-incremental", "paper-total")
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem._native import core as native
 from cdem.errors import ModelError
 from cdem.mesh import element_shapes
 from cdem.mesh.arrays import inverses, lengths, matrix_product
@@ -18,8 +18,10 @@ Ints = NDArray[np.int32]
 
 TOLERANCE = 1e-5
 """Residual of the equilibrium, of the load, at which the search for it ends."""
-MOST_STEPS = 2000
-TINY = 1e-300
+MOST_ITERATIONS = 2000
+GROUND = 1e-9
+"""Springs of the corners to the ground, by those of their faces: nothing else holds the whole, and
+its loads are in balance."""
 ROW, COLUMN = [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]
 """Components xx, yy, zz, xy, yz, zx of a tensor, the order of `element_shapes.strain_rows`."""
 
@@ -116,23 +118,66 @@ def displacements(
         ModelError: No equilibrium was found.
     """
     rows = tets.strain_rows
-    stresses_of = np.einsum("ij,ejk->eik", elasticity(young, poisson), rows)
-    own = np.einsum("e,eik,eil->ekl", tets.volume, rows, stresses_of)
+    stresses_of = matrix_product(elasticity(young, poisson), rows)
+    own = matrix_product(tets.volume[:, None, None] * rows.transpose(0, 2, 1), stresses_of)
     mate, spring = _springs(tets, stiffness * lengths(tets.vectors) / 3)
-    held = spring.sum(axis=1)
-    block, axes = own.copy(), np.arange(12)
-    block[:, axes, axes] += np.repeat(held.reshape(-1, 4), 3, axis=1)
+    load = _loads(tets).reshape(-1, len(STATES)).T
+    answer = native.solve_blocks(
+        _system(tets, own, mate, spring), np.ascontiguousarray(load), TOLERANCE, MOST_ITERATIONS
+    )
+    if not len(answer):
+        raise ModelError(
+            "no equilibrium of its elements and bonds was found; is the mesh very flat?"
+        )
+    return np.ascontiguousarray(answer.reshape(len(STATES), -1).T).reshape(-1, 12, len(STATES))
 
-    def force(u: Floats) -> Floats:
-        """K u of displacements (tets, 12, states)."""
-        at = u.reshape(len(mate), -1)
-        out = held[:, None] * at
-        for k in range(3):
-            out -= spring[:, k, None] * at[mate[:, k]]
-        return np.einsum("eij,ejs->eis", own, u) + out.reshape(u.shape)
 
-    start = _start(tets, young, poisson, stiffness)
-    return _solve(force, inverses(block), _loads(tets), start)
+def _system(
+    tets: BondedTets, own: Floats, mate: NDArray[np.intp], spring: Floats
+) -> dict[str, NDArray]:
+    """The stiffness of the whole by blocks of nodes, for the core.
+
+    Args:
+        tets: The tets.
+        own: Stiffness of each by itself [N/m], shape (tets, 12, 12).
+        mate: Corners that touch each corner, shape (corners, 3).
+        spring: Springs to these [N/m], 0 where there is none.
+    """
+    count = len(mate)
+    blocks = own.reshape(-1, 4, 3, 4, 3).transpose(0, 1, 3, 2, 4).copy()
+    held = spring.sum(axis=1).reshape(-1, 4)
+    held += GROUND * held.mean()
+    for k in range(4):
+        blocks[:, k, k] += held[:, k, None, None] * np.eye(3)
+    corner = np.arange(count).reshape(-1, 4)
+    row, column = (
+        np.broadcast_to(c, (len(own), 4, 4)) for c in (corner[:, :, None], corner[:, None])
+    )
+    joined = spring.ravel() > 0
+    rows = np.concatenate([row.ravel(), np.repeat(np.arange(count), 3)[joined]])
+    columns = np.concatenate([column.ravel(), mate.ravel()[joined]])
+    pulls = -spring.ravel()[joined, None, None] * np.eye(3)
+    order = np.lexsort((columns, rows))
+    return {
+        "first": np.searchsorted(rows[order], np.arange(count + 1)).astype(np.int32),
+        "column": columns[order].astype(np.int32),
+        "block": np.concatenate([blocks.reshape(-1, 3, 3), pulls])[order].ravel(),
+        "group_first": np.arange(0, count + 1, 4, dtype=np.int32),
+        "point": _points(mate, spring),
+        "place": tets.x.ravel(),
+    }
+
+
+def _points(mate: NDArray[np.intp], spring: Floats) -> Ints:
+    """Number of the point that each corner is at: springs join the corners of a point."""
+    own = np.arange(len(mate))
+    other = np.where(spring > 0, mate, own[:, None])
+    label = own
+    while True:
+        least = np.minimum(label, label[other].min(axis=1))
+        if (least == label).all():
+            return np.unique(label, return_inverse=True)[1].ravel().astype(np.int32)
+        label = least
 
 
 def jumps(tets: BondedTets, u: Floats) -> Floats:
@@ -173,43 +218,6 @@ def _loads(tets: BondedTets) -> Floats:
         for k in range(3):
             np.add.at(load, (tets.tet[:, side], tets.corner[:, side, k]), -sign * traction)
     return load.reshape(-1, 12, len(STATES))
-
-
-def _start(tets: BondedTets, young: float, poisson: float, stiffness: float | Floats) -> Floats:
-    """Displacements under the six stresses if these were uniform, the faces' share spread evenly."""
-    trace = np.einsum("sxx->s", STATES)[:, None, None] * np.eye(3)
-    own = ((1 + poisson) * STATES - poisson * trace) / young
-    area = lengths(tets.vectors)
-    moment = np.einsum("fx,fy,f->xy", tets.vectors, tets.vectors, 1 / area) / tets.volume.sum()
-    jumps = np.einsum("xy,syz->sxz", moment, STATES) / np.mean(stiffness)
-    whole = own + 0.5 * (jumps + jumps.transpose(0, 2, 1))
-    center = tets.x.mean(axis=1, keepdims=True)
-    u = np.einsum("sxy,eay->eaxs", own, tets.x - center)
-    u += np.einsum("sxy,eay->eaxs", whole, center)
-    return u.reshape(-1, 12, len(STATES))
-
-
-def _solve(force: Callable[[Floats], Floats], inverse: Floats, load: Floats, u: Floats) -> Floats:
-    """Conjugate gradients for all loads at once, with the inverse of each tet's own block."""
-
-    def product(p: Floats, q: Floats) -> Floats:
-        return np.einsum("eis,eis->s", p, q)
-
-    r = load - force(u)
-    z = np.einsum("eij,ejs->eis", inverse, r)
-    p, rho = z, product(r, z)
-    limit = TOLERANCE**2 * product(load, load)
-    for _ in range(MOST_STEPS):
-        if (product(r, r) <= limit).all():
-            return u
-        moved = force(p)
-        step = rho / np.maximum(product(p, moved), TINY)
-        u = u + step * p
-        r = r - step * moved
-        z = np.einsum("eij,ejs->eis", inverse, r)
-        before, rho = rho, product(r, z)
-        p = z + rho / np.maximum(before, TINY) * p
-    raise ModelError("no equilibrium of its elements and bonds was found; is the mesh very flat?")
 
 
 def means(

@@ -41,7 +41,7 @@ TEST_CASE("the largest eigenvalue, a tenth too large") {
 
 TEST_CASE("a prolongation keeps rigid motions, but at the base") {
   Wall wall;
-  const Tangent t = tangent_of(wall.model, wall.state);
+  const NodeSystem t = tangent_of(wall.model, wall.state);
   std::vector<Vec3<Real>> place;
   for (Index i = 0; i < wall.model.node_count; ++i) place.push_back(wall.position(i));
   const RigidModes modes = rigid_modes(place, t.free);

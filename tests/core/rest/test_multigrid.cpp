@@ -27,12 +27,12 @@ Column<Real> vector(Random& random, const std::vector<Flag>& free) {
 TEST_CASE("it is symmetric and positive") {
   Random random(6);
   Wall wall;
-  Tangent t = tangent_of(wall.model, wall.state);
+  NodeSystem t = tangent_of(wall.model, wall.state);
   const Column<Real> r = vector(random, t.free), s = vector(random, t.free);
   Column<Real> z, y;
   z.resize(r.size());
   y.resize(r.size());
-  Multigrid inverse(wall.model, wall.state, std::move(t));
+  Multigrid inverse(std::move(t));
   CHECK(inverse.levels() > 1);
   inverse.apply({}, r.data(), z.data());
   inverse.apply({}, s.data(), y.data());
@@ -43,20 +43,22 @@ TEST_CASE("it is symmetric and positive") {
 TEST_CASE("conjugate gradients solve in few iterations; of nothing, in none") {
   Random random(7);
   Wall wall;
-  Tangent t = tangent_of(wall.model, wall.state);
+  NodeSystem t = tangent_of(wall.model, wall.state);
   const Column<Real> b = vector(random, t.free);
-  Multigrid inverse(wall.model, wall.state, std::move(t));
+  Multigrid inverse(std::move(t));
   GradientVectors v;
   v.r.assign(fetch(b));
-  const int iterations = solve_by_gradients({}, inverse, 1e-8, v);
+  const int iterations = solve_by_gradients({}, inverse, 1e-8, 100, v);
   CHECK(iterations > 1);
   CHECK(iterations < 30);
   Column<Real> rest;
   rest.resize(b.size());
   residual({}, inverse.matrix(), b.data(), v.x.data(), rest.data());
   CHECK(dot(rest, rest) < 2e-16 * dot(b, b));
+  v.r.assign(fetch(b));
+  CHECK(solve_by_gradients({}, inverse, 1e-8, 2, v) == -1);
   for (Real& one : on_host(v.r)) one = 0;
-  CHECK(solve_by_gradients({}, inverse, 1e-8, v) == 0);
+  CHECK(solve_by_gradients({}, inverse, 1e-8, 100, v) == 0);
 }
 
 }  // namespace cdem::test

@@ -6,7 +6,7 @@ namespace cdem::test {
 
 TEST_CASE("nodes that bonds hold together are one point, and the base may not move") {
   Wall wall;
-  const Tangent t = tangent_of(wall.model, wall.state);
+  const NodeSystem t = tangent_of(wall.model, wall.state);
   CHECK(t.points == 2 * (Wall::across + 1) * (Wall::rows + 1));
   for (Index i = 0; i < wall.model.node_count; ++i)
     for (Index k = 0; k < 3; ++k)
@@ -19,14 +19,14 @@ TEST_CASE("a body that nothing holds may not move") {
   scene.add_box({5, 0, 0}, {1, 1, 1});
   scene.build();
   scene.start();
-  const Tangent t = tangent_of(scene.model, scene.state);
+  const NodeSystem t = tangent_of(scene.model, scene.state);
   CHECK(std::count(t.free.begin(), t.free.end(), Flag(1)) == 0);
   CHECK(t.points == scene.model.node_count);
 }
 
 TEST_CASE("a translation of the whole gives forces at the fixed base only") {
   Wall wall;
-  const Tangent t = tangent_of(wall.model, wall.state);
+  const NodeSystem t = tangent_of(wall.model, wall.state);
   Column<Real> x, y;
   x.resize(t.free.size());
   y.resize(t.free.size());

@@ -47,6 +47,6 @@ def test_elasticity_is_that_of_the_elements():
 
 
 def test_no_equilibrium_is_an_error(monkeypatch):
-    monkeypatch.setattr(homogenize, "MOST_STEPS", 1)
+    monkeypatch.setattr(homogenize, "MOST_ITERATIONS", 0)
     with pytest.raises(ModelError, match="no equilibrium of its elements and bonds was found"):
         displacements(pair(), 10.0, 0.2, 1e-3)
