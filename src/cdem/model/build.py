@@ -160,7 +160,7 @@ def build(case: Case) -> Build:
         ModelError: It takes more memory than there is.
     """
     with case.blame("model"):
-        check_memory(pieces_of_boxes(case))
+        check_memory(case, pieces_of_boxes(case))
     merged = read_model(case)
     names = merged.group_names
     check_groups(case, names)
@@ -168,7 +168,7 @@ def build(case: Case) -> Build:
     bonds = bonded_pairs(laws, interface_of)
     sets = case.model.joint_surfaces
     with case.blame("model"):
-        check_memory(pieces_of_mesh(case, merged))
+        check_memory(case, pieces_of_mesh(case, merged))
         check_extent(merged)
         paired = bonds | (pairs_loose_joints(case) & (interface_of >= 0))
         topology = build_topology(merged, case.model.split, sets, paired)

@@ -27,7 +27,11 @@ BONDED = {3: 1250, 4: 2090}
 """Bytes a bonded pair, by vertices of its faces."""
 EXPOSED = {3: 4100, 4: 3600}
 """Bytes an exposed face that touches another, by vertices: its lists and contacts."""
-# Fitted to the peaks of 15 meshes of 27,000 to 132,000 elements (25 Nov 2026), exposed faces to nine
+SOLVED = {"tet4": 8300, "pyramid5": 13_000, "wedge6": 17_200, "hex8": 29_400}
+"""Bytes an element that is a block of its own, while `relax: solve` solves."""
+SOLVED_WHOLE = {"tet4": 1500, "pyramid5": 4000, "wedge6": 4000, "hex8": 8300}
+"""The same where elements share nodes; pyramids and wedges are guessed from the others."""
+# Solves measured with 2,700 to 27,000 elements (28 Nov 2026, a68b9a1). The others are fitted to the peaks of 15 meshes of 27,000 to 132,000 elements (25 Nov 2026), exposed faces to nine
 # of 2,700 to 48,000 (26 Nov 2026): within 15 %, but for connected plates of tets one element thick,
 # which take up to twice as much.
 
@@ -64,12 +68,19 @@ def _kind(case: Case, group: str) -> tuple[bool, bool]:
     return case.model.split.get(group) == "elements", bonded
 
 
-def need(pieces: Pieces) -> float:
-    """Peak of memory while a model is built and begins to run [bytes]."""
+def need(pieces: Pieces, *, solves: bool = False) -> float:
+    """Peak of memory while a model is built and begins to run [bytes].
+
+    Args:
+        pieces: What it is made of.
+        solves: Whether a stage has `relax: solve`.
+    """
     temporary = final = START
     for (shape, split, bonded), count in pieces.items():
         temporary += count * (WHILE_BUILT[shape] + NODE * (NODES[shape] if split else 1))
         final += count * BUILT[shape]
+        if solves:
+            final += count * (SOLVED if split else SOLVED_WHOLE)[shape]
         if split:
             for face in FACES[shape]:
                 per_face = BONDED[len(face)] / 2 if bonded else EXPOSED[len(face)]
@@ -145,13 +156,18 @@ def _cache(path: Path) -> float:
     return float(stat.get("total_inactive_file", stat.get("inactive_file", 0)))
 
 
-def check_memory(pieces: Pieces) -> None:
+def check_memory(case: Case, pieces: Pieces) -> None:
     """Refuse a model that will not fit.
+
+    Args:
+        case: The case.
+        pieces: What its model is made of.
 
     Raises:
         ModelError: Says how much it needs, how much there is, and what limits it.
     """
-    wanted, (free, limit) = need(pieces), room()
+    solves = any(stage.relax == "solve" for stage in case.stages)
+    wanted, (free, limit) = need(pieces, solves=solves), room()
     if wanted > free:
         raise ModelError(
             f"{sum(pieces.values()):,} elements need about {wanted / 1e9:.3g} GB of memory to be "
