@@ -210,7 +210,7 @@ def _refuse_code(data: dict[str, Any], source: Source) -> None:
                 [
                     (
                         ("own_laws", number),
-                        f"{file} is code that would run as part of cdem; read it, then allow it with "
+                        f"{file} is code that would run inside cdem; read it, then allow it with "
                         "--allow-code (in Python: cdem.load_own_laws before all else)",
                     )
                 ]

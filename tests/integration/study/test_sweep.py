@@ -215,7 +215,7 @@ def test_a_sweep_that_is_killed_goes_on(folder, cluster, number):
         os.killpg(child.pid, number)  # as a terminal does
     _, err = child.communicate(timeout=30)
     if number == signal.SIGINT:
-        assert child.returncode == 4 and "the same command goes on" in err
+        assert child.returncode == 4 and "the same command continues" in err
         assert "Traceback" not in err
     assert not psutil.wait_procs(workers, timeout=10)[1]
     before = results_of(folder / "out")
