@@ -195,12 +195,12 @@ def test_the_bits_do_not_depend_on_threads_or_resume(tmp_path):
     "stages, said",
     [
         ([add(add=["upp"])], "no group 'upp'"),
-        ([add(), add(name="again")], "stages.2.add.0: up is there since the stage 'add'"),
+        ([add(), add(name="again")], "stages.2.add.0: up is present since the stage 'add'"),
         ([{"name": "dig", "mode": "static", "remove": ["up"]}, add(name="later")], None),
         ([{"name": "dig", "mode": "static", "remove": ["up"]}, add(), add(name="more")],
-         "stages.3.add.0: up is there since the stage 'add'"),
+         "stages.3.add.0: up is present since the stage 'add'"),
         ([add(remove=["up"])], "the stage names up twice"),
-        ([add(set={"groups.low.material": "rock"})], "'material' of a group holds from the start"),
+        ([add(set={"groups.low.material": "rock"})], "'material' of a group is fixed at the start"),
     ],
 )  # fmt: skip
 def test_stages_that_do_not_fit(stages, said):
@@ -212,7 +212,9 @@ def test_stages_that_do_not_fit(stages, said):
 
 
 def test_the_first_stage_adds_nothing():
-    with pytest.raises(cdem.CaseError, match="what is in no add is there from the start"):
+    with pytest.raises(
+        cdem.CaseError, match="groups that no later stage adds are present from the start"
+    ):
         column(case={"stages": [add()]})
 
 

@@ -26,7 +26,7 @@ PLANTED = "open('PWNED', 'w').write('code of the folder ran')\nraise ImportError
         ("", "h5py", ["check", "case.yaml"],
          "case.yaml:2:9: model.mesh: body.med: cannot be read (Unable to synchronously open file"),
         ("sweep", "pickle", ["sweep", "study.yaml", "--workers", "1"],
-         "study.yaml:4:11: results.a: 'status' is not known; there are: "),
+         "study.yaml:4:11: results.a: 'status' is unknown; there are: "),
     ],
 )  # fmt: skip
 def test_no_module_of_the_current_folder_runs(tmp_path, folder, module, words, said):

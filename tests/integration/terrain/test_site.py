@@ -117,7 +117,7 @@ def test_an_outline_must_lie_in_the_terrain(maps, run_cli):
         (["--depth", "40 kg"], "--depth: '40 kg' has the wrong dimension"),
         (["--depth", "-4"], "--depth: must be above 0"),
         (["--crs", "EPSG:3857"], "--crs EPSG:3857: .*Web Mercator"),
-        (["--crs", "EPSG:9999999"], "there is no projection 'EPSG:9999999'"),
+        (["--crs", "EPSG:9999999"], "no projection 'EPSG:9999999'"),
         (["--where", "name"], "--where name: write NAME=VALUE"),
         (["--surface", "none.tif"], "--surface none.tif: no such file; or write a mapping"),
         (["--surface", "{slbl: {dept: 3}}"], "surface.slbl.dept: unknown key; did you mean depth"),

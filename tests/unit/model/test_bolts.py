@@ -96,11 +96,11 @@ def test_rings_begin_where_the_opening_ends():
     [
         ({"points": [[0.5, 1, 1], [5, 1, 1]]}, r"b is outside the rock 3.5 m from its head"),
         ({"points": [[-1, 1, 1], [1, 1, 1]]}, "b is outside the rock 0 m from its head"),
-        ({"points": [[0.5, 1, 1], [0.5, 1, 1]]}, "two that follow each other are the same"),
+        ({"points": [[0.5, 1, 1], [0.5, 1, 1]]}, "two successive points are equal"),
         (ACROSS | {"pretension": 1e4}, "pretension needs a plate"),
         (ACROSS | {"type": "baar"}, "did you mean bar"),
         (ACROSS | {"install": "onn"}, "no stage 'onn'; did you mean on"),
-        (ACROSS | {"install": "on", "remove": "go"}, "must be a stage after 'on'"),
+        (ACROSS | {"install": "on", "remove": "go"}, "must be a later stage than 'on'"),
         ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [9, 9],
                       "length": 1}}, "the pattern has no bolts"),
         ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [1, 1],
@@ -116,7 +116,7 @@ def test_what_is_refused(bolt, what):
 
 def test_nothing_holds_a_bolt_without_grout_plate_and_anchor():
     bare = {key: value for key, value in BAR.items() if key != "grout"}
-    with pytest.raises(CaseError, match="nothing holds them at both ends"):
+    with pytest.raises(CaseError, match="no grout, plate or anchor holds both ends"):
         model(ACROSS | {"plate": True}, kind=bare)
     assert len(model(ACROSS | {"plate": True, "anchor": True}, kind=bare).bolts) == 1
 

@@ -161,5 +161,5 @@ def test_what_makes_no_sense_is_said(maps, message):
 
 def test_a_case_in_which_nothing_moves_has_no_maps():
     blocks = [{"group": "plate", "box": {"size": [1, 1, 1]}}]
-    with pytest.raises(CdemError, match=r"output\.maps: there is no group to follow"):
+    with pytest.raises(CdemError, match=r"output\.maps: no group moves"):
         case(blocks, {"plate": {"fix": ["x", "y", "z"]}}, output={"maps": {"cell": 1}})

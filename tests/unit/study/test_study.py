@@ -22,7 +22,7 @@ from cdem.errors import CaseError
         ("parameters: {a.b: {uniform: {low: 0, high: 1}}}", "needs sampling: {count: 100}"),
         ("parameters: {a.b: [1]}\nsampling: {count: 2}", "no parameter has a distribution"),
         ("parameters: {phi: [1]}", "parameters.phi: is used by no formula"),
-        ("parameters: {phi: [1]}\nset: {a.b: = ph + 1}", "'ph' is not known; did you mean phi?"),
+        ("parameters: {phi: [1]}\nset: {a.b: = ph + 1}", "'ph' is unknown; did you mean phi?"),
         ("parameters: {phi: [1]}\nset: {a.b: = open(phi)}", "function 'open' is not known"),
         ('parameters: {phi: [1]}\nset: {a.b: "= phi.x[0]"}', "a formula is made of numbers"),
         ("parameters: {phi: [1]}\nset: {a.b: = 1 +}", "is no formula"),
@@ -39,10 +39,10 @@ from cdem.errors import CaseError
         ),
         ("parameters: {a.b: [1]}\nresults: {error: time}", "a column of every table"),
         ("parameters: {a.b: [1]}\nplots: [{lines: x}]", "lines needs x"),
-        ("parameters: {a.b: [1]}\nplots: [{lines: f, x: a.c}]", "'a.c' is not known; did you"),
+        ("parameters: {a.b: [1]}\nplots: [{lines: f, x: a.c}]", "'a.c' is unknown; did you"),
         (
             "parameters: {a.b: [1]}\nresults: {f: time}\nplots: [{tornado: g}]",
-            "study.yaml:4:10: plots.0.tornado: result 'g' is not known; there are: f",
+            "study.yaml:4:10: plots.0.tornado: result 'g' is unknown; there are: f",
         ),
     ],
 )

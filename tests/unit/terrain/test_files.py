@@ -82,7 +82,7 @@ def test_bad_outlines_are_refused(tmp_path: Path, content: str, message: str):
         ("a.csv", "x,y,z\n107.1,29.2,800\n107.2,29.3,1400\n", "longitude and latitude in degrees"),
         ("a.xyz", "", r"contours are read from .geojson, .shp, .gpkg and their like, or .csv"),
         ("a.geojson", "<kml/>", "is XML, not GeoJSON; a KML file ends in .kml"),
-        ("a.geojson", "[" * 100_000, "is nested deeper than a sound file does; lines and"),
+        ("a.geojson", "[" * 100_000, "is nested more deeply than a sound file; lines and"),
         ("a.geojson", '{"features": [{"geometry": 3}]}', "a geometry or properties are no {"),
         ("a.geojson", '{"type": "LineString", "coordinates": 3}', "a.geojson: "),
         ("a.geojson", '{"type": "LineString", "coordinates": []}', "a.geojson: "),

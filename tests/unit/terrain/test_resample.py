@@ -156,7 +156,9 @@ def test_files_of_nowhere_and_of_another_place(tmp_path):
     away = BOX[0] + 5000, BOX[1] + 5000
     with pytest.raises(CaseError, match=r"and does not cover what is needed, \(596000"):
         heights(path, box=away)
-    with pytest.raises(CaseError, match=r"'WGS 84' is no map projection.*write the projection of"):
+    with pytest.raises(
+        CaseError, match=r"'WGS 84' is not a map projection.*write the projection of"
+    ):
         heights(write_raster(tmp_path / "deg.tif", "EPSG:4326"), target=None)
 
 
