@@ -222,7 +222,7 @@ def test_a_run_cannot_go_on_as_one_that_had_begun_with_the_group(tmp_path):
     results = tmp_path / "results"
     stages = [{"name": "next", "mode": "static"}]
     column(*stages, output=results).run_stage("situ")
-    with pytest.raises(cdem.CaseError, match=r"groups\.up: is not there at the start"):
+    with pytest.raises(cdem.CaseError, match=r"groups\.up: is absent at the start"):
         column({**stages[0], "add": ["up"]}, output=results, resume=True)
 
 

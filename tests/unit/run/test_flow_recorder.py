@@ -135,7 +135,7 @@ def test_a_map_that_grows_too_large_ends_and_the_run_goes_on(tmp_path, monkeypat
     monkeypatch.setattr(flow_maps, "MOST_CELLS", 40)
     sim = cdem.Simulation(thrown({"cell": 0.5}), threads=1, output=tmp_path / "r")
     assert sim.run() == "finished"
-    assert "output.maps: followed no more: cells of 0.5 m make a map" in sim.flow.ended
+    assert "output.maps: recording stopped: cells of 0.5 m give a map" in sim.flow.ended
     assert sim.flow.ended in (tmp_path / "r" / "run.log").read_text()
     _, _, time = read_maxima(tmp_path / "r")
     assert time < 0.5
