@@ -410,7 +410,7 @@ def test_threads_and_resume_change_no_bit(tmp_path):
 @pytest.mark.parametrize(("water", "says"), [
     ({}, "give fields, a reservoir, or both"),
     ({"fields": [{"level": 1, "ru": 0.1}]}, "level"),
-    ({"fields": [{"formula": "w * 2"}]}, "there is no w"),
+    ({"fields": [{"formula": "w * 2"}]}, "x, y and z only; remove w"),
     ({"fields": [{"interface": "crack", "level": 1}]}, "no interface 'crack'"),
     ({"fields": [{"groups": ["rok"], "level": 1}]}, "did you mean rock"),
     ({"fields": [{"level": 1, "seepage": "parallel"}]}, "seepage: parallel goes with plane"),

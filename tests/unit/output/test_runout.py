@@ -288,7 +288,7 @@ def test_files_read_back(thrown, tmp_path):
     ("words", "message"),
     [
         ({"groups": ["rare"]}, "no group 'rare'; it has: cliff, rear, ahead"),
-        ({"groups": ["cliff"]}, "has not moved in plan, so give a direction"),
+        ({"groups": ["cliff"]}, "has not moved in plan; give a direction"),
         ({"direction": np.nan}, "the direction must be an azimuth in degrees"),
         ({"cell": -1.0}, "the cell of the map must be above 0 m, got -1"),
         ({"cell": 1e-4}, "choose a larger cell"),
