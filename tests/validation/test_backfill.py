@@ -150,7 +150,7 @@ def test_what_is_not_there_is_not_shown_told_or_touched(tmp_path):
     stone = {"group": "stone", "box": {"size": [1, 1, 1]}, "translate": [1.5, 1.5, 8.5]}
     sim = column(add(), case=SITU_STRESS, output=tmp_path / "results")
     assert not sim.build.topology.face_group[visible_faces(sim)[0]].any()  # of the first group only
-    assert "not there before the stage 'add': up" in sim.audit.text()
+    assert "absent before the stage 'add': up" in sim.audit.text()
     assert sim.summary("finished")["taken_out"] == {}
     assert not any("support" in warning for warning in sim.audit.warnings)
     sim.run()

@@ -364,7 +364,7 @@ def test_a_stage_that_would_wet_other_faces_is_refused():
     sim = start([box("bed", [0, 0, -1]), box("top")], stages=stages,
                 water={"fields": [{"level": 1, "wet": "never"}]})  # fmt: skip
     sim.run_stage("rest")
-    with pytest.raises(cdem.errors.CaseError, match="a stage cannot change which joints"):
+    with pytest.raises(cdem.errors.CaseError, match="a stage cannot change the set of joints"):
         sim.run_stage("rain")
 
 

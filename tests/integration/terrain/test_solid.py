@@ -206,7 +206,7 @@ def test_bare_ground_is_meshed_without_bodies():
     mean_height = 100 - 50 * math.tan(math.radians(30))
     assert facts["groups"]["bedrock"]["volume"] == pytest.approx(1e4 * mean_height, rel=1e-12)
     assert "bed:" not in text(facts)
-    with pytest.raises(CaseError, match="bodies need a surface that they slide on"):
+    with pytest.raises(CaseError, match="bodies need a sliding surface"):
         Landslide(**{k: v for k, v in slope().items() if k != "surface"})
-    with pytest.raises(CaseError, match="a surface without bodies has no meaning"):
+    with pytest.raises(CaseError, match="a surface without bodies has no effect"):
         Landslide(**{k: v for k, v in slope().items() if k != "bodies"})

@@ -21,7 +21,7 @@ import pytest
         (
             '"50 GPa"',
             "2,700",
-            "materials.granite.700: is a key without a value; if it is the end of a num",
+            "materials.granite.700: is a key without a value; if it ends a num",
         ),
         ('"50 GPa"', "9" * 400, "young_modulus: is a number with too many digits"),
         ("[0, 0, -9.81]", "-9.81", "loads.gravity: must be a list, e.g. [0, 0, -9.81] (x, y, z)"),

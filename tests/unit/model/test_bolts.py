@@ -85,7 +85,7 @@ def test_a_pattern_covers_a_surface_at_its_spacing():
 def test_rings_begin_where_the_opening_ends():
     rings = {"axis": [[3, 0.5, 1], [3, 1.5, 1]], "spacing": 1, "count": 2, "angles": [90, 270],
              "inside": "right", "length": 0.5}  # fmt: skip
-    with pytest.raises(CaseError, match="meets no rock"):  # to the right there is none
+    with pytest.raises(CaseError, match="hits no rock"):  # to the right there is none
         model({"rings": rings})
     found = model({"rings": rings | {"count": 1, "angles": [270, 270]}})
     assert found.bolts[0].places[0] == pytest.approx([2 - found.bolts[0].grouted[0] / 2, 0.5, 1])
@@ -104,7 +104,7 @@ def test_rings_begin_where_the_opening_ends():
         ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [9, 9],
                       "length": 1}}, "the pattern has no bolts"),
         ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [1, 1],
-                      "length": 1, "direction": [0, 0, 1]}}, "leads out of the surface"),
+                      "length": 1, "direction": [0, 0, 1]}}, "points out of the surface"),
         (ACROSS | {"rings": {"axis": [[0, 0, 0], [0, 1, 0]], "spacing": 1, "count": 3, "length": 1}},
          "points"),
     ],
