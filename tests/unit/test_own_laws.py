@@ -138,7 +138,7 @@ def test_a_folder_that_others_may_write_is_refused(library):
 def test_a_header_includes_no_other_file(folder, line):
     with (folder / HEADER).open("a") as file:
         file.write(line + "\n")
-    with pytest.raises(CaseError, match="a law stands in one header"):
+    with pytest.raises(CaseError, match="a law is a single header"):
         Header.read(folder / HEADER)
 
 
@@ -153,14 +153,14 @@ def test_headers(folder):
     for old, new, told in (
         ("LawText text", "LawText other", "has 0 laws"),
         ('"my-clay"', '"my clay"', "the law's name 'my clay'"),
-        ("flow(", "stream(", "needs flow"),
+        ("flow(", "stream(", "needs a method flow"),
         ('#include "core/materials/law.hpp"', '#include "more.hpp"', 'includes "more.hpp"'),
         ('"my-clay"', '"mohr-coulomb"', "there is a law mohr-coulomb already"),
     ):
         (folder / "wrong.hpp").write_text(text.replace(old, new))
         with pytest.raises(CaseError, match=told):
             build([folder / "wrong.hpp"])
-    with pytest.raises(CaseError, match="a law's name is of small letters"):
+    with pytest.raises(CaseError, match="a law's name may only have small letters"):
         new_law("MyClay", "block", folder, force=False)
     with pytest.raises(CaseError, match="exists already"):
         new_law("my-clay", "block", folder, force=False)

@@ -46,7 +46,7 @@ def test_an_outline_comes_back_from_every_format(tmp_path, name, crs, line):
     corners, notes = outline(path)
     # DXF keeps 15 digits; KML and GeoJSON have degrees
     assert same_ring(corners) < 1e-3
-    brought = any("brought from" in note or "RFC 7946" in note for note in notes)
+    brought = any("transformed from" in note or "RFC 7946" in note for note in notes)
     assert brought == (crs != UTM32)
 
 

@@ -70,7 +70,7 @@ def test_a_label_that_lies_is_refused_and_replaced(tmp_path):
         heights(path)
     grid, notes = heights(path, told=UTM32)
     assert worst(grid) < 0.02
-    assert notes == ["dem.tif: says EPSG:4326, taken as EPSG:32632 as told"]
+    assert notes == ["dem.tif: names EPSG:4326, but EPSG:32632 is used as given"]
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("ft", 0.3048), ("us-ft", 1200 / 3937), ("cm", 0.01)])
