@@ -84,7 +84,9 @@ def test_a_library_must_be_there(folder):
 
 def test_a_library_that_was_changed_is_refused(library):
     library.write_bytes(b"another library")
-    with pytest.raises(BackendError, match=r"differs from the file that .* wrote; make it again: cdem law"):
+    with pytest.raises(
+        BackendError, match=r"differs from the file that .* wrote; make it again: cdem law"
+    ):
         own_laws.load_own_laws(HEADER)
     library.with_suffix(".json").write_text("[]")
     with pytest.raises(BackendError, match="cannot be read"):

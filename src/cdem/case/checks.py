@@ -148,10 +148,10 @@ def _groups(case: CaseParts) -> Iterator[Problem]:
 
 def _excavation(case: CaseParts) -> Iterator[Problem]:
     dug = False
-    let_go = 1.0
+    released = 1.0
     for i, stage in enumerate(case.stages):
         if stage.remove:
-            dug, let_go = True, 0.0
+            dug, released = True, 0.0
         yield from _presence(case, i)
         if stage.remove and i == 0:
             yield (
@@ -165,13 +165,13 @@ def _excavation(case: CaseParts) -> Iterator[Problem]:
                 ("stages", i, "release"),
                 "no group has been removed yet; give remove, or leave out release",
             )
-        elif stage.release is not None and stage.release.to < let_go:
+        elif stage.release is not None and stage.release.to < released:
             yield (
                 ("stages", i, "release", "to"),
-                f"must be at least {let_go:g}, the part that an earlier stage has released",
+                f"must be at least {released:g}, the part that an earlier stage has released",
             )
         if stage.remove or stage.release:
-            let_go = stage.release.to if stage.release else 1.0
+            released = stage.release.to if stage.release else 1.0
 
 
 def _presence(case: CaseParts, number: int) -> Iterator[Problem]:

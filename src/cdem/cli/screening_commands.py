@@ -111,8 +111,7 @@ def screen(
         Path, typer.Argument(metavar="GROUND", help="A grid (.tif, .asc), or LANDSLIDE.yaml.")
     ],
     sets: Annotated[
-        Path,
-        typer.Option("--joints", metavar="JOINTS.yaml", help="Sets from cdem joints, or a case."),
+        Path, typer.Option("--joints", metavar="JOINTS.yaml", help="Joint sets, or a case.")
     ],
     volume: Annotated[
         tuple[str, str],

@@ -52,21 +52,17 @@ def site(
         Path, typer.Option("--output", "-o", metavar="DIR", help="Folder to write to.")
     ] = Path("site"),
     depth: Annotated[
-        Text,
-        typer.Option(metavar="M", help="Sloping local base level (SLBL) of this depth: '60 m'."),
+        Text, typer.Option(metavar="M", help="Sloping local base level of this depth: '60 m'.")
     ] = None,
     volume: Annotated[
-        Text,
-        typer.Option(metavar="M3", help="Sloping local base level (SLBL) of this volume: 3e6."),
+        Text, typer.Option(metavar="M3", help="Sloping local base level of this volume: 3e6.")
     ] = None,
     surface: Surface = None,
     crs: Annotated[
         Text, typer.Option(help="Projection to work in; default: as the DEM, or UTM.")
     ] = None,
-    dem_crs: Annotated[
-        Text, typer.Option(help="Projection of the DEM; overrides its file.")
-    ] = None,
-    outline_crs: Annotated[Text, typer.Option(help="Projection of the outline.")] = None,
+    dem_crs: Annotated[Text, typer.Option(help="Projection to use for the DEM.")] = None,
+    outline_crs: Annotated[Text, typer.Option(help="The same for the outline.")] = None,
     layer: Annotated[Text, typer.Option(help="Layer of the outline.")] = None,
     where: Where = None,
     cell: Annotated[Text, typer.Option(metavar="M", help="Cell size of the ground.")] = None,
@@ -74,16 +70,12 @@ def site(
     margin: Annotated[
         float, typer.Option(min=0, help="Ground around the outline, as a multiple of its length.")
     ] = 0.5,
-    fill: Annotated[
-        Text, typer.Option(metavar="M|all", help="Fill gaps up to this size.")
-    ] = "200 m",
+    fill: Annotated[Text, typer.Option(metavar="M|all", help="Largest gap to fill.")] = "200 m",
     unit: Unit = None,
     all_points: Annotated[
         bool, typer.Option("--all-points", help="Use all points of a cloud, not only the ground.")
     ] = False,
-    cut: Annotated[
-        bool, typer.Option("--cut", help="Cut the outline off at the edge of the DEM.")
-    ] = False,
+    cut: Annotated[bool, typer.Option("--cut", help="Cut the outline at the DEM's edge.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:

@@ -155,8 +155,7 @@ def sweep(
         typer.Option("--output", "-o", help="Folder for all results; default STUDY.sweep, here."),
     ] = None,
     workers: Annotated[
-        int | None,
-        typer.Option(min=1, help="Local processes of one thread each; default all cores."),
+        int | None, typer.Option(min=1, help="Local one-thread processes; default all cores.")
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Use this Dask scheduler instead.")
@@ -205,9 +204,7 @@ def sweep(
     for run in table.failed:
         print(f"failed: {run.text()}", file=sys.stderr)
     if table.waiting:
-        print(
-            f"stopped; {table.waiting} runs are left: the same command continues", file=sys.stderr
-        )
+        print(f"stopped; {table.waiting} runs left: the same command continues", file=sys.stderr)
         raise typer.Exit(STOPPED)
     if table.failed:
         raise typer.Exit(3)

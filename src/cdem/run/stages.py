@@ -125,7 +125,7 @@ def begin(sim: RunState) -> StageState:
     )
     release = _release_of(stage)
     if release is not None and stage.mode == "dynamic":
-        sim.core.let_go(1 - release.to, sim.time + (release.over or 0.0))
+        sim.core.release_forces(1 - release.to, sim.time + (release.over or 0.0))
     elif release is not None:
         release_part(sim, begun)
     return begun
@@ -211,7 +211,7 @@ def release_part(sim: RunState, stage: StageState) -> bool:
         return False
     stage.parts += 1
     share = stage.parts / release.parts
-    sim.core.let_go(stage.held + share * (1 - release.to - stage.held), sim.time)
+    sim.core.release_forces(stage.held + share * (1 - release.to - stage.held), sim.time)
     return True
 
 

@@ -155,7 +155,9 @@ def test_a_scheduler_that_is_killed_is_said_and_the_sweep_goes_on(folder, cluste
 
     with LocalCluster(n_workers=1, dashboard_address=":0", silence_logs=50) as lost:
         address = lost.scheduler_address
-        with pytest.raises(BackendError, match="scheduler no longer answers; finished runs are kept"):
+        with pytest.raises(
+            BackendError, match="scheduler no longer answers; finished runs are kept"
+        ):
             run_study("study.yaml", "out", scheduler=address, should_stop=end)
     before = results_of(folder / "out")
     assert 1 <= len(before) < 6
