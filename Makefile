@@ -111,7 +111,7 @@ lint: setup
 	$(BIN)/python tools/package_layers.py
 	$(BIN)/python tools/drawing.py --check
 	$(BIN)/python tools/walks.py --check
-	$(BIN)/python tools/words.py --all
+	$(BIN)/python tools/links.py
 	$(BIN)/mypy src/cdem
 	$(BIN)/lizard -L 60 -C 15 -w core src/cdem tools docs/_ext
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml

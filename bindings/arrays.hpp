@@ -1,4 +1,4 @@
-// arrays.hpp - model and state as Python sees them: views by name, and what they hold.
+// arrays.hpp - model and state in Python: views by name, and their contents.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -20,7 +20,7 @@ namespace nb = nanobind;
 
 namespace cdem {
 
-/// A model and its state: what one simulation holds.
+/// A model and its state: the data of one simulation.
 struct Core {
   Model model;
   State state;
@@ -62,7 +62,7 @@ void copy(nb::handle from, Column<T>& column) {
   column.assign(array.data(), array.size());
 }
 
-/// Names of the arrays of modules of which the dict has none: a case that lacks what they are of.
+/// Names of arrays of modules missing in the dict: the case has no items of these modules.
 inline std::set<std::string> without_modules(Core& core, const Views& arrays) {
   std::set<std::string> missing;
   const auto look = [&](auto&& describe) {
@@ -127,7 +127,7 @@ inline Views model_arrays(nb::handle_t<Core> self) {
   return arrays;
 }
 
-/// Copy those arrays of the model that the dict holds; one that no stage may change is our own
+/// Copy the arrays of the dict into the model; one that no stage may change is our own
 /// mistake.
 inline void update_model(Core& core, const Views& arrays) {
   std::size_t taken = 0;
@@ -177,7 +177,7 @@ inline Dict dict_of(const ColumnInfo& info, const char* origin, const char* rebu
   return one;
 }
 
-/// View of one array, only until it is changed or resized, and what it holds.
+/// View of one array, valid until it is changed or resized, and its contents.
 inline ViewAndDict array_by_name(nb::handle_t<Core> self, const std::string& name) {
   Core& core = nb::cast<Core&>(self);
   ViewAndDict found;
@@ -196,7 +196,7 @@ inline ViewAndDict array_by_name(nb::handle_t<Core> self, const std::string& nam
   return found;
 }
 
-/// What every array holds, and where it comes from.
+/// Contents and origin of every array.
 inline Dicts describe_arrays(Core& core) {
   Dicts infos;
   describe(

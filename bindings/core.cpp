@@ -121,7 +121,7 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
-/// A term that is zero whatever happens is not told of.
+/// A term that is always zero is not listed.
 bool is_told(const EnergyTerm& term) { return any_law_flows || !term.needs_flow; }
 
 nb::typed<nb::dict, nb::str, double> energy_ledger(const Core& core) {
@@ -162,8 +162,8 @@ void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
   c.model.contact_damping = contact;
 }
 
-/// Take whole blocks out, given by a flag for each node; those that are dug out let go of what they
-/// bore when they are told to.
+/// Remove whole blocks, given by a flag for each node; excavated blocks keep their forces on the
+/// rest until they are released.
 template <auto leave>
 void take_nodes(Core& c, Array<Flag> leaves) {
   if (leaves.ndim() != 1 || leaves.shape(0) != std::size_t(c.model.node_count))
@@ -216,7 +216,7 @@ Views stress(nb::handle_t<Core> self) {
   return tables;
 }
 
-/// What has yielded in all elements by shape; empty where no material flows.
+/// Plastic flow of all elements by shape; empty for elastic materials.
 Views yielded(nb::handle_t<Core> self) {
   Core& c = nb::cast<Core&>(self);
   report_stress(c.model, c.state);
@@ -246,7 +246,7 @@ auto set_tractions(Core& c, Array<Real> stress, Array<Flag> bonded) {
   return std::make_tuple(cut.count, cut.most, cut.face);
 }
 
-/// What is handed over and set before a run.
+/// Input and settings before a run.
 void bind_setup(nb::class_<Core>& core) {
   core.def("take_counts", &take_counts, "counts"_a)
       .def("take_model", &take_model, "arrays"_a)
@@ -278,7 +278,7 @@ void bind_setup(nb::class_<Core>& core) {
       });
 }
 
-/// The loop, and what changes between two runs of it.
+/// The loop, and changes between two runs of it.
 void bind_run(nb::class_<Core>& core) {
   core.def("run", &run_core, "steps"_a, "end_time"_a = 1e300, "unbalance_limit"_a = 0.0,
            "check_interval"_a = 20, "relaxation"_a = "none")
@@ -308,7 +308,8 @@ void bind_run(nb::class_<Core>& core) {
       .def("install_bolts", &take_items<Bolts, Bolts::install>, "which"_a)
       .def("remove_bolts", &take_items<Bolts, Bolts::remove>, "which"_a)
       .def(
-          "let_go", [](Core& c, Real part, Real end) { let_go(c.state, part, end); }, "part"_a,
+          "release_forces",
+          [](Core& c, Real part, Real end) { release_forces(c.state, part, end); }, "part"_a,
           "end_time"_a)
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
@@ -321,23 +322,23 @@ void bind_run(nb::class_<Core>& core) {
       .def("keep_energy_scale", [](Core& c) { keep_energy_scale(c.model, c.state); });
 }
 
-/// Views of arrays, and what they hold.
+/// Views of arrays, and their contents.
 void bind_views(nb::class_<Core>& core) {
   core.def("model", &model_arrays)
       .def("fields", &stored_arrays)
       .def("absent_fields", &absent_fields,
-           "Names of stored arrays of what the case does not have.")
+           "Names of stored arrays of modules that the case does not have.")
       .def("rebuilt", &rebuilt_arrays)
       .def("array", &array_by_name, "name"_a)
       .def("scalars", &scalars)
       .def("describe", &describe_arrays)
       .def("describe_rows", &describe_row_kinds)
       .def("describe_scalars", &scalar_infos)
-      .def("yielded", &yielded, "What has yielded in each element now and ever, by shape.")
+      .def("yielded", &yielded, "Present and past plastic flow of each element, by shape.")
       .def("stress", &stress);
 }
 
-/// What is worked out from the state.
+/// Values computed from the state.
 void bind_diagnostics(nb::class_<Core>& core) {
   core.def("energies", &energy_ledger)
       .def("seconds",
@@ -363,7 +364,7 @@ void bind_diagnostics(nb::class_<Core>& core) {
 }
 
 #if defined(CDEM_EMULATED)
-/// What the emulated device has seen.
+/// Counts of the emulated device.
 void bind_emulated(nb::module_& module) {
   module.def("forget", &forget);
   module.def("seen", [] {
@@ -387,11 +388,9 @@ NB_MODULE(CDEM_MODULE, module) {
   module.attr("lanes") = lanes;
   module.def("padded_stride", &padded_stride, "count"_a);
   module.def("weibull_factors", &weibull_factors, "faces"_a, "seed"_a, "shape"_a, "mean"_a);
-  module.def("interface_laws", &declarations<InterfaceLaws>,
-             "What the interface laws say of themselves.");
-  module.def("block_laws", &declarations<BlockLaws>, "What the block laws say of themselves.");
-  module.def("surface_laws", &declarations<SurfaceLaws>,
-             "What the surface laws say of themselves.");
+  module.def("interface_laws", &declarations<InterfaceLaws>, "Declarations of the interface laws.");
+  module.def("block_laws", &declarations<BlockLaws>, "Declarations of the block laws.");
+  module.def("surface_laws", &declarations<SurfaceLaws>, "Declarations of the surface laws.");
   module.def("surface_contradiction", &contradiction<SurfaceLaws>, "law"_a, "parameters"_a);
   module.def("surface_numbers", &surface_numbers, "law"_a, "parameters"_a);
   module.def("interface_contradiction", &contradiction<InterfaceLaws>, "law"_a, "parameters"_a);

@@ -1,4 +1,4 @@
-// laws.hpp - what the laws say of themselves, and the interfaces of a model, for Python.
+// laws.hpp - declarations of the laws, and the interfaces of a model, for Python.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::vector<Real> parameters_of(const nb::dict& values) {
   return row;
 }
 
-/// The numbers that kernels read: those that the law makes of its parameters, or these.
+/// Numbers for kernels: made by the law from its parameters, or the parameters themselves.
 template <class Law>
 std::vector<Real> numbers_of_law(const nb::dict& values) {
   std::vector<Real> row = parameters_of<Law>(values);
@@ -73,7 +73,7 @@ inline void add_pieces(std::vector<Real>& row, Index number, const nb::list& tab
 }
 
 /// The row of numbers that kernels read of a material: its parameters as the core takes them, and
-/// tables of (slip, value) by the name of what softens.
+/// tables of (slip, value) by the name of the softening parameter.
 inline std::vector<Real> material_numbers(const std::string& law, const nb::dict& values,
                                           const nb::dict& softening) {
   std::vector<Real> row(material_row);
@@ -135,7 +135,7 @@ inline nb::ndarray<nb::numpy, Real> weibull_factors(Array<Index> faces, std::uin
   return array_of(std::move(factors));
 }
 
-/// What the laws of a list say of themselves.
+/// Declarations of the laws of a list.
 template <class Laws>
 nb::list declarations() {
   nb::list laws;

@@ -44,7 +44,7 @@ class Column {
     }
     size_ = size;
   }
-  /// Take what the host has made.
+  /// Take the array that the host has made.
   void assign(const T* from, std::size_t size) {
     if (from == data_) return resize(size);  // its own view
     renew(size);
@@ -94,7 +94,7 @@ class OnHost {
   std::size_t size_;
 };
 
-/// Give an array to host code. What was launched is done by then.
+/// Give an array to host code. All launched kernels have then finished.
 template <class T>
 OnHost<T> on_host(Column<T>& column) {
   wait_for_launches();
@@ -113,7 +113,7 @@ View on_host(const View& view) {
   return view;
 }
 
-/// What stands in an array, on its way to the host.
+/// The numbers of an array, being copied to the host.
 template <class T>
 std::vector<T> fetch(const Column<T>& column) {
   const Transfer transfer;

@@ -7,7 +7,7 @@
 #include <cuda_runtime.h>
 #endif
 
-// What a core is built for; a mix does not link, for the device is part of the names of symbols.
+// Device of a core; a mix does not link, since the device is part of the names of symbols.
 #if defined(CDEM_CUDA)
 #define CDEM_DEVICE cuda
 #elif defined(CDEM_EMULATED)

@@ -19,7 +19,8 @@ CDEM_HD inline T polynomial(const Real (&c)[count], const T& x) {
   return sum;
 }
 
-/// e^x, with an error below 2 units in the last place. Beyond -700 and 700 it is that of the limit.
+/// e^x, with an error below 2 units in the last place. Beyond -700 and 700 it is the value at the
+/// limit.
 template <class T>
 CDEM_HD inline T exp_of(const T& number) {
   constexpr Real factorials[] = {1.0,

@@ -42,8 +42,8 @@ struct Word {
   } here, before;
 };
 
-/// What is seen while it happens. Hooks and handler use plain memory only: what they call must not
-/// call them.
+/// Accesses seen while a kernel runs. Hooks and handler use plain memory only: what they call must
+/// not call them.
 struct Watch {
   char* arena;      // arrays
   Word* words;      // one for 8 bytes of the arena
@@ -111,7 +111,7 @@ inline void touch(const void* memory, std::size_t size, Way way, const void* ins
   }
 }
 
-/// What host code does between launches.
+/// Accesses of host code between launches.
 struct Host {
   HostWatch watch = HostWatch::none;
   bool open = true;
@@ -146,14 +146,15 @@ void open_or_close() {
   open(host().watch == HostWatch::none || launching || host().transfers > 0 || !watch.in_run);
 }
 
-/// The instruction of the core that caused a fault, though it may have happened in what it called.
+/// The instruction of the core that caused a fault, even if it happened in a function that it
+/// called.
 std::uintptr_t place_of_fault() {
   void* calls[16];
   const int depth = backtrace(calls, 16);
   const auto is_ours = [](const void* p) { return p >= __ehdr_start && p < _end; };
   int k = 0;
   while (k < depth && is_ours(calls[k])) ++k;   // the handler
-  while (k < depth && !is_ours(calls[k])) ++k;  // the system, and what was called
+  while (k < depth && !is_ours(calls[k])) ++k;  // skips the system and called functions
   return k < depth ? std::uintptr_t(static_cast<const char*>(calls[k]) - __ehdr_start) : 0;
 }
 
@@ -209,7 +210,7 @@ void start() {
                  : words == "strict" ? HostWatch::strict
                                      : HostWatch::none;
   void* one;
-  backtrace(&one, 1);  // loads what it needs, before a handler calls it
+  backtrace(&one, 1);  // loads its library before a handler calls it
 }
 
 const char* end_of_stack() {
@@ -225,7 +226,7 @@ const char* end_of_stack() {
   return end;
 }
 
-/// What is wrong with a kernel.
+/// A fault of a kernel.
 std::string told(const char* kernel) {
   int status = 0;
   char *name = abi::__cxa_demangle(kernel, nullptr, nullptr, &status), place[32];
@@ -320,7 +321,8 @@ void watch_host(HostWatch how) {
 }  // namespace CDEM_DEVICE
 }  // namespace cdem
 
-// What the compiler calls before every access to memory, and in place of atomic operations.
+// Functions that the compiler calls before every access to memory, and in place of atomic
+// operations.
 using namespace cdem;
 
 extern "C" {

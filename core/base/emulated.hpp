@@ -1,4 +1,4 @@
-// emulated.hpp - a device on the CPU that finds what a GPU would not forgive, and counts.
+// emulated.hpp - a device on the CPU that finds faults of GPU code, and counts.
 //
 // Arrays lie in an arena that host code cannot reach while a run goes on, except in a Transfer: the
 // pages that it touches are counted by instruction. Kernels run item by item, in another order at
@@ -23,17 +23,17 @@ struct HostAccess {
   std::int64_t reads, writes;
 };
 
-/// What the device has seen; waits are those for launches that had not been waited for.
+/// Counts of the device; waits count launches not yet waited for.
 struct Seen {
   std::int64_t launches, waits, transfers;
   std::vector<HostAccess> host;
 };
 
-/// What it has seen since `forget`.
+/// Counts since `forget`.
 Seen seen();
 void forget();
 
-/// What happens to host code that touches arrays in a run: nothing, it is counted, or it ends the
+/// Treatment of host code that touches arrays in a run: ignored, counted, or it ends the
 /// program with status 70. Begins as CDEM_EMULATED_HOST, which is none, count or strict.
 enum class HostWatch { none, count, strict };
 void watch_host(HostWatch watch);
@@ -41,7 +41,7 @@ void watch_host(HostWatch watch);
 /// Launch a kernel: `run(work, i)` for each of `count` items, in an order of this launch alone,
 /// which CDEM_EMULATED_SEED changes. `work` lies on the stack.
 ///
-/// Throws std::logic_error if an item needs what another one does, or touches in a run memory that
+/// Throws std::logic_error if an item depends on another one, or touches in a run memory that
 /// is no array.
 void launch(Index count, const char* kernel, void (*run)(const void* work, Index i),
             const void* work);

@@ -59,7 +59,7 @@ Real largest_of_all(const Real* numbers, Index count) {
 }
 
 /// Take from every number its nearest multiple of a unit, and return the sum of these. `large` has
-/// this unit in its last place. The largest size of what is left comes back in `largest`.
+/// this unit in its last place. The largest remainder comes back in `largest`.
 Real take(Real* numbers, Index count, Real large, Real& largest) {
   const Pack shift(large);
   Pack sum[together]{0.0, 0.0, 0.0, 0.0}, left[together]{0.0, 0.0, 0.0, 0.0};

@@ -1,5 +1,5 @@
-// exact_sum.hpp - sums that have the same bits whatever the order of their terms: what they are
-// made of. `exact_sum` of primitives.hpp makes them.
+// exact_sum.hpp - sums with the same bits for any order of their terms: the words
+// of such a sum. `exact_sum` of primitives.hpp makes them.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class ExactSum {
   /// Add numbers, which are lost; behind them there is room up to `most`. For all parts of a sum
   /// together up to 2^31.
   void add(Real* numbers, Index count);
-  /// Add a part, of which these are the words.
+  /// Add a part given by its words.
   void add(const std::int64_t* part);
   void add(const ExactSum& part) { add(part.word_.data()); }
   /// Within two units in the last place; no number if one of them was none or too large.
@@ -33,7 +33,7 @@ class ExactSum {
 };
 
 /// A number as words of an exact sum, which a device adds up: two or three digits side by side, or
-/// 1 behind the digits. Their unit is that of ExactSum, so the sum is the same integer.
+/// 1 behind the digits. Their unit is as in ExactSum, so the sum is the same integer.
 class NumberDigits {
  public:
   CDEM_HD explicit NumberDigits(Real number) {
@@ -62,7 +62,7 @@ class NumberDigits {
     const int next = word - 1 < last_ ? word - 1 : last_;
     return next >= first_ ? next : -1;
   }
-  /// What it adds to a word.
+  /// Its part of a word.
   CDEM_HD std::int64_t at(int word) const {
     std::uint64_t size = 0;
     if (word == first_) size = low_ & 0xffffffff;

@@ -18,7 +18,7 @@
 // Kernels are small functions over packs of numbers; one that is called and not inlined takes its
 // packs through memory.
 #define CDEM_HD __attribute__((always_inline))
-// What few items need, and what many kernels would else have a copy of.
+// Code for rare items, of which many kernels would else have a copy.
 #define CDEM_OUT_OF_LINE __attribute__((noinline))
 #endif
 
@@ -53,7 +53,7 @@ CDEM_HD inline bool any_of(bool mask) { return mask; }
 CDEM_HD inline std::int64_t bits_of(Real a) { return __builtin_bit_cast(std::int64_t, a); }
 CDEM_HD inline Real number_of(std::int64_t bits) { return __builtin_bit_cast(Real, bits); }
 
-/// Item of a kernel that selects what it runs for: an item of a row.
+/// Item of a kernel that selects its items: an item of a row.
 struct Selected {
   Index row, id;
 };
@@ -79,7 +79,7 @@ struct Mask {
   friend Mask operator!(Mask a) { return {~a.bits}; }
 };
 
-/// One number per lane. Arithmetic is that of Real, lane by lane, so results do not depend on it.
+/// One number per lane. Arithmetic is as for Real, lane by lane, so results do not depend on it.
 struct Pack {
   using Numbers = Real __attribute__((vector_size(8 * CDEM_LANES)));
   Numbers n;
@@ -124,7 +124,7 @@ inline bool any_of(Mask mask) { return lane_bits(mask) != 0; }
 inline Mask::Bits bits_of(Pack a) { return (Mask::Bits)a.n; }
 inline Pack number_of(Mask::Bits bits) { return {(Pack::Numbers)bits}; }
 
-/// A pack of what `number` gives for each lane.
+/// A pack of the results of `number` for each lane.
 template <class Of, Index... lane>
 CDEM_HD inline Pack pack_of(const Of& number, std::integer_sequence<Index, lane...>) {
   return {Pack::Numbers{number(lane)...}};
@@ -186,7 +186,7 @@ struct IndexOf<SelectedLane> {
 };
 #endif
 
-/// What comparisons of a number type give: bool, Mask.
+/// Result of comparisons of a number type: bool, Mask.
 template <class T>
 using Truth = decltype(T() < T());
 
@@ -266,7 +266,7 @@ template <class Of, class... Rest>
 CDEM_HD inline Pack numbers_of(const Of& of, const IndexPack& first, const Rest&... rest) {
   return pack_of([&](Index j) { return Real(of(first.id[j], rest.id[j]...)); });
 }
-/// Indices in one register, and what is 1 or 0 in its lanes as a comparison.
+/// Indices in one register, and its 1 or 0 per lane as a comparison.
 using Indices = Index __attribute__((vector_size(4 * CDEM_LANES)));
 CDEM_HD inline Indices in_register(const IndexPack& pack) {
   Indices a;

@@ -49,7 +49,7 @@ CDEM_HD inline Vec3<T> unit(const Vec3<T>& a) {
   return (T(1.0) / norm(a)) * a;
 }
 
-/// Four numbers that lie together in memory: x y z and one more. The arithmetic is that of Real,
+/// Four numbers that lie together in memory: x y z and one more. The arithmetic is as for Real,
 /// number by number, in one register where there is one.
 struct Row {
 #if defined(CDEM_CUDA)
@@ -283,7 +283,7 @@ template <class T>
 CDEM_HD inline PrincipalAxes<T> principal_axes(const Sym3<T>& tensor) {
   const T zero(0.0), one(1.0);
   T on[3] = {tensor.xx, tensor.yy, tensor.zz};
-  T off[3] = {tensor.yz, tensor.zx, tensor.xy};  // that of the two other axes
+  T off[3] = {tensor.yz, tensor.zx, tensor.xy};  // of the two other axes
   Vec3<T> axis[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
   for (int turn = 0; turn < 12; ++turn) {
     const int r = turn % 3, p = (r + 1) % 3, q = (r + 2) % 3;

@@ -59,8 +59,8 @@ struct Blocks {
   }
 };
 
-/// Raise a count that several threads may raise at once, and return what it was. Which of them
-/// comes first is left to chance: what is found with it must be sorted. An atomic costs time, which
+/// Raise a count that several threads may raise at once, and return its old value. Which of them
+/// comes first is left to chance: results found with it must be sorted. An atomic costs time, which
 /// one thread `alone` need not spend.
 CDEM_HD inline Index raise(Index& count, bool alone) {
   if (alone) return count++;
@@ -88,8 +88,8 @@ void for_each_lane(Queue queue, Index count, const Kernel& kernel);
 template <class Kernel>
 void for_each_item(Queue queue, Index count, const Kernel& kernel);
 
-/// The same for kernels that select what they run for: of the `items(row)` of each of `count` rows
-/// those that it `selects(row, id)`. Selected items are packed into lanes.
+/// The same for kernels that select their items: of the `items(row)` of each of `count` rows
+/// the ones that it `selects(row, id)`. Selected items are packed into lanes.
 template <class Kernel>
 void for_each_selected(Queue queue, Index count, const Kernel& kernel);
 

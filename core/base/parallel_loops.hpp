@@ -156,8 +156,8 @@ void for_each_item(Queue, Index count, const Kernel& kernel) {
   for (Index i = 0; i < count; ++i) kernel(One{i});
 }
 
-/// Run a kernel for what it selects of each of `count` rows: whole lanes, whatever rows their items
-/// are of, then each thread's remainder one by one. Selection takes no branch, for the processor
+/// Run a kernel for the items that it selects of each of `count` rows: whole lanes with items of
+/// any rows, then each thread's remainder one by one. Selection takes no branch, for the processor
 /// could not predict it.
 template <class Kernel>
 void for_each_selected(Queue, Index count, const Kernel& kernel) {

@@ -5,7 +5,7 @@
 
 namespace cdem {
 
-/// How a kernel fetches what it will read.
+/// How a kernel prefetches data.
 struct Fetching {
   Index ahead;  // so many blocks
   Index worth;  // if there are as many blocks; fewer leave it in the caches from step to step

@@ -39,7 +39,7 @@ inline Parts parts_of(Index items, Index worth) {
 
 #endif
 
-/// Memory for what a primitive makes on its way; one of a kind for each thread of the host. It is
+/// Temporary memory of a primitive; one of a kind for each thread of the host. It is
 /// never released: the device may be gone by then.
 template <class T>
 T* scratch(std::size_t size) {
@@ -174,7 +174,7 @@ __global__ void sum_on_gpu(Index count, Kernel kernel, std::int64_t* words) {
   }
 }
 
-/// Words of a sum, zero, and the sum of what has been added to them.
+/// Words of a sum, initially zero, and the sum of all terms added.
 std::int64_t* zeroed_words(Queue queue);
 Real sum_of_words(Queue queue, const std::int64_t* words);
 
@@ -225,7 +225,7 @@ void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>&
 
 #endif
 
-/// Count what every row gets; each number learns its place there, in any order.
+/// Count the numbers of every row; each number learns its place there, in any order.
 template <class Kernel>
 struct CountInRows {
   Kernel kernel;

@@ -1,4 +1,4 @@
-// primitives.hpp - what is done with whole arrays: set, add up, find the most, select, sort, bring
+// primitives.hpp - operations on whole arrays: set, add up, find the most, select, sort, bring
 // into rows.
 //
 // Integers and comparisons alone, so every device and every number of threads give the same. The
@@ -34,7 +34,7 @@ struct Most {
   }
 };
 
-/// The largest `kernel(item)`; what is no number does not count. Waits for the answer.
+/// The largest `kernel(item)`; NaN does not count. Waits for the answer.
 template <class Kernel>
 Most most(Queue queue, Index count, const Kernel& kernel);
 
@@ -56,13 +56,13 @@ Real column_sum(Queue queue, const Column<Real>& column);
 template <class Kernel>
 void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list);
 
-/// Sort pairs by their keys; those of one key stay in order.
+/// Sort pairs by their keys; pairs of one key stay in order.
 void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values);
 
 /// Bring numbers into rows, in each in the order of `kernel.is_before(one, other)`, or ascending
 /// where it has none: `kernel.visit(item, act)` calls act(row, number) for
-/// what an item has, which are numbers below `numbers`, each once. Those of a row stand in the list
-/// from first[row] on, before first[row + 1]. Waits for how many they are.
+/// the numbers of an item, which are below `numbers`, each once. The numbers of a row are in the
+/// list from first[row] on, before first[row + 1]. Waits for their count.
 template <class Kernel>
 void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
                Column<Index>& first, Column<Index>& list);

@@ -331,7 +331,7 @@ struct OutForces {
 struct InForces {
   const Real* rows;
   CDEM_HD Row at(std::size_t row) const { return Row::at(rows + row * 4); }
-  /// Row `row`, or for ~row the opposite of what stands there. No branch: the processor could not
+  /// Row `row`, or for ~row the negative of that row. No branch: the processor could not
   /// predict it.
   CDEM_HD Row signed_row(Index row) const { return Real(2 * (row >> 31) + 1) * at(plain(row)); }
   CDEM_HD Vec3<Real> signed_at(Index row) const { return signed_row(row).vector(); }

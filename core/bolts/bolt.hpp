@@ -1,4 +1,4 @@
-// bolt.hpp - what a bolt is made of: parameters, and columns of its nodes, bars and crossings.
+// bolt.hpp - a bolt: parameters, and columns of its nodes, bars and crossings.
 #pragma once
 
 #include "core/base/views.hpp"
@@ -28,7 +28,7 @@ struct BoltProperties {
 /// Columns of the nodes of all bolts. Bar j leads from node j to node j + 1.
 struct BoltNodeColumns {
   const Real *grout, *end;  // rows of 2: stiffness [N/m], limit [N]
-  const Flag* grout_lost;   // 1: its rock was dug out
+  const Flag* grout_lost;   // 1: its rock was excavated
   Real* slip;               // of the bolt along its axis, towards the toe  [m]
   Real *grout_free, *end_free, *grout_force, *end_force;  // [m] [N]
   Real *length, *bar_free, *axial_force;                  // [m] [m] [N], tension positive

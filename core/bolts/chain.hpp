@@ -90,8 +90,8 @@ struct BoltChain {
     return sum;
   }
 
-  /// What part of the changes just made is beyond the least energy along them: 0 where it falls all
-  /// the way, 1 where it rises from the first (the guess of the states was wrong).
+  /// Fraction of the changes just made that is beyond the least energy along them: 0 if it falls
+  /// all the way, 1 if it rises from the first (the guess of the states was wrong).
   CDEM_HD Real too_far() const {
     if (!(slope(0) > 0)) return 0;
     if (!(slope(-1) < 0)) return 1;

@@ -9,7 +9,7 @@ namespace cdem {
 
 namespace {
 
-/// Cut a bolt's bars, and drop its grout, in rock that was dug out.
+/// Cut a bolt's bars, and drop its grout, in excavated rock.
 void cut(const BoltSet& b, const Flag* out, BoltState& bs, Index bolt) {
   const auto hosts = on_host(b.hosts);
   const auto grout_lost = on_host(bs.grout_lost), bar_broken = on_host(bs.bar_broken);

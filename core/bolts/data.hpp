@@ -1,4 +1,4 @@
-// data.hpp - the arrays of bolts, and what the engine asks of them, see model/module.hpp.
+// data.hpp - the arrays of bolts, and their functions for the engine, see model/module.hpp.
 #pragma once
 
 #include <cmath>
@@ -43,7 +43,7 @@ struct BoltState {
   Column<Real> length, bar_free, axial_force;      // of the bar to the next node  [node]
   Column<Flag> grout_state, end_state, bar_state;  // SliderState  [node]
   Column<Flag> bar_broken;                         // BarState  [node]
-  Column<Flag> grout_lost;                         // 1: its rock was dug out  [node]
+  Column<Flag> grout_lost;                         // 1: its rock was excavated  [node]
   Column<Real> dowel_free, dowel_force;            // rows of 4  [crossing]
   Column<Real> stored, lost, jacked;               // [bolt]
   Column<Real> scratch;                            // rows of 8, see BoltNodeColumns  [node]
@@ -112,13 +112,13 @@ struct Bolts {
 
   /// Bring all bolts that act into equilibrium and write their forces into their corner rows.
   static void act(const Model& model, cdem::State& state, Queue queue);
-  /// Cut these bolts in rock that was dug out: the rest goes on to hold the rock that stays.
+  /// Cut these bolts in excavated rock: their rest keeps holding the remaining rock.
   static void take_out(const Given& b, State& s, const std::vector<Index>& which, const Flag* out);
   /// Bolts that are not installed yet have their grout in blocks that come in.
   static void bring_in(const Given& b, State& s, const Flag* out);
-  /// Install those with flag 1 where the rock is now: they are free of force, but for pretension.
+  /// Install the bolts with flag 1 in the present rock, free of force except pretension.
   static void install(const Given& b, State& s, const Flag* which);
-  /// Remove those with flag 1: what they have stored is lost.
+  /// Remove the bolts with flag 1: their stored energy is lost.
   static void remove(const Given& b, State& s, const Flag* which);
 
   template <class Visit>
@@ -170,7 +170,7 @@ struct Bolts {
           b.grout);
     given({.name = "bolts.end",
            .unit = "N/m, N",
-           .meaning = "the same of the plate or the anchor",
+           .meaning = "the same for the plate or the anchor",
            .rows = "bolt_nodes",
            .numbers = 2,
            .parts = {"stiffness", "limit"}},
@@ -202,7 +202,7 @@ struct Bolts {
           b.weights);
     given({.name = "bolts.stiffness",
            .unit = "N/m",
-           .meaning = "what a point puts on the rock at most",
+           .meaning = "largest stiffness of a point on the rock",
            .rows = "bolt_points"},
           b.stiffness);
   }
@@ -213,7 +213,7 @@ struct Bolts {
     };
     of_node("bolts.slip", "m", "slip of the bolt against the rock, towards the toe", b.slip);
     of_node("bolts.grout_free", "m", "slip at which the grout is free of force", b.grout_free);
-    of_node("bolts.end_free", "m", "the same of the plate or the anchor", b.end_free);
+    of_node("bolts.end_free", "m", "the same for the plate or the anchor", b.end_free);
     of_node("bolts.grout_force", "N", "force of the grout on the rock", b.grout_force);
     of_node("bolts.end_force", "N", "force of the plate or the anchor on the rock", b.end_force);
     of_node("bolts.length", "m", "length of the bar to the next node when it was installed",
@@ -222,11 +222,11 @@ struct Bolts {
     of_node("bolts.axial_force", "N", "force of the bar, tension positive", b.axial_force);
     of_node("bolts.grout_state", "1", "0: holds, 1, 2: slips towards the toe, the head",
             b.grout_state);
-    of_node("bolts.end_state", "1", "the same of the plate or the anchor", b.end_state);
+    of_node("bolts.end_state", "1", "the same for the plate or the anchor", b.end_state);
     of_node("bolts.bar_state", "1", "0: elastic, 1, 2: yields in tension, compression",
             b.bar_state);
     of_node("bolts.bar_broken", "1", "0: whole, 1: ruptured, 2: cut by digging", b.bar_broken);
-    of_node("bolts.grout_lost", "1", "1: its rock was dug out", b.grout_lost);
+    of_node("bolts.grout_lost", "1", "1: its rock was excavated", b.grout_lost);
   }
   static void describe_state(State& b, const auto& stored, const auto& rebuilt) {
     stored({.name = "bolts.phase",

@@ -32,8 +32,8 @@ struct Slider {
   CDEM_HD Real tangent(SliderState on) const {
     return on == SliderState::holds ? stiffness : slider_rest * stiffness;
   }
-  /// Where it is free after it bore a force at x. One that can only pull goes slack: it bears again
-  /// where it is as long as it was.
+  /// Its free length after a force at x. One that can only pull goes slack: it acts again
+  /// at its old length.
   CDEM_HD Real free_after(Real x, Real force) const {
     const bool slack = least == 0 && most > 0 && force < 0;
     return stiffness > 0 && !slack ? x - force / stiffness : free;

@@ -65,8 +65,9 @@ struct SolveBolt {
     for (Index j = chain.first; placed && chain.has_bar(j); ++j) columns.length[j] = scratch(j)[3];
   }
 
-  /// Take what a slider bears and loses. Lost is the mean of both forces times the change of the
-  /// place where it is free: with what is stored, just the work that central differences count.
+  /// Store force and loss of a slider. Lost is the mean of both forces times the change of the
+  /// place where it is free: with the stored energy, exactly the work that central differences
+  /// count.
   CDEM_HD Real take(const Slider& s, Real x, SliderState on, Real& free, Real& force,
                     Index bolt) const {
     const Real after = s.force(x, on), free_after = s.free_after(x, after);

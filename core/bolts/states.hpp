@@ -1,4 +1,4 @@
-// states.hpp - what a bolt, one of its springs, and one of its bars may be.
+// states.hpp - states of a bolt, of its springs, and of its bars.
 #pragma once
 
 #include "core/base/lanes.hpp"
@@ -11,7 +11,7 @@ enum class BoltPhase : Flag { waiting, placed, acting, removed };
 /// Which part of its law a spring with limits is on.
 enum class SliderState : Flag { holds, upper, lower };
 
-/// Whether a bar is whole, has torn, or went with rock that was dug out.
+/// Whether a bar is whole, has torn, or was cut with excavated rock.
 enum class BarState : Flag { whole, ruptured, cut };
 
 }  // namespace cdem

@@ -1,4 +1,4 @@
-// views.hpp - what the kernel of bolts sees of model and state.
+// views.hpp - the kernel's view of bolts in model and state.
 #pragma once
 
 #include "core/bolts/solve_bolts.hpp"

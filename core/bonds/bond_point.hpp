@@ -30,7 +30,7 @@ struct BondSpring {
   T area;  // [m2]
   JointStiffness<T> stiffness;
 
-  /// What the law is asked for a jump of displacement x_b - x_a, past what the point has risen.
+  /// Input of the law for a jump of displacement x_b - x_a, without the rise of the point.
   CDEM_HD JointInput<T> input(const Frame<T>& frame, const Vec3<T>& jump, const BondHistory<T>& h,
                               const SlipRate<T>& rate) const {
     return {.opening = dot(frame.n, jump),
@@ -56,7 +56,7 @@ struct BondSpring {
   }
 };
 
-/// What one bond point does in a step.
+/// Results of a bond point in a step.
 template <class T>
 struct BondForce {
   Vec3<T> on_b;          // force on the second face  [N]
@@ -118,17 +118,17 @@ CDEM_HD inline JointAnswer<T> before_step(const Laws& laws, const JointInput<T>&
 /// drift and needs no history until it slips. A point that broke but whose pair is not yet released
 /// to the search goes on as a frictional contact at the same place; in an open hinge (`searched`),
 /// whose faces the search has already, it carries nothing.
-/// `jump` is that past what the point has risen. `jump_old`, the same one step ago, serves only the
-/// energy ledger: what is lost is U_old - U_new + work done on the spring by the mean force. While
-/// a bond holds its law says what it loses. `state` is what the law remembers.
+/// `jump` excludes the rise of the point. `jump_old`, the same one step ago, serves only the
+/// energy ledger: the loss is U_old - U_new + work done on the spring by the mean force. While
+/// a bond holds, its law gives the loss. `state` is the state of the law.
 template <class Laws, class T, class M>
 CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& spring,
                                        const Frame<T>& frame, const Vec3<T>& jump,
                                        const Vec3<T>& jump_old, Real dt, const M& searched,
                                        BondHistory<T>& h, T* state) {
   const T zero(0.0), one(1.0), half(0.5);
-  const Vec3<T> way = jump - jump_old;
-  const SlipRate<T> rate{dot(frame.t1, way) / T(dt), dot(frame.t2, way) / T(dt), T(dt)};
+  const Vec3<T> moved = jump - jump_old;
+  const SlipRate<T> rate{dot(frame.t1, moved) / T(dt), dot(frame.t2, moved) / T(dt), T(dt)};
   const auto input_at = [&](const Vec3<T>& x) { return spring.input(frame, x, h, rate); };
   constexpr Index size = Laws::most_state;
   T state_old[size + 1];
@@ -153,14 +153,14 @@ CDEM_HD inline BondForce<T> bond_force(const Laws& laws, const BondSpring<T>& sp
   if constexpr (Laws::most_state > 0) out.friction = spring.area * now.friction;
   if (any_of(!intact)) {
     const JointAnswer<T> was = before_step(laws, input_at(jump_old), state_old);
-    const T work_n = (was.normal + normal) * dot(frame.n, way);
+    const T work_n = (was.normal + normal) * dot(frame.n, moved);
     const T work_s =
-        (was.shear1 + shear1) * dot(frame.t1, way) + (was.shear2 + shear2) * dot(frame.t2, way);
+        (was.shear1 + shear1) * dot(frame.t1, moved) + (was.shear2 + shear2) * dot(frame.t2, moved);
     const T lost_n = was.stored_n - stored_n - half * work_n;
     const T lost_s = was.stored_s - stored_s - half * work_s;
     out.fracture = select(broke, spring.area * (lost_n + lost_s) - out.friction, out.fracture);
     out.friction = select((!broke) & (!intact) & carries, spring.area * lost_s, out.friction);
-    // friction pays for what dilation lifts, see contact_force
+    // friction pays for the lift by dilation, see contact_force
     const auto rises = now.rise > zero;
     if (any_of(rises)) {
       const T lift = half * spring.area * (was.normal + normal) * now.rise;

@@ -43,7 +43,7 @@ struct PairColumns {
   InOutTable history;  // [variable * points + point][pair] of the laws
   InOutTable broken_tension, broken_shear;  // [1][pair] springs broken so far, by cause
   InOutTable jump;  // [1][pair] how far the largest jump has changed since its last point broke [m]
-  InOutTable jump_at_break;               // [1][pair] what it was then; -1 while a point holds  [m]
+  InOutTable jump_at_break;  // [1][pair] its value at that time; -1 while a point holds  [m]
   InOutTable stored, fracture, friction;  // [1][pair]  [J]
 
   /// Which pairs are not released, and which are open hinges.
@@ -62,7 +62,7 @@ struct PairColumns {
     if (strength.data) of.scatter = {true, strength.at(0, p)};
     return of;
   }
-  /// What the law of a pair remembers of point k of `points`; the point's number is its row.
+  /// State of the law of a pair at point k of `points`; the point's number is its row.
   template <class Laws, class I, class T>
   CDEM_HD void load_history(I p, Index k, Index points, T* state) const {
     const bool any = interfaces.has_state;

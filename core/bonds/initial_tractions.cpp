@@ -34,7 +34,7 @@ void visit_points(PairKind<ConformingBonds<count>>, const Model& m, State& s, co
       .sampled = false,
       .corner_force = {}});
   const auto faces = on_host(p.faces), interface = on_host(p.interface);
-  // (1 - a) (1 - b) = 1/4 and 1/3: the mass matrix of the face is that of the points at a and b
+  // (1 - a) (1 - b) = 1/4 and 1/3: the mass matrix of the face equals that of the points at a and b
   const Real place_of_stress = 1 - 1.0 / (count == 3 ? 4 : 3) / (1 - bonds.indentation);
   for (Index i = 0; i < p.count; ++i) {
     Vec3<Real> mean[count], jump[count];
@@ -75,7 +75,7 @@ void visit_points(PairKind<OverlapBonds>, const Model& m, State& s, const PairSe
   }
 }
 
-/// What the law says of a bond point that is strained by minus its rest.
+/// Answer of the law for a bond point strained by minus its rest.
 JointAnswer<Real> answer_at(const PairColumns& pairs, const Point& point, const Vec3<Real>& rest,
                             Real bond) {
   Real state[InterfaceLaws::most_state + 1] = {};
@@ -145,7 +145,7 @@ CutTractions set_initial_tractions(Model& m, State& s, const Real* stress, const
     visit_points(kind, m, s, p, ps, [&](const Point& point) { load(pairs, rest, point); });
   });
   // contacts are kept to twice their lift; those of a pair are fewer than its points, so that one
-  // may have to bear what several did
+  // may have to carry the forces of several
   constexpr Real fewer = 4;
   m.rules.lifted += fewer * 2 * lift - m.initial_lift;
   m.initial_lift = fewer * 2 * lift;

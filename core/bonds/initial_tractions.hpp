@@ -27,8 +27,8 @@ struct CutTractions {
 };
 
 /// Give each bond point the traction of a stress S, that on the second face being -S n: the jump at
-/// which its spring is free changes, nothing moves. What the law of its interface does not bear is
-/// cut, and a bond that would break is broken.
+/// which its spring is free changes, nothing moves. Tractions above the strength of its interface
+/// are cut, and a bond that would break is broken.
 ///
 /// `stress` holds xx yy zz xy yz zx of each bond point in the order of `bond_places`  [Pa];
 /// `bonded` says for each interface whether it has strength: the points of others begin broken.

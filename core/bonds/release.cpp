@@ -41,7 +41,7 @@ std::vector<Index> pairs_where(const PairSet& p, const Kernel& kernel) {
 }
 
 /// A pair that holds by some of its points and is this part of its length apart at another is a
-/// hinge: what comes between its faces touches them.
+/// hinge: bodies between its faces touch them.
 constexpr Real hinge_part = 0.05;
 
 HoldsInPart holds_in_part(const PairSet& p, const PairState& s) {
@@ -61,7 +61,7 @@ struct BrokenPoint {
 };
 
 /// If a pair has opened as a hinge, expose its faces. Its broken points carry nothing any more;
-/// what little those held is lost to friction.
+/// their small energy is lost to friction.
 void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, Index i,
                    const Frame<Real>& frame, std::vector<BrokenPoint>& broken) {
   Real widest = 0;

@@ -33,7 +33,7 @@ struct ReleasedPoint {
   Vec3<Real> strain;       // of its shear spring  [m]
   bool lifted;             // its spring is free of stress at a gap
   Index vertex[2];         // of either face, if that goes on as a contact, else -1
-  Real share[2] = {1, 1};  // of what the point carried, in halves
+  Real share[2] = {1, 1};  // of the force of the point, in halves
 };
 
 /// The vertex of a face at a node, or -1.
@@ -63,7 +63,7 @@ void press(const InterfaceTable& table, Index interface, Real area, const JointS
       area * joint_laws<InterfaceLaws>(table, interface).close(contact.approach, k).stored;
 }
 
-/// Those of a pair as they were one step ago.
+/// Vertices of a pair one step ago.
 std::vector<ReleasedPoint> released_points(const Model& m, State& s, const PairSet& p,
                                            PairState& ps, Index i) {
   const FaceColumns faces = on_host(face_columns(m, s));
@@ -354,7 +354,7 @@ Real give(const Model& m, State& s, const Successor& c, Real penetration, const 
   return state.energy_n + state.energy_s;
 }
 
-/// What the bonds of an overlap did to its second face one step ago  [N].
+/// Force of the bonds of an overlap on its second face one step ago  [N].
 Vec3<Real> force_on_second(const State& s, const PairSet& p, Index i) {
   const auto force = on_host(s.corner_force);
   Vec3<Real> sum{0, 0, 0};
@@ -363,7 +363,7 @@ Vec3<Real> force_on_second(const State& s, const PairSet& p, Index i) {
   return sum;
 }
 
-/// What the bonds of an overlap did to its second face one step ago, along the mean normal of both
+/// Force of the bonds of an overlap on its second face one step ago, along the mean normal of both
 /// faces, compression > 0, and across  [N].
 struct Carried {
   Real normal;
@@ -405,7 +405,7 @@ void await_springs(const Model& m, State& s, Index x, Index y) {
   }
 }
 
-/// Sides of exposed face x that cross those of y.
+/// Sides of exposed face x that cross sides of y.
 void await_edges(const Model& m, State& s, Index x, Index y, std::vector<EdgeContact>& found) {
   const FaceColumns faces = on_host(face_columns(m, s));
   const auto exposed_face = on_host(s.search.exposed_face);

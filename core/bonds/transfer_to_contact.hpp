@@ -1,4 +1,4 @@
-// transfer_to_contact.hpp - what a released pair carried goes to the contacts that follow it.
+// transfer_to_contact.hpp - the force of a released pair goes to the contacts that follow it.
 #pragma once
 
 #include "core/base/device.hpp"
@@ -15,15 +15,14 @@ Real pair_length(const Model& model, const PairSet& pairs, Index pair);
 /// only what it can hold at the present depth. A point whose spring is free of stress at a gap,
 /// because it began loaded or has dilated, gives all that it carried: the contacts are lifted for
 /// that. Where a vertex has slid off the face across, the other vertex takes both halves. A point
-/// whose vertices have parted, as those of a
-/// hinge do before its last point breaks, carries nothing. Returns the energy that the springs hold
-/// [J].
+/// whose vertices have parted, as in a hinge before its last point breaks, carries nothing. Returns
+/// the energy that the springs hold [J].
 Real transfer_to_contact(const Model& model, State& state, const PairSet& pairs, PairState& bonds,
                          Index pair);
 
-/// Give the vertices and sides of both faces of a pair what the laws of its bond points remember:
-/// each vertex that of its point, or the mean of the points by their weights on it; each side the
-/// mean of its ends.
+/// Give the vertices and sides of both faces of a pair the states of the laws of its bond points:
+/// each vertex gets the state of its point, or the mean of the points by their weights on it; each
+/// side the mean of its ends.
 void give_history(const Model& model, State& state, const PairSet& pairs, const PairState& bonds,
                   Index pair);
 
@@ -32,9 +31,9 @@ void give_history(const Model& model, State& state, const PairSet& pairs, const 
 void await_contacts(const Model& model, State& state);
 
 /// The same as transfer_to_contact for overlaps that were released in this step, once the search
-/// has found what touches. Their contacts are not where their bond points were: what the pair
-/// carried is shared by the depths of the contacts, and none is pressed harder than its depth says;
-/// but lifted ones are, alike, until they bear all that the pair carried.
+/// has found their contacts. These are not at the bond points: the force of the pair is shared
+/// by the depths of the contacts, and no force exceeds the one of its depth; but lifted ones do,
+/// alike, until they carry the whole force of the pair.
 void transfer_released_bonds(const Model& model, State& state, Queue queue);
 
 }  // namespace cdem

@@ -1,4 +1,4 @@
-// views.hpp - what the kernels of bonds see of model and state.
+// views.hpp - the kernels' view of bonds in model and state.
 #pragma once
 
 #include "core/bonds/bonded_pairs.hpp"

@@ -1,4 +1,4 @@
-// contact_energy.hpp - what contacts hold, for the terms of the ledger.
+// contact_energy.hpp - energy stored in contacts, for the terms of the ledger.
 #pragma once
 
 #include "core/records/contact_records.hpp"

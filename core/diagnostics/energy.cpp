@@ -19,7 +19,7 @@ Real largest_term(const Energies& e) {
   return largest;
 }
 
-/// What a term adds to what is stored and lost, less what was supplied  [J].
+/// Contribution of a term to stored plus lost minus supplied energy  [J].
 Real counted(EnergyKind kind, Real term) {
   switch (kind) {
     case EnergyKind::supplied:
@@ -96,7 +96,7 @@ void keep_energy_scale(const Model& m, State& s) {
 
 void open_ledger(const Model& m, State& s) {
   s.ledger_started = true;
-  // the first sample may come later than the first step: count what has been lost and done by then
+  // the first sample may come later than the first step: count losses and work until then
   s.energy_start = balance(sum_terms(m, s));
 }
 

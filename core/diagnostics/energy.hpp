@@ -11,7 +11,7 @@ namespace cdem {
 struct Energies {
   Real terms[energy_term_count] = {};
   Real start = 0;  // stored and kinetic energy when the ledger was opened
-  Real error = 0;  // what does not close, as a fraction of the largest term so far
+  Real error = 0;  // closing error, as a fraction of the largest term so far
 };
 
 Energies energies(const Model& model, const State& state);

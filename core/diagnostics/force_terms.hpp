@@ -1,4 +1,4 @@
-// force_terms.hpp - what acts on the nodes, and what their round-off makes.
+// force_terms.hpp - forces on the nodes, and forces from round-off of positions.
 #pragma once
 
 #include "core/nodes/ports.hpp"
@@ -33,7 +33,7 @@ struct AppliedForce {
     return part(0, f.x) + part(1, f.y) + part(2, f.z);
   }
 };
-/// Size of the components of what the support of a node carries  [N].
+/// Size of the components of a node's support force  [N].
 struct CarriedForce {
   const Real* reaction;  // rows of 4
   CDEM_HD Real operator()(One node) const {

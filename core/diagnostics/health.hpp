@@ -1,4 +1,4 @@
-// health.hpp - what stops a run that went wrong: outcomes, and the check for them.
+// health.hpp - failures of a run: outcomes, and their check.
 #pragma once
 
 #include "core/model/model.hpp"

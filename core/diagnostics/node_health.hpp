@@ -27,7 +27,7 @@ struct SquaredSpeed {
   CDEM_HD static bool is_finite(Real x) { return x - x == 0; }
 };
 
-/// 1 for exposed faces of which the search has lost a contact.
+/// 1 for exposed faces with a contact lost by the search.
 struct LostContact {
   const Flag *edges, *springs;  // [exposed], [slot]
 

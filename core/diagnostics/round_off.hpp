@@ -1,4 +1,4 @@
-// round_off.hpp - what the round-off of positions makes where nothing happens.
+// round_off.hpp - forces from round-off of positions at rest.
 #pragma once
 
 #include "core/model/model.hpp"
@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// What the round-off of positions makes where nothing happens.
+/// Forces from round-off of positions at rest.
 struct RoundOff {
   Real shift;  // of a node  [m]
   Real force;  // sum over the nodes  [N]

@@ -11,11 +11,11 @@ namespace cdem {
 Real unbalance_ratio(const Model& m, const State& s) {
   const Queue q;
   const Real unbalanced = column_sum(q, s.nodes.unbalance);
-  // what acts on supports needs no balance: a heavy fixed bed must not hide a block that slides
+  // forces on supports need no balance: a heavy fixed bed must not hide a block that slides
   Real applied =
       exact_sum(q, m.node_count,
                 AppliedForce{.loads = load_columns(m, s), .supports = support_columns(m, s)});
-  if (applied == 0)  // moved by its supports alone: compare with what they carry
+  if (applied == 0)  // moved by its supports alone: compare with the forces that they carry
     applied = exact_sum(q, m.node_count, CarriedForce{s.nodes.reaction.data()});
   return unbalanced > RoundOff(m, s).force ? unbalanced / applied : 0;
 }

@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// Sum of the unbalanced forces of the last sampled step over that of the applied ones  [1].
+/// Sum of the unbalanced forces of the last sampled step over the sum of the applied ones  [1].
 Real unbalance_ratio(const Model& model, const State& state);
 
 }  // namespace cdem

@@ -68,8 +68,8 @@ struct ElasticStrains {
   CDEM_HD const Sym3<T>& of(const PointStrains<Shape, Rotation, T>&, Index q) const {
     return part[q];
   }
-  /// First Piola-Kirchhoff stress. After flow the axes of S are not those of U, so R S alone would
-  /// turn the element and would not do the work S : dU: P = R (S + A), A antisymmetric with
+  /// First Piola-Kirchhoff stress. After plastic flow the axes of S and U differ, so R S alone
+  /// would turn the element and would not do the work S : dU: P = R (S + A), A antisymmetric with
   /// (S + A) U symmetric.
   template <class Rotation>
   CDEM_HD Mat3<T> piola(const PointStrains<Shape, Rotation, T>& p, Index q,
@@ -91,7 +91,7 @@ struct AllElastic {
   }
 };
 
-/// Elements of which no material flows and that begin without stress. Their kernels have no code
+/// Elements of elastic material without initial stress. Their kernels have no code
 /// for it: it would cost them 4 to 11 %.
 struct NoFlow {
   CDEM_HD static constexpr bool may_flow() { return false; }
@@ -102,7 +102,7 @@ struct NoFlow {
   }
 };
 
-/// What a law asks for of a point: its state, row by row, and the size of its element.
+/// Input of a law at a point: its state, row by row, and the size of its element.
 template <class I>
 struct StateRows {
   InOutTable history;
@@ -121,8 +121,8 @@ struct StateRows {
   }
 };
 
-/// What stands in the field `yielded` for number k of a law's state where it grows now; where it
-/// ever has, four times that: 1, 2, 16, 32.
+/// Value of the field `yielded` for number k of a law's state while it grows; four times this
+/// if it ever has: 1, 2, 16, 32.
 CDEM_HD constexpr Real yield_bit(Index k) { return Real((k % 2 + 1) << (4 * (k / 2))); }
 
 /// Inelastic strain and state of the laws at the Gauss points. Initial stress S0 is the inelastic
@@ -149,8 +149,8 @@ struct PointFlow {
     return strains;
   }
 
-  /// The laws move on by one step: returns the elastic strains after it. The work is that of the
-  /// mean stress of the step on the increment: exact for what central differences make of it.
+  /// The laws move on by one step: returns the elastic strains after it. The work is by the
+  /// mean stress of the step on the increment: exact for central differences.
   template <class I, class Rotation, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> move_on(const ElementColumns<Shape>& c, I e,
                                            const PointStrains<Shape, Rotation, T>& p) const {
@@ -160,8 +160,8 @@ struct PointFlow {
     return strains;
   }
 
-  /// Take what flows in this step from the elastic strains, and keep the laws' state; returns where
-  /// any does. Where none does, the increments say nothing.
+  /// Subtract the plastic strain of this step from the elastic strains, and keep the laws' state;
+  /// returns where any does. Where none does, the increments say nothing.
   template <class I, class T = Number<I>>
   CDEM_HD Truth<T> flow_on(const ElementColumns<Shape>& c, I e, ElasticStrains<Shape, T>& strains,
                            Sym3<T>* increment) const {
@@ -169,7 +169,7 @@ struct PointFlow {
       for (Index k = 0; k < BlockLaws::most_state; ++k) history.set(row(q, 6 + k), e, state[k]);
     });
   }
-  /// Elastic strains where the nodes were one step ago, before what has flowed since.
+  /// Elastic strains at the positions of one step ago, before plastic strain since.
   template <class Rotation, class I, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> elastic_part_before(const ElementColumns<Shape>& c, I e) const {
     Arms<Shape, T> arms = position_arms<Shape>(c, e);
@@ -182,8 +182,8 @@ struct PointFlow {
     set_inelastic(e, q, inelastic_at(e, q) + increment);
   }
 
-  /// What the laws would make of elastic strains now: nothing is kept. `yielded` gets what flows
-  /// now and what ever has, see `yield_bit`.
+  /// Result of the laws for present elastic strains; nothing is stored. `yielded` gets present
+  /// and past plastic flow, see `yield_bit`.
   template <class I, class T = Number<I>>
   CDEM_HD ElasticStrains<Shape, T> after_flow(const ElementColumns<Shape>& c, I e,
                                               ElasticStrains<Shape, T> strains, T& yielded) const {
@@ -206,7 +206,7 @@ struct PointFlow {
   }
 
  private:
-  /// Take what flows from the elastic strains; returns where any does.
+  /// Subtract the plastic strain from the elastic strains; returns where there is any.
   template <class I, class T, class Keep>
   CDEM_HD Truth<T> flow_points(const ElementColumns<Shape>& c, I e,
                                ElasticStrains<Shape, T>& strains, Sym3<T>* increment,

@@ -8,7 +8,7 @@
 
 namespace cdem {
 
-/// Force of every element on its corners, Eq. 2; those of fused blocks come with their motion.
+/// Force of every element on its corners, Eq. 2; forces of fused blocks come with their motion.
 void update_element_forces(const Model& model, State& state, Queue queue, const StepPlan& plan);
 
 }  // namespace cdem

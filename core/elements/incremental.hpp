@@ -5,14 +5,15 @@
 
 namespace cdem {
 
-/// What one step does to a point: strain increment, spin, and the configuration it is taken in.
+/// Deformation of a point in one step: strain increment, spin, and the configuration it is taken
+/// in.
 template <class T>
 struct Increment {
   Sym3<T> strain;  // sym(dL)
   Mat3<T> spin;    // skew(dL)
 };
 
-/// dL = (dF) F^-1, split into strain and spin; F is that of the configuration which holds B.
+/// dL = (dF) F^-1, split into strain and spin; F belongs to the configuration of B.
 template <class T>
 CDEM_HD inline Increment<T> increment_of(const Mat3<T>& delta_f, const Mat3<T>& f) {
   const Mat3<T> l = delta_f * inverse(f);

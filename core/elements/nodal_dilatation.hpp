@@ -6,9 +6,9 @@
 namespace cdem {
 
 /// Elastic dilatation of tets as their nodes see it: theta_n = sum_f V_f theta_f / sum_f V_f over
-/// the tets f of a node, theta the trace of the elastic strain less what it was at the start. The
-/// energy of a block is that of its nodes, sum_n V_n / 4 K / 2 theta_n^2, V_n the volume of the
-/// tets of node n. Its derivative is the pressure K (mean of theta_n over the four nodes), so
+/// the tets f of a node, theta the trace of the elastic strain less its initial value. The
+/// energy of a block is the sum over its nodes, sum_n V_n / 4 K / 2 theta_n^2, V_n the volume of
+/// the tets of node n. Its derivative is the pressure K (mean of theta_n over the four nodes), so
 /// energy, momentum and frame invariance are exact; see docs/theory/elements.md.
 struct NodalDilatation {
   InIndices tet_nodes;   // [4][tet]
@@ -71,7 +71,7 @@ struct FlowOfTets {
   PointFlow<Tet4> flow;
   NodalDilatation trial, before;  // of this step, and after the last one
   InOutTable own;                 // [1][tet] dilatation since the start
-  InOutTable flowed;              // [1][tet] of it, what flowed in this step
+  InOutTable flowed;              // [1][tet] of it, the plastic part of this step
 
   template <class I>
   CDEM_HD void operator()(I e) const {
@@ -132,7 +132,7 @@ struct NodalFlow {
   }
 };
 
-/// For CorotationalReport: what the laws would make of the mean dilatation where the nodes are now.
+/// For CorotationalReport: result of the laws for the mean dilatation at present positions.
 struct NodalReport {
   PointFlow<Tet4> flow;
   NodalDilatation now;
@@ -153,7 +153,7 @@ struct NodalReport {
                                              T& yielded) const {
     return flow.after_flow(c, e, strains, yielded);
   }
-  /// What a tet's share of its nodes' energy has more than 1/2 K (start + mean)^2.
+  /// Excess of a tet's share of its nodes' energy over 1/2 K (start + mean)^2.
   template <class I, class T = Number<I>>
   CDEM_HD T more_energy(const ElementColumns<Tet4>& c, I e) const {
     const ElasticConstants<T> elastic = c.elastic(e);

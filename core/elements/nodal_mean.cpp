@@ -49,7 +49,8 @@ void average(const Model& m, State& s, Queue q, Column<Real>& at_nodes) {
                                .at_nodes = at_nodes.data()});
 }
 
-/// What tets have at the start is initial stress: it is not averaged, and stays in equilibrium.
+/// The initial dilatation of tets is from initial stress: it is not averaged, and stays in
+/// equilibrium.
 void begin(const Model& m, State& s, Queue q) {
   s.nodal.start.resize(m.tet4.stride);
   find_dilatation(m, s, q);
@@ -58,7 +59,7 @@ void begin(const Model& m, State& s, Queue q) {
   s.nodal.after.resize(m.node_count);
 }
 
-/// Tiles of which one tet is averaged, block by block, and the others.
+/// Tiles with an averaged tet, block by block, and the others.
 void list_tets(const ElementSet& e, const ElementTiles& tiles, NodalMeans& n) {
   const auto block_first = on_host(tiles.block_first);
   const auto nodal_mean = on_host(e.nodal_mean);

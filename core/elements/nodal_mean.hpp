@@ -24,7 +24,7 @@ void update_averaged_tets(const Model& model, State& state, Queue queue);
 /// yet: they are as other tets then.
 bool report_averaged_tets(const Model& model, State& state, Queue queue);
 
-/// Blocks of tets of which none is averaged.
+/// Blocks of tets without an averaged one.
 Blocks other_tets(const State& state);
 
 }  // namespace cdem

@@ -10,7 +10,7 @@ namespace cdem {
 /// Stress and strain energy of every element where the nodes are now.
 void report_elements(const Model& model, State& state, Queue queue);
 
-/// Stress of every element where the nodes are now; energies stay those of the last sampled step.
+/// Stress of every element at present positions; energies stay as at the last sampled step.
 void report_stress(const Model& model, State& state);
 
 }  // namespace cdem

@@ -40,9 +40,9 @@ struct Hex8OnePoint {
   static constexpr bool mean_dilatation = false, hourglass = true;
 };
 
-/// What every element kernel reads: nodes, reference gradients, volumes, material.
+/// Input of every element kernel: nodes, reference gradients, volumes, material.
 ///
-/// The gradients dN/dX [1/m] are those of the stress-free mesh; node 0 is left out, because the
+/// The gradients dN/dX [1/m] belong to the stress-free mesh; node 0 is left out, because the
 /// gradients of an element sum to zero.
 template <class Shape>
 struct ElementColumns {
@@ -132,7 +132,7 @@ struct CornerForces {
   }
 };
 
-/// Amplitudes of the hourglass modes and what resists them: Flanagan & Belytschko (1981), total.
+/// Amplitudes of the hourglass modes and their resistance: Flanagan & Belytschko (1981), total.
 ///
 /// Mode a has the pattern G_ak = rs, st, tr, rst at node k. Its amplitude is what the positions
 /// hold of the pattern beyond their linear part, q_a = sum_k G_ak x_k - F sum_k G_ak X_k, so it is
@@ -160,7 +160,7 @@ struct Hourglass {
     for (Index a = 0; a < 4; ++a) sum += dot(amplitude[a], amplitude[a]);
     return sum;
   }
-  /// Add `scale` times the springs' forces to those of the corners.
+  /// Add `scale` times the springs' forces to the forces of the corners.
   template <class I>
   CDEM_HD void add(const ElementColumns<Hex8OnePoint>& c, I e, const T& scale,
                    CornerForces<Hex8OnePoint, T>& force) const {

@@ -7,7 +7,7 @@
 
 namespace cdem {
 
-/// The kernel for elements whose nodes are those of a tile.
+/// The kernel for elements with nodes in a tile.
 template <class Kernel>
 CDEM_HD inline Kernel in_tile(Kernel kernel, const TileNodes& nodes) {
   kernel.columns.nodes = {nodes.motion};

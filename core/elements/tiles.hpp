@@ -12,7 +12,7 @@ struct Tiles {
   const Index* block_first;            // [tile + 1] blocks of elements
   const Index* node_first;             // [block + 1] nodes that come to the tile with a block
   const Index *node, *row;             // these nodes, and their rows
-  InIndices place;                     // [corner][element] of its node among those of the tile
+  InIndices place;                     // [corner][element] of its node among the tile's nodes
   const Index *corner_first, *corner;  // of a GPU: see ElementTiles
   const Real* motion;                  // [node] rows of 8
   Real* force;                         // [row] rows of 4  [N]
@@ -61,9 +61,10 @@ struct TileNodes {
   }
 };
 
-/// Sum the forces of some blocks of elements in their tiles; those of a tile must be whole, but for
-/// elements that share no node with others. `Kernel::forces` gives them, of an element whose nodes
-/// are those of its tile. Instantiated for every kernel in core/kernels.
+/// Sum the forces of some blocks of elements in their tiles; blocks of a tile must be complete,
+/// except for
+/// elements that share no node with others. `Kernel::forces` computes them, for an element with
+/// nodes in its tile. Instantiated for every kernel in core/kernels.
 template <class Kernel>
 void for_each_tile(Queue queue, Index count, Blocks blocks, const Tiles& tiles,
                    const Kernel& kernel);

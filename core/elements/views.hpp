@@ -1,4 +1,4 @@
-// views.hpp - what the kernels of elements see of model and state.
+// views.hpp - the kernels' view of elements in model and state.
 #pragma once
 
 #include "core/elements/corotational.hpp"

@@ -16,7 +16,7 @@ namespace cdem {
 ///
 /// t_n > 0 is compression. Departure from the paper: `>` for its `>=`, and a millionth of c added
 /// to T, so that an unloaded joint with T = 0 (or c = 0) keeps its other strength in spite of
-/// round-off. And a bond that slips while it is pulled lets go at once: one step later, without
+/// round-off. And a bond that slips in tension breaks at once: one step later, without
 /// strength, it would drop its traction with nothing to show for its energy.
 ///
 /// A joint that slips by ds lifts by tan(psi) ds (dilation): its stress-free gap rises, which
@@ -56,14 +56,14 @@ struct Brittle {
                 .symbol = "psi",
                 .unit = "deg",
                 .meaning = "Dilation angle: a sliding joint lifts by its tangent times the slip, "
-                           "which counts in every direction: also on the way back",
+                           "counted in every direction, also in reverse",
                 .below = 90,
                 .otherwise = 0,
                 .form = Form::tangent},
       Parameter{.name = "dilation_slip",
                 .symbol = "",
                 .unit = "m",
-                .meaning = "Slip after which a joint dilates no more",
+                .meaning = "Slip at which dilation ends",
                 .otherwise = 0}};
   static constexpr std::array<StateVariable, 0> state{};
 

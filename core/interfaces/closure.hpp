@@ -1,4 +1,4 @@
-// closure.hpp - the normal spring of a pressed joint: straight, or that of a law whose joints
+// closure.hpp - the normal spring of a pressed joint: straight, or of a law whose joints
 // close.
 #pragma once
 

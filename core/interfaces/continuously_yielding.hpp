@@ -15,9 +15,9 @@ namespace cdem {
 ///   tau_m = sigma tan(phi_m),   phi_m = phi + (phi_0 - phi) exp(-s / R)
 ///   d tau = F k_s du,           F = (1 - tau / tau_m) / (1 - r) <= 1,   ds = (1 - F) |du|
 ///
-/// s is the slip, du what the joint is sheared by in a step, elastic part included, tau the
-/// traction along that way, and r what tau / tau_m was when the way last turned back, at most 0.75.
-/// In a step the solution for constant tau_m is taken; traction across the way fades as it is
+/// s is the slip, du the shear displacement in a step, elastic part included, tau the
+/// traction along du, and r the value of tau / tau_m at the last reversal, at most 0.75.
+/// In a step the solution for constant tau_m is taken; traction across du fades as it is
 /// neared. Where strength wears faster than tau follows, tau lies above it (F < 0), but never above
 /// sigma tan(phi_0). It dilates by atan(tau / sigma) - phi where that is positive.
 template <class T>
@@ -39,16 +39,16 @@ struct ContinuouslyYielding {
       Parameter{.name = "roughness",
                 .symbol = "R",
                 .unit = "m",
-                .meaning = "Slip over which roughness wears to the e-th part"},
+                .meaning = "Slip over which roughness wears to 1/e"},
       strength_factor};
   static constexpr std::array state{
       joint_slip,
       StateVariable{.name = "joint_reversal",
                     .unit = "1",
-                    .meaning = "Shear traction over strength when the slip last turned back"},
+                    .meaning = "Shear traction over strength at the last reversal of slip"},
       StateVariable{.name = "joint_unloads",
                     .unit = "1",
-                    .meaning = "1 where the joint moves against its shear traction"}};
+                    .meaning = "1 if the joint moves against its shear traction"}};
 
   T worn, initial;  // phi, phi_0  [deg]
   T roughness;      // [m]
@@ -100,7 +100,7 @@ struct ContinuouslyYielding {
   }
 
  private:
-  /// Tractions after a step, what it slipped, the tangent of dilation, and the two states of turns.
+  /// Tractions after a step, slip, the tangent of dilation, and the two states of turns.
   struct Sheared {
     T shear1, shear2;  // [Pa]
     T slip;            // [m]
@@ -112,11 +112,11 @@ struct ContinuouslyYielding {
     const T none(0.0), half(0.5), one(1.0), tiny(1e-300);
     const JointStiffness<T>& k = in.stiffness;
     const T strength = pressed * tangent, most = pressed * most_tangent;
-    // the way that tractions go in this step, and those of one step ago
+    // the direction of tractions in this step, and the old tractions
     const T moved1 = in.dt * in.rate1, moved2 = in.dt * in.rate2;
-    const T way = sqrt_of(moved1 * moved1 + moved2 * moved2);
-    const auto moves = way > none;
-    const T along1 = -moved1 / max_of(way, tiny), along2 = -moved2 / max_of(way, tiny);
+    const T sheared = sqrt_of(moved1 * moved1 + moved2 * moved2);
+    const auto moves = sheared > none;
+    const T along1 = -moved1 / max_of(sheared, tiny), along2 = -moved2 / max_of(sheared, tiny);
     const T old1 = k.s * (moved1 - in.shear1), old2 = k.s * (moved2 - in.shear2);
     const T before = old1 * along1 + old2 * along2;
     const auto unloaded = state[2] > half;
@@ -125,8 +125,8 @@ struct ContinuouslyYielding {
     const T ratio = max_of(min_of(before / max_of(strength, tiny), most_ratio), least);
     const T reversal = select(turns, ratio, state[1]);
     const T scale = max_of(strength * (one - reversal), tiny);
-    const T left = select(moves, exp_of(-k.s * way / scale), one);
-    const T gained = min_of((strength - before) * (one - left), k.s * way);
+    const T left = select(moves, exp_of(-k.s * sheared / scale), one);
+    const T gained = min_of((strength - before) * (one - left), k.s * sheared);
     const T after = before + gained;
     const T new1 = after * along1 + left * (old1 - before * along1),
             new2 = after * along2 + left * (old2 - before * along2);
@@ -135,7 +135,7 @@ struct ContinuouslyYielding {
     const T against = keep * (new1 * along1 + new2 * along2);
     return {.shear1 = keep * new1,
             .shear2 = keep * new2,
-            .slip = select(moves, max_of(way - k.compliance_s * gained, none), none),
+            .slip = select(moves, max_of(sheared - k.compliance_s * gained, none), none),
             .dilation = dilation(keep * size / max_of(pressed, tiny)),
             .reversal = reversal,
             .unloads = select(moves, select(against < none, one, none), state[2])};

@@ -1,4 +1,4 @@
-// draws.hpp - how the strength of a pair differs from that of its interface. Weibull (1951).
+// draws.hpp - random strength of pairs of an interface. Weibull (1951).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ inline Real uniform_draw(std::uint64_t seed, Index a, Index b) {
 }
 
 /// Factor on the strength of a pair: a draw of Weibull's distribution with this shape, over
-/// `mean`, that of the distribution: Gamma(1 + 1 / shape).
+/// `mean`, the mean of the distribution: Gamma(1 + 1 / shape).
 inline Real weibull_factor(std::uint64_t seed, Index a, Index b, Real shape, Real mean) {
   return exp_of(log_of(-log_of(uniform_draw(seed, a, b))) / shape) / mean;
 }

@@ -1,4 +1,4 @@
-// falling_friction.hpp - what laws share whose friction falls from a peak to a residual value.
+// falling_friction.hpp - common code of laws whose friction falls from a peak to a residual value.
 #pragma once
 
 #include "core/interfaces/law.hpp"
@@ -9,7 +9,7 @@ namespace cdem {
 inline constexpr Parameter residual_friction_angle{.name = "residual_friction_angle",
                                                    .symbol = "phi_r",
                                                    .unit = "deg",
-                                                   .meaning = "Friction angle after the fall",
+                                                   .meaning = "Residual friction angle",
                                                    .below = 90,
                                                    .form = Form::tangent,
                                                    .is_strength = true};
@@ -19,8 +19,10 @@ inline constexpr Parameter optional_residual_friction_angle = [] {
   p.like = "friction_angle";
   return p;
 }();
-inline constexpr Parameter slip_distance{
-    .name = "slip_distance", .symbol = "Dc", .unit = "m", .meaning = "Slip over which it falls"};
+inline constexpr Parameter slip_distance{.name = "slip_distance",
+                                         .symbol = "Dc",
+                                         .unit = "m",
+                                         .meaning = "Slip over which friction falls"};
 inline constexpr Parameter residual_cohesion{
     .name = "residual_cohesion",
     .symbol = "c_r",
@@ -31,7 +33,7 @@ inline constexpr Parameter residual_cohesion{
     .scatter = 1};
 
 inline constexpr StateVariable joint_slip{
-    .name = "joint_slip", .unit = "m", .meaning = "How far the joint has slipped"};
+    .name = "joint_slip", .unit = "m", .meaning = "Slip of the joint"};
 
 /// Why a residual friction does not fit the peak one and dilation (tangents), or nullptr.
 inline const char* contradiction_of_residual(double peak, double dilation, double residual) {

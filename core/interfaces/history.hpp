@@ -1,11 +1,11 @@
-// history.hpp - what the walls of contacts remember for the laws of their interfaces.
+// history.hpp - state of interface laws, stored at the walls of contacts.
 #pragma once
 
 #include "core/interfaces/laws.hpp"
 
 namespace cdem {
 
-/// What a law's state is at a face that is loose.
+/// State of a law at a loose face.
 template <template <class> class Law, Index k>
 inline constexpr Real loose_value = Law<Real>::state[k].loose;
 
@@ -16,7 +16,7 @@ struct HistoryRows {
   Real* rows;  // [row][width]
   Index* law;  // [row] number of the law whose history it is, or -1
 
-  /// The history of a row for a law: what it holds, or what the law says of loose faces where the
+  /// The history of a row for a law: its value, or the law's value for loose faces if the
   /// row has none of this law.
   template <template <class> class Law, Index number, class Ids, class T>
   CDEM_HD void load(const Ids& row, T* state) const {
@@ -45,8 +45,8 @@ struct HistoryRows {
   }
 };
 
-/// The law of each lane's contact answers, with the history of row `from`; that of row `to` is
-/// written.
+/// The law of each lane's contact answers, with the history of row `from`; the history of row `to`
+/// is written.
 template <class Laws, class T, class Ids>
 CDEM_HD inline JointAnswer<T> respond_with_history(const InterfaceTable& table,
                                                    const Ids& interface, const JointInput<T>& in,

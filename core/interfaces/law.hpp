@@ -1,4 +1,4 @@
-// law.hpp - what an interface law is asked, and what it answers.
+// law.hpp - input and answer of an interface law.
 //
 // A law is a template <class T> struct of its parameters, T a number or a pack, with
 //
@@ -56,14 +56,14 @@ struct JointStiffness {
 template <class T>
 struct JointInput {
   T opening;         // past the stress-free gap; < 0 is pressed  [m]
-  T shear1, shear2;  // along the joint, less what has slipped  [m]
+  T shear1, shear2;  // along the joint, less slip  [m]
   JointStiffness<T> stiffness;
   T damping;  // normal traction of the contact's dashpot, compression > 0  [Pa]
   T bond;     // 1 while bonded, then 0
   T risen;    // how far the stress-free gap lies above zero  [m]
   T rate1 = T(0.0), rate2 = T(0.0);  // of the slip in this step  [m/s]
   T dt = T(0.0);                     // that step; 0 at rest  [s]
-  T has_area;  // 1 where the area is that of the joint, so that a cohesion counts: at bond points,
+  T has_area;  // 1 if the area is the joint's, so that a cohesion counts: at bond points,
                // and at contacts of laws that ask for it
 
   CDEM_HD T slip_rate() const { return sqrt_of(rate1 * rate1 + rate2 * rate2); }  // [m/s]

@@ -12,7 +12,7 @@
 #include "core/interfaces/velocity_weakening.hpp"
 #include "core/interfaces/voellmy.hpp"
 #include "core/records/law_list.hpp"
-#if defined(CDEM_OWN_INTERFACE_LAW)  // a law that is built beside those of the list, for a test
+#if defined(CDEM_OWN_INTERFACE_LAW)  // a law built in addition to the list, for a test
 #include CDEM_OWN_INTERFACE_HEADER
 #endif
 
@@ -47,7 +47,7 @@ inline InterfaceTable table_of(const Interface* interfaces, std::size_t count,
 template <template <class> class Law, Index parameter>
 inline constexpr int scatter_power = Law<Real>::parameters[parameter].scatter;
 
-/// By what a pair's strength differs from that of its interface.
+/// Factor of a pair's strength over its interface's.
 template <class T>
 struct Scatter {
   bool any = false;
@@ -78,7 +78,7 @@ CDEM_HD inline auto law_at(const InterfaceTable& table, const Ids& interface,
   return Law<T>::read([&](Index k) { return number[k]; });
 }
 
-/// Who answers for a joint: of `Laws` that of its interface, lane by lane.
+/// The law of a joint: of `Laws` the one of its interface, lane by lane.
 template <class Laws, class Ids>
 struct JointLaws {
   using T = Number<Ids>;
@@ -87,7 +87,7 @@ struct JointLaws {
   Ids interface;
   Scatter<T> scatter{};
 
-  /// The answer; `state` are the numbers that the law remembers.
+  /// The answer; `state` is the state of the law.
   CDEM_HD JointAnswer<T> respond(const JointInput<T>& in, T* state) const {
     if constexpr (Laws::count == 1) {
       return law_at<Laws::template Only>(table, interface, scatter).respond(in, state);

@@ -1,4 +1,4 @@
-// residual.hpp - Coulomb friction whose strength falls at once to what is left of it.
+// residual.hpp - Coulomb friction whose strength falls at once to a residual value.
 #pragma once
 
 #include <array>

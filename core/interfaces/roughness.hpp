@@ -1,4 +1,4 @@
-// roughness.hpp - what laws of rough joints share.
+// roughness.hpp - common code of laws of rough joints.
 #pragma once
 
 #include "core/base/elementary.hpp"
@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// What a factor of safety multiplies where no parameter is a strength of its own.
+/// Target of a factor of safety in a law without a strength parameter.
 inline constexpr Parameter strength_factor{
     .name = "strength_factor",
     .symbol = "F",

@@ -47,7 +47,7 @@ struct Softening {
   static constexpr std::array state{
       StateVariable{.name = "joint_damage",
                     .unit = "1",
-                    .meaning = "Damage of a joint, 1 where it is broken",
+                    .meaning = "Damage of a joint, 1 if broken",
                     .loose = 1},
       StateVariable{
           .name = "joint_opening", .unit = "m", .meaning = "Inelastic opening of a bonded joint"},
@@ -130,7 +130,7 @@ struct Softening {
     return answer;
   }
 
-  /// What a bond does in a step: inelastic opening and slip, and the tractions that are left.
+  /// Results of a bond in a step: inelastic opening and slip, and the remaining tractions.
   struct Step {
     T opening, slip;  // [m]
     T pull, shear;    // tension > 0  [Pa]

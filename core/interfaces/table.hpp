@@ -10,8 +10,8 @@ namespace cdem {
 struct InterfaceTable {
   const Interface* interfaces;
   const Real* parameters;  // [interface][parameter_row]
-  unsigned laws;           // those that any interface has, as bits
-  unsigned curved;         // those of them whose joints close by a curve, as bits
+  unsigned laws;           // laws of all interfaces, as bits
+  unsigned curved;         // laws with a closure curve among them, as bits
   bool has_state;          // has one of them state?
 
   CDEM_HD bool has(Index law) const { return (laws >> law & 1) != 0; }

@@ -11,7 +11,7 @@ namespace cdem {
 ///
 ///   tan(phi) = mu_d + (mu_s - mu_d) / (1 + v / v_c)
 ///
-/// v is that of the step, elastic part included.
+/// v is the rate in the step, elastic part included.
 template <class T>
 struct VelocityWeakening {
   static constexpr LawText text{.name = "velocity-weakening",
@@ -21,14 +21,14 @@ struct VelocityWeakening {
                 Parameter{.name = "dynamic_friction_angle",
                           .symbol = "phi_d",
                           .unit = "deg",
-                          .meaning = "Friction angle at great speed",
+                          .meaning = "Friction angle at high speed",
                           .below = 90,
                           .form = Form::tangent,
                           .is_strength = true},
                 Parameter{.name = "velocity",
                           .symbol = "v_c",
                           .unit = "m/s",
-                          .meaning = "Speed of slip at which half of the friction's fall is done"});
+                          .meaning = "Speed of slip at half of the fall of friction"});
   static constexpr std::array<StateVariable, 0> state{};
 
   Brittle<T> at_rest;

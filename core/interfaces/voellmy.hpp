@@ -30,7 +30,7 @@ struct Voellmy {
                 Parameter{.name = "flow_density",
                           .symbol = "rho",
                           .unit = "kg/m3",
-                          .meaning = "Density of what flows"});
+                          .meaning = "Density of the flow"});
   static constexpr std::array<StateVariable, 0> state{};
   static constexpr Real gravity = 9.81;  // [m/s2]
 

@@ -1,4 +1,4 @@
-// block_laws.cpp - what block laws make of trial stresses at the points of elements, instantiated
+// block_laws.cpp - response of block laws to trial stresses at the points of elements, instantiated
 // once for the kernels of all other files.
 #include "core/elements/corotational.hpp"
 #include "core/materials/flow_by.hpp"

@@ -33,7 +33,7 @@ void with_memory(const Run& run) {
   check(run(scratch<char>(bytes + 1), bytes));  // never null, which would ask again
 }
 
-/// A word that comes to the host once what was launched is done.
+/// A word copied to the host once all launched kernels have finished.
 template <class T>
 T fetch_word(Queue queue, const T* word) {
   T value;
@@ -216,7 +216,7 @@ void sort_pairs(Queue, Index count, std::uint64_t* keys, Index* values) {
     });
     std::swap(keys, to_keys);
     std::swap(values, to_values);
-  }  // an even number of times: what was given is sorted
+  }  // an even number of times: the given array is sorted
 }
 
 #endif

@@ -30,7 +30,7 @@ struct DruckerPrager {
       Parameter{.name = "match",
                 .symbol = "match",
                 .unit = "",
-                .meaning = "Where the cone meets that of Mohr-Coulomb: triaxial compression "
+                .meaning = "Contact of the cone with Mohr-Coulomb's: triaxial compression "
                            "(outer), extension (inner) or plane strain",
                 .otherwise = 0,
                 .choices = "outer inner plane-strain"}};

@@ -1,4 +1,4 @@
-// flow_by.hpp - what a block law makes of a trial stress. Included where laws are instantiated:
+// flow_by.hpp - response of a block law to a trial stress. Included where laws are instantiated:
 // core/kernels/block_laws.cpp, and in CUDA each file of kernels that asks them.
 #pragma once
 

@@ -1,4 +1,4 @@
-// frictional.hpp - what block laws with cohesion and friction declare alike.
+// frictional.hpp - common declarations of block laws with cohesion and friction.
 #pragma once
 
 #include <array>
@@ -32,17 +32,17 @@ inline constexpr std::array frictional{
               .form = Form::tangent,
               .is_strength = true}};
 
-/// What flows in shear and in tension.
+/// Plastic strain in shear and in tension.
 inline constexpr std::array plastic_state{
     StateVariable{.name = "plastic_shear",
                   .unit = "1",
                   .meaning = "Plastic shear strain: sqrt(2/3 s:s) summed over the increments, s "
-                             "the deviator of what flows in shear"},
+                             "the deviator of the plastic strain in shear"},
     StateVariable{.name = "plastic_tension",
                   .unit = "1",
                   .meaning = "Plastic strain of the tension cut-off, summed over the increments"}};
 
-/// Those of them that may soften.
+/// Parameters that may soften.
 inline constexpr std::array frictional_softening{"cohesion", "friction_angle", "dilation_angle",
                                                  "tensile_strength"};
 
@@ -51,7 +51,7 @@ inline const char* frictional_contradiction(const Real* parameter) {
   if (parameter[2] > parameter[1])
     return "dilation_angle must not be larger than friction_angle, {friction_angle:g} deg";
   if (parameter[0] + parameter[1] == 0)
-    return "cohesion and friction_angle must not both be 0: such a material bears no shear";
+    return "cohesion and friction_angle must not both be 0: such a material carries no shear";
   return nullptr;
 }
 

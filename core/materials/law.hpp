@@ -1,4 +1,4 @@
-// law.hpp - what a block law is asked, and what it answers.
+// law.hpp - input and answer of a block law.
 //
 // Every block law is elastic up to where it flows: stress = C : (E - Ei), with the strain E and the
 // inelastic strain Ei in the unrotated frame of the element. A law is a template <class T> struct

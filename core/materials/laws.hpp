@@ -11,7 +11,7 @@
 #include "core/materials/softening.hpp"
 #include "core/materials/ubiquitous_joint.hpp"
 #include "core/records/law_list.hpp"
-#if defined(CDEM_OWN_BLOCK_LAW)  // a law that is built beside those of the list, for a test
+#if defined(CDEM_OWN_BLOCK_LAW)  // a law built in addition to the list, for a test
 #include CDEM_OWN_BLOCK_HEADER
 #endif
 
@@ -53,7 +53,7 @@ inline constexpr Index law_numbers = [] {
   return most;
 }();
 
-/// Numbers of a material: those of its law, then how they soften.
+/// Numbers of a material: parameters of its law, then their softening.
 inline constexpr Index material_row = law_numbers + softening_numbers;
 
 /// Numbers at each Gauss point with inelastic strain: Ei xx yy zz xy yz zx, and the law's state.
@@ -68,7 +68,7 @@ inline constexpr Index numbers_that_fall = [] {
     return Index(0);
 }();
 
-/// What flows at a point in a step.
+/// Plastic strain at a point in a step.
 template <class T>
 struct PointIncrement {
   bool any = false;                    // where not, the rest says nothing
@@ -76,14 +76,14 @@ struct PointIncrement {
   T state[BlockLaws::most_state + 1];  // after the step
 };
 
-/// What one law makes of a trial stress, for the lanes that have it; `rows` has the state that the
+/// Response of one law to a trial stress, for its lanes; `rows` has the state that the
 /// point is in and the size of its element. Defined in flow_by.hpp: one copy for all kernels, which
 /// would else take minutes to build.
 template <template <class> class Law, class T, class Ids, class Rows>
 CDEM_OUT_OF_LINE void flow_by(const MaterialTable& table, const Ids& material, const Truth<T>& mine,
                               const Sym3<T>& trial, const Rows& rows, PointIncrement<T>& out);
 
-/// What flows at one point under a trial stress, each lane by the law of this number.
+/// Plastic strain at one point under a trial stress, each lane by the law of this number.
 template <class T, class Ids, class Rows>
 CDEM_HD inline PointIncrement<T> flow(const MaterialTable& table, const Ids& material, const T& law,
                                       const Sym3<T>& trial, const Rows& rows) {

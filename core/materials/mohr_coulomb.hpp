@@ -72,7 +72,7 @@ struct MohrCoulomb {
   }
 
  private:
-  /// Part of the stress by which a plane may be overstepped: what rounding makes of the corners.
+  /// Tolerance of a plane relative to the stress, for rounding at the corners.
   static constexpr Real round_off = 1e-12;
   /// tan(phi) below which the apex of the cone is out of reach.
   static constexpr Real no_apex = 1e-6;

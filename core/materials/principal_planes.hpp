@@ -6,12 +6,12 @@
 
 namespace cdem {
 
-/// What flows in the principal directions, the largest stress first.
+/// Plastic strain in the principal directions, the largest stress first.
 template <class T>
 struct PrincipalFlow {
   T strain[3];
-  T shear;    // sqrt(2/3 s:s), s the deviator of what flows on the planes of shear
-  T tension;  // what flows on those of tension
+  T shear;    // sqrt(2/3 s:s), s the deviator of plastic strain on the planes of shear
+  T tension;  // plastic strain on the planes of tension
 };
 
 /// The same as a tensor.
@@ -31,7 +31,7 @@ CDEM_HD inline T root_of_n(const T& tangent) {
 
 /// Planes of yield in principal stress s1 >= s2 >= s3, tension positive: shear s_i - s_j / N =
 /// strength for the pairs 13, 23 and 12, and tension s_i = cut for 1, 2 and 3. Flow is along
-/// (1, -1/M) on those of shear and along the normal on those of tension.
+/// (1, -1/M) on planes of shear and along the normal on planes of tension.
 ///
 /// `cut` must not lie beyond the apex of the shear planes: else points past it come back unsorted.
 template <class T>

@@ -8,7 +8,8 @@ namespace cdem {
 /// Straight pieces that a strength falls in.
 inline constexpr Index fall_pieces = 7;
 /// Numbers of a law that may fall: the first four with the first two of its state, the next four
-/// with the next two; of each four, the last (a tensile strength) with what has flowed in tension.
+/// with the next two; of each four, the last (a tensile strength) with the plastic strain in
+/// tension.
 inline constexpr Index falling_numbers = 8;
 /// Numbers of a piece: the slip where it begins [m], its length [m], and how the number changes
 /// over it, per metre.

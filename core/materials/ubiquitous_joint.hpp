@@ -13,7 +13,7 @@ namespace cdem {
 ///   shear    tau = cj - sn tan(phi_j),  flow along (t, tan(psi_j) n)
 ///   tension  sn = min(Tj, cj / tan(phi_j)), flow along n
 ///
-/// Rock and plane are brought back alternately; docs/theory/materials.md says what that leaves.
+/// Rock and plane are brought back alternately; docs/theory/materials.md gives the remainder.
 template <class T, template <class> class Rock>
 struct JointedRock {
   static constexpr LawText text{.name = "ubiquitous-joint",
@@ -66,10 +66,11 @@ struct JointedRock {
       Rock<T>::state[0], Rock<T>::state[1],
       StateVariable{.name = "joint_plastic_shear",
                     .unit = "1",
-                    .meaning = "Angle of shear that has flowed along the weak plane, summed"},
-      StateVariable{.name = "joint_plastic_tension",
-                    .unit = "1",
-                    .meaning = "Strain that has flowed across the weak plane in tension, summed"}};
+                    .meaning = "Plastic shear angle along the weak plane, summed over increments"},
+      StateVariable{
+          .name = "joint_plastic_tension",
+          .unit = "1",
+          .meaning = "Plastic tensile strain across the weak plane, summed over increments"}};
   static constexpr std::array softening{Rock<T>::softening[0],  Rock<T>::softening[1],
                                         Rock<T>::softening[2],  Rock<T>::softening[3],
                                         "joint_cohesion",       "joint_friction_angle",
@@ -158,7 +159,7 @@ struct JointedRock {
             .excess = size + across * tan_friction - cohesion,
             .tiny = T(round_off) * (cohesion + abs_of(across) + size)};
   }
-  /// What flows on the plane.
+  /// Plastic strain on the plane.
   CDEM_HD Sym3<T> slide(const ElasticConstants<T>& elastic, const Sym3<T>& stress, T* state) const {
     const T none(0.0), one(1.0), stiff = elastic.lambda + elastic.mu + elastic.mu;
     const Traction on = traction_of(stress);

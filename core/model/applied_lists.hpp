@@ -6,8 +6,8 @@
 
 namespace cdem {
 
-/// List the rows that each node sums of what modules apply, in the order of the rows, and make room
-/// for the forces.
+/// List the rows that each node sums of forces applied by modules, in the order of the rows, and
+/// make room for the forces.
 void list_applied(const Model& model, State& state);
 
 }  // namespace cdem

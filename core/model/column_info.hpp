@@ -1,4 +1,4 @@
-// column_info.hpp - what an array of model or state holds.
+// column_info.hpp - description of an array of model or state.
 #pragma once
 
 #include <array>
@@ -30,18 +30,18 @@ struct Part {
   Index numbers;
 };
 
-/// What an array holds. Kinds of rows are listed in describe_rows.
+/// Contents of an array. Kinds of rows are listed in describe_rows.
 struct ColumnInfo {
   std::string name = {};
   const char* unit = "1";  // of all numbers, or one for each part, with commas between
   const char* meaning = "";
   std::string rows = {};  // kind of its rows; none: a list with a length of its own
   Index numbers = 1;      // of a row
-  Part parts[8] = {};     // what they are, one after the other; none: they all mean the same
+  Part parts[8] = {};     // their meanings, one after the other; none: all mean the same
   Layout layout = Layout::rows;
   // kind of rows that its indices mean: one for all numbers, or one for each; -1 means none
   std::array<std::string, 4> refers_to = {};
-  bool opposite = false;  // index ~i means the opposite of what stands in row i
+  bool opposite = false;  // index ~i means the negative of row i
   bool optional = false;  // empty where nothing asks for it
   Changes changes = Changes::never;
 };

@@ -6,12 +6,12 @@
 
 namespace cdem {
 
-/// What walls remember for the laws of their interfaces: part of `describe_contacts`.
+/// State of interface laws at the walls: part of `describe_contacts`.
 template <class Stored>
 void describe_history(const std::string& set, HistoryColumns& history, Stored&& stored) {
   stored({.name = set + ".history",
           .unit = "of the law",
-          .meaning = "what the law remembers at a vertex or side",
+          .meaning = "state of the law at a vertex or side",
           .rows = "slots",
           .numbers = history.width},
          history.rows);
@@ -51,7 +51,7 @@ void describe_springs(SpringState& c, Stored&& stored) {
          c.state);
 }
 
-/// What they have lost, and what holds some of them: part of `describe_contacts`.
+/// Their losses, and the holds of some of them: part of `describe_contacts`.
 template <class Stored, class Rebuilt>
 void describe_spring_losses(SpringState& c, Stored&& stored, Rebuilt&& rebuilt) {
   stored({.name = "spring.friction", .unit = "J", .meaning = "frictional work", .rows = "slots"},
@@ -144,7 +144,7 @@ void describe_edges(EdgeState& e, Stored&& stored) {
          e.lost);
 }
 
-/// What a step works with to find the contacts of semi-edges: part of `describe_contacts`.
+/// Temporary data of a step for contacts of semi-edges: part of `describe_contacts`.
 template <class Rebuilt>
 void describe_found_edges(EdgeState& e, Rebuilt&& rebuilt) {
   rebuilt("find_target_edges",
@@ -193,7 +193,7 @@ void describe_contact_history(HistoryColumns& history, Rebuilt&& rebuilt) {
   rebuilt("update_contact_forces",
           {.name = "edge.contact_history",
            .unit = "of the law",
-           .meaning = "what the law of a contact wrote",
+           .meaning = "output of the law of a contact",
            .rows = "edge_contacts",
            .numbers = history.width},
           history.rows);

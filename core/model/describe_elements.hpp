@@ -42,7 +42,7 @@ void describe_tiles(const char* rows, const ElementSet& set, ElementTiles& tiles
           tiles.row);
   rebuilt("list_tiles",
           {.name = name + "tile.place",
-           .meaning = "place of a node of an element among those of its tile",
+           .meaning = "place of a node of an element among the nodes of its tile",
            .rows = rows,
            .numbers = set.corners,
            .layout = Layout::columns},
@@ -134,7 +134,7 @@ void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stor
           e.stress);
   rebuilt("report_elements",
           {.name = name + "yielded",
-           .meaning = "what flows now and what ever has, for output",
+           .meaning = "present and past plastic flow, for output",
            .rows = rows,
            .layout = Layout::columns,
            .optional = true},

@@ -9,7 +9,7 @@
 
 namespace cdem {
 
-/// What becomes of arrays that the model has, that a checkpoint keeps, and that are made again.
+/// Treatment of arrays of the model, of arrays in a checkpoint, and of rebuilt arrays.
 template <class Given, class Stored, class Rebuilt>
 struct ArrayVisit {
   const Given& given;
@@ -19,7 +19,7 @@ struct ArrayVisit {
 template <class Given, class Stored, class Rebuilt>
 ArrayVisit(const Given&, const Stored&, const Rebuilt&) -> ArrayVisit<Given, Stored, Rebuilt>;
 
-/// Call given(info, column) for what modules have in the model.
+/// Call given(info, column) for arrays of modules in the model.
 template <class Visit>
 void describe_modules(Model& m, State& s, const Visit& given) {
   const auto skip = [](const ColumnInfo&, auto&) {};
@@ -29,7 +29,7 @@ void describe_modules(Model& m, State& s, const Visit& given) {
                      ArrayVisit{given, skip, skip_rebuilt});
   });
 }
-/// Call stored(info, column) or rebuilt(by, info, column) for what they have in the state.
+/// Call stored(info, column) or rebuilt(by, info, column) for their arrays in the state.
 template <class Stored, class Rebuilt>
 void describe_modules(const Model& m, State& s, const Stored& stored, const Rebuilt& rebuilt) {
   const auto skip = [](const ColumnInfo&, auto&) {};
@@ -86,7 +86,7 @@ void describe_ground(State& s, const Stored& stored, const Rebuilt& rebuilt) {
            column);
   };
   work("node.radiated", "work of its dashpots to the ground", s.nodes.radiated);
-  work("node.radiated_sample", "what of it is of the half step to come", s.nodes.radiated_sample);
+  work("node.radiated_sample", "its part for the coming half step", s.nodes.radiated_sample);
   rebuilt("list_ground",
           {.name = "ground.row",
            .meaning = "row of the dashpots of a node, or -1",
@@ -126,7 +126,7 @@ void describe_applied(State& s, const Stored& stored, const Rebuilt& rebuilt) {
   rebuilt("add_applied",
           {.name = "node.applied",
            .unit = "N, -",
-           .meaning = "sum of what several modules apply, x y z, and a pad",
+           .meaning = "sum of forces of several modules, x y z, and a pad",
            .rows = "nodes",
            .numbers = 4,
            .parts = {{"force", 3}, ""},

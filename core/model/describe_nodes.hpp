@@ -64,7 +64,7 @@ void describe_motion(NodeState& n, Stored&& stored) {
          n.body);
 }
 
-/// What was taken out, and the forces that it left: part of `describe_state`.
+/// Removed blocks, and the forces that they left: part of `describe_state`.
 template <class Stored>
 void describe_taken_out(NodeState& n, Stored&& stored) {
   stored({.name = "node.out",
@@ -74,7 +74,7 @@ void describe_taken_out(NodeState& n, Stored&& stored) {
          n.out);
   stored({.name = "node.relief",
           .unit = "N, -",
-          .meaning = "force of what was dug out, x y z, of which a part may be left",
+          .meaning = "force of removed blocks, x y z; a part may not be released yet",
           .rows = "nodes",
           .numbers = 4,
           .parts = {{"force", 3}, ""},
@@ -82,7 +82,7 @@ void describe_taken_out(NodeState& n, Stored&& stored) {
          n.relief);
 }
 
-/// What the last sampled step left for the energy ledger: part of `describe_state`.
+/// Data of the last sampled step for the energy ledger: part of `describe_state`.
 template <class Stored>
 void describe_samples(NodeState& n, Stored&& stored) {
   stored({.name = "node.sample",
@@ -153,12 +153,12 @@ void describe_node_lists(State& s, Rebuilt&& rebuilt) {
           n.fused);
   rebuilt("find_fused_blocks",
           {.name = "node.general",
-           .meaning = "awake blocks of nodes but those that are fused as a whole",
+           .meaning = "awake blocks of nodes, without completely fused ones",
            .refers_to = {blocks_of("nodes")}},
           n.general);
 }
 
-/// What acts on nodes as far as it follows from the rest: part of `describe_state`.
+/// Forces on nodes that follow from other arrays: part of `describe_state`.
 template <class Rebuilt>
 void describe_node_sums(State& s, Rebuilt&& rebuilt) {
   NodeState& n = s.nodes;

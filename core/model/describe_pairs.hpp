@@ -43,10 +43,10 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_point("slip1", "m", "plastic slip along the first axis of the pair", p.slip1);
   of_point("slip2", "m", "plastic slip along the second axis of the pair", p.slip2);
   of_point("rest", "m", "jump at which a spring is free, along the axes of the pair", p.rest, 3);
-  of_point("rise", "m", "of that jump across the pair, by dilation", p.rise);
+  of_point("rise", "m", "part of that jump across the pair, by dilation", p.rise);
   stored({.name = name + "history",
           .unit = "of the law",
-          .meaning = "what the law remembers at the bond points",
+          .meaning = "state of the law at the bond points",
           .rows = conforms(set) ? rows : "overlap_points",
           .numbers = p.history.size() > 0 ? InterfaceLaws::most_state * set.points : 0,
           .layout = Layout::columns},

@@ -59,7 +59,7 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
         m.class_count * m.class_count);
   visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));
   visit(RowKind{"loads", "forces on nodes"}, end_of(m.load_first));
-  visit(RowKind{"supports", "nodes of which a component is given"}, total(m.support_component) / 3);
+  visit(RowKind{"supports", "nodes with a prescribed component"}, total(m.support_component) / 3);
   visit(RowKind{"dashed_nodes", "nodes with dashpots to the ground"}, total(s.ground.node));
   visit(RowKind{"curves", "histories of loads and supports"}, Index(m.curve_time.size()));
 }
@@ -79,8 +79,8 @@ void describe_search_rows(const State& s, Visit&& visit) {
         end_of(s.search.edge_star_first));
   visit(RowKind{"contact_corners", "slots that a node sums"}, end_of(s.search.contact_first));
   visit(RowKind{"edge_contacts", "contacts of semi-edges"}, end_of(s.edges.first));
-  visit(RowKind{"old_edge_contacts", "those of one step ago"}, end_of(s.edges.old_first));
-  visit(RowKind{"old_edge_states", "their states, then what released overlaps handed over"},
+  visit(RowKind{"old_edge_contacts", "contacts of one step ago"}, end_of(s.edges.old_first));
+  visit(RowKind{"old_edge_states", "their states, then states from released overlaps"},
         total(s.edges.old_state) / 8);
   visit(RowKind{"contacts", "slots, then contacts of semi-edges"},
         4 * exposed + end_of(s.edges.first));

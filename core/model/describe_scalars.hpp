@@ -5,14 +5,14 @@
 
 namespace cdem {
 
-/// What a number of the state is.
+/// Description of a number of the state.
 struct ScalarInfo {
   const char* name;
   const char* unit;  // "1" where it has none
   const char* meaning;
 };
 
-/// What the energy ledger keeps: part of `describe_scalars`.
+/// Data of the energy ledger: part of `describe_scalars`.
 template <class Visit>
 void describe_ledger(State& s, Visit&& visit) {
   visit(
@@ -31,9 +31,7 @@ void describe_ledger(State& s, Visit&& visit) {
                    .unit = "J",
                    .meaning = "energy taken out by kinetic relaxation and changes of mass"},
         s.stopped_energy);
-  visit(ScalarInfo{.name = "taken_out",
-                   .unit = "J",
-                   .meaning = "stored energy that went with blocks taken out"},
+  visit(ScalarInfo{.name = "taken_out", .unit = "J", .meaning = "stored energy of removed blocks"},
         s.taken_out);
   visit(ScalarInfo{.name = "taken_out_friction",
                    .unit = "J",
@@ -78,10 +76,10 @@ void describe_scalars(State& s, Visit&& visit) {
   const auto relief = [&](const char* name, const char* unit, const char* meaning, Real& number) {
     visit(ScalarInfo{.name = name, .unit = unit, .meaning = meaning}, number);
   };
-  relief("relief_begin", "s", "time at which what was dug out begins to let go", s.relief.begin);
-  relief("relief_end", "s", "time at which it has let go", s.relief.end);
-  relief("relief_from", "1", "part of its forces that is left at the former", s.relief.from);
-  relief("relief_to", "1", "part that is left at the latter", s.relief.to);
+  relief("relief_begin", "s", "time at which the release of removed blocks begins", s.relief.begin);
+  relief("relief_end", "s", "time at which the release ends", s.relief.end);
+  relief("relief_from", "1", "remaining fraction of the forces at the former", s.relief.from);
+  relief("relief_to", "1", "remaining fraction at the latter", s.relief.to);
   visit(ScalarInfo{.name = "kinetic_peak",
                    .unit = "J",
                    .meaning = "peak of the kinetic energy since all motion was last stopped"},

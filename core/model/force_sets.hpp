@@ -1,8 +1,8 @@
-// force_sets.hpp - the sets of elements, bonded pairs and modules with rows, each once, and what
-// loops ask of them.
+// force_sets.hpp - the sets of elements, bonded pairs and modules with rows, each once, and
+// their functions for loops.
 //
 // Whatever puts forces on nodes through tiles or corner rows is a set. All loops over sets come
-// from here. What is asked of a module stands in module.hpp.
+// from here. module.hpp lists the functions of a module.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace cdem {
 
-// What chooses the kernels of a set; defined in elements/shapes.hpp and bonds/bonded_pairs.hpp.
+// Selection of the kernels of a set; defined in elements/shapes.hpp and bonds/bonded_pairs.hpp.
 struct Tet4;
 struct Pyramid5;
 struct Wedge6;
@@ -83,8 +83,8 @@ void for_each_set(M& m, S& s, Visit&& visit) {
   for_each_row_set(m, s, visit);
 }
 
-// What host code asks of the items of a set. Each has the arrays of the set on the host, and holds
-// as long as these.
+// Functions of the items of a set for host code. Each has the arrays of the set on the host, and
+// holds as long as these.
 
 /// is_active(item): does it act on its nodes? Pairs do until they are released.
 inline auto activity(const PairState& s) {
@@ -154,8 +154,8 @@ auto nodes_of(const Model&, const Given& given) {
   };
 }
 
-/// for_each_stiffness(item, visit) calls visit(node, stiffness [N/m]) for what an item stiffens its
-/// nodes by at most: from it comes the bound of their frequencies. That of elements is in the model
+/// for_each_stiffness(item, visit) calls visit(node, stiffness [N/m]) for the largest stiffness of
+/// an item at its nodes: it bounds their frequencies. The bound of elements is in the model
 /// already.
 inline auto stiffness_of(const Model& m, const PairSet& p) {
   return

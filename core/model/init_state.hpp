@@ -9,7 +9,7 @@ namespace cdem {
 /// Size every array of a new state and place the nodes; `position` has a row of 3 per node.
 void init_state(const Model& model, State& state, const Real* position);
 
-/// Lets bond points remember what the law of their pair says of an intact bond.
+/// Gives bond points the state of an intact bond of their law.
 class BeginHistory {
  public:
   BeginHistory(const Model& model, const PairSet& pairs, PairState& state);

@@ -1,4 +1,4 @@
-// model.hpp - what a step never changes: mesh, topology, properties, rules.
+// model.hpp - constant during a step: mesh, topology, properties, rules.
 #pragma once
 
 #include <vector>
@@ -73,12 +73,12 @@ struct Model {
   Column<Index> interface_of;
   Column<Interface> interfaces;
   Column<Real> interface_parameters;  // [interface][parameter_row]
-  InterfaceTraits interface_traits;   // what a step asks of them, see note_interfaces
+  InterfaceTraits interface_traits;   // their properties for a step, see note_interfaces
 
   Modules::Data<GivenPart> modules;
 
-  // corner rows of pairs and modules at each node; ~row where it takes the opposite of what stands
-  // there
+  // corner rows of pairs and modules at each node; ~row if it takes the negative
+  // of that row
   Index corner_rows = 0;
   Column<Index> corner_first, corner;
 

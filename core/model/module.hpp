@@ -1,5 +1,5 @@
-// module.hpp - what the engine asks of a thing that acts on nodes and is no part of the method
-// itself.
+// module.hpp - functions of a module for the engine. A module acts on nodes and is not part of
+// the method itself.
 //
 // Elements, bonded pairs and contacts are the method: they know each other. All else is a module,
 // a struct with
@@ -26,26 +26,26 @@
 //   static auto stiffness_of(given);               for_each_stiffness(item, visit):
 //                                                  visit(node, stiffness at most  [N/m])
 //   static void for_each_energy(state, visit);     visit(term, column), see energy_term
-//   static void take_out(given, state, items, out);  nodes of these items are out now: what they
-//                                                  had stored goes into a term of losses
+//   static void take_out(given, state, items, out);  nodes of these items are out now: their
+//                                                  stored energy goes into a term of losses
 //   static void bring_in(given, state, out);       blocks have come in
 //
 // Forces from outside, Port::applied: `act` writes a row for each vertex that it loads into
 // applied_of<Module>(state).rows. The engine sums them on nodes that are not out, books their work
-// by the term with the name of the module, and lets what it loses at an excavation act on as it
-// does with other forces.
+// by the term with the name of the module, and keeps the forces that an excavation removes, like
+// other forces, until they are released.
 //
 //   static bool is_there(given);                   does the case have it?
 //   static std::vector<Index> row_nodes(model, state);  node of each of its rows
 //   static std::vector<NodeDashpot> dashpots(given, state);  if any, to the ground: implicit
-//   static void start(model, state);               if any: what it knows at the start
+//   static void start(model, state);               if any: its state at the start
 //   static void renew(model, state, comes);        if any: nodes with flag 1 have come in
 //   static auto stiffness_of(given);               if any: for_each_stiffness(visit):
 //                                                  visit(node, stiffness at most  [N/m])
 //
-// What follows is the engine's: who sums the rows, fused kernel, sleep, stable step, ledger,
+// The rest belongs to the engine: who sums the rows, fused kernel, sleep, stable step, ledger,
 // checkpoint. No file outside the folder of a module names it, but modules.hpp, tests, and the
-// bindings of what a stage does to it.
+// bindings for changes by a stage.
 #pragma once
 
 #include <concepts>
@@ -62,8 +62,8 @@ struct State;
 
 /// Forces that a module of Port::applied puts on nodes.
 struct AppliedForces {
-  Column<Real> rows;         // rows of 4: what `act` writes  [N]
-  Column<Index> first, row;  // [node + 1], those that a node sums, see list_applied
+  Column<Real> rows;         // rows of 4: output of `act`  [N]
+  Column<Index> first, row;  // [node + 1], rows that a node sums, see list_applied
   Column<Real> sum;          // row of 4 a node  [N]
   Column<Real> work;         // [node]  [J]
 };
@@ -131,7 +131,7 @@ struct StatePart<Module> {
   AppliedForces applied;
 };
 
-/// Whether a module answers all that is asked of its port. The compiler then names the one that is
+/// Whether a module has all functions of its port. The compiler then names the one that is
 /// missing, or that takes other arguments.
 template <class M, Port = M::port>
 struct Answers {
@@ -160,7 +160,7 @@ struct ModuleList {
   static void for_each(Visit&& visit) {
     (visit.template operator()<Modules>(), ...);
   }
-  /// The same for those of one port.
+  /// The same for modules of one port.
   template <Port port, class Visit>
   static void for_each_of(Visit&& visit) {
     for_each([&]<class Module>() {
@@ -169,7 +169,7 @@ struct ModuleList {
   }
 };
 
-/// What a module has in a model, and in a state.
+/// Data of a module in a model, and in a state.
 template <class Module, class M>
 auto& given_of(M& model) {
   auto& part = model.modules;
@@ -190,7 +190,7 @@ template <class Module, class S>
 auto& state_of(S& state) {
   return part_of<Module>(state).state;
 }
-/// What a module of Port::applied has put on nodes.
+/// Forces of a module of Port::applied on nodes.
 template <class Module, class S>
 auto& applied_of(S& state) {
   return part_of<Module>(state).applied;

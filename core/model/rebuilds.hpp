@@ -9,7 +9,7 @@ namespace cdem {
 /// When an array is there that a checkpoint does not keep.
 enum class Made {
   at_start,      // with the state itself
-  after_resume,  // `prepare` calls its function: the begin of a stage may read what it makes
+  after_resume,  // `prepare` calls its function: the begin of a stage may read its result
   with_another,  // by a function of `after_resume`
   in_step,       // every step makes it before anything reads it
 };
@@ -19,8 +19,8 @@ struct Rebuild {
   Made made;
 };
 
-/// All of them; `prepare` calls those of `after_resume` in this order. What a frame, a history or
-/// the begin of a stage reads of the last step cannot be made again: a checkpoint keeps it.
+/// All of them; `prepare` calls the ones of `after_resume` in this order. Data of the last step
+/// for a frame, a history or the begin of a stage cannot be made again: a checkpoint keeps them.
 inline constexpr Rebuild rebuilds[] = {
     {"list_tiles", Made::at_start},
     {"list_applied", Made::at_start},

@@ -1,4 +1,4 @@
-// state.hpp - what a step changes.
+// state.hpp - data that a step changes.
 #pragma once
 
 #include <vector>
@@ -29,7 +29,7 @@ struct NodeState {
   Column<Flag> has_applied;  // 1: modules apply forces to it, see nodes/applied.hpp; or empty
   Column<Real> radiated, radiated_sample;  // work of dashpots, see SampleDashpots; or empty
   Column<Flag> fused;        // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
-  Column<Index> general;     // awake blocks of nodes but those of which all are fused
+  Column<Index> general;     // awake blocks of nodes, without completely fused ones
   bool damped = false;       // in the last step, else damping_force does not count
   Column<Index> tile_first;  // rows of tiles that a node sums, see ElementTiles
   Column<Index> corner_first, corner;  // rows of live pairs and modules that it sums then
@@ -42,11 +42,11 @@ struct GroundState {
   Column<Real> force;       // rows of 4, made in every step  [N]
 };
 
-/// Blocks of elements of which all are fused and have full mass matrices, see
+/// Blocks of elements, all fused and with full mass matrices, see
 /// nodes/fused_block.hpp, those fused with lumped masses, and the other blocks that are awake.
 struct FusedBlocks {
   Column<Index> blocks, general;
-  Column<Index> lumped;          // those of which the nodes move lumped masses
+  Column<Index> lumped;          // blocks with lumped masses
   Column<Index> row_first, row;  // see FusedRows
 };
 
@@ -55,8 +55,8 @@ struct FusedBlocks {
 struct ElementTiles {
   Column<Index> block_first;  // [tile + 1] blocks of elements
   Column<Index> node_first;   // [block + 1] nodes that come to the tile with a block
-  Column<Index> node, row;    // these nodes, and their rows: those of a node lie together
-  Column<Index> place;        // [corner][element] of its node among those of the tile
+  Column<Index> node, row;    // these nodes, and their rows: rows of a node are contiguous
+  Column<Index> place;        // [corner][element] of its node among the tile's nodes
   // On a GPU: [tile node + 1] and the corners at it, by element, counted from the first of the tile
   Column<Index> corner_first, corner;
 };
@@ -76,15 +76,15 @@ struct ElementState {
 /// Dilatation of tets that is averaged at their nodes, see elements/nodal_mean.hpp; empty where
 /// none is.
 struct NodalMeans {
-  Column<Real> start;        // [tet] what it was at the start
-  Column<Real> after;        // [node] mean of what came since, after the last step
+  Column<Real> start;        // [tet] its initial value
+  Column<Real> after;        // [node] mean of changes since, after the last step
   Column<Real> own, flowed;  // [tet] made in every step
   Column<Real> trial;        // [node] the same
   Column<Index> blocks, other_blocks, node_blocks;
   Column<Index> tet_first, tet;  // tets of a node
 };
 
-/// What walls of contacts remember for the laws of their interfaces, see interfaces/history.hpp.
+/// State of interface laws at the walls of contacts, see interfaces/history.hpp.
 struct HistoryColumns {
   Index width = 0;  // numbers of a row; 0 where no law of the model has state
   Column<Real> rows;
@@ -136,7 +136,8 @@ struct ContactAreasState {
   Column<Real> per_stiffness;  // [exposed]
 };
 
-/// Outer pair list: what may touch before the next rebuild, see contact/pair_list/outer_list.hpp.
+/// Outer pair list: possible contacts before the next rebuild, see
+/// contact/pair_list/outer_list.hpp.
 /// A slot is 4 * exposed face + vertex; vf is a pair of vertex and face, ee one of two edges.
 struct OuterList {
   Real lookahead_time = 0, built_time = 0;  // how long it holds at most, and from when  [s]
@@ -181,7 +182,7 @@ struct InnerList {
 /// Exposed faces, the surface that they make, and the pair lists.
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
-  Column<ExposedRow> exposed;                // what follows from them, see list_exposed
+  Column<ExposedRow> exposed;                // data derived from them, see list_exposed
   Index joined_faces = -1;  // exposed faces, and intact bond points, as join_surfaces last saw them
   Real joined_points = -1;
   Column<Index> across;                      // side of an exposed face -> face beyond it, or -1
@@ -191,10 +192,10 @@ struct SearchState {
   InnerList inner;
 };
 
-/// What the wall time of steps is counted by.
+/// Categories of the wall time of steps.
 enum class Phase { rebuild, search, contact, element, node };
 
-/// How what was dug out ceases to bear: the part of its forces that is left, over time.
+/// Release of removed blocks: the remaining fraction of their forces, over time.
 struct Relief {
   Real begin = 0, end = 0;  // [s]
   Real from = 1, to = 1;    // part that is left at these times
@@ -207,7 +208,7 @@ struct Relief {
 };
 
 struct State {
-  Real seconds[5] = {};  // wall time so far by Phase; no part of the results
+  Real seconds[5] = {};  // wall time so far by Phase; not part of the results
   Real time = 0;
   Real loads_time = 0;       // of load_factor and velocity_factor  [s]
   Real dt = 0, dt_last = 0;  // of the coming and of the last step  [s]
@@ -215,8 +216,8 @@ struct State {
   std::int64_t step = 0, rebuilds = 0, built_step = -1;
   Real energy_start = 0, energy_scale = 0;  // of the ledger
   Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]
-  Real taken_out = 0;                       // stored energy that went with blocks taken out  [J]
-  Real taken_out_friction = 0;              // what contacts on their faces had lost until then  [J]
+  Real taken_out = 0;                       // stored energy of removed blocks  [J]
+  Real taken_out_friction = 0;              // loss of contacts on their faces until then  [J]
   Real taken_out_dashpot = 0;               // and in their dashpots  [J]
   Real kinetic_peak = 0;                    // since the motion was last stopped  [J]
   bool stop_due = false;                    // kinetic relaxation: stop all motion in the next step

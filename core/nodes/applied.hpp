@@ -13,7 +13,7 @@ namespace cdem {
 /// last step.
 void act_of_modules(const Model& model, State& state, Queue queue, Stage stage);
 
-/// Add what modules apply to each node, where there is more than one of them.
+/// Add the forces of several modules at each node.
 void add_applied(const Model& model, State& state);
 
 /// Find applied forces at the start, or after blocks were taken out: no time passes. Returns the

@@ -88,17 +88,18 @@ struct MoveNodes {
     const Row v1 = supports.with_given(i, v0 + change(i, v0, kick));
     v1.store(r + 4);
     (Row::at(r) + dt * v1).store(r);
-    const Row way = 0.5 * (dt_before * v0 + dt * v1);
+    const Row displacement = 0.5 * (dt_before * v0 + dt * v1);
     Row external = loads.at(i), support = Row::zero();
     if (supports.support[i] >= 0) support = react(i, v0, v1);
     external = external + support;
-    work_external[i] += dot(external.vector(), way.vector());
+    work_external[i] += dot(external.vector(), displacement.vector());
     if (damping_force)
-      work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way.vector());
+      work_damping[i] -=
+          dot(Row::at(damping_force + std::size_t(i) * 4).vector(), displacement.vector());
     if constexpr (Dashing::any)
       if (ground.act_on(i)) {
         const Row drag = ground.force_on(i);
-        ground.radiated[i] -= dot(drag.vector(), way.vector());
+        ground.radiated[i] -= dot(drag.vector(), displacement.vector());
         support = support + drag;
       }
     if (step_change) {
@@ -131,8 +132,8 @@ struct MoveNodes {
     }
     return (a / mass.mass[i]).xyz();
   }
-  /// Force of the support: what is missing for the motion that it imposed. With a full mass matrix
-  /// `force` has the inertia of all given motions of the block already.
+  /// Force of the support: the difference to the force of its imposed motion. With a full mass
+  /// matrix `force` has the inertia of all given motions of the block already.
   CDEM_HD Row react(Index i, const Row& v0, const Row& v1) const {
     Row need = mass.mass[i] * ((2.0 / (dt_before + dt)) * (v1 - v0));
     const Index row = mass.row(i);
@@ -155,8 +156,8 @@ struct MoveNodes {
   }
 };
 
-/// Both at once, for a step in which nothing looks at the forces in between: what the sum leaves is
-/// still in cache when the motion wants it. Nodes that share a mass matrix go together, with the
+/// Both at once, for a step that needs no forces in between: the sum is still in cache for
+/// the motion. Nodes that share a mass matrix go together, with the
 /// first of them.
 template <class Dashing = NoDashpots>
 struct AdvanceNodes {

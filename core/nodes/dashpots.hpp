@@ -1,7 +1,7 @@
 // dashpots.hpp - dashpots between nodes and the ground, taken implicitly.
 //
 // A dashpot acts with the mean of the velocities before and after the step (Lysmer & Kuhlemeyer
-// 1969; the mean keeps central differences stable at any C, and their step as it is):
+// 1969; the mean keeps central differences stable at any C, and their step unchanged):
 //
 //   v+ = v- + (m/tau I + C/2)^-1 (f - C v-),  force -C (v- + v+)/2,  tau half of both steps
 //
@@ -13,7 +13,7 @@
 
 namespace cdem {
 
-/// No node has dashpots: kernels leave out what they ask for.
+/// No node has dashpots: kernels skip their code.
 struct NoDashpots {
   static constexpr bool any = false;
 };
@@ -21,7 +21,7 @@ struct NoDashpots {
 /// Dashpots of nodes: a symmetric matrix C each.
 struct Dashpots {
   static constexpr bool any = true;
-  const Index* row;    // [node] of what follows, or -1
+  const Index* row;    // [node] of the following arrays, or -1
   const Real* matrix;  // rows of 8: xx yy zz xy yz zx, two pads  [kg/s]
   Real* force;         // rows of 4: of this step  [N]
   Real* radiated;      // [node] work that they have taken so far  [J]

@@ -17,7 +17,7 @@ struct FusedRows {
   const Index* first;  // [block of elements + 1]
   const Index* row;    // ~row where the opposite is meant
 
-  /// Where in `row` those of the element of this number begin, and how many a corner has.
+  /// First place in `row` of the element of this number, and how many a corner has.
   CDEM_HD Index begin(Index element) const {
     return first[element / block_size] + element % block_size;
   }
@@ -35,7 +35,7 @@ inline constexpr bool has_fused_kernel =
 
 /// Force and motion of single-element blocks without load, support, contact or damping: no other
 /// block reads or writes their nodes in this pass, so nothing is stored in between. The
-/// arithmetic is that of SumNodeForces and MoveNodes, with lumped masses or with the full matrix.
+/// arithmetic is as in SumNodeForces and MoveNodes, with lumped masses or with the full matrix.
 template <class Shape, class Flow = NoFlow>
 struct AdvanceFused {
   static_assert(has_fused_kernel<Shape, Flow>);
@@ -112,7 +112,7 @@ struct AdvanceFused {
   CDEM_HD static Ids after(const Ids& place, Index many) {
     return indices_of([&](Index i) { return i + many; }, place);
   }
-  /// What a list holds for the nodes of an element, from the place of the first.
+  /// Entries of a list for the nodes of an element, from the place of the first.
   template <class Ids, class T>
   CDEM_HD static void read(const Real* list, const Ids& place, T* numbers) {
     for (Index k = 0; k < count; k += 4) {

@@ -27,7 +27,7 @@ struct Elements {
   Index corners = e.corners;
 
   Index first_node(Index i) const { return nodes[i]; }
-  /// The rows that a node sums after those of its element.
+  /// The rows that a node sums after the rows of its element.
   Range bond_rows(Index node) const { return {corner_first[node], corner_first[node + 1]}; }
   bool is_lumped(Index i) const { return mass.row(first_node(i)) < 0; }
   bool is_fused(Index i) const {

@@ -27,7 +27,7 @@ Real energy_of_motion(const Model& m, const State& s) {
 
 namespace {
 
-/// Change the masses that move; what kinetic energy that takes is booked, and taken from the last
+/// Change the masses that move; the kinetic energy it takes is booked, and taken from the last
 /// sample, which holds the energy of the masses before.
 template <class Change>
 void book_change(const Model& m, State& s, Change&& change) {

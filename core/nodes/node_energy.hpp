@@ -18,7 +18,7 @@ struct KineticEnergy {
 };
 
 /// Zero the velocity of a node. The forces of this moment have worked since the middle of the last
-/// step: what they have done  [J].
+/// step: their work  [J].
 struct StopNode {
   const Real *force, *damping_force;  // rows of 4; null where nothing damps
   LoadColumns loads;
@@ -29,16 +29,16 @@ struct StopNode {
   CDEM_HD Real operator()(One node) const {
     const Index i = node.i;
     Real* v = motion + std::size_t(i) * 8 + 4;
-    const Vec3<Real> way = since * Vec3<Real>{v[0], v[1], v[2]};
-    work_external[i] += dot(loads.at(i).vector(), way);
+    const Vec3<Real> displacement = since * Vec3<Real>{v[0], v[1], v[2]};
+    work_external[i] += dot(loads.at(i).vector(), displacement);
     if (damping_force)
-      work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), way);
+      work_damping[i] -= dot(Row::at(damping_force + std::size_t(i) * 4).vector(), displacement);
     v[0] = v[1] = v[2] = 0;
-    return dot(Row::at(force + std::size_t(i) * 4).vector(), way);
+    return dot(Row::at(force + std::size_t(i) * 4).vector(), displacement);
   }
 };
 
-/// Momentum M v of each node before the step, and v . M v: half of what the kinetic energy needs.
+/// Momentum M v of each node before the step, and v . M v: half of the terms of the kinetic energy.
 /// Kept in the rows of `SampleNodes` until that has the other half.
 struct NodeMomentum {
   InMotion nodes;

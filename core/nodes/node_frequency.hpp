@@ -54,7 +54,7 @@ struct NodeFrequency {
     all.contact *= part;
     return all;
   }
-  /// Stiffness of bonds and contacts, those that may begin included, on a node  [N/m].
+  /// Stiffness of bonds and contacts, including ones that may begin, on a node  [N/m].
   CDEM_HD Real stiffness_at(Index i) const {
     return max_of(potential[i], force[std::size_t(i) * 4 + 3]) + bonds[i];
   }
@@ -63,8 +63,8 @@ struct NodeFrequency {
   CDEM_HD bool is_held(Index node) const {
     return supports.given(node, 0) && supports.given(node, 1) && supports.given(node, 2);
   }
-  /// What part of a bound of the squared frequency of a block with a mass matrix its nodes leave,
-  /// one by one: K <= diag(S + 2 k), M >= diag(least). All of it where no such diagonal is known.
+  /// Factor on a bound of the squared frequency of a block with a mass matrix, from its nodes
+  /// one by one: K <= diag(S + 2 k), M >= diag(least). 1 if no such diagonal is known.
   CDEM_HD Real part_of_bound(Range block, Real bound) const {
     if (!least_mass) return 1;
     Real largest = 0;

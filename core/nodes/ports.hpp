@@ -5,8 +5,8 @@
 
 namespace cdem {
 
-/// What acts on nodes from outside: gravity, forces that follow curves of time, what is left of the
-/// forces of what was dug out, and applied forces.
+/// Forces on nodes from outside: gravity, forces that follow curves of time, unreleased
+/// forces of removed blocks, and applied forces.
 struct LoadColumns {
   Vec3<Real> gravity;        // [m/s2]
   const Real* gravity_mass;  // [node] mass that gravity acts on  [kg]
@@ -16,7 +16,7 @@ struct LoadColumns {
   const Real* curve_value;   // [curve] factors at the time of this step
   const Real* relief;        // row of 4 a node, see run/excavate.hpp; null: none  [N]
   Real relief_part;          // that is left in this step
-  const Real* applied;       // row of 4 a node, sum of what modules apply; null: none  [N]
+  const Real* applied;       // row of 4 a node, sum of forces of modules; null: none  [N]
 
   CDEM_HD Row at(Index node) const {
     Row f = gravity_mass[node] * Row::of(gravity.x, gravity.y, gravity.z);
@@ -33,7 +33,7 @@ struct CornerLists {
   const Index* tile_first;  // [node + 1], rows of tiles of elements
   InForces tile_force;
   const Index* first;   // [node + 1], rows of bonded pairs and bolts
-  const Index* corner;  // ~row where the node takes the opposite of what stands there
+  const Index* corner;  // ~row if the node takes the negative of that row
   InForces corner_force;
   const Index* contact_first;  // [node + 1], rows of exposed faces that may have contacts
   const Index* contact_corner;
@@ -50,7 +50,7 @@ struct CornerLists {
   }
 };
 
-/// The ports of a node, and three questions: what is their sum, may the fused kernel move the node,
+/// The ports of a node, and three questions: their sum, may the fused kernel move the node,
 /// and does something from outside act on it? A new port is a member here, with a line in each
 /// answer. The order of the sum is part of the results.
 struct NodePorts {

@@ -34,7 +34,7 @@ void remember(const Model& m, State& s) {
                              .remembered = s.nodes.relax.data()});
 }
 
-/// Book what nodes that were slowed down have done until then.
+/// Book the work of slowed nodes until then.
 void book_slowed(const Model& m, State& s) {
   s.stopped_energy += exact_sum({}, m.node_count,
                                 SlowedWork{.undamped = undamped_forces(s),

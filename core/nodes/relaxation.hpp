@@ -1,4 +1,4 @@
-// relaxation.hpp - the way to rest of a static stage: kinetic or adaptive.
+// relaxation.hpp - relaxation of a static stage: kinetic or adaptive.
 #pragma once
 
 #include "core/model/model.hpp"
@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// The way to rest of a static stage, besides damping that the model has already.
+/// Relaxation method of a static stage, besides the damping of the model.
 enum class Relaxation { none, kinetic, adaptive };
 
 /// Kinetic relaxation: stop all motion when the kinetic energy has passed a peak.

@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// Forces on nodes less what damping adds, one component  [N].
+/// Forces on nodes without damping, one component  [N].
 struct Undamped {
   const Real *force, *damping;  // rows of 4; null where nothing damps
   CDEM_HD Real operator()(std::size_t i, std::size_t k) const {
@@ -18,7 +18,7 @@ struct Undamped {
 struct RememberNode {
   Undamped undamped;
   const Real* motion;  // rows of 8
-  Real* remembered;    // rows of 8: undamped force, how much of its velocity is left; velocity
+  Real* remembered;    // rows of 8: undamped force, remaining fraction of its velocity; velocity
 
   CDEM_HD void operator()(One node) const {
     const std::size_t i = node.i;
@@ -44,7 +44,7 @@ struct SlowNode {
 };
 
 /// Nodes that were slowed down at the time of the forces moved with their old velocity until then:
-/// what the forces have done on the half step that their new velocity lacks  [J]. That of the loads
+/// work of the forces in the half step that their new velocity lacks  [J]. That of the loads
 /// is booked.
 struct SlowedWork {
   Undamped undamped;
@@ -57,10 +57,10 @@ struct SlowedWork {
   CDEM_HD Real operator()(One node) const {
     const std::size_t i = node.i;
     const Real* before = remembered + 8 * i;
-    const Row way = supports.without_given(
+    const Row displacement = supports.without_given(
         node.i, (half_step * (1 - before[3])) * Row::of(before[4], before[5], before[6]));
-    work_external[i] += dot(loads.at(node.i).vector(), way.vector());
-    return dot(Vec3<Real>{undamped(i, 0), undamped(i, 1), undamped(i, 2)}, way.vector());
+    work_external[i] += dot(loads.at(node.i).vector(), displacement.vector());
+    return dot(Vec3<Real>{undamped(i, 0), undamped(i, 1), undamped(i, 2)}, displacement.vector());
   }
 };
 

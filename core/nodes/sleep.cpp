@@ -31,7 +31,7 @@ std::vector<Flag> fixed_nodes(const Model& m, const State& s) {
   return fixed;
 }
 
-/// Blocks of tets of which one is averaged have kernels of their own, which run in every step.
+/// Blocks with an averaged tet have kernels of their own, which run in every step.
 void leave_averaged(const State& s, Column<Index>& awake) {
   const auto averaged = on_host(s.nodal.blocks);
   std::vector<Index> others = fetch(awake);

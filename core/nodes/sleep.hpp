@@ -14,7 +14,7 @@ namespace cdem {
 void find_awake(const Model& model, State& state);
 
 /// List the awake nodes after a rebuild of the pair list: nodes that were on the last one stay
-/// awake until the next rebuild, for they have yet to forget their contacts. Finds the fused
+/// awake until the next rebuild, since their contacts must first be reset. Finds the fused
 /// blocks, too.
 void list_awake_nodes(const Model& model, State& state);
 

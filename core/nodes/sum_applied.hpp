@@ -5,8 +5,8 @@
 
 namespace cdem {
 
-/// Sum rows on each node in a fixed order, and their work: that of the mean of the forces before
-/// and after a step on its way.
+/// Sum rows on each node in a fixed order, and their work: by the mean of the forces before
+/// and after a step over its displacement.
 struct SumApplied {
   InMotion nodes;
   const Index* first;  // [node + 1]
@@ -29,7 +29,7 @@ struct SumApplied {
   }
 };
 
-/// Add what several modules apply to a node, in their order.
+/// Add the forces of several modules on a node, in their order.
 struct AddApplied {
   const Real* force;  // of one module, row of 4  [N]
   bool first;         // is it the first of them?

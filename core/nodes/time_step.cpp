@@ -14,10 +14,10 @@ namespace cdem {
 
 namespace {
 
-/// What a dashpot of ratio xi at the highest frequency leaves of the stable step.
+/// Factor on the stable step by a dashpot of ratio xi at the highest frequency.
 Real damped(Real xi) { return std::sqrt(1 + xi * xi) - xi; }
 
-/// What strong contact dashpots leave of that.
+/// Further factor by strong contact dashpots.
 Real strongly_damped(Real xi) {
   if (xi <= sure_contact_damping) return 1;
   // one over damped(xi), which is rounded to zero where xi is large
@@ -44,7 +44,7 @@ Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLi
   const NodeFrequency nodes = node_frequency(m, s, held);
   const Most highest = most({}, m.node_count, nodes);
   if (highest.item < 0) return -1;
-  const Transfer transfer;  // of what stands at one node
+  const Transfer transfer;  // of the stiffness at one node
   const NodeFrequency own = on_host(nodes);
   const Frequency at = own.of(highest.item);
   const Real stiffness = own.stiffness_at(at.stiffest);
@@ -59,8 +59,8 @@ Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLi
 
 StepLimit step_limit(const Model& m, const State& s) {
   StepLimit limit;
-  // what is held or driven in all directions cannot become unstable; where nothing else is, its
-  // step still is what curves, histories and ends of stages are followed with
+  // nodes fixed or driven in all directions cannot become unstable; without others, their
+  // step still resolves curves, histories and ends of stages
   Real largest = highest_frequency_squared(m, s, false, limit);
   if (!(largest > 0)) largest = highest_frequency_squared(m, s, true, limit);
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor

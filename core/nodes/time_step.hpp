@@ -8,13 +8,13 @@
 
 namespace cdem {
 
-/// What limits the time step.
+/// Limits of the time step.
 struct StepLimit {
   Real dt = 0;                         // stable step before the safety factor  [s]
   Index node = -1;                     // where it is reached
   Real element_frequency_squared = 0;  // squared frequency of its elements there  [1/s2]
   Real contact_frequency_squared = 0;  // and of its bonds and contacts  [1/s2]
-  Real bond_part = 0;                  // of these, what bonds have
+  Real bond_part = 0;                  // of these, the part of bonds
 };
 
 /// The stable step is renewed every so many steps, after every rebuild of the pair list, and after

@@ -1,4 +1,4 @@
-// views.hpp - what the kernels of nodes see of model and state.
+// views.hpp - the kernels' view of nodes in model and state.
 #pragma once
 
 #include "core/model/model.hpp"
@@ -10,7 +10,7 @@
 
 namespace cdem {
 
-/// Lumped masses that move: those of adaptive relaxation while it lasts.
+/// Lumped masses that move: scaled ones during adaptive relaxation.
 inline const Column<Real>& lumped_masses(const Model& m, const State& s) {
   return s.nodes.relax_mass.size() > 0 ? s.nodes.relax_mass : m.mass;
 }
@@ -40,7 +40,7 @@ inline SupportColumns support_columns(const Model& m, const State& s) {
           .curve_velocity = s.velocity_factor.data()};
 }
 
-/// Sum of what modules apply, rows of 4; null: none is there.
+/// Sum of forces of modules, rows of 4; null: none.
 inline const Real* applied_forces(const State& s) {
   if (s.nodes.applied.size() > 0) return s.nodes.applied.data();
   const Real* sum = nullptr;

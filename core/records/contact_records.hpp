@@ -7,7 +7,7 @@
 
 namespace cdem {
 
-/// What a contact remembers from step to step: a row of 8 numbers.
+/// State of a contact: a row of 8 numbers.
 struct ContactState {
   Real force_n;      // compression > 0  [N]
   Real penetration;  // effective: stress_free_gap - gap, or 0; less where a hysteretic contact has
@@ -30,7 +30,7 @@ struct ContactState {
   }
   /// How far it lies beyond its stress-free gap, with or without force  [m].
   CDEM_HD Real depth() const { return max_of(penetration, approach); }
-  /// That of a contact that was none.
+  /// State of a new contact.
   CDEM_HD static ContactState none() {
     ContactState s{};
     s.penetration = -1;
@@ -43,7 +43,7 @@ struct ContactState {
   }
 };
 
-/// What the rotation spring of a semi-spring remembers: a row of 8 numbers.
+/// State of the rotation spring of a semi-spring: a row of 8 numbers.
 struct RollingState {
   Real couple1, couple2;  // on the mother, in the frame of the target  [N m]
   Real energy;            // stored  [J]
@@ -61,7 +61,7 @@ struct RollingState {
   }
 };
 
-/// A contact of a semi-edge, as it is kept: a row of 4.
+/// A stored contact of a semi-edge: a row of 4.
 struct EdgeContact {
   Index mother;  // 4 * exposed face + side
   Index face;    // exposed face to which the target edge belongs
@@ -78,7 +78,7 @@ struct EdgeContact {
   }
 };
 
-/// What the search and the forces ask of an exposed face and never changes between two rebuilds:
+/// Data of an exposed face for search and forces, constant between two rebuilds:
 /// one cache line.
 struct ExposedRow {
   Index corner[4];  // nodes; the fourth of a triangle repeats its third

@@ -7,7 +7,7 @@
 
 namespace cdem {
 
-/// How a term counts: what is stored or lost must have been supplied. What is hidden counts as
+/// Sign of a term: stored or lost energy must have been supplied. What is hidden counts as
 /// stored, but never below zero: energy that was made must not be hidden.
 enum class EnergyKind { stored, lost, supplied, hidden };
 
@@ -31,7 +31,7 @@ inline constexpr EnergyTerm energy_terms[] = {
     {.name = "friction", .kind = EnergyKind::lost, .meaning = "slip of contacts and broken bonds"},
     {.name = "damping",
      .kind = EnergyKind::lost,
-     .meaning = "damping of nodes, elements and contacts, and motion that was stopped"},
+     .meaning = "damping of nodes, elements and contacts, and stopped motion"},
     {.name = "plastic",
      .kind = EnergyKind::lost,
      .meaning = "inelastic strain of the elements",
@@ -39,16 +39,14 @@ inline constexpr EnergyTerm energy_terms[] = {
     {.name = "fracture", .kind = EnergyKind::lost, .meaning = "breaking of bonds"},
     {.name = "bolt_loss",
      .kind = EnergyKind::lost,
-     .meaning = "slip, yield and rupture of bolts, and what those removed had stored"},
+     .meaning = "slip, yield and rupture of bolts, and the energy stored in removed bolts"},
     {.name = "radiated",
      .kind = EnergyKind::lost,
      .meaning = "work of dashpots to the ground: waves that have left"},
-    {.name = "taken_out",
-     .kind = EnergyKind::lost,
-     .meaning = "stored energy that went with blocks taken out"},
+    {.name = "taken_out", .kind = EnergyKind::lost, .meaning = "stored energy of removed blocks"},
     {.name = "step_change",
      .kind = EnergyKind::hidden,
-     .meaning = "of vibrations, hidden by a step that grew; negative: made by one that shrank"},
+     .meaning = "energy of vibrations hidden by a longer step; negative: made by a shorter one"},
     {.name = "external",
      .kind = EnergyKind::supplied,
      .meaning = "work of loads, gravity and supports"},

@@ -1,4 +1,4 @@
-// interface.hpp - what every interface has, whatever its law.
+// interface.hpp - data of every interface, for any law.
 #pragma once
 
 #include "core/base/lanes.hpp"
@@ -33,7 +33,7 @@ struct Interface {
   }
 };
 
-/// What all interfaces of a model have together.
+/// Common properties of all interfaces of a model.
 struct InterfaceTraits {
   unsigned laws = 0, curved = 0;  // see InterfaceTable
   bool has_state = false;         // the same

@@ -1,4 +1,4 @@
-// law_declaration.hpp - what a law says of itself: its parameters and what it remembers.
+// law_declaration.hpp - declaration of a law: its parameters and its state.
 //
 // A law is one header, core/interfaces/<law>.hpp or core/materials/<law>.hpp, and one entry in the
 // laws.hpp beside it. Schema, checks, documentation, checkpoint, output fields and Python views are
@@ -10,7 +10,7 @@
 
 namespace cdem {
 
-/// Name of a law in a case, and what it is in one sentence.
+/// Name of a law in a case, and its description in one sentence.
 struct LawText {
   const char* name;
   const char* meaning;
@@ -39,7 +39,7 @@ struct Parameter {
   double below = std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
   double otherwise = required;  // where the case is silent
-  const char* like = nullptr;   // then it is that of another parameter
+  const char* like = nullptr;   // then the default is the value of another parameter
   Form form = Form::number;
   bool is_strength = false;       // divided by a factor of safety (of an angle, the tangent is)
   bool is_factor = false;         // multiplied by one
@@ -48,7 +48,7 @@ struct Parameter {
   int scatter = 0;  // power of the factor of a pair's strength that it has, see draws.hpp
 };
 
-/// A list of parameters, and then those of a law that is made of its law.
+/// A list of parameters, and then the parameters of a law built on it.
 template <std::size_t count, class... More>
 constexpr std::array<Parameter, count + sizeof...(More)> with_more(
     const std::array<Parameter, count>& list, const More&... more) {
@@ -59,7 +59,7 @@ constexpr std::array<Parameter, count + sizeof...(More)> with_more(
   return all;
 }
 
-/// One number that a law remembers. It may only grow: where several contacts share a history, the
+/// One state variable of a law. It may only grow: where several contacts share a history, the
 /// largest of their numbers goes on.
 struct StateVariable {
   const char* name;

@@ -13,7 +13,7 @@ constexpr Index largest_of(Sizes... sizes) {
   return largest;
 }
 
-/// What a law declares, as constants: a kernel on a GPU may not call the functions of std::array.
+/// Declarations of a law, as constants: a kernel on a GPU may not call the functions of std::array.
 template <template <class> class Law>
 inline constexpr Index parameter_count = Index(Law<Real>::parameters.size());
 template <template <class> class Law>

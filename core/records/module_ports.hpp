@@ -13,7 +13,7 @@ struct NodeDashpot {
 
 /// How the forces of a module come to nodes.
 enum class Port {
-  rows,     // between nodes: each adds those of its items, after elements and before contacts
+  rows,     // between nodes: each adds rows of its items, after elements and before contacts
   applied,  // from outside: one sum for each node, after other loads
 };
 /// When in a step a module acts.

@@ -11,7 +11,7 @@ struct SearchRules {
   Real action = 0;            // coefficient of the point where the force acts: 0 is the vertex
   Real tolerance = 0.001;     // in-plane tolerance; must stay below the indentation
   Real entry = 0.05;          // a new contact may be this deep, and 1.5 times the step's approach:
-                              // not less than what the cones' slack hides
+                              // not less than the cones' slack
   Real depth = 0.3;           // a contact in place is kept down to here, from where it is free of
                               // stress; deeper is an error
   Real opposing = 0.02;       // faces touch only if n_m . n_t < -opposing

@@ -1,4 +1,4 @@
-// step_plan.hpp - what one step does besides the physics that every step does.
+// step_plan.hpp - tasks of one step besides the physics of every step.
 #pragma once
 
 namespace cdem {
@@ -7,7 +7,7 @@ namespace cdem {
 /// `stop_motion`.
 struct StepPlan {
   bool sample = false;            // sample energies and unbalanced forces
-  bool everything_awake = false;  // compute what sleeps too: loads or strengths may have changed
+  bool everything_awake = false;  // compute sleeping items too: loads or strengths may have changed
   bool stop_motion = false;  // kinetic relaxation: zero all velocities between force and motion
   bool fuse_blocks = false;  // single-element blocks without contacts take the fused kernel
 };

@@ -15,7 +15,7 @@ namespace cdem {
 
 namespace {
 
-/// Elements of these nodes forget what they have borne before; what they have lost stays.
+/// Reset the state of elements of these nodes; their losses stay.
 void renew_elements(const Model& m, State& s, const Flag* comes) {
   for_each_element_set(m, s, [&](auto, const ElementSet& e, ElementState& es) {
     const auto nodes = on_host(e.nodes);
@@ -38,7 +38,7 @@ void renew_nodal_means(const Model& m, State& s, const Flag* comes) {
     if (comes[i]) after[i] = 0;
 }
 
-/// Which faces a pair covers: those of which none of the pairs is released.
+/// Faces covered by pairs: faces without a released pair.
 struct Covered {
   std::vector<Flag> touched, bare;  // of the blocks that come in, or beside them; by face
 };

@@ -1,4 +1,4 @@
-// bring_in.hpp - blocks that come into the computation: fill, linings, and what waits for its
+// bring_in.hpp - blocks added to the computation: fill, linings, and parts that wait for their
 // stage. Host code.
 #pragma once
 
@@ -12,9 +12,9 @@ namespace cdem {
 /// and loads before `bring_in`.
 void place_nodes(State& state, const Flag* comes, const Real* position);
 
-/// Let the blocks of these nodes act: they begin at rest and without stress, bonded to what they
-/// lie on where `bonded` says so for the interface. Faces that this covers cannot be touched any
-/// more, and their contacts end; the energy that those stored is booked as taken out.
+/// Let the blocks of these nodes act: they begin at rest and without stress, bonded to the blocks
+/// below if `bonded` is set for the interface. Covered faces are no longer exposed, and their
+/// contacts end; the energy stored in these is booked as taken out.
 void bring_in(Model& model, State& state, const Flag* comes, const Flag* bonded);
 
 }  // namespace cdem

@@ -13,7 +13,7 @@ namespace cdem {
 
 namespace {
 
-/// Forces of the last step that what leaves puts on what stays.
+/// Forces of the last step from removed blocks on remaining ones.
 class KeptForces {
  public:
   KeptForces(const Model& m, State& s, const Flag* leaves)
@@ -77,7 +77,7 @@ class KeptForces {
   Index vertex_count(Index face) const { return vertex(face, 3) < 0 ? 3 : 4; }
   bool leaves(Index face) const { return leaves_[vertex(face, 0)] != 0; }
 
-  /// Of what leaves it does not matter, nor of what left before.
+  /// It does not matter for removed blocks, now or earlier.
   void add(Index node, Real weight, const Vec3<Real>& f) {
     if (leaves_[node] || (out_.size() > 0 && out_[node])) return;
     Real* row = relief_.data() + 4 * std::size_t(node);
@@ -137,7 +137,7 @@ void excavate(Model& m, State& s, const Flag* leaves) {
     if (!leaves[k / 4]) now[k] -= change[k];
 }
 
-void let_go(State& s, Real part, Real end_time) {
+void release_forces(State& s, Real part, Real end_time) {
   s.relief = {.begin = s.time, .end = end_time, .from = s.relief.at(s.time), .to = part};
 }
 

@@ -1,4 +1,4 @@
-// excavate.hpp - blocks that are dug out, and let go of what they bore. Host code.
+// excavate.hpp - blocks that are removed, and the release of their forces. Host code.
 #pragma once
 
 #include "core/model/model.hpp"
@@ -6,13 +6,13 @@
 
 namespace cdem {
 
-/// Between two runs, dig whole blocks out, given by a flag for each node: they are taken out, and
-/// the forces that their bonds and contacts put on what stays are kept as loads (`relief`). What is
-/// left of earlier ones adds to them, and all of it is left until `let_go` says otherwise.
+/// Between two runs, remove whole blocks, given by a flag for each node. The forces of their bonds
+/// and contacts on the rest are kept as loads (`relief`), together with the remainder of earlier
+/// ones, until `release_forces` releases them.
 void excavate(Model& model, State& state, const Flag* leaves);
 
-/// From now on to a time, let go of the kept forces until this part of them is left; at once where
+/// From now to a given time, release the kept forces down to this fraction; at once if
 /// the time is now or past.
-void let_go(State& state, Real part, Real end_time);
+void release_forces(State& state, Real part, Real end_time);
 
 }  // namespace cdem

@@ -1,4 +1,4 @@
-// run.hpp - the time loop, and what may be asked of it.
+// run.hpp - the time loop and its functions.
 #pragma once
 
 #include <cstdint>

@@ -52,7 +52,7 @@ auto items_out(const Model& m, const State& s, const Set& set) {
   };
 }
 
-/// What the last sample counted of the half step to come will not be.
+/// Undo the part of the coming half step in the last sample.
 void stop_nodes(NodeState& n, const std::vector<Index>& which) {
   const auto sample = on_host(n.sample), work_external = on_host(n.work_external);
   const auto work_damping = on_host(n.work_damping), step_change = on_host(n.step_change);
@@ -88,7 +88,7 @@ void unload(State&, const ElementSet& e, ElementState& es, const std::vector<Ind
   }
 }
 
-/// The faces of a pair can be touched then; those that are out are hidden afterwards.
+/// The faces of a pair become exposed; removed ones are hidden afterwards.
 void unload(State& s, const PairSet& p, PairState& ps, const std::vector<Index>& which) {
   const auto is_active = activity(ps);
   const auto faces = on_host(p.faces);

@@ -14,10 +14,10 @@ namespace cdem {
 /// stored in them is booked as taken out.
 void take_out(Model& model, State& state, const Flag* leaves);
 
-/// Hold what has been taken out, after Python has handed over arrays of the model.
+/// Keep removed blocks fixed, after Python has set arrays of the model.
 void hold_taken_out(Model& model, State& state);
 
-/// Hide faces, given by a flag for each; what their contacts have lost stays in the ledger.
+/// Hide faces, given by a flag for each; losses of their contacts stay in the ledger.
 void hide_faces(State& state, const std::vector<Flag>& hidden);
 
 /// Energy that counts as stored  [J].

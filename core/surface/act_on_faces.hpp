@@ -6,7 +6,7 @@
 
 namespace cdem {
 
-/// Entries of a case by number: law, its parameters, and what they are at this time.
+/// Entries of a case by number: law, its parameters, and their values at this time.
 struct SurfaceEntries {
   const Index* law;
   const Real* parameters;  // [entry][surface_row]

@@ -11,7 +11,7 @@ namespace cdem {
 
 namespace {
 
-/// Note where a face lies, and let its law begin again.
+/// Store the position of a face, and restart its law.
 class Begin {
  public:
   Begin(const cdem::State& s, const SurfaceSet& g, const SurfaceFaces& faces, SurfacePoints& points)
@@ -56,7 +56,7 @@ void for_each_faces(const SurfaceSet& g, SurfaceState& s, const Visit& visit) {
   visit(g.quads, s.quads);
 }
 
-/// Numbers of a vertex that laws remember; none where no law of the case does.
+/// State variables of laws at a vertex; none if no law of the case has any.
 Index state_of_vertex(const SurfaceSet& g) {
   bool any = false;
   SurfaceLaws::for_each([&]<template <class> class Law, Index number>() {

@@ -1,4 +1,4 @@
-// data.hpp - the arrays of surface laws, and what the engine asks of them, see model/module.hpp.
+// data.hpp - the arrays of surface laws, and their functions for the engine, see model/module.hpp.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct Model;
 struct State;
 struct Surface;
 
-/// Faces with one number of vertices; one that several entries act on stands there for each.
+/// Faces with one number of vertices; a face with several entries is listed once for each.
 struct SurfaceFaces {
   Index count = 0, stride = 0;
   Index vertices = 0, row_first = 0;  // of a face; first of its rows among the forces of the module
@@ -37,7 +37,7 @@ struct SurfaceSet {
   Column<Flag> waits;        // [entry] 1: for a stage, see begin
 };
 
-/// What a law knows of the vertices of a set of faces.
+/// Input of a law at the vertices of a set of faces.
 struct SurfacePoints {
   Column<Real> place;    // [3 * vertices][face] where they lay as the entry began to act  [m]
   Column<Real> history;  // [vertices * most_state][face]; empty where no law has state
@@ -77,7 +77,8 @@ struct Surface {
   static void begin(const Model& model, cdem::State& state, const Flag* which);
   /// Dashpots of laws that have begun to act, vertex by vertex.
   static std::vector<NodeDashpot> dashpots(const Given& g, const State& s);
-  /// for_each_stiffness(visit) calls visit(node, stiffness [N/m]) for what laws stiffen nodes by.
+  /// for_each_stiffness(visit) calls visit(node, stiffness [N/m]) for the stiffness of laws at
+  /// nodes.
   static auto stiffness_of(const Given& g) {
     return [&g](auto&& visit) {
       for (const SurfaceFaces* faces : {&g.triangles, &g.quads}) {
@@ -130,7 +131,7 @@ struct Surface {
                   {.name = "surface.factor", .meaning = "factor in this step", .rows = "surfaces"},
                   s.factor);
     visit.rebuilt("act_of_modules",
-                  {.name = "surface.acts", .meaning = "1: in this step", .rows = "surfaces"},
+                  {.name = "surface.acts", .meaning = "1: acts in this step", .rows = "surfaces"},
                   s.acts);
   }
 
@@ -172,7 +173,7 @@ struct Surface {
                 faces.normal);
     visit.given({.name = rows + ".impedance",
                  .unit = "kg/(m2 s)",
-                 .meaning = "of the rock behind it, along the normal and across",
+                 .meaning = "density times wave speed of the rock behind it, normal and tangential",
                  .rows = rows,
                  .numbers = 2,
                  .optional = true},

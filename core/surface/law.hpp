@@ -1,4 +1,4 @@
-// law.hpp - what a surface law is asked and what it answers.
+// law.hpp - input and answer of a surface law.
 //
 // A surface law is a traction on faces from outside: a template over the number type, as interface
 // laws and block laws are, with

@@ -4,7 +4,7 @@
 #include "core/records/law_list.hpp"
 #include "core/surface/pressure.hpp"
 #include "core/surface/quiet.hpp"
-#if defined(CDEM_OWN_SURFACE_LAW)  // a law that is built beside those of the list
+#if defined(CDEM_OWN_SURFACE_LAW)  // a law built in addition to the list
 #include CDEM_OWN_SURFACE_HEADER
 #endif
 

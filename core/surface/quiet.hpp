@@ -9,12 +9,13 @@ namespace cdem {
 /// takes them implicitly, see nodes/dashpots.hpp; as a traction the law gives none.
 template <class T>
 struct Quiet {
-  static constexpr LawText text{.name = "quiet", .meaning = "Lets waves out of the model"};
+  static constexpr LawText text{.name = "quiet",
+                                .meaning = "Viscous boundary that absorbs outgoing waves"};
   static constexpr std::array parameters{
       Parameter{.name = "part",
                 .symbol = "a",
                 .unit = "1",
-                .meaning = "Of the impedance of the rock behind the face",
+                .meaning = "Fraction of the impedance of the rock behind the face",
                 .otherwise = 1}};
   static constexpr std::array<StateVariable, 0> state{};
   static const char* contradiction(const Real*) { return nullptr; }

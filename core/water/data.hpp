@@ -1,4 +1,4 @@
-// data.hpp - the arrays of water, and what the engine asks of it, see model/module.hpp.
+// data.hpp - the arrays of water, and its functions for the engine, see model/module.hpp.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct WetFaces {
   Column<Flag> bonded;                // [face] 1: water of the joint presses while bonds hold
   Column<Real> kept;                  // [vertex][face] see WaterFields  [Pa]
   Column<Real> aperture;              // [face] up to which an open joint keeps its water  [m]
-  // what lies on it at the start: face, and 3 * pair + kind, in the order of the sets, or -1
+  // its initial neighbours: face, and 3 * pair + kind, in the order of the sets, or -1
   Column<Index> pair_first, mate, pair;
 };
 
@@ -53,7 +53,7 @@ struct Water {
   using State = WaterState;
   static constexpr const char* name = "water";
   static constexpr Port port = Port::applied;
-  static constexpr Stage stage = Stage::after_contacts;  // water of a joint asks what touches
+  static constexpr Stage stage = Stage::after_contacts;  // water of a joint needs the contacts
 
   static bool is_there(const Given& w) { return w.fields.size() > 0; }
   static void take_counts(Given& w, const auto& number) {
@@ -130,7 +130,7 @@ struct Water {
     const std::string set = std::string(rows) + ".";
     given({.name = set + "kept",
            .unit = "Pa",
-           .meaning = "pressure at a vertex that fields keep, at the start",
+           .meaning = "initial pressure at a vertex, stored for fields",
            .rows = rows,
            .numbers = w.vertices,
            .layout = Layout::columns,
@@ -139,12 +139,12 @@ struct Water {
           w.kept);
     given({.name = set + "aperture",
            .unit = "m",
-           .meaning = "up to which an open joint keeps its water",
+           .meaning = "largest opening of a joint that keeps its water",
            .rows = rows,
            .changes = Changes::with_stage},
           w.aperture);
     given({.name = set + "pair_first",
-           .meaning = "what lies on a face at the start",
+           .meaning = "faces that lie on a face at the start",
            .rows = rows,
            .layout = Layout::starts,
            .refers_to = {set + "pairs"},
@@ -197,7 +197,7 @@ struct Water {
           w.node_field);
     given({.name = "water.node_kept",
            .unit = "Pa",
-           .meaning = "pressure in the pores that fields keep, at the start",
+           .meaning = "initial pore pressure, stored for fields",
            .rows = "nodes",
            .optional = true,
            .changes = Changes::with_stage},

@@ -9,7 +9,7 @@ namespace cdem {
 /// Pressure fields as they are in this step: factor (c + slope . x + keeps kept), with `kept` what
 /// a point was given at the start, if the field keeps it. Below zero there is no water.
 ///
-/// Rows of 8: c [Pa], slope x y z [Pa/m], keeps (0 or 1), factor, two pads. The last row is that of
+/// Rows of 8: c [Pa], slope x y z [Pa/m], keeps (0 or 1), factor, two pads. The last row is for
 /// dry points.
 struct WaterFields {
   const Real* rows;

@@ -11,7 +11,7 @@ namespace cdem {
 
 namespace {
 
-/// What presses on the vertices of faces of one set.
+/// Pressure at the vertices of faces of one set.
 class Vertices {
  public:
   Vertices(const Model& m, const State& s, const WetFaces& w)

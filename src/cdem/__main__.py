@@ -1,4 +1,4 @@
-"""``python -m cdem`` does what the program ``cdem`` does."""
+"""``python -m cdem`` runs the program ``cdem``."""
 
 from cdem.cli import main
 

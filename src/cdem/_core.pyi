@@ -14,13 +14,13 @@ def padded_stride(count: int) -> int: ...
 def weibull_factors(faces: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], seed: int, shape: float, mean: float) -> NDArray[numpy.float64]: ...
 
 def interface_laws() -> list:
-    """What the interface laws say of themselves."""
+    """Declarations of the interface laws."""
 
 def block_laws() -> list:
-    """What the block laws say of themselves."""
+    """Declarations of the block laws."""
 
 def surface_laws() -> list:
-    """What the surface laws say of themselves."""
+    """Declarations of the surface laws."""
 
 def surface_contradiction(law: str, parameters: dict) -> str: ...
 
@@ -114,7 +114,7 @@ class Core:
 
     def remove_bolts(self, which: Annotated[NDArray[numpy.int8], dict(order='C', device='cpu', writable=False)]) -> None: ...
 
-    def let_go(self, part: float, end_time: float) -> None: ...
+    def release_forces(self, part: float, end_time: float) -> None: ...
 
     def renew_step(self) -> None: ...
 
@@ -129,7 +129,7 @@ class Core:
     def fields(self) -> dict[str, NDArray]: ...
 
     def absent_fields(self) -> list[str]:
-        """Names of stored arrays of what the case does not have."""
+        """Names of stored arrays of modules that the case does not have."""
 
     def rebuilt(self) -> dict[str, NDArray]: ...
 
@@ -144,7 +144,7 @@ class Core:
     def describe_scalars(self) -> list[dict[str, Any]]: ...
 
     def yielded(self) -> dict[str, NDArray]:
-        """What has yielded in each element now and ever, by shape."""
+        """Present and past plastic flow of each element, by shape."""
 
     def stress(self) -> dict[str, NDArray]: ...
 

@@ -1,4 +1,4 @@
-"""Which compiled core this process uses: the best that this machine can run, or the one asked for."""
+"""The compiled core for this process: the best that this machine can run, or the requested one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cdem._instruction_sets import NEEDS, cpu_flags
 from cdem.errors import BackendError
 
 DEVICES = ("cuda", "emulated")
-"""Cores that are used only where CDEM_ISA names them: for a GPU, and to look for faults of one."""
+"""Cores used only when CDEM_ISA names them: for a GPU, and to find faults of GPU code."""
 GPU = (
     "in a clone, with nvcc: pip install . -C cmake.define.CDEM_CUDA=ON; then CDEM_ISA=cuda cdem run "
     "CASE.yaml"
@@ -24,7 +24,7 @@ def _is_built(isa: str) -> bool:
 
 
 def built() -> list[str]:
-    """Instruction sets that there is a core for, best first."""
+    """Instruction sets with a compiled core, best first."""
     return [isa for isa in NEEDS if _is_built(isa)]
 
 
@@ -32,7 +32,7 @@ def choose() -> str:
     """The instruction set, or device, of the core to load.
 
     Raises:
-        BackendError: None runs here, or CDEM_ISA names one that does not.
+        BackendError: No core runs here, or CDEM_ISA names one that does not.
     """
     there, flags = built(), cpu_flags()
     wanted = os.environ.get("CDEM_ISA")
@@ -45,7 +45,7 @@ def choose() -> str:
             raise BackendError(
                 f"CDEM_ISA={wanted}: no such compiled core; built are: {', '.join(there) or 'none'}"
             )
-        # Without this the first instruction that is missing kills Python. No flags: not known.
+        # Without this check a missing instruction would kill Python. No flags: unknown.
         lacking = NEEDS[wanted] - flags
         if flags and lacking:
             raise BackendError(

@@ -1,10 +1,10 @@
-"""What the compiled core is built for: instruction sets, best first. Also read by tools/build.py."""
+"""Instruction sets of the compiled core, best first. Also read by tools/build.py."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-# What the modules are compiled for, best first, and the CPU flags that each needs.
+# Targets of the compiled modules, best first, and the CPU flags that each needs.
 NEEDS = {
     "v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl", "avx2", "fma", "bmi2"},
     "v3": {"avx2", "fma", "bmi1", "bmi2", "f16c", "movbe"},
@@ -14,7 +14,7 @@ NEEDS = {
 
 
 def cpu_flags() -> set[str]:
-    """Flags of this CPU; empty where the system does not tell."""
+    """Flags of this CPU; empty if the system does not give them."""
     try:
         text = Path("/proc/cpuinfo").read_text()
     except OSError:

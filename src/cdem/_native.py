@@ -10,17 +10,18 @@ from cdem import own_laws
 from cdem._core_choice import built, choose
 from cdem.errors import BackendError
 
-# Threads that wait by spinning make a busy machine a hundred times slower; a short spin is enough.
-# It would take the place of a policy that the user asks for.
+# Threads that spin while waiting make a busy machine a hundred times slower; a short spin is
+# enough.
+# A policy set by the user is kept.
 if "OMP_WAIT_POLICY" not in os.environ:
     os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 
 available = built()
 name = choose()
 headers = own_laws.allowed()
-"""Headers of users whose laws this core has."""
+"""Headers of own laws in this core."""
 digests = own_laws.digests(headers)
-"""SHA-256 of each, by its name."""
+"""SHA-256 of each header, by name."""
 if TYPE_CHECKING:
     from cdem import _core as core  # src/cdem/_core.pyi, of all of them
 else:

@@ -1,3 +1,3 @@
-"""The version of cdem, which results, checkpoints and sweeps keep."""
+"""The version of cdem, stored in results, checkpoints and sweeps."""
 
 __version__ = "0.1.0"

@@ -1,4 +1,4 @@
-"""Errors meant for the person at the keyboard: where, what, and how to mend it."""
+"""Errors for the user: place, problem, remedy."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class BodyError(MeshError):
     Attributes:
         points: Its corners, (corners, 3).
         faces: Corner numbers of each face.
-        marks: What is wrong: two corner numbers for an edge, one for a corner.
+        marks: Faults: two corner numbers for an edge, one for a corner.
     """
 
     def __init__(self, message: str, points: Any, faces: Any, marks: Any) -> None:
@@ -48,8 +48,8 @@ class UnstableError(CdemError):
 
 
 class BackendError(CdemError):
-    """The machine cannot do what was asked: no compiled core, no such device, no such extra."""
+    """The machine cannot do it: no compiled core, no such device, no such extra."""
 
 
 class DiskError(BackendError):
-    """A file cannot be written: the disk is full, or the like."""
+    """A file cannot be written, e.g. because the disk is full."""

@@ -1,9 +1,9 @@
-"""Laws of users: headers whose laws a library has, a core of its own that `cdem law build` makes.
+"""Laws of users: `cdem law build` compiles a core of its own, a library, from their headers.
 
-Libraries lie in a folder of the user's own, `home`, each under a digest of what it is made from: the
-text of its headers, the sources and the version of cdem. So what runs is what was read; nothing that
-lies beside a header is loaded. A process has one core, so its laws are chosen before anything of cdem
-is used; processes that it starts have them too.
+Libraries lie in a folder of the user's own, `home`, each under a digest of its sources: the text of
+its headers, the sources and the version of cdem. So the text that was read is the code that runs;
+no other file beside a header is loaded. A process has one core, so its laws are chosen before any
+other use of cdem; processes that it starts have them too.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cdem._version import __version__
 from cdem.errors import BackendError, CaseError
 
 ABI = 1
-"""Version of what a library and its record hold."""
+"""Version of the format of a library and its record."""
 VARIABLE = "CDEM_OWN_LAWS"
 """Environment variable with the paths of the headers."""
 
@@ -67,20 +67,21 @@ def _refuse_others(path: Path) -> None:
     there = path.lstat()
     if stat.S_ISLNK(there.st_mode) or there.st_uid != os.getuid() or there.st_mode & 0o022:
         raise BackendError(
-            f"{path}: is a link, or another user owns it or may write there; own laws are loaded from "
-            "what is yours alone: remove it, or chmod go-w"
+            f"{path}: is a link, or another user owns it or may write there; own laws are loaded "
+            f"only "
+            "from a private folder: remove it, or chmod go-w"
         )
 
 
 def library_of(headers: Iterable[Path], isa: str) -> Path:
-    """The library with the laws of these headers as they are now."""
+    """The library for the present text of these headers."""
     headers = list(headers)
     made = json.dumps(record_of(headers, isa), sort_keys=True)
     return home() / f"{headers[0].stem}-{hashlib.sha256(made.encode()).hexdigest()}.so"
 
 
 def record_of(headers: Iterable[Path], isa: str) -> dict[str, Any]:
-    """What a library of these headers is made from, now."""
+    """Present sources of a library of these headers."""
     return {
         "abi": ABI,
         "version": __version__,
@@ -96,22 +97,22 @@ def digests(headers: Iterable[Path]) -> dict[str, str]:
 
 
 def load_own_laws(*headers: str | Path) -> None:
-    """Let cdem use laws of headers that `cdem law build` has made a library of.
+    """Let cdem use the laws of headers, after `cdem law build` has compiled them.
 
-    Their code runs as part of cdem: allow what you have read. Call this before anything else of cdem.
+    Their code runs inside cdem: read it first. Call this before any other use of cdem.
 
     Args:
         headers: In the order in which they were built.
 
     Raises:
         CaseError: There is no such header.
-        BackendError: There is no library of this text for this version and core, or it is not this
-            user's alone; or this process uses other laws already.
+        BackendError: There is no library of this text for this version and core, or other users may
+            write it; or this process already uses other laws.
     """
     paths = [Path(header).resolve() for header in headers]
     _checked(paths, choose())
     if (native := sys.modules.get("cdem._native")) and native.headers != paths:
-        raise BackendError("load_own_laws: call it before anything else of cdem is used")
+        raise BackendError("load_own_laws: call it before any other use of cdem")
     os.environ[VARIABLE] = os.pathsep.join(map(str, paths))
 
 
@@ -136,7 +137,7 @@ def import_core(headers: list[Path], isa: str) -> ModuleType:
 
 
 def _checked(headers: list[Path], isa: str) -> Path:
-    """The library of these headers, if it is what `cdem law build` makes of them here and now."""
+    """The library of these headers, if it matches the present sources and core."""
     for header in headers:
         if not header.is_file():
             raise CaseError(f"{header}: no such file")
@@ -149,13 +150,14 @@ def _checked(headers: list[Path], isa: str) -> Path:
         whole = digest(library)
     except FileNotFoundError:
         raise BackendError(
-            f"{headers[0]}: has no library of this text for cdem {__version__}, instruction set {isa}; "
+            f"{headers[0]}: has no compiled library of its present text for cdem {__version__}, "
+            f"instruction set {isa}; "
             f"make it: {again}"
         ) from None
     except (ValueError, KeyError, TypeError) as error:
         raise BackendError(f"{record}: cannot be read ({error}); make it again: {again}") from None
     if made != whole:
         raise BackendError(
-            f"{library}: is not what cdem law build has written; make it again: {again}"
+            f"{library}: differs from the file that cdem law build wrote; make it again: {again}"
         )
     return library

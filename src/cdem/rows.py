@@ -1,4 +1,4 @@
-"""Arrays of the core as rows of numbers, by the names of their parts."""
+"""Arrays of the core as rows of numbers, with named parts."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 class Rows:
     """An array of the core as rows of numbers: `rows_of(core, "spring.state").force_n`.
 
-    The parts that its description names (`Core.describe`) are attributes: views of the core, until
-    it changes the array. Shape (rows,), or (rows, components) of a part of several numbers. Pads
-    have no name.
+    The parts named in its description (`Core.describe`) are attributes: views of the core, until
+    it changes the array. Shape (rows,), or (rows, components) for a part of several numbers.
+    Padding has no name.
 
     Attributes:
-        numbers: All numbers of the rows, shape (rows, numbers); a view, too.
+        numbers: All numbers of the rows, shape (rows, numbers); also a view.
     """
 
     numbers: NDArray[Any]
@@ -27,7 +27,7 @@ class Rows:
         array, info = core.array(name)
         self._name, self._parts = name, info["parts"]
         numbers = info["numbers"]
-        if not numbers:  # nothing asks for it
+        if not numbers:  # unused array
             self.numbers = array.reshape(0, 0)
         elif info["layout"] == "columns":
             kinds = {kind["name"]: kind["count"] for kind in core.describe_rows()}
@@ -42,7 +42,7 @@ class Rows:
                 own = self.numbers[:, first : first + numbers]
                 return own if numbers > 1 else own[:, 0]
             first += numbers
-        names = ", ".join(name for name, _ in self._parts if name) or "none, but numbers"
+        names = ", ".join(name for name, _ in self._parts if name) or "none, only numbers"
         raise AttributeError(f"{self._name} has no part {part!r}; it has: {names}")
 
 
@@ -51,7 +51,7 @@ def rows_of(core: Core, name: str) -> Rows:
 
     Args:
         core: The compiled core.
-        name: Of the array, as `Core.describe` has it.
+        name: Name of the array, as in `Core.describe`.
 
     Raises:
         KeyError: There is no such array.

@@ -1,4 +1,4 @@
-"""Numbers with units: "30 GPa", "21 deg", "2 t/m3" become SI numbers; wrong ones are refused."""
+"""Numbers with units: "30 GPa", "21 deg", "2 t/m3" become SI numbers; wrong units are refused."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     for name, factor in factors.items()
 }
 
-SMALLEST, LARGEST = 1e-30, 1e30  # products of what is beyond overflow
-MOST_POWER_DIGITS = 2  # of a power with its sign
-SHOWN = 60  # characters of a value that messages repeat
+SMALLEST, LARGEST = 1e-30, 1e30  # products of larger numbers overflow
+MOST_POWER_DIGITS = 2  # most characters of a power with its sign
+SHOWN = 60  # most characters of a value in a message
 _TYPESET = {ord("−"): "-", ord("‐"): "-", ord("–"): "-"} | dict.fromkeys(map(ord, "“”„‘’«»\"'"))
-"""Minus signs and quotes as word processors set them."""
+"""Minus signs and quotes of word processors."""
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 _FACTOR = re.compile(r"([*/·.]?)\s*(1|[^\W\d]+|[%°])(?:\^?([-+]?\d+))?\s*")
 
@@ -54,7 +54,7 @@ def parse_unit(text: str) -> tuple[float, Dimension]:
         The factor to SI, and the powers of (kg, m, s, rad).
 
     Raises:
-        ValueError: A part of the text is no known unit.
+        ValueError: A part of the text is not a known unit.
 
     Example:
         >>> parse_unit("t/m3")
@@ -78,13 +78,13 @@ def to_number(value: object, unit: str) -> float:
 
     Args:
         value: A real number, taken to be in ``unit`` already, or text such as ``"30 GPa"``.
-        unit: The unit that the result is in, e.g. ``"Pa"``, ``"deg"`` or ``"1"``.
+        unit: Unit of the result, e.g. ``"Pa"``, ``"deg"`` or ``"1"``.
 
     Returns:
-        A finite number in ``unit``; what is below 1e-30, as rounding leaves it, is 0.
+        A finite number in ``unit``; 0 for a value below 1e-30, which comes from rounding.
 
     Raises:
-        ValueError: Not a number, not finite, beyond all measure, an unknown unit or one of another
+        ValueError: Not a number, not finite, too large, an unknown unit or one of another
             dimension.
 
     Example:
@@ -130,7 +130,7 @@ def coordinates(point: Iterable[float]) -> str:
 
 
 def describe(value: object) -> str:
-    """Name a value in the words of a case file, for error messages."""
+    """Describe a value in the words of a case file, for error messages."""
     if value is None:
         return "nothing"
     if isinstance(value, bool):

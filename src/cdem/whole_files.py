@@ -1,4 +1,4 @@
-"""Files that are replaced as a whole, so that at any moment the old or the new one is there."""
+"""Files replaced as a whole, so that the old or the new one is there at any moment."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ import numpy as np
 from cdem.errors import CdemError, DiskError
 
 ASIDE = ".tmp"
-"""Ending of a file that is being written."""
+"""Ending of an unfinished file."""
 
 
 @contextmanager
 def replaced(path: Path, keep: Path | None = None) -> Iterator[BinaryIO]:
-    """Write a file aside; at the end of the block it takes its place, in one go.
+    """Write a temporary file; at the end of the block it replaces the file at once.
 
-    It is on the disk by then, even if the power fails. If anything goes wrong the old file stays.
+    It is then on the disk, even if the power fails. After an error the old file stays.
 
     Args:
         path: The file.
-        keep: Where the old file goes; None to remove it.
+        keep: New place of the old file; None to remove it.
 
     Raises:
         DiskError: It cannot be written.
     """
     aside = path.with_name(path.name + ASIDE)
     try:
-        # a link that somebody put there is not followed
+        # a link in this place is not followed
         number = os.open(aside, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o666)
         with os.fdopen(number, "w+b") as file:
             yield file
@@ -53,10 +53,10 @@ def replaced(path: Path, keep: Path | None = None) -> Iterator[BinaryIO]:
 
 
 def refuse_link(path: Path) -> None:
-    """Stop where a link lies in place of a file or folder that is written.
+    """Refuse a link in place of a file or folder to write.
 
     Raises:
-        CdemError: It does.
+        CdemError: There is a link.
     """
     if path.is_symlink():
         raise CdemError(
@@ -69,7 +69,7 @@ def sync(path: Path) -> None:
     """Make sure that a file is on the disk, even if the power fails.
 
     Raises:
-        DiskError: The disk does not take it.
+        DiskError: The disk refuses it.
     """
     try:
         with path.open("rb") as file:
@@ -79,7 +79,7 @@ def sync(path: Path) -> None:
 
 
 def disk_error(path: Path, error: OSError) -> DiskError:
-    """The error that says which file could not be written, and why."""
+    """The error for a file that could not be written, with the cause."""
     return DiskError(f"{path}: cannot be written ({error.strerror or error})")
 
 

@@ -68,8 +68,8 @@ def test_a_pulse_that_a_static_stage_uses_up_is_refused_while_it_runs(tmp_path, 
     case.write_text(COLUMN.replace(", stage: shake", ""))
     says = (
         "col.yaml:14:8: loads.velocities.0.history: is over at 0.04 s, before the stage shake begins: its "
-        "times count from the start of the run; write stage: shake beside it, or the stage that it is "
-        "meant for"
+        "times count from the start of the run; write stage: shake beside it, or the stage where it "
+        "should start"
     )
     for words in (["check"], ["run", "-o", str(tmp_path / "out")]):
         code, _, error = run_cli(words[0], str(case), *words[1:], "--threads", "1")

@@ -91,7 +91,7 @@ def test_settings_outlast_a_resume(tmp_path):
         ("interfaces.default.frction_angle", 1, "unknown key; did you mean friction_angle?"),
         ("interfaces.default.friction_angle", -5, "must lie in"),
         ("model.mesh", "a.msh", "a stage can change interfaces"),
-        ("materials.rock.density", 1, "'density' of a material holds from the start"),
+        ("materials.rock.density", 1, "'density' of a material is fixed at the start"),
     ],
 )
 def test_wrong_settings_are_refused_and_change_nothing(path, value, why):

@@ -248,7 +248,7 @@ def slide(tmp_path, monkeypatch, no_report, no_sheets):
 def test_without_the_domain_its_fall_ends_the_run_at_the_speed_of_the_wave(run_cli, slide):
     on = ("--set", "model.domain=null", "--set", "stages.0.until=null", "-o", "open")
     status, _, err = run_cli(*slide, *on)
-    assert status == 3 and "or let model.domain take such blocks out" in err
+    assert status == 3 and "or let model.domain remove such blocks" in err
 
 
 def test_a_landslide_off_the_edge_comes_to_its_end(tmp_path, run_cli, slide):

@@ -72,7 +72,7 @@ def test_allowed_code_is_loaded(library):
 def test_a_library_must_be_there(folder):
     done = cdem("check", "case.yaml", "--allow-code")
     assert done.returncode == 1 and done.stderr.count("\n") == 1
-    assert "has no library of this text for cdem" in done.stderr
+    assert "has no compiled library of its present text for cdem" in done.stderr
     assert f"cdem law build {folder / HEADER}" in done.stderr
     assert sorted(p.name for p in folder.iterdir()) == [
         "cache",
@@ -84,7 +84,9 @@ def test_a_library_must_be_there(folder):
 
 def test_a_library_that_was_changed_is_refused(library):
     library.write_bytes(b"another library")
-    with pytest.raises(BackendError, match=r"is not what .* has written; make it again: cdem law"):
+    with pytest.raises(
+        BackendError, match=r"differs from the file that .* wrote; make it again: cdem law"
+    ):
         own_laws.load_own_laws(HEADER)
     library.with_suffix(".json").write_text("[]")
     with pytest.raises(BackendError, match="cannot be read"):
@@ -102,7 +104,7 @@ def test_another_version_has_another_library(library, folder, monkeypatch, what)
 def test_a_header_that_has_changed_is_refused(library, folder):
     with (folder / HEADER).open("a") as file:
         file.write("\n")
-    with pytest.raises(BackendError, match="has no library of this text"):
+    with pytest.raises(BackendError, match="has no compiled library of its present text"):
         own_laws.load_own_laws(HEADER)
 
 
@@ -113,7 +115,7 @@ def test_a_library_beside_the_header_is_not_loaded(library, folder):
         (folder / name).with_suffix(".json").write_text(library.with_suffix(".json").read_text())
     library.unlink()
     done = cdem("check", "case.yaml", "--allow-code")
-    assert done.returncode == 1 and "has no library of this text" in done.stderr
+    assert done.returncode == 1 and "has no compiled library of its present text" in done.stderr
 
 
 def test_a_folder_that_others_may_write_is_refused(library):
@@ -138,12 +140,12 @@ def test_a_folder_that_others_may_write_is_refused(library):
 def test_a_header_includes_no_other_file(folder, line):
     with (folder / HEADER).open("a") as file:
         file.write(line + "\n")
-    with pytest.raises(CaseError, match="a law stands in one header"):
+    with pytest.raises(CaseError, match="a law is a single header"):
         Header.read(folder / HEADER)
 
 
 def test_laws_are_chosen_before_all_else(library):
-    with pytest.raises(BackendError, match="before anything else"):
+    with pytest.raises(BackendError, match="before any other use"):
         own_laws.load_own_laws(HEADER)  # this process has a core already
 
 
@@ -153,14 +155,14 @@ def test_headers(folder):
     for old, new, told in (
         ("LawText text", "LawText other", "has 0 laws"),
         ('"my-clay"', '"my clay"', "the law's name 'my clay'"),
-        ("flow(", "stream(", "needs flow"),
+        ("flow(", "stream(", "needs a method flow"),
         ('#include "core/materials/law.hpp"', '#include "more.hpp"', 'includes "more.hpp"'),
-        ('"my-clay"', '"mohr-coulomb"', "there is a law mohr-coulomb already"),
+        ('"my-clay"', '"mohr-coulomb"', "the name mohr-coulomb is taken by another law"),
     ):
         (folder / "wrong.hpp").write_text(text.replace(old, new))
         with pytest.raises(CaseError, match=told):
             build([folder / "wrong.hpp"])
-    with pytest.raises(CaseError, match="a law's name is of small letters"):
+    with pytest.raises(CaseError, match="a law's name may only have small letters"):
         new_law("MyClay", "block", folder, force=False)
     with pytest.raises(CaseError, match="exists already"):
         new_law("my-clay", "block", folder, force=False)

@@ -67,6 +67,6 @@ def test_what_is_not_there_is_told(sim):
     with pytest.raises(KeyError, match=r"node.spin"):
         rows_of(sim.core, "node.spin")
     with pytest.raises(
-        AttributeError, match=r"face.area has no part 'x'; it has: none, but numbers"
+        AttributeError, match=r"face.area has no part 'x'; it has: none, only numbers"
     ):
         _ = rows_of(sim.core, "face.area").x

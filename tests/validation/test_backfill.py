@@ -150,7 +150,7 @@ def test_what_is_not_there_is_not_shown_told_or_touched(tmp_path):
     stone = {"group": "stone", "box": {"size": [1, 1, 1]}, "translate": [1.5, 1.5, 8.5]}
     sim = column(add(), case=SITU_STRESS, output=tmp_path / "results")
     assert not sim.build.topology.face_group[visible_faces(sim)[0]].any()  # of the first group only
-    assert "not there before the stage 'add': up" in sim.audit.text()
+    assert "absent before the stage 'add': up" in sim.audit.text()
     assert sim.summary("finished")["taken_out"] == {}
     assert not any("support" in warning for warning in sim.audit.warnings)
     sim.run()
@@ -195,12 +195,12 @@ def test_the_bits_do_not_depend_on_threads_or_resume(tmp_path):
     "stages, said",
     [
         ([add(add=["upp"])], "no group 'upp'"),
-        ([add(), add(name="again")], "stages.2.add.0: up is there since the stage 'add'"),
+        ([add(), add(name="again")], "stages.2.add.0: up is present since the stage 'add'"),
         ([{"name": "dig", "mode": "static", "remove": ["up"]}, add(name="later")], None),
         ([{"name": "dig", "mode": "static", "remove": ["up"]}, add(), add(name="more")],
-         "stages.3.add.0: up is there since the stage 'add'"),
+         "stages.3.add.0: up is present since the stage 'add'"),
         ([add(remove=["up"])], "the stage names up twice"),
-        ([add(set={"groups.low.material": "rock"})], "'material' of a group holds from the start"),
+        ([add(set={"groups.low.material": "rock"})], "'material' of a group is fixed at the start"),
     ],
 )  # fmt: skip
 def test_stages_that_do_not_fit(stages, said):
@@ -212,7 +212,9 @@ def test_stages_that_do_not_fit(stages, said):
 
 
 def test_the_first_stage_adds_nothing():
-    with pytest.raises(cdem.CaseError, match="what is in no add is there from the start"):
+    with pytest.raises(
+        cdem.CaseError, match="groups that no later stage adds are present from the start"
+    ):
         column(case={"stages": [add()]})
 
 
@@ -220,7 +222,7 @@ def test_a_run_cannot_go_on_as_one_that_had_begun_with_the_group(tmp_path):
     results = tmp_path / "results"
     stages = [{"name": "next", "mode": "static"}]
     column(*stages, output=results).run_stage("situ")
-    with pytest.raises(cdem.CaseError, match=r"groups\.up: is not there at the start"):
+    with pytest.raises(cdem.CaseError, match=r"groups\.up: is absent at the start"):
         column({**stages[0], "add": ["up"]}, output=results, resume=True)
 
 

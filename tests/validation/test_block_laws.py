@@ -209,7 +209,7 @@ def test_a_cube_that_softens_bears_its_residual_strength():
         ({"softening": {"cohesion": [[0, 1e6], [0, 1e5]]}}, "slips must increase"),
         ({"softening": {"cohesion": [[0, 1e6]]}}, "takes 2 to 8 rows, got 1"),
         ({"softening": {"joint_cohesion": [[0, 1e6], [1, 1]]}}, "has no such strength; it has coh"),
-        ({"softening": {}}, "says nothing of what falls"),
+        ({"softening": {}}, "has no table; leave it out"),
         ({"softening": {"friction_angle": [[0, 30], [1, 5]]}}, "let dilation_angle fall as well"),
         ({"tensile_strength": None, "softening": {"fracture_energy": 1}}, "needs a tensile_strength"),
         ({"softening": {"tensile_strength": [[0, 5e5], [1, 0]], "fracture_energy": 1}}, "not both"),

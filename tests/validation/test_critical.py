@@ -130,7 +130,7 @@ def test_factor_finds_its_own_bracket():
         assert (found.stable, found.failed) == pytest.approx((low, high))
     held = block_on_a_slope()
     held.set("groups.block.fix", ["x", "y", "z"])
-    with pytest.raises(CaseError, match="come to rest: is there anything"):
+    with pytest.raises(CaseError, match="come to rest: check that the model can slide"):
         find_critical(held, strength_reduction(), None, tolerance=1, threads=1)
 
 

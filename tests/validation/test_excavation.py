@@ -170,16 +170,16 @@ def test_threads_and_a_stop_in_between_give_identical_results(tmp_path):
     ("stages", "text"),
     [
         ([{"name": "dig", "mode": "static", "remove": ["top"]}], "no group 'top'"),
-        ([dig(), {**dig(), "name": "again"}], "up was dug out in the stage 'dig'"),
-        ([dig(release={"over": 1})], "release.over has no meaning in a static stage"),
+        ([dig(), {**dig(), "name": "again"}], "up was removed in the stage 'dig'"),
+        ([dig(release={"over": 1})], "release.over has no effect in a static stage"),
         (
             [{"name": "a", "mode": "dynamic", "duration": 1, "release": {"parts": 2}}],
-            "release.parts has no meaning in a dynamic stage",
+            "release.parts has no effect in a dynamic stage",
         ),
-        ([{"name": "a", "mode": "static", "release": {}}], "nothing has been dug out"),
+        ([{"name": "a", "mode": "static", "release": {}}], "no group has been removed yet"),
         (
             [dig(), {"name": "a", "mode": "static", "release": {"to": 0.5}}],
-            "must be at least 1, which an earlier stage has let go",
+            "must be at least 1, the part that an earlier stage has released",
         ),
     ],
 )
@@ -190,7 +190,9 @@ def test_mistakes(stages, text):
 
 def test_nothing_is_dug_out_in_the_first_stage():
     case = column().case
-    with pytest.raises(cdem.CaseError, match="nothing bears before the first stage"):
+    with pytest.raises(
+        cdem.CaseError, match="there are no forces before the first stage to release"
+    ):
         cdem.Case.from_dict({**case.model_dump(mode="json", exclude_unset=True), "stages": [dig()]})
 
 

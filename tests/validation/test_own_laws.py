@@ -117,6 +117,6 @@ def test_a_run_is_not_resumed_with_another_text(copies):
         for suffix in (".so", ".json"):
             other.with_suffix(suffix).write_bytes(library.with_suffix(suffix).read_bytes())
         done = cdem(copies, *run, "--resume")
-        assert done.returncode == 1 and "was written with another text of own laws" in done.stderr
+        assert done.returncode == 1 and "was written with other headers of own laws" in done.stderr
     finally:
         (copies / HEADERS[0]).write_text(text)

@@ -152,7 +152,7 @@ def test_bodies_without_support_are_warned_of_and_do_not_converge(gap):
     if gap:
         assert len(warned) == 2
         assert status == "max_steps"
-        assert "no nearer to rest" in notes[-1]
+        assert "no progress towards rest" in notes[-1]
     else:
         assert not warned
         assert status == "converged"

@@ -151,7 +151,7 @@ def test_what_does_not_fit_is_told(wrong, told):
 def test_the_audit_says_where_the_curve_ends():
     sim = stressed(ROUGH, 2e6, [[0, 0], [1, 0]])
     end = 15.35e9 * 1e-3 * (-0.352 + 2.241 * 250**-0.245) * (np.sqrt(1e11 / 15.35e9) - 1)
-    assert f"joints close by a curve up to {end:.3g} Pa" in sim.audit.text()
+    assert f"joints follow a closure curve up to {end:.3g} Pa" in sim.audit.text()
 
 
 FAST = {"law": "velocity-weakening", "friction_angle": 40, "dynamic_friction_angle": 20}

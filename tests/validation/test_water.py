@@ -364,7 +364,7 @@ def test_a_stage_that_would_wet_other_faces_is_refused():
     sim = start([box("bed", [0, 0, -1]), box("top")], stages=stages,
                 water={"fields": [{"level": 1, "wet": "never"}]})  # fmt: skip
     sim.run_stage("rest")
-    with pytest.raises(cdem.errors.CaseError, match="a stage cannot change which joints"):
+    with pytest.raises(cdem.errors.CaseError, match="a stage cannot change the set of joints"):
         sim.run_stage("rain")
 
 
@@ -410,7 +410,7 @@ def test_threads_and_resume_change_no_bit(tmp_path):
 @pytest.mark.parametrize(("water", "says"), [
     ({}, "give fields, a reservoir, or both"),
     ({"fields": [{"level": 1, "ru": 0.1}]}, "level"),
-    ({"fields": [{"formula": "w * 2"}]}, "there is no w"),
+    ({"fields": [{"formula": "w * 2"}]}, "x, y and z only; remove w"),
     ({"fields": [{"interface": "crack", "level": 1}]}, "no interface 'crack'"),
     ({"fields": [{"groups": ["rok"], "level": 1}]}, "did you mean rock"),
     ({"fields": [{"level": 1, "seepage": "parallel"}]}, "seepage: parallel goes with plane"),

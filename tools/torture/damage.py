@@ -87,7 +87,7 @@ class Damages:
             if number % RESUMED == 0:
                 status, said = self.resume(lambda one, bytes_=damaged: one.write_bytes(bytes_))
                 same = status == 0 and not differences(self.whole, self.trial)
-                same = same and "going on from the one before" in said
+                same = same and "continuing from the previous one" in said
                 found["resumed to the same bytes" if same else "wrong"] += 1
             found["done"] = number + 1
             self.state.keep()

@@ -44,7 +44,7 @@ std::vector<Box> side_boxes(const Model& m, const State& s) {
   return boxes;
 }
 
-/// Compares the contacts of every exposed face with those that a search of all others finds.
+/// Compares the contacts of every exposed face with the contacts found by a search of all others.
 class AllPairs {
  public:
   AllPairs(const Model& model, State& state)
@@ -122,7 +122,7 @@ class AllPairs {
     return false;
   }
   Index count_missed_edges(Index x, const std::vector<Index>& others) const {
-    Index missed = 0, known = 0;  // of those that are listed
+    Index missed = 0, known = 0;  // counts of listed ones
     for (const Index t : others)
       for (Index k = 0; k < edges.faces.vertex_count(face(x)); ++k)
         for (Index j = 0; j < edges.faces.vertex_count(face(t)); ++j)

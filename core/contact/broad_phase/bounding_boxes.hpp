@@ -95,7 +95,7 @@ class BoxTree {
     alignas(64) Real low[3][fan] = {}, high[3][fan] = {};
     unsigned used = 0;  // places, as bits
 
-    /// Which of them overlap a box, as bits. What is no number any more overlaps everything.
+    /// Which of them overlap a box, as bits. A box with NaN overlaps everything.
     unsigned overlaps(const Box& box) const {
       unsigned bits = 0;
       for (Index j = 0; j < Index(fan); j += lanes) {

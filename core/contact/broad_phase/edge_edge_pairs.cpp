@@ -23,7 +23,7 @@ bool may_be_right(const PairContext& f, const ExposedFace& x, const ExposedFace&
 
 /// An edge, and how its ends may move until the next rebuild.
 struct MovingEdge {
-  const ExposedFace* face;  // the first of those that meet there
+  const ExposedFace* face;  // the first of the faces at the edge
   const ExposedSide* side;  // of it
   Index node[2], bonded_node[2], place[2];
   Vec3<Real> end[2], path[2];              // [m]
@@ -52,7 +52,7 @@ struct MovingEdge {
   Vec3<Real> path_at(Real at) const { return path[0] + at / length * (path[1] - path[0]); }
 };
 
-/// Those of a patch, each worked out once, when it is first asked for.
+/// Edges of a patch, each computed once, at first use.
 class MovingEdges {
   const PairContext& f;
   const Patch& patch;
@@ -101,7 +101,7 @@ Real distance2(const MovingEdge& p, const MovingEdge& q) {
 struct TwoLines {
   const MovingEdge &p, &q;
   Vec3<Real> n;
-  Real gap;  // from the line of q to that of p along n  [m]
+  Real gap;  // from the line of q to the line of p along n  [m]
   Real rotations,
       sine;  // by which both may rotate  [rad]; of the angle between them then, at least
 
@@ -132,12 +132,12 @@ struct TwoLines {
     };
     int found = 0;
     for (const int side : {1, 2}) {
-      const Real way = side == 1 ? 1 : -1;
-      if (way * gap + GapChange(x, y, way * n).least > room ||
-          beyond(way * dot(n, on_p.fall), p, on_p.rotation_face) ||
-          beyond(-way * dot(n, on_q.fall), q, on_q.rotation_face) ||
-          (on_p.across >= 0 && beyond(way * dot(n, on_p.fall_across), p, on_p.rotation_across)) ||
-          (on_q.across >= 0 && beyond(-way * dot(n, on_q.fall_across), q, on_q.rotation_across)))
+      const Real sign = side == 1 ? 1 : -1;
+      if (sign * gap + GapChange(x, y, sign * n).least > room ||
+          beyond(sign * dot(n, on_p.fall), p, on_p.rotation_face) ||
+          beyond(-sign * dot(n, on_q.fall), q, on_q.rotation_face) ||
+          (on_p.across >= 0 && beyond(sign * dot(n, on_p.fall_across), p, on_p.rotation_across)) ||
+          (on_q.across >= 0 && beyond(-sign * dot(n, on_q.fall_across), q, on_q.rotation_across)))
         continue;
       found |= side;
     }
@@ -174,9 +174,9 @@ struct TwoLines {
     Ends(const MovingEdge& edge, const MovingEdge& other, const Vec3<Real>& n)
         : on(edge), line(other), arm{other.end[0] - edge.end[0], other.end[0] - edge.end[1]} {
       const Vec3<Real> across = cross(line.along, n);
-      const Real way = dot(on.along, across) < 0 ? -1 : 1;
-      off[0] = way * dot(arm[0], across);
-      off[1] = -way * dot(arm[1], across);
+      const Real sign = dot(on.along, across) < 0 ? -1 : 1;
+      off[0] = sign * dot(arm[0], across);
+      off[1] = -sign * dot(arm[1], across);
     }
     /// How far from the ends of the edge the line crosses it, times the sine of the angle.
     Real inside() const { return std::min(off[0], off[1]); }
@@ -258,14 +258,14 @@ PairBuffer::EdgePair near_edges(const PairContext& f, const Patch& a, Index e, c
   const Index sides =
       against(a, a.edge[e], p.node[first_p]) | against(b, b.edge[g], q.node[first_q]) << 2;
   // seen along the cross product of the two as their ends are listed here
-  const Real way = on == 3 ? 0 : ((on == 1) != (first_p != first_q) ? 1 : -1);
-  return {
-      {a.edge_first + e, b.edge_first + g},
-      {float(1.000001 * rules.entry * std::min(a.length, b.length)), float(edges.shift), float(way),
-       float(edges.inset), float(ends.shared ? 0.999999 * rules.indentation * edges.length : 0),
-       float(ways_part_soon(p, q) + 1e-6 * edges.length)},
-      EdgeWays::code_of(ways, EdgeWays::turned(ends.shared, first_p, first_q), sides,
-                        first_p | first_q << 1)};
+  const Real sign = on == 3 ? 0 : ((on == 1) != (first_p != first_q) ? 1 : -1);
+  return {{a.edge_first + e, b.edge_first + g},
+          {float(1.000001 * rules.entry * std::min(a.length, b.length)), float(edges.shift),
+           float(sign), float(edges.inset),
+           float(ends.shared ? 0.999999 * rules.indentation * edges.length : 0),
+           float(ways_part_soon(p, q) + 1e-6 * edges.length)},
+          EdgeWays::code_of(ways, EdgeWays::turned(ends.shared, first_p, first_q), sides,
+                            first_p | first_q << 1)};
 }
 
 /// Are the lines of two edges farther apart than `room` [m]?

@@ -14,7 +14,7 @@ namespace cdem {
 
 namespace {
 
-/// What the lists ask of exposed faces.
+/// Data of exposed faces for the lists.
 struct ElementSurface {
   const Model& m;
   const State& s;
@@ -202,7 +202,7 @@ void list_exposed_sides(const State& s, const Unset<ExposedFace>& exposed,
       const Index across = beyond_sides[4 * x + k];
       side.across = across < 0 ? -1 : place[across];
       side.sharp = true;
-      if (side.across < 0) continue;  // none, or one that is not exposed
+      if (side.across < 0) continue;  // no neighbour, or an unexposed one
       const ExposedFace& beyond = exposed[side.across];
       side.rotation_across = beyond.rotation;
       side.fall_across = unit(cross(beyond.normal, -side.along));

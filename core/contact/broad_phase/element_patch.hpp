@@ -26,7 +26,7 @@ struct ExposedFace {
   Real length;                         // L  [m]
   Index face, block;
   bool movable;
-  Box box;  // of the whole way
+  Box box;  // of the whole motion
 };
 
 void list_exposed_faces(const Model& model, const State& state, Unset<ExposedFace>& exposed);
@@ -58,7 +58,7 @@ struct Patch {
   Index vertex[8];
   Place corner[8][6];  // which corner of a face a vertex is, or -1
   Edge edge[12];
-  Index edge_first;         // place of the first among those of all patches
+  Index edge_first;         // index of the first among the edges of all patches
   Vec3<Real> displacement;  // of all its vertices alike  [m]
   Real deviation;           // of a vertex beyond the displacement  [m]
   Real deepest;             // contact  [m]
@@ -66,7 +66,7 @@ struct Patch {
   Index block;
   bool movable;
   bool whole;  // are all faces of the element exposed?
-  Box box;     // of the whole way
+  Box box;     // of the whole motion
 };
 
 /// Group the exposed faces by the elements behind them.
@@ -74,7 +74,7 @@ void list_patches(const Model& model, const State& state, const Unset<ExposedFac
                   Unset<Patch>& patches);
 
 /// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
-/// lie between theirs, which is what `fall` tells (see ResolveTargetEdges::cones_hold).
+/// lie between theirs, as given by `fall` (see ResolveTargetEdges::cones_hold).
 struct ExposedSide {
   bool sharp;  // may be an edge of a contact: its faces are not coplanar
   bool rises;  // may be where the surface bends towards its outside

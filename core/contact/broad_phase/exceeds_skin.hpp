@@ -15,9 +15,9 @@ struct ExceedsSkin {
   template <class I>
   CDEM_HD auto operator()(I item) const {
     using T = Number<I>;
-    const Four<T> then = predicted.at(item, 0), way = predicted.at(item, 4);
+    const Four<T> then = predicted.at(item, 0), velocity = predicted.at(item, 4);
     const Vec3<T> off =
-        nodes.position(nodes_of.at(0, item)) - then.vector() - T(after) * way.vector();
+        nodes.position(nodes_of.at(0, item)) - then.vector() - T(after) * velocity.vector();
     return dot(off, off) > then.w;
   }
 };

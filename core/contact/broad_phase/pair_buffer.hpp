@@ -36,7 +36,7 @@ class PartedList {
   std::size_t size_ = 0;
 };
 
-/// What patches may touch of the patches after them, patch after patch as one thread comes to them.
+/// Possible contacts of patches with later patches, patch after patch in the order of one thread.
 struct PairBuffer {
   /// A vertex of a mother face on another exposed face.
   struct Candidate {
@@ -56,7 +56,7 @@ struct PairBuffer {
     float room[6];
     Index code;
   };
-  /// A face of which a vertex or a side is on the lists, and the one that it may touch.
+  /// A face with a vertex or side on the lists, and the face that it may touch.
   struct FacePair {
     Index mother, face;
   };

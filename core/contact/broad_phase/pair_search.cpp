@@ -63,7 +63,7 @@ void list_edge_sides(Unset<Patch>& patches, Unset<Index>& sides) {
     }
 }
 
-/// What two patches may touch of each other before the next rebuild.
+/// Possible contacts of two patches before the next rebuild.
 void list_pairs(const PairContext& f, const Patch& a, const Patch& b, PairBuffer& found) {
   const SeparatedParts separated(f, a, b);
   const FacePairMask pairs(f, a, b, separated);

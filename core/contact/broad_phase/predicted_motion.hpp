@@ -7,7 +7,7 @@
 
 namespace cdem {
 
-/// Those of the outer list, for host code.
+/// Predictions of the outer list, for host code.
 class PredictedNodes {
  public:
   explicit PredictedNodes(const State& s)

@@ -12,7 +12,7 @@
 
 namespace cdem {
 
-/// What the search for one pair of patches needs.
+/// Data for the search of one pair of patches.
 struct PairContext {
   const Model& m;
   const State& s;

@@ -104,7 +104,7 @@ bool may_touch(const PairContext& f, Index node, const ExposedFace& x, Real leng
 ///
 /// In contact the vertex is at a point of the face but for the depth and for `off` beside it, more
 /// behind a corner (or from the centre of a warped face), of which the rotation of the face changes
-/// what is seen along its sides, or its normal.
+/// the view along its sides, or its normal.
 PairBuffer::VertexFacePair vertex_face(const PairContext& f, Index node, Index place_y, Real length,
                                        Real indented, Real deviation) {
   const SearchRules& rules = f.m.rules;

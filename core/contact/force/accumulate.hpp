@@ -33,7 +33,7 @@ struct ContactsOf {
 /// Sum, for one exposed face, the forces of its own semi-springs and semi-edges and the reactions
 /// of all others that have it as target. It goes through these in their order instead of letting
 /// contacts add to nodes, so the sum has one order for any number of threads. An idle face keeps
-/// what it has: no node sums it.
+/// its value: no node sums it.
 struct AccumulateFaceForces : ContactsOf {
   FaceColumns faces;
   const Index* exposed_face;
@@ -83,7 +83,7 @@ struct AccumulateFaceForces : ContactsOf {
       edge_dashpot[m] += row[7];
     }
   }
-  /// What a semi-edge that crosses a side of this face does to it.
+  /// Force of a semi-edge that crosses a side of this face.
   CDEM_HD void react(Index face, Index count, Index c, Row sum[4]) const {
     const Real* row = edges.reaction + std::size_t(c) * 8;
     const Index k = faces.side_on(face, EdgeContact::at(edges.contact, c).edge);

@@ -36,8 +36,8 @@ struct ChangeTargets {
   /// A contact that changes its face keeps the shear force, turned into the new plane with its
   /// length kept, and penetrates as far as gives the normal spring there the energy it had: as deep
   /// as before would make some where the new face is the stiffer one. Where it has unloaded, its
-  /// approach is scaled alike. Until it has its new force, its energies are what its springs held
-  /// on the old face and did not give back.
+  /// approach is scaled alike. Until it has its new force, its energies are those of its springs
+  /// on the old face, as far as not returned.
   CDEM_HD void move_to_target(Index m, Index slot, Index before, Index t) const {
     ContactState s = ContactState::at(springs.state, slot);
     const DissipatedAtEnd left = lost_on(m, slot, before);
@@ -63,7 +63,7 @@ struct ChangeTargets {
     const Index interface = laws.between(geometry, m, t);
     return 0.5 * laws.spring(geometry, interface, m, t).n() * laws.faces.returned_n(interface);
   }
-  /// A contact that ended forgets its forces.
+  /// Reset the forces of an ended contact.
   CDEM_HD void close_contact(Index m, Index slot, Index before) const {
     const DissipatedAtEnd lost = lost_on(m, slot, before);
     springs.friction[slot] += lost.friction;
@@ -72,7 +72,7 @@ struct ChangeTargets {
     Real* row = springs.reaction + std::size_t(slot) * 8;
     row[0] = row[1] = row[2] = row[3] = 0;
   }
-  /// What the springs held on a face that they have left, and did not give back.
+  /// Energy of springs on a face that they have left, not returned.
   CDEM_HD DissipatedAtEnd lost_on(Index m, Index slot, Index before) const {
     const FaceVertices<Index> corners = geometry.vertices(before);
     FaceShape<Real> shape = faces.shape(corners);
@@ -85,10 +85,10 @@ struct ChangeTargets {
     const auto mother =
         MotherPoint<Real>::at(faces, geometry, rules, springs.rim_action, laws.node_mass, m, slot);
     const Projection<Real> foot = project(shape, mother.x_old, frame.n);
-    Vec3<Real> way = mother.x - mother.x_old;
-    for (Index j = 0; j < 4; ++j) way = way - foot.weight[j] * moved[j];
+    Vec3<Real> displacement = mother.x - mother.x_old;
+    for (Index j = 0; j < 4; ++j) displacement = displacement - foot.weight[j] * moved[j];
     const Real returned = laws.faces.returned_n(laws.between(geometry, m, before));
-    return {ContactState::at(springs.state, slot), returned, frame, way};
+    return {ContactState::at(springs.state, slot), returned, frame, displacement};
   }
 };
 

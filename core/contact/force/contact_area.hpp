@@ -14,7 +14,7 @@ namespace cdem {
 
 /// The contacts of an exposed face whose law asks for an area: a row of 4.
 struct TouchingFace {
-  Real stiffness;  // their sum; of those that are not pressed, next to nothing  [N/m]
+  Real stiffness;  // their sum; nearly zero for unpressed ones  [N/m]
   Real risen;      // highest of their stress-free gaps  [m]
   Real pressed;    // 1 where one of them was pressed one step ago
 

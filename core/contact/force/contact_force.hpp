@@ -13,7 +13,7 @@ namespace cdem {
 /// A contact met from outside is free at zero gap. One that is found already inside must not
 /// release energy that nothing put in (faces of freshly broken rock have slid a little past each
 /// other, a vertex turns a corner): it may begin with the energy of the contact it takes over from,
-/// `penetration_before` deep; what is deeper counts as free of stress.
+/// `penetration_before` deep; deeper penetration counts as free of stress.
 /// `dilated` is how far that contact had opened by dilation.
 template <class T>
 CDEM_HD inline T starting_stress_free_gap(T gap, T gap_rate, T dt, T penetration_before,
@@ -31,7 +31,7 @@ CDEM_HD inline T lifted_stress_free_gap(T stress_free_gap, T gap) {
                 min_of(max_of(stress_free_gap, gap), zero));
 }
 
-/// What a contact did in the step.
+/// Results of a contact in the step.
 ///
 /// `slip` is the relative tangential displacement of the step in the target's own frame: because
 /// the tangential part of (mother point - target point) is zero now, it is minus the tangential
@@ -47,7 +47,7 @@ struct ContactMotion {
   Real dt;            // [s]
 };
 
-/// What a contact had one step ago; all zero for one that begins.
+/// State of a contact one step ago; all zero for a new one.
 template <class T>
 struct ContactBefore {
   T force_n, penetration;  // [N], [m]
@@ -55,7 +55,7 @@ struct ContactBefore {
   T approach = T(0.0);     // of a hysteretic contact  [m]
 };
 
-/// Force of one contact and what it stores and loses.
+/// Force of one contact, stored and lost energy.
 template <class T>
 struct ContactForce {
   T force_n;             // compression > 0  [N]
@@ -76,7 +76,7 @@ CDEM_HD inline Truth<T> meets_target(const ContactForce<T>& f) {
   return (f.force_n > T(0.0)) & !(f.shear1 * f.shear1 + f.shear2 * f.shear2 > reach * reach);
 }
 
-/// What the law of a contact is asked: normal separation from the total gap, shear separation from
+/// Input of the law of a contact: normal separation from the total gap, shear separation from
 /// the last shear force and the step's slip.
 template <class T>
 CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
@@ -99,9 +99,9 @@ CDEM_HD inline JointInput<T> contact_input(const ContactSpring<T>& spring,
 
 /// Force of a contact from the answer of its law, Eq. 13-14.
 ///
-/// What dashpot and friction take is the work of their mean force in the step: what central
-/// differences make of it. (The new force alone with the rate, which is that of half a step ago,
-/// reads up to 8 % of an impact's energy too much.) Friction pays for what dilation lifts.
+/// The loss in dashpot and friction is the work of their mean force in the step, as central
+/// differences count it. (The new force alone with the rate, which belongs to half a step ago,
+/// reads up to 8 % of an impact's energy too much.) Friction pays for the lift by dilation.
 template <class T>
 CDEM_HD inline ContactForce<T> contact_force(const ContactSpring<T>& spring,
                                              const ContactMotion<T>& motion,

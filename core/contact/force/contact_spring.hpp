@@ -10,7 +10,7 @@ template <class T>
 struct ContactSpring {
   T area;  // characteristic area, Eq. 4-5  [m2]
   JointStiffness<T> stiffness;
-  T has_area = T(0.0);  // 1 where the area is that of the joint, see ContactAreas
+  T has_area = T(0.0);  // 1 if the area is the joint's, see ContactAreas
 
   CDEM_HD T n() const { return area * stiffness.n; }  // K_n  [N/m]
   CDEM_HD T s() const { return area * stiffness.s; }  // K_s  [N/m]

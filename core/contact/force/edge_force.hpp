@@ -60,7 +60,7 @@ struct UpdateEdgeForces {
   }
 
  private:
-  /// What a contact is between.
+  /// The two sides of a contact.
   template <class Ids>
   struct Contact {
     Ids mother_side;  // 4 * exposed face + side
@@ -90,7 +90,7 @@ struct UpdateEdgeForces {
     return c;
   }
 
-  /// What it held one step ago; zero for a contact that begins.
+  /// Its energy one step ago; zero for a new contact.
   template <class T>
   struct Before {
     ContactBefore<T> force;
@@ -172,7 +172,7 @@ struct UpdateEdgeForces {
     const auto meets = meets_target(f);
     const T on_m = select(meets, line.s, pair.crossing.s);
     const T on_t = select(meets, line.t, pair.crossing.t);
-    // does the target face's side go the way of the edge?
+    // does the target face's side have the direction of the edge?
     const auto same_way = [&](Index x, Index start, Index end) {
       const Index* v = geometry.table[x].corner;
       const auto side = [&](Index a, Index b) { return int(v[a] == start) & int(v[b] == end); };

@@ -5,7 +5,7 @@
 
 namespace cdem {
 
-/// The rotation of a face: that of its vertices about their mean, by least squares. It is exact for
+/// The rotation of a face: of its vertices about their mean, by least squares. It is exact for
 /// a rigid rotation seen from the middle of a step.
 struct FaceRotation {
   Vec3<Real> arm[4];  // vertices, from their mean  [m]

@@ -7,7 +7,7 @@
 
 namespace cdem {
 
-/// Force of every contact, Eq. 13-14, and the sum of what acts on each exposed face.
+/// Force of every contact, Eq. 13-14, and the sum of forces on each exposed face.
 void update_contact_forces(const Model& model, State& state, Queue queue);
 
 }  // namespace cdem

@@ -13,7 +13,7 @@ struct MotherPoint {
   Vec3<T> x, x_old, v;  // now, one step ago; velocity
   T inverse_mass;       // under a force: sum w^2 / m  [1/kg]
 
-  /// That of a slot (4 * exposed face + vertex) of exposed face m.
+  /// The point of a slot (4 * exposed face + vertex) of exposed face m.
   template <class Ids>
   CDEM_HD static MotherPoint at(const FaceColumns& faces, const FaceGeometry& geometry,
                                 const SearchRules& rules, const Real* rim_action,
@@ -45,7 +45,7 @@ struct MotherPoint {
   }
 
  private:
-  /// What the acting point of vertex k takes of vertex j of so many.
+  /// Weight of vertex j, of this number, in the acting point of vertex k.
   CDEM_HD static Real share_of(Real action, Index count, Index k, Index j) {
     if (j >= count) return 0.0;
     return action / Real(count) + (j == k ? 1.0 - action : 0.0);

@@ -13,7 +13,7 @@ struct RollingCouple {
   Real couple1, couple2, energy, friction;
 
   /// It holds `old`, turns by (turn1, turn2) in the step and slips at `limit`. The loss is the work
-  /// of the mean couple less what is stored.
+  /// of the mean couple less the stored energy.
   CDEM_HD static RollingCouple of(const RollingState& old, Real stiffness, Real turn1, Real turn2,
                                   Real limit) {
     const Real try1 = old.couple1 - stiffness * turn1, try2 = old.couple2 - stiffness * turn2;
@@ -85,7 +85,7 @@ struct UpdateRollingCouples {
     s.couple1 *= keep;
     s.couple2 *= keep;
   }
-  /// What the spring of a contact that ended did not give back is lost.
+  /// Energy that the spring of an ended contact did not return is lost.
   CDEM_HD void end(Index m, Index slot, Index before) const {
     const RollingState s = RollingState::at(rows, slot);
     if (s.energy > 0)

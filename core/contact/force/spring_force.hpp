@@ -81,7 +81,7 @@ struct UpdateSpringForces {
     return {face, differ(face, before), begins};
   }
 
-  /// What the slot held one step ago; zero for a contact that begins.
+  /// Energy of the slot one step ago; zero for a new contact.
   template <class T>
   struct Before {
     ContactBefore<T> force;

@@ -15,7 +15,7 @@ namespace cdem {
 
 namespace {
 
-/// Raise what several threads may raise at once.
+/// Raise a value that several threads may raise at once.
 void raise_to(Real& most, Real value) {
   const std::atomic_ref shared(most);
   Real now = shared.load(std::memory_order_relaxed);

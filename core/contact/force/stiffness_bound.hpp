@@ -6,8 +6,8 @@
 
 namespace cdem {
 
-/// Stiffness of live bonds on each node, and what contacts of its exposed faces may come to before
-/// the next rebuild of the pair list.
+/// Stiffness of live bonds on each node, and the largest stiffness of contacts of its exposed faces
+/// before the next rebuild of the pair list.
 void sum_stiffness(const Model& model, State& state);
 
 }  // namespace cdem

@@ -10,7 +10,7 @@ namespace cdem {
 /// Effective penetration of a contact that loads with k and unloads and reloads with k / e^2: it
 /// gives back the share e^2 of the energy that loading put in, whatever the masses behind it.
 ///
-/// A contact without force that moves on outwards forgets its penetration: it loads again from
+/// A contact without force that moves on outwards loses its stored penetration: it loads again from
 /// where it turns.
 template <class T>
 CDEM_HD inline T hysteretic_penetration(T returned, T approach, T approach_before,
@@ -28,9 +28,10 @@ struct ShearForce {
 
 /// Shear force after a slip that loads with k and unloads with k / e^2.
 ///
-/// The part of the slip along the old force unloads it; what is left of that slip at no force loads
-/// the other way, and so does the part across. A step's work is that of the mean force. So that a
-/// step through zero cannot give back more than was put in, it goes on with the stiffness of
+/// The part of the slip along the old force unloads it; the rest of that slip, from zero force,
+/// loads
+/// in the opposite direction, and so does the part across. A step's work is by the mean force. So
+/// that a step through zero cannot give back more than was put in, it goes on with the stiffness of
 /// unloading until the force is as large as it was.
 template <class T>
 CDEM_HD inline ShearForce<T> hysteretic_shear(T returned, T stiffness, const ShearForce<T>& old,
@@ -74,9 +75,9 @@ struct ElasticUnloading {
   }
 };
 
-/// Contacts of which some give back less, or have a normal spring that is curved. `returned` is
+/// Contacts of which some return less energy, or have a curved normal spring. `returned` is
 /// e^2, the square of the coefficient of restitution; where it is 1 the contact is elastic, to the
-/// bit. The effective penetration of a curved one is that of a straight spring with its force.
+/// bit. The effective penetration of a curved spring is that of a straight one with the same force.
 template <class T>
 struct HystereticUnloading {
   T returned_n, returned_s;
@@ -102,7 +103,7 @@ struct HystereticUnloading {
     const T q = hysteretic_penetration(returned_n, -gap, before.approach, before.penetration);
     return select((returned_n < T(1.0)) & (gap < zero), -q, gap);
   }
-  /// What a contact loses is asked for already where it has a restitution.
+  /// The loss of a contact with restitution is known already.
   CDEM_HD T dashpot(const T& c) const { return select(returned_n < T(1.0), T(0.0), c); }
   /// The approach that is kept for the next step.
   CDEM_HD T approach(const T& gap, const ContactForce<T>& f) const { return f.rise - gap; }
@@ -117,7 +118,7 @@ struct HystereticUnloading {
     in.shear2 = select(recoils, -spring.compliance_s() * trial.f2, in.shear2);
     return in;
   }
-  /// What the contact does not give back is lost: in the normal direction with the dashpot, in
+  /// Energy that the contact does not return is lost: in the normal direction with the dashpot, in
   /// shear with friction. `gap` is that past the stress-free gap. A contact that opens pushes no
   /// further than until it is free of stress.
   CDEM_HD ContactForce<T> force(const ContactSpring<T>& spring, const ContactMotion<T>& motion,

@@ -1,4 +1,4 @@
-// views.hpp - what the kernels of contact forces see of the interfaces.
+// views.hpp - the view of interfaces for kernels of contact forces.
 #pragma once
 
 #include "core/contact/force/contact_laws.hpp"

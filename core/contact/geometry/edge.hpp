@@ -5,7 +5,8 @@
 
 namespace cdem {
 
-/// Where x_m + s d_m and x_t + t d_t are closest along a direction: x_m(s) - x_t(t) = gap * way.
+/// Where x_m + s d_m and x_t + t d_t are closest along a direction: x_m(s) - x_t(t) = gap *
+/// direction.
 template <class T>
 struct Crossing {
   T s, t, gap;
@@ -14,11 +15,11 @@ struct Crossing {
 template <class T>
 CDEM_HD inline Crossing<T> cross_edges(const Vec3<T>& start_m, const Vec3<T>& along_m,
                                        const Vec3<T>& start_t, const Vec3<T>& along_t,
-                                       const Vec3<T>& way) {
+                                       const Vec3<T>& direction) {
   const Vec3<T> apart = start_t - start_m;
   const Vec3<T> c = cross(along_m, along_t);
-  const T det = dot(c, way);
-  return {dot(cross(apart, along_t), way) / det, dot(cross(apart, along_m), way) / det,
+  const T det = dot(c, direction);
+  return {dot(cross(apart, along_t), direction) / det, dot(cross(apart, along_m), direction) / det,
           -dot(c, apart) / det};
 }
 

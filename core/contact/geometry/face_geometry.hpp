@@ -15,7 +15,7 @@ struct FaceVertices {
   CDEM_HD auto quad() const { return differ(node[2], node[3]); }
 };
 
-/// The exterior faces and edges of all blocks: what never changes, and the nodes' motion.
+/// The exterior faces and edges of all blocks: constant data, and the nodes' motion.
 struct FaceColumns {
   InMotion nodes;
   const Index* face_nodes;       // [face][4], the fourth is -1 for a triangle
@@ -91,8 +91,8 @@ struct FaceGeometry {
     return {{at(0), at(1), at(2), at(3)}};
   }
   /// Characteristic area of a contact: a vertex's share of its face (Eq. 4-5), but not more than
-  /// that of the face it meets; else a large face gives a small block a spring that no step can
-  /// follow.
+  /// the one of the face that it meets; else a large face gives a small block a spring that no step
+  /// can follow.
   CDEM_HD Real contact_area(Index m, Index t) const { return min_of(table[m].area, table[t].area); }
   /// Stiffness of the element behind a face  [Pa/m].
   CDEM_HD Real stiffness(Index exposed) const { return table[exposed].stiffness; }

@@ -1,4 +1,4 @@
-// views.hpp - what kernels see of exterior faces.
+// views.hpp - the kernels' view of exterior faces.
 #pragma once
 
 #include "core/contact/geometry/face_geometry.hpp"

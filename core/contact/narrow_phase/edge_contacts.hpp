@@ -7,13 +7,13 @@
 
 namespace cdem {
 
-/// Before a step's search: the list becomes that of one step ago.
+/// Before a step's search: the list becomes the old list.
 void begin_edges(State& state);
 
 /// After it: room for the contacts found.
 void make_room_for_edges(State& state);
 
-/// Add contacts to the list in this state; those that it has already stay as they are.
+/// Add contacts to the list in this state; contacts already listed are unchanged.
 void add_edges(State& state, const std::vector<EdgeContact>& contacts, const ContactState& as);
 
 /// Bring the list into a new order of the exposed faces: place x was from[x], y becomes to[y];

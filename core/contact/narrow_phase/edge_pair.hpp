@@ -18,7 +18,7 @@ struct EdgePairs {
   InIndices edges;  // [2][pair]: the one, and the other
   Flag* open;       // [pair] ways in which they may touch in this step, see FilterEdgePairs
   Index* held;      // [4][pair]: place of the contact of a side as the mother with the other edge,
-                    // among those of one step ago, or -1
+                    // among the contacts of one step ago, or -1
   Index stride;     // of them all
 
   template <class Ids>
@@ -39,7 +39,7 @@ struct EdgePairs {
   CDEM_HD Index target(Index p, Index way) const { return sides.at(EdgeWays::target(way), p); }
 };
 
-/// Find what pairs of edges held one step ago, where they do not know it from that step.
+/// Find the old contacts of pairs of edges that do not know them from the last step.
 struct FindHeldEdges {
   EdgePairs pairs;
   EdgesBefore held;
@@ -134,7 +134,7 @@ struct FilterEdgePairs {
     T room;              // for round-off and lift of `apart` times what normals differ along c
     Truth<T> parallel;
   };
-  /// What a face at an edge decides.
+  /// Decisions by a face at an edge.
   template <class T>
   struct AtSide {
     Vec3<T> normal;

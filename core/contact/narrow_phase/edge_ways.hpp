@@ -26,7 +26,7 @@ struct EdgeWays {
   CDEM_HD static Index mother(Index way) { return is_reverse(way) ? 2 + (way & 1) : way >> 1 & 1; }
   CDEM_HD static Index target(Index way) { return is_reverse(way) ? way >> 1 & 1 : 2 + (way & 1); }
   /// The ways in which two edges may touch, as bits; which of their ends are shared; which of the
-  /// four sides (those of the first edge, then of the second) run against the edges; which of the
+  /// four sides (of the first edge, then of the second) run against the edges; which of the
   /// edges begin where their first side ends.
   CDEM_HD static Index code_of(Index some, Index shared, Index against, Index turned) {
     return some | shared << count | against << (count + 4) | turned << (count + 8);

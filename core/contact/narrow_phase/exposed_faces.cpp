@@ -15,8 +15,8 @@ namespace cdem {
 
 namespace {
 
-/// Visit all state that belongs to exposed faces: column, numbers a face, what a new one begins
-/// with.
+/// Visit all state that belongs to exposed faces: column, numbers a face, initial value of a new
+/// one with.
 template <class Visit>
 void visit_faces(State& s, Visit&& visit) {
   SpringState& c = s.springs;

@@ -9,7 +9,7 @@
 
 namespace cdem {
 
-/// Make a face one that can be touched, if it is not yet; its contacts begin empty.
+/// Expose a face to contacts, if it is not exposed yet; its contacts begin empty.
 void expose(State& state, Index face);
 
 /// Put exposed faces into the order of the model, in which faces that are near each other mostly

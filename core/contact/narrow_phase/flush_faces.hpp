@@ -1,4 +1,4 @@
-// flush_faces.hpp - what blocks that began flush with each other hide from third ones.
+// flush_faces.hpp - parts of initially flush blocks that are hidden from third blocks.
 #pragma once
 
 #include "core/contact/geometry/edge.hpp"

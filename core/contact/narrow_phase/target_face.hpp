@@ -7,7 +7,7 @@
 
 namespace cdem {
 
-/// What the search for target faces looks at.
+/// Data for the search of target faces.
 struct FaceSearch {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -30,7 +30,7 @@ struct FaceSearch {
   }
 };
 
-/// Begin the search of a step: what was the target is now that of one step ago.
+/// Begin the search of a step: the target becomes the old target.
 struct BeginTargets {
   SpringColumns springs;
 
@@ -334,7 +334,7 @@ struct ResolveTargets : FaceSearch {
     }
     return true;
   }
-  /// Is a gap of vertex k of exposed face m to t that of a contact, and the best one yet?
+  /// Does vertex k of exposed face m, at this gap to t, make a contact, and the best one yet?
   CDEM_HD bool is_better(Index m, Index k, Index t, Real gap, const Seeker& s) const {
     return gap < none && gap > s.gap && !hidden(m, k, t, s);
   }
@@ -416,7 +416,7 @@ struct ResolveTargets : FaceSearch {
         return none;
     return terms.inside || deepest(node, v, n) ? gap : none;
   }
-  /// No edge that leaves v, or what is bonded to it there, goes below the plane through v.
+  /// No edge that leaves v, or a bonded node there, goes below the plane through v.
   CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {
     const Index point = faces.bonded_node[node];
     for (Index r = faces.edge_star_first[point]; r < faces.edge_star_first[point + 1]; ++r) {

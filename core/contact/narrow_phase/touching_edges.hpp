@@ -59,7 +59,7 @@ struct TouchingEdges {
   }
 
  private:
-  /// What all ways of two edges share.
+  /// Data shared by all ways of two edges.
   template <class T>
   struct Common {
     Vec3<T> x[2], d[2];  // where they begin, and to where they end  [m]
@@ -124,7 +124,7 @@ struct TouchingEdges {
     return least;
   }
 
-  /// A face at an edge, and what is across its side.
+  /// A face at an edge, and its neighbour across the side.
   template <class Ids>
   struct Across {
     Ids face, side, beside;  // the face and its side; the exposed face across, or -1

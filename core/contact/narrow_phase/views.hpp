@@ -1,4 +1,4 @@
-// views.hpp - what the kernels of the narrow phase see of model and state.
+// views.hpp - the view of model and state for kernels of the narrow phase.
 #pragma once
 
 #include "core/contact/geometry/views.hpp"

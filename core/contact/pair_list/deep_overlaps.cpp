@@ -80,12 +80,12 @@ struct Body {
         const Vec3<Real> side = x[face[(k + 1) % 4]] - x[face[k]];
         const Real length = norm(side);
         if (!(length > 0)) continue;
-        const Vec3<Real> way = Real(1) / length * side;
+        const Vec3<Real> direction = Real(1) / length * side;
         if (std::none_of(found.begin(), found.end(), [&](const Vec3<Real>& other) {
-              const Vec3<Real> across = cross(way, other);
+              const Vec3<Real> across = cross(direction, other);
               return dot(across, across) < parallel;
             }))
-          found.push_back(way);
+          found.push_back(direction);
       }
     return found;
   }
@@ -273,7 +273,8 @@ class Overlaps {
         found.push_back({a, b, depth, limit});
     });
   }
-  /// Separating axes of two convex bodies: the least way to move them apart, or anything up to
+  /// Separating axes of two convex bodies: the shortest displacement that separates them, or
+  /// anything up to
   /// `limit` as soon as it is no more. Most bodies are apart along a normal of the first, so those
   /// of the second and directions of edges are found where they are needed.
   static Real overlap(const Body& a, Body& b, std::vector<Vec3<Real>>& directions_of_a,

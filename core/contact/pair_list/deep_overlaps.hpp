@@ -14,10 +14,11 @@ struct DeepOverlaps {
   Index block[2] = {-1, -1};  // of the deepest pair
   Real depth = 0;             // by which that pair must be moved apart, at least  [m]
   Real allowed = 0;           // depth at which its contacts begin by themselves  [m]
-  Vec3<Real> place{0, 0, 0};  // middle of what both boxes share  [m]
+  Vec3<Real> place{0, 0, 0};  // middle of the intersection of both boxes  [m]
 };
 
-/// Find them, once `adopt_overlaps` has held what contacts can hold. Vertices that the first step
+/// Find them, once `adopt_overlaps` has accepted overlaps that contacts can hold. Vertices that the
+/// first step
 /// would hold deep inside an element are adopted too, and counted. Blocks that cannot move have no
 /// contacts with each other and do not count.
 DeepOverlaps find_deep_overlaps(const Model& model, State& state, InitialOverlaps& adopted);

@@ -24,13 +24,13 @@ struct Counters {
   Index raise(std::size_t i) const { return cdem::raise(counts[i], alone); }
 };
 
-/// Make starts of rows of counts: counts[i + 1] were those of row i.
+/// Turn counts into starts of rows: counts[i + 1] was the count of row i.
 template <class Counts>
 void add_up(Counts& counts, std::size_t rows) {
   for (std::size_t i = 0; i < rows; ++i) counts[i + 1] += counts[i];
 }
 
-/// Visit what a search has found, several items at once.
+/// Visit the results of a search, several items at once.
 template <class T, class Visit>
 void for_each_found(const PairBuffers& found, PartedList<T> PairBuffer::* list,
                     const Visit& visit) {
@@ -41,7 +41,7 @@ void for_each_found(const PairBuffers& found, PartedList<T> PairBuffer::* list,
   }
 }
 
-/// Give the memory of what has been listed back, for what comes next.
+/// Free the memory of listed results, for the next ones.
 template <class T>
 void drop(PairBuffers& found, PartedList<T> PairBuffer::* list) {
   for (PairBuffer& of : found.by_thread) of.*list = {};

@@ -1,4 +1,4 @@
-// outer_list.hpp - outer pair list: what may touch before the next rebuild.
+// outer_list.hpp - outer pair list: possible contacts before the next rebuild.
 #pragma once
 
 #include "core/model/model.hpp"

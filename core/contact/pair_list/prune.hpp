@@ -155,7 +155,7 @@ struct MarkInnerFaces {
   }
 };
 
-/// Count those that are marked, slot by slot.
+/// Count the marked ones, slot by slot.
 struct CountInnerFaces {
   const Index* first;
   const Flag* close;

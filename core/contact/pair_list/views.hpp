@@ -1,4 +1,4 @@
-// views.hpp - what kernels of the pair lists see of model and state.
+// views.hpp - the view of model and state for kernels of the pair lists.
 #pragma once
 
 #include "core/contact/pair_list/prune.hpp"

@@ -1,1 +1,1 @@
-"""The case: what a user asks for, read from a file or built in Python, and checked."""
+"""The case: a user's input, read from a file or built in Python, and checked."""

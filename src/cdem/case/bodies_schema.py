@@ -22,7 +22,7 @@ from cdem.case.types import (
 )
 
 MOST_DISCS = 100_000
-"""More discs than this in one set are a slip."""
+"""More discs than this in one set are taken for a mistake."""
 
 
 class Rotate(Part):
@@ -49,14 +49,14 @@ class Box(Part):
     )
     cells: Literal["mirrored", "alike"] | None = Field(
         None,
-        description="Of tet4: neighbouring cells are mirror images, which leaves the whole no preferred "
+        description="For tet4: neighbouring cells are mirror images, so the mesh has no preferred "
         "direction (default), or all are divided along the same diagonal",
     )
 
     @model_validator(mode="after")
     def _cells_are_of_tets(self) -> Box:
         if self.cells is not None and self.shape != "tet4":
-            raise ValueError("cells is of shape: tet4; others are divided in one way")
+            raise ValueError("cells is of shape: tet4; other shapes have one division")
         return self
 
 
@@ -72,9 +72,7 @@ class Polyhedron(Part):
     def _faces_name_vertices(self) -> Polyhedron:
         for face in self.faces or []:
             if any(not 0 <= vertex < len(self.vertices) for vertex in face):
-                raise ValueError(
-                    f"face {face} names a vertex that is not in 0..{len(self.vertices) - 1}"
-                )
+                raise ValueError(f"face {face} names a vertex outside 0..{len(self.vertices) - 1}")
         return self
 
 
@@ -87,15 +85,16 @@ class Block(Part):
     file: Name | None = Field(
         None,
         description="Convex bodies from a file, relative to the case file: each closed surface of an "
-        ".obj, .stl or .ply, each cell of a .vtu or .vtk, polyhedra too",
+        ".obj, .stl or .ply, or each cell (also a polyhedron) of a .vtu or .vtk",
     )
     size: Annotated[float, Quantity("m", above=0)] | None = Field(
         None,
-        description="Of a file: fill closed surfaces, convex or not, with tets up to this edge length "
+        description="For a file: fill closed surfaces, convex or not, with tets up to this edge "
+        "length "
         "(extra terrain); each is a block of several elements [m]",
     )
     scale: Annotated[float, Quantity("1", above=0)] | None = Field(
-        None, description="Of a file: metres for each of its units, 0.001 for millimetres [1]"
+        None, description="For a file: metres per unit of the file, 0.001 for millimetres [1]"
     )
     rotate: Rotate | None = Field(None, description="Rotation of the body")
     translate: Length3 | None = Field(None, description="Shift of the body after its rotation [m]")
@@ -104,14 +103,14 @@ class Block(Part):
     def _one_shape(self) -> Block:
         exactly_one(self, ("box", "polyhedron", "file"))
         if self.size is not None and self.file is None:
-            raise ValueError("size is for bodies of a file; a box has divisions")
+            raise ValueError("size goes with a file; a box has divisions")
         if self.scale is not None and self.file is None:
-            raise ValueError("scale is for bodies of a file; others are written in metres")
+            raise ValueError("scale goes with a file; other bodies are given in metres")
         return self
 
 
 class Scatter(Part):
-    """How the planes of a set scatter about their mean direction."""
+    """Scatter of the planes of a set about their mean direction."""
 
     fisher: Annotated[float, Quantity("1", above=0)] = Field(
         description="Concentration kappa [1]: 63 % of the normals lie within 81 deg / sqrt(kappa)"
@@ -122,7 +121,7 @@ Radius = Annotated[float, Quantity("m", above=0)]
 
 
 class Between(Part):
-    """Radii that are alike likely between two limits."""
+    """Radii spread evenly between two limits."""
 
     min: Radius = Field(description="Smallest [m]")
     max: Radius = Field(description="Largest [m]")
@@ -135,7 +134,7 @@ class Between(Part):
 
 
 class Power(Between):
-    """Radii of which the density falls as r^-exponent between two limits."""
+    """Radii between two limits with a density proportional to r^-exponent."""
 
     exponent: Annotated[float, Quantity("1", above=1)] = Field(
         description="Exponent a of the density r^-a, e.g. 3 to 4.5 [1]"
@@ -143,10 +142,10 @@ class Power(Between):
 
 
 class Lognormal(Part):
-    """Radii whose logarithm is normal; above the largest they are drawn again."""
+    """Radii with a normal logarithm; radii above the largest are drawn again."""
 
-    mean: Radius = Field(description="Mean of the radii, before the largest are cut off [m]")
-    deviation: Radius = Field(description="Their standard deviation, likewise [m]")
+    mean: Radius = Field(description="Mean of the radii, before the cut-off at max [m]")
+    deviation: Radius = Field(description="Standard deviation of the radii, before the cut-off [m]")
     max: Radius = Field(description="Largest [m]")
 
     @model_validator(mode="after")
@@ -157,9 +156,9 @@ class Lognormal(Part):
 
 
 class Radii(Part):
-    """How radii of discs are spread."""
+    """Distribution of the radii of discs."""
 
-    uniform: Between | None = Field(None, description="All alike likely between two limits")
+    uniform: Between | None = Field(None, description="Uniform between two limits")
     power: Power | None = Field(None, description="Power law between two limits")
     lognormal: Lognormal | None = Field(None, description="Lognormal up to a limit")
 
@@ -175,13 +174,17 @@ class Discs(Part):
     file: Line | None = Field(
         None,
         description="File, relative to the case file: CSV with columns x, y, z [m] of the centre, dip, "
-        "dip direction [deg], radius [m]; or FracMan .fab, whose polygons become discs of their area",
+        "dip direction [deg] and radius [m]; or FracMan .fab, whose polygons become discs of equal "
+        "area",
     )
     density: Annotated[float, Quantity("1/m3", above=0)] | None = Field(
-        None, description="Centres per volume, beyond the bodies too as far as discs reach [1/m3]"
+        None, description="Centres per volume, also outside the bodies within reach of discs [1/m3]"
     )
     count: int | None = Field(
-        None, ge=1, le=MOST_DISCS, description="So many, with centres in the box round the bodies"
+        None,
+        ge=1,
+        le=MOST_DISCS,
+        description="Number of discs, with centres in the box round the bodies",
     )
     radius: (
         Annotated[
@@ -189,7 +192,7 @@ class Discs(Part):
             Discriminator(lambda v: "spread" if isinstance(v, dict | Radii) else "same"),
         ]
         | None
-    ) = Field(None, description="Radius of random discs [m], or how radii are spread")
+    ) = Field(None, description="Radius of random discs [m], or their distribution")
 
     @model_validator(mode="after")
     def _one_source(self) -> Discs:
@@ -202,49 +205,48 @@ class Discs(Part):
 class Joint(Part):
     """A set of joints: planes that cut bodies into blocks. x is east, y north, z up."""
 
-    name: Name = Field(
-        description="Name, unique in the case; its faces form a surface of this name"
-    )
-    group: Name | None = Field(None, description="Group that it cuts; all when left out")
+    name: Name = Field(description="Unique name; also the name of the surface that its faces form")
+    group: Name | None = Field(None, description="Group to cut; default all")
     dip: Annotated[float, Quantity("deg", at_least=0, at_most=90)] | None = Field(
         None, description="Steepest angle of the planes below the horizontal [deg]"
     )
     dip_direction: Annotated[float, Quantity("deg", at_least=0, at_most=360)] | None = Field(
-        None, description="Where that steepest line points, clockwise from north [deg]"
+        None, description="Azimuth of that steepest line, clockwise from north [deg]"
     )
     normal: Direction3 | None = Field(
         None, description="Normal of the planes, instead of dip and dip_direction [1]"
     )
     spacing: Annotated[float, Quantity("m", above=0)] | None = Field(
-        None, description="Distance between the planes [m]; one plane when left out"
+        None, description="Distance between the planes [m]; default: a single plane"
     )
     origin: Length3 = Field([0.0, 0.0, 0.0], description="A point on one of the planes [m]")
     persistence: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
-        1.0, description="Chance that a plane cuts a block that it meets [1]"
+        1.0, description="Persistence: probability that a plane cuts a block that it meets [1]"
     )
     scatter: Scatter | None = Field(None, description="Scatter of the planes' directions")
     seed: int = Field(
-        0, ge=0, le=MOST_SEEDS, description="Another number gives other scatter and persistence"
+        0, ge=0, le=MOST_SEEDS, description="Seed of the random scatter and persistence"
     )
     discs: Discs | None = Field(
-        None, description="Discs instead of planes; what they cut beyond their rim is a rock bridge"
+        None, description="Discs instead of planes; cut faces outside the rim are rock bridges"
     )
     bridge: Name | None = Field(
         None,
-        description="Name of the surface of rock bridges beside discs, which pairs of interfaces may "
-        "name as joint; default NAME.bridge",
+        description="Name of the surface of rock bridges beside discs; pairs of interfaces may "
+        "name it "
+        "as joint; default NAME.bridge",
     )
 
     @property
     def bridges(self) -> str | None:
-        """Name of the surface of its rock bridges, if it has discs."""
+        """Name of the surface of the set's rock bridges; None without discs."""
         return None if self.discs is None else self.bridge or f"{self.name}.bridge"
 
     @model_validator(mode="after")
     def _discs_or_planes(self) -> Joint:
         if self.discs is None:
             if self.bridge is not None:
-                raise ValueError("bridge has a meaning with discs only")
+                raise ValueError("bridge goes with discs only; remove it")
             return self
         planes = {"spacing", "origin", "persistence"}
         if self.discs.file is not None:
@@ -252,7 +254,7 @@ class Joint(Part):
         fields = type(self).model_fields
         if idle := sorted(f for f in planes if getattr(self, f) != fields[f].default):
             kind = "random discs" if self.discs.file is None else "discs of a file"
-            raise ValueError(f"{idle[0]} has no meaning with {kind}; remove it")
+            raise ValueError(f"{idle[0]} has no effect with {kind}; remove it")
         return self
 
     @model_validator(mode="after")
@@ -274,7 +276,7 @@ OpenCorner = Annotated[list[Annotated[float, Quantity("m")] | None], Three, List
 
 
 class Domain(Part):
-    """A box along the axes; blocks that leave it are taken out of the computation."""
+    """A box along the axes; blocks that leave it are removed from the computation."""
 
     min: OpenCorner = Field([None] * 3, description="Lowest corner [m]; null: open on that side")
     max: OpenCorner = Field([None] * 3, description="Highest corner [m]; null: open on that side")
@@ -298,28 +300,29 @@ class Model(Part):
     blocks: list[Block] = Field([], description="Bodies made here")
     split: dict[Name, Literal["one", "connected", "elements"]] = Field(
         {},
-        description="What is one block, per group: one (the whole group), connected (each connected "
-        "part; the default) or elements (each element)",
+        description="Blocks of a group: one (the whole group), connected (each connected part; the "
+        "default) or elements (each element)",
     )
     joints: list[Joint] = Field(
-        [], description="Sets of joints that cut the bodies, in this order, once all are in place"
+        [], description="Sets of joints; they cut the placed bodies in this order"
     )
     thinnest: Annotated[float, Quantity("m", at_least=0)] | None = Field(
         None,
-        description="Joints cut off no part thinner than this [m]; default a hundredth of the "
+        description="Thinnest part that joints may cut off [m]; default a hundredth of the "
         "smallest spacing",
     )
     rotate: Rotate | None = Field(None, description="Rotation of the whole model")
     translate: Length3 | None = Field(None, description="Shift of the whole model [m]")
     domain: Domain | None = Field(
         None,
-        description="Blocks that leave this box, after rotate and translate, are taken out of the "
+        description="Blocks that leave this box (set after rotate and translate) are removed from "
+        "the "
         "computation",
     )
 
     @property
     def joint_surfaces(self) -> list[str]:
-        """Names of what joints make: the sets in order, then the rock bridges of those with discs."""
+        """Names of surfaces of joints: the sets in order, then rock bridges of sets with discs."""
         bridges = [joint.bridges for joint in self.joints]
         return [joint.name for joint in self.joints] + [name for name in bridges if name]
 

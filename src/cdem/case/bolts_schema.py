@@ -1,4 +1,4 @@
-"""Bolts and cables of a case: what they are made of, where they are, when they come and go."""
+"""Bolts and cables of a case: section, places, and stages of installation and removal."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Force = Annotated[float, Quantity("N", above=0)]
 
 
 def _true_is_empty(value: object) -> object:
-    """`plate: true` is `plate: {}`, and `plate: false` is none."""
+    """`plate: true` means `plate: {}`, and `plate: false` means no plate."""
     return ({} if value else None) if isinstance(value, bool) else value
 
 
 class Grout(Part):
-    """What holds a bolt along its hole."""
+    """The grout of a bolt."""
 
     stiffness: Annotated[float, Quantity("N/m2", above=0)] = Field(
         description="Force per length of bolt and slip [N/m2]"
@@ -31,7 +31,7 @@ class Grout(Part):
 
 
 class Dowel(Part):
-    """How a bolt resists the shift of a joint that it crosses."""
+    """Resistance of a bolt to the shift of a joint that it crosses."""
 
     stiffness: Annotated[float, Quantity("N/m", above=0)] | None = Field(
         None,
@@ -40,12 +40,12 @@ class Dowel(Part):
     )
     strength: Force | None = Field(
         None,
-        description="Force at which it shears off plastically [N]; default half the yield force",
+        description="Force at which it yields in shear [N]; default half the yield force",
     )
 
 
 class BoltType(Part):
-    """What bolts of a type are made of."""
+    """Section and strength of a type of bolt."""
 
     area: Annotated[float, Quantity("m2", above=0)] = Field(description="Section of the steel [m2]")
     young_modulus: Annotated[float, Quantity("Pa", above=0)] = Field(
@@ -54,15 +54,17 @@ class BoltType(Part):
     yield_force: Force = Field(description="Axial force at which it yields in tension [N]")
     compressive_force: Annotated[float, Quantity("N", at_least=0)] | None = Field(
         None,
-        description="The same in compression; 0 for a cable, which cannot be pushed [N]; default the "
+        description="Force at which it yields in compression [N]; 0 for a cable; default the "
         "yield force",
     )
     rupture_strain: Annotated[float, Quantity("1", above=0)] | None = Field(
-        None, description="Strain at which it tears, elastic and plastic [1]; default never"
+        None, description="Total strain at rupture (elastic and plastic) [1]; default never"
     )
-    grout: Grout | None = Field(None, description="Grout; without it only plate and anchor hold")
+    grout: Grout | None = Field(
+        None, description="Grout; without it only plate and anchor hold the bolt"
+    )
     dowel: Annotated[Dowel | None, BeforeValidator(_true_is_empty)] = Field(
-        None, description="Resistance to shear where it crosses a joint; true for the defaults"
+        None, description="Resistance to shear at joints; true for the defaults"
     )
 
     @model_validator(mode="after")
@@ -71,7 +73,7 @@ class BoltType(Part):
         if self.rupture_strain is not None and self.rupture_strain <= yields:
             raise ValueError(
                 f"rupture_strain {self.rupture_strain:g} is below the strain {yields:.3g} at which "
-                "the steel yields; give the strain at which it tears"
+                "the steel yields; give the total strain at rupture"
             )
         return self
 
@@ -80,11 +82,9 @@ class Fixture(Part):
     """A plate at the head, or an anchor at the toe."""
 
     stiffness: Annotated[float, Quantity("N/m", above=0)] | None = Field(
-        None, description="Force per displacement [N/m]; default that of 0.1 m of the bolt"
+        None, description="Force per displacement [N/m]; default: as 0.1 m of the bolt"
     )
-    strength: Force | None = Field(
-        None, description="Force at which it gives way plastically [N]; default never"
-    )
+    strength: Force | None = Field(None, description="Force at which it yields [N]; default never")
 
 
 class Pattern(Part):
@@ -93,10 +93,10 @@ class Pattern(Part):
     surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
     spacing: Annotated[
         list[Annotated[float, Quantity("m", above=0)]], Field(min_length=2, max_length=2)
-    ] = Field(description="Between rows along the surface, and up or across it [m]")
-    length: Annotated[float, Quantity("m", above=0)] = Field(description="Of each bolt [m]")
+    ] = Field(description="Spacing along the surface, and up or across it [m]")
+    length: Annotated[float, Quantity("m", above=0)] = Field(description="Length of each bolt [m]")
     direction: Direction3 | None = Field(
-        None, description="From head to toe; by default square into the surface [1]"
+        None, description="From head to toe; default normal to the surface [1]"
     )
 
     @model_validator(mode="after")
@@ -107,16 +107,16 @@ class Pattern(Part):
 
 
 class Rings(Part):
-    """Bolts in rings about an axis, such as that of a tunnel."""
+    """Bolts in rings about an axis, e.g. of a tunnel."""
 
     axis: Annotated[list[Length3], Field(min_length=2, max_length=2)] = Field(
         description="Two points on the axis: the first ring is at the first, the last before the second "
         "[m]"
     )
     spacing: Annotated[float, Quantity("m", above=0)] = Field(
-        description="Between rings along the axis [m]"
+        description="Spacing of rings along the axis [m]"
     )
-    count: int = Field(ge=1, le=10_000, description="Bolts of a ring")
+    count: int = Field(ge=1, le=10_000, description="Bolts per ring")
     angles: Annotated[
         list[Annotated[float, Quantity("deg")]], Field(min_length=2, max_length=2)
     ] = Field(
@@ -125,9 +125,9 @@ class Rings(Part):
         "right-handed; a full turn is divided evenly [deg]",
     )
     inside: Name | None = Field(
-        None, description="Group that fills the opening until it is dug out; none if it is open"
+        None, description="Group in the opening that is excavated later; none for an open tunnel"
     )
-    length: Annotated[float, Quantity("m", above=0)] = Field(description="Of each bolt [m]")
+    length: Annotated[float, Quantity("m", above=0)] = Field(description="Length of each bolt [m]")
 
     @model_validator(mode="after")
     def _has_an_axis(self) -> Rings:
@@ -153,27 +153,27 @@ class Bolts(Part):
     pattern: Pattern | None = Field(None, description="Bolts on a surface")
     rings: Rings | None = Field(None, description="Bolts about a tunnel")
     free_length: Annotated[float, Quantity("m", at_least=0)] = Field(
-        0.0, description="Length from the head without grout [m]"
+        0.0, description="Free length at the head, without grout [m]"
     )
     plate: Annotated[Fixture | None, BeforeValidator(_true_is_empty)] = Field(
-        None, description="Plate that presses on the rock at the head; true for the defaults"
+        None, description="Plate at the head, which only presses; true for the defaults"
     )
     anchor: Annotated[Fixture | None, BeforeValidator(_true_is_empty)] = Field(
-        None, description="Anchor at the toe, which holds both ways; true for the defaults"
+        None, description="Anchor at the toe, which pulls and presses; true for the defaults"
     )
     pretension: Annotated[float, Quantity("N", at_least=0)] = Field(
-        0.0, description="Force to which the head is pulled when it is installed, then locked [N]"
+        0.0, description="Pretension at installation, then locked at the head [N]"
     )
     install: Name | None = Field(
-        None, description="Stage at whose beginning they are installed; by default the first"
+        None, description="Stage that installs the bolts at its beginning; default the first"
     )
-    remove: Name | None = Field(None, description="Stage at whose beginning they are removed")
+    remove: Name | None = Field(None, description="Stage that removes the bolts at its beginning")
 
     @model_validator(mode="after")
     def _fits_together(self) -> Bolts:
         exactly_one(self, ("points", "pattern", "rings"))
         if self.pretension and self.plate is None:
-            raise ValueError("pretension needs a plate that locks it; add plate: true")
+            raise ValueError("pretension needs a plate to lock it; add plate: true")
         if self.points is not None and not (np.diff(self.points, axis=0) != 0).any(axis=1).all():
-            raise ValueError("points: two that follow each other are the same")
+            raise ValueError("points: two successive points are equal; remove one")
         return self

@@ -1,4 +1,4 @@
-"""The case: what a user asks for, from a file or built in Python, checked before anything runs."""
+"""The case: a user's input, from a file or built in Python, checked before anything runs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Case(CaseParts):
     """A whole case. Load one from a file, or build it here with the same names.
 
     Raises:
-        CaseError: Every problem found, one line each: file:line:column: path: what.
+        CaseError: Every problem found, one line each: file:line:column: path: problem.
 
     Example:
         >>> case = Case(
@@ -54,7 +54,7 @@ class Case(CaseParts):
             super().__init__(**data)
         except ValidationError as error:
             problems += problems_of(error, Case)
-            try:  # so that names are checked, too, if all the rest is sound
+            try:  # check the names too if all the rest is sound
                 super().__init__(**checks.without(data, problems))
             except ValidationError:
                 raise source.error(problems) from None
@@ -62,9 +62,9 @@ class Case(CaseParts):
         known = checks.contradictions(self, source.folder)
         impossible, self._unusual = plausible.doubts(self)
         known += impossible
-        if not problems:  # else settings might fail for what was left out
+        if not problems:  # else settings might fail because of omitted values
             trial = self.model_copy(deep=True)
-            trial._source = Source()  # so that errors name no line; the line is that of the setting
+            trial._source = Source()  # errors name the line of the setting instead
             problems, later = checks.stage_settings(trial, trial.set, [*known, *self._unusual])
             self._unusual += later
         problems += known
@@ -73,7 +73,7 @@ class Case(CaseParts):
 
     @property
     def warnings(self) -> list[str]:
-        """Values that are possible but unusual: ``file:line:col: path: what is usual``."""
+        """Values that are possible but unusual: ``file:line:col: path: usual range``."""
         return self._source.lines(self._unusual)
 
     @classmethod
@@ -85,7 +85,7 @@ class Case(CaseParts):
             overrides: Texts ``"interfaces.default.cohesion=10 kPa"`` that replace values.
 
         Returns:
-            The case, checked as far as that is possible without its mesh.
+            The case, with all checks that need no mesh.
 
         Raises:
             CaseError: The file cannot be read or is wrong; one line for each problem.
@@ -113,7 +113,7 @@ class Case(CaseParts):
         return self._source.folder / file
 
     def blame(self, path: str) -> AbstractContextManager[None]:
-        """Put ``file:line:col: path:`` before the message of a CdemError or ValueError inside."""
+        """Put ``file:line:col: path:`` in front of a CdemError or ValueError raised inside."""
         return self._source.blame(path)
 
     def set(self, path: str, value: Any) -> None:
@@ -139,7 +139,7 @@ class Case(CaseParts):
                 node = getattr(node, str(key)) if isinstance(node, Part) else node[key]
             if node is None:
                 there = ".".join(map(str, keys[:depth]))
-                raise CaseError(f"{path}: {there} is not given, so nothing in it can change")
+                raise CaseError(f"{path}: {there} is not given, so its entries cannot change")
             if isinstance(node, Part):
                 part, keep = node, depth
         field, inner = str(keys[keep]), keys[keep + 1 :]
@@ -152,10 +152,10 @@ class Case(CaseParts):
         self.interfaces.inherit()
 
     def try_setting(self, path: str, value: Any) -> None:
-        """Check a value that is to change while the case runs, as the `set` of a stage is checked.
+        """Check a value that is to change during the run, like the `set` of a stage.
 
         Raises:
-            CaseError: There is no such value, it is not allowed, or it holds from the start.
+            CaseError: The value does not exist, is not allowed, or is fixed at the start.
         """
         trial = self.model_copy(deep=True)
         trial._source = Source()
@@ -177,7 +177,8 @@ class Case(CaseParts):
         for holder, key in files_of(data):
             holder[key] = str(self.path_of(holder[key]).resolve())
         if self.interfaces.default is not None:
-            # A pair's inherited values follow the default when a stage sets it, so leave them out.
+            # A pair's inherited values follow the default when a stage sets it, so they are left
+            # out.
             for pair, written in zip(
                 self.interfaces.pairs, data["interfaces"]["pairs"], strict=True
             ):
@@ -198,10 +199,10 @@ class Case(CaseParts):
 
 
 def _refuse_code(data: dict[str, Any], source: Source) -> None:
-    """Refuse laws of users that the user has not allowed.
+    """Raise an error for own laws that the user has not allowed.
 
     Raises:
-        CaseError: The case names some.
+        CaseError: The case names such laws.
     """
     files = data.get("own_laws")
     for number, file in enumerate(files if isinstance(files, list) else []):
@@ -210,8 +211,8 @@ def _refuse_code(data: dict[str, Any], source: Source) -> None:
                 [
                     (
                         ("own_laws", number),
-                        f"{file} is code that would run as part of cdem; read it, then allow it with "
-                        "--allow-code (in Python: cdem.load_own_laws before all else)",
+                        f"{file} is code that would run inside cdem; read it, then allow it with "
+                        "--allow-code (in Python: first call cdem.load_own_laws)",
                     )
                 ]
             )

@@ -1,4 +1,4 @@
-"""What a case must not contradict: checks between its parts that need no mesh."""
+"""Contradictions within a case: checks between its parts that need no mesh."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cdem.case.schema import CaseParts, Stage
 from cdem.case.softening import softening_problems
 from cdem.errors import CaseError
 
-Problem = tuple[tuple[str | int, ...], str]  # path, what is wrong
+Problem = tuple[tuple[str | int, ...], str]  # path, problem
 SETTABLE = (
     "interfaces.",
     "loads.",
@@ -27,15 +27,15 @@ SETTABLE = (
 )  # another mesh or material is another model
 AT_START = ("velocity", "angular_velocity")  # of a group
 STRENGTHS = {p.name for law in BLOCK_LAWS.values() for p in law.parameters if p.is_strength}
-"""What a stage may change of a material."""
+"""Parts of a material that a stage may change."""
 
 
 def contradictions(case: CaseParts, folder: Path) -> list[Problem]:
-    """Return every mismatch between names of the case, and the mesh file if it is not there.
+    """Return every mismatch between names of the case, and a missing mesh file.
 
     Args:
         case: The case.
-        folder: Folder that relative paths in it start at.
+        folder: Start of relative paths in the case.
     """
     return [*_mesh_file(case, folder), *_projection(case), *_maps(case), *_names(case)]
 
@@ -47,7 +47,7 @@ def _projection(case: CaseParts) -> Iterator[Problem]:
 
 def _maps(case: CaseParts) -> Iterator[Problem]:
     if case.output.maps and not case.output.maps.groups and not case.movable:
-        yield ("output", "maps"), "there is no group to follow: all are fixed in x, y and z"
+        yield ("output", "maps"), "no group moves: all are fixed in x, y and z; remove maps"
 
 
 def _names(case: CaseParts) -> Iterator[Problem]:
@@ -72,9 +72,10 @@ def _surfaces(case: CaseParts) -> Iterator[Problem]:
         if static := next((s.name for s in rest if s.mode == "static"), None):
             yield (
                 ("loads", "surfaces", i, "law"),
-                f"{entry.law} has dashpots, which hold nothing at rest: the rock would creep off in the "
-                f"static stage {static}; let it begin with a later stage (stage: NAME) behind all static "
-                "ones, and hold the faces with supports that this stage takes away",
+                f"{entry.law} has dashpots, which carry no static load: the rock would creep away "
+                f"in the "
+                f"static stage {static}; start it in a later stage (stage: NAME), after all static "
+                "ones, and until then hold the faces with supports that this stage removes",
             )
     for i, history in enumerate(case.histories):
         if "surface_force" in history.quantities and not case.loads.surfaces:
@@ -96,7 +97,7 @@ def _water(case: CaseParts) -> Iterator[Problem]:
             yield ("water", "fields", i, "interface"), _no("interface", field.interface, named)
     gx, gy, gz = case.loads.gravity
     if gx or gy or not gz < 0:
-        yield ("loads", "gravity"), f"must point along -z where there is water, got {[gx, gy, gz]}"
+        yield ("loads", "gravity"), f"must point along -z in a case with water, got {[gx, gy, gz]}"
 
 
 def _mesh_file(case: CaseParts, folder: Path) -> Iterator[Problem]:
@@ -105,7 +106,7 @@ def _mesh_file(case: CaseParts, folder: Path) -> Iterator[Problem]:
         try:
             names = [p.name for p in path.parent.glob("*") if p.is_file()]
             whole = path.resolve()
-        except (OSError, RuntimeError):  # no system takes such a path
+        except (OSError, RuntimeError):  # the system refuses such a path
             names, whole = [], path
         near = difflib.get_close_matches(path.name, names, n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
@@ -129,7 +130,8 @@ def _materials(case: CaseParts) -> Iterator[Problem]:
         if BLOCK_LAWS[material.law].flows and not rotates:
             yield (
                 ("elements", "formulation"),
-                f"must be corotational: material {name} has the law {material.law}, which flows",
+                f"must be corotational: material {name} has the law {material.law}, which is "
+                f"plastic",
             )
 
 
@@ -146,33 +148,37 @@ def _groups(case: CaseParts) -> Iterator[Problem]:
 
 def _excavation(case: CaseParts) -> Iterator[Problem]:
     dug = False
-    let_go = 1.0
+    released = 1.0
     for i, stage in enumerate(case.stages):
         if stage.remove:
-            dug, let_go = True, 0.0
+            dug, released = True, 0.0
         yield from _presence(case, i)
         if stage.remove and i == 0:
             yield (
                 ("stages", 0, "remove"),
-                "nothing bears before the first stage: begin with one that comes to rest, or leave "
-                "the group out of the model",
+                "there are no forces before the first stage to release: begin with a stage that "
+                "comes to "
+                "rest, or leave the group out of the model",
             )
         if stage.release is not None and not dug:
-            yield ("stages", i, "release"), "nothing has been dug out (remove)"
-        elif stage.release is not None and stage.release.to < let_go:
+            yield (
+                ("stages", i, "release"),
+                "no group has been removed yet; give remove, or leave out release",
+            )
+        elif stage.release is not None and stage.release.to < released:
             yield (
                 ("stages", i, "release", "to"),
-                f"must be at least {let_go:g}, which an earlier stage has let go",
+                f"must be at least {released:g}, the part that an earlier stage has released",
             )
         if stage.remove or stage.release:
-            let_go = stage.release.to if stage.release else 1.0
+            released = stage.release.to if stage.release else 1.0
 
 
 def _presence(case: CaseParts, number: int) -> Iterator[Problem]:
-    """Whether what a stage removes is there, and what it adds is not."""
+    """Check that groups to remove are present, and groups to add are absent."""
     stage = case.stages[number]
     absent = case.absent(number)
-    last: dict[str, str] = {}  # stage that removed or added a group last
+    last: dict[str, str] = {}  # last stage that removed or added the group
     for before in case.stages[:number]:
         last |= dict.fromkeys(before.remove + before.add, before.name)
     named = [("remove", *entry) for entry in enumerate(stage.remove)]
@@ -183,15 +189,18 @@ def _presence(case: CaseParts, number: int) -> Iterator[Problem]:
         if name in seen:
             why = f"the stage names {name} twice"
         elif key == "add" and name not in absent:
-            why = f"{name} is there since the stage {last.get(name)!r}"
+            why = f"{name} is present since the stage {last.get(name)!r}"
         elif key == "remove" and name in absent:
-            why = f"{name} was dug out in the stage {last[name]!r}" if name in last else (
-                f"{name} is not there yet: a later stage adds it")  # fmt: skip
+            why = f"{name} was removed in the stage {last[name]!r}" if name in last else (
+                f"{name} is not present yet: a later stage adds it")  # fmt: skip
         seen.add(name)
         if why:
             yield ("stages", number, key, k), why
     if stage.add and number == 0:
-        yield ("stages", 0, "add"), "leave it out: what is in no add is there from the start"
+        yield (
+            ("stages", 0, "add"),
+            "leave it out: groups that no later stage adds are present from the start",
+        )
 
 
 def _bolts(case: CaseParts) -> Iterator[Problem]:
@@ -201,7 +210,8 @@ def _bolts(case: CaseParts) -> Iterator[Problem]:
         elif case.bolt_types[bolts.type].grout is None and not (bolts.plate and bolts.anchor):
             yield (
                 ("bolts", i),
-                f"nothing holds them at both ends: give {bolts.type} grout, or the bolts a plate and "
+                f"no grout, plate or anchor holds both ends: give {bolts.type} grout, or the bolts "
+                f"a plate and "
                 "an anchor",
             )
         kind = bolts.pattern or bolts.rings
@@ -222,7 +232,10 @@ def _stages_of_bolts(case: CaseParts) -> Iterator[Problem]:
             yield ("bolts", i, key), _no("stage", getattr(bolts, key), stages)
         first = bolts.install or stages[0]
         if not wrong and bolts.remove and stages.index(bolts.remove) <= stages.index(first):
-            yield ("bolts", i, "remove"), f"must be a stage after {first!r}, which installs them"
+            yield (
+                ("bolts", i, "remove"),
+                f"must be a later stage than {first!r}, which installs the bolts",
+            )
 
 
 def _histories_of_bolts(case: CaseParts) -> Iterator[Problem]:
@@ -236,7 +249,7 @@ def _histories_of_bolts(case: CaseParts) -> Iterator[Problem]:
 
 
 def _curves(case: CaseParts) -> Iterator[Problem]:
-    """Whether there are the stages from which curves count, with what the curves act on."""
+    """Check that stages named for curves exist, and contain the groups that the curves act on."""
     names = [stage.name for stage in case.stages]
     for keys, entry in timed(case):
         if entry.stage is None:
@@ -248,7 +261,7 @@ def _curves(case: CaseParts) -> Iterator[Problem]:
         surface = getattr(entry, "surface", None)
         group = getattr(surface, "group", getattr(entry, "group", None))
         if group in case.absent(names.index(entry.stage) + 1):
-            yield (*keys, "stage"), f"{group} is not there in the stage {entry.stage}"
+            yield (*keys, "stage"), f"{group} is not present in the stage {entry.stage}"
 
 
 def _joints(case: CaseParts) -> Iterator[Problem]:
@@ -339,9 +352,9 @@ def _unique_names(case: CaseParts) -> Iterator[Problem]:
 
 
 def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]:
-    """Leave out the values that are wrong, so that the rest of a case can be looked at.
+    """Remove wrong values, so that the rest of a case can be checked.
 
-    Groups, materials and entries of lists stay: without them the rest would look wrong.
+    Groups, materials and entries of lists stay: without them other parts would look wrong.
     """
     rest = deepcopy(data)
     for keys, _ in problems:
@@ -357,7 +370,7 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
 
 
 def _fixed_at_the_start(trial: CaseParts, stage: Stage, path: str, value: Any) -> str:
-    """Why a setting would change what only the start of a run knows, or ""."""
+    """Why a setting would change a value that is fixed at the start of a run, or ""."""
     part, *keys = path.split(".")
     whole = len(keys) == 1 and isinstance(value, dict)
     changed = [str(key) for key in value] if whole else keys[1:2]
@@ -369,22 +382,23 @@ def _fixed_at_the_start(trial: CaseParts, stage: Stage, path: str, value: Any) -
     found = [key for key in changed if key in fixed]
     if found:
         kind = {"interfaces": "an interface", "groups": "a group", "materials": "a material"}[part]
-        return f"{found[0]!r} of {kind} holds from the start and cannot change"
+        return f"{found[0]!r} of {kind} is fixed at the start and cannot change"
     if part == "groups" and "material" in changed:
         return _fixed_material(trial, stage, keys[0], value["material"] if whole else value)
     return ""
 
 
 def _fixed_material(trial: CaseParts, stage: Stage, group: str, material: Any) -> str:
-    """Why a stage cannot give a group this material, or "": it fills it, and the law is the same."""
+    """Why a stage cannot give a group this material, or "": it must add it and keep the law."""
     if not isinstance(material, str):
-        return ""  # which the schema refuses
+        return ""  # the schema refuses it
     was = trial.groups[group].material if group in trial.groups else material
     laws = {trial.materials[name].law for name in (was, material) if name in trial.materials}
     if group in stage.add and len(laws) == 1:
         return ""
     return (
-        "'material' of a group holds from the start and cannot change, unless the stage adds the group "
+        "'material' of a group is fixed at the start and cannot change, unless the stage adds the "
+        "group "
         "and both have the same law"
     )
 
@@ -397,10 +411,10 @@ def stage_settings(
     Args:
         trial: A copy of the case; is changed.
         put: Sets the value at a path of the copy.
-        known: What is wrong or unusual with it already, which is not repeated.
+        known: Problems and warnings that it has already; they are not repeated.
 
     Returns:
-        What does not work or is impossible, and what is unusual.
+        Problems of the settings, and warnings.
     """
     problems: list[Problem] = []
     doubtful: list[Problem] = []
@@ -411,11 +425,11 @@ def stage_settings(
         now = trial.interfaces.fixed()
         for key in now:
             if now[key] != fixed_values[key]:
-                fixed = f"{key!r} of an interface holds from the start and cannot change"
+                fixed = f"{key!r} of an interface is fixed at the start and cannot change"
                 problems.append((("stages", i, "set"), fixed))
         fixed_values = now
         problems += [
-            (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
+            (("stages", i, "set"), f"gives {'.'.join(map(str, keys))}: {what}")
             for keys, what in _names(trial)
             if (keys, what) not in known
         ]
@@ -425,7 +439,7 @@ def stage_settings(
         if stage.set:
             for found, told in zip(doubts(trial), (problems, doubtful), strict=True):
                 told += [
-                    (("stages", i, "set"), f"leads to {'.'.join(map(str, keys))}: {what}")
+                    (("stages", i, "set"), f"gives {'.'.join(map(str, keys))}: {what}")
                     for keys, what in found
                     if (keys, what) not in known
                 ]
@@ -436,7 +450,7 @@ def stage_settings(
 def _settings_of_one(
     trial: CaseParts, number: int, put: Callable[[str, Any], None]
 ) -> Iterator[Problem]:
-    """Put what a stage sets into a copy of the case; what does not work."""
+    """Put the settings of a stage into a copy of the case; yields settings that fail."""
     stage = trial.stages[number]
     for path, value in stage.set.items():
         keys = ("stages", number, "set", path)

@@ -1,4 +1,4 @@
-"""From when the times of curves count, and which curves are over too early."""
+"""Start times of curves over time, and checks for curves that end too early."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cdem.case.schema import CaseParts, Stage
 from cdem.case.timed_schema import Timed
 
 Keys = tuple[str | int, ...]
-Problem = tuple[Keys, str]  # path, what is wrong
+Problem = tuple[Keys, str]  # path, problem
 
 
 def timed(case: CaseParts) -> Iterator[tuple[Keys, Timed]]:
@@ -29,17 +29,17 @@ def last_dynamic(stages: Sequence[Stage]) -> int:
 
 
 def least_time(stages: Sequence[Stage]) -> float:
-    """The shortest that stages can take [s]: nobody knows beforehand when one comes to rest."""
+    """Shortest total duration of stages [s]; a static stage counts as 0: its end is unknown."""
     return sum(s.duration or 0.0 for s in stages if s.until is None and s.max_steps is None)
 
 
 def over_early(case: CaseParts, time: float, late: float = 0.0) -> Iterator[Problem]:
-    """Curves that count from the start of the run, and are over before the last dynamic stage begins.
+    """Curves that start with the run and end before the last dynamic stage begins.
 
     Args:
-        case: With a dynamic stage; as it is at that time.
-        time: Before that begin, or that begin [s].
-        late: By how much stages before may have ended later than they should [s].
+        case: Has a dynamic stage; in its state at that time.
+        time: Begin of that stage, or an earlier time [s].
+        late: How much later than planned earlier stages may have ended [s].
     """
     name = case.stages[last_dynamic(case.stages)].name
     for keys, key, end in _varying(case, None):
@@ -47,17 +47,18 @@ def over_early(case: CaseParts, time: float, late: float = 0.0) -> Iterator[Prob
             yield (
                 (*keys, key),
                 f"is over at {end:g} s, before the stage {name} begins: its times count from the "
-                f"start of the run; write stage: {name} beside it, or the stage that it is meant for",
+                f"start of the run; write stage: {name} beside it, or the stage where it should "
+                f"start",
             )
 
 
 def last_change(case: CaseParts, stage: str) -> float:
-    """When the last of the curves that count from a stage has come to its last value [s]."""
+    """Time when the last curve of a stage reaches its last value [s]."""
     return max((end for _, _, end in _varying(case, stage)), default=0.0)
 
 
 def in_static_stages(case: CaseParts) -> Iterator[Problem]:
-    """Curves that go on while a stage that they do not name comes to rest, in a time of its own."""
+    """Curves still running while a static stage, which they do not name, comes to rest."""
     names = [stage.name for stage in case.stages]
     for stage in (None, *names):
         first = 0 if stage is None else names.index(stage)
@@ -74,13 +75,13 @@ def in_static_stages(case: CaseParts) -> Iterator[Problem]:
                 yield (
                     (*keys, key),
                     f"goes on until {end:g} s from {since}, also while the static stage "
-                    f"{rest[static].name} comes to rest, in a time that its tolerance decides; "
-                    "stage: NAME beside it says from which stage its times count",
+                    f"{rest[static].name} comes to rest, for a time that depends on the tolerance; "
+                    "write stage: NAME beside it for the stage where its times start",
                 )
 
 
 def _varying(case: CaseParts, stage: str | None) -> Iterator[tuple[Keys, str, float]]:
-    """Curves with this stage that are not constant: place, key and time of the last change [s]."""
+    """Curves of this stage that are not constant: place, key and time of the last change [s]."""
     for keys, entry in timed(case):
         for key, rows in entry.curves.items():
             last = max((i for i, row in enumerate(rows) if row[1] != rows[-1][1]), default=-1)

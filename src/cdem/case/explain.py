@@ -1,4 +1,4 @@
-"""Errors that pydantic finds, in our words."""
+"""Errors of pydantic in plain words."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from cdem.units import describe
 def explain(
     error: ValidationError, source: Source, root: type[BaseModel], within: Keys = ()
 ) -> CaseError:
-    """Turn pydantic's errors into ours.
+    """Turn pydantic's errors into errors of cdem.
 
     Args:
-        error: What pydantic found.
-        source: Where the data came from.
+        error: The errors of pydantic.
+        source: Origin of the data.
         root: The model of the whole data.
         within: Path of the part that was validated, if not the whole.
     """
@@ -32,7 +32,7 @@ def explain(
 def problems_of(
     error: ValidationError, root: type[BaseModel], within: Keys = ()
 ) -> list[tuple[Keys, str]]:
-    """Path of each error that pydantic found, and what is wrong there in our words."""
+    """Path of each error of pydantic, with the problem in plain words."""
     problems = []
     for detail in error.errors(include_url=False):
         keys, model = _real_path(root, (*within, *detail["loc"]))
@@ -41,7 +41,7 @@ def problems_of(
 
 
 def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] | None]:
-    """Drop what pydantic adds to a location (tags of unions, "[key]"), and find the last model."""
+    """Remove pydantic's additions to a location (tags of unions, "[key]"); find the last model."""
     keys: Keys = ()
     model, kind = None, root
     for key in loc:
@@ -68,7 +68,7 @@ def _real_path(root: Any, loc: tuple[Any, ...]) -> tuple[Keys, type[BaseModel] |
 
 
 class _Choice:
-    """A union of several kinds; pydantic's tag in the location says which one was meant."""
+    """The member of a union that was meant: pydantic's tag in the location names it."""
 
     def __init__(self, kinds: list[Any]) -> None:
         self.kinds = kinds
@@ -81,7 +81,7 @@ class _Choice:
         return None
 
     def with_field(self, name: str) -> Any:
-        """The first model that has a field; a path in a case has no tags."""
+        """The first model that has a field; paths in a case contain no tags."""
         models = (_unwrap(kind) for kind in self.kinds)
         return next((m for m in models if name in getattr(m, "model_fields", {})), None)
 
@@ -138,12 +138,12 @@ def _words(detail: Any, keys: Keys, model: type[BaseModel] | None) -> str:
 
 def _extra(key: str, value: Any, model: type[BaseModel] | None) -> str:
     if value is None and key.isdecimal():
-        return f"stands as a key; if it is the end of a number such as 2,{key}: no comma in it"
+        return f"is a key without a value; if it ends a number such as 2,{key}, leave out the comma"
     return unknown_key(key, model.model_fields if model else {})
 
 
 def _list_wanted(keys: Keys, model: type[BaseModel] | None) -> str:
-    """Say what list is wanted: three numbers along the axes have an example of their own."""
+    """Describe the wanted list; three numbers along the axes have an example of their own."""
     known = model.model_fields.get(str(keys[-1])) if model else None
     lengths = [getattr(extra, "min_length", None) for extra in known.metadata] if known else []
     return "must be a list, e.g. " + ("[0, 0, -9.81] (x, y, z)" if 3 in lengths else "[a, b]")
@@ -162,7 +162,7 @@ MISPLACED = {
 
 
 def unknown_key(key: str, known: Iterable[str]) -> str:
-    """Say that a key is unknown, and what may be meant: that of another law, or one like it."""
+    """Say that a key is unknown, and suggest: a key of another law, or a similar key."""
     known = list(known)
     kind = BLOCK_LAWS if "density" in known else INTERFACE_LAWS
     kind = SURFACE_LAWS if "surface" in known else kind

@@ -1,4 +1,4 @@
-"""Formulas in a case or a study: arithmetic with named numbers; angles are in degrees, as in a case."""
+"""Formulas in a case or a study: arithmetic with named numbers; angles are in degrees."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "min": min,
     "max": max,
 }
-ARGUMENTS = {"atan2": 2}  # the others take one; min and max any number
+ARGUMENTS = {"atan2": 2}  # others take one argument; min and max take any number
 OPERATORS: dict[type, Callable[..., float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -44,9 +44,9 @@ OPERATORS: dict[type, Callable[..., float]] = {
 
 
 LONGEST = 1000
-"""Characters of a formula."""
+"""Most characters of a formula."""
 DEEPEST = 100
-"""Operations inside one another, as in a sum of so many numbers."""
+"""Deepest nesting of operations; a sum of so many numbers is as deep."""
 
 
 def is_formula(value: object) -> bool:
@@ -57,14 +57,14 @@ def is_formula(value: object) -> bool:
 class Formula:
     """Arithmetic on named numbers, such as ``= atan(tan(phi) / 2)``.
 
-    There are + - * / **, brackets, pi and the functions of `FUNCTIONS`; nothing else is run. A name
-    may have dots, as paths in a case do.
+    It may hold + - * / **, brackets, pi and the functions of `FUNCTIONS`; nothing else is run. A
+    name may have dots, like paths in a case.
 
     Attributes:
-        names: Names that it needs.
+        names: Names that need values.
 
     Raises:
-        ValueError: It is no such formula.
+        ValueError: The text is not such a formula.
 
     Example:
         >>> round(Formula("= atan(tan(phi) / 2)").value({"phi": 40.0}), 2)
@@ -78,23 +78,23 @@ class Formula:
         try:
             self._tree = ast.parse(self.text.removeprefix("=").strip(), mode="eval").body
         except SyntaxError as error:
-            raise ValueError(f"'{self.text}' is no formula ({error.msg})") from None
+            raise ValueError(f"'{self.text}' is not a formula ({error.msg})") from None
         except (ValueError, RecursionError, MemoryError):  # a NUL, or hundreds of open brackets
-            raise ValueError(f"{describe(self.text)} is no formula") from None
+            raise ValueError(f"{describe(self.text)} is not a formula") from None
         self.names: set[str] = set()
         self._check(self._tree, DEEPEST)
 
     def value(self, numbers: Mapping[str, Any]) -> float:
-        """Compute it; where it has no value (a division by zero, a root of -1), NaN.
+        """Compute the value; NaN where there is none (a division by zero, a root of -1).
 
         Raises:
-            ValueError: A name is not among the numbers, or stands for something else.
+            ValueError: A name is unknown, or its value is not a number.
         """
         for name in sorted(self.names):
             if name not in numbers:
                 raise ValueError(f"'{self.text}': {unknown(name, numbers)}")
             if isinstance(numbers[name], bool) or not isinstance(numbers[name], int | float):
-                raise ValueError(f"'{self.text}': {name} is no number, but {numbers[name]!r}")
+                raise ValueError(f"'{self.text}': {name} is not a number, but {numbers[name]!r}")
         try:
             result = self._compute(self._tree, numbers)
         except (ArithmeticError, ValueError):
@@ -102,7 +102,7 @@ class Formula:
         return math.nan if isinstance(result, complex) else float(result)
 
     def _check(self, node: ast.AST, levels: int) -> None:
-        """Refuse what is not arithmetic or has more levels, and collect names."""
+        """Collect names; raise an error for anything but arithmetic, and for too many levels."""
         if levels == 0:
             raise ValueError(f"{describe(self.text)} has more than {DEEPEST} operations in a row")
         name = _dotted(node)
@@ -148,12 +148,12 @@ class Formula:
 
 
 def unknown(name: str, known: Iterable[str]) -> str:
-    """Say that a name is not known, and which one may have been meant."""
+    """Say that a name is unknown, and suggest a similar one."""
     known = list(known)
     close = difflib.get_close_matches(name, known, n=1)
     if close:
-        return f"'{name}' is not known; did you mean {close[0]}?"
-    return f"'{name}' is not known; there are: {', '.join(known) or 'none'}"
+        return f"'{name}' is unknown; did you mean {close[0]}?"
+    return f"'{name}' is unknown; there are: {', '.join(known) or 'none'}"
 
 
 def _dotted(node: ast.AST) -> str | None:

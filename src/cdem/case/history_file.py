@@ -1,4 +1,4 @@
-"""Histories that a case leaves to a file: `history: {file: blast.csv}` becomes rows of it."""
+"""Histories in files: `history: {file: blast.csv}` becomes the rows of that file."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from cdem.errors import CaseError
 from cdem.units import to_number
 
 COLUMNS = (("time", "s"), ("factor", "1"))
-"""Columns of such a file, and their units in a case."""
+"""Columns of such a file, with their units in a case."""
 MEND = (
-    "a history is text with two columns, time and factor, with a comma, a semicolon or blanks "
-    "between, and in its first line, if they are not s and 1, their units: time [ms], factor"
+    "a history is a text file of two columns, time and factor, separated by commas, semicolons or "
+    "blanks; units other than s and 1 stand in its first line: time [ms], factor"
 )
 MOST_ROWS = 1_000_000
-"""Rows of a history at most."""
+"""Most rows of a history."""
 
 
 def with_histories(value: Any, source: Source, keys: Keys = ()) -> Any:
-    """Put the rows of the files that histories name in their place.
+    """Replace histories that name a file by the rows of the file.
 
     Args:
-        value: Plain data of a case, or a part of it; is not changed.
-        source: Where it comes from; relative names start at its folder.
+        value: Plain data of a case, or a part of it; stays unchanged.
+        source: Origin of the data; relative names start at its folder.
         keys: Path of the part in the case.
 
     Raises:
-        CaseError: A file cannot be read; says which, and what is wrong.
+        CaseError: A file cannot be read; names the file and the problem.
     """
     if isinstance(value, list):
         return [with_histories(one, source, (*keys, i)) for i, one in enumerate(value)]
@@ -44,7 +44,7 @@ def with_histories(value: Any, source: Source, keys: Keys = ()) -> Any:
 
 
 def is_file_of_history(key: str, value: Any) -> bool:
-    """Whether a value of a case names the file of a history; the key may be a path of `set`."""
+    """Whether a value names the file of a history; the key may be a path of `set`."""
     return (
         key.rsplit(".", 1)[-1] == "history"
         and isinstance(value, dict)
@@ -85,7 +85,7 @@ def _is_number(text: str) -> bool:
 
 
 def _units(line: str, where: str) -> list[str]:
-    """Units of the columns that a first line names, e.g. ``time [ms], factor [1]``."""
+    """Units that the first line gives for the columns, e.g. ``time [ms], factor [1]``."""
     names = [name.strip() for name in re.split(r"[,;]", line)]
     if len(names) != len(COLUMNS):
         raise CaseError(f"{where}: names {len(names)} columns, not 2; {MEND}")

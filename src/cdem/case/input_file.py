@@ -1,4 +1,4 @@
-"""Files that users name: read as text, and the boundary around every library that reads one."""
+"""Users' files: read as text, and protection around every library that reads a file."""
 
 from __future__ import annotations
 
@@ -17,43 +17,43 @@ from pathlib import Path
 from cdem.errors import CaseError, CdemError
 
 LEAST_SECONDS = 3.0
-"""So much processor time the reading of any file may take [s]."""
+"""Processor time allowed for any file [s]."""
 BYTES_PER_SECOND = 100_000
-"""A file so large may take a second more; the slowest reader is ten times as fast [1/s]."""
+"""Size that adds a second to the allowed time; the slowest reader is ten times as fast [1/s]."""
 LEAST_MEMORY = 600_000_000
-"""So much memory the reading of any file may take [bytes]."""
+"""Memory allowed for any file [bytes]."""
 MEMORY_PER_BYTE = 100
-"""A file may take so many times its size more; the most wasteful reader takes a tenth [1]."""
+"""Further memory allowed, as a multiple of the size; the greediest reader takes a tenth [1]."""
 XML = (".vtu", ".xdmf", ".xmf", ".xml")
-"""Endings of the formats that are XML."""
+"""Endings of XML formats."""
 LOOK = 0.02
 """Shortest wall time between looks at the clock [s]."""
 WORDS = 200
-"""Characters of a library's message that are passed on."""
+"""Most characters shown of a library's message."""
 
 
-_ONE_READER = threading.RLock()  # limits are those of the whole process
+_ONE_READER = threading.RLock()  # limits hold for the whole process
 
 
 class _TooLong(BaseException):
-    """Reading went on for longer than a sound file takes; no library catches it by chance."""
+    """Reading took longer than for a sound file; no library catches this class by chance."""
 
 
 @contextmanager
 def reading(
     path: Path, kind: type[CdemError], mend: str, size: int | None = None
 ) -> Iterator[None]:
-    """Turn whatever goes wrong inside into one error that names the file.
+    """Turn every failure inside into one error that names the file.
 
     Args:
         path: The file that is read.
         kind: Class of the error.
-        mend: What the file should be, or how to mend it.
-        size: Of all that is read [bytes]; by default of the file and those of the same name.
+        mend: The expected kind of file, or advice on how to mend it.
+        size: Bytes to be read; by default of the file and of files with the same name.
 
     Raises:
-        CdemError: Of the class ``kind``: a library raised, left the program, or took more processor
-            time or memory than a file of that size needs. Errors of cdem pass.
+        CdemError: Of the class ``kind``: a library raised, ended the program, or took more
+        processor time or memory than a file of that size needs. Errors of cdem pass unchanged.
     """
     try:
         size = size_of(path) if size is None else size
@@ -72,38 +72,41 @@ def reading(
     except OSError as error:
         raise kind(f"{path}: cannot be read ({error.strerror or _words(error)}); {mend}") from None
     except (MemoryError, RecursionError) as error:
-        what = "is nested deeper" if isinstance(error, RecursionError) else "asks for more memory"
-        raise kind(f"{path}: {what} than a sound file does; {mend}") from None
+        failure = (
+            "is nested more deeply" if isinstance(error, RecursionError) else "needs more memory"
+        )
+        raise kind(f"{path}: {failure} than a sound file; {mend}") from None
     except (Exception, SystemExit) as error:
         raise kind(f"{path}: cannot be read ({_words(error)}); {mend}") from error
 
 
 def size_of(path: Path) -> int:
-    """Size of a file and of those beside it of the same name [bytes]: some formats have several."""
+    """Size of a file and of its neighbours of the same name [bytes]: some formats have several."""
     parts = path.parent.glob(glob.escape(path.stem) + ".*")
     return sum(part.stat().st_size for part in parts if part.is_file())
 
 
 def seconds_for(size: int) -> float:
-    """Processor time that the reading of so many bytes may take [s]."""
+    """Processor time allowed for reading so many bytes [s]."""
     return LEAST_SECONDS + size / BYTES_PER_SECOND
 
 
 def too_long(size: int) -> str:
-    """What is said of a file of this size [bytes] whose reading takes longer."""
+    """Message for a file of this size [bytes] that takes longer to read."""
     return (
-        f"reading it takes more than {seconds_for(size):.3g} s of processor time, as no sound file of "
-        "its size does"
+        f"reading it takes more than {seconds_for(size):.3g} s of processor time, longer than a "
+        f"sound "
+        "file of its size"
     )
 
 
 def _words(error: BaseException) -> str:
-    """A library's own words, in one short line."""
+    """A library's own words in one short line."""
     said = " ".join(str(error).split())
     if isinstance(error, KeyError):
-        said = f"{' '.join(map(str, error.args))} is named, but not there"
+        said = f"{' '.join(map(str, error.args))} is missing"
     elif isinstance(error, SystemExit):
-        said = "its reader gave up"
+        said = "its reader stopped"
     elif not said:
         said = type(error).__name__
     return said if len(said) <= WORDS else said[:WORDS] + " ..."
@@ -111,10 +114,10 @@ def _words(error: BaseException) -> str:
 
 @contextmanager
 def _time_limited(seconds: float) -> Iterator[None]:
-    """Raise `_TooLong` inside after so much processor time: readers of meshio loop for ever at an
-    early end.
+    """Raise `_TooLong` inside after so much processor time: readers of meshio loop for ever on a
+    truncated file.
 
-    Python code is interrupted, in any thread; one long call of compiled code ends first.
+    Python code is interrupted, in any thread; a long call of compiled code ends first.
     """
     raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
     thread, spent = ctypes.c_ulong(threading.get_ident()), _clock()
@@ -144,11 +147,11 @@ def _time_limited(seconds: float) -> Iterator[None]:
         with guard:
             over.set()
         if fired and not came:
-            raise_in(thread, None)  # it would come too late
+            raise_in(thread, None)  # it would arrive too late
 
 
 def _clock() -> Callable[[], float]:
-    """A clock of the processor time of this thread, which other threads can read [s]."""
+    """Clock of this thread's processor time, readable by other threads [s]."""
     if not hasattr(time, "pthread_getcpuclockid"):
         return time.process_time
     return partial(time.clock_gettime, time.pthread_getcpuclockid(threading.get_ident()))
@@ -156,7 +159,7 @@ def _clock() -> Callable[[], float]:
 
 @contextmanager
 def _memory_limited(allowed: int) -> Iterator[None]:
-    """Let allocations fail that would take more memory [bytes] than allowed; on Linux."""
+    """Make allocations fail above this much more memory [bytes]; on Linux only."""
     if sys.platform != "linux":
         yield
         return
@@ -175,10 +178,10 @@ def _memory_limited(allowed: int) -> Iterator[None]:
 
 
 def is_file(path: Path) -> bool:
-    """Whether a path that a user wrote leads to a file; also of one that no system takes."""
+    """Whether a user's path leads to a file; False for a path that the system refuses."""
     try:
         return path.is_file()
-    except OSError:  # a name of thousands of letters, a folder that may not be read
+    except OSError:  # a name of thousands of letters, a folder without permission
         return False
 
 
@@ -187,14 +190,14 @@ def read_text(path: Path, what: str, kind: type[CdemError] = CaseError) -> str:
 
     Args:
         path: The file.
-        what: What it is, e.g. "case file".
+        what: The kind of file, e.g. "case file".
         kind: Class of the error.
 
     Raises:
-        CdemError: Of the class ``kind``: no such file, or not UTF-8; says where.
+        CdemError: Of the class ``kind``: no such file, or not UTF-8; names the place.
     """
     try:
-        if path.is_char_device():  # some have no end
+        if path.is_char_device():  # some never end
             raise kind(f"{path}: a device, not a {what}")
         raw = path.read_bytes()
     except OSError as error:
@@ -215,10 +218,10 @@ def read_text(path: Path, what: str, kind: type[CdemError] = CaseError) -> str:
 
 
 def refuse_entities(path: Path) -> None:
-    """Stop at an XML file that declares entities, which may grow without bound or name other files.
+    """Refuse an XML file that declares entities, which may grow without bound or name other files.
 
     Raises:
-        defusedxml.DefusedXmlException: It does. Call it inside of `reading`.
+        defusedxml.DefusedXmlException: It declares some. Call this inside `reading`.
     """
     if path.suffix.lower() not in XML:
         return

@@ -13,7 +13,7 @@ from cdem.case.types import AUTO, Name, Part, Quantity, Stiffness
 
 
 class Overlap(Part):
-    """How far blocks in contact may overlap, from which the stiffness of contacts follows."""
+    """Allowed overlap of blocks in contact; the stiffness of contacts follows from it."""
 
     overlap: Annotated[float, Quantity("1", above=0, below=0.05)] = Field(
         description="Overlap under the weight of the rock above, over the height of the element [1]"
@@ -23,55 +23,58 @@ class Overlap(Part):
     )
     speed: Annotated[float, Quantity("m/s", at_least=0)] | None = Field(
         None,
-        description="Greatest speed of an impact [m/s]; by default the largest with which a group "
+        description="Largest speed of impact [m/s]; by default the largest speed at which a group "
         "starts or is driven",
     )
 
 
 Coefficient = Annotated[float, Quantity("1", above=0.05, at_most=1)]
-"""Of restitution. Contacts unload 1 / e^2 times as stiff as they load, so at the lower limit their
-stable step is a twentieth; an impact that keeps 0.25 % of its energy is as good as one without."""
+"""Lowest coefficient of restitution. Contacts unload 1 / e^2 times as stiff as they load, so at
+this
+limit their stable step is a twentieth; an impact that keeps 0.25 % of its energy is practically
+plastic."""
 
 
 class Restitution(Part):
-    """How much of the speed of an impact contacts give back."""
+    """Coefficients of restitution of contacts."""
 
     normal: Coefficient = Field(
         1.0, description="Normal coefficient of restitution e_n: speed after over speed before [1]"
     )
     tangential: Coefficient = Field(
         1.0,
-        description="Tangential coefficient e_t: contacts give back e_t^2 of the work that loaded "
+        description="Tangential coefficient e_t: contacts return e_t^2 of the work that loaded "
         "their shear springs [1]",
     )
 
 
 class Heterogeneity(Part):
-    """How the strength of bonds differs from pair to pair of faces."""
+    """Variation of bond strength from one pair of faces to the next."""
 
     weibull: Annotated[float, Quantity("1", at_least=1)] = Field(
-        description="Shape m of Weibull's distribution, of mean 1: cohesion and tensile strength of "
-        "each pair are multiplied by a draw of it, fracture energies by its square [1]"
+        description="Shape m of Weibull's distribution with mean 1: cohesion and tensile strength "
+        "of "
+        "each pair are multiplied by a random value, fracture energies by its square [1]"
     )
     seed: Annotated[int, Field(ge=0, lt=2**63)] = Field(
-        0, description="Of the draws: they depend on it and on the two faces, on nothing else"
+        0, description="Seed: a random value depends only on the seed and the two faces"
     )
 
     @property
     def mean(self) -> float:
-        """Of the distribution with scale 1."""
+        """Mean of the distribution with scale 1."""
         return math.gamma(1 + 1 / self.weibull)
 
 
 class Interface(Part):
-    """What every interface has; the parameters of its law come with the model of the law."""
+    """Keys that every interface has; each law adds its parameters."""
 
     if TYPE_CHECKING:
         law: str
     stiffness_n: Stiffness = Field(
         AUTO,
         description="Normal stiffness of bonds: auto (10 E/h; between elements that are blocks a "
-        "stiffness that their modulus makes up for), a number [Pa/m], or '5 E/h'",
+        "stiffness that their modulus compensates), a number [Pa/m], or '5 E/h'",
     )
     stiffness_s: Stiffness = Field(
         AUTO, description="Shear stiffness of bonds: auto, a number [Pa/m], or '5 E/h'"
@@ -81,9 +84,9 @@ class Interface(Part):
         Discriminator(lambda v: "overlap" if isinstance(v, dict | Overlap) else "value"),
     ] = Field(
         AUTO,
-        description="Normal and shear stiffness of contacts: auto (that of bonds where it is given, "
+        description="Normal and shear stiffness of contacts: auto (the bond stiffness if given, "
         "else 1 E/h, in soft rock up to 10 so that blocks overlap by at most 1 % under weight and 2 % "
-        "at the speeds they start with), a number [Pa/m], '0.3 E/h', or an allowed overlap",
+        "at their initial speeds), a number [Pa/m], '0.3 E/h', or an allowed overlap",
     )
     restitution: Annotated[
         Annotated[Coefficient, Tag("value")] | Annotated[Restitution, Tag("each")],
@@ -91,32 +94,34 @@ class Interface(Part):
     ] = Field(
         1.0,
         description="Coefficient of restitution of contacts [1], whatever the masses: normal, or "
-        "{normal: 0.5, tangential: 0.8}; 1 gives back all. Contacts unload stiffer than they load",
+        "{normal: 0.5, tangential: 0.8}; 1 returns all energy. Contacts unload more stiffly than "
+        "they load",
     )
 
     rolling_resistance: Annotated[float, Quantity("1", at_least=0, below=1)] = Field(
         0.0,
-        description="mu_r: contacts of vertices with faces resist rolling with couples up to "
+        description="Rolling resistance mu_r: contacts of vertices with faces resist with couples "
+        "up to "
         "mu_r R F_n, R the radius of a sphere of the block's volume [1]",
     )
 
     heterogeneity: Heterogeneity | None = Field(
         None,
-        description="Strength of bonds that differs from pair to pair: {weibull: 5, seed: 1}",
+        description="Random strength of bonds, pair by pair: {weibull: 5, seed: 1}",
     )
 
     def idle_heterogeneity(self) -> str:
-        """Why a heterogeneity that the case gives changes nothing, or nothing."""
+        """Why the given heterogeneity would have no effect; None if it has one."""
         given = self.heterogeneity if "heterogeneity" in self.model_fields_set else None
         if given is None or INTERFACE_LAWS[self.law].bonds(self):
             return ""
-        return "heterogeneity is of bonds; it needs cohesion or tensile_strength above 0"
+        return "heterogeneity varies bonds; it needs cohesion or tensile_strength above 0"
 
     def curve_conflict(self) -> str:
-        """Why a restitution does not go with the law, or nothing."""
+        """Why a restitution does not suit the law; None if it does."""
         if not INTERFACE_LAWS[self.law].curved or min(self.coefficients()) == 1:
             return ""
-        return f"restitution must be 1 with law {self.law}, whose joints close by a curve"
+        return f"restitution must be 1 with law {self.law}, whose joints have a closure curve"
 
     def coefficients(self) -> tuple[float, float]:
         """Normal and tangential coefficient of restitution [1]."""
@@ -127,14 +132,14 @@ class Interface(Part):
 
 
 class InterfacePair(Interface):
-    """The interface between two groups, or in a set of joints; the rest is as in the default."""
+    """The interface between two groups or in a set of joints; omitted keys are as in the default."""
 
     name: Name | None = Field(None, description="A name for use in paths, e.g. interfaces.bed")
     between: list[Name] | None = Field(
         None, min_length=2, max_length=2, description="Two groups, or one group twice"
     )
     joint: Name | None = Field(
-        None, description="Set of joints instead of groups: where two of its faces touch"
+        None, description="Set of joints instead of groups: contacts of two of its faces"
     )
 
     @model_validator(mode="after")
@@ -143,7 +148,7 @@ class InterfacePair(Interface):
         return self
 
     def inherited(self) -> set[str]:
-        """Fields that are as in the default: those of any interface that the case left out."""
+        """Fields taken from the default: common fields that the case left out."""
         own = {p.name for p in INTERFACE_LAWS[self.law].parameters} | Interface.model_fields.keys()
         return own - self.model_fields_set
 
@@ -181,15 +186,16 @@ class Interfaces(Part):
         for number, pair in enumerate(self.pairs):
             key = frozenset(pair.between) if pair.between else pair.joint
             if key in seen:
-                what = f"{' and '.join(pair.between)} are" if pair.between else f"{pair.joint} is"
-                raise ValueError(f"pairs.{number}: {what} listed twice")
+                listed = f"{' and '.join(pair.between)} are" if pair.between else f"{pair.joint} is"
+                raise ValueError(f"pairs.{number}: {listed} listed twice; keep one")
             seen.add(key)
         self.inherit()
         for number, pair in enumerate(self.pairs):
             for parameter in INTERFACE_LAWS[pair.law].parameters:
                 if getattr(pair, parameter.name) is None and parameter.is_required:
                     raise ValueError(
-                        f"pairs.{number}: {parameter.name} is missing, and so is interfaces.default"
+                        f"pairs.{number}: {parameter.name} is missing here and in "
+                        f"interfaces.default"
                     )
         named = {} if self.default is None else {"default": self.default}
         for place, law in (named | {f"pairs.{i}": p for i, p in enumerate(self.pairs)}).items():
@@ -202,12 +208,12 @@ class Interfaces(Part):
         """Give each pair the default's value for every field that the case left out."""
         for pair in self.pairs if self.default else []:
             for field in pair.inherited():
-                if hasattr(self.default, field):  # another law may have no such parameter
-                    # Not by assignment: the field must keep counting as left out.
+                if hasattr(self.default, field):  # another law may lack the parameter
+                    # Not by assignment: the field must still count as left out.
                     pair.__dict__[field] = getattr(self.default, field)
 
     def fixed(self) -> dict[str, list[Any]]:
-        """What holds from the start, of all interfaces, the default's last."""
+        """Values fixed at the start, of all interfaces; the default's come last."""
         laws = [*self.pairs, *([] if self.default is None else [self.default])]
         return {
             "restitution": [law.coefficients() for law in laws],
@@ -215,7 +221,7 @@ class Interfaces(Part):
         }
 
     def between(self, group_a: str, group_b: str) -> Interface | None:
-        """Return the interface of two groups, or None when the case says nothing about them."""
+        """Return the interface of two groups, or None if the case gives none."""
         for pair in self.pairs:
             if pair.between and set(pair.between) == {group_a, group_b}:
                 return pair

@@ -1,4 +1,4 @@
-"""Laws as the compiled core declares them: their part of a case, their checks, their numbers."""
+"""Laws as declared by the compiled core: their keys in a case, their checks, their numbers."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ class Parameter:
 
     Attributes:
         name: Its key in a case.
-        symbol: In formulas.
+        symbol: Its symbol in formulas.
         unit: Unit in a case.
-        meaning: What it is.
-        at_least: Lowest value allowed [unit], or None.
-        below: Limit that it must stay below [unit], or None.
-        at_most: Highest value allowed [unit], or None.
-        default: Value where the case is silent, infinity for a strength without a limit, or None.
-        like: Parameter whose value it has where the case is silent, or None.
-        is_tangent: Whether it is an angle whose tangent the core takes.
-        is_half_tangent: Whether it is an angle of which the core takes the tangent of the half.
-        is_strength: Whether a factor of safety divides it (of an angle, the tangent).
+        meaning: Its meaning.
+        at_least: Lowest allowed value [unit], or None.
+        below: Upper limit, itself not allowed [unit], or None.
+        at_most: Highest allowed value [unit], or None.
+        default: Default value, infinity for a strength without a limit, or None.
+        like: Parameter whose value is the default, or None.
+        is_tangent: Whether it is an angle and the core takes its tangent.
+        is_half_tangent: Whether it is an angle and the core takes the tangent of half of it.
+        is_strength: Whether a factor of safety divides it (for an angle, its tangent).
         is_factor: Whether a factor of safety multiplies it.
-        choices: Words that it may be, the core takes the place of the word; empty for a number.
+        choices: Allowed words (the core takes the number of the word); empty for a number.
         bonds: Whether a value above zero bonds faces that touch at the start.
     """
 
@@ -60,15 +60,15 @@ class Parameter:
 
     @property
     def is_required(self) -> bool:
-        """Whether the case must give it, for a pair or by the default."""
+        """Whether the case must give it, in a pair or in the default."""
         return self.default is None and self.like is None
 
     def field(self, required: bool) -> tuple[Any, Any]:
-        """Type and field of a pydantic model; not required: it may be left out and is then None."""
+        """Type and field of a pydantic model; not required: an omitted value is None."""
         if self.choices:
             return self.annotation, Field(self.choices.split()[0], description=self.meaning)
         text = f"{self.meaning} [{self.unit}]"
-        if self.default == math.inf:  # no number of a case
+        if self.default == math.inf:  # no number in a case
             return self.annotation | None, Field(None, description=text)
         if self.default is not None:
             return self.annotation, Field(self.default, description=text)
@@ -79,7 +79,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class StateVariable:
-    """A number that a law remembers, which is an output field of the same name."""
+    """A state variable of a law; an output field has the same name."""
 
     name: str
     unit: str
@@ -88,17 +88,17 @@ class StateVariable:
 
 @dataclass(frozen=True)
 class Law:
-    """What a law says of itself.
+    """Declaration of a law.
 
     Attributes:
         name: Its value of the key `law` in a case.
         meaning: One sentence.
-        flows: Of a block law: whether it ever gives inelastic strain.
-        curved: Of an interface law: whether its joints close by a curve.
-        absorbs: Of a surface law: whether it has dashpots to the ground.
+        flows: Block law: whether it can give inelastic strain.
+        curved: Interface law: whether its joints have a closure curve.
+        absorbs: Surface law: whether it has dashpots to the ground.
         parameters: In the order of the core.
         state: In the order of the core.
-        softening: Of a block law: the names of the strengths that may fall.
+        softening: Block law: names of the strengths that may fall.
     """
 
     name: str
@@ -111,7 +111,7 @@ class Law:
     softening: tuple[str, ...] = ()
 
     def values(self, part: Part) -> dict[str, float]:
-        """Parameters of a part of a case, those that it leaves out included."""
+        """Parameters of a part of a case, including omitted ones."""
         given = {p.name: getattr(part, p.name) for p in self.parameters}
         of_like = {p.name: given[p.like] for p in self.parameters if p.like}
         values = {name: of_like.get(name) if v is None else v for name, v in given.items()}
@@ -121,7 +121,7 @@ class Law:
         return {name: math.inf if v is None else float(v) for name, v in values.items()}
 
     def numbers(self, part: Part) -> dict[str, float]:
-        """The same as the core takes them: SI, of angles the tangent."""
+        """The parameters in the core's units: SI, tangents instead of angles."""
         values = self.values(part)
         for p in self.parameters:
             if p.is_tangent:
@@ -138,7 +138,7 @@ class Law:
         """Strengths of a part of a case, divided by a factor of safety."""
         reduced = {p.name: getattr(part, p.name) * factor for p in self.parameters if p.is_factor}
         for p in self.parameters:
-            if not p.is_strength or getattr(part, p.name) is None:  # unlimited, or like another
+            if not p.is_strength or getattr(part, p.name) is None:  # unlimited, or equal to another
                 continue
             value = float(getattr(part, p.name))
             if p.is_tangent:
@@ -148,11 +148,11 @@ class Law:
         return reduced
 
     def summary(self, part: Part) -> str:
-        """The strengths of an interface in a line of text."""
+        """The strengths of an interface as a line of text."""
         strengths = [
             p for p in self.parameters if p.is_strength and getattr(part, p.name) is not None
         ]
-        if not strengths:  # a factor divides what follows from all of them
+        if not strengths:  # a factor of safety acts on their result
             strengths = [p for p in self.parameters if p.default is None and p.like is None]
         text = ", ".join(f"{getattr(part, p.name):g} {p.unit}" for p in strengths if not p.bonds)
         if self.bonds(part):
@@ -190,21 +190,21 @@ STATES = {
 
 
 def interface_contradiction(part: Part) -> str:
-    """Why the parameters of an interface do not fit each other, or nothing."""
+    """Why the parameters of an interface contradict each other, or None."""
     law = INTERFACE_LAWS[part.__dict__["law"]]
     why = native.interface_contradiction(law.name, law.numbers(part))
     return why.format(**law.values(part))
 
 
 def block_contradiction(part: Part) -> str:
-    """Why the parameters of a material do not fit each other, or nothing."""
+    """Why the parameters of a material contradict each other, or None."""
     law = BLOCK_LAWS[part.__dict__["law"]]
     why = native.block_contradiction(law.name, law.numbers(part))
     return why.format(**law.values(part))
 
 
 def surface_contradiction(part: Part) -> str:
-    """Why the parameters of a surface law do not fit each other, or nothing."""
+    """Why the parameters of a surface law contradict each other, or None."""
     law = SURFACE_LAWS[part.__dict__["law"]]
     why = native.surface_contradiction(law.name, law.numbers(part))
     return why.format(**law.values(part))
@@ -214,7 +214,7 @@ def models(base: type[Part], laws: dict[str, Law], required: bool = True) -> lis
     """A model for every law: the fields of the base, the key `law`, the parameters of the law.
 
     Args:
-        base: Fields that all have.
+        base: Common fields.
         laws: The laws.
         required: False where parameters without a default may be left out.
     """
@@ -229,7 +229,7 @@ def models(base: type[Part], laws: dict[str, Law], required: bool = True) -> lis
 
 
 def choice(made: list[type[Part]], laws: dict[str, Law]) -> Any:
-    """The type of a field that takes any of the models; the key `law` says which."""
+    """Type of a field that takes any of the models; the key `law` decides."""
     if len(made) == 1:
         return made[0]
     first = next(iter(laws))

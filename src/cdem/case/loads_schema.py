@@ -1,4 +1,4 @@
-"""What acts on the bodies of a case from outside: gravity, surfaces, driven and held nodes."""
+"""Actions on the bodies of a case from outside: gravity, surface loads, driven and fixed nodes."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Traction(Factored):
 
 
 class PrescribedVelocity(Factored):
-    """Nodes that are driven."""
+    """Nodes with a prescribed velocity."""
 
     group: Name | None = Field(None, description="All nodes of this group")
     surface: Surface | None = Field(None, description="Surface of the mesh, or {group, normal}")
     point: Length3 | None = Field(None, description="The node nearest to this point [m]")
     box: Region | None = Field(None, description="All nodes in this box")
-    components: Axes = Field(["x", "y", "z"], description="Directions that are driven")
+    components: Axes = Field(["x", "y", "z"], description="Driven directions")
     velocity: Velocity3 = Field(description="Velocity [m/s]")
 
     @model_validator(mode="after")
@@ -52,13 +52,13 @@ class PrescribedVelocity(Factored):
 
 
 class Support(Part):
-    """Nodes that are held."""
+    """Nodes that are fixed."""
 
     surface: Surface | None = Field(None, description="Surface of the mesh, or {group, normal}")
     point: Length3 | None = Field(None, description="The node nearest to this point [m]")
     box: Region | None = Field(None, description="All nodes in this box")
     group: Name | None = Field(None, description="With point or box: only nodes of this group")
-    fix: Axes = Field(min_length=1, description="Directions in which the nodes never move")
+    fix: Axes = Field(min_length=1, description="Fixed directions")
 
     @model_validator(mode="after")
     def _one_selection(self) -> Support:
@@ -69,14 +69,14 @@ class Support(Part):
 
 
 class Loads(Part):
-    """What acts on the bodies from outside."""
+    """Actions on the bodies from outside."""
 
     gravity: Acceleration3 = Field([0.0, 0.0, 0.0], description="Acceleration of gravity [m/s2]")
     tractions: list[Traction] = Field(
-        [], description="Stresses on faces, in directions that stay, per area of the start"
+        [], description="Stresses on faces, in fixed directions, per initial area"
     )
     surfaces: list[AnySurfaceLoad] = Field(
-        [], description="Laws on faces, which follow them: pressure, and laws of your own"
+        [], description="Laws on faces, which follow their motion: pressure, and laws of your own"
     )
     velocities: list[PrescribedVelocity] = Field([], description="Driven nodes")
     supports: list[Support] = Field([], description="Held nodes")

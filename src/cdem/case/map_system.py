@@ -1,4 +1,4 @@
-"""Map projections (coordinate reference systems): how they are written, and what they are."""
+"""Map projections (coordinate reference systems): how a case writes and checks them."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ WKT = re.compile(r"[A-Z_]{3,30}\s*\[.*\]", re.DOTALL)
 NAMES_FILE = re.compile(
     r"((grids|init|catalog)\s*=|PROJ4_GRIDS\W+|PARAMETERFILE\s*[\[(])[^\]\s]*[/\\]", re.IGNORECASE
 )
-"""A path behind the name of a parameter that PROJ opens."""
-LONGEST = 20_000  # characters of a WKT
+"""A path given for a parameter of PROJ that opens a file."""
+LONGEST = 20_000  # most characters of a WKT
 
 
 def _written(text: str) -> str:
-    """Text of a projection on one line; what it means is looked up where it is used."""
+    """Text of a projection on one line; its meaning is looked up where it is used."""
     line = " ".join(text.split())
     if len(line) > LONGEST or not (CODE.fullmatch(line) or WKT.fullmatch(line)):
         raise ValueError(
@@ -33,7 +33,7 @@ MapSystem = Annotated[str, AfterValidator(_written)]
 
 
 def look_up(text: str) -> Any:
-    """The projection that a text names, a ``pyproj.CRS``.
+    """The projection of a text, a ``pyproj.CRS``.
 
     Raises:
         BackendError: The extra `terrain` is not installed.
@@ -46,17 +46,20 @@ def look_up(text: str) -> Any:
             f"map projections need pyproj: pip install 'cdem[terrain]' ({error})"
         ) from None
     if NAMES_FILE.search(text):
-        raise CaseError(f"a projection that names a file is not read: '{text[:60]}'")
+        raise CaseError(
+            f"projection '{text[:60]}' names a file, which is not allowed; use a code such as "
+            f"EPSG:32632"
+        )
     try:
         return pyproj.CRS.from_user_input(text)
     except pyproj.exceptions.CRSError:
-        raise CaseError(f"there is no projection '{text[:60]}'; epsg.io lists the codes") from None
+        raise CaseError(f"no projection '{text[:60]}'; epsg.io lists the codes") from None
 
 
 def why_not(text: str) -> str | None:
-    """Why coordinates in metres cannot be in a projection; None where they can, or nothing is known.
+    """Why a projection cannot hold coordinates in metres; None if it can, or if this is unknown.
 
-    Without the extra `terrain` nothing is known of projections.
+    Without the extra `terrain`, nothing is known of projections.
     """
     try:
         system = look_up(text)
@@ -68,16 +71,20 @@ def why_not(text: str) -> str | None:
 
 
 def unfit(system: Any) -> str | None:
-    """Why a projection (``pyproj.CRS``) is of no use for lengths in metres; None where it is."""
+    """Why a projection (``pyproj.CRS``) cannot measure lengths in metres; None if it can."""
     flat = system.sub_crs_list[0] if system.is_compound else system
     if not flat.is_projected:
         return (
-            f"'{flat.name}' is no map projection: coordinates in it are no metres; use one of a small "
+            f"'{flat.name}' is not a map projection: its coordinates are not metres; use one for a "
+            f"small "
             "area, e.g. a UTM zone"
         )
     factors = {axis.unit_conversion_factor for axis in flat.axis_info[:2]}
     if any(abs(factor - 1) > 1e-9 for factor in factors):
-        return f"'{flat.name}' is in {flat.axis_info[0].unit_name}, not in metres"
+        return (
+            f"'{flat.name}' is in {flat.axis_info[0].unit_name}, not in metres; use a "
+            f"projection in metres"
+        )
     if "Popular Visualisation" in flat.coordinate_operation.method_name:
         return (
             f"'{flat.name}' (Web Mercator) stretches lengths, by 1.4 times at 45 deg; use a UTM zone or "

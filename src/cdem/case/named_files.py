@@ -1,4 +1,4 @@
-"""The files that a case names: what must be there, and count, wherever it is run."""
+"""The files that a case names: they must exist, and they are part of its identity."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ Places = list[tuple[Any, str | int]]
 
 
 def files_of(data: dict[str, Any]) -> Places:
-    """Where the data of a case name a file: the mapping and its key, or the list and its index.
+    """Places where the data of a case name a file: the mapping and its key, or the list and its
+    index.
 
     Args:
-        data: Plain data of a case; parts that are not as they should be are passed over.
+        data: Plain data of a case; malformed parts are skipped.
     """
     laws, model, water = data.get("own_laws"), data.get("model"), data.get("water")
     places: Places = [(laws, k) for k in range(len(laws))] if isinstance(laws, list) else []
@@ -35,7 +36,7 @@ def files_of(data: dict[str, Any]) -> Places:
 
 
 def _histories(value: Any) -> Iterator[tuple[Any, str | int]]:
-    """Histories that name a file, wherever they stand: also what a stage sets."""
+    """Histories that name a file, anywhere in the data, also in the `set` of a stage."""
     if isinstance(value, dict):
         for key, one in value.items():
             if is_file_of_history(str(key), one):
@@ -53,5 +54,5 @@ def _names_one(holder: Any, key: str | int) -> bool:
 
 
 def _mappings(value: Any) -> list[dict[str, Any]]:
-    """The mappings in a list; none if it is no list."""
+    """The mappings in a list; none for any other value."""
     return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []

@@ -1,4 +1,4 @@
-"""What values of a case are usual and what are possible, with sources; what lies outside is told."""
+"""Usual and possible values of a case, with sources; values outside are reported."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cdem.case.types import Part, Stiffness
 from cdem.units import to_number
 
 Keys = tuple[str | int, ...]
-Problem = tuple[Keys, str]  # path, what is odd
+Problem = tuple[Keys, str]  # path, warning
 
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 QUASI_STATIC = 0.9
@@ -25,18 +25,18 @@ DYNAMIC_LOCAL = 0.2
 
 @dataclass(frozen=True)
 class Range:
-    """Values of one quantity.
+    """Usual and possible values of one quantity.
 
     Attributes:
-        quantity: Its name in the field.
+        quantity: Its name.
         places: Paths in a case, ``*`` for any name or number; none for a measure of the model.
         unit: Unit of all the numbers here.
-        usual: Lowest and highest value that needs no second look [unit].
-        possible: Outside of these a case is refused [unit]; None where nothing is.
-        source: Where the ranges come from.
-        zero: Whether 0 is usual, too.
+        usual: Lowest and highest usual value [unit].
+        possible: Limits outside which a case is refused [unit], or None.
+        source: Source of the ranges.
+        zero: Whether 0 is usual as well.
         meant: Units that are often left out, most likely first.
-        in_mm: Numbers that it has in models of mm, t, s (so N and MPa), which are possible, too.
+        in_mm: Its values in models of mm, t, s (so N and MPa); possible as well.
     """
 
     quantity: str
@@ -50,10 +50,10 @@ class Range:
     in_mm: tuple[float, float] | None = None
 
     def judge(self, value: float) -> tuple[bool, str]:
-        """Whether a value is impossible, and what to say of it; nothing if it is usual.
+        """Whether a value is impossible, and a message; None if it is usual.
 
         Args:
-            value: In `unit`; its sign does not count.
+            value: In `unit`; the sign is ignored.
         """
         size = abs(value)
         if (self.zero and size == 0) or self.usual[0] <= size <= self.usual[1]:
@@ -89,7 +89,7 @@ RANGES = (
     ),
     Range(
         "Poisson's ratio", ("materials.*.poisson_ratio",), "1", (0, 0.45), None,
-        "Gercek (2007): rock 0.05 to 0.45; 0 where a solution asks for it",
+        "Gercek (2007): rock 0.05 to 0.45; 0 for some exact solutions",
     ),
     Range(
         "friction angle", ("interfaces.default.friction_angle", "interfaces.pairs.*.friction_angle"),
@@ -103,14 +103,14 @@ RANGES = (
     Range(
         "cohesion", ("interfaces.default.cohesion", "interfaces.pairs.*.cohesion"),
         "Pa", (100, 1e11), None,
-        "Hoek & Brown (1997): rock 0.1 to 50 MPa; above that it stands for unbreakable",
+        "Hoek & Brown (1997): rock 0.1 to 50 MPa; higher values mean unbreakable",
         zero=True, meant=("kPa", "MPa"),
     ),
     Range(
         "tensile strength", ("interfaces.default.tensile_strength",
                              "interfaces.pairs.*.tensile_strength"),
         "Pa", (100, 1e11), None,
-        "Perras & Diederichs (2014): rock 1 to 25 MPa; above that it stands for unbreakable",
+        "Perras & Diederichs (2014): rock 1 to 25 MPa; higher values mean unbreakable",
         zero=True, meant=("kPa", "MPa"),
     ),
     Range(
@@ -129,7 +129,7 @@ RANGES = (
                         "interfaces.pairs.*.restitution.tangential"),
         "1", (0.1, 1), None,
         "Imre, Raebsamen & Springman (2008), Chau, Wong & Wu (2002): rock on rock 0.3 to 0.9; "
-        "contacts with less shorten the step",
+        "lower values shorten the step",
     ),
     Range(
         "dip of joints", ("model.joints.*.dip",), "deg", (2, 90), None,
@@ -170,11 +170,11 @@ RANGES = (
         "a grain to the highest mountains; possible: up to the Earth",
     ),
 )  # fmt: skip
-"""The one table of what is usual; docs/checks.md is made from it."""
+"""The one table of usual values; docs/checks.md is made from it."""
 
 
 def range_of(quantity: str) -> Range:
-    """The entry of a quantity."""
+    """The table's entry for a quantity."""
     return next(entry for entry in RANGES if entry.quantity == quantity)
 
 
@@ -188,10 +188,11 @@ def written(value: float, unit: str) -> str:
 
 
 def doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
-    """What is impossible in a case, and what is unusual: path and what to say.
+    """Impossible and unusual values of a case: path and message.
 
     Args:
-        case: The case. Values that a pair of groups has from the default are told there.
+        case: The case. Values that a pair of groups takes from the default are reported at the
+            default.
     """
     impossible: list[Problem] = []
     unusual: list[Problem] = []
@@ -219,7 +220,7 @@ def _values(case: CaseParts, entry: Range) -> Iterator[tuple[Keys, float]]:
 
 
 def _at(node: Any, rest: Keys, path: Keys) -> Iterator[tuple[Keys, Any]]:
-    """Values at a path with wildcards, with the paths to them."""
+    """Values at a path with wildcards, with their paths."""
     if not rest:
         yield path, node
         return
@@ -249,7 +250,7 @@ def _gravity(case: CaseParts) -> Iterator[Problem]:
     given = any(path.startswith("loads.gravity") for stage in case.stages for path in stage.set)
     if any(gravity):
         if gravity[2] >= 0:
-            way = "points up" if gravity[2] > 0 else "has no part downwards"
+            way = "points up" if gravity[2] > 0 else "has no downward part"
             text = ", ".join(f"{g:g}" for g in gravity)
             yield place, f"[{text}] m/s2 {way}; z is up: usual is [0, 0, -9.81]"
     elif not (
@@ -257,8 +258,8 @@ def _gravity(case: CaseParts) -> Iterator[Problem]:
     ):
         yield (
             place,
-            "is not given, so nothing has weight; usual is [0, 0, -9.81] (write [0, 0, 0] "
-            "if none is meant)",
+            "is not given, so there is no weight; usual is [0, 0, -9.81] (write [0, 0, 0] for "
+            "none)",
         )
 
 
@@ -274,6 +275,6 @@ def _local_damping(case: CaseParts, index: int, stage: Stage) -> Iterator[Proble
     ):
         yield (
             keys,
-            f"{local:g} in a dynamic stage brakes every motion, a fall too; usual is 0 to 0.05 "
-            "(0.8 belongs to static stages and to tests under slow loads)",
+            f"{local:g} in a dynamic stage slows every motion, even a fall; usual is 0 to 0.05 "
+            "(0.8 is for static stages and slow tests)",
         )

@@ -18,9 +18,9 @@ from cdem.errors import CaseError
 from cdem.units import describe
 
 LARGEST_FILE = 20_000_000
-"""A case or study [bytes]; reading so many takes minutes."""
+"""Largest size of a case or study [bytes]; reading so many takes minutes."""
 MOST_BITS = 1000
-"""Of a whole number; longer ones are no floating-point numbers."""
+"""Most digits of a whole number; longer ones do not fit a floating-point number."""
 
 
 def load_case_data(
@@ -34,15 +34,15 @@ def load_case_data(
         what: "case" or "study".
 
     Returns:
-        The data and where each of them stands.
+        The data, and the place of each value in the file.
 
     Raises:
-        CaseError: No such file, not YAML, a key twice, an empty file, or a bad override.
+        CaseError: No such file, not YAML, a repeated key, an empty file, or a bad override.
     """
     if is_file(path) and path.stat().st_size > LARGEST_FILE:
         raise CaseError(
             f"{path}: too large for a {what} ({path.stat().st_size:,} bytes); meshes and terrain "
-            "stand in files of their own"
+            "belong in files of their own"
         )
     text = read_text(path, f"{what} file")
     source = Source(file=str(path))
@@ -65,7 +65,7 @@ def read_settings(texts: Iterable[str]) -> dict[str, Any]:
     """Values of texts such as ``"cohesion=1 MPa"``, as plain dicts and lists.
 
     Raises:
-        CaseError: One of them sets nothing.
+        CaseError: A text sets nothing.
     """
     data: dict[str, Any] = {}
     source = Source()
@@ -75,10 +75,10 @@ def read_settings(texts: Iterable[str]) -> dict[str, Any]:
 
 
 def _note_places(node: Any, source: Source, keys: Keys) -> None:
-    """Remember line and column of every key and list entry of a tree with positions."""
+    """Store line and column of every key and list entry of a tree with positions."""
     if not isinstance(node, dict | list):
         return
-    places = node.lc.data or {}  # type: ignore[union-attr]  # ruamel.yaml adds it
+    places = node.lc.data or {}  # type: ignore[union-attr]  # added by ruamel.yaml
     for key in node if isinstance(node, dict) else range(len(node)):
         path = (*keys, key if isinstance(node, list) else str(key))
         if key in places:  # keys merged with << have no place of their own
@@ -90,7 +90,7 @@ def plain(value: Any, source: Source, keys: Keys = ()) -> Any:
     """Copy a tree as plain dicts, lists and scalars.
 
     Raises:
-        CaseError: A number somewhere is NaN or infinite, or a whole one of hundreds of digits.
+        CaseError: A number is NaN, infinite, or a whole number of hundreds of digits.
     """
     if isinstance(value, BaseModel):
         return value
@@ -104,7 +104,7 @@ def plain(value: Any, source: Source, keys: Keys = ()) -> Any:
         return value
     if isinstance(value, int):
         if value.bit_length() > MOST_BITS:
-            raise source.error([(keys, "is a number of too many digits")])
+            raise source.error([(keys, "is a number with too many digits")])
         return int(value)
     if isinstance(value, float):
         if not math.isfinite(value):
@@ -136,14 +136,14 @@ def _first_number(data: dict[str, Any], path: str = "") -> str:
 
 
 def put(data: dict[str, Any], path: str, value: Any, source: Source, label: str) -> None:
-    """Replace one value of raw data; mappings on the way are made.
+    """Replace one value of raw data; missing mappings on the path are made.
 
     Args:
         data: Raw data of a case; is changed.
-        path: Where, see `resolve`.
+        path: The place, see `resolve`.
         value: The new value.
-        source: Learns who replaced the value.
-        label: What to call the replacement in an error.
+        source: Records who replaced the value.
+        label: Name of the replacement in an error.
 
     Raises:
         CaseError: The path leads nowhere.
@@ -164,12 +164,12 @@ def resolve(root: Any, path: str, label: str | None = None) -> Keys:
     """Turn a dotted path into keys.
 
     An entry of a list may be given by number or by its ``name``; ``interfaces.NAME`` is short for
-    the pair of that name. Keys of mappings that are not there yet are passed on as they are.
+    the pair of that name. Keys that mappings do not have yet are passed on unchanged.
 
     Args:
         root: Nested dicts and lists, or a case.
         path: e.g. ``"interfaces.bed.cohesion"``.
-        label: What to call the path in an error.
+        label: Name of the path in an error.
 
     Raises:
         CaseError: The path leads nowhere.
@@ -188,7 +188,7 @@ def resolve(root: Any, path: str, label: str | None = None) -> Keys:
         elif isinstance(node, BaseModel) and key not in known:
             raise CaseError(f"{label}: {key}: {unknown_key(str(key), known)}")
         elif not isinstance(node, dict | BaseModel) and node is not None:
-            raise CaseError(f"{label}: {'.'.join(map(str, keys))} has nothing inside")
+            raise CaseError(f"{label}: {'.'.join(map(str, keys))} has no entries")
         node = node[int(key)] if isinstance(node, list | tuple) else known.get(str(key))
         keys, parts = (*keys, key), parts[count:]
     return keys

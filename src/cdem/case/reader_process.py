@@ -1,9 +1,9 @@
-"""Files that only compiled libraries read: in a process of its own, for they may die or hang.
+"""Files for compiled readers: each is read in a process of its own, which may crash or hang.
 
-GDAL, HDF5, VTK and LAZ do on some damaged files. The module that reads is run by
-`cdem.case.child` with FILE OUT.npz SHOWN SIZE behind its name and what is asked as JSON in the first
-line of stdin, and calls `answer`; an error is one line on stderr and status 1. Processor time and
-memory of the process are limited by the size of what it reads.
+GDAL, HDF5, VTK and LAZ do so on some damaged files. `cdem.case.child` runs the reading module with
+the arguments FILE OUT.npz SHOWN SIZE and the question as JSON in the first line of stdin. The
+module calls `answer`; an error is one line on stderr and status 1. Processor time and memory of
+the process are limited by the size of the input.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ from cdem.errors import CdemError, MeshError
 
 Arrays = dict[str, NDArray]
 START, PATIENCE = 60.0, 30.0
-"""Wall seconds to begin to read, and for each second of processor time: a disk or machine may be busy."""
+"""Wall time to start reading, and per second of processor time [s]: the machine may be busy."""
 CLOSED = {"PROJ_NETWORK": "OFF", "OGR_SQLITE_LOAD_EXTENSIONS": ""}
-"""Environment of the process: no library fetches or loads anything more."""
-_words: IO[str] | None = None  # of the process that reads: what it says to the one that asks
+"""Environment of the process: no library downloads or loads anything more."""
+_words: IO[str] | None = None  # in the reading process: its messages to the asking process
 
 
 def read(
@@ -51,15 +51,15 @@ def read(
     Args:
         module: Calls `answer` when it is run.
         path: The file.
-        mend: What the file should be, or how to mend it.
+        mend: The expected kind of file, or advice on how to mend it.
         kind: Class of the error.
-        asked: What the module wants to know beside the file; anything that JSON holds.
-        size: Of all that is read [bytes]; by default of the file and those of the same name.
-        reply: Answers what the module asks with `ask`.
+        asked: The question beside the file; anything that JSON holds.
+        size: Bytes to be read; by default of the file and of files with the same name.
+        reply: Answers questions that the module asks with `ask`.
 
     Raises:
-        CdemError: Of the class ``kind``: the file cannot be read, or the process died or hung. What
-            ``reply`` raises passes.
+        CdemError: Of the class ``kind``: the file cannot be read, or the process crashed or hung.
+        Errors of ``reply`` pass unchanged.
     """
     size = size_of(path) if size is None else size
     patience = START + PATIENCE * seconds_for(size)
@@ -98,7 +98,7 @@ def read(
 
 
 def _talk(process: subprocess.Popen[str], asked: Any, reply: Callable[[Any], Any] | None) -> None:
-    """Say what is asked, and answer what the process asks; it may die meanwhile."""
+    """Send the question, and answer the questions of the process, which may crash meanwhile."""
     assert process.stdin is not None and process.stdout is not None
     with contextlib.suppress(BrokenPipeError):
         process.stdin.write(json.dumps(asked) + "\n")
@@ -110,17 +110,17 @@ def _talk(process: subprocess.Popen[str], asked: Any, reply: Callable[[Any], Any
 
 
 def _end(status: int, size: int) -> str:
-    """How a process ended that did not say it."""
+    """Describe the end of a process that gave no message."""
     if status == -signal.SIGXCPU:
         return too_long(size)
     if status < 0:
         name = signal.Signals(-status).name
-        return f"its reader died ({name}), as it does on damaged files and for want of memory"
-    return f"its reader ended without a word (status {status})"
+        return f"its reader crashed ({name}); the file may be damaged, or memory too small"
+    return f"its reader ended without a message (status {status})"
 
 
 def answer(function: Callable[[Path, Any], Arrays], mend: str) -> None:
-    """Write what `function` makes of the file that the command line names and of what is asked."""
+    """Write the result of `function` for the file of the command line and the question."""
     global _words
     path, out, shown, size = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3], int(sys.argv[4])
     asked = json.loads(sys.stdin.readline())
@@ -143,7 +143,7 @@ def ask(question: Any) -> Any:
 
 
 def _limit_time(seconds: float) -> None:
-    """Let the system end this process after so much more processor time, in compiled code too."""
+    """Let the system end this process after this processor time, even in compiled code."""
     if sys.platform == "win32":
         return
     import resource

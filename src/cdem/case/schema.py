@@ -29,11 +29,11 @@ from cdem.case.types import (
 from cdem.case.water_schema import Water
 
 MOST_STEPS = 2_000_000_000
-"""So many steps can be counted."""
+"""Largest number of steps that can be counted."""
 
 
 class Material(Part):
-    """What the elements are made of."""
+    """Material of elements."""
 
     density: Annotated[float, Quantity("kg/m3", above=0)] = Field(description="Density [kg/m3]")
     young_modulus: Annotated[float, Quantity("Pa", above=0)] = Field(
@@ -44,14 +44,14 @@ class Material(Part):
     )
     biot: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
         0.0,
-        description="Biot's coefficient: which part of the pressure of water in the pores takes from "
-        "the stress; 0: water presses in joints and on faces only [1]",
+        description="Biot's coefficient: fraction of the pore pressure that reduces the stress; "
+        "0: water presses in joints and on faces only [1]",
     )
     saturated_density: Annotated[float, Quantity("kg/m3", above=0)] | None = Field(
-        None, description="Density that weighs below the water table; by default density [kg/m3]"
+        None, description="Density below the water table; default: density [kg/m3]"
     )
     softening: Softening | None = Field(
-        None, description="How strengths fall with slip, of a law that flows"
+        None, description="Fall of strengths with slip, for a plastic law"
     )
     if TYPE_CHECKING:
         law: str
@@ -64,10 +64,10 @@ else:
 
 
 class Group(Part):
-    """What holds for every element of a group."""
+    """Settings for every element of a group."""
 
     material: Name = Field(description="A name under materials")
-    fix: Axes = Field([], description="Directions in which the nodes never move")
+    fix: Axes = Field([], description="Fixed directions of all nodes")
     velocity: Velocity3 = Field([0.0, 0.0, 0.0], description="Initial velocity [m/s]")
     angular_velocity: Spin3 = Field(
         [0.0, 0.0, 0.0], description="Initial spin about the group's centroid [rad/s]"
@@ -76,15 +76,15 @@ class Group(Part):
 
 
 class Damping(Part):
-    """What takes energy out."""
+    """Damping."""
 
     local: Annotated[float, Quantity("1", at_least=0, below=1)] | None = Field(
         None,
-        description="Share of each node's unbalanced force that opposes its motion [1]; "
+        description="Fraction of each node's unbalanced force that opposes its motion [1]; "
         "default 0.8 in a static stage with relax: local, else 0",
     )
     mass: Annotated[float, Quantity("1/s", at_least=0)] = Field(
-        0.0, description="Rayleigh factor of the mass [1/s]; it also brakes a free fall"
+        0.0, description="Rayleigh factor of the mass [1/s]; it also slows a free fall"
     )
     stiffness: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
         0.0,
@@ -94,28 +94,29 @@ class Damping(Part):
     contact: Annotated[float, Quantity("1", at_least=0)] | None = Field(
         None,
         description="Dashpot at each contact without restitution, as a fraction of critical of the two "
-        "nodes that touch [1]; how much speed an impact keeps then depends on mass, points and shape: "
+        "touching nodes [1]; the remaining speed after an impact then depends on mass, points and "
+        "shape: "
         "for a given coefficient use restitution of the interface. Default 0.1 in a dynamic stage, 0 in "
         "a static one",
     )
 
 
 class Release(Part):
-    """How what was dug out lets go of the forces that it bore."""
+    """Release of the forces that removed groups carried."""
 
     parts: int = Field(
-        1, ge=1, le=10_000, description="Static only: in so many equal parts, each to rest"
+        1, ge=1, le=10_000, description="Static only: number of equal parts, each followed by rest"
     )
     over: Annotated[float, Quantity("s", above=0)] | None = Field(
-        None, description="Dynamic only: evenly over this time; at once by default [s]"
+        None, description="Dynamic only: duration of an even release; default at once [s]"
     )
     to: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
-        1.0, description="Part that is let go by the end; the rest is held until a later stage [1]"
+        1.0, description="Fraction released by the end; a later stage may release the rest [1]"
     )
 
 
 class Stage(Part):
-    """A part of the run with its own rules."""
+    """A part of the run with its own settings."""
 
     name: Name = Field(description="Name, unique in the case")
     mode: Literal["static", "dynamic"] = Field(description="To rest, or over time")
@@ -139,25 +140,25 @@ class Stage(Part):
     damping: Damping = Field(Damping(), description="Damping")
     relax: Literal["local", "kinetic", "adaptive", "solve"] | None = Field(
         None,
-        description="Static only: the way to rest: adaptive (critical damping and scaled masses; "
-        "default), solve (begin from the equilibrium of elements, bonds and contacts in touch, go on "
-        "as adaptive), kinetic (stop at peaks of the kinetic energy), or local damping",
+        description="Static only: way to rest: adaptive (critical damping and scaled masses; default), "
+        "solve (equilibrium of elements, bonds and contacts in touch first, then as adaptive), kinetic "
+        "(stop at peaks of the kinetic energy), or local damping",
     )
-    remove: list[Name] = Field(
-        [], description="Groups that are dug out when the stage begins, and are no part of it"
-    )
+    remove: list[Name] = Field([], description="Groups excavated at the beginning of the stage")
     add: list[Name] = Field(
         [],
-        description="Groups that come in when the stage begins, free of stress and at rest: they are "
-        "no part of it before, or were dug out",
+        description="Groups added at the beginning of the stage, free of stress and at rest: "
+        "backfill, or "
+        "groups removed before",
     )
     release: Release | None = Field(
         None,
-        description="How forces of what was dug out, in this stage or before, are let go; by default "
-        "at once in the stage with remove, and no more in others",
+        description="Release of the forces of groups removed in this stage or before; default: at "
+        "once in "
+        "a stage with remove, nothing in others",
     )
     set: dict[str, Any] = Field(
-        {}, description="Values that change when the stage begins: {path in the case: value}"
+        {}, description="Values to change at the beginning of the stage: {path in the case: value}"
     )
 
     @model_validator(mode="after")
@@ -165,11 +166,11 @@ class Stage(Part):
         wrong = {"static": ("duration", "until"), "dynamic": ("tolerance", "relax")}[self.mode]
         for field in wrong:
             if getattr(self, field) is not None:
-                raise ValueError(f"{field} has no meaning in a {self.mode} stage; remove it")
+                raise ValueError(f"{field} has no effect in a {self.mode} stage; remove it")
         if self.release is not None and self.mode == "static" and self.release.over is not None:
-            raise ValueError("release.over has no meaning in a static stage; write parts")
+            raise ValueError("release.over has no effect in a static stage; write parts")
         if self.release is not None and self.mode == "dynamic" and self.release.parts > 1:
-            raise ValueError("release.parts has no meaning in a dynamic stage; write over")
+            raise ValueError("release.parts has no effect in a dynamic stage; write over")
         if self.mode == "dynamic" and self.duration is None:
             raise ValueError("a dynamic stage needs a duration, e.g. duration: 2.0")
         return self
@@ -188,7 +189,7 @@ class Stage(Part):
 
 
 class Contact(Part):
-    """How contacts are found and where they act: Feng et al. (2014), Sections 3 and 4."""
+    """Search and place of contacts: Feng et al. (2014), Sections 3 and 4."""
 
     indentation: Annotated[float, Quantity("1", above=0, below=0.5)] = Field(
         0.01, description="Shift of a semi-spring from its vertex to the face's centre [1], Eq. 3"
@@ -196,28 +197,29 @@ class Contact(Part):
     tolerance: Annotated[float | Literal["auto"], Quantity("1", above=0, auto=True)] = Field(
         "auto",
         description="In-plane tolerance over the face's size [1]; auto: a tenth of the "
-        "indentation, below which it must stay",
+        "indentation, and must be smaller than it",
     )
     refresh: Annotated[
         Annotated[Literal["displacement"], Tag("word")]
         | Annotated[Annotated[int, Field(ge=1, le=MOST_STEPS)], Tag("steps")],
         Discriminator(lambda value: "word" if isinstance(value, str) else "steps"),
-    ] = Field("displacement", description="Renew the search by displacement, or every N steps")
+    ] = Field("displacement", description="Renew the search after a displacement, or every N steps")
     action: Literal["vertex", "indented"] = Field(
-        "vertex", description="Where the force of a contact acts: the vertex, or as the paper does"
+        "vertex",
+        description="Point where a contact force acts: the vertex, or the point of the paper",
     )
     edges: bool = Field(True, description="Whether edges touch edges")
     bond_points: Literal["vertex", "quadrature"] = Field(
-        "vertex", description="Where the bonds of a conforming interface sit"
+        "vertex", description="Place of the bonds of a conforming interface"
     )
     check: bool = Field(False, description="Compare every search with an all-pairs search (slow)")
 
 
 class Elements(Part):
-    """How elements give forces and carry mass."""
+    """Forces and mass of elements."""
 
     formulation: Literal["corotational", "incremental", "paper-incremental", "paper-total"] = Field(
-        "corotational", description="How the forces of an element follow from its motion"
+        "corotational", description="Kinematics of elements"
     )
     mass: Literal["auto", "exact", "lumped-while-bonded", "lumped"] = Field(
         "auto",
@@ -230,8 +232,9 @@ class Elements(Part):
     )
     tetrahedra: Literal["nodal-mean", "full"] = Field(
         "nodal-mean",
-        description="Dilatation of tets in blocks of several whose material can flow: the mean at their "
-        "nodes, or each its own, which locks. Other tets have their own",
+        description="Dilatation of tets in blocks of several tets with a plastic material: the "
+        "mean at their "
+        "nodes, or one value per tet, which locks. Other tets always have their own",
     )
     strain_limit: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.2, description="Plastic strain above which a run warns; above 1 it ends [1]"
@@ -242,11 +245,12 @@ class MassScaling(Part):
     """Mass added where small elements, bonds and contacts would force a smaller step."""
 
     step: Annotated[float, Quantity("s", above=0)] | None = Field(
-        None, description="Step to reach without damping [s]"
+        None, description="Target step, without damping [s]"
     )
     most: Annotated[float, Quantity("1", above=0, at_most=1)] | None = Field(
         None,
-        description="Most mass to add, as a share of all that is not held; without step, the longest step that it buys "
+        description="Most mass to add, as a fraction of the mass of free nodes; without step, the "
+        "longest step for it "
         "[1]",
     )
 
@@ -264,12 +268,13 @@ class Time(Part):
         "auto", description="Time step [s]; auto: safety times the stability limit"
     )
     safety: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
-        0.8, description="Share of the stability limit that an automatic step uses [1]"
+        0.8, description="Fraction of the stability limit for an automatic step [1]"
     )
     mass_scaling: MassScaling | None = Field(None, description="Mass scaling of the worst nodes")
     energy_error: Annotated[float, Quantity("1", above=0)] | Literal["any"] = Field(
         0.05,
-        description="Closing error of the energy balance, as a share of its largest term, at which a "
+        description="Closing error of the energy balance, as a fraction of its largest term, at "
+        "which a "
         "run ends as failed; any: never [1]",
     )
 
@@ -281,50 +286,48 @@ else:
 
 
 class FlowMaps(Part):
-    """Largest velocity, thickness, energy ... at each place, followed while the case runs."""
+    """Largest velocity, thickness, energy ... at each place, recorded during the run."""
 
     cell: Annotated[float, Quantity("m", above=0)] = Field(description="Side of a cell [m]")
     groups: Annotated[list[Name], Field(min_length=1)] | None = Field(
-        None, description="Groups that are followed; by default those not fixed in all directions"
+        None, description="Groups to follow; default: groups not fixed in all directions"
     )
 
 
 class Output(Part):
-    """What is written while the case runs."""
+    """Results written during the run."""
 
     every: Annotated[float, Quantity("s", above=0)] | None = Field(
         None, description="Time between frames [s]; by default a fiftieth of each dynamic stage"
     )
     fields: list[FieldName] = Field(
         CHOICE,
-        description="Fields of a frame; the state of a law only where the case has the law",
+        description="Fields of a frame; state variables of a law need the law in the case",
     )
     checkpoint_every: Annotated[float, Quantity("s", above=0)] = Field(
         300.0, description="Wall time between checkpoints [s]"
     )
-    frames: bool = Field(True, description="Whether frames are written at all")
+    frames: bool = Field(True, description="Whether to write frames")
     maps: FlowMaps | None = Field(
-        None, description="Follow largest values at each place for the maps of cdem runout"
+        None, description="Record largest values at each place for the maps of cdem runout"
     )
 
 
 class HistoryPoint(Part):
-    """Quantities followed over time, for a group, at a node, or of a bolt."""
+    """Quantities recorded over time, of a group, a node or a bolt."""
 
     name: FileName = Field(
-        description="Name, unique in the case; begins the columns, and names a picture"
+        description="Unique name; start of the column names, and name of a picture"
     )
     group: Name | None = Field(None, description="Follow this group")
     point: Length3 | None = Field(None, description="Follow the node nearest to this point [m]")
-    bolt: Name | None = Field(
-        None, description="Follow a bolt, or all of a pattern: the largest of them"
-    )
+    bolt: Name | None = Field(None, description="Follow a bolt, or the largest value of a pattern")
     quantities: list[
         Literal[
             "centroid", "displacement", "velocity", "energy", "force", "water_force", "surface_force",
             "axial_force", "slip", "plate_force",
         ]
-    ] = Field(min_length=1, description="What to follow; the last three of a bolt")  # fmt: skip
+    ] = Field(min_length=1, description="Quantities; the last three are for bolts")  # fmt: skip
 
     @model_validator(mode="after")
     def _one_place(self) -> HistoryPoint:
@@ -344,13 +347,13 @@ class HistoryPoint(Part):
 
 
 def absent_groups(changes: Sequence[tuple[list[str], list[str]]], begun: int) -> list[str]:
-    """Groups that are no part of a model once so many of its stages have begun, sorted.
+    """Groups absent once this many stages have begun, sorted.
 
     Args:
-        changes: What each stage removes and adds.
+        changes: Groups that each stage removes and adds.
         begun: Number of stages.
     """
-    first: dict[str, bool] = {}  # whether a stage adds it before any removes it
+    first: dict[str, bool] = {}  # whether a stage adds the group before any removes it
     for removes, adds in changes:
         first |= {name: name in adds for name in [*removes, *adds] if name not in first}
     gone = {name for name, added in first.items() if added}
@@ -367,7 +370,7 @@ class CaseParts(Part):
     units: Literal["SI"] = Field("SI", description="Unit system of plain numbers")
     crs: MapSystem | None = Field(
         None,
-        description="Map projection of all coordinates, e.g. EPSG:32632; goes to rasters and maps",
+        description="Map projection of all coordinates, e.g. EPSG:32632; also of rasters and maps",
     )
     own_laws: list[str] = Field(
         [], description="Headers with laws of users, as given to cdem law build; needs --allow-code"
@@ -376,17 +379,17 @@ class CaseParts(Part):
     materials: dict[Name, AnyMaterial] = Field(description="Materials by name")
     groups: dict[Name, Group] = Field(description="Groups by name; every body is in one")
     interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
-    loads: Loads = Field(Loads(), description="What acts from outside")
+    loads: Loads = Field(Loads(), description="Actions from outside")
     initial_stress: list[InitialStress] = Field([], description="Stress at the start")
     water: Water | None = Field(None, description="Water in joints, pores and the open")
     bolts: list[Bolts] = Field([], description="Bolts and cables")
-    bolt_types: dict[Name, BoltType] = Field({}, description="What bolts are made of, by name")
+    bolt_types: dict[Name, BoltType] = Field({}, description="Types of bolts by name")
     stages: list[Stage] = Field(min_length=1, description="Parts of the run, in order")
-    contact: Contact = Field(Contact(), description="How contacts are found")
+    contact: Contact = Field(Contact(), description="Contact search")
     elements: Elements = Field(Elements(), description="Element formulation")
     time: Time = Field(Time(), description="The time step")
-    output: Output = Field(Output(), description="What is written")
-    histories: list[HistoryPoint] = Field([], description="Quantities followed over time")
+    output: Output = Field(Output(), description="Results to write")
+    histories: list[HistoryPoint] = Field([], description="Quantities recorded over time")
 
     @property
     def movable(self) -> list[str]:
@@ -394,10 +397,10 @@ class CaseParts(Part):
         return [name for name, group in self.groups.items() if len(set(group.fix)) < 3]
 
     def absent(self, begun: int) -> list[str]:
-        """Groups that are no part of the model once so many stages have begun, in any order."""
+        """Groups absent once this many stages have begun, in any order."""
         return absent_groups([(stage.remove, stage.add) for stage in self.stages], begun)
 
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:
-        """`elements.mass`, what `auto` stands for in it."""
+        """The value of `elements.mass`, with the meaning of `auto` put in."""
         return "lumped-while-bonded" if self.elements.mass == "auto" else self.elements.mass

@@ -1,4 +1,4 @@
-"""What pictures can show: recorded fields, and what follows from them (components, principal stress)."""
+"""Quantities for pictures: recorded fields, and components and principal values made of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from cdem.case.output_fields import OUTPUT_FIELDS, OutputField
 
 Looks = Literal["amount", "signed", "whole range", "label", "scattered label"]
-"""How a field is coloured: as `Colors` says, or "signed", between two ends of which one may be below
+"""Colours of a field: as in `Colors`, or "signed": between two ends, one of which may be below
 zero."""
 Recorded = NDArray
 Values = Callable[[Recorded], NDArray]
@@ -22,20 +22,20 @@ AXES = ("x", "y", "z")
 MISES = "von_mises_stress"
 TENSOR = ("xx", "yy", "zz", "xy", "yz", "zx")
 YIELDED = ("never", "shear before", "tension before", "shear now", "tension now")
-"""Names of the numbers that `yield_class` gives."""
+"""Names of the numbers of `yield_class`."""
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What a picture may show.
+    """A quantity for pictures.
 
     Attributes:
-        name: On the command line.
+        name: Name on the command line.
         meaning: One line.
-        unit: Of the values.
-        looks: How they are coloured.
-        of: The recorded field that they follow from.
-        values: Takes the rows of that field, gives one value each.
+        unit: Unit of the values.
+        looks: Kind of colours.
+        of: The recorded field that it is made from.
+        values: Function from rows of that field to one value each.
         labels: Names of the values 0, 1, ... of a label.
     """
 
@@ -54,7 +54,7 @@ def size_of(vectors: NDArray) -> NDArray:
 
 
 def principal(stress: NDArray, place: int) -> NDArray:
-    """The principal value in this place, 0 for the largest, of rows xx yy zz xy yz zx."""
+    """The principal value at this place, 0 for the largest, of rows xx yy zz xy yz zx."""
     xx, yy, zz, xy, yz, zx = np.asarray(stress, float).T
     tensors = np.stack([xx, xy, zx, xy, yy, yz, zx, yz, zz], axis=1).reshape(-1, 3, 3)
     return np.linalg.eigvalsh(tensors)[:, 2 - place]
@@ -68,7 +68,7 @@ def von_mises_stress(stress: NDArray) -> NDArray:
 
 
 def yield_class(bits: NDArray) -> NDArray:
-    """Place in `YIELDED` of each row of the field "yielded", rock and weak plane taken together."""
+    """Place in `YIELDED` of each row of the field "yielded"; rock and weak plane combined."""
     bits = np.asarray(bits).astype(int)
     bits = (bits | bits >> 4) & 15
     cases = [(bits & 2) > 0, (bits & 1) > 0, (bits & 8) > 0, (bits & 4) > 0]
@@ -84,7 +84,7 @@ def _itself(rows: NDArray) -> NDArray:
 
 
 def _of_field(field: OutputField) -> list[Shown]:
-    """What can be shown of a recorded field."""
+    """Quantities that can be shown of a recorded field."""
     if field.name in ("displacement", "velocity"):
         parts = [
             Shown(f"{field.name}_{a}", f"{field.meaning} along {a}", field.unit, "signed", field.name,
@@ -101,7 +101,7 @@ def _of_field(field: OutputField) -> list[Shown]:
     if field.name == "effective_stress":
         return _of_stress("effective_", field)
     if field.name == "yielded":
-        meaning = "What flows in the element now, or has flowed"
+        meaning = "Plastic flow in the element, now or earlier"
         return [Shown(field.name, meaning, "", "label", field.name, yield_class, YIELDED)]
     if field.colors is None:
         return []
@@ -128,7 +128,7 @@ def _of_stress(prefix: str, field: OutputField) -> list[Shown]:
 AXIAL_FORCE = Shown(
     "axial_force", "Axial force of bolts, tension positive", "N", "signed", "axial_force", _itself
 )
-"""The one that bolts are coloured by; the rock is then pale."""
+"""The quantity that colours bolts; the rock is then pale."""
 SHOWN = {shown.name: shown for field in OUTPUT_FIELDS for shown in _of_field(field)}
 SHOWN[AXIAL_FORCE.name] = AXIAL_FORCE
 """All by name, in the order of the list of fields."""

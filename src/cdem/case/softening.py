@@ -1,4 +1,4 @@
-"""How strengths of rock fall with the slip across a band of elements: `materials.NAME.softening`."""
+"""Fall of strengths of rock with the slip across a band of elements: `materials.NAME.softening`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cdem._native import core as native
 from cdem.case.laws import BLOCK_LAWS, Law
 from cdem.case.types import Part, Quantity
 
-Problem = tuple[tuple[str | int, ...], str]  # path, what is wrong
+Problem = tuple[tuple[str | int, ...], str]  # path, problem
 _Slip = Annotated[float, Quantity("m", at_least=0)]
 _Stresses = list[tuple[_Slip, Annotated[float, Quantity("Pa", at_least=0)]]]
 _Angles = list[tuple[_Slip, Annotated[float, Quantity("deg", at_least=0, below=90)]]]
@@ -27,12 +27,12 @@ class Softening(Part):
     """Strengths over the slip across a band of elements: plastic strain times element size."""
 
     cohesion: _Stresses | None = _table("Cohesion", "Pa")
-    friction_angle: _Angles | None = _table("Friction angle; its tangent is straight", "deg")
-    dilation_angle: _Angles | None = _table("Dilation angle; its tangent is straight", "deg")
-    tensile_strength: _Stresses | None = _table("Tensile strength, over what opens", "Pa")
+    friction_angle: _Angles | None = _table("Friction angle; its tangent is interpolated", "deg")
+    dilation_angle: _Angles | None = _table("Dilation angle; its tangent is interpolated", "deg")
+    tensile_strength: _Stresses | None = _table("Tensile strength, over the opening", "Pa")
     fracture_energy: Annotated[float, Quantity("J/m2", above=0)] | None = Field(
         None,
-        description="Instead of tensile_strength: it falls in a straight line to 0, and this is spent "
+        description="Instead of tensile_strength, for a linear fall to 0: the energy spent "
         "by then [J/m2]",
     )
     joint_cohesion: _Stresses | None = _table("Cohesion of the weak plane", "Pa")
@@ -44,7 +44,7 @@ class Softening(Part):
 
 
 def tables_of(material: Part) -> dict[str, list[tuple[float, float]]]:
-    """Tables of a material as the core takes them, by name: slip [m], value [Pa] or tangent."""
+    """Tables of a material in the core's units, by name: slip [m], value [Pa] or tangent."""
     softening = getattr(material, "softening", None)
     if softening is None:
         return {}
@@ -83,7 +83,7 @@ def reduced_tables(material: Part, factor: float) -> dict[str, list[tuple[float,
 
 
 def softening_problems(material: Part) -> Iterator[Problem]:
-    """What contradicts itself in the softening of a material."""
+    """Contradictions in the softening of a material."""
     softening = getattr(material, "softening", None)
     if softening is None:
         return
@@ -121,7 +121,7 @@ def _wrong_names(law: Law, softening: Softening) -> Iterator[Problem]:
             can = ", ".join(law.softening)
             yield ("softening", name), f"law {law.name} has no such strength; it has {can}"
     if not given:
-        yield ("softening",), "says nothing of what falls; leave it out, or give e.g. cohesion"
+        yield ("softening",), "has no table; leave it out, or give e.g. cohesion"
 
 
 def _wrong_rows(material: Part, name: str, rows: list[tuple[float, float]]) -> Iterator[Problem]:
@@ -146,7 +146,7 @@ def _wrong_rows(material: Part, name: str, rows: list[tuple[float, float]]) -> I
 
 
 def _too_much_dilation(material: Part) -> Iterator[Problem]:
-    """Dilation above friction at some slip would make energy."""
+    """Check that dilation stays below friction at every slip: else it would create energy."""
     tables = tables_of(material)
     for plane in ("", "joint_"):
         friction, dilation = f"{plane}friction_angle", f"{plane}dilation_angle"

@@ -1,4 +1,4 @@
-"""Where the values of a case come from, and errors that say file, line, column and a mend."""
+"""Origin of the values of a case, and errors that name file, line, column and a mend."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from cdem.errors import CaseError, CdemError
 
 Key = str | int
 Keys = tuple[Key, ...]
-MOST_PROBLEMS = 20  # more lines than this help nobody
+MOST_PROBLEMS = 20  # more lines would not help
 
 
 @dataclass
 class Source:
-    """Where the values of a case come from.
+    """Origin of the values of a case.
 
     Attributes:
         file: Name of the case file as the user typed it, or None for a case built in Python.
@@ -30,7 +30,7 @@ class Source:
     overrides: dict[Keys, str] = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
-        """Ready for JSON; `of` makes it again."""
+        """As data for JSON; `of` is the inverse."""
         return {
             "file": self.file,
             "places": [[list(keys), *place] for keys, place in self.places.items()],
@@ -39,7 +39,7 @@ class Source:
 
     @classmethod
     def of(cls, data: dict[str, Any]) -> Source:
-        """That of which `as_dict` is this."""
+        """The source with this `as_dict`."""
         places = {tuple(keys): (line, column) for keys, line, column in data["places"]}
         return cls(data["file"], places, {tuple(keys): by for keys, by in data["overrides"]})
 
@@ -49,7 +49,7 @@ class Source:
         return Path(".") if self.file is None else Path(self.file).parent
 
     def where(self, path: str | Keys) -> str:
-        """Return ``file:line:col`` of a path, or of the nearest part of it that is written down."""
+        """Return ``file:line:col`` of a path, or of its nearest part that is in the file."""
         keys = self._known(path) if isinstance(path, str) else path
         while keys:
             if keys in self.overrides:
@@ -57,18 +57,18 @@ class Source:
             if keys in self.places:
                 line, column = self.places[keys]
                 return f"{self.file}:{line}:{column}"
-            for longer, label in self.overrides.items():  # a mapping that an override has made
+            for longer, label in self.overrides.items():  # a mapping made by an override
                 if longer[: len(keys)] == keys:
                     return label
             keys = keys[:-1]
         return self.file or "case"
 
     def error(self, problems: Iterable[tuple[Keys, str]]) -> CaseError:
-        """Make one error of (path, what is wrong) pairs, in the order of the file."""
+        """Make one error of pairs (path, problem), in the order of the file."""
         return CaseError("\n".join(self.lines(problems)))
 
     def lines(self, problems: Iterable[tuple[Keys, str]]) -> list[str]:
-        """One line for each of (path, what is wrong), in the order of the file."""
+        """One line for each pair (path, problem), in the order of the file."""
         last = (10**9, 0)
         some = sorted(problems, key=lambda p: self.places.get(self._nearest(p[0]), last))
         lines = [
@@ -81,7 +81,7 @@ class Source:
 
     @contextmanager
     def blame(self, path: str) -> Iterator[None]:
-        """Put ``file:line:col: path:`` before the message of a CdemError or ValueError inside."""
+        """Put ``file:line:col: path:`` in front of a CdemError or ValueError raised inside."""
         try:
             yield
         except CdemError as error:
@@ -96,7 +96,7 @@ class Source:
         return keys
 
     def _known(self, text: str) -> Keys:
-        """Split a dotted path; keys that contain dots themselves are found by what is known."""
+        """Split a dotted path; known keys may themselves contain dots."""
         parts: list[str] = text.split(".")
         keys: Keys = ()
         known = self.places.keys() | self.overrides.keys()

@@ -1,4 +1,4 @@
-"""Cases that results hold, and those of `cdem: 1`, whose number stood for choices that are keys now."""
+"""Cases stored in results, and cases of `cdem: 1`, whose number implied choices that are now keys."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from typing import Any
 from cdem.case.source import Keys
 
 MARKER = ".cdem-results"
-"""The file that says that `cdem run` made the folder."""
+"""The file that marks a folder made by `cdem run`."""
 BONDS = "10.0 E/h"
-"""Of `cdem: 1`, which made up for no bonds and gave contacts the stiffness of bonds."""
+"""Choices of `cdem: 1`: no compensation for bonds, and contacts with the stiffness of bonds."""
 
 
 def is_stored(path: Path) -> bool:
-    """Whether a file is the case that a run has written beside its results."""
+    """Whether a file is the case that a run wrote beside its results."""
     return path.name == "case.yaml" and (path.parent / MARKER).is_file()
 
 
 def renewed(data: dict[str, Any]) -> dict[str, Any]:
-    """A case with the keys of today: what `cdem: 1` chose is written out."""
+    """A case with the keys of today: the choices of `cdem: 1` are written out."""
     if not _is_old(data):
         return data
     out = deepcopy(data) | {"cdem": 2}
@@ -36,18 +36,20 @@ def renewed(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def outdated(data: dict[str, Any]) -> list[tuple[Keys, str]]:
-    """What is wrong with a case of `cdem: 1`: which keys it has to write; of others nothing."""
+    """The problem with a case of `cdem: 1`: keys that it has to write; none for other cases."""
     if not _is_old(data):
         return []
     keys = "; ".join(f"{'.'.join(map(str, path))}: {value}" for path, value in chosen(data))
     mend = (
-        f", and for the same results write {keys}" if keys else "; the case has all that it chose"
+        f", and for the same results write {keys}"
+        if keys
+        else "; the case gives all its choices already"
     )
-    return [(("cdem",), f"1 is gone; remove it{mend}")]
+    return [(("cdem",), f"1 is no longer supported; remove it{mend}")]
 
 
 def chosen(data: dict[str, Any]) -> Iterator[tuple[Keys, Any]]:
-    """Keys and values of what `cdem: 1` chose where a case, sound or not, says nothing."""
+    """Keys and values of the choices of `cdem: 1` that a case, sound or not, leaves open."""
     for keys, stage in _parts(data, "stages", "*"):
         mode = stage.get("mode")
         if mode == "static" and stage.get("relax") is None:
@@ -63,7 +65,7 @@ def chosen(data: dict[str, Any]) -> Iterator[tuple[Keys, Any]]:
 
 
 def _stiffness(data: dict[str, Any]) -> Iterator[tuple[Keys, Any]]:
-    """Of the default, which pairs take over, and of pairs that leave it to the program by themselves."""
+    """Choices for the default (which pairs take over), and for pairs that leave them to the program."""
     pair_of, default = ("stiffness_n", "stiffness_s"), dict[str, Any]()
     for keys, default in _parts(data, "interfaces", "default"):
         if all(default.get(key, "auto") == "auto" for key in pair_of):
@@ -75,7 +77,7 @@ def _stiffness(data: dict[str, Any]) -> Iterator[tuple[Keys, Any]]:
 
 
 def _leaves_out(node: dict[str, Any], part: str, key: str) -> bool:
-    """Whether a part of a mapping, which may be left out itself, says nothing of a key."""
+    """Whether a part of a mapping, which may be missing itself, lacks a key."""
     inside = node.get(part)
     return inside is None or (isinstance(inside, dict) and inside.get(key) in (None, "auto"))
 
@@ -85,7 +87,7 @@ def _is_old(data: dict[str, Any]) -> bool:
 
 
 def _parts(node: Any, *path: str, keys: Keys = ()) -> Iterator[tuple[Keys, dict[str, Any]]]:
-    """Mappings at a path, in which * stands for all entries of a list, and where they stand."""
+    """Mappings at a path, in which * stands for all entries of a list, and their places."""
     if not path:
         if isinstance(node, dict):
             yield keys, node

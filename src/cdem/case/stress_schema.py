@@ -1,4 +1,4 @@
-"""Stress that the rock is under when a run begins."""
+"""Initial stress of the rock."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from cdem.case.types import (
 )
 
 RIGHT = 1.0
-"""So far from a right angle may two given principal directions be [deg]."""
+"""Largest deviation from a right angle between two given principal directions [deg]."""
 
 
 class StressGradient(Part):
-    """How a stress changes with the place."""
+    """Change of a stress with the place."""
 
     x: StressGradient6 = Field([0.0] * 6, description="Per metre along x [Pa/m]")
     y: StressGradient6 = Field([0.0] * 6, description="Per metre along y [Pa/m]")
@@ -39,10 +39,10 @@ class PrincipalStress(Part):
 
     values: Stress3 = Field(description="Principal stresses, tension positive [Pa]")
     trends: Annotated[list[Angle], Three, Listed] = Field(
-        description="Of their directions, clockwise from north (y) [deg]"
+        description="Trends of their directions, clockwise from north (y) [deg]"
     )
     plunges: Annotated[list[Angle], Three, Listed] = Field(
-        description="Of their directions, below the horizontal [deg]"
+        description="Plunges of their directions, below the horizontal [deg]"
     )
 
     @model_validator(mode="after")
@@ -64,18 +64,18 @@ class PrincipalStress(Part):
 
 
 class InitialStress(Part):
-    """Stress of some of the rock at the start; a later entry replaces an earlier one.
+    """Initial stress of a part of the rock; a later entry replaces an earlier one.
 
-    Tension is positive. One of `stress`, `principal` and `vertical` gives it.
+    Tension is positive. One of `stress`, `principal` and `vertical` gives the stress.
     """
 
     groups: list[Name] | None = Field(None, min_length=1, description="Groups; all by default")
-    box: Region | None = Field(None, description="Only what lies in this box")
+    box: Region | None = Field(None, description="Only elements in this box")
     stress: Stress6 | None = Field(
         None, description="xx, yy, zz, xy, yz, zx at the origin, tension positive [Pa]"
     )
     principal: PrincipalStress | None = Field(None, description="The same by principal values")
-    origin: Length3 = Field([0.0, 0.0, 0.0], description="Where stress or principal holds [m]")
+    origin: Length3 = Field([0.0, 0.0, 0.0], description="Point with this stress or principal [m]")
     gradient: StressGradient = Field(
         StressGradient(), description="Change of stress or principal with the place"
     )
@@ -92,9 +92,9 @@ class InitialStress(Part):
         Field(min_length=1, max_length=2),
         BeforeValidator(lambda k0: [k0] if isinstance(k0, int | float | str) else k0),
         Listed,
-    ] = Field([1.0], description="Horizontal over vertical stress: of all, or of two directions")
+    ] = Field([1.0], description="Horizontal over vertical stress: one value, or two directions")
     azimuth: Angle = Field(
-        90.0, description="Of the first horizontal stress, clockwise from north (y) [deg]"
+        90.0, description="Azimuth of the first horizontal stress, clockwise from north (y) [deg]"
     )
 
     @model_validator(mode="after")

@@ -12,7 +12,7 @@ from cdem.case.types import Direction3, Name, Part
 
 
 class FacesOfGroup(Part):
-    """The outer faces of a group that look in one direction."""
+    """The outer faces of a group with one outward direction."""
 
     group: Name = Field(description="Group")
     normal: Direction3 = Field(description="Outward normal of the faces [1]")
@@ -35,7 +35,7 @@ Surface = Annotated[
 
 
 class SurfaceLoad(Factored):
-    """A law that acts on faces as they lie now; its parameters come with the model of the law."""
+    """A law on faces in their present position; each law adds its parameters."""
 
     acts_from_stage: ClassVar[bool] = True
     if TYPE_CHECKING:
@@ -43,8 +43,9 @@ class SurfaceLoad(Factored):
     surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
     stage: Name | None = Field(
         None,
-        description="Stage at whose begin it starts to act, and from which the times of its history "
-        "and the displacements of its faces count; by default all from the start of the run",
+        description="Stage in which it starts to act; times of its history and displacements of "
+        "its faces "
+        "count from there; by default from the start of the run",
     )
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""What has curves over time: factors, and heights of water."""
+"""Curves over time: factors, and heights of water."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ History = Annotated[
         }
     ),
 ]
-"""Rows of time and factor; a case may name a file of them, see `history_file`."""
+"""Rows of time and factor; a case may name a file with them, see `history_file`."""
 
 
 class Timed(Part):
-    """Something with curves over time: under `history`, of a factor, or `level`, of heights."""
+    """An entry with curves over time: `history` of a factor, or `level` of heights."""
 
     acts_from_stage: ClassVar[bool] = False
-    """Whether it begins to act in its stage, so that this stands for itself."""
+    """Whether it starts to act in its stage, so that `stage` is useful without a curve."""
     stage: Name | None = Field(
         None,
-        description="Stage from whose begin the times of history or of a level count; before it the "
-        "first value holds. By default they count from the start of the run",
+        description="Stage where the times of history or level start; before it the "
+        "first value holds. By default they start with the run",
     )
 
     @property
@@ -58,12 +58,12 @@ class Timed(Part):
                     f"{key}: times must be at least 0, the begin of stage {self.stage}"
                 )
         if self.stage is not None and not self.curves and not self.acts_from_stage:
-            raise ValueError("stage says from when a curve counts: give it with a history or level")
+            raise ValueError("stage is the start of a curve: give it with a history or level")
         return self
 
 
 class Factored(Timed):
-    """Something whose factor has a history."""
+    """An entry with a history of its factor."""
 
     history: History | None = Field(
         None,

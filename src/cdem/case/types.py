@@ -36,12 +36,12 @@ class Quantity:
     """A number with a unit and a range; reads ``30e9`` as well as ``"30 GPa"``.
 
     Attributes:
-        unit: Unit of the number that the case holds.
+        unit: Unit of the number in the case.
         above: Lower limit, itself not allowed [unit].
         at_least: Lower limit, itself allowed [unit].
         below: Upper limit, itself not allowed [unit].
         at_most: Upper limit, itself allowed [unit].
-        auto: Whether the word ``auto`` may stand instead.
+        auto: Whether the word ``auto`` is allowed.
     """
 
     unit: str
@@ -123,7 +123,7 @@ class Stiffness:
         return (0.0, self.value) if self.relative else (self.value, 0.0)
 
     def write(self) -> float | str:
-        """Return what a case file would say: auto, a number [Pa/m] or ``"10 E/h"``."""
+        """Return the text in a case file: auto, a number [Pa/m] or ``"10 E/h"``."""
         if self == AUTO:
             return "auto"
         return f"{self.value!r} E/h" if self.relative else self.value
@@ -143,11 +143,11 @@ class Stiffness:
 
 
 AUTO = Stiffness(0.0, relative=True)
-"""What the program chooses."""
+"""The value that lets the program choose."""
 
 
 def _as_list(value: object) -> object:
-    """Let NumPy arrays stand for lists when a case is built in Python."""
+    """Accept NumPy arrays as lists in a case built in Python."""
     return value.tolist() if hasattr(value, "tolist") else value
 
 
@@ -171,7 +171,7 @@ Angle = Annotated[float, Quantity("deg")]
 
 
 def _one_line(text: str) -> str:
-    """Refuse line ends and other characters that no one sees."""
+    """Refuse line ends and other invisible characters."""
     for character in text:
         if unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp"):
             raise ValueError(f"must be plain text of one line, got the character {character!a}")
@@ -179,10 +179,10 @@ def _one_line(text: str) -> str:
 
 
 def _file_name(text: str) -> str:
-    """Refuse what some system does not take as a part of a file name."""
+    """Refuse names that some system does not allow as a part of a file name."""
     for character in text:
         if character in '/\\:*?"<>|':
-            raise ValueError(f"names files, so it cannot have the character {character}")
+            raise ValueError(f"names files, so it cannot contain the character {character}")
     if len(text.encode()) > LONGEST_FILE_NAME:
         raise ValueError(f"names files, so it cannot be longer than {LONGEST_FILE_NAME} bytes")
     return text

@@ -1,4 +1,4 @@
-"""Water: its level or pressure in joints, pores and in the open."""
+"""Water: its level or pressure in joints, in pores, and in open water."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class WaterPlane(Part):
     dip: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
         description="Angle to the horizontal [deg]"
     )
-    dip_direction: Angle = Field(description="Azimuth in which it falls, from north (y) [deg]")
+    dip_direction: Angle = Field(description="Azimuth of its dip, clockwise from north (y) [deg]")
 
 
 class WaterField(Timed):
@@ -55,23 +55,23 @@ class WaterField(Timed):
     )
     formula: Line | None = Field(
         None,
-        description="Pressure [Pa] as a formula of x, y, z [m], e.g. '9810 * max(0, 50 - z)'; below "
-        "zero there is no water",
+        description="Pressure [Pa] as a formula of x, y, z [m], e.g. '9810 * max(0, 50 - z)'; a "
+        "negative value means no water",
     )
     table: Line | None = Field(
         None,
         description="CSV file of points with pressure: columns x, y, z [m], pressure [Pa]; linear "
-        "between them, that of the nearest one outside (extra terrain)",
+        "between points, outside of them the pressure of the nearest (extra terrain)",
     )
     ru: Annotated[float, Quantity("1", at_least=0, at_most=1)] | None = Field(
         None, description="Pressure over the weight of the rock above [1]"
     )
     lift: Height = Field(
-        0.0, description="How far level, plane or surface is raised, e.g. by a later stage [m]"
+        0.0, description="Rise of level, plane or surface, e.g. by a later stage [m]"
     )
     seepage: Literal["hydrostatic", "parallel"] = Field(
         "hydrostatic",
-        description="With plane: pressure of water at rest below it, or that of flow parallel to it "
+        description="With plane: hydrostatic pressure below it, or pressure of flow parallel to it "
         "(cos² of the dip)",
     )
     history: History | None = Field(
@@ -79,12 +79,13 @@ class WaterField(Timed):
     )
     wet: Literal["auto", "always", "broken", "never"] = Field(
         "auto",
-        description="When water presses in joints: always, once their bonds are broken, or never; "
-        "auto: always where the joint has no strength or rock beside it has pores (biot), else broken",
+        description="Pressure in joints: always, once their bonds are broken, or never; auto: "
+        "always for "
+        "joints without strength or beside rock with pores (biot), else broken",
     )
     aperture: Annotated[float, Quantity("m", at_least=0)] | None = Field(
         None,
-        description="Joints keep their water while they are open by no more [m]; by default 0.05 of "
+        description="Largest opening of joints that keep their water [m]; default 0.05 of "
         "the length of the face",
     )
 
@@ -110,15 +111,17 @@ class WaterField(Timed):
     def _formula_of_places(cls, formula: str | None) -> str | None:
         unknown = Formula(formula).names - {"x", "y", "z"} if formula is not None else set()
         if unknown:
-            raise ValueError(f"a formula of x, y and z; there is no {', '.join(sorted(unknown))}")
+            raise ValueError(
+                f"must be a formula of x, y and z only; remove {', '.join(sorted(unknown))}"
+            )
         return formula
 
 
 class Reservoir(Timed):
-    """Water in the open, at rest: presses on faces that touch nothing."""
+    """Open water at rest: presses on faces that touch nothing."""
 
     box: Region | None = Field(
-        None, description="Only on faces whose middle lies in this box at the start; by default all"
+        None, description="Only faces whose middle lies in this box at the start; default all"
     )
 
     level: Level = Field(
@@ -128,7 +131,7 @@ class Reservoir(Timed):
 
 
 class Water(Part):
-    """Water in joints and pores, and in the open."""
+    """Water in joints and pores, and open water."""
 
     density: Annotated[float, Quantity("kg/m3", above=0)] = Field(
         1000.0, description="Density of the water [kg/m3]"
@@ -136,7 +139,7 @@ class Water(Part):
     fields: list[WaterField] = Field([], description="Water in the ground")
     reservoir: Reservoir | None = Field(
         None,
-        description="Water in the open; also in joints and pores to which no entry of fields applies",
+        description="Open water; also fills joints and pores without an entry in fields",
     )
 
     @model_validator(mode="after")

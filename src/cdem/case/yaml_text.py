@@ -1,4 +1,4 @@
-"""YAML texts as trees that know their lines; what could not be a case is refused before it costs."""
+"""YAML texts as trees that know their lines; hostile texts are refused before they cost time."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from ruamel.yaml.scanner import RoundTripScanner, ScannerError
 from cdem.errors import CaseError
 
 DEEPEST = 40
-"""Lists and mappings inside one another; a case needs ten."""
+"""Deepest nesting of lists and mappings; a case needs ten."""
 REPEATED = 100_000
-"""Values that aliases may repeat."""
+"""Most values that aliases may repeat."""
 _CORE = "tag:yaml.org,2002:"
 _KINDS = {f"{_CORE}{kind}" for kind in ("str", "int", "float", "bool", "null", "seq", "map")}
-_TEXT = {f"{_CORE}timestamp", f"{_CORE}value"}  # texts that look like a date, and "="
+_TEXT = {f"{_CORE}timestamp", f"{_CORE}value"}  # texts like a date, and "="
 
 
 class _Scanner(RoundTripScanner):
-    """Stops at many open brackets: looking ahead over them takes time that grows with their square."""
+    """Stops at many open brackets: looking ahead over them takes quadratic time."""
 
     def fetch_flow_collection_start(self, TokenClass: Any, to_push: str) -> None:
         if len(self.flow_context) >= DEEPEST:
@@ -37,12 +37,12 @@ class _Scanner(RoundTripScanner):
 
 
 class _Composer(Composer):
-    """Counts what aliases repeat, and refuses an alias inside of what it stands for."""
+    """Counts the values that aliases repeat, and refuses an alias inside its own anchor."""
 
     def __init__(self, loader: Any = None) -> None:
         super().__init__(loader)
         self._seen, self._repeated = 0, 0
-        self._size: dict[str, int | None] = {}  # values of an anchor; None until its end
+        self._size: dict[str, int | None] = {}  # number of values of an anchor; None until its end
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         event = self.parser.peek_event()
@@ -61,7 +61,7 @@ class _Composer(Composer):
     def _take_alias(self, anchor: str, mark: Any) -> None:
         size = self._size.get(anchor, 0)
         if size is None:
-            raise ComposerError(None, None, f"*{anchor} stands inside of what it repeats", mark)
+            raise ComposerError(None, None, f"*{anchor} is inside its own anchor", mark)
         self._seen += size
         self._repeated += size
         if self._repeated > REPEATED:
@@ -69,7 +69,7 @@ class _Composer(Composer):
 
 
 class _Constructor(RoundTripConstructor):
-    """Makes texts, numbers, lists and mappings, and nothing else; dates stay texts."""
+    """Builds texts, numbers, lists and mappings, and nothing else; dates stay texts."""
 
     def construct_non_recursive_object(self, node: Any, tag: str | None = None) -> Any:
         kind = tag or node.tag
@@ -77,7 +77,9 @@ class _Constructor(RoundTripConstructor):
             return self.construct_scalar(node)
         if kind not in _KINDS:
             tag = kind.replace(_CORE, "!!")
-            raise ConstructorError(None, None, f"the tag {tag} has no use here", node.start_mark)
+            raise ConstructorError(
+                None, None, f"the tag {tag} is not allowed; remove it", node.start_mark
+            )
         try:
             return super().construct_non_recursive_object(node, tag)
         except YAMLError:
@@ -85,7 +87,7 @@ class _Constructor(RoundTripConstructor):
         except (ValueError, LookupError, ArithmeticError, AttributeError, TypeError):
             kind = kind.removeprefix(_CORE)
             raise ConstructorError(
-                None, None, f"this cannot be read as {kind}", node.start_mark
+                None, None, f"this is not a valid {kind}", node.start_mark
             ) from None
 
 
@@ -94,14 +96,14 @@ def parse(text: str, name: str) -> Any:
 
     Args:
         text: One document.
-        name: What to call it in an error.
+        name: Name of the text in an error.
 
     Returns:
         Nested mappings and lists of ruamel.yaml, which know their lines, and scalars.
 
     Raises:
-        CaseError: Not YAML, a key twice, tags other than those of plain data, too deep, or aliases
-            that repeat too much.
+        CaseError: Not YAML, a repeated key, tags other than plain data, too much nesting, or
+        aliases that repeat too much.
     """
     yaml = YAML(typ="rt", pure=True)
     yaml.Scanner, yaml.Composer, yaml.Constructor = _Scanner, _Composer, _Constructor
@@ -113,12 +115,12 @@ def parse(text: str, name: str) -> Any:
     except DuplicateKeyError as error:
         key = str(error.problem).partition('"')[2].partition('"')[0]
         raise CaseError(
-            f"{_mark(name, error.problem_mark)}: {key}: key is there twice; keep one"
+            f"{_mark(name, error.problem_mark)}: {key}: this key is given twice; keep one"
         ) from None
     except MaxDepthExceededError as error:
         raise CaseError(
-            f"{_mark(name, error.problem_mark)}: more than {DEEPEST} lists and mappings stand "
-            "inside one another; look for brackets and dashes that are too many"
+            f"{_mark(name, error.problem_mark)}: more than {DEEPEST} nested lists and mappings; "
+            "look for superfluous brackets and dashes"
         ) from None
     except MarkedYAMLError as error:
         what = " ".join(filter(None, (error.context, error.problem)))
@@ -127,8 +129,10 @@ def parse(text: str, name: str) -> Any:
             f"{place}: not valid YAML: {what}; look at the indentation, brackets, quotes and "
             "colons here and just above"
         ) from None
-    except TypeError:  # ruamel.yaml lets a list or mapping be a key, and then cannot hash it
-        raise CaseError(f"{name}: not valid YAML here: a list or mapping stands as a key") from None
+    except TypeError:  # ruamel.yaml lets a list or mapping be a key, and fails later
+        raise CaseError(
+            f"{name}: not valid YAML here: a list or mapping is used as a key"
+        ) from None
     except YAMLError as error:
         raise CaseError(f"{name}: not valid YAML: {str(error).splitlines()[0]}") from None
 

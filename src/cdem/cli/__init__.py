@@ -1,4 +1,4 @@
-"""The program ``cdem``: what all its verbs share. They are imported when they are asked for."""
+"""The program ``cdem``: its commands, loaded on demand, and the handling of their errors."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _main() -> None:
             file=sys.stderr,
         )
         sys.exit(1)
-    except BrokenPipeError:  # the reader of our output, e.g. head, has enough
+    except BrokenPipeError:  # the reader of the output, e.g. head, closed it
         sys.stderr.close()
         sys.exit(0)
     except OSError as error:
@@ -58,9 +58,9 @@ def _main() -> None:
 
 
 def _pass_over_matplotlibrc() -> None:
-    """Keep matplotlib from a file of settings in the current folder, which may be a stranger's.
+    """Keep matplotlib from reading a settings file of a stranger in the current folder.
 
-    It reads one there before all others, when it is imported, and at no other time.
+    matplotlib looks for this file only once, when it is imported, and there before other places.
     """
     if not os.path.lexists("matplotlibrc"):
         return

@@ -1,4 +1,4 @@
-"""Verbs that look at this installation: verify, benchmark, doctor."""
+"""Commands that test this installation: verify, benchmark, doctor."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def verify(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[NAME]...", help="Problems, or folders of your own; default quick."
+            metavar="[NAME]...", help="Problems, or folders of your own; default: quick ones."
         ),
     ] = None,
     full: Annotated[
-        bool, typer.Option("--full", help="All problems, in all variants; a quarter of an hour.")
+        bool, typer.Option("--full", help="All problems and variants; takes 15 minutes.")
     ] = False,
     report: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the manual: .html, or .md (table).")
@@ -32,7 +32,7 @@ def verify(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
     listing: Annotated[bool, typer.Option("--list", help="Only list the problems.")] = False,
 ) -> None:
-    """Compute problems whose answer is known and compare; exit status 3 if one is missed."""
+    """Compute problems with known answers and compare; exit status 3 if one is missed."""
     from cdem.verification import runner as verification
 
     chosen = verification.problems(names or [])
@@ -66,7 +66,7 @@ def _print_list(chosen: list[Problem]) -> None:
 
 
 def _compute(problem: Problem, *, full: bool, threads: int | None, silent: bool) -> Outcome:
-    """Run a problem and say how it went."""
+    """Run a problem and print its outcome."""
     if silent:
         return problem.run(full=full, threads=threads)
     print(f"{problem.name}: {problem.title}", flush=True)
@@ -104,7 +104,7 @@ def benchmark(
             print(
                 f"{key}: {value / 1e9:.1f} G/s" if isinstance(value, float) else f"{key}: {value}"
             )
-        print(f"{'what':<34}{'size':>10}{'thr':>4}{'median':>10} (least .. most)")
+        print(f"{'kernel':<34}{'size':>10}{'thr':>4}{'median':>10} (least .. most)")
     rows = []
     for row in bench.run(list(bench.SIZES)[: 3 if full else 2], threads):
         rows.append(row)
@@ -115,7 +115,7 @@ def benchmark(
 
 
 def doctor() -> None:
-    """Say what works on this machine, and how to mend what does not."""
+    """Check what works on this machine, and say how to mend the rest."""
     from cdem.tools.doctor import report
 
     text, healthy = report()

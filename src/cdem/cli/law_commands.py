@@ -1,4 +1,4 @@
-"""Verbs under ``cdem law``: the laws there are, and one of them on its own."""
+"""Commands under ``cdem law``: list laws, test one of them, or build your own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ law = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
-    help="List laws, try one on its own, or build your own.",
+    help="List laws, test one of them, or build your own.",
 )
 SHOWN = 20
 """Rows of a curve that are printed."""
@@ -23,7 +23,7 @@ SHOWN = 20
 
 @law.command("list")
 def list_laws() -> None:
-    """List the laws of blocks, interfaces and surfaces, each with its meaning."""
+    """List the laws of blocks, interfaces and surfaces with their meanings."""
     from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS
 
     kinds = {"materials": BLOCK_LAWS, "interfaces": INTERFACE_LAWS, "loads.surfaces": SURFACE_LAWS}
@@ -35,12 +35,14 @@ def list_laws() -> None:
 
 @law.command("new")
 def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Of small letters, digits and -.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Small letters, digits and -.")],
     kind: Annotated[Literal["block", "interface", "surface"], typer.Option(help="Kind of law.")],
-    folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
+    folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Folder to write to.")] = Path(
+        "."
+    ),
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
 ) -> None:
-    """Write the header of a law of your own to start from, and a test of it."""
+    """Write the header of a law of your own to start from, and a test for it."""
     from cdem.tools.law_build import new_law
 
     paths = new_law(name, kind, folder, force=force)
@@ -50,11 +52,11 @@ def new(
 
 @law.command("build")
 def build(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE.hpp...", help="A law each.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE.hpp...", help="One law per file.")],
 ) -> None:
-    """Compile a library of your own laws, which cases name under own_laws.
+    """Compile a library of your own laws. Cases name it under own_laws.
 
-    Needs a C++20 compiler, and cmake, ninja and nanobind (extra laws). It takes a minute or two.
+    Needs a C++20 compiler, cmake, ninja and nanobind (extra laws). This takes a minute or two.
     """
     from cdem.tools import law_build
 
@@ -62,15 +64,14 @@ def build(
 
 
 def _load(file: Path, allow_code: bool) -> str:
-    """Load a law of the user's own; its name."""
+    """Load a user's own law and return its name."""
     from cdem.own_laws import load_own_laws
     from cdem.tools.law_build import Header
 
     name = Header.read(file).law
     if not allow_code:
         raise CaseError(
-            f"{file}: is code that would run as part of cdem; read it, then allow it with "
-            "--allow-code"
+            f"{file}: is code that would run inside cdem; read it, then allow it with --allow-code"
         )
     load_own_laws(file)
     return name
@@ -79,12 +80,12 @@ def _load(file: Path, allow_code: bool) -> str:
 @law.command("test")
 def test(
     name: Annotated[
-        str, typer.Argument(metavar="LAW", help="See cdem law list; or FILE.hpp of your own.")
+        str, typer.Argument(metavar="LAW", help="A law of cdem law list, or your FILE.hpp.")
     ],
     path: Annotated[
         str,
         typer.Option(
-            help="Of blocks: uniaxial, tension, 'triaxial 5 MPa', 'extension 5 MPa', oedometer. Of "
+            help="For blocks: uniaxial, tension, 'triaxial 5 MPa', 'extension 5 MPa', oedometer. For "
             "interfaces: 'shear 1 MPa', opening."
         ),
     ],
@@ -95,19 +96,19 @@ def test(
         ),
     ] = None,
     to: Annotated[
-        str | None, typer.Option(help="Where it ends: strain (0.02), slip or opening (1 cm).")
+        str | None, typer.Option(help="End of the path: strain (0.02), slip or opening (1 cm).")
     ] = None,
     speed: Annotated[
-        str | None, typer.Option(help="Of a joint, e.g. '1 m/s'; by default slow.")
+        str | None, typer.Option(help="Slip rate of a joint, e.g. '1 m/s'; default slow.")
     ] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="CSV file.")] = None,
     plot: Annotated[Path | None, typer.Option(help="PNG file (extra viz).")] = None,
     allow_code: AllowCode = False,
 ) -> None:
-    """Lead one law along the path of a laboratory test and print the curve.
+    """Drive one law along the path of a laboratory test and print the curve.
 
-    A block law moves a cube of 1 m, 10 GPa unless set otherwise; an interface law the joint between
-    two. Stresses are positive in tension.
+    A block law deforms a cube of 1 m, with 10 GPa unless set otherwise. An interface law shears or
+    opens the joint between two such cubes. Stresses are positive in tension.
     """
     if name.endswith(".hpp"):
         name = _load(Path(name), allow_code)

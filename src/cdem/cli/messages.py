@@ -1,4 +1,4 @@
-"""Messages never end a command: stderr may be closed, full, or have lost its reader."""
+"""Messages never end a command: stderr may be closed or full, or its reader may be gone."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any, TextIO
 
 
 class Messages:
-    """A stream that drops what it cannot write.
+    """A stream that drops text that it cannot write.
 
     Args:
         stream: Where messages go; None if it was closed before the program began.
@@ -21,11 +21,11 @@ class Messages:
             try:
                 self._stream.write(text)
             except (OSError, ValueError):
-                self._stream = None  # what fails once is not tried again
+                self._stream = None  # one failure, no further attempt
         return len(text)
 
     def flush(self) -> None:
-        """Hand on what is buffered, or drop it."""
+        """Pass on buffered text, or drop it."""
         if self._stream is not None:
             try:
                 self._stream.flush()
@@ -37,7 +37,7 @@ class Messages:
         return self._stream is not None and not self._stream.closed and self._stream.isatty()
 
     def close(self) -> None:
-        """Close the stream, without a word."""
+        """Close the stream silently."""
         if self._stream is not None:
             self._stream.close()
 

@@ -1,4 +1,4 @@
-"""Verbs that make and look at models: new, check, mesh, schema."""
+"""Commands that make and check models: new, check, mesh, schema."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ def new(
             autocompletion=lambda: sorted(_template_names(resources.files("cdem") / "templates")),
         ),
     ] = None,
-    folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Where to write it.")] = Path("."),
+    folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Folder to write to.")] = Path(
+        "."
+    ),
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
 ) -> None:
     """Write a commented case to start from."""
@@ -59,7 +61,7 @@ def new(
 
 
 def _template_names(home: Traversable) -> Iterator[str]:
-    """Templates are cases, or folders that hold one of their name with what belongs to it."""
+    """Names of templates: each is a case file, or a folder with a case of its name and its files."""
     for entry in home.iterdir():
         if entry.name.endswith(".yaml"):
             yield entry.name[: -len(".yaml")]
@@ -76,9 +78,9 @@ def _case_of(home: Traversable, name: str) -> Traversable:
 
 
 def _next_commands(case: str, folder: Path) -> Iterator[str]:
-    """The commands that lead to a first result, as the head of a template has them."""
+    """Commands that lead to a first result, as written at the head of a template."""
     for line in case.splitlines():
-        words = line.lstrip("# ").split("  ")[0].split()  # what follows two blanks explains
+        words = line.lstrip("# ").split("  ")[0].split()  # two blanks begin an explanation
         if len(words) < 3 or words[0] != "cdem" or words[1] == "check":
             continue
         words[2] = str(folder / words[2])
@@ -95,14 +97,15 @@ def check(
     picture: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE.png", help="Draw groups, supports, loads, interfaces; or a refused body."
+            metavar="FILE.png",
+            help="Draw groups, supports, loads and interfaces, or a refused body.",
         ),
     ] = None,
     strict: Strict = False,
     allow_code: AllowCode = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Read everything and report on the model; runs nothing."""
+    """Read all input and report on the model; runs nothing."""
     if picture and picture.suffix.lower() != ".png":
         raise typer.BadParameter(f"--picture writes PNG: name a .png file, not {picture}")
     allow_own_laws(case_file, allow_code)
@@ -120,7 +123,7 @@ def check(
             from cdem.output import model_picture, render
 
             render.write_image(picture, model_picture.draw_refused(refused))
-            print(f"wrote {picture}: the body, with what is wrong in red")
+            print(f"wrote {picture}: the body, with its faults in red")
         raise
     audit = simulation.audit
     if picture:
@@ -142,7 +145,7 @@ def check(
 
 
 def _assumed(case_file: Path) -> list[str]:
-    """Lines of a case with the mark ASSUMED: values that nobody measured."""
+    """Lines of a case with the mark ASSUMED: values without a measurement."""
     from cdem.case.input_file import read_text
 
     lines = read_text(case_file, "case file").splitlines()

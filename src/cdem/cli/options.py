@@ -1,4 +1,4 @@
-"""What several verbs share: arguments, options, signals, and how paths are printed."""
+"""Arguments, options, signals and printing of paths, shared by several commands."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all c
 
 AllowCode = Annotated[
     bool,
-    typer.Option("--allow-code", help="Let code of own_laws run; allow what you have read."),
+    typer.Option("--allow-code", help="Run the code of own_laws; read it first."),
 ]
-Strict = Annotated[bool, typer.Option("--strict", help="Take warnings for errors.")]
+Strict = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.")]
 
 
 def print_paths(paths: Path | Iterable[Path]) -> None:
@@ -35,7 +35,7 @@ def print_paths(paths: Path | Iterable[Path]) -> None:
 
 
 def allow_own_laws(case_file: Path, allowed: bool) -> None:
-    """Load the laws of users that a case names, if they are allowed; before it is read as a case."""
+    """Load the own laws that a case names, if they are allowed; done before the case is read."""
     if not allowed:
         return
     from cdem.own_laws import load_own_laws
@@ -46,13 +46,13 @@ def allow_own_laws(case_file: Path, allowed: bool) -> None:
 
 
 def allow_own_laws_of_study(study_file: Path, allowed: bool) -> None:
-    """The same of the case that a study names."""
+    """Load the own laws of the case that a study names, if they are allowed."""
     if allowed and isinstance(case := raw_data(study_file).get("case"), str):
         allow_own_laws(study_file.parent / case, allowed)
 
 
 def raw_data(file: Path) -> dict[str, Any]:
-    """A case or study as plain data; nothing of it is checked."""
+    """A case or study as plain data, unchecked."""
     from cdem.case.input_file import read_text
     from cdem.case.yaml_text import parse
 
@@ -69,7 +69,7 @@ def stop_on_signal(kept: str = "stopping with a checkpoint") -> Iterator[list[st
         if received:
             raise KeyboardInterrupt
         received.append(signal.Signals(number).name)
-        print(f"\n{received[0]}: {kept}; again: at once", file=sys.stderr)
+        print(f"\n{received[0]}: {kept}; once more to stop at once", file=sys.stderr)
 
     before = {number: signal.signal(number, receive) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

@@ -1,4 +1,4 @@
-"""Verbs of the command line that look at results: info, plot, render, view, runout, export."""
+"""Commands that show results: info, plot, render, view, runout, export."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ResultFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Result folder
 
 
 def info(folder: ResultFolder) -> None:
-    """Say what a run did."""
+    """Summarize a run."""
     from cdem.output import report
 
     print(report.info(_results(folder)).rstrip())
@@ -40,26 +40,24 @@ def _fields() -> list[str]:
 
 
 class Fields(TyperCommand):
-    """The verb render, whose help ends with the fields."""
+    """The command render; its help ends with the list of fields."""
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
         from cdem.case.shown_fields import SHOWN
 
-        with formatter.section("Fields, of which a run has some"):
+        with formatter.section("Fields (a run has some of them)"):
             formatter.write_dl([(shown.name, shown.meaning) for shown in SHOWN.values()])
 
 
 CLASSES = {"render": Fields}
-"""Classes of commands that are not typer's own."""
+"""Command classes that differ from typer's own."""
 
 
 def render(
     folder: ResultFolder,
     field: Annotated[
         str,
-        typer.Option(
-            help="Field that colours the picture, of those below.", autocompletion=_fields
-        ),
+        typer.Option(help="Field to colour by, from the list below.", autocompletion=_fields),
     ] = "displacement",
     time: Annotated[
         float | None, typer.Option(help="Only the frame next to this time [s].")
@@ -100,7 +98,7 @@ def view(
     folder: ResultFolder,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for any.")] = 0,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address only.")
+        bool, typer.Option("--no-browser", help="Only print the address.")
     ] = False,
     save: Annotated[
         Path | None,
@@ -108,10 +106,10 @@ def view(
     ] = None,
     budget: Annotated[
         float | None,
-        typer.Option(metavar="MB", min=0.2, help="Size of that file at most; default 10."),
+        typer.Option(metavar="MB", min=0.2, help="Largest size of that file; default 10."),
     ] = None,
 ) -> None:
-    """Show a run in the browser; it follows a run that goes on. Ctrl-C ends it."""
+    """Show a run in the browser, live while it runs. Ctrl-C ends it."""
     _results(folder)
     if save is not None:
         from cdem.output.report import BUDGET, report
@@ -132,9 +130,9 @@ def view(
 
 
 def _redirect(folder: Path, address: str) -> str:
-    """Address of a file that leads to the page, which only this user can read.
+    """Address of a file that leads to the page; only this user can read the file.
 
-    Other users see the arguments of a browser, and the page's address holds its token.
+    Other users can see the arguments of a browser, and the page's address holds its token.
     """
     path = folder / "view.html"
     with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
@@ -143,7 +141,7 @@ def _redirect(folder: Path, address: str) -> str:
 
 
 def _has_screen() -> bool:
-    """Whether a browser can open a window; one in the terminal would take that from us."""
+    """Whether a browser can open a window; a browser in the terminal would block the terminal."""
     return sys.platform == "darwin" or any(
         os.environ.get(n) for n in ("DISPLAY", "WAYLAND_DISPLAY")
     )
@@ -152,7 +150,7 @@ def _has_screen() -> bool:
 def runout(
     folder: ResultFolder,
     groups: Annotated[
-        str | None, typer.Option(metavar="A,B", help="Moving groups; default those that moved.")
+        str | None, typer.Option(metavar="A,B", help="Moving groups; default: groups that moved.")
     ] = None,
     direction: Annotated[
         str, typer.Option(metavar="AZIMUTH", help="Degrees clockwise from y, or auto.")
@@ -162,13 +160,13 @@ def runout(
     ] = None,
     sections: Annotated[
         list[str] | None,
-        typer.Option("--section", metavar="X0,Y0,X1,Y1", help="Line to look through; repeatable."),
+        typer.Option("--section", metavar="X0,Y0,X1,Y1", help="Line of a section; repeatable."),
     ] = None,
     against: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Mapped outline to compare with.")
     ] = None,
     classes: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Another run whose classes the maps take.")
+        Path | None, typer.Option(metavar="DIR", help="Use the colour classes of this run.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print runout.json instead.")] = False,
 ) -> None:
@@ -187,7 +185,7 @@ def runout(
     paths = list(dict.fromkeys(p if p.parent == folder else p.parent for p in found.write(folder)))
     try:
         paths.append(found.write_geopackage(folder))
-    except BackendError as error:  # without an extra the numbers and the rasters are whole
+    except BackendError as error:  # numbers and rasters need no extra
         print(f"no runout.gpkg: {error}", file=sys.stderr)
     try:
         paths += found.draw(folder)
@@ -201,14 +199,14 @@ def runout(
 
 
 def _numbers(text: str, option: str, count: int) -> list[float]:
-    """Numbers between commas; wrong usage if they are not numbers, or not so many."""
+    """Numbers separated by commas; a usage error for other text or another count."""
     try:
         numbers = [float(word) for word in text.split(",")]
     except ValueError:
         numbers = []
     if len(numbers) != count:
-        what = "a number" if count == 1 else f"{count} numbers with commas between"
-        raise typer.BadParameter(f"{option} needs {what}, got {text!r}")
+        needed = "a number" if count == 1 else f"{count} numbers separated by commas"
+        raise typer.BadParameter(f"{option} needs {needed}, got {text!r}")
     return numbers
 
 
@@ -225,7 +223,7 @@ def export(
 def _results(folder: Path) -> Path:
     if folder.is_file():
         case = folder.suffix.lower() in (".yaml", ".yml")
-        hint = f"; 'cdem check {folder}' tells of a case" if case else ""
+        hint = f"; 'cdem check {folder}' checks a case" if case else ""
         raise CaseError(f"{folder}: is a file; name the result folder of a run{hint}")
     if not folder.is_dir():
         raise CaseError(f"{folder}: no such folder; name the result folder of a run")

@@ -1,4 +1,4 @@
-"""The verb that runs a case: run."""
+"""The command that runs a case: run."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 
 
 def _tell_of_devices(device: str | None) -> None:
-    """Answer `--device`, which other programs have: the compiled core chooses the device."""
+    """Explain that there is no `--device`: the compiled core decides on the device."""
     if device is not None:
-        raise BackendError(f"--device: no such option; a core for a GPU has to be built, {GPU}")
+        raise BackendError(f"--device: no such option; for a GPU build the core for it, {GPU}")
 
 
 def run(
@@ -43,9 +43,9 @@ def run(
     settings: Settings = None,
     threads: Threads = None,
     device: Annotated[str | None, typer.Option(hidden=True, callback=_tell_of_devices)] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue from the checkpoint.")] = False,
     force: Annotated[
-        bool, typer.Option("--force", help="With --resume: go on though the case has changed.")
+        bool, typer.Option("--force", help="With --resume: continue with a changed case.")
     ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace the results in the result folder.")
@@ -55,7 +55,7 @@ def run(
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print summary.json at the end.")] = False,
 ) -> None:
-    """Run all stages of a case. Ctrl-C stops it cleanly, to be resumed."""
+    """Run all stages of a case. Ctrl-C stops it cleanly; --resume continues."""
     if resume and overwrite:
         raise typer.BadParameter("--resume and --overwrite exclude one another")
     if quiet and as_json:
@@ -87,12 +87,12 @@ def run(
         print(f"{status}{_but_for(summary)}; results are in {folder}")
     if status == "stopped":
         again = _resume_command(case_file, folder, settings or [], threads, allow_code)
-        print(f"stopped with a checkpoint; go on with: {again}", file=sys.stderr)
+        print(f"stopped with a checkpoint; continue with: {again}", file=sys.stderr)
         raise typer.Exit(STOPPED)
 
 
 def _but_for(summary: Path) -> str:
-    """What a run that is at rest has left behind: the way to it, blocks that fall on or have left."""
+    """Exceptions to rest: problems on the way, and blocks that still fall or have left."""
     from cdem.output.page_facts import departed, moving, rested
 
     facts = json.loads(summary.read_text())
@@ -124,7 +124,7 @@ def _run(
         try:
             status = simulation.run(progress, lambda: bool(stop))
         except UnstableError:
-            write_report(folder)  # it shows where
+            write_report(folder)  # the report shows the places
             raise
     if not _is_reported(folder):
         from cdem.run.progress import busy
@@ -135,7 +135,7 @@ def _run(
 
 
 def _is_reported(folder: Path) -> bool:
-    """Whether the report is of the summary that is there."""
+    """Whether the report belongs to the present summary."""
     page = folder / "report.html"
     return (
         page.is_file() and page.stat().st_mtime_ns >= (folder / "summary.json").stat().st_mtime_ns
@@ -143,7 +143,7 @@ def _is_reported(folder: Path) -> bool:
 
 
 def write_report(folder: Path) -> None:
-    """Write report.html; the results are whole without it, so that it is missing is only said."""
+    """Write report.html; results are complete without it, so a failure is only a message."""
     from cdem.output import report
 
     try:

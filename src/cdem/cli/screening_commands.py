@@ -1,4 +1,4 @@
-"""Verbs that look at a slope before anything is run: joints, screen."""
+"""Commands that assess a slope without a run: joints, screen."""
 
 from __future__ import annotations
 
@@ -29,33 +29,37 @@ def joints(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="Sets for a case; a picture beside it. Default TABLE.yaml, here."
+            "--output", "-o", help="Sets for a case, with a picture. Default TABLE.yaml, here."
         ),
     ] = None,
     slope: Annotated[
         str | None,
-        typer.Option(metavar="DIP/DIRECTION", help="Also tell what may fail on it: 60/090."),
+        typer.Option(
+            metavar="DIP/DIRECTION", help="Also list failures possible on this slope: 60/090."
+        ),
     ] = None,
     friction: Annotated[
         float | None, typer.Option(metavar="DEG", help="Friction angle of joints on the slope.")
     ] = None,
     lateral: Annotated[
-        float, typer.Option(metavar="DEG", help="Planes fail within this of its direction.")
+        float, typer.Option(metavar="DEG", help="Planes fail within this angle of its direction.")
     ] = 20.0,
     sets: Annotated[
-        int | None, typer.Option(min=1, max=12, help="So many; default by BIC, or as the table.")
+        int | None,
+        typer.Option(min=1, max=12, help="Number of sets; default by BIC, or from the table."),
     ] = None,
     scanline: Annotated[
         str | None,
-        typer.Option(metavar="PLUNGE/TREND", help="All joints were measured along it: 05/120."),
+        typer.Option(metavar="PLUNGE/TREND", help="Scanline of all joints: 05/120."),
     ] = None,
     length: Annotated[
-        float | None, typer.Option(metavar="M", help="Length of all scanlines; default by joints.")
+        float | None,
+        typer.Option(metavar="M", help="Length of all scanlines; default from the joints."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace sets that exist.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Find the sets among measured joints, and what may slide or topple on a slope."""
+    """Find the sets among measured joints, and joints that may slide or topple on a slope."""
     from cdem.joints.measured import read_measured
     from cdem.joints.survey import Survey
 
@@ -66,7 +70,7 @@ def joints(
     path = output or Path(f"{table.stem}.yaml")
     if path.suffix not in (".yaml", ".yml"):
         raise typer.BadParameter(f"the sets are written as YAML: name a .yaml file, not {path}")
-    if path.exists() and not force:  # strengths in it may have been edited
+    if path.exists() and not force:  # a user may have edited its strengths
         raise CaseError(f"{path}: exists already; use --force or name another file with -o")
     measured = read_measured(table, along)
     survey = Survey.of(table, measured, count=sets, length=length, slope=face)
@@ -90,7 +94,7 @@ def _slope(face: str | None, friction: float | None, lateral: float) -> Slope | 
 
 
 def _write_survey(survey: Survey, path: Path) -> list[Path]:
-    """Write the sets and, beside them, their picture; without matplotlib that is only said."""
+    """Write the sets and their picture; a lack of matplotlib is only a message."""
     from cdem.output import stereonet
     from cdem.whole_files import write_text
 
@@ -107,26 +111,26 @@ def screen(
         Path, typer.Argument(metavar="GROUND", help="A grid (.tif, .asc), or LANDSLIDE.yaml.")
     ],
     sets: Annotated[
-        Path, typer.Option("--joints", metavar="JOINTS.yaml", help="Of cdem joints, or a case.")
+        Path, typer.Option("--joints", metavar="JOINTS.yaml", help="Joint sets, or a case.")
     ],
     volume: Annotated[
         tuple[str, str],
-        typer.Option(metavar="FROM TO", help="Volumes that count [m3]: --volume 500 2e5."),
+        typer.Option(metavar="FROM TO", help="Range of volumes [m3]: --volume 500 2e5."),
     ],
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder; default GROUND.screen, here.")
     ] = None,
     density: Annotated[
-        str, typer.Option(metavar="KG/M3", help="Of the rock; matters with cohesion.")
+        str, typer.Option(metavar="KG/M3", help="Density of the rock; matters with cohesion.")
     ] = "2650",
     cell: Annotated[
-        float | None, typer.Option(metavar="M", help="Cells of the map; default the grid's.")
+        float | None, typer.Option(metavar="M", help="Cell size of the map; default the grid's.")
     ] = None,
     stride: Annotated[
         int, typer.Option(min=1, help="Cells between points of the first search.")
     ] = 4,
     confirm: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Compute the N worst bodies, as cdem critical.")
+        int, typer.Option(min=0, metavar="N", help="Compute the N worst bodies with cdem critical.")
     ] = 0,
     workers: Annotated[
         int | None, typer.Option(min=1, help="Local processes for them; default all cores.")
@@ -135,7 +139,7 @@ def screen(
 ) -> None:
     """Map the factor of safety over terrain: wedges and planes of joints, by closed forms.
 
-    With --confirm a case is written for each of the worst bodies, and both factors are listed.
+    With --confirm, writes a case for each of the worst bodies and lists both factors.
     """
     from cdem.screening import products
     from cdem.screening.bodies import Limits
@@ -165,7 +169,7 @@ def screen(
 
 
 def _screen(grid: Grid, planes: list[JointPlane], limits: Limits, stride: int) -> FosMap:
-    """Seek the bodies, with a line of progress."""
+    """Search the bodies, with a line of progress."""
     from cdem.run.progress import line
     from cdem.screening import fos_map
     from cdem.screening.bodies import Ground
@@ -177,7 +181,7 @@ def _screen(grid: Grid, planes: list[JointPlane], limits: Limits, stride: int) -
 
 
 def _write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
-    """Write maps, bodies and picture; without matplotlib that is only said."""
+    """Write maps, bodies and picture; a lack of matplotlib is only a message."""
     from cdem.screening import products
 
     written = products.write_maps(found, folder, system)
@@ -216,7 +220,7 @@ def _confirm(
 
 
 def _number(option: str, text: str, unit: str) -> float:
-    """A number above zero, with a unit or without."""
+    """A positive number, with or without a unit."""
     from cdem.units import to_number
 
     try:
@@ -229,7 +233,7 @@ def _number(option: str, text: str, unit: str) -> float:
 
 
 def _plane(option: str, text: str) -> tuple[float, float]:
-    """Two angles parted by a slash: dip and dip direction, or plunge and trend [deg]."""
+    """Two angles separated by a slash: dip and dip direction, or plunge and trend [deg]."""
     first, slash, second = text.partition("/")
     try:
         dip, direction = float(first), float(second)

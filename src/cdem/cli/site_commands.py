@@ -1,4 +1,4 @@
-"""The verb that makes a landslide from a DEM and an outline: site."""
+"""The command that makes a landslide from a DEM and an outline: site."""
 
 from __future__ import annotations
 
@@ -17,11 +17,13 @@ Outline = Annotated[
 ]
 Surface = Annotated[
     Text,
-    typer.Option(metavar="FILE|{..}", help="Its heights, or a mapping as in a landslide file."),
+    typer.Option(
+        metavar="FILE|{..}", help="Sliding surface: heights, or a mapping as in a landslide file."
+    ),
 ]
 Where = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAME=VALUE", help="Features of the outline; repeatable."),
+    typer.Option(metavar="NAME=VALUE", help="Select features of the outline; repeatable."),
 ]
 Unit = Annotated[
     Literal["m", "ft", "us-ft", "cm", "dm"] | None, typer.Option(help="Unit of the heights.")
@@ -47,33 +49,33 @@ def site(
     dem: Dem,
     outline: Outline,
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="DIR", help="Where to write.")
+        Path, typer.Option("--output", "-o", metavar="DIR", help="Folder to write to.")
     ] = Path("site"),
     depth: Annotated[
-        Text, typer.Option(metavar="M", help="Base level of this depth: '60 m'.")
+        Text, typer.Option(metavar="M", help="Sloping local base level of this depth: '60 m'.")
     ] = None,
     volume: Annotated[
-        Text, typer.Option(metavar="M3", help="Base level with this volume: 3e6.")
+        Text, typer.Option(metavar="M3", help="Sloping local base level of this volume: 3e6.")
     ] = None,
     surface: Surface = None,
     crs: Annotated[
-        Text, typer.Option(help="Projection to work in; default that of the DEM, or UTM.")
+        Text, typer.Option(help="Projection to work in; default: as the DEM, or UTM.")
     ] = None,
-    dem_crs: Annotated[Text, typer.Option(help="That of the DEM, whatever it says.")] = None,
-    outline_crs: Annotated[Text, typer.Option(help="That of the outline.")] = None,
+    dem_crs: Annotated[Text, typer.Option(help="Projection to use for the DEM.")] = None,
+    outline_crs: Annotated[Text, typer.Option(help="The same for the outline.")] = None,
     layer: Annotated[Text, typer.Option(help="Layer of the outline.")] = None,
     where: Where = None,
-    cell: Annotated[Text, typer.Option(metavar="M", help="Cell of the ground.")] = None,
-    size: Annotated[Text, typer.Option(metavar="M", help="Elements in the body.")] = None,
+    cell: Annotated[Text, typer.Option(metavar="M", help="Cell size of the ground.")] = None,
+    size: Annotated[Text, typer.Option(metavar="M", help="Element size in the body.")] = None,
     margin: Annotated[
-        float, typer.Option(min=0, help="Ground around the outline, over its length.")
+        float, typer.Option(min=0, help="Ground around the outline, as a multiple of its length.")
     ] = 0.5,
-    fill: Annotated[Text, typer.Option(metavar="M|all", help="Fill gaps up to it.")] = "200 m",
+    fill: Annotated[Text, typer.Option(metavar="M|all", help="Largest gap to fill.")] = "200 m",
     unit: Unit = None,
     all_points: Annotated[
-        bool, typer.Option("--all-points", help="Of a cloud, not only its ground.")
+        bool, typer.Option("--all-points", help="Use all points of a cloud, not only the ground.")
     ] = False,
-    cut: Annotated[bool, typer.Option("--cut", help="Cut off what lies beyond the DEM.")] = False,
+    cut: Annotated[bool, typer.Option("--cut", help="Cut the outline at the DEM's edge.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -113,7 +115,7 @@ def _pairs(texts: list[str]) -> dict[str, str]:
 
 
 def _draw(found: Any, folder: Path) -> None:
-    """Draw the picture, or say what it needs."""
+    """Draw the picture, or note what is missing for it."""
     from cdem.terrain import site_picture
 
     try:
@@ -123,7 +125,7 @@ def _draw(found: Any, folder: Path) -> None:
 
 
 def _text(found: Any, folder: Path) -> str:
-    """What was found, for people."""
+    """Results as text."""
     from cdem.terrain import site_files
 
     f = found.facts
@@ -145,7 +147,7 @@ def _text(found: Any, folder: Path) -> str:
         return "\n".join(
             [
                 *lines,
-                "  choose where it slides: again with --force and --depth, --volume or --surface",
+                "  choose a sliding surface: repeat with --force and --depth, --volume or --surface",
             ]
         )
     between = site_files.between_text(f["factor"])

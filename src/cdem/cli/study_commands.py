@@ -1,4 +1,4 @@
-"""Verbs that run a case many times: critical, sweep."""
+"""Commands that run a case many times: critical, sweep."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ Limits = Annotated[
     typer.Option(
         "--criterion",
         metavar="NAME=VALUE",
-        help="Another limit of failure: travel, far, stall_steps or most_steps; repeatable.",
+        help="Change a limit of the criterion: travel, far, stall_steps or most_steps; repeatable.",
     ),
 ]
 Travel = Annotated[
     str | None,
     typer.Option(
-        metavar="LENGTH", help="What rests after more than this has failed: --travel '1 cm'."
+        metavar="LENGTH", help="A model that rests after more travel has failed: --travel '1 cm'."
     ),
 ]
 
@@ -50,14 +50,14 @@ def critical(
         tuple[str, str] | None,
         typer.Option(
             metavar="RESTS FAILS",
-            help="A value that rests, one that fails: --between 20 50; a factor finds its own.",
+            help="A value that rests, one that fails: --between 20 50; optional with --factor.",
         ),
     ] = None,
     parameter: Annotated[
         str | None, typer.Option(metavar="PATH", help="Value of the case to vary.")
     ] = None,
     factor: Annotated[
-        bool, typer.Option("--factor", help="Vary the factor of safety on all strengths instead.")
+        bool, typer.Option("--factor", help="Vary the factor of safety of all strengths instead.")
     ] = False,
     tolerance: Annotated[float, typer.Option(help="Width of the bracket to reach.")] = 0.01,
     limits: Limits = None,
@@ -69,9 +69,10 @@ def critical(
 ) -> None:
     """Find the value at which a case fails, by bisection of its last, static stage.
 
-    A trial fails when a node moved 2 % (travel) of the mean face size while the kinetic energy grew,
-    or all of it (far), or goes on at no lower rate, or finds no rest in a million steps. Trials start
-    from the last stable state, unless the parameter makes another model (model.*, materials.*).
+    A trial fails when a node has moved 2 % (travel) of the mean face size while the kinetic energy
+    grew, or the whole face size (far), or when it moves on at no lower rate, or finds no rest in a
+    million steps. Trials start from the last stable state, unless the parameter makes another model
+    (model.*, materials.*).
 
     Writes CASE.factor.json, or CASE.PATH.json, after each trial; draws CASE[.PATH].failed.png."""
     if (parameter is None) == (not factor):
@@ -142,7 +143,7 @@ def _draw_failure(found: Critical, name: str, stem: str) -> None:
     assert found.body is not None  # a search ends with a trial that failed
     try:
         write_image(file, picture([found.body], "displacement", [f"{name} = {found.failed:.6g}"]))
-        print(f"the model as it failed: {file}", file=sys.stderr)
+        print(f"picture of the failed model: {file}", file=sys.stderr)
     except CdemError as error:
         print(f"no picture of the failure: {error}", file=sys.stderr)
 
@@ -154,7 +155,7 @@ def sweep(
         typer.Option("--output", "-o", help="Folder for all results; default STUDY.sweep, here."),
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Local processes, of one thread; default all cores.")
+        int | None, typer.Option(min=1, help="Local one-thread processes; default all cores.")
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Use this Dask scheduler instead.")
@@ -163,9 +164,9 @@ def sweep(
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
-    """Run a study: many variants of a case. What is finished is never repeated.
+    """Run a study: many variants of a case. Finished runs are never repeated.
 
-    Ctrl-C ends it; the same command goes on. Exit status 3 says that runs have failed.
+    Ctrl-C ends it; the same command continues it. Exit status 3 means that runs have failed.
     """
     if quiet and as_json:
         raise typer.BadParameter("--quiet and --json exclude one another")
@@ -203,14 +204,14 @@ def sweep(
     for run in table.failed:
         print(f"failed: {run.text()}", file=sys.stderr)
     if table.waiting:
-        print(f"stopped; {table.waiting} runs are left: the same command goes on", file=sys.stderr)
+        print(f"stopped; {table.waiting} runs left: the same command continues", file=sys.stderr)
         raise typer.Exit(STOPPED)
     if table.failed:
         raise typer.Exit(3)
 
 
 def _draw_plots(table: Table, folder: Path) -> list[Path]:
-    """Draw a study's plots; the table is whole without them, so a missing extra is only said."""
+    """Draw a study's plots; the table needs none of them, so a missing extra is only a message."""
     from cdem.study.plots import draw_all
 
     try:

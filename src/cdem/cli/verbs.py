@@ -1,4 +1,4 @@
-"""The verbs of the program: each is imported when it is asked for, its line of help lies here."""
+"""The commands of the program with their lines of help; each is imported on demand."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typer.main import get_command
 
 VERBS = {
     "new": ("model", "Write a commented case to start from."),
-    "check": ("model", "Read everything and report on the model; runs nothing."),
+    "check": ("model", "Read all input and report on the model; runs nothing."),
     "site": ("site", "Read a DEM and an outline; write a landslide and a case to start from."),
     "mesh": (
         "model",
@@ -20,7 +20,7 @@ VERBS = {
     ),
     "joints": (
         "screening",
-        "Find the sets among measured joints, and what may slide or topple on a slope.",
+        "Find the sets among measured joints, and joints that may slide or topple on a slope.",
     ),
     "screen": (
         "screening",
@@ -34,42 +34,42 @@ VERBS = {
     "sweep": ("study", "Run a study: many variants of a case."),
     "verify": (
         "installation",
-        "Compute problems whose answer is known and compare; exit status 3 if one is missed.",
+        "Compute problems with known answers and compare; exit status 3 if one is missed.",
     ),
     "benchmark": (
         "installation",
         "Measure the speed of the kernels against the machine's own limits.",
     ),
     "run": ("run", "Run all stages of a case."),
-    "info": ("result", "Say what a run did."),
+    "info": ("result", "Summarize a run."),
     "plot": ("result", "Draw histories and energies as PNG."),
     "render": ("result", "Draw the model as pictures or an animation."),
-    "view": ("result", "Show a run in the browser; it follows a run that goes on."),
+    "view": ("result", "Show a run in the browser, live while it runs."),
     "runout": (
         "result",
         "Measure front, reach, H/L, deposit, sections and pieces; write maps and tables.",
     ),
     "export": ("result", "Write the frames as files for ParaView and the like."),
-    "doctor": ("installation", "Say what works on this machine, and how to mend what does not."),
-    "law": ("law", "List laws, try one on its own, or build your own."),
+    "doctor": ("installation", "Check what works on this machine, and say how to mend the rest."),
+    "law": ("law", "List laws, test one of them, or build your own."),
 }
-"""Module of each verb, without ``_commands``, and its line of help, which its docstring begins with."""
+"""Module of each command, without ``_commands``, and its line of help, the start of its docstring."""
 
 
 class Verbs(TyperGroup):
-    """The program: a group whose commands are imported when they are asked for."""
+    """The program: a group of commands that are imported on demand."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings | {"commands": _Lazy()})
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the verbs into the help, from the table."""
+        """Write the commands into the help, from the table."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, line) for name, (_, line) in VERBS.items()])
 
 
 class _Lazy(Mapping[str, Any]):
-    """Commands by name, each built at its first use."""
+    """Commands by name; each is built at its first use."""
 
     def __init__(self) -> None:
         self._built: dict[str, Any] = {}
@@ -87,7 +87,7 @@ class _Lazy(Mapping[str, Any]):
 
 
 def _command(name: str) -> Any:
-    """The command of a verb, which has its name in its module: a function, or a Typer of others."""
+    """The command of this name from its module: a function, or a Typer with commands."""
     module = importlib.import_module(f"cdem.cli.{VERBS[name][0]}_commands")
     verb = getattr(module, name)
     if not isinstance(verb, typer.Typer):

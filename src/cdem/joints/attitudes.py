@@ -1,4 +1,4 @@
-"""How planes are written in tables: dip with dip direction or strike, poles, normals; five languages."""
+"""Conventions for planes in tables: dip with dip direction or strike, poles, normals; five languages."""
 
 from __future__ import annotations
 
@@ -97,9 +97,9 @@ NAMES: dict[str, tuple[str, ...]] = {
     "ny": ("ny", "n_y", "normal_y", "normaly"),
     "nz": ("nz", "n_z", "normal_z", "normalz"),
 }
-"""Columns of a table, and how they may be called, as `plain` makes names."""
+"""Quantities of columns, and their possible headings, in the form of `plain`."""
 DOUBTFUL = {"direccion", "direzione", "richtung", "direction"}
-"""May be strike or dip direction; English `direction` is the latter."""
+"""Headings for strike or dip direction; English `direction` is the latter."""
 UNDERSTOOD = (
     "dip and dip_direction (or strike, with a quadrant or by the right or left hand), pole_trend and "
     "pole_plunge, or nx, ny, nz"
@@ -108,7 +108,7 @@ ANGLES = {"": 1.0, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "gon": 
 ANGLES["rad"] = 180 / np.pi
 NO_ANGLES = {"grad", "grads", "grades", "mil", "mils", "%", "percent"}
 FARTHEST = 75.0
-"""A plane dips within so much of the quadrant that its row names, or the row is in doubt [deg]."""
+"""Largest deviation of a plane's dip from the quadrant in its row, else the row is in doubt [deg]."""
 _EAST = re.compile(r"einfall|fallrichtung|fallwinkel|streich|neigung")
 _WEST = re.compile(r"pendage|inclin|immersione|buzamiento|rumbo|manteo|cuadrante|quadrante|verso")
 _CHINESE = str.maketrans("北东南西", "NESW")
@@ -126,13 +126,13 @@ def is_heading(words: list[str]) -> bool:
 
 
 def read_attitudes(table: Table) -> tuple[Floats, Floats, set[str]]:
-    """Dip and dip direction [deg] of the planes of a table, and the columns that say so.
+    """Dip and dip direction [deg] of the planes of a table, and the columns used.
 
-    Notes of the table tell the convention where it had to be assumed.
+    Notes of the table report a convention that had to be assumed.
 
     Raises:
         CaseError: No convention fits the columns, a value is out of range, or a row contradicts
-            itself; says where.
+            itself; names the place.
     """
     if not table.head:
         _guess_columns(table)
@@ -153,14 +153,14 @@ def read_attitudes(table: Table) -> tuple[Floats, Floats, set[str]]:
         return *dips(normals / size[:, None]), {"nx", "ny", "nz"}
     for trend, plunge in (("pole_trend", "pole_plunge"), ("trend", "plunge")):
         if {trend, plunge} <= at.keys() and "dip" not in at:
-            table.notes.append("trend and plunge are those of poles: dip = 90 - plunge")
+            table.notes.append("trend and plunge describe poles: dip = 90 - plunge")
             poles = line(azimuths(table, trend), angles(table, plunge, -90, 90))
             return *dips(poles), {trend, plunge}
     if ("trend" in at) != ("plunge" in at):
         raise CaseError(f"{table.path}: lines need both columns, trend and plunge")
-    said = ", ".join(table.head) or f"{len(table.rows[0])} columns without names"
+    present = ", ".join(table.head) or f"{len(table.rows[0])} columns without names"
     raise CaseError(
-        f"{table.path}: the first line must name the columns {UNDERSTOOD}; it says: {said}"
+        f"{table.path}: the first line must name the columns {UNDERSTOOD}; it has: {present}"
     )
 
 
@@ -168,7 +168,7 @@ def angles(table: Table, key: str, low: float, high: float) -> Floats:
     """A column of angles [deg] within a range.
 
     Raises:
-        CaseError: One is none, or out of range; says where.
+        CaseError: A value is not a number, or out of range; names the place.
     """
     values = np.array([bearings.angle(word) for word in table.column(key)]) * _unit(table, key)
     _refuse(table, key, ~((values >= low) & (values <= high)), f"a number from {low:g} to {high:g}")
@@ -176,16 +176,16 @@ def angles(table: Table, key: str, low: float, high: float) -> Floats:
 
 
 def azimuths(table: Table, key: str) -> Floats:
-    """A column of directions [deg], 0 to 360; up to a turn more or less is taken back.
+    """A column of directions [deg], 0 to 360; up to one full turn beyond is corrected.
 
     Raises:
-        CaseError: One is none, or out of range; says where.
+        CaseError: A value is not a number, or out of range; names the place.
     """
     words = _compass(table, key)
     values = np.array([bearings.azimuth(word) for word in words]) * _unit(table, key)
     _refuse(table, key, ~((values >= -360) & (values <= 720)), "a number from 0 to 360")
     if over := int(((values < 0) | (values > 360)).sum()):
-        table.notes.append(f"{table.name(key)}: {over} beyond 0 to 360, taken by full turns")
+        table.notes.append(f"{table.name(key)}: {over} outside 0 to 360, corrected by full turns")
     return np.where((values < 0) | (values > 360), values % 360, values)
 
 
@@ -196,7 +196,7 @@ def _values(table: Table, key: str) -> Floats:
 
 
 def _refuse(table: Table, key: str, wrong: NDArray[np.bool_], allowed: str) -> None:
-    """Stop at the first row in which a column is wrong."""
+    """Refuse the first row in which a column is wrong."""
     if wrong.any():
         row = int(wrong.argmax())
         raise CaseError(
@@ -206,7 +206,7 @@ def _refuse(table: Table, key: str, wrong: NDArray[np.bool_], allowed: str) -> N
 
 
 def _unit(table: Table, key: str) -> float:
-    """Factor to degrees of a heading's unit; the rule of a hand is none."""
+    """Factor to degrees for a heading's unit; the hand rule has no unit."""
     if key == "strike" and _hand(table):
         return 1.0
     return table.factor(key, ANGLES, NO_ANGLES)
@@ -216,7 +216,7 @@ def _compass(table: Table, key: str) -> list[str]:
     """Words of a column, with Chinese, German and Romance points of the compass in English.
 
     Raises:
-        CaseError: O stands for east in German, for west in French; here it cannot be known.
+        CaseError: O means east in German and west in French; here it is ambiguous.
     """
     words = [re.sub(r"\b([EW])([NS])\b", r"\2\1", w.translate(_CHINESE)) for w in table.column(key)]
     if not any("O" in word.upper() for word in words):
@@ -231,7 +231,7 @@ def _compass(table: Table, key: str) -> list[str]:
 
 
 def _quadrants_first(table: Table) -> None:
-    """A column of points of the compass beside a direction in numbers has quadrants."""
+    """Make a column of compass points beside a numeric direction the quadrants."""
     names = [plain(name) for name in table.head]
     for i, name in enumerate(names):
         if name not in NAMES["dip_direction"]:
@@ -254,7 +254,7 @@ def _quadrants_first(table: Table) -> None:
 
 
 def _doubtful(table: Table) -> None:
-    """A column that may be strike or dip direction is strike beside quadrants, or refused."""
+    """Take a column that may be strike or dip direction as strike if there are quadrants, else refuse."""
     names = [plain(name) for name in table.head]
     sure = {*NAMES["dip_direction"], *NAMES["strike"]} - DOUBTFUL
     foreign = set(NAMES["dip"][8:]) & set(names)
@@ -273,10 +273,11 @@ def _doubtful(table: Table) -> None:
 
 
 def _guess_columns(table: Table) -> None:
-    """Without names: one column of attitudes, or two, of which one goes beyond 90 or has bearings.
+    """Table without names: one column of attitudes, or two, one of which exceeds 90 or has
+    bearings.
 
     Raises:
-        CaseError: It cannot be told which is which.
+        CaseError: The columns are ambiguous.
     """
     width = len(table.rows[0])
     if width == 1 and bearings.pair(table.rows[0][0]):
@@ -294,7 +295,7 @@ def _guess_columns(table: Table) -> None:
 
 
 def _guess_two(table: Table) -> None:
-    """Which of two columns is the dip, if it can be told."""
+    """The dip among two columns, if it is clear."""
     columns = [[row[i] for row in table.rows] for i in range(2)]
     bearing = [any(re.match("[NESW]", w, re.IGNORECASE) for w in words) for words in columns]
     sided = [any(bearings.sided(word)[1] for word in words) for words in columns]
@@ -329,7 +330,7 @@ def _pairs(table: Table) -> tuple[Floats, Floats, set[str]]:
 
 
 def _dipping(table: Table) -> tuple[Floats, Floats, set[str]]:
-    """Dip with dip direction or strike; sides stand beside the dip or in a column of quadrants."""
+    """Dip with dip direction or strike; sides are beside the dip or in a column of quadrants."""
     found = [bearings.sided(word) for word in _compass(table, "dip")]
     dip = np.array([value for value, _ in found]) * _unit(table, "dip")
     _refuse(table, "dip", ~((dip >= 0) & (dip <= 90)), "a number from 0 to 90")
@@ -340,21 +341,21 @@ def _dipping(table: Table) -> tuple[Floats, Floats, set[str]]:
     if key == "strike":
         direction = _of_strike(table, direction, where, dip)
     elif all(bearings.wind(word) is not None for word in table.column(key)):
-        table.notes.append(f"{table.name(key)} has points of the compass only: SE is 135")
+        table.notes.append(f"{table.name(key)} has compass points only: SE is 135")
     off = np.abs((direction - where + 180) % 360 - 180)
     wrong = (off > FARTHEST) & (dip > 0) & (dip < 90)
     if wrong.any():
         row = int(wrong.argmax())
         raise CaseError(
             f"{table.path}:{table.lines[row]}: {key.replace('_', ' ')} '{table.column(key)[row]}' "
-            f"and the side '{sides[row]}' do not fit each other"
+            f"and the side '{sides[row]}' contradict each other"
         )
     used = {"dip", key} | ({"quadrant"} & table.at.keys())
     return dip, direction % 360 if key == "strike" else direction, used
 
 
 def _sides(table: Table, sides: list[str]) -> Floats:
-    """Where planes dip to by their quadrants [deg], NaN where none is said; ``sides`` become words."""
+    """Directions of dip from quadrants [deg], NaN without one; ``sides`` become words."""
     if "quadrant" in table.at:
         words = _compass(table, "quadrant")
         sides[:] = [word.strip().upper() or side for word, side in zip(words, sides, strict=True)]
@@ -365,7 +366,7 @@ def _sides(table: Table, sides: list[str]) -> Floats:
 
 
 def _of_strike(table: Table, strike: Floats, where: Floats, dip: Floats) -> Floats:
-    """Dip directions of strikes [deg], towards the sides that are said, or by a hand."""
+    """Dip directions of strikes [deg], towards the given sides, or by a hand rule."""
     if np.isnan(where).all():
         words = [word.upper() for word in _compass(table, "strike")]
         bearing = np.array([word[:1] in ("N", "E", "S", "W") for word in words])
@@ -380,7 +381,7 @@ def _of_strike(table: Table, strike: Floats, where: Floats, dip: Floats) -> Floa
     if missing.any():
         row = int(missing.argmax())
         raise CaseError(
-            f"{table.path}:{table.lines[row]}: says no side to which the plane dips; others do"
+            f"{table.path}:{table.lines[row]}: gives no side of the dip, but other rows do; add it"
         )
     right = (strike + 90) % 360
     off = np.abs((right - where + 180) % 360 - 180)
@@ -388,7 +389,7 @@ def _of_strike(table: Table, strike: Floats, where: Floats, dip: Floats) -> Floa
 
 
 def _hand(table: Table) -> str:
-    """The hand that a heading of strikes names: left, right, or none."""
+    """The hand rule in a heading of strikes: left, right, or none."""
     name = table.head[table.at["strike"]].lower() if table.head else ""
     if re.search(r"lhr|left|links|linke|gauche|sinistra|izquierda|左", name):
         return "left"

@@ -1,4 +1,4 @@
-"""Bearings as people write them: `031`, `N45E`, `N 120`, `S20°W`, `40 SE`, `40°30'`."""
+"""Bearings in common notations: `031`, `N45E`, `N 120`, `S20°W`, `40 SE`, `40°30'`."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ _PAIR = re.compile(r"(.+?)\s*(?:[/∠,]|\s)\s*(\S+(?:\s*[NESW]{1,3})?)")
 
 
 def angle(word: str) -> float:
-    """An angle [deg], with or without a sign of degrees and minutes; NaN if it is none."""
+    """An angle [deg], with or without a degree sign and minutes; NaN for other text."""
     found = _PLAIN.fullmatch(word.strip())
     return np.nan if found is None else _degrees(found[1], found[2], found[3])
 
 
 def azimuth(word: str) -> float:
-    """A bearing [deg] clockwise from north: a number, a wind, `N45E`, `N120`; NaN if it is none."""
+    """A bearing [deg] clockwise from north: a number, a wind, `N45E`, `N120`; NaN for other text."""
     word = word.strip()
     if (name := wind(word)) is not None:
         return name
@@ -61,7 +61,7 @@ def azimuth(word: str) -> float:
 
 
 def wind(word: str) -> float | None:
-    """Where a point of the compass lies [deg]: `SE`, `nnw`, German `SO`, French `SO` not told apart.
+    """Direction of a compass point [deg]: `SE`, `nnw`; German and French `SO` are ambiguous.
 
     O is east in German and west in French and Spanish, so only names without it are known.
     """
@@ -69,7 +69,7 @@ def wind(word: str) -> float | None:
 
 
 def sided(word: str) -> tuple[float, str]:
-    """An angle and the side that it falls to, empty if none is said: `40 SE`; NaN if it is none."""
+    """An angle and the side of its dip, empty without one: `40 SE`; NaN for other text."""
     found = _SIDED.fullmatch(word.strip())
     if found is None:
         return angle(word), ""

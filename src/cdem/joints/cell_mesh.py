@@ -1,4 +1,4 @@
-"""Cells meshed inside: short edges closed, tets around the centre of each cell, blocks kept apart."""
+"""Meshes of cells: short edges closed, tets around the centre of each cell, separate blocks."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 LEAST_TET = 1e-10
-"""Volume of a tet over its longest edge cubed below which closing an edge is taken back."""
+"""Volume of a tet over its longest edge cubed below which closing an edge is undone."""
 
 
 def close_short_edges(c: Cells, shortest: float) -> tuple[Cells, int]:
-    """Make one point of the ends of edges shorter than a length; returns how many points went.
+    """Merge the ends of edges shorter than a length; returns the number of removed points.
 
-    A closing that would spoil a cell (open it, or turn a tet of its mesh inside out) is taken back; a
-    cell that it flattens is left out.
+    A merge that would spoil a cell (open it, or turn a tet of its mesh inside out) is undone; a
+    flattened cell is removed.
     """
     ends = np.sort(np.column_stack([c.corner, c.corner[c.following()]]), axis=1)
     ends = ends[np.linalg.norm(np.subtract(*c.points[ends.T]), axis=1) < shortest]
@@ -35,7 +35,7 @@ def close_short_edges(c: Cells, shortest: float) -> tuple[Cells, int]:
         bad = _spoilt(closed)
         if len(bad) == 0:
             return closed, int((same != np.arange(len(same))).sum())
-        # bar the points that moved into or out of the spoilt cells
+        # exclude points that moved into or out of the spoilt cells
         inside = np.isin(c.cell, bad)[c.owner()]
         touched = np.isin(same, same[c.corner[inside]])
         moved = np.bincount(same, minlength=len(same))[same] > 1
@@ -45,7 +45,7 @@ def close_short_edges(c: Cells, shortest: float) -> tuple[Cells, int]:
 
 
 def _without_flat(c: Cells) -> Cells:
-    """Leave out corners that repeat, faces that lost their area and cells left with two faces."""
+    """Remove repeated corners, faces without area and cells with only two faces."""
     keep = c.corner != c.corner[c.following()]
     count = np.bincount(c.owner()[keep], minlength=len(c.cell))
     full = count >= 3
@@ -76,7 +76,7 @@ def _spoilt(c: Cells) -> Ints:
 
 
 def _tets(c: Cells) -> tuple[Floats, Ints, Ints]:
-    """Tets around the centre of each cell, but one for a tet: points, tets and their cells."""
+    """Tets around the centre of each cell, a single one for a tet: points, tets and their cells."""
     triangles, face = c.triangles()
     cell = c.cell[face]
     origin = np.zeros((len(c.block), 3))
@@ -88,9 +88,10 @@ def _tets(c: Cells) -> tuple[Floats, Ints, Ints]:
     many = np.flatnonzero(count > 4)
     top = np.zeros(len(origin), np.int64)
     top[many] = len(c.points) + np.arange(len(many))
-    some = np.where(volume == 0, 1.0, volume)  # one without volume shows in its tets
+    some = np.where(volume == 0, 1.0, volume)  # a cell without volume is found by its tets
     points = np.concatenate([c.points, origin[many] + moment[many] / some[many, None]])
-    # each corner of a tet is on three of its four triangles: the one off the first is what is left
+    # each corner of a tet is on three of its four triangles: the one off the first is the remaining
+    # one
     single = np.flatnonzero(count == 4)
     _, first = np.unique(cell, return_index=True)
     is_first = np.zeros(len(cell), bool)
@@ -109,9 +110,9 @@ def to_mesh(
 
     Args:
         c: The cells.
-        group_names: Names of the groups that the cells number.
+        group_names: Names by group number of the cells.
         surfaces: Names of the surfaces of the uncut body, in order of their bits.
-        planes: For each plane, the name of the surface that its faces form.
+        planes: For each plane, the name of the surface of its faces.
     """
     points, tets, cell = _tets(c)
     triangles, face = c.triangles()

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 WARPED = 1e-6
-"""How far the corners of a side may lie off its plane, over its size, to be cut."""
+"""Largest distance of corners from the plane of a side, relative to its size, for cutting."""
 
 
 @dataclass
@@ -26,12 +26,12 @@ class Cells:
     """Convex polyhedra. Points are shared, faces are not: each cell has its own.
 
     Attributes:
-        points: [m], shape (points, 3).
+        points: Positions [m], shape (points, 3).
         corner: Points of all faces, face after face, counter-clockwise seen from outside.
         first: Start of each face's corners, shape (faces + 1,).
         cell: Cell of each face.
-        source: What made each face: the number of a plane; or -1 - s for a face of the uncut body,
-            bit k of s telling whether it is in named surface k.
+        source: Origin of each face: the number of a plane; or -1 - s for a face of the uncut body,
+            bit k of s set if it is in named surface k.
         block: Block of each cell; blocks are numbered without gaps.
         group: Group of each cell.
     """
@@ -51,7 +51,7 @@ class Cells:
 
     @property
     def near(self) -> float:
-        """Distance below which a point is on a plane [m]: above round-off, below anything meant."""
+        """Distance below which a point counts as on a plane [m]: above round-off, below real gaps."""
         return SAME_PLACE * float(np.ptp(self.points, axis=0).max())
 
     def owner(self) -> Ints:
@@ -67,8 +67,8 @@ class Cells:
     def triangles(self) -> tuple[Ints, Ints]:
         """Triangles of all faces, and the face of each.
 
-        Equal faces of two cells are divided alike, for a face is first put into a form that does not
-        depend on where its corners begin and which way they run.
+        Equal faces of two cells are divided alike: each face is first put into a form that does not
+        depend on its first corner and its orientation.
         """
         count = np.diff(self.first)
         triangles, face = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)]
@@ -100,16 +100,16 @@ class Cells:
 
 
 def best_triangles(x: Floats) -> tuple[Ints, Ints]:
-    """Divide plane convex polygons into triangles whose least height is as large as it can be.
+    """Divide plane convex polygons into triangles with the largest possible smallest height.
 
     Args:
         x: Corners [m], shape (polygons, corners, 3).
 
     Returns:
-        The polygon of each triangle, and its corners by number, running the same way.
+        The polygon of each triangle, and its corners by number, in the same orientation.
     """
     polygons, n, _ = x.shape
-    best = np.full((polygons, n, n), np.inf)  # of the part from corner i to corner j
+    best = np.full((polygons, n, n), np.inf)  # for the part from corner i to corner j
     split = np.zeros((polygons, n, n), np.int64)
     for gap in range(2, n):
         for i in range(n - gap):
@@ -124,7 +124,7 @@ def best_triangles(x: Floats) -> tuple[Ints, Ints]:
             split[:, i, j] = k[least.argmax(axis=1)]
             best[:, i, j] = least.max(axis=1)
     owner, corners = [], []
-    # polygon, first and last corner of the parts that are left to divide
+    # polygon, first and last corner of the remaining parts
     left = np.column_stack([np.arange(polygons), np.zeros(polygons, int), np.full(polygons, n - 1)])
     while len(left):
         polygon, start, end = left.T
@@ -143,8 +143,8 @@ def from_mesh(mesh: Mesh, group_names: Sequence[str], label: NDArray) -> Cells:
 
     Args:
         mesh: Elements with plane sides.
-        group_names: Names of the groups to number by.
-        label: A number of its block for every element, shapes one after the other.
+        group_names: Names by group number.
+        label: Block number of every element, shape by shape.
 
     Raises:
         MeshError: A side is warped.
@@ -192,7 +192,7 @@ def _refuse_warped(points: Floats, faces: Ints) -> None:
 
 
 def _surface_bits(faces: Ints, surfaces: dict[str, list[Ints]]) -> Ints:
-    """Which named surfaces each face is in, one bit for each."""
+    """Named surfaces of each face, one bit for each."""
     out = np.zeros(len(faces), np.int64)
     keys: dict[tuple[int, ...], int] = {}
     for bit, parts in enumerate(surfaces.values()):

@@ -1,8 +1,8 @@
 """Convex cells cut by planes.
 
-A plane's crossing with an edge is found once for all cells that have the edge, and so is the side on
-which a point lies, so both sides of a cut always agree: cells stay closed and together fill what was
-there, whatever the planes do.
+The crossing of a plane and an edge is computed once for all cells with the edge, and so is the side
+of each point, so both sides of a cut always agree: cells stay closed and together fill the original
+volume for any planes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cdem.joints.convex_cells import Cells, Floats, Ints
 from cdem.mesh.arrays import along
 
 Part = tuple[Ints, Ints, Ints]
-"""Corners of some faces, how many each has, and which faces they are parts of."""
+"""Corners of some faces, number of corners of each, and the original faces."""
 
 
 def cut(
@@ -37,15 +37,15 @@ def cut(
         c: The cells.
         normal: Unit normal.
         offset: [m].
-        source: Number of the plane, kept by the faces that it makes.
-        among: Which groups it may cut.
+        source: Number of the plane, stored with the new faces.
+        among: Groups that it may cut.
         thinnest: A block is left whole if it reaches less than this far to one side [m].
-        chance: Gives so many random numbers from 0 to 1, one for each block that could be cut.
-        persistence: Blocks whose number is below are cut.
-        only: Which blocks it may cut; None: all.
+        chance: Returns this many random numbers from 0 to 1, one for each block that could be cut.
+        persistence: Blocks whose random number is below are cut.
+        only: Blocks that it may cut; None: all.
 
     Returns:
-        The cells now, and how many blocks were left whole because a part would be too thin.
+        The new cells, and the number of blocks left whole because a part would be too thin.
     """
     near = c.near
     distance = along(c.points, normal) - offset
@@ -68,7 +68,7 @@ def cut(
         made, broken = _split(c, distance, side, chosen, source)
         if len(broken) == 0:
             return made, int(thin.sum())
-        # sides so small that the plane's crossings make no single loop: leave those blocks whole
+        # sides too small for the plane's crossings to form a single loop: leave those blocks whole
         chosen[broken] = False
         thin[broken] = True
     return c, int(thin.sum())
@@ -100,7 +100,7 @@ def _split(
     block = np.where(here & (least >= 0) & (most > 0), number[c.block], c.block)
 
     whole = ~divided[c.cell]
-    flat = np.ones(len(c.cell), bool)  # plain faces that lie in the plane are the joint's
+    flat = np.ones(len(c.cell), bool)  # existing faces in the plane belong to the joint
     flat[owner[side[c.corner] != 0]] = False
     flat &= here[c.cell] & (c.source == -1)
     old = np.where(flat, source, c.source)
@@ -139,7 +139,7 @@ def _crossings(c: Cells, distance: Floats, side: NDArray, some: NDArray) -> tupl
 def _part(
     c: Cells, side: NDArray[np.int8], sign: int, some: NDArray[np.bool_], made: Ints, owner: Ints
 ) -> Part:
-    """Parts of the faces on one side: their corners, how many each has, and which faces."""
+    """Parts of the faces on one side: corners, number of corners of each, and original faces."""
     corner, face = c.corner[some], owner[some]
     kept = np.zeros(len(c.cell), bool)
     kept[face[side[corner] * sign > 0]] = True
@@ -152,7 +152,7 @@ def _part(
 def _caps(
     c: Cells, side: NDArray[np.int8], upper: Part, lower: Part, where: Ints
 ) -> tuple[tuple[Ints, Ints], Ints]:
-    """The new face of each upper part, in order of the divided cells; and cells that have none."""
+    """The new face of each upper part, in order of the divided cells; and cells without one."""
     place = np.full(len(c.block), -1)
     place[where] = np.arange(len(where))
 
@@ -189,7 +189,7 @@ def _caps(
 
 
 def _turned(corner: Ints, count: Ints) -> Ints:
-    """The same faces run through the other way."""
+    """The same faces in the opposite orientation."""
     first = np.concatenate([[0], np.cumsum(count)])
     face = np.repeat(np.arange(len(count)), count)
     return corner[first[face] + first[face + 1] - 1 - np.arange(len(corner))]

@@ -18,7 +18,7 @@ def pole(dip: float, dip_direction: float) -> Floats:
 
     Args:
         dip: Steepest angle below the horizontal [deg].
-        dip_direction: Where that steepest line points, clockwise from north [deg].
+        dip_direction: Azimuth of that steepest line, clockwise from north [deg].
 
     Example:
         >>> pole(90, 90).round(12) + 0.0  # a wall that faces east
@@ -55,7 +55,7 @@ class NamedPlane:
     """A plane, or the mean of a set of planes.
 
     Attributes:
-        name: Of the set.
+        name: Name of the set.
         normal: Upward unit normal.
     """
 
@@ -69,7 +69,7 @@ class NamedPlane:
 
     @property
     def dip_direction(self) -> float:
-        """Where that steepest line points, clockwise from north [deg]."""
+        """Azimuth of that steepest line, clockwise from north [deg]."""
         return float(dips(self.normal)[1])
 
 

@@ -1,4 +1,4 @@
-"""Discs from files: tables in any convention of planes, and polygons that become discs."""
+"""Discs from files: tables in any convention for planes, and polygons converted to discs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 Row = tuple[Floats, Floats, float]
 
 COLUMNS = ("x", "y", "z", "dip", "dip_direction", "radius")
-"""Of a table of discs; others that are understood stand in `NAMES` and `attitudes.NAMES`."""
+"""Standard columns of a table of discs; `NAMES` and `attitudes.NAMES` have all known ones."""
 NAMES: dict[str, tuple[str, ...]] = {
     "x": ("x", "xc", "x_c", "x_center", "x_centre", "center_x", "centre_x", "east", "easting"),
     "y": ("y", "yc", "y_c", "y_center", "y_centre", "center_y", "centre_y", "north", "northing"),
@@ -34,11 +34,11 @@ NAMES: dict[str, tuple[str, ...]] = {
 def read_rows(path: Path, notes: list[str]) -> list[Row]:
     """Read discs from a table, or from polygons: FracMan (`.fab`) or dfnWorks (`.dat`).
 
-    A polygon becomes the disc of its area about its centre.
+    A polygon becomes a disc of equal area about its centre.
 
     Args:
         path: The file.
-        notes: What was assumed or not used is added to it.
+        notes: Receives notes on assumptions and unused data.
 
     Returns:
         Centre [m], upward unit normal and radius [m] of each.
@@ -94,8 +94,8 @@ def _has_braces(path: Path) -> bool:
 
 
 def _refuse(table: Table, key: str, values: Floats, low: float, high: float, allowed: str) -> None:
-    """Stop at the first disc with a number out of range."""
-    with_side = key == "dip"  # words such as 40SE are read with the planes
+    """Refuse the first disc with a number out of range."""
+    with_side = key == "dip"  # words such as 40SE are parsed with the planes
     wrong = ~((values >= low) & (values <= high)) & ~(np.isnan(values) & with_side)
     wrong |= np.isinf(values)
     if wrong.any():
@@ -107,7 +107,7 @@ def _refuse(table: Table, key: str, values: Floats, low: float, high: float, all
 
 
 def _disc_like(path: Path, number: int, x: Floats) -> Row:
-    """The disc of the area, centre and plane of a polygon."""
+    """The disc with the area, centre and plane of a polygon."""
     a, b = x[1:-1] - x[0], x[2:] - x[0]
     halves = np.cross(a, b) / 2
     area = float(np.linalg.norm(halves.sum(axis=0)))

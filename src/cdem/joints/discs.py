@@ -1,4 +1,4 @@
-"""Joints of finite size: discs that are drawn, which blocks they meet, and which faces of a cut they hold."""
+"""Joints of finite size: random discs, blocks that they meet, and faces of a cut inside them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def read_discs(path: Path, notes: list[str] | None = None) -> list[Disc]:
 
     Args:
         path: The file.
-        notes: What was assumed or not used is added to it.
+        notes: Receives notes on assumptions and unused data.
 
     Raises:
         CaseError: It cannot be read, or a value is missing or out of range.
@@ -45,9 +45,9 @@ def draw_discs(joint: Joint, discs: Discs, points: Floats) -> list[Disc]:
     """Draw the discs of a random set.
 
     Args:
-        joint: The set, whose name, seed and mean direction they have.
+        joint: The set; gives name, seed and mean direction.
         discs: Its discs.
-        points: Corners of what it cuts [m], shape (points, 3).
+        points: Corners of the body to cut [m], shape (points, 3).
 
     Raises:
         CaseError: They are too many, or none.
@@ -61,7 +61,7 @@ def draw_discs(joint: Joint, discs: Discs, points: Floats) -> list[Disc]:
         low, high = low - most, high + most
         wanted = discs.density * float(np.prod(high - low))
         if wanted > MOST_DISCS:
-            raise CaseError(f"{wanted:.3g} discs would be drawn; give a lower density")
+            raise CaseError(f"{wanted:.3g} discs are too many; give a lower density")
         count = round(wanted)
     random = np.random.default_rng([joint.seed, zlib.crc32(joint.name.encode())])
     centers = low + (high - low) * random.random((count, 3))
@@ -109,14 +109,14 @@ def cut_by_disc(
     Args:
         c: The cells.
         disc: The disc.
-        joint: Number of the source of faces whose centre lies in the disc.
-        bridges: Numbers of the sources that are rock bridges; the last is that of this cut.
-        among: Which groups it may cut.
+        joint: Source number of faces with their centre in the disc.
+        bridges: Source numbers of rock bridges; the last is for this cut.
+        among: Groups that it may cut.
         thinnest: A block is left whole if it reaches less than this far to one side [m].
 
     Returns:
-        The cells now, whether the disc met any block, and how many it met but left whole because a
-        part would be too thin.
+        The new cells, whether the disc met any block, and the number of blocks met but left whole
+            because a part would be too thin.
     """
     offset = float((disc.normal * disc.center).sum())
     met = blocks_met(c, disc) & _blocks_among(c, among)
@@ -133,10 +133,10 @@ def _blocks_among(c: Cells, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _claimed(c: Cells, disc: Disc, offset: float, joint: int, bridges: Ints) -> Cells:
-    """Make faces of the joint of those rock bridges in the disc's plane whose centre it holds.
+    """Turn rock bridges in the disc's plane with their centre in the disc into joint faces.
 
-    Both sides of a cut are the same polygon here, so both are the joint's or neither is; parts that
-    later planes make of them stay so.
+    Both sides of a cut are the same polygon here, so both become joint or neither; parts made of
+    them by later planes stay so.
     """
     off = np.abs(along(c.points, disc.normal) - offset) > c.near
     flat = np.isin(c.source, bridges)
@@ -153,7 +153,7 @@ def _corners(c: Cells, face: int) -> Ints:
 
 
 def _holds(disc: Disc, x: Floats) -> bool:
-    """Whether the centre of area of a plane polygon lies in a disc of its plane."""
+    """Whether the centroid of a plane polygon lies in a disc of its plane."""
     a, b = x[1:-1] - x[0], x[2:] - x[0]
     area = along(np.cross(a, b), disc.normal)
     center = x[0] + (area[:, None] * (a + b)).sum(axis=0) / (3 * area.sum())
@@ -161,7 +161,7 @@ def _holds(disc: Disc, x: Floats) -> bool:
 
 
 def blocks_met(c: Cells, disc: Disc) -> NDArray[np.bool_]:
-    """Which blocks a disc meets: it crosses what its plane cuts of them, inside or between cells."""
+    """Blocks that a disc meets: it crosses their cut by its plane, inside or between cells."""
     distance = along(c.points - disc.center, disc.normal)
     near = c.near
     side = (distance > near).astype(np.int8) - (distance < -near).astype(np.int8)
@@ -183,7 +183,7 @@ def blocks_met(c: Cells, disc: Disc) -> NDArray[np.bool_]:
 
 
 def _holding(c: Cells, point: Floats, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which of some cells hold a point."""
+    """Cells, among some, that contain a point."""
     first = c.first[:-1]
     x, y, z = (c.points[c.corner[first + k]] for k in range(3))
     normal = np.cross(y - x, z - x)
@@ -196,7 +196,7 @@ def _holding(c: Cells, point: Floats, some: NDArray[np.bool_]) -> NDArray[np.boo
 def _segments(
     c: Cells, distance: Floats, side: NDArray[np.int8], some: NDArray[np.bool_], owner: Ints
 ) -> tuple[Ints, Floats, Floats]:
-    """Where a plane crosses faces: the faces, and both ends of each crossing."""
+    """Crossings of a plane with faces: the faces, and both ends of each crossing."""
     a, b = c.corner[some], c.corner[c.following()[some]]
     face = owner[some]
     crossed, on = side[a] * side[b] < 0, side[a] == 0

@@ -1,4 +1,4 @@
-"""Fractures as polygons: FracMan (.fab, ASCII), which 3DEC, PFC and FLAC3D write too; dfnWorks (.dat)."""
+"""Fractures as polygons: FracMan (.fab, ASCII), also written by 3DEC, PFC and FLAC3D; dfnWorks (.dat)."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ METRES = ("m", "meter", "meters", "metre", "metres")
 
 
 def read_polygons(path: Path, notes: list[str]) -> list[Floats]:
-    """Read the fractures of a file: their corners in turn [m], each of shape (corners, 3).
+    """Read the fractures of a file: their corners in order [m], each of shape (corners, 3).
 
-    The normals in the file are not read: some writers put a constant there.
+    The normals in the file are ignored: some programs write a constant there.
 
     Args:
         path: The file.
-        notes: Sections that are not used are added to it.
+        notes: Receives notes on unused sections.
 
     Raises:
-        CaseError: It is binary, not in metres, tessellated, or broken off; says where.
+        CaseError: It is binary, not in metres, tessellated, or truncated; names the place.
     """
     lines = [words.split() for words in read_text(path, "file of fractures").splitlines()]
     _check_head(path, lines)
@@ -36,7 +36,7 @@ def read_polygons(path: Path, notes: list[str]) -> list[Floats]:
         raise CaseError(f"{path}: not a FracMan file: it has no line BEGIN FRACTURE")
     polygons = list(_polygons(path, lines, start))
     if not polygons:
-        raise CaseError(f"{path}: holds no fractures")
+        raise CaseError(f"{path}: contains no fractures")
     begun = [words[1] for words in lines if len(words) == 2 and words[0].upper() == "BEGIN"]
     if idle := [name for name in begun if name.upper() not in ("FORMAT", "FRACTURE")]:
         notes.append(f"{path.name}: sections not used: {', '.join(idle)}")
@@ -47,7 +47,8 @@ def read_braced_polygons(path: Path) -> list[Floats]:
     """Read the polygons of a dfnWorks file: a row for each, `corners {x, y, z} {x, y, z} ...` [m].
 
     Raises:
-        CaseError: A row is none, or there are others than the first line says; says where.
+        CaseError: A row is not a polygon, or their number differs from the first line; names the
+            place.
     """
     polygons, wanted = [], None
     for k, words in enumerate(read_text(path, "file of polygons").splitlines(), 1):
@@ -69,7 +70,9 @@ def read_braced_polygons(path: Path) -> list[Floats]:
             ) from None
         polygons.append(corners)
     if not polygons or wanted not in (None, len(polygons)):
-        raise CaseError(f"{path}: holds {len(polygons)} polygons, its first line says {wanted}")
+        raise CaseError(
+            f"{path}: contains {len(polygons)} polygons, but its first line says {wanted}"
+        )
     return polygons
 
 
@@ -122,4 +125,4 @@ def _polygons(path: Path, lines: list[list[str]], at: int) -> Iterator[Floats]:
             ) from None
         yield corners
         at += count + 2
-    raise CaseError(f"{path}: breaks off: it has no line END FRACTURE")
+    raise CaseError(f"{path}: is truncated: it has no line END FRACTURE")

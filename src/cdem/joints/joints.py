@@ -1,4 +1,4 @@
-"""Sets of joints: where their planes lie, and a model cut by them into blocks."""
+"""Sets of joints: positions of their planes, and a model cut by them into blocks."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ Floats = NDArray[np.float64]
 THINNEST = 0.01
 """Least thickness of a part that a joint cuts off, over the smallest spacing."""
 THINNEST_OF_ALL = 0.001
-"""The same over the size of what is cut, where no set has a spacing."""
+"""The same over the size of the body, if no set has a spacing."""
 SHORTEST = 0.1
-"""Edges shorter than this part of the least thickness are closed."""
+"""Edges shorter than this fraction of the least thickness are closed."""
 MOST_BLOCKS = 3_000_000
-"""More blocks than this, as sets with spacings would cut them, are a slip of the spacing."""
+"""More blocks than this, from sets with spacings, mean a mistake in the spacing."""
 MOST_PLANES = 100_000
-"""More planes than this in one set are a slip of the spacing."""
+"""More planes than this in one set mean a mistake in the spacing."""
 
 
 def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.random.Generator]]:
     """The planes of a set that may meet a body.
 
     Plane k goes through the point ``k * spacing`` along the mean normal from the set's origin, and is
-    turned about it. What is random depends on the set's name and seed and on k alone, so a larger
+    rotated about it. Random values depend only on the set's name and seed and on k, so a larger
     body has the same joints.
 
     Args:
@@ -47,12 +47,12 @@ def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.ran
         points: Corners of the body [m], shape (points, 3).
 
     Yields:
-        Unit normal, offset ``normal . x`` [m], and a generator for what else is random.
+        Unit normal, offset ``normal . x`` [m], and a generator for further random values.
     """
     mean = mean_normal(joint)
     reach = along(points - joint.origin, mean)
     low, high = reach.min(), reach.max()
-    if joint.scatter is not None:  # planes turned by up to 60 deg reach the body from so far
+    if joint.scatter is not None:  # planes rotated by up to 60 deg reach the body from this far
         high = 2 * np.linalg.norm(points - joint.origin, axis=1).max()
         low = -high
     numbers: Sequence[int] = [0]
@@ -60,7 +60,8 @@ def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.ran
         count = (high - low) / joint.spacing
         if count > MOST_PLANES:
             raise CaseError(
-                f"{count:.3g} planes would have to be tried; give a wider spacing than "
+                f"{count:.3g} planes may meet the bodies, which is too many; give a wider spacing "
+                f"than "
                 f"{joint.spacing:g} m, or with scatter an origin near the bodies"
             )
         numbers = range(int(np.ceil(low / joint.spacing)), int(np.floor(high / joint.spacing)) + 1)
@@ -74,7 +75,7 @@ def planes(joint: Joint, points: Floats) -> Iterator[tuple[Floats, float, np.ran
 
 
 def thinnest_of(model: Model, points: Floats) -> float:
-    """Least thickness of what a joint cuts off [m]."""
+    """Least thickness of parts cut off by joints [m]."""
     if model.thinnest is not None:
         return model.thinnest
     spacings = [joint.spacing for joint in model.joints if joint.spacing is not None]
@@ -85,14 +86,14 @@ def thinnest_of(model: Model, points: Floats) -> float:
 
 @dataclass
 class Cutting:
-    """How far cells have been cut by sets.
+    """State of cells being cut by sets.
 
     Attributes:
         c: The cells.
-        of_plane: Name of the surface that each source of faces makes.
+        of_plane: Name of the surface of each source of faces.
         bridges: Sources that are rock bridges.
-        thin: How often a block was left whole because a part would be too thin.
-        discs: Of each set with discs, how many it has and how many of them meet a block.
+        thin: Number of blocks left whole because a part would be too thin.
+        discs: For each set with discs: number of discs, and number that meet a block.
     """
 
     c: Cells
@@ -114,9 +115,9 @@ def cut_by_sets(
     Args:
         c: The cells.
         sets: The sets, in order.
-        group_names: Names of the groups that the cells number.
-        thinnest: Least thickness of what is cut off [m].
-        files: Discs of the sets that have a file of them, by name of the set.
+        group_names: Names by group number of the cells.
+        thinnest: Least thickness of parts cut off [m].
+        files: Discs of sets with a file, by name of the set.
     """
     done = Cutting(c)
     corners = c.points
@@ -147,7 +148,7 @@ def cut_by_sets(
 def _cut_by_discs(
     done: Cutting, joint: Joint, discs: list[Disc], among: NDArray[np.bool_], thinnest: float
 ) -> None:
-    """Cut by the discs of a set: their faces have one source, its rock bridges another."""
+    """Cut by the discs of a set: their faces have one source, rock bridges another."""
     of_joint = len(done.of_plane)
     done.of_plane += [joint.name, str(joint.bridges)]
     done.bridges.append(of_joint + 1)
@@ -169,13 +170,13 @@ def cut_model(
     """Cut a model by its joints and mesh the blocks.
 
     Args:
-        pieces: Every mesh of the model in its place; with the faces of its hull if it is a
-            polyhedron, which is then cut as one cell.
+        pieces: All meshes of the model in place; a polyhedron with the faces of its hull, which
+            is then cut as one cell.
         model: Its joints.
-        files: Discs of the sets that have a file of them, by name of the set.
+        files: Discs of sets with a file, by name of the set.
 
     Returns:
-        One mesh: what no set may cut as it was, all else as tets. Faces made by a set form a
+        One mesh: groups without joints unchanged, all others as tets. Faces made by a set form a
         surface of its name.
     """
     names = list(dict.fromkeys(name for piece, _ in pieces for name in piece.group_names))
@@ -201,10 +202,10 @@ def cut_model(
 
 
 def _refuse_too_many(model: Model, parts: list[Cells]) -> None:
-    """Stop before cutting where the sets would make more blocks than any computer holds.
+    """Refuse sets that would make too many blocks, before cutting.
 
     Raises:
-        CaseError: They would, by the volumes between the planes of the three densest sets.
+        CaseError: Too many, judged by the volumes between the planes of the three densest sets.
     """
     points = np.concatenate([c.points for c in parts]) if parts else np.zeros((1, 3))
     counts = []
@@ -215,20 +216,22 @@ def _refuse_too_many(model: Model, parts: list[Cells]) -> None:
     densest = sorted(counts, key=lambda pair: -pair[0])[:3]
     blocks = float(np.prod([count for count, _ in densest]))
     if blocks > MOST_BLOCKS:
-        said = ", ".join(f"{joint.name} {joint.spacing:g} m" for _, joint in densest)
+        spacings = ", ".join(f"{joint.name} {joint.spacing:g} m" for _, joint in densest)
         raise CaseError(
-            f"these sets would cut the model into about {blocks:.2g} blocks (spacing of {said}), and "
-            f"{MOST_BLOCKS:.0e} are the most; give wider spacings, or a group that they cut"
+            f"these sets would cut the model into about {blocks:.2g} blocks (spacing of "
+            f"{spacings}); the "
+            f"limit is {MOST_BLOCKS:.0e}; give wider spacings, or a group to cut"
         )
 
 
 def _refuse_lost(whole: Mesh, names: list[str]) -> None:
-    """Stop if nothing is left of a group."""
+    """Refuse a model in which a group has vanished."""
     left = {whole.group_names[k] for groups in whole.cell_group.values() for k in np.unique(groups)}
     for name in names:
         if name not in left:
             raise MeshError(
-                f"nothing is left of group {name!r}: its bodies are thinner than what joints leave "
+                f"group {name!r} has vanished: its bodies are thinner than the least thickness of "
+                f"parts "
                 "(model.thinnest)"
             )
 
@@ -236,7 +239,7 @@ def _refuse_lost(whole: Mesh, names: list[str]) -> None:
 def _cells_of(
     piece: Mesh, faces: Sequence[Sequence[int]] | None, names: list[str], model: Model
 ) -> Cells:
-    """Cells of a mesh, or the one of a polyhedron with these faces."""
+    """Cells of a mesh, or the single cell of a polyhedron with these faces."""
     if faces is None:
         return from_mesh(piece, names, block_labels(piece, model.split))
     (group,) = piece.group_names
@@ -251,7 +254,7 @@ def _cut_and_mesh(
     surfaces: list[str],
     files: Mapping[str, list[Disc]],
 ) -> Mesh:
-    """Cut cells by all sets and mesh what that leaves; notes say what was not as the sets want it."""
+    """Cut cells by all sets and mesh the result; notes report deviations from the sets."""
     thinnest = thinnest_of(model, c.points)
     done = cut_by_sets(c, model.joints, names, thinnest, files)
     whole = done.c.volumes().sum()
@@ -263,15 +266,17 @@ def _cut_and_mesh(
         made.surfaces.setdefault(name, [])
     for joint in model.joints:
         if not any(len(part) for part in made.surfaces[joint.name]):
-            made.notes.append(f"joint set {joint.name} cuts nothing; {_look(joint)}")
+            made.notes.append(f"joint set {joint.name} makes no cut; {_look(joint)}")
     return made
 
 
 def _look(joint: Joint) -> str:
-    """Where to look if a set cuts nothing."""
+    """Advice for a set that makes no cut."""
     if joint.discs is None:
-        return "look at its origin and group"
-    return "no centre of a face is in a disc: look at its centres, radii and group, or mesh finer"
+        return "check its origin and group"
+    return (
+        "no centre of a face is in a disc: check its centres, radii and group, or use a finer mesh"
+    )
 
 
 def _divide(piece: Mesh, jointed: set[str]) -> tuple[Mesh, Mesh]:
@@ -298,12 +303,12 @@ def _notes(thin: int, closed: int, change: float, thinnest: float) -> list[str]:
     out = []
     if thin:
         out.append(
-            f"joints: {thin} cuts left out, for they would make a part thinner than {thinnest:.3g} m "
+            f"joints: {thin} cuts left out, since a part would be thinner than {thinnest:.3g} m "
             "(model.thinnest)"
         )
     if closed:
         out.append(
             f"joints: {closed} edges shorter than {SHORTEST * thinnest:.3g} m were closed; the volume "
-            f"changed by {change:.1e} of it"
+            f"changed by a fraction of {change:.1e}"
         )
     return out

@@ -1,4 +1,4 @@
-"""Which joints may slide or topple on a slope by their directions alone: Goodman; Wyllie & Mah."""
+"""Joints that may slide or topple on a slope, by direction alone: Goodman; Wyllie & Mah."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 MOST_FOR_PAIRS = 1500
-"""Of more joints, evenly chosen ones make the pairs."""
+"""Most joints for pairs; of more, evenly chosen ones are used."""
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class Slope:
     """A slope and the friction of its joints.
 
     Attributes:
-        dip: Of the face [deg].
-        dip_direction: Of the face [deg].
+        dip: Dip of the face [deg].
+        dip_direction: Dip direction of the face [deg].
         friction: Friction angle of joints [deg].
         lateral: Planes slide and topple if their dip direction differs by less than this [deg].
     """
@@ -38,27 +38,27 @@ class Slope:
         return np.tan(np.radians(self.dip)) * np.cos(away)
 
     def _aside(self, direction: Floats) -> Floats:
-        """Angle between some directions and that of the face [deg], from 0 to 180."""
+        """Angle between some directions and the direction of the face [deg], from 0 to 180."""
         return np.abs((direction - self.dip_direction + 180) % 360 - 180)
 
     def planar(self, dip: Floats, direction: Floats) -> Bools:
-        """Which planes may slide: steeper than friction, daylighting, about along the slope."""
+        """Planes that may slide: steeper than friction, daylighting, about along the slope."""
         daylights = np.tan(np.radians(dip)) < self._apparent(direction)
         return (dip > self.friction) & daylights & (self._aside(direction) < self.lateral)
 
     def toppling(self, dip: Floats, direction: Floats) -> Bools:
-        """Which layers may slip on one another and bend over: dip > 90 deg - slope + friction."""
+        """Layers that may slip on one another and bend over: dip > 90 deg - slope + friction."""
         into = 180 - self._aside(direction) < self.lateral
         return into & (dip > 90 - self.dip + self.friction)
 
     def wedge(self, plunge: Floats, trend: Floats) -> Bools:
-        """Which intersections of two planes may slide: friction < plunge, and daylighting."""
+        """Intersections of two planes that may slide: friction < plunge, and daylighting."""
         daylights = np.tan(np.radians(plunge)) < self._apparent(trend)
         return (plunge > self.friction) & daylights
 
 
 def intersections(normals: Floats) -> tuple[Floats, Floats]:
-    """Plunge and trend [deg] of the lines in which planes meet, all pairs in turn.
+    """Plunge and trend [deg] of the intersection lines of planes, for all pairs.
 
     Args:
         normals: Unit normals, shape (planes, 3); pairs of parallel planes are left out.
@@ -81,14 +81,14 @@ def intersections(normals: Floats) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class Shares:
-    """Parts of joints that may fail on a slope.
+    """Fractions of joints that may fail on a slope.
 
     Attributes:
-        planar: Of all joints [1].
-        toppling: Of all joints [1].
-        wedge: Of the intersections of all pairs [1].
-        planar_of: Of each set's joints [1].
-        toppling_of: Of each set's joints [1].
+        planar: Fraction of all joints [1].
+        toppling: Fraction of all joints [1].
+        wedge: Fraction of the intersections of all pairs [1].
+        planar_of: Fraction of each set's joints [1].
+        toppling_of: Fraction of each set's joints [1].
         wedges: First and second set, plunge and trend [deg] of their mean planes' intersection, and
             whether it may slide.
     """
@@ -107,8 +107,8 @@ def shares(slope: Slope, normals: Floats, means: Floats, membership: Floats) -> 
     Args:
         slope: The slope.
         normals: Unit normals of joints, shape (joints, 3).
-        means: Those of the sets, shape (sets, 3).
-        membership: Chance of each joint to belong to each set, shape (joints, sets or more).
+        means: Unit normals of the sets, shape (sets, 3).
+        membership: Probability of each joint to belong to each set, shape (joints, sets or more).
     """
     planar = slope.planar(*dips(normals))
     toppling = slope.toppling(*dips(normals))

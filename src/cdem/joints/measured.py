@@ -1,4 +1,4 @@
-"""Tables of measured joints: dip and dip direction, sets, and where a scanline meets them."""
+"""Tables of measured joints: dip and dip direction, sets, and positions along scanlines."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ NAMES: dict[str, tuple[str, ...]] = {
     "position": ("position", "distance", "chainage", "depth", "tiefe", "profondeur", "profondita")
     + ("profundidad", "深度", "位置"),
 }
-"""Columns beside those of planes, and how they may be called, as `plain` makes names."""
+"""Columns beside the columns of planes, and their possible headings, in the form of `plain`."""
 
 
 @dataclass
@@ -42,13 +42,13 @@ class Measured:
     """Joints of a table.
 
     Attributes:
-        dip: Below the horizontal [deg], shape (joints,).
-        dip_direction: Clockwise from north [deg], shape (joints,).
+        dip: Dip below the horizontal [deg], shape (joints,).
+        dip_direction: Azimuth clockwise from north [deg], shape (joints,).
         set_of: Name of each joint's set, empty for none; None if the table has no sets.
-        scanline: Name of each joint's scanline; None if there is none.
-        lines: Unit vectors along those scanlines, shape (joints, 3); None if there are none.
-        position: Along the scanline [m], shape (joints,); None if there is none.
-        notes: What a user should know.
+        scanline: Name of each joint's scanline, or None.
+        lines: Unit vectors along those scanlines, shape (joints, 3), or None.
+        position: Position along the scanline [m], shape (joints,), or None.
+        notes: Messages for the user.
     """
 
     dip: Floats
@@ -66,20 +66,21 @@ class Measured:
 
 
 def read_measured(path: Path, scanline: tuple[float, float] | None = None) -> Measured:
-    """Read a table of joints in any convention of `attitudes`; notes say what was assumed or not used.
+    """Read a table of joints in any convention of `attitudes`; notes report assumptions and unused
+    data.
 
     Args:
-        path: Text file; columns are parted by commas, semicolons, tabs or spaces.
-        scanline: Trend and plunge [deg] of the one line along which all were measured, if the table
-            has no columns of them.
+        path: Text file; columns are separated by commas, semicolons, tabs or spaces.
+        scanline: Trend and plunge [deg] of the single scanline of all joints, if the table
+            has no columns for it.
 
     Raises:
-        CaseError: It cannot be read, a column is missing or in doubt, or a value out of range.
+        CaseError: It cannot be read, a column is missing or ambiguous, or a value is out of range.
     """
     table = read_table(path, "table of joints", is_heading)
     if {"slopeangle", "dip"} <= {plain(name) for name in table.head}:
         raise CaseError(
-            f"{path}: has both dip and slopeangle: there dip is an azimuth; rename these columns to "
+            f"{path}: has both dip and slopeangle, so dip is an azimuth; rename these columns to "
             "dip_direction and dip"
         )
     table.find(NAMES)
@@ -92,7 +93,7 @@ def read_measured(path: Path, scanline: tuple[float, float] | None = None) -> Me
         trend, plunge = azimuths(table, "trend"), angles(table, "plunge", -90, 90)
     if scanline is not None:
         if trend is not None:
-            raise CaseError(f"{path}: has columns of scanlines; give no other scanline")
+            raise CaseError(f"{path}: has columns of scanlines; leave out the scanline")
         trend, plunge = (np.full(len(dip), angle) for angle in scanline)
     if "position" in at:
         position = _positions(table)

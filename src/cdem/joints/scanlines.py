@@ -13,18 +13,19 @@ from cdem.joints.measured import Measured
 Floats = NDArray[np.float64]
 
 LEAST_SINE = 0.2
-"""Joints nearer to a scanline than 11.5 deg count as if they were so far."""
+"""Sine of the smallest angle to a scanline in the weights: 11.5 deg; smaller ones count as this."""
 
 
 @dataclass(frozen=True)
 class Frequency:
-    """How dense a set is.
+    """Density of a set.
 
     Attributes:
         spacing: Distance of its planes along their normal [m].
         p32: Area of joints per volume [1/m].
-        count: Joints on which it rests.
-        blind: Whether the mean plane lies within 11.5 deg of all scanlines: hardly seen by them.
+        count: Number of joints behind it.
+        blind: Whether the mean plane lies within 11.5 deg of all scanlines, which then hardly
+            intersect it.
     """
 
     spacing: float
@@ -46,8 +47,9 @@ def total_length(measured: Measured, length: float | None) -> float | None:
 
     Args:
         measured: The joints.
-        length: That of all together, if it is known; else n joints on a line, the first and the
-            last `span` apart, stand for span n / (n - 1).
+        length: Total length, if it is known; else a line with n joints over a distance `span`
+            counts
+            with span n / (n - 1).
 
     Raises:
         CaseError: A scanline has a single joint, or all at one place.
@@ -73,13 +75,13 @@ def frequencies(
 ) -> list[Frequency] | None:
     """Spacing and P32 of each set; None without scanlines or their length.
 
-    P32 is the sum of Terzaghi's weights over the length of the scanlines; planes that go on have the
+    P32 is the sum of Terzaghi's weights over the length of the scanlines; infinite planes have the
     spacing 1 / P32.
 
     Args:
         measured: The joints.
         means: Unit normals of the sets, shape (sets, 3).
-        membership: Chance of each joint to belong to each set, shape (joints, sets or more).
+        membership: Probability of each joint to belong to each set, shape (joints, sets or more).
         length: See `total_length`.
     """
     weights, total = terzaghi(measured), total_length(measured, length)

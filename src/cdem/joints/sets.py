@@ -1,4 +1,4 @@
-"""Sets of joints among measured directions: Fisher's distribution on axes, and a uniform background."""
+"""Sets of joints among measured directions: Fisher distributions on axes, and a uniform background."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from cdem.joints.directions import NamedPlane
 Floats = NDArray[np.float64]
 
 MOST_SETS = 6
-"""The number of sets is sought up to here."""
+"""Largest number of sets in the search."""
 LEAST_MEMBERS = 5.0
-"""A set of fewer joints is not fitted."""
+"""Smallest number of joints of a fitted set."""
 MOST_KAPPA = 2000.0
-"""Directions are not measured better than this: 63 % within 1.8 deg."""
+"""Largest concentration, the precision of measurement: 63 % within 1.8 deg."""
 STARTS, FIRST_PASSES, MOST_PASSES = 30, 15, 500
 SAMPLE = 1000
-"""So many joints at most are used to compare beginnings."""
+"""Most joints used to compare initial sets."""
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,8 @@ class JointSet(NamedPlane):
 
     Attributes:
         kappa: Concentration of Fisher's distribution [1].
-        a95: Half angle of the cone that holds the true mean with 95 % [deg].
-        share: Part of all joints that belong to it [1].
+        a95: Half angle of the cone that contains the true mean with 95 % confidence [deg].
+        share: Fraction of all joints in the set [1].
     """
 
     kappa: float
@@ -45,7 +45,8 @@ class Fit:
 
     Attributes:
         sets: The largest first.
-        membership: Chance of each joint to belong to each set and, last, to the background; shape
+        membership: Probability of each joint to belong to each set and, last, to the background;
+            shape
             (joints, sets + 1).
         bic: Bayesian information criterion by number of sets; empty if the sets were given.
     """
@@ -56,7 +57,7 @@ class Fit:
 
     @property
     def background(self) -> float:
-        """Part of the joints that belong to no set [1]."""
+        """Fraction of the joints in no set [1]."""
         return 1 - sum(s.share for s in self.sets)
 
 
@@ -68,7 +69,7 @@ def mean_axis(normals: Floats, weights: Floats | None = None) -> tuple[Floats, f
 
     Args:
         normals: Unit vectors, up or down, shape (axes, 3).
-        weights: Of the axes, shape (axes,); 1 each if None.
+        weights: Weights of the axes, shape (axes,); 1 each if None.
 
     Returns:
         Upward unit vector, kappa [1] (at most 2000), a95 [deg].
@@ -88,7 +89,7 @@ def mean_axis(normals: Floats, weights: Floats | None = None) -> tuple[Floats, f
     apart = max(count - length, 1e-12)
     kappa = min(max(count - 1, 1e-3) / apart, MOST_KAPPA)
     cosine = -1.0
-    if count > 1.05:  # below, 20^(1 / (N - 1)) overflows; the cone is the half sphere anyway
+    if count > 1.05:  # below, 20^(1 / (N - 1)) overflows; the cone is then the half sphere
         cosine = 1 - apart / length * (20 ** (1 / (count - 1)) - 1)
     return mean, kappa, float(np.degrees(np.arccos(np.clip(cosine, 0, 1))))
 
@@ -97,7 +98,7 @@ def axis_density(cosine: Floats, kappa: Floats) -> Floats:
     """Density of Fisher's distribution on axes over the half sphere [1/sr].
 
     Args:
-        cosine: Of the angle to the mean, from 0 to 1.
+        cosine: Cosine of the angle to the mean, from 0 to 1.
         kappa: Concentration.
     """
     scale = kappa / (2 * np.pi * -np.expm1(-2 * kappa))
@@ -106,7 +107,7 @@ def axis_density(cosine: Floats, kappa: Floats) -> Floats:
 
 @dataclass
 class _State:
-    """Sets while they are fitted; `share` has the background last."""
+    """Sets during the fit; `share` has the background last."""
 
     means: Floats
     kappa: Floats
@@ -115,7 +116,7 @@ class _State:
     likelihood: float = -np.inf
 
     def membership(self, normals: Floats) -> tuple[Floats, Floats]:
-        """Chance of each joint to belong to each set, and the density of all together."""
+        """Probability of each joint to belong to each set, and the total density."""
         cosine = np.abs(normals @ self.means.T)
         parts = np.empty((len(normals), len(self.share)))
         parts[:, :-1] = axis_density(cosine, self.kappa)
@@ -126,7 +127,7 @@ class _State:
 
 
 def _improve(state: _State, normals: Floats, weights: Floats, passes: int) -> None:
-    """Expectation and maximization, until the likelihood grows no more."""
+    """Expectation and maximization, until the likelihood stops growing."""
     for _ in range(passes):
         membership, total = state.membership(normals)
         likelihood = float((weights * np.log(total)).sum())
@@ -143,7 +144,7 @@ def _improve(state: _State, normals: Floats, weights: Floats, passes: int) -> No
 
 
 def _begin(normals: Floats, count: int, random: np.random.Generator) -> _State:
-    """A beginning whose means are joints far from one another."""
+    """Initial sets whose means are joints far from one another."""
     chosen = [int(random.integers(len(normals)))]
     while len(chosen) < count:
         away = 1 - ((normals @ normals[chosen].T) ** 2).max(axis=1)
@@ -154,7 +155,7 @@ def _begin(normals: Floats, count: int, random: np.random.Generator) -> _State:
 
 
 def _best(normals: Floats, weights: Floats, count: int) -> _State | None:
-    """The likeliest sets of a number, or None if one of them has too few joints."""
+    """The most likely sets of a given number, or None if one of them has too few joints."""
     random = np.random.default_rng(count)
     some = random.permutation(len(normals))[:SAMPLE]
     tried = []
@@ -177,11 +178,11 @@ def fit_sets(normals: Floats, count: int | None = None, weights: Floats | None =
 
     Args:
         normals: Unit normals, up or down, shape (joints, 3).
-        count: Number of sets; the one of the least Bayesian information criterion if None.
-        weights: Of the joints, shape (joints,), e.g. those of Terzaghi; 1 each if None.
+        count: Number of sets; None for the smallest Bayesian information criterion.
+        weights: Weights of the joints, shape (joints,), e.g. Terzaghi's; 1 each if None.
 
     Raises:
-        CaseError: No set, or not that number of sets, is in them.
+        CaseError: The joints have no sets, or not this number of sets.
     """
     number = len(normals)
     w = np.ones(number) if weights is None else weights * number / weights.sum()
@@ -195,9 +196,10 @@ def fit_sets(normals: Floats, count: int | None = None, weights: Floats | None =
             found[n] = state
             bic[n] = 4 * n * float(np.log(number)) - 2 * state.likelihood
     if not bic or min(bic, key=lambda n: bic[n]) == 0:
-        what = "no set" if count is None else f"not so many sets as {count}"
+        fitting = "no set" if count is None else f"fewer than {count} sets"
         raise CaseError(
-            f"among {number} joints {what} can be told from a uniform background: measure more, or "
+            f"among {number} joints {fitting} can be distinguished from a uniform background: "
+            f"measure more, or "
             "name the sets in a column 'set'"
         )
     state = found[min(found, key=lambda n: bic[n])]
@@ -217,21 +219,21 @@ def fit_sets(normals: Floats, count: int | None = None, weights: Floats | None =
 
 
 def given_sets(normals: Floats, names: Sequence[str], weights: Floats | None = None) -> Fit:
-    """Mean and scatter of sets that somebody has named.
+    """Mean and scatter of named sets.
 
     Args:
         normals: Unit normals, up or down, shape (joints, 3).
-        names: Set of each joint; an empty name stands for none.
-        weights: Of the joints, shape (joints,); 1 each if None.
+        names: Set of each joint; an empty name for none.
+        weights: Weights of the joints, shape (joints,); 1 each if None.
 
     Raises:
-        CaseError: A set has a single joint, or none is named.
+        CaseError: A set has a single joint, or there are no names.
     """
     w = np.ones(len(normals)) if weights is None else weights * len(normals) / weights.sum()
     labels = np.array(names)
     kinds = [str(name) for name in dict.fromkeys(names) if name]
     if not kinds:
-        raise CaseError("the column of sets names none; fill it in or take it out")
+        raise CaseError("the column of sets is empty; fill it in or remove it")
     kinds.sort(key=lambda name: -w[labels == name].sum())
     membership = np.column_stack([labels == name for name in [*kinds, ""]]).astype(float)
     sets = []

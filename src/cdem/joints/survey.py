@@ -1,4 +1,4 @@
-"""What a table of measured joints says: its sets, their spacing, and what may fail on a slope."""
+"""Evaluation of a table of measured joints: sets, their spacing, and possible failures on a slope."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ASSUMED_FRICTION = 30.0
 
 @dataclass(frozen=True)
 class Survey:
-    """A table of joints, understood.
+    """Results for a table of joints.
 
     Attributes:
         source: Name of its file.
@@ -29,7 +29,7 @@ class Survey:
         fit: Their sets.
         frequencies: Spacing of each set; None without scanlines.
         slope: The slope, if one is given.
-        shares: What may fail on it.
+        shares: Fractions that may fail on it.
     """
 
     source: str
@@ -49,17 +49,17 @@ class Survey:
         length: float | None = None,
         slope: Slope | None = None,
     ) -> Survey:
-        """Find the sets, their spacing, and what may fail.
+        """Find the sets, their spacing, and possible failures.
 
         Args:
             path: File of the table.
             measured: Its joints.
-            count: Number of sets; None for the one of the least BIC, or those of the table.
-            length: Of all scanlines together [m].
-            slope: A slope to look at.
+            count: Number of sets; None for the smallest BIC, or the sets of the table.
+            length: Total length of scanlines [m].
+            slope: A slope to assess.
 
         Raises:
-            CaseError: There is no such number of sets, or scanlines have no length.
+            CaseError: There are not this many sets, or scanlines have no length.
         """
         weights = terzaghi(measured)
         if length is not None and weights is None:
@@ -77,7 +77,7 @@ class Survey:
         return cls(path.name, measured, fit, dense, slope, fail)
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything but the joints, ready for JSON."""
+        """All results except the joints, ready for JSON."""
         sets = []
         for k, s in enumerate(self.fit.sets):
             facts: dict[str, Any] = {"name": s.name, "dip": s.dip, "dip_direction": s.dip_direction}
@@ -89,7 +89,7 @@ class Survey:
         return out | {"shares": asdict(self.shares) if self.shares else None}
 
     def text(self) -> str:
-        """The sets, and what may fail, for people."""
+        """The sets and possible failures as text."""
         lines = [f"note: {note}" for note in self.measured.notes]
         lines += [self._headline(), *self._table(), *self._kinematics()]
         return "\n".join(lines)
@@ -99,7 +99,7 @@ class Survey:
         kind = f"{count} set{'s' * (count != 1)}"
         rest = f"{100 * self.fit.background:.0f} % in none"
         if not self.fit.bic:
-            return f"{number} joints, {kind} as the table names them, {rest}"
+            return f"{number} joints, {kind} named in the table, {rest}"
         bic = ", ".join(f"{n}: {value:.0f}" for n, value in self.fit.bic.items())
         return f"{number} joints, {kind}, {rest} (BIC by number of sets: {bic})"
 
@@ -119,7 +119,8 @@ class Survey:
             if f.blind:
                 angle = np.degrees(np.arcsin(LEAST_SINE))
                 lines.append(
-                    f"note: {s.name} lies within {angle:.1f} deg of the scanlines, which hardly see it: "
+                    f"note: {s.name} lies within {angle:.1f} deg of the scanlines, which hardly "
+                    f"intersect it: "
                     "its spacing is a guess"
                 )
         return lines
@@ -147,11 +148,11 @@ class Survey:
         return lines
 
     def yaml(self) -> str:
-        """The part of a case that holds these sets: `model.joints` and `interfaces.pairs`."""
+        """The part of a case with these sets: `model.joints` and `interfaces.pairs`."""
         friction = self.slope.friction if self.slope else ASSUMED_FRICTION
         lines = [
             f"# {self._headline()}",
-            f"# from {self.source}. A case takes these lines as they are; cdem screen reads them.",
+            f"# from {self.source}. Copy these lines into a case; cdem screen reads them too.",
             "model:",
             "  joints:",
         ]
@@ -175,7 +176,7 @@ class Survey:
 
 
 def plane_text(dip: float, direction: float) -> str:
-    """Dip and dip direction, or plunge and trend, as geologists write them.
+    """Dip and dip direction, or plunge and trend, in geologists' notation.
 
     Example:
         >>> plane_text(33.44, 9.26)
@@ -185,5 +186,5 @@ def plane_text(dip: float, direction: float) -> str:
 
 
 def _quoted(name: str) -> str:
-    """A name as YAML reads it back: as text, also if it looks like a number or a truth."""
+    """A name in YAML that reads back as text, even if it looks like a number or a truth value."""
     return name if re.fullmatch(r"set\d+", name) else json.dumps(name, ensure_ascii=False)

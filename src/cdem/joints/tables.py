@@ -1,4 +1,4 @@
-"""Tables that people bring, as rows of words: comments, separators, headings and encodings."""
+"""Users' tables as rows of words: comments, separators, headings and encodings."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ Split = Callable[[str], list[str]]
 COMMENTS = ("#", "%", "!")
 
 MARKS = ";\t,"
-"""What may part columns, besides spaces; the first that a line has counts."""
+"""Separators of columns, besides spaces; the first that occurs in a line counts."""
 SAME = str.maketrans("º˚−‐‑–，；、", "°°----,;,")
-"""Signs that look alike: degrees, minus, separators."""
+"""Signs of similar shape: degrees, minus, separators."""
 LABELS = {"id", "no", "nr", "number", "#", "fid", "index", ""}
-"""Names of columns that number the rows: they say nothing of a joint."""
+"""Names of columns that only number the rows."""
 LENGTHS = {"": 1.0, "m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048}
 LENGTHS |= {"metres": 1.0, "meters": 1.0, "feet": 0.3048, "in": 0.0254, "inch": 0.0254}
 _UNIT = re.compile(r"[\[(]([^\])]*)[\])]?|[_\s](deg|degrees?|rad|gon|m|mm|cm|km|ft)$")
@@ -39,11 +39,11 @@ class Table:
 
     Attributes:
         path: The file.
-        head: Names of the columns as they stand there; empty without a heading.
-        rows: Words of each row, as many as there are columns.
-        lines: Line of the file that each row stands in.
-        notes: What a user should know.
-        at: Which column has what, by the names that its reader uses.
+        head: Names of the columns in the file; empty without a heading.
+        rows: Words of each row, equal in number to the columns.
+        lines: Line number of each row in the file.
+        notes: Messages for the user.
+        at: Column of each quantity, by the names that its reader uses.
     """
 
     path: Path
@@ -58,7 +58,7 @@ class Table:
         return [row[self.at[key]] for row in self.rows]
 
     def numbers(self, key: str) -> Floats:
-        """A column as numbers; NaN where a word is none."""
+        """A column as numbers; NaN for a word that is not a number."""
         return np.array([number(word) for word in self.column(key)])
 
     def lengths(self, key: str) -> Floats:
@@ -66,7 +66,7 @@ class Table:
         return self.numbers(key) * self.factor(key, LENGTHS)
 
     def factor(self, key: str, units: Mapping[str, float], not_these: Iterable[str] = ()) -> float:
-        """Factor of the unit in a column's heading; other words in brackets are told.
+        """Factor of the unit in a column's heading; other words in brackets are noted.
 
         Raises:
             CaseError: The unit is one of ``not_these``.
@@ -83,19 +83,19 @@ class Table:
         return units.get(unit, 1.0)
 
     def unit(self, key: str) -> str:
-        """What stands in brackets in a column's heading, in lower case."""
+        """The text in brackets in a column's heading, in lower case."""
         found = _UNIT.search(self.head[self.at[key]].lower()) if self.head else None
         return (found[1] or found[2] or "").strip(" .") if found else ""
 
     def name(self, key: str) -> str:
-        """A column as its file names it."""
+        """Name of a column in its file."""
         return self.head[self.at[key]] if self.head else f"column {self.at[key] + 1}"
 
     def find(self, names: Mapping[str, Iterable[str]]) -> None:
-        """Find columns by their headings; what `at` has already stays.
+        """Find columns by their headings; columns already in `at` stay.
 
         Args:
-            names: By what a column is: the headings that it may have, as `plain` makes them.
+            names: By quantity: its possible headings, in the form of `plain`.
 
         Raises:
             CaseError: Two columns may be the same.
@@ -112,7 +112,7 @@ class Table:
                 self.at[key] = found[0]
 
     def tell_unused(self, used: Iterable[str]) -> None:
-        """Note the columns of which nothing is used."""
+        """Note the unused columns."""
         columns = {self.at[key] for key in used if key in self.at}
         idle = [
             name
@@ -137,19 +137,19 @@ def plain(name: str) -> str:
 
 
 def read_table(path: Path, what: str, is_head: Callable[[list[str]], bool]) -> Table:
-    """Read a table: UTF-8, UTF-16 or, told in a note, another encoding; `#` begins comments.
+    """Read a table: UTF-8, UTF-16 or, with a note, another encoding; `#` begins comments.
 
     Args:
-        path: The file; columns are parted by semicolons, tabs, commas or spaces. A comma is a
-            decimal point where it does not part columns.
-        what: What it is, e.g. "table of joints".
-        is_head: Whether some words are the headings that the reader understands.
+        path: The file; columns are separated by semicolons, tabs, commas or spaces. A comma is a
+            decimal point if it does not separate columns.
+        what: The kind of table, e.g. "table of joints".
+        is_head: Whether some words are headings known to the reader.
 
     Returns:
         The table; without a heading if its first row begins with a number or a bearing.
 
     Raises:
-        CaseError: It cannot be read, or a row has another number of columns; says where.
+        CaseError: It cannot be read, or a row has another number of columns; names the place.
     """
     text, notes = _text(path, what, is_head)
     lines = [
@@ -176,7 +176,7 @@ def _heading(
     head: list[str] = []
     if not any(re.search(r"\d", word) for word in first) or is_head(first):
         head, lines = first, lines[1:]
-    else:  # a heading may be marked as a comment; the last one that is understood counts
+    else:  # a heading may be a comment; the last known one counts
         above = [words for k, words in remarks if k < lines[0][0]]
         head = next((h for h in map(split, reversed(above)) if is_head(h)), [])
     while head and not head[-1]:  # separators at the end
@@ -185,7 +185,7 @@ def _heading(
 
 
 def _rows(path: Path, head: list[str], lines: list[Line], split: Split) -> list[list[str]]:
-    """Words of every row; separators at its end count for nothing."""
+    """Words of every row; separators at its end are ignored."""
     rows: list[list[str]] = []
     for k, line in lines:
         row = split(line)
@@ -200,7 +200,7 @@ def _rows(path: Path, head: list[str], lines: list[Line], split: Split) -> list[
 
 
 def _splitter(mark: str | None) -> Split:
-    """How lines become words."""
+    """How lines are divided into words."""
 
     def words(line: str) -> list[str]:
         row = line.split() if mark is None else next(csv.reader([line], delimiter=mark))
@@ -226,7 +226,7 @@ def _text(path: Path, what: str, is_head: Callable[[list[str]], bool]) -> tuple[
             except UnicodeDecodeError:
                 continue
             if any(unicodedata.category(c) == "Cc" and c not in "\t\n\f" for c in text):
-                raise  # not a text
+                raise  # not text
             if encoding == "cp1252" or _understood(text, is_head):
                 note = f"read as {name}: it is not in UTF-8; save it as UTF-8 if names look wrong"
                 return text, [note]
@@ -234,7 +234,7 @@ def _text(path: Path, what: str, is_head: Callable[[list[str]], bool]) -> tuple[
 
 
 def _understood(text: str, is_head: Callable[[list[str]], bool]) -> bool:
-    """Whether a line of a text is a heading that has letters beyond Latin."""
+    """Whether a line of a text is a heading with letters beyond Latin."""
     for line in text.translate(SAME).splitlines():
         line = unicodedata.normalize("NFKC", line).lstrip("#%! ")
         mark = next((m for m in MARKS if m in line), None)

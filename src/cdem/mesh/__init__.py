@@ -1,1 +1,1 @@
-"""Meshes and their topology: elements, blocks, faces, edges and what touches what."""
+"""Meshes and their topology: elements, blocks, faces, edges and contacts between them."""

@@ -10,25 +10,25 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 PIECE = 1 << 16
-"""Rows that are worked on at once: what lies in between is a few MB, and its memory is used again."""
+"""Rows processed at once: temporary data are a few MB, and their memory is reused."""
 
 
 def in_pieces(function: Callable[..., NDArray], *arrays: NDArray) -> NDArray:
-    """A function of the rows of arrays of equal length, one row of result for each, piece by piece."""
+    """Apply a function of rows to arrays of equal length, piece by piece; one row of result each."""
     count = len(arrays[0])
     starts = range(0, max(count, 1), PIECE)
     return np.concatenate([function(*(a[i : i + PIECE] for a in arrays)) for i in starts])
 
 
 def first_of_each(owner: NDArray, count: int) -> NDArray[np.int32]:
-    """Where each owner's items start in a list in the order of owners, and its end, (count + 1,)."""
+    """First item of each owner in a list ordered by owner, and the end, (count + 1,)."""
     first = np.zeros(count + 1, np.int32)
     np.cumsum(np.bincount(owner, minlength=count), out=first[1:])
     return first
 
 
 def found_in(numbers: Iterable[NDArray], count: int) -> NDArray[np.intp]:
-    """Which of so many numbers lists have, ascending; many times faster than `np.unique`."""
+    """Numbers below a limit that occur in lists, ascending; many times faster than `np.unique`."""
     found = np.zeros(count, bool)
     for some in numbers:
         found[some] = True
@@ -41,7 +41,7 @@ def lengths(vectors: Floats) -> Floats:
 
 
 def matrix_product(a: Floats, b: Floats) -> Floats:
-    """Products of small matrices, summed in one order on every CPU; BLAS has one for each kind."""
+    """Products of small matrices, summed in one order on every CPU; BLAS has a different order on each."""
     return np.einsum("...ij,...jk->...ik", a, b)
 
 
@@ -58,12 +58,13 @@ def in_plane(a: Floats, b: Floats, normal: Floats, x: Floats) -> tuple[Floats, F
 
 
 def same_everywhere(values: Floats) -> Floats:
-    """Numbers rounded up to 28 bits, by a hundred-millionth at most.
+    """Numbers rounded up to 28 bits, by at most a hundred-millionth.
 
-    One that lies 4e-12 above such a number goes down to it: values of regular bodies often are such
-    numbers but for round-off. For what LAPACK and vectorized functions give, whose last bits depend
-    on the kind of CPU, and of which eight digits are enough: bounds of the time step, springs
-    against hourglass modes.
+    A number up to 4e-12 above such a value is rounded down to it: values of regular bodies often
+    differ from such values by round-off only. For results of LAPACK and vectorized functions, whose
+    last
+    bits depend on the CPU, and for which eight digits suffice: limits of the time step, hourglass
+    springs.
     """
     mantissa, exponent = np.frexp(values)
     return np.ldexp(np.ceil(mantissa * 2.0**28 - 2.0**-10) / 2.0**28, exponent)
@@ -90,7 +91,8 @@ def solve_semidefinite(m: Floats, target: Floats, tolerance: float) -> Floats:
     Args:
         m: Symmetric, with no negative eigenvalue, shape (n, n).
         target: Right side; a sum of columns of m.
-        tolerance: Pivots below this part of the largest count as zero, and their unknowns are zero.
+        tolerance: Pivots below this fraction of the largest count as zero, and their unknowns are
+            zero.
     """
     a, right = m.copy(), target.copy()
     left = np.ones(len(m), bool)
@@ -121,9 +123,9 @@ def determinant(m: Floats) -> Floats:
 
 
 def in_order(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Whole numbers from 0 up in a stable order, and the place that each of them had.
+    """Whole numbers from 0 up in a stable order, and the original index of each.
 
-    Where both fit into 63 bits they are sorted as one number, many times faster than by argsort.
+    If both fit into 63 bits they are sorted as one number, many times faster than by argsort.
     """
     bits = len(keys).bit_length()
     if int(keys.max(initial=0)).bit_length() + bits > 63:
@@ -163,7 +165,7 @@ def components(count: int, a: NDArray, b: NDArray) -> NDArray:
         at_a, at_b = label[a], label[b]
         low = np.minimum(at_a, at_b)
         before = label.copy()
-        # hang whole trees, not single items: a long chain then takes few rounds
+        # link whole trees, not single items: a long chain then takes few rounds
         np.minimum.at(label, at_a, low)
         np.minimum.at(label, at_b, low)
         label = label[label]

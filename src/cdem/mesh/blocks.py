@@ -1,4 +1,4 @@
-"""From a mesh to blocks: nodes of their own, exterior faces and edges, pairs of touching faces."""
+"""From a mesh to blocks: own nodes for each block, exterior faces and edges, pairs of touching faces."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from cdem.mesh.topology import Floats, Ints, Topology
 from cdem.units import LARGEST, coordinates
 
 SAME_PLACE = 1e-9
-"""Points of different pieces closer than this, over the model's size, are at the same place."""
+"""Points of different pieces closer than this, relative to the model's size, coincide."""
 FAR = 1e-6
-"""Points are exact to less than this part of the smallest element; contacts need a thousandth."""
+"""Points must be exact to this fraction of the smallest element; contacts need a thousandth."""
 NEAR = 1e-3
-"""Points of an element are further apart than those at the same place by this factor."""
+"""Ratio of the distance between an element's points to the distance between coinciding points."""
 LARGE_BLOCK = 10_000
-"""Blocks of more nodes are put into an order of their own in memory: so many have 2 MB of state."""
+"""Blocks with more nodes are reordered in memory: this many nodes have 2 MB of state."""
 SLANTED = np.array([0.5426, 0.6477, 0.5348])
-"""A direction, of length below 1, along which the points of a grid do not line up."""
+"""A direction, of length below 1, along which the points of a grid have different coordinates."""
 
 
 def build_topology(
@@ -42,18 +42,18 @@ def build_topology(
     joints: Sequence[str] = (),
     bonded: NDArray[np.bool_] | None = None,
 ) -> Topology:
-    """Divide a mesh into blocks and find what their faces touch.
+    """Divide a mesh into blocks and find touching faces.
 
     Args:
         mesh: The mesh.
-        split: By group, what is one block: "one" (the whole group), "connected" (each connected
+        split: Blocks of each group: "one" (the whole group), "connected" (each connected
             part; the default) or "elements" (every element).
-        joints: Sets of joints; the faces of each are the surface of its name.
+        joints: Sets of joints; the faces of each form the surface of its name.
         bonded: Whether non-conforming touching faces of two kinds (see `Topology.face_kind`) are
             to be bonded, shape (kinds, kinds).
 
     Raises:
-        MeshError: An element is inverted, has no volume or is there twice, or a point is not finite
+        MeshError: An element is inverted, has no volume or is duplicated, or a point is not finite
             or too far from the origin.
     """
     check_elements(mesh)
@@ -77,7 +77,7 @@ def build_topology(
 
 
 def check_elements(mesh: Mesh) -> None:
-    """Stop at points that are not finite and elements that are inverted, flat or too far away."""
+    """Refuse points that are not finite, and elements that are inverted, flat or too far away."""
     bad = np.flatnonzero(~(np.abs(mesh.points) <= LARGEST).all(axis=1))
     if len(bad):
         raise MeshError(f"mesh point {bad[0]} is not finite: {mesh.points[bad[0]].tolist()}")
@@ -86,7 +86,7 @@ def check_elements(mesh: Mesh) -> None:
             continue
 
         def measure(cells: NDArray, shape: str = shape) -> Floats:
-            """Size, least volume at a Gauss point, and volume."""
+            """Size, smallest volume at a Gauss point, and volume."""
             corners = mesh.points[cells]
             size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=1)
             volume = volumes(shape, corners)
@@ -99,33 +99,34 @@ def check_elements(mesh: Mesh) -> None:
             cell = flat[0]
             group = mesh.group_names[mesh.cell_group[shape][cell]]
             center = coordinates(mesh.points[cells[cell]].mean(axis=0))
-            what = "is inverted" if total[cell] < 0 else "has no volume or is folded"
+            fault = "is inverted" if total[cell] < 0 else "has no volume or is folded"
             raise MeshError(
-                f"{shape} element {cell} of group {group!r}, centred at ({center}), {what} "
-                f"(volume {total[cell]:.3g} m3); {len(flat)} such element(s). Mend the mesh: nodes must be "
+                f"{shape} element {cell} of group {group!r}, centred at ({center}), {fault} "
+                f"(volume {total[cell]:.3g} m3); {len(flat)} such element(s). Correct the mesh: "
+                f"nodes must be "
                 "in gmsh/VTK order and no element may be flat"
             )
 
 
 def _check_scale(mesh: Mesh, shape: str, smallest: float) -> None:
-    """Stop where places of points are not told apart well enough for an element so small [m]."""
+    """Refuse coordinates too coarse for the smallest element [m]."""
     exact = float(np.spacing(np.abs(mesh.points).max()))
     if exact > FAR * smallest:
         raise MeshError(
             f"points lie so far from the origin, at ({coordinates(mesh.points[0])}), that "
             f"coordinates are exact to {exact:.2g} m only, and the smallest {shape} element is "
-            f"{smallest:.3g} m; move the mesh to the origin where it is made"
+            f"{smallest:.3g} m; move the mesh to the origin in the program that made it"
         )
     wide = float(np.ptp(mesh.points, axis=0).max())
     if SAME_PLACE * wide > NEAR * smallest:
         raise MeshError(
             f"the model is {wide:.3g} m wide, and its smallest {shape} element {smallest:.3g} m: too "
-            "small to be told apart; is a body far off, or a length in another unit?"
+            "small to distinguish its points; is a body far away, or a length in another unit?"
         )
 
 
 def block_labels(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
-    """A label of its block for every cell, shapes one after the other."""
+    """Label of the block of every cell, shape by shape."""
     counts = [len(mesh.cells.get(s, ())) for s in NODES]
     group = np.concatenate(
         [mesh.cell_group[s] for s in NODES if s in mesh.cells] or [np.zeros(0, np.int32)]
@@ -145,7 +146,7 @@ def block_labels(mesh: Mesh, split: Mapping[str, str]) -> NDArray:
     owner, point = np.concatenate(links_a), np.concatenate(links_b)
     connected = np.array([m != "elements" for m in mode])[group[owner]]
     owner, point = owner[connected], point[connected]
-    # cells of the same group hang together through points: link each to the first cell there
+    # cells of a group are connected by points: link each to the first cell at its points
     key = point * len(mode) + group[owner]
     order = np.argsort(key, kind="stable")
     new = np.r_[True, key[order][1:] != key[order][:-1]] if len(order) else np.zeros(0, bool)
@@ -223,7 +224,7 @@ def _ordered_elements(mesh: Mesh, label: NDArray) -> _Elements:
 
 
 def _ordered_blocks(label: NDArray, center: Floats) -> NDArray[np.int64]:
-    """Number of each element's block: blocks lie along a Morton curve by the mean of their elements."""
+    """Number of each element's block: blocks follow a Morton curve by the mean of their elements."""
     _, block = np.unique(label, return_inverse=True)
     count = block.max() + 1
     members = np.bincount(block, minlength=count)
@@ -233,7 +234,7 @@ def _ordered_blocks(label: NDArray, center: Floats) -> NDArray[np.int64]:
 
 
 def _ranks(order: NDArray) -> NDArray[np.int64]:
-    """Place of each item in an order."""
+    """Index of each item in an order."""
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
     return rank
@@ -242,9 +243,9 @@ def _ranks(order: NDArray) -> NDArray[np.int64]:
 def _own_nodes(points: int, elements: _Elements) -> tuple[Ints, Ints, dict[str, Ints]]:
     """Block and mesh point of each node, and the elements' corners as nodes.
 
-    Nodes of a large block are in the order in which its elements come to them, so that what is near
-    lies together, and those of a block of one element in the order of its corners, as fused blocks
-    need it (core/nodes/fused_blocks.hpp); the others fit into a cache, and stay in the order of the
+    Nodes of a large block are in the order in which its elements use them, so that neighbours are
+    close in memory; nodes of a block of one element follow its corners, as fused blocks need
+    (core/nodes/fused_blocks.hpp); other blocks fit into a cache, and stay in the order of the
     mesh.
     """
     keys = [
@@ -280,7 +281,7 @@ def _faces(t: Topology) -> None:
         element.append(np.repeat(np.arange(first, first + len(corners)), len(faces)))
         first += len(corners)
     face_nodes, face_block = np.concatenate(nodes), np.concatenate(block)
-    # two elements of a block share an inner face; one that is a block of its own has none
+    # two elements of a block share an inner face; a block of one element has none
     members = np.bincount(np.concatenate([*t.element_block.values()]))
     some = np.flatnonzero((members > 1)[face_block])
     number = same_rows(np.sort(face_nodes[some], axis=1))
@@ -295,15 +296,15 @@ def _faces(t: Topology) -> None:
 
 
 def _check_inner_faces(t: Topology, faces: Ints, number: NDArray[np.int64]) -> None:
-    """Refuse elements of a block that lie inside one another.
+    """Refuse elements of a block inside one another.
 
-    A face of three elements, or one that two elements see running round in the same sense, has two
-    of them on the same side.
+    A face of three elements, or of two elements that see it in the same orientation, has two
+    elements on the same side.
 
     Args:
         t: Nodes and elements.
         faces: Nodes of the faces of all elements, (faces, 4), the fourth -1 for a triangle.
-        number: The same for faces with the same nodes.
+        number: Equal for faces with the same nodes.
 
     Raises:
         MeshError: Elements overlap.
@@ -327,13 +328,14 @@ def _check_inner_faces(t: Topology, faces: Ints, number: NDArray[np.int64]) -> N
         place = coordinates(t.node_position[nodes[nodes >= 0]].mean(axis=0))
         raise MeshError(
             f"elements of group {group!r} lie inside one another: they share a face at ({place}) and "
-            f"are on the same side of it; {len(wrong)} such face(s). Mend the mesh: an element may "
-            "be there twice"
+            f"are on the same side of it; {len(wrong)} such face(s). Correct the mesh: an element "
+            f"may "
+            "be duplicated"
         )
 
 
 def _edges(t: Topology) -> None:
-    """Find edges and rings of nodes; blocks share none, so some of them at a time, in a cache."""
+    """Find edges and rings of nodes; blocks share none, so a few blocks at a time fit into a cache."""
     count = len(t.face_nodes)
     starts = np.append(np.flatnonzero(np.diff(t.face_block, prepend=-1)), count)
     some = np.arange(0, count + PIECE, PIECE).clip(max=count)
@@ -360,7 +362,7 @@ def _edges(t: Topology) -> None:
 
 @dataclass
 class _EdgesOf:
-    """Edges of some faces, see `Topology`; `ring_size` is how many start at each node."""
+    """Edges of some faces, see `Topology`; `ring_size` is the number of edges that start at each node."""
 
     of_face: Ints
     nodes: Ints
@@ -370,7 +372,7 @@ class _EdgesOf:
 
 
 def _edges_of(start: Ints, count: int) -> _EdgesOf:
-    """Edges of faces with these nodes, (faces, 4), of so many."""
+    """Edges of faces with these nodes, (faces, 4), out of this number."""
     end = np.roll(start, -1, axis=1)
     end[:, 3] = start[:, 0]
     end[:, 2] = np.where(start[:, 3] < 0, start[:, 0], start[:, 3])
@@ -386,7 +388,7 @@ def _edges_of(start: Ints, count: int) -> _EdgesOf:
     of_face = np.full(start.shape, -1, np.int32)
     of_face[used] = number
     side_face = np.nonzero(used)[0]
-    # where more than two faces of a block meet at an edge, the first two stand for it
+    # if more than two faces of a block meet at an edge, the first two represent it
     faces = np.full((len(new), 2), -1, np.int32)
     faces[:, 0] = side_face[order[new]]
     two = members > 1
@@ -405,7 +407,7 @@ def _edges_of(start: Ints, count: int) -> _EdgesOf:
 def _places(mesh: Mesh) -> NDArray:
     """A number for every mesh point, equal for points of different pieces at the same place."""
     near = SAME_PLACE * float(np.ptp(mesh.points, axis=0).max())
-    # along a slanted line only points at the same place follow closely, even in regular grids
+    # along a slanted line only coinciding points have close coordinates, even in regular grids
     along = (mesh.points - mesh.points.min(axis=0)) @ SLANTED
     order = np.argsort(along, kind="stable")
     x, along = mesh.points[order], along[order]
@@ -433,7 +435,7 @@ def _pairs(t: Topology, place: NDArray) -> None:
     pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
     a, b = pairs.T
     shift = (at[b] == at[a][:, :1]).argmax(axis=1)
-    # mated faces run round in opposite senses; those of bodies inside one another do not
+    # mated faces have opposite orientations; faces of bodies inside one another do not
     k = np.arange(4)
     sides = (at[a] >= 0).sum(axis=1)[:, None]
     mate = np.take_along_axis(at[b], (shift[:, None] - k) % sides, axis=1)
@@ -446,7 +448,7 @@ def _surfaces(t: Topology, mesh: Mesh) -> None:
     points = np.where(t.face_nodes >= 0, t.node_point[t.face_nodes], -1)
     key = np.sort(points, axis=1)
     for name, parts in mesh.surfaces.items():
-        if not parts:  # a set of joints that cuts nothing
+        if not parts:  # a set of joints without cuts
             t.surfaces[name] = np.zeros(0, np.int64)
             continue
         wanted = [np.pad(p, ((0, 0), (0, 4 - p.shape[1])), constant_values=-1) for p in parts]
@@ -457,7 +459,7 @@ def _surfaces(t: Topology, mesh: Mesh) -> None:
 
 
 def snap_mates(topology: Topology) -> None:
-    """Put the vertices of conforming faces at exactly the same place (they differ by round-off)."""
+    """Move the vertices of conforming faces to exactly the same place (they differ by round-off)."""
     faces, shift = topology.pair_faces, topology.pair_shift
     if len(faces) == 0:
         return

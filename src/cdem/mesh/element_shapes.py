@@ -15,7 +15,7 @@ from cdem.mesh.arrays import determinant, in_pieces, matrix_product, same_everyw
 Array = NDArray[np.float64]
 
 NODES = {"tet4": 4, "pyramid5": 5, "wedge6": 6, "hex8": 8}
-"""Nodes of each shape, in the order in which elements are numbered."""
+"""Nodes of each shape, in the order of element numbers."""
 
 _HEX_CORNERS = np.array(
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]]
@@ -122,8 +122,8 @@ def one_point(
 
     Args:
         corners: Node positions [m], shape (elements, 8, 3).
-        gradient: Of the full rule, as from `reference_gradients`.
-        volume: Of the full rule.
+        gradient: Gradients of the full rule, from `reference_gradients`.
+        volume: Volumes of the full rule.
         young: Young's modulus [Pa], shape (elements,).
 
     Returns:
@@ -139,7 +139,7 @@ def one_point(
 
 
 def _stiffness_rule(shape: str) -> tuple[Array, Array]:
-    """Points and weights of the element forces; the kernels hold the same number of points."""
+    """Points and weights of the element forces; the kernels have the same number of points."""
     if shape == "tet4":
         return np.full((1, 3), 0.25), np.array([1 / 6])
     if shape == "hex8":
@@ -263,7 +263,7 @@ def squared_frequencies(
 ) -> Array:
     """Largest squared eigenfrequency of each free element [1/s2], exact.
 
-    The largest over the elements bounds that of the mesh.
+    The largest over the elements is an upper bound for the mesh.
 
     Args:
         shape: Shape of the elements.
@@ -303,9 +303,9 @@ def squared_frequencies(
 def _largest_of_tets(gradient: Array, lame: Array, shear: Array) -> Array:
     """Largest eigenvalue of B^T D B of tets of unit volume [Pa/m2], in closed form.
 
-    Seen along the principal axes of G = sum g g^T, with squares g_1 >= g_2 >= g_3, shear strains
-    stand alone, with mu (g_i + g_j), and axial ones have lambda sqrt(g_i g_j) + 2 mu g_i delta_ij.
-    All four masses of a tet are equal, lumped or not, and its gradients add up to nothing.
+    Along the principal axes of G = sum g g^T, with squares g_1 >= g_2 >= g_3, shear strains
+    are decoupled, with mu (g_i + g_j), and axial ones have lambda sqrt(g_i g_j) + 2 mu g_i
+    delta_ij. All four masses of a tet are equal, lumped or not, and its gradients sum to zero.
     """
     squares = _eigenvalues(gradient.transpose(0, 2, 1) @ gradient)
     root = np.sqrt(np.maximum(squares, 0.0))

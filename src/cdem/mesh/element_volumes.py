@@ -17,10 +17,10 @@ from cdem.mesh.element_shapes import FACES, NODES
 Floats = NDArray[np.float64]
 
 CHUNK = 200_000
-"""Cells under the boxes of triangles that are cut up at once: some 100 MB."""
+"""Cells under the boxes of triangles that are cut at once: some 100 MB."""
 
 SLIGHT = 1e-9
-"""Points this part of a triangle beyond its edges lie on it."""
+"""Points within this fraction of a triangle beyond its edges count as on it."""
 
 
 @dataclass
@@ -42,7 +42,7 @@ class Solids:
         """Elements of a mesh, by shape, shapes one after the other.
 
         Args:
-            points: [m], shape (nodes, 3).
+            points: Positions of the nodes [m], shape (nodes, 3).
             cells: By shape, node ids (elements, nodes of the shape).
         """
         triangles, owner, middle, first = [], [], [], 0
@@ -56,7 +56,7 @@ class Solids:
         return cls(np.concatenate(triangles), np.concatenate(owner), np.concatenate(middle))
 
     def only(self, chosen: NDArray[np.bool_]) -> Solids:
-        """Those of the elements that are chosen, shape (elements,)."""
+        """A selection of the elements, shape (elements,)."""
         if chosen.all():
             return self
         number, of = np.cumsum(chosen) - 1, chosen[self.owner]
@@ -80,12 +80,12 @@ class Solids:
         return self.middle + np.column_stack(sums) / self.volumes()[:, None]
 
     def level_below_which(self, share: float, along: Floats, density: Floats) -> float:
-        """Distance along a direction below which a share of the mass lies [m].
+        """Distance along a direction below which a fraction of the mass lies [m].
 
         Args:
             share: 0 to 1.
             along: Unit vector, shape (3,); distances count from the origin.
-            density: Of each element [kg/m3].
+            density: Density of each element [kg/m3].
         """
         knots = np.column_stack([self.triangles @ along, (self.middle @ along)[self.owner]])
         knots.sort(axis=1)
@@ -106,7 +106,7 @@ class Solids:
         return 0.5 * (low + high)
 
     def shares_ahead(self, place: Floats, normal: Floats) -> Floats:
-        """Part of each element's volume that is ahead of an upright plane, 0 to 1.
+        """Fraction of each element's volume ahead of an upright plane, 0 to 1.
 
         Args:
             place: A point of the plane in plan [m], shape (2,).
@@ -136,7 +136,7 @@ class Solids:
         height = self.triangles[crossed][:, :, 2] - self.middle[owner][:, None, 2]
         place = np.stack([plan[crossed] @ along, height], axis=2)
         following, ahead_next = np.roll(place, -1, axis=1), np.roll(ahead, -1, axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):  # sides that stay on one side
+        with np.errstate(divide="ignore", invalid="ignore"):  # sides that do not cross the plane
             t = (ahead / (ahead - ahead_next))[..., None]
             points = place + t * (following - place)
         rows = np.arange(len(owner))
@@ -153,8 +153,8 @@ class Solids:
     def columns(self, cell: float) -> tuple[tuple[int, int], Floats]:
         """Volume over each cell of a grid in plan, divided by the cell's area [m].
 
-        The lines of the grid lie at multiples of `cell`. What is above a cell is cut out exactly, so
-        that the sum over all cells is the elements' volume, to round-off.
+        The lines of the grid lie at multiples of `cell`. The rock above a cell is cut out exactly,
+        so the sum over all cells is the elements' volume, to round-off.
 
         Returns:
             Column and row of the south-western cell, and the thickness, shape (rows, columns), rows
@@ -188,11 +188,11 @@ class Solids:
             yield Parts(place, owner[triangle[strip]], *_integrals(pieces))
 
     def tops(self, x: Floats, y: Floats) -> Floats:
-        """Height of the highest surface at the points of an even grid [m]; nan where there is none.
+        """Height of the highest surface at the points of an even grid [m]; nan without a surface.
 
         Args:
-            x: Of its columns [m], rising.
-            y: Of its rows [m], rising.
+            x: Coordinates of its columns [m], rising.
+            y: Coordinates of its rows [m], rising.
 
         Returns:
             Shape (rows, columns).
@@ -202,9 +202,7 @@ class Solids:
         corners[:, :, :2] = (corners[:, :, :2] - origin) / step
         u, v = (corners[:, k, :2] - corners[:, 0, :2] for k in (1, 2))
         area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-        corners, u, v, area = (
-            each[area > 0] for each in (corners, u, v, area)
-        )  # those that look up
+        corners, u, v, area = (each[area > 0] for each in (corners, u, v, area))  # upward ones
         low = np.maximum(np.ceil(corners[:, :, :2].min(axis=1) - SLIGHT), 0).astype(int)
         most = np.array([len(x), len(y)]) - 1
         high = np.minimum(np.floor(corners[:, :, :2].max(axis=1) + SLIGHT), most).astype(int)
@@ -227,7 +225,7 @@ class Solids:
         return np.where(np.isfinite(top), top, np.nan).reshape(len(y), len(x))
 
     def grid(self, cell: float) -> tuple[tuple[int, int], tuple[int, int]]:
-        """South-western cell, and rows and columns, of the grid that holds all elements."""
+        """South-western cell, and rows and columns, of the grid that contains all elements."""
         plan = self.triangles[:, :, :2].reshape(-1, 2)
         low = np.floor(plan.min(axis=0) / cell)
         size = np.maximum(np.ceil(plan.max(axis=0) / cell) - low, 1)
@@ -241,9 +239,10 @@ class Parts:
     Attributes:
         place: Row times columns plus column of the cell.
         owner: Element of each.
-        thickness: Integral of z over the plan of the part, positive if it looks up, over the area of
+        thickness: Integral of z over the plan of the part, positive if it faces up, over the area
+            of
             a cell [m]; sums to the thickness of each element above each cell.
-        share: Part of the cell that it covers, positive if it looks up [1].
+        share: Fraction of the cell that it covers, positive if it faces up [1].
     """
 
     place: NDArray[np.intp]
@@ -269,12 +268,12 @@ def _triangle_weights(shape: str) -> Floats:
 
 
 def _fraction_below(knots: Floats, level: float) -> Floats:
-    """Part of each tet's volume where a linear function, whose sorted corner values are given, is
+    """Fraction of each tet's volume in which a linear function, given by sorted corner values, is
     below a level."""
     s = knots.T
 
     def part(a: int, b: int) -> Floats:
-        """Part of the edge a - b that is below, 0 to 1."""
+        """Fraction of the edge a - b that is below, 0 to 1."""
         length = s[b] - s[a]
         return np.clip((level - s[a]) / np.where(length > 0, length, 1.0), 0.0, 1.0)
 
@@ -304,12 +303,12 @@ def _keep(
 ) -> Floats:
     """The parts of convex polygons (n, k, 3) where a linear function is not negative: (n, k + 1, 3).
 
-    Places that are not needed repeat the last corner, and a polygon that vanishes is one point.
+    Unused places repeat the last corner, and an empty polygon is one point.
 
     Args:
         polygons: Corners in order.
-        chosen: Which of them reach where the function is negative; the others stay whole.
-        distance: The function at the corners of some of them, whose numbers it is given.
+        chosen: Polygons that reach where the function is negative; the others stay whole.
+        distance: The function at the corners of given polygons, called with their numbers.
     """
     out = np.concatenate([polygons, polygons[:, -1:]], axis=1)
     some = np.flatnonzero(chosen)
@@ -332,7 +331,7 @@ def _keep(
 
 
 def _integrals(polygons: Floats) -> tuple[Floats, Floats]:
-    """Integral of z over each polygon's plan, and the plan's area; positive if it looks up."""
+    """Integral of z over each polygon's plan, and the plan's area; positive if it faces up."""
     arms = polygons[:, 1:] - polygons[:, :1]
     a, b = arms[:, :-1], arms[:, 1:]
     area = 0.5 * (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])

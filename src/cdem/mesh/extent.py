@@ -1,4 +1,4 @@
-"""Size and place of a mesh: lengths in millimetres, coordinates too far away to be computed with."""
+"""Size and place of a mesh: detects lengths in millimetres, and coordinates too far from the origin."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from cdem.mesh.mesh import Floats, Mesh
 
 ROUND_OFF = 2.0**-52
 COARSE = 1e-8
-"""Round-off of positions over an element's size that is told: 500 Pa in rock of 50 GPa."""
+"""Round-off of positions, relative to an element's size, that gives a warning: 500 Pa in rock of 50 GPa."""
 TOO_COARSE = 1e-5
-"""The same that is refused: 0.5 MPa."""
+"""Round-off that is refused: 0.5 MPa."""
 
 
 def check_extent(mesh: Mesh) -> None:
-    """Refuse a mesh too large, too small or too far from the origin to be computed; note an odd one.
+    """Refuse a mesh too large, too small or too far from the origin; warn of an unusual one.
 
     Raises:
         MeshError: Its size is not possible, or round-off of the coordinates would strain the rock.
     """
     if not np.isfinite(mesh.points).all():
-        return  # `check_elements` says where
+        return  # `check_elements` names the place
     span = np.ptp(mesh.points, axis=0)
     sizes = {"length of the model": float(span.max()), "height of the model": float(span[2])}
     for quantity, size in sizes.items():

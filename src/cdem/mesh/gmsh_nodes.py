@@ -1,4 +1,4 @@
-"""Node ids of gmsh files, which meshio takes on trust: an absent one would become another node."""
+"""Check of node ids in gmsh files: meshio would take another node for a missing one."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from cdem.errors import MeshError
 
 LINEAR = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 15: 1}
-"""Nodes of the kinds of linear elements, by their number in gmsh; others are refused later on."""
+"""Nodes of linear elements, by their type number in gmsh; other types are refused later."""
 
 
 def check_node_ids(path: Path) -> None:
-    """Refuse a gmsh file, of version 2 or 4.1, whose elements name nodes that it does not have.
+    """Refuse a gmsh file, of version 2 or 4.1, whose elements name missing nodes.
 
     Raises:
-        MeshError: Says which element and which node, or that an element is cut short.
+        MeshError: Names the element and the node, or an incomplete element.
     """
     with path.open("rb") as file:
         words = file.readline().split() and file.readline().split()
@@ -38,7 +38,7 @@ def _check_text_2(path: Path, file: BinaryIO) -> None:
     count = int(file.readline())
     ids = {line.split(None, 1)[0] for line in islice(file, count)}
     if len(ids) < count:
-        raise MeshError(f"{path}: says that it has {count} nodes, but has {len(ids)} different ids")
+        raise MeshError(f"{path}: declares {count} nodes, but has {len(ids)} different ids")
     if not _go_to(file, b"$Elements"):
         return
     needed = {str(kind).encode(): nodes for kind, nodes in LINEAR.items()}
@@ -69,7 +69,7 @@ def _check_text_4(path: Path, file: BinaryIO) -> None:
         for _ in range(int(file.readline().split()[0])):
             for line in islice(file, int(file.readline().split()[3])):
                 element, *nodes = line.split()
-                if not ids.issuperset(nodes):  # or they are written in another way
+                if not ids.issuperset(nodes):  # or they are written differently
                     _refuse_absent(path, int(element), map(int, nodes), set(map(int, ids)))
 
 
@@ -78,7 +78,7 @@ def _refuse_absent(path: Path, element: int, nodes: Iterable[int], ids: set[int]
         if node not in ids:
             raise MeshError(
                 f"{path}: element {element} names node {node}, which the file does not have; write "
-                "the mesh again, whole"
+                "the mesh again, completely"
             )
 
 
@@ -128,4 +128,4 @@ _CHECKS: dict[tuple[str, bool], Callable[[Path, BinaryIO], None]] = {
     ("4.1", True): _check_binary_4,
     ("4", True): _check_binary_4,
 }
-"""By version, and whether the file is binary."""
+"""Version, and whether the file is binary."""

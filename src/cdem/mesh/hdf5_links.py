@@ -1,4 +1,4 @@
-"""HDF5 files that hold their data themselves: links to other files are refused."""
+"""HDF5 files must contain their data themselves: links to other files are refused."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from cdem.errors import CdemError, MeshError
 def refuse_links(
     group: Any, path: Path, allowed: str = "", kind: type[CdemError] = MeshError
 ) -> None:
-    """Stop at whatever in a group leads to another file.
+    """Refuse anything in a group that leads to another file.
 
     Args:
-        group: Of h5py.
+        group: Group of h5py.
         path: For messages.
         allowed: Name of a file beside it that external links may name.
         kind: Class of the error.
 
     Raises:
-        CdemError: Of the class ``kind``: a link, or a dataset whose numbers lie in another file.
+        CdemError: Of the class ``kind``: a link, or a dataset with its numbers in another file.
     """
     import h5py
 

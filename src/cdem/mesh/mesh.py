@@ -24,13 +24,13 @@ class Mesh:
     """Points and cells with named groups.
 
     Attributes:
-        points: [m], shape (points, 3).
+        points: Positions [m], shape (points, 3).
         cells: By shape ("tet4", "pyramid5", "wedge6", "hex8"), point ids (cells, nodes).
         cell_group: By shape, index into `group_names`.
         group_names: Names of the groups of cells.
         surfaces: By name, arrays of point ids of triangles (faces, 3) or quadrilaterals (faces, 4).
         notes: Warnings of the reader.
-        discs: By set of joints of discs, how many it has and how many of them meet a block.
+        discs: By set of joints of discs: number of discs, and number of discs that meet a block.
     """
 
     points: Floats
@@ -43,7 +43,7 @@ class Mesh:
 
 
 def drop_unused(mesh: Mesh) -> Mesh:
-    """Leave out points that no volume element uses."""
+    """Remove points that no volume element uses."""
     used = found_in(mesh.cells.values(), len(mesh.points))
     number = np.full(len(mesh.points), -1)
     number[used] = np.arange(len(used))
@@ -75,7 +75,7 @@ def place(
 
 
 def merge(pieces: Sequence[Mesh]) -> Mesh:
-    """All pieces in one mesh; points are not merged, groups of the same name are."""
+    """All pieces in one mesh; points are not merged, but groups of the same name are."""
     names = list(dict.fromkeys(name for piece in pieces for name in piece.group_names))
     out = Mesh(np.concatenate([p.points for p in pieces]), group_names=names)
     start = np.cumsum([0] + [len(p.points) for p in pieces])

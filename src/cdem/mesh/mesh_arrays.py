@@ -1,4 +1,4 @@
-"""A mesh as named arrays, to hand it from one process to another."""
+"""A mesh as named arrays, for transfer between processes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def to_arrays(mesh: Mesh) -> dict[str, NDArray]:
 
 
 def from_arrays(arrays: dict[str, NDArray]) -> Mesh:
-    """The mesh that `to_arrays` took apart."""
+    """The mesh of these arrays from `to_arrays`."""
 
     def some(kind: str) -> dict[str, NDArray]:
         return {k.removeprefix(kind): a for k, a in arrays.items() if k.startswith(kind)}

@@ -1,4 +1,4 @@
-"""Volume meshes read from files, in the formats of meshio that have volumes."""
+"""Volume meshes from files, in the formats of meshio for volumes."""
 
 from __future__ import annotations
 
@@ -26,36 +26,36 @@ from cdem.mesh.named_parts import check_parts
 _MESHIO_SHAPES = {"tetra": "tet4", "pyramid": "pyramid5", "wedge": "wedge6", "hexahedron": "hex8"}
 _MESHIO_FACES = ("triangle", "quad")
 SURFACES = {".ply", ".off", ".svg", ".wkt", ".obj", ".stl"}
-"""Formats of meshio that hold no volume elements."""
+"""Formats of meshio without volume elements."""
 HDF5 = {".med", ".h5m", ".cgns", ".hmf", ".xdmf", ".xmf", ".e", ".exo", ".ex2"}
 """Formats that are HDF5, or name HDF5 files."""
 BODIES = {".obj", ".stl", ".ply"}
-"""Those from which bodies are read."""
-MEND = "is it whole, and of the kind that its name says?"
+"""Formats for bodies."""
+MEND = "is it complete, and of the kind of its ending?"
 POLYHEDRA = " Polyhedral cells are read with model.blocks: [{group: NAME, file: FILE}]"
 GROUP_DATA = ("material", "gmsh:physical", "region", "group")
-"""Cell data that are groups where a file has no groups of its own, the first that is there."""
+"""Cell data used as groups in a file without groups: the first that is present."""
 UNPACKED = 100
-"""A packed mesh unpacks to at most so many times its size."""
+"""Largest ratio of unpacked to packed size of a mesh."""
 TURNED = {
     "tet4": (0, 2, 1, 3),
     "pyramid5": (0, 3, 2, 1, 4),
     "wedge6": (3, 4, 5, 0, 1, 2),
     "hex8": (4, 5, 6, 7, 0, 1, 2, 3),
 }
-"""Orders of an element's nodes in which it is turned inside out."""
+"""Orders of an element's nodes that turn it inside out."""
 
 
 def read_mesh(path: str | Path) -> Mesh:
-    """Read a volume mesh in any format that meshio knows and that has volumes.
+    """Read a volume mesh in any format of meshio for volumes.
 
-    A file packed with gzip (``.msh.gz``) is unpacked on the way. Physical groups of volumes (gmsh)
-    and cell sets become groups, those of surfaces become named surfaces; cells in no group go to
-    the group "default", and a cell in several groups to the first, which `Mesh.notes` reports. So
-    it does where all elements of a shape were numbered inside out, and have been turned.
+    A file packed with gzip (``.msh.gz``) is unpacked first. Physical groups of volumes (gmsh) and
+    cell sets become groups; groups of surfaces become named surfaces; cells without a group go to
+    the group "default", and a cell in several groups to the first, which `Mesh.notes` reports. The
+    notes also report elements of a shape that were all numbered inside out and have been corrected.
 
     Raises:
-        MeshError: The file is missing, unreadable, names nodes that it does not have, or holds no
+        MeshError: The file is missing or unreadable, names missing nodes, or contains no
             linear volume elements.
     """
     path = Path(path)
@@ -68,7 +68,7 @@ def read_mesh(path: str | Path) -> Mesh:
 
 
 def _kind(path: Path) -> str:
-    """Ending of a file, or of what is packed in it."""
+    """Ending of a file, or of the file packed in it."""
     packed = path.suffix.lower() == ".gz"
     return (Path(path.stem) if packed else path).suffix.lower()
 
@@ -82,10 +82,11 @@ def read_here(path: Path) -> Mesh:
 
 
 def _refuse_surfaces(path: Path, kind: str) -> None:
-    """Stop at formats that hold surfaces or lines only."""
+    """Refuse formats for surfaces or lines."""
     if kind in BODIES:
         raise MeshError(
-            f"{path}: holds surfaces, and a mesh needs volume elements; closed convex bodies are "
+            f"{path}: contains surfaces, but a mesh needs volume elements; closed convex bodies "
+            f"are "
             "read with model.blocks: [{group: NAME, file: FILE}]"
         )
     import meshio
@@ -93,17 +94,17 @@ def _refuse_surfaces(path: Path, kind: str) -> None:
     known = {k for k in meshio.extension_to_filetypes if k.count(".") == 1} - SURFACES
     if kind not in known:
         raise MeshError(
-            f"{path}: no kind of mesh that is read; export the volume elements from the program "
-            f"that made it, as .msh (gmsh) best; there are: {', '.join(sorted(known))}"
+            f"{path}: unknown kind of mesh; export the volume elements from the program "
+            f"that made it, preferably as .msh (gmsh); known are: {', '.join(sorted(known))}"
         )
 
 
 def _to_mesh(path: Path, raw: Any) -> Mesh:
     if not len(raw.points):
-        raise MeshError(f"{path}: holds no nodes")
+        raise MeshError(f"{path}: contains no nodes")
     points = np.asarray(raw.points, float).reshape(len(raw.points), -1)
     if points.shape[1] != 3:
-        raise MeshError(f"{path}: a mesh in a plane; cdem needs a volume mesh")
+        raise MeshError(f"{path}: is a plane mesh; cdem needs a volume mesh")
     others = {block.type for block in raw.cells} - {
         *_MESHIO_SHAPES,
         *_MESHIO_FACES,
@@ -121,34 +122,35 @@ def _to_mesh(path: Path, raw: Any) -> Mesh:
     _take_volumes(mesh, raw, groups)
     if not mesh.cells:
         raise MeshError(
-            f"{path}: holds no volume elements; export the volume mesh, not its surface"
+            f"{path}: contains no volume elements; export the volume mesh, not its surface"
         )
     mesh.notes += _several_groups(raw, path) + _turn_all_inverted(mesh, path)
     return drop_unused(mesh)
 
 
 def _check_nodes(path: Path, raw: Any) -> None:
-    """Refuse elements that name nodes that are not there: -1 would be taken for the last one."""
+    """Refuse elements that name missing nodes: -1 would mean the last one."""
     for block in raw.cells:
         cells = np.asarray(block.data)
         if cells.size == 0:
             continue
         if not np.issubdtype(cells.dtype, np.integer) or cells.ndim != 2:
             raise MeshError(
-                f"{path}: the nodes of its elements of kind {block.type} are no numbers"
+                f"{path}: the nodes of its elements of kind {block.type} are not numbers"
             )
         wrong = np.argwhere((cells < 0) | (cells >= len(raw.points)))
         if len(wrong):
             row, column = wrong[0]
             raise MeshError(
                 f"{path}: element {row} of kind {block.type} names node {cells[row, column]}, which "
-                f"the file does not have: elements and nodes counted from 0, it has "
-                f"{len(raw.points)} nodes; write the mesh again, whole"
+                f"the file does not have: it has {len(raw.points)} nodes (elements and nodes count "
+                f"from 0); "
+                "write the mesh again, completely"
             )
 
 
 def _turn_all_inverted(mesh: Mesh, path: Path) -> list[str]:
-    """Turn the elements of a shape if all of them are numbered inside out, as netgen numbers tets."""
+    """Correct the elements of a shape if all are numbered inside out, as tets of netgen are."""
     notes = []
     for shape, order in TURNED.items():
         cells = mesh.cells.get(shape)
@@ -162,7 +164,7 @@ def _turn_all_inverted(mesh: Mesh, path: Path) -> list[str]:
             mesh.cells[shape] = cells[:, order]
             notes.append(
                 f"{path}: all {len(cells):,} {shape} elements were numbered inside out, as in a "
-                "mirror, and have been turned; if the mesh was mirrored on purpose, nothing is wrong"
+                "mirror image, and have been corrected; a mesh mirrored on purpose is fine"
             )
     return notes
 
@@ -199,7 +201,7 @@ def _surfaces(raw: Any, groups: dict[int, NDArray]) -> dict[str, list[NDArray[np
 
 
 def _several_groups(raw: Any, path: Path) -> list[str]:
-    """A note if volume elements are in more than one group, for only one of them can count."""
+    """A note if volume elements are in more than one group, since only one of them counts."""
     sets = {n: s for n, s in raw.cell_sets.items() if not n.startswith("gmsh:")}
     cells, names = 0, set()
     for index, block in enumerate(raw.cells):
@@ -226,14 +228,15 @@ def _read_zipped(path: Path) -> Any:
                 allowed -= len(piece)
                 if allowed < 0:
                     raise MeshError(
-                        f"{path}: unpacks to more than {UNPACKED} times its size, as no mesh does"
+                        f"{path}: unpacks to more than {UNPACKED} times its size, more than any "
+                        f"mesh"
                     )
                 file.write(piece)
         return read_raw(plain)
 
 
 def read_raw(path: Path) -> Any:
-    """Read a file with meshio, in silence; call it inside of `reading`."""
+    """Read a file with meshio, silently; call it inside `reading`."""
     import meshio
 
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
@@ -250,13 +253,14 @@ def read_raw(path: Path) -> Any:
 
 
 def cell_groups(data: Mapping[str, NDArray]) -> NDArray | None:
-    """Groups of cells by their data: the first of `GROUP_DATA` that has whole numbers or names.
+    """Groups of cells by their data: the first of `GROUP_DATA` with whole numbers or names.
 
     Args:
         data: Values of all cells, by name.
 
     Returns:
-        A name for each cell, e.g. `material2`, or `group2` of `gmsh:physical`; None if none is there.
+        A name for each cell, e.g. `material2`, or `group2` of `gmsh:physical`; None without such
+        data.
     """
     for name in GROUP_DATA:
         values = data.get(name)
@@ -271,7 +275,7 @@ def cell_groups(data: Mapping[str, NDArray]) -> NDArray | None:
 
 
 def _data_groups(raw: Any) -> dict[int, NDArray]:
-    """Groups by cell data, block by block; none where all cells have the same."""
+    """Groups by cell data, block by block; none if all cells have the same."""
     sizes = [len(block.data) for block in raw.cells]
     data = {
         name: np.concatenate([np.asarray(part) for part in parts])

@@ -1,4 +1,4 @@
-"""Meshes in several files: those that a mesh names lie below its folder, and hold their data themselves."""
+"""Meshes in several files: named files must lie below the mesh's folder, and contain their data themselves."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from cdem.mesh.hdf5_links import refuse_links
 INCLUDE = re.compile(
     rb"^\s*\*\s*INCLUDE\b[^\n]*?INPUT\s*=\s*([^,\n]*)", re.IGNORECASE | re.MULTILINE
 )
-MEND = "a mesh is read from its own folder"
+MEND = "all files of a mesh must lie in its folder"
 
 
 def check_parts(path: Path) -> None:
-    """Stop at a mesh that leads to files elsewhere: by HDF5, XDMF, or ``*INCLUDE`` of Abaqus.
+    """Refuse a mesh that leads to files elsewhere: by HDF5, XDMF, or ``*INCLUDE`` of Abaqus.
 
     Raises:
-        MeshError: It does. Call it inside of `reading`.
+        MeshError: It does. Call this inside `reading`.
     """
     kind = path.suffix.lower()
     if kind in (".xdmf", ".xmf"):
@@ -47,7 +47,7 @@ def _check_includes(path: Path, folder: Path, seen: set[Path]) -> None:
     for name in INCLUDE.findall(path.read_bytes()):
         other = _below(path, folder, name.decode(errors="replace").strip())
         if other in seen:
-            raise MeshError(f"{path}: includes '{other.name}', which is read already")
+            raise MeshError(f"{path}: includes '{other.name}', which has been read already")
         if other.is_file():
             _check_includes(other, folder, seen)
 

@@ -1,4 +1,4 @@
-"""Touching faces that do not conform: clip one against the other, share the overlap's area.
+"""Touching faces that do not conform: clip one against the other, distribute the overlap's area.
 
 The points of contact of two overlapping faces (vertices of either inside the other, and crossings of
 their edges) are exactly the vertices of the overlap polygon. Bond points there, with areas
@@ -6,7 +6,7 @@ their edges) are exactly the vertices of the overlap polygon. Bond points there,
     w_i = (A_{i-1} + A_i) / 3 + A / (3 N),
 
 A_i the triangles between the vertices and their mean, carry the polygon's exact area and centroid, so
-neither strength nor stiffness depends on which side is meshed finer.
+neither strength nor stiffness depends on which side has the finer mesh.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from cdem.mesh.arrays import along, in_plane, lengths
 from cdem.mesh.topology import Floats, Topology
 
 COPLANAR = 1e-6
-"""Faces touch if their planes are closer than this times their size, and as parallel (a sine)."""
+"""Faces touch if the distance of their planes over their size, and the sine of their angle, are less."""
 LEAST_AREA = 1e-9
-"""Overlaps smaller than this part of the smaller face are sides that merely touch."""
+"""Overlaps below this fraction of the smaller face are sides that merely touch."""
 AT_ONCE = 1_000_000
 """Pairs of boxes that are compared at once."""
 
@@ -39,7 +39,7 @@ class Overlaps:
 
 
 def find_overlaps(t: Topology, bonded: NDArray[np.bool_]) -> Overlaps:
-    """Find all touching, coplanar, opposing, non-conforming faces of kinds that are bonded."""
+    """Find all touching, coplanar, opposing, non-conforming faces of bonded kinds."""
     faces, first, weights_a, weights_b, areas = [], [0], [], [], []
     for a, b in _candidates(t, bonded):
         polygon = clip(_corners(t, a), _corners(t, b))
@@ -67,10 +67,10 @@ def flush_faces(
 
     Args:
         t: Blocks and faces.
-        kinds: Which kinds of faces are asked for, (kinds, kinds).
+        kinds: Pairs of kinds of faces to include, (kinds, kinds).
 
     Returns:
-        Where the rows of all faces begin, (faces + 1,), and the faces in them, ascending.
+        First row of each face, (faces + 1,), and the faces in the rows, ascending.
     """
     conforming = t.pair_faces.reshape(-1, 2)
     asked = kinds[t.face_kind[conforming[:, 0]], t.face_kind[conforming[:, 1]]]
@@ -103,7 +103,7 @@ def _candidates(t: Topology, bonded: NDArray[np.bool_]) -> NDArray[np.int64]:
     size = np.linalg.norm(high - low, axis=1)
     low, high = low - COPLANAR * size[:, None], high + COPLANAR * size[:, None]
 
-    # sweep along the longest axis: open boxes are those that began within the largest extent
+    # sweep along the longest axis: open boxes began within the largest extent
     axis = int(np.argmax(np.ptp(x.reshape(-1, 3), axis=0)))
     order = np.argsort(low[:, axis], kind="stable")
     low, high, normal = low[order], high[order], normal[order]

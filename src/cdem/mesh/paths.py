@@ -1,4 +1,4 @@
-"""Straight paths through the elements of a mesh: which they pass, from where to where."""
+"""Straight paths through the elements of a mesh: elements on the path, with the start and end in each."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class Pass:
     """A part of a path in one element.
 
     Attributes:
-        first: Where it begins along the path [m].
-        last: Where it ends [m].
-        shape: Of the element.
-        element: Its number among those of the shape.
-        block: The block that it is of.
+        first: Its start along the path [m].
+        last: Its end [m].
+        shape: Shape of the element.
+        element: Number of the element within its shape.
+        block: Block of the element.
         group: The group of the block.
     """
 
@@ -39,13 +39,13 @@ class Pass:
 
 
 def passes(t: Topology, start: Floats, end: Floats, from_: float = 0.0) -> list[Pass]:
-    """Elements that a straight path meets, in no order; faces are taken as planes.
+    """Elements on a straight path, unordered; faces are taken as planes.
 
     Args:
         t: Blocks and elements.
-        start: Where it begins [m].
-        end: Where it ends [m].
-        from_: Length of the path before `start`, which the results count from [m].
+        start: Start of the path [m].
+        end: End of the path [m].
+        from_: Length of the path before `start`, added to the results [m].
     """
     length = float(lengths(end - start))
     way = (end - start) / length
@@ -86,9 +86,9 @@ def _near(corners: Floats, start: Floats, end: Floats) -> NDArray[np.intp]:
 
 
 def walk(found: list[Pass], length: float, slack: float) -> Iterator[Pass]:
-    """Order the parts of a path so that each begins where the one before ends, or after a gap.
+    """Order the parts of a path so that each begins at the end of the one before, or after a gap.
 
-    Where several elements share a part, the path stays in its block, and in the element that takes it
+    If several elements share a part, the path stays in its block, and in the element that leads
     farthest.
     """
     at, block = 0.0, -1
@@ -108,7 +108,7 @@ def walk(found: list[Pass], length: float, slack: float) -> Iterator[Pass]:
 
 
 def weights_in(t: Topology, shape: str, element: int, place: Floats) -> tuple[Floats, Floats]:
-    """Nodes of an element, and the weights with which they make up a place in it [m]."""
+    """Nodes of an element, and the weights that give a position in it [m]."""
     nodes = t.element_nodes[shape][element]
     corners = t.node_position[nodes]
     local = np.full(3, 0.25) if shape in ("tet4", "pyramid5") else np.full(3, 0.0)
@@ -128,6 +128,6 @@ def weights_in(t: Topology, shape: str, element: int, place: Floats) -> tuple[Fl
 
 
 def _solved(rows: Floats, off: Floats) -> Floats:
-    """By how much of each of three vectors a place is off; LAPACK's bits depend on the CPU."""
+    """Coordinates of a position in terms of three vectors; LAPACK's bits depend on the CPU."""
     across = np.cross(rows[[1, 2, 0]], rows[[2, 0, 1]])
     return along(across, off) / along(rows[0], across[0])

@@ -18,7 +18,7 @@ _KUHN = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (
 
 
 _CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
-"""Corners of a cell as a hexahedron has them."""
+"""Corners of a cell in the order of a hexahedron."""
 
 
 def box(
@@ -36,7 +36,7 @@ def box(
         size: Edge lengths [m].
         divisions: Cells along each edge.
         shape: "hex8", or each cell divided: "wedge6" (2), "pyramid5" (6), "tet4" (6, conforming).
-        mirrored: Whether the tets of neighbouring cells are mirror images: the faces of all have no
+        mirrored: Whether the tets of neighbouring cells are mirror images: the mesh then has no
             preferred direction. Else all cells are divided along the same diagonal.
     """
     counts = [int(n) for n in divisions]
@@ -64,7 +64,7 @@ def box(
     elif shape == "pyramid5":
         middle = len(points) + np.arange(len(hexes))
         points = np.concatenate([points, points[hexes].mean(axis=1)])
-        # a face seen from outside is clockwise from the apex inside: turn it round
+        # a face seen from outside is clockwise from the apex inside: reverse it
         cells = np.concatenate(
             [np.column_stack([hexes[:, list(f)[::-1]], middle]) for f in FACES["hex8"]]
         )
@@ -78,8 +78,8 @@ def polyhedron(
 
     Args:
         group: Name of its group.
-        vertices: [m], shape (vertices, 3); every one must be a corner of the hull.
-        faces: Vertex ids of each face, in either turn; the convex hull when left out.
+        vertices: Positions [m], shape (vertices, 3); every one must be a corner of the hull.
+        faces: Vertex ids of each face, in either direction; default the convex hull.
 
     Raises:
         MeshError: Fewer than four vertices, no volume, or not convex.
@@ -116,11 +116,11 @@ def _centroid(points: Floats, triangles: NDArray) -> Floats:
 
 
 SNAPPED = 1e-4
-"""A body whose corners lie no farther outside of its faces than this part of its size is convex."""
+"""A body counts as convex if no corner lies farther outside its faces than this fraction of its size."""
 
 
 def bulge(points: Floats, loops: Sequence[Sequence[int]]) -> float:
-    """How far corners of a body lie outside of the planes of its outward faces, at most [m]."""
+    """Largest distance of corners of a body outside the planes of its outward faces [m]."""
     most = 0.0
     for loop in loops:
         x = points[list(loop)]
@@ -130,13 +130,13 @@ def bulge(points: Floats, loops: Sequence[Sequence[int]]) -> float:
 
 
 def snapped(points: Floats, loops: Sequence[Sequence[int]], near: float = 0.0) -> str:
-    """What to say of a body that is convex within `SNAPPED` only; nothing of others."""
+    """A note on a body that is convex only within `SNAPPED`; empty for others."""
     off, size = bulge(points, loops), float(np.ptp(points, axis=0).max())
     if off <= max(near, 100 * _tolerance(points)):
         return ""
     return (
-        f"taken as convex: corners lie up to {off:.2g} m outside of its faces, {off / size:.1g} of "
-        f"its size (up to {SNAPPED:g} is)"
+        f"taken as convex: corners lie up to {off:.2g} m outside its faces, {off / size:.1g} of "
+        f"its size (limit {SNAPPED:g})"
     )
 
 
@@ -147,12 +147,12 @@ def _tolerance(points: Floats) -> float:
 def outward_faces(
     points: Floats, faces: Sequence[Sequence[int]] | None, near: float = 0.0
 ) -> list[list[int]]:
-    """Polygons around a convex polyhedron, outward: those given, or of its hull.
+    """Polygons around a convex polyhedron, outward: the given ones, or of its hull.
 
     Args:
         points: Vertices [m], shape (vertices, 3).
-        faces: Vertex ids of each face, in either turn, or None.
-        near: How far rounding may have moved vertices off the faces that were given [m].
+        faces: Vertex ids of each face, in either direction, or None.
+        near: How far rounding may have moved vertices off the given faces [m].
 
     Raises:
         MeshError: No volume, or not convex.
@@ -168,7 +168,7 @@ def _fans(faces: Sequence[Sequence[int]]) -> NDArray[np.int64]:
 def _hull(points: Floats) -> list[list[int]]:
     """Polygons of the convex hull, outward.
 
-    Looks at the plane of every three vertices, which is plenty fast for a block's few dozens.
+    Checks the plane of every three vertices, which is fast enough for the few dozens of a block.
     """
     n = len(points)
     near = _tolerance(points)
@@ -184,7 +184,7 @@ def _hull(points: Floats) -> list[list[int]]:
                     size
                     <= near * np.linalg.norm(points[[j, k, k]] - points[[i, i, j]], axis=1).max()
                 ):
-                    continue  # three in a line span no plane
+                    continue  # three points on a line span no plane
                 normal = normal / size
                 height = (points - points[i]) @ normal
                 if height.max() > near and height.min() < -near:
@@ -202,8 +202,10 @@ def _hull(points: Floats) -> list[list[int]]:
         raise MeshError("a polyhedron has no volume: its vertices lie in a plane")
     if missing:
         raise BodyError(
-            f"a polyhedron is not convex: vertex {missing[0]} at ({coordinates(points[missing[0]])}) is no corner of the hull; "
-            "leave it out if it repeats another or lies on a side, else cut the block into convex ones",
+            f"a polyhedron is not convex: vertex {missing[0]} at "
+            f"({coordinates(points[missing[0]])}) is not a corner of the hull; "
+            "leave it out if it repeats another or lies on a side, else divide the block into "
+            "convex ones",
             points,
             faces,
             [[v] for v in missing],
@@ -218,18 +220,18 @@ def _around(points: Floats, on: tuple[int, ...], normal: Floats) -> list[int]:
     side = np.cross(normal, first)
     angle = [np.arctan2((points[v] - center) @ side, (points[v] - center) @ first) for v in on]
     loop = [on[i] for i in np.argsort(angle, kind="stable")]
-    start = loop.index(on[0])  # not at half a turn, where round-off decides who is first
+    start = loop.index(on[0])  # away from half a turn, where round-off would decide the order
     loop = loop[start:] + loop[:start]
     corners = []
     for a, b, c in zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True):
         turn = np.cross(points[b] - points[a], points[c] - points[b]) @ normal
-        if turn > _tolerance(points) ** 2:  # leave out points in the middle of a side
+        if turn > _tolerance(points) ** 2:  # remove points in the middle of a side
             corners.append(b)
     return corners
 
 
 def _outward(points: Floats, faces: Sequence[Sequence[int]], near: float) -> list[list[int]]:
-    """The faces that a user gave, turned outward; refused if they do not bound a convex body."""
+    """The given faces, turned outward; refused if they do not bound a convex body."""
     near = max(near, SNAPPED * float(np.ptp(points, axis=0).max()))
     middle = points.mean(axis=0)
     loops = []
@@ -249,7 +251,7 @@ def _outward(points: Floats, faces: Sequence[Sequence[int]], near: float) -> lis
             raise BodyError(
                 f"a polyhedron is not convex: vertex {out} at ({coordinates(points[out])}) lies "
                 f"{(points[out] - x[0]) @ normal:.3g} m outside face {number} "
-                f"({'; '.join(map(coordinates, x[:4]))}); cut the block into convex ones",
+                f"({'; '.join(map(coordinates, x[:4]))}); divide the block into convex ones",
                 points,
                 faces,
                 [[int(out)], *zip(loop, loop[1:] + loop[:1], strict=True)],

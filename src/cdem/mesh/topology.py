@@ -1,4 +1,4 @@
-"""The topology of a model: blocks, nodes, elements, exterior faces and edges, and what touches."""
+"""The topology of a model: blocks, nodes, elements, exterior faces and edges, touching faces."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class Topology:
     """Blocks, exterior faces and pairs of touching faces; indices are 32-bit, -1 means none.
 
     Attributes:
-        node_position: [m], shape (nodes, 3). Nodes of a block are contiguous.
+        node_position: Positions [m], shape (nodes, 3). Nodes of a block are contiguous.
         node_block: Block of each node.
         node_point: Mesh point of each node.
-        node_place: A number shared by nodes that began at the same place.
+        node_place: A number shared by nodes with the same initial position.
         block_first_node: Start of each block's nodes, shape (blocks + 1,).
         block_group: Group of each block.
         element_nodes: By shape, (elements, nodes of the shape).
@@ -29,12 +29,12 @@ class Topology:
         face_nodes: Exterior faces, (faces, 4), the fourth -1 for a triangle.
         face_block: Block of each face.
         face_group: Group of each face.
-        face_kind: What decides its interface: its group, plus the number of groups times
-            (1 + joint set) for a face that a set of joints made.
+        face_kind: Determines its interface: its group, plus the number of groups times
+            (1 + joint set) for a face made by a set of joints.
         face_element: Element behind each face; shapes in the order of `element_shapes.NODES`.
         face_edges: Edge from vertex k to k + 1, (faces, 4).
         edge_nodes: Exterior edges, (edges, 2).
-        edge_faces: The two exterior faces of the block that meet there, (edges, 2).
+        edge_faces: The two exterior faces of the block at the edge, (edges, 2).
         node_ring_first: Start of each node's ring, (nodes + 1,).
         node_ring: Other ends of the exterior edges at each node.
         pair_faces: Conforming faces of different blocks, (pairs, 2).
@@ -42,7 +42,7 @@ class Topology:
         overlap_faces: Touching faces that do not conform, (overlaps, 2).
         overlap_first: Start of each overlap's points, (overlaps + 1,).
         overlap_weights_a: Weights of a point on the first face's vertices, (points, 4).
-        overlap_weights_b: On the second face's.
+        overlap_weights_b: Weights on the second face's vertices.
         overlap_area: Share of each point in the true overlap area [m2].
         surfaces: Named surfaces, as ids of exterior faces.
     """

@@ -20,19 +20,19 @@ from cdem.model.module import Module
 Stride = Callable[[int], int]
 """The core's function from item count to table stride."""
 DEFORMED = 1.5
-"""How much larger than in the stress-free mesh a face may become."""
+"""Largest growth of a face over its stress-free size."""
 
 
 def assemble(
     topology: Topology, properties: Properties, padded_stride: Stride, modules: Collection[Module]
 ) -> Assembly:
-    """Build every array that the core's `take_model` wants, but those of modules.
+    """Build every array of the core's `take_model`, except arrays of modules.
 
     Args:
         topology: Blocks, elements, faces and pairs.
-        properties: What the case says about them.
+        properties: Properties from the case.
         padded_stride: The core's function from item count to table stride.
-        modules: Those of the model, whose corner rows follow those of pairs.
+        modules: Modules of the model; their corner rows follow the rows of pairs.
     """
     out = Assembly()
     out.counts = {
@@ -90,7 +90,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
         out.arrays[f"{shape}.gradient"] = table(flat.T, stride)
         out.arrays[f"{shape}.volume"] = table(volume.T, stride)
         out.arrays[f"{shape}.hourglass"] = table(hourglass.T, stride)
-        out.arrays[f"{shape}.values"] = np.zeros(0)  # asked for by water in pores
+        out.arrays[f"{shape}.values"] = np.zeros(0)  # used by water in pores
         out.arrays[f"{shape}.nodal_mean"] = table(_averaged(t, p, shape), stride)
         out.counts[f"{shape}.count"] = count
         out.counts[f"{shape}.corner_first"] = row
@@ -107,7 +107,7 @@ def _elements(t: Topology, p: Properties, padded_stride: Stride, out: Assembly) 
 
 def _averaged(t: Topology, p: Properties, shape: str) -> NDArray[np.int8]:
     """Whether elements average their dilatation at the nodes, shape (1, elements): tets of blocks of
-    several that can flow. Shape (0, elements) where none does."""
+    several tets with a plastic material. Shape (0, elements) if none does."""
     block = t.node_block[t.element_nodes[shape][:, 0]]
     several = np.bincount(block, minlength=len(t.block_group))[block] > 1
     averaged = several & p.nodal_mean[t.element_group[shape]] & (shape == "tet4")
@@ -115,7 +115,7 @@ def _averaged(t: Topology, p: Properties, shape: str) -> NDArray[np.int8]:
 
 
 def _scale_masses(t: Topology, p: Properties, out: Assembly) -> None:
-    """Add what the case allows, and note what a little mass would buy."""
+    """Add mass as the case asks, and note the gain of a little mass."""
     scaling = Scaling(t, p, out)
     bought = scaling.added(scaling.limit(OFFER)) if scaling.free_mass > 0 else 0 * out.added_mass
     out.limits = (scaling.limit_at_the_start(0 * bought), scaling.limit_at_the_start(bought))
@@ -167,14 +167,14 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
 
 
 def _movable(t: Topology, p: Properties) -> NDArray[np.int8]:
-    """Whether a face's block moves at all; two that do not need not be searched for contact."""
+    """Whether a face's block moves at all; contacts between two fixed blocks need no search."""
     free = np.zeros(len(t.block_group), np.int8)
     free[t.node_block[p.driven | ~p.supported.all(axis=1)]] = 1
     return free[t.face_block]
 
 
 def _radius(t: Topology, p: Properties, out: Assembly) -> Floats:
-    """Radius of a sphere of the volume of a face's block [m]; 1e300 where it cannot move."""
+    """Radius of a sphere of the volume of a face's block [m]; 1e300 for a fixed block."""
     volume = np.zeros(len(t.block_group))
     for shape, of_elements in out.element_volume.items():
         np.add.at(volume, t.node_block[t.element_nodes[shape][:, 0]], of_elements)
@@ -265,7 +265,7 @@ def _strength(faces: Ints, interface: Ints, p: Properties, stride: int) -> Float
 
 
 def _corners(t: Topology, modules: Collection[Module], out: Assembly) -> None:
-    """List the corner rows of each node: those of pairs, then those of modules."""
+    """List the corner rows of each node: rows of pairs, then rows of modules."""
     owner, row = [], []
     for kind, n in (("triangles", 3), ("quads", 4)):
         count = out.counts[f"{kind}.count"]

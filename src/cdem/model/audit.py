@@ -1,4 +1,4 @@
-"""What a model is, before the first step: counts, groups, interfaces, step, memory, warnings."""
+"""Report on a model before the first step: counts, groups, interfaces, step, memory, warnings."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class Audit:
 
     Args:
         build: The model, prepared.
-        overlap: Of the blocks at the start: depth [m], number of vertices, a face.
-        threads: Threads that are going to compute.
+        overlap: Overlap of the blocks at the start: depth [m], number of vertices, a face.
+        threads: Number of threads for the run.
 
     Attributes:
         counts: Nodes, elements, blocks, faces, semi-springs, semi-edges, bonded pairs.
-        warnings: What a user should look at.
+        warnings: Warnings for the user.
     """
 
     def __init__(self, build: Build, overlap: tuple[float, int, int], threads: int) -> None:
@@ -96,7 +96,7 @@ class Audit:
 
     @property
     def absent(self) -> dict[str, str]:
-        """Groups that are not there at the start, and the stages that add them first."""
+        """Groups absent at the start, and the stages that first add them."""
         case = self._build.case
         return {
             name: next(stage.name for stage in case.stages if name in stage.add)
@@ -127,8 +127,10 @@ class Audit:
         dt = float(b.core.scalars()["dt"])
         if not dt > 0:
             raise CaseError(
-                f"the stable time step is {ruling.limit:.3g} s, for group {ruling.group}: nothing "
-                "could move; look at its density, Young's modulus and damping, and at the stiffness of "
+                f"the stable time step is {ruling.limit:.3g} s, for group {ruling.group}: the "
+                f"model "
+                "could not move; check its density, Young's modulus and damping, and the stiffness "
+                "of "
                 "its interfaces"
             )
         return asdict(ruling) | {
@@ -141,7 +143,7 @@ class Audit:
 
     @cached_property
     def meshed_strength(self) -> dict[str, dict[str, Any]]:
-        """Of `meshed_strengths`: about a second a group, so only where it is asked for."""
+        """Result of `meshed_strengths`: takes about a second per group, so it is computed on demand."""
         return meshed_strengths(self._build)
 
     def _slivers(self) -> int:
@@ -151,7 +153,7 @@ class Audit:
             tets = t.node_position[nodes]
             sides = tets[:, [1, 2, 3, 2, 3, 3]] - tets[:, [0, 0, 0, 1, 1, 2]]
             longest = lengths(sides).max(axis=1)
-            # two sides of each face, from the corner that it does not share with the first
+            # two sides of each face, split at the corner opposite the first triangle
             area = lengths(np.cross(sides[:, [0, 0, 1, 3]], sides[:, [1, 2, 2, 4]])).max(axis=1)
             return 6 * volume / area < SLIVER * longest
 
@@ -159,7 +161,7 @@ class Audit:
         return int(in_pieces(thin, t.element_nodes["tet4"], volume).sum())
 
     def _unheld_blocks(self) -> dict[str, int]:
-        """Blocks of each group that neither supports nor bonds nor contacts hold at the start."""
+        """Blocks of each group that no support, bond or contact holds at the start."""
         b = self._build
         t, a = b.topology, b.assembly
         core = self._build.core.fields()
@@ -174,9 +176,9 @@ class Audit:
         joined = np.concatenate([t.face_block[np.concatenate(pairs)], *by_modules])
         out = np.isin(t.block_group, [b.group_names.index(name) for name in b.case.absent(0)])
         joined = joined[~out[joined].any(axis=1)]
-        held = out.copy()  # what a later stage adds needs nothing before
+        held = out.copy()  # groups added later need no support yet
         held[t.node_block[b.arrays["support.row"][: len(t.node_block)] >= 0]] = True
-        while True:  # as many rounds as blocks lie one behind another
+        while True:  # one round per block in a chain of supports
             reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
             if not reached.any():
                 break
@@ -185,7 +187,7 @@ class Audit:
         return {name: names.count(name) for name in dict.fromkeys(names)}
 
     def _soft_interfaces(self) -> Iterator[str]:
-        for row in self.interfaces:  # joints are meant to be soft; the table has what they add
+        for row in self.interfaces:  # joints are soft on purpose; the table has their compliance
             made_up = set(row["between"]) <= self.compensation.keys()
             if row["compliance_percent"] > SOFT and not made_up and not row["joint"]:
                 yield (
@@ -196,8 +198,9 @@ class Audit:
     def _pulled(self) -> Iterator[str]:
         for i in self._build.initial.pulled if self._build.initial else []:
             yield (
-                f"{self._build.case.where(f'initial_stress.{i}')}: initial_stress.{i} pulls the rock in "
-                "all directions wherever it holds; tension is positive, write pressure with a minus sign"
+                f"{self._build.case.where(f'initial_stress.{i}')}: initial_stress.{i} gives "
+                f"tension in "
+                "all directions everywhere; tension is positive, write pressure with a minus sign"
             )
 
     def _warnings(self) -> list[str]:
@@ -224,8 +227,9 @@ class Audit:
             group = b.group_names[b.topology.block_group[block]]
             out.append(
                 f"blocks overlap at the start: {count} vertices, up to {depth:.3g} m (block {block} "
-                f"of group {group}); the overlap counts as free of stress. Mend the mesh if it "
-                "should not be there"
+                f"of group {group}); the overlap counts as free of stress. Correct the mesh unless "
+                f"the "
+                "overlap is intended"
             )
         out += self._pulled()
         if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
@@ -250,7 +254,7 @@ class Audit:
             share = self.step["added_mass"] / b.assembly.free_mass
             out.append(
                 f"mass scaling adds {self.step['added_mass']:.3g} kg "
-                f"({100 * share:.2g} % of the mass that is not held)"
+                f"({100 * share:.2g} % of the mass of free nodes)"
             )
         return out
 
@@ -264,13 +268,13 @@ class Audit:
 
     @property
     def memory(self) -> int:
-        """Bytes that the arrays of model and state take in the core; without what a step writes for
-        itself, and what Python knows of the mesh."""
+        """Bytes of the arrays of model and state in the core; without temporary arrays of a step,
+        and without the mesh in Python."""
         arrays = [*self._build.core.fields().values(), *self._build.arrays.values()]
         return sum(a.nbytes for a in arrays)
 
     def as_dict(self) -> dict[str, Any]:
-        """The whole report, ready for JSON."""
+        """All results of the report, ready for JSON."""
         return {
             "own_laws": digests,
             "counts": self.counts,
@@ -289,7 +293,7 @@ class Audit:
         }
 
     def text(self, estimate: str = "") -> str:
-        """The report as a page of text, with lines on what the run will cost."""
+        """The report as a page of text, with lines on the cost of the run."""
         lines = [self._build.case.title or "untitled case", ""]
         lines += [
             f"  {key.replace('_', ' '):<14}{value:>12,}" for key, value in self.counts.items()
@@ -303,7 +307,7 @@ class Audit:
                 f"  {name:<18}{g['blocks']:>9,}{g['elements']:>10,}{g['volume']:>14.6g}"
                 f"{g['mass']:>14.6g}"
             )
-        lines += [f"  not there before the stage {at!r}: {n}" for n, at in self.absent.items()]
+        lines += [f"  absent before the stage {at!r}: {n}" for n, at in self.absent.items()]
         flow = {name: g for name, g in self.groups.items() if BLOCK_LAWS[g["law"]].flows}
         lines += [""] * bool(flow)
         lines += [f"  {name}: {_flow_text(g)}" for name, g in flow.items()]
@@ -332,7 +336,7 @@ class Audit:
         return "\n".join(lines).rstrip() + "\n"
 
     def _interfaces_text(self) -> list[str]:
-        """Pairs of faces that are bonded, or begin as broken ones."""
+        """Lines on pairs of faces that are bonded, or that begin broken."""
         lines: list[str] = []
         if self.interfaces:
             loose = pairs_loose_joints(self._build.case)
@@ -341,7 +345,7 @@ class Audit:
                 "  bonded interfaces" + (", and joints without strength" if loose else ""),
             ]
         for row in self.interfaces:
-            adds = "made up for by the elements"
+            adds = "compensated by the elements"
             if not set(row["between"]) <= self.compensation.keys():
                 adds = (
                     f"adds {row['compliance_percent']:.3g} % compliance in tension and bending, "
@@ -357,7 +361,7 @@ class Audit:
         return lines
 
     def _initial_text(self) -> list[str]:
-        """The stress that the rock begins with."""
+        """Lines on the initial stress."""
         initial = self._build.initial
         if initial is None:
             return []
@@ -368,27 +372,30 @@ class Audit:
         if initial.cut:
             place = ", ".join(f"{x:.4g}" for x in initial.cut_at or [])
             lines.append(
-                f"    {initial.cut:,} points of joints and bonds cannot bear it and begin with what their "
-                f"strength allows: up to {initial.most_cut:.3g} Pa less (near {place})"
+                f"    {initial.cut:,} points of joints and bonds cannot carry it and begin at "
+                f"their "
+                f"strength: up to {initial.most_cut:.3g} Pa less (near {place})"
             )
         return lines
 
     def _modules_text(self) -> list[str]:
-        """What modules do."""
+        """Lines of the modules."""
         modules = self._build.modules.items()
         return [line for name, module in modules for line in module.lines(self.modules[name])]
 
     def _stiffness_text(self) -> list[str]:
-        """What makes up for bonds, and how far contacts overlap."""
-        lines = ["", "  elements that make up for bonds"] if self.compensation else []
+        """Lines on the compensation for bonds, and on overlaps of contacts."""
+        lines = ["", "  elements stiffened to compensate bonds"] if self.compensation else []
         for name, c in self.compensation.items():
             young, shear, bulk = (100 * error for error in c["errors"])
             along = ", ".join(f"{round(100 * e, 1) + 0.0:+.1f}" for e in c["along_xyz"])
             lines.append(
                 f"    {name}: E {c['young_modulus']:.4g} Pa, nu {c['poisson_ratio']:.3g}, bonds of "
                 f"{c['stiffness']:.3g} Pa/m (q {c['q']:.3g}, faces "
-                f"{c['area_per_volume']:.3g} m2/m3, h {c['height']:.3g} m); left in E up to "
-                f"{young:+.2g} %, in G {shear:+.2g} %, in K {bulk:+.2g} %; in E of the whole, with its "
+                f"{c['area_per_volume']:.3g} m2/m3, h {c['height']:.3g} m); remaining error in E "
+                f"up to "
+                f"{young:+.2g} %, in G {shear:+.2g} %, in K {bulk:+.2g} %; in E of the whole, "
+                f"including its "
                 f"surfaces, along x, y, z {along} %"
             )
         lines += ["", "  contacts"]
@@ -401,11 +408,14 @@ class Audit:
                 f"{row['speed']:.3g} m/s"
             )
             if row["curve_end"] == 0:
-                lines[-1] += "; joints close by no curve: k_n is below their initial stiffness"
+                lines[-1] += (
+                    "; joints do not follow a closure curve: k_n is below their initial stiffness"
+                )
             elif row["curve_end"] is not None:
                 lines[-1] += (
-                    f"; joints close by a curve up to {row['curve_end']:.3g} Pa, from where on they "
-                    "are as stiff as k_n, for which the step is found"
+                    f"; joints follow a closure curve up to {row['curve_end']:.3g} Pa, and from "
+                    f"there on they "
+                    "are as stiff as k_n, which determines the step"
                 )
             if row["restitution"] < 1 and self.step["rules"] == "contact":
                 lines[-1] += (
@@ -416,13 +426,13 @@ class Audit:
 
 
 def _flow_text(group: dict[str, Any]) -> str:
-    """Elements of a group that may flow."""
+    """Lines on elements of a group with a plastic material."""
     means = f", {group['nodal_means']:,} with nodal mean" if group["nodal_means"] else ""
     return f"{group['elements']:,} elements of law {group['law']}{means}"
 
 
 def _place(row: dict[str, Any]) -> str:
-    """Groups, and set of joints if any, of a row of interfaces."""
+    """Groups, and joint set if any, of a row of interfaces."""
     joint = f", joint {row['joint']}" if row["joint"] else ""
     return " - ".join(row["between"]) + joint
 

@@ -1,4 +1,4 @@
-"""Groups that come in later: where their nodes lie between rock that has moved meanwhile."""
+"""Groups that a stage adds: positions of their nodes between rock that has moved."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from cdem.mesh.topology import Topology
 Floats = NDArray[np.float64]
 
 GONE = 0.5
-"""A face is no neighbour any more once it has moved so much further than most others, in parts of
+"""A face is no longer a neighbour once it has moved this much further than most others, relative to
 the root of its area."""
 TOLERANCE = 1e-9
-"""Residual at which the nodes between are placed, in parts of the largest displacement."""
+"""Residual of the positions of nodes in between, relative to the largest displacement."""
 
 
 def nodes_of_groups(t: Topology, names: Iterable[str]) -> NDArray[np.bool_]:
-    """Whether each node is of one of these groups, shape (nodes,)."""
+    """Whether each node belongs to one of these groups, shape (nodes,)."""
     groups = [t.group_names.index(name) for name in names]
     return np.isin(t.block_group, groups)[t.node_block]
 
 
 def places(t: Topology, comes: NDArray[np.bool_], there: NDArray[np.bool_],
            held: NDArray[np.bool_], moved: Floats) -> Floats:  # fmt: skip
-    """Where nodes that come in lie: beside the rock as it lies now, evenly spread between.
+    """Positions of added nodes: beside the rock as it lies now, evenly spread between.
 
-    Vertices that touched rock at the start move with it, supports stay; nodes between take the mean of
-    their neighbours. A face whose rock has left its place is not followed.
+    Vertices that touched rock at the start move with it, supports stay; nodes in between take the
+    mean of their neighbours. A face whose rock has moved away is not followed.
 
     Args:
-        t: Blocks, as they lay at the start, and pairs of touching faces.
-        comes: Nodes that come in, shape (nodes,).
-        there: Nodes that are part of the model already, the same shape.
-        held: Components of nodes that a support holds, shape (nodes, 3).
+        t: Blocks in their initial positions, and pairs of touching faces.
+        comes: Added nodes, shape (nodes,).
+        there: Nodes already in the model, the same shape.
+        held: Components of nodes that a support fixes, shape (nodes, 3).
         moved: Displacement of the nodes since the start [m], shape (nodes, 3).
 
     Returns:
-        Positions [m], those of other nodes as at the start; shape (nodes, 3).
+        Positions [m], initial ones for other nodes; shape (nodes, 3).
     """
     node, follows, weight = _followed(t, comes, there, moved)
     count = len(t.node_position)
@@ -54,7 +54,7 @@ def places(t: Topology, comes: NDArray[np.bool_], there: NDArray[np.bool_],
 
 
 def folded(t: Topology, position: Floats, comes: NDArray[np.bool_]) -> int:
-    """Node of an element of nodes that come in which is turned inside out, or -1."""
+    """Node of an added element that is turned inside out, or -1."""
     for shape, nodes in t.element_nodes.items():
         mine = nodes[comes[nodes].all(axis=1)]
         wrong = (element_shapes.volumes(shape, position[mine]) <= 0).any(axis=1)
@@ -64,7 +64,7 @@ def folded(t: Topology, position: Floats, comes: NDArray[np.bool_]) -> int:
 
 
 def _mates(t: Topology) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Vertices of conforming faces, and their mates; both ways."""
+    """Vertices of conforming faces, and their mates; in both directions."""
     corners = (t.face_nodes >= 0).sum(axis=1)[t.pair_faces].reshape(-1, 2)[:, 0]
     ends = [np.zeros((0, 2), np.intp)]
     for n in (3, 4):
@@ -78,7 +78,7 @@ def _mates(t: Topology) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 def _overlapping(t: Topology) -> Iterator[tuple[Floats, NDArray, Floats, NDArray]]:
-    """Weights and nodes of points of overlaps, on either side: mine, the other's."""
+    """Weights and nodes of points of overlaps, for either side: own face, other face."""
     pair = np.repeat(np.arange(len(t.overlap_faces)), np.diff(t.overlap_first))
     nodes = [np.maximum(t.face_nodes[t.overlap_faces[pair, side]], 0) for side in (0, 1)]
     weights = [t.overlap_weights_a, t.overlap_weights_b]
@@ -89,7 +89,7 @@ def _overlapping(t: Topology) -> Iterator[tuple[Floats, NDArray, Floats, NDArray
 def _followed(
     t: Topology, comes: NDArray[np.bool_], there: NDArray[np.bool_], moved: Floats
 ) -> tuple[NDArray, Floats, Floats]:
-    """Nodes that come in, displacements that they are to follow, and with what weight."""
+    """Added nodes, displacements for them to follow, and weights."""
     vertex, mate = _mates(t)
     some = comes[vertex] & there[mate]
     found = [(vertex[some], moved[mate[some]], np.ones(some.sum()))]
@@ -107,7 +107,7 @@ def _followed(
 
 
 def _size(t: Topology) -> Floats:
-    """Length of the shortest edge that leaves each node [m]; of a node without edges 0."""
+    """Length of the shortest edge at each node [m]; 0 for a node without edges."""
     a, b = t.edge_nodes.T
     length = np.sqrt(((t.node_position[a] - t.node_position[b]) ** 2).sum(axis=1))
     size = np.full(len(t.node_position), np.inf)
@@ -117,10 +117,10 @@ def _size(t: Topology) -> Floats:
 
 
 def _spread(t: Topology, comes: NDArray[np.bool_], led: NDArray[np.bool_], own: Floats) -> Floats:
-    """Displacement along an axis of nodes that come in: `own` where it is led, the mean of
-    neighbours elsewhere [m], shape (nodes,).
+    """Displacement of added nodes along an axis: `own` if prescribed, elsewhere the mean of
+    neighbours [m], shape (nodes,).
 
-    Nodes that began at the same place move alike. What nothing leads stays.
+    Nodes with the same initial position move together. Nodes without any prescribed neighbour stay.
     """
     place = t.node_place.astype(np.intp)
     count = int(place.max(initial=-1)) + 1
@@ -132,7 +132,7 @@ def _spread(t: Topology, comes: NDArray[np.bool_], led: NDArray[np.bool_], own: 
     free = (degree > 0) & ~fixed
 
     def pull(x: Floats) -> Floats:
-        """What neighbours pull each free place by: 0 where it takes their mean."""
+        """Residual of each free node: 0 if it has the mean of its neighbours."""
         return np.where(free, np.bincount(a, x[b], count) - degree * x, 0.0)
 
     largest = np.abs(way).max(initial=0.0)
@@ -151,7 +151,7 @@ def _spread(t: Topology, comes: NDArray[np.bool_], led: NDArray[np.bool_], own: 
 
 
 def _neighbours(t: Topology, comes: NDArray[np.bool_], place: NDArray) -> tuple[NDArray, NDArray]:
-    """Places of which elements that come in join two, once each, both ways."""
+    """Edges between nodes of added elements, once each, in both directions."""
     ends: list[NDArray] = [np.zeros((0, 2), np.intp)]
     for nodes in t.element_nodes.values():
         mine = place[nodes[comes[nodes].all(axis=1)]]

@@ -15,11 +15,11 @@ from cdem.mesh.primitives import box, outward_faces, polyhedron
 from cdem.model.body_files import fill_bodies, read_bodies
 
 LARGER = 20
-"""Bodies of a file may be so much larger than all others without a word."""
+"""Bodies of a file may exceed all others by this factor without a warning."""
 FAR_LARGER = 100
-"""Beyond so many times the scale has to be written."""
+"""Above this factor the scale must be given."""
 LARGE = 1000.0
-"""So large may they be where there are no others [m]."""
+"""Largest size without a warning if there are no others [m]."""
 
 
 def read_model(case: Case) -> Mesh:
@@ -52,7 +52,7 @@ def read_model(case: Case) -> Mesh:
 
 
 def _tell_sizes(case: Case, pieces: list[Mesh]) -> None:
-    """Note bodies of files that are larger than is usual, if no scale is given; ask if far larger."""
+    """Warn of bodies of files that are unusually large, if no scale is given; refuse far larger ones."""
     sizes = [np.ptp(piece.points, axis=0) for piece in pieces]
     first = len(pieces) - len(case.model.blocks)
     for index, block in enumerate(case.model.blocks, first):
@@ -63,8 +63,8 @@ def _tell_sizes(case: Case, pieces: list[Mesh]) -> None:
         span = " x ".join(f"{s:,.4g}" for s in sizes[index])
         beside = f"; the other bodies span up to {max(others):.4g} m" if others else ""
         said = (
-            f"{block.file} spans {span} m, with its numbers taken as metres{beside}. If they are "
-            "millimetres, write scale: 0.001 beside the file (scale: 1 if not)"
+            f"{block.file} spans {span} m if its numbers are metres{beside}. If they are "
+            "millimetres, write scale: 0.001 beside the file, otherwise scale: 1"
         )
         if others and sizes[index].max() > FAR_LARGER * max(others):
             with case.blame(f"model.blocks.{index - first}"):
@@ -87,7 +87,7 @@ def _block(case: Case, block: Block) -> Mesh:
 
 
 def check_groups(case: Case, names: list[str]) -> None:
-    """Refuse a case whose groups are not those of the model.
+    """Refuse a case whose groups differ from the groups of the model.
 
     Args:
         case: The case.
@@ -95,7 +95,7 @@ def check_groups(case: Case, names: list[str]) -> None:
     """
     listed = ", ".join(names)
     if case.model.mesh is not None and "default" in names:
-        listed += "; elements that are in no group of the mesh file are in 'default'"
+        listed += "; elements without a group in the mesh file are in 'default'"
     for name in names:
         if name not in case.groups:
             raise CaseError(

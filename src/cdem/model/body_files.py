@@ -24,22 +24,22 @@ from cdem.units import coordinates
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Loops = list[list[int]]
-Body = tuple[str, Floats, Loops, str]  # what to call it, its corners, its faces, its material
+Body = tuple[str, Floats, Loops, str]  # its name, corners, faces and material
 
 SHELLS = (".obj", ".stl", ".ply")
-"""Endings of the formats that hold closed surfaces."""
+"""Endings of formats with closed surfaces."""
 CELLS = (".vtu", ".vtk")
-"""Of those that hold polyhedral cells."""
-GROWTH = 0.3  # of the edge length of tets per distance from the surface
+"""Endings of formats with polyhedral cells."""
+GROWTH = 0.3  # growth of the edge length of tets with the distance from the surface
 CROSSES = (
     "its surface cannot be filled with tets: it crosses itself, or has needles or a double wall"
 )
 SHOWN = 4
-"""So many open edges are named."""
+"""Most open edges in an error."""
 NO_SHAPE = ("vt", "vn", "s", "usemtl", "mtllib")
-"""Words of an OBJ file that say how its faces look; files that they name are not opened."""
+"""Words of an OBJ file for the looks of its faces; the files that they name are not opened."""
 ROUNDED = 1e-6
-"""Coordinates in files are rounded to about this part of the largest: STL keeps seven digits."""
+"""Coordinates in files are rounded to about this fraction of the largest: STL keeps seven digits."""
 
 
 def read_bodies(path: Path, group: str, scale: float = 1.0) -> Mesh:
@@ -47,13 +47,13 @@ def read_bodies(path: Path, group: str, scale: float = 1.0) -> Mesh:
 
     Args:
         path: ``.obj``, ``.stl`` or ``.ply``: every closed surface is a body; ``.vtu`` or ``.vtk``:
-            every volume cell is, polyhedra too (needs the extra ``viz``).
-        group: Group of the bodies; where cell data tell materials apart, it begins their groups.
-        scale: Metres for each unit of the file.
+            every volume cell is one, polyhedra too (needs the extra ``viz``).
+        group: Group of the bodies; if cell data distinguish materials, prefix of their groups.
+        scale: Metres per unit of the file.
 
     Raises:
         MeshError: The file cannot be read.
-        BodyError: A body is open or not convex; says where.
+        BodyError: A body is open or not convex; names the place.
     """
     parts, notes, groups, unused = [], list[str](), list[str](), list[str]()
     for name, points, faces, kind in _bodies(path, scale, unused):
@@ -76,7 +76,7 @@ def read_bodies(path: Path, group: str, scale: float = 1.0) -> Mesh:
             closed = "not closed" not in str(error)
             error.args = (f"{path}: {name}: {error}{hint if closed else ''}",)
             raise
-    # meshed like what joints cut: bodies that share a face divide it alike
+    # meshed like blocks cut by joints: bodies with a common face divide it alike
     mesh = to_mesh(join(parts), groups, [], [])
     mesh.notes += [
         *unused,
@@ -94,8 +94,8 @@ def fill_bodies(path: Path, group: str, size: float, scale: float = 1.0) -> Mesh
     Args:
         path: ``.obj``, ``.stl`` or ``.ply``: every closed surface is a body.
         group: Group of the bodies.
-        size: Largest edge of the tets inside [m]; the triangles of the surface stay as they are.
-        scale: Metres for each unit of the file.
+        size: Largest edge of the tets inside [m]; the triangles of the surface are kept.
+        scale: Metres per unit of the file.
 
     Raises:
         MeshError: The file cannot be read, or a surface crosses itself.
@@ -105,7 +105,7 @@ def fill_bodies(path: Path, group: str, size: float, scale: float = 1.0) -> Mesh
     from cdem.terrain.solid import fill
 
     if path.suffix.lower() not in SHELLS:
-        raise MeshError(f"{path}: size is for surfaces, {', '.join(SHELLS)}")
+        raise MeshError(f"{path}: size goes with surfaces, {', '.join(SHELLS)}")
     meshes, unused = [], list[str]()
     for name, points, faces, _ in _bodies(path, scale, unused):
         try:
@@ -130,12 +130,12 @@ def fill_bodies(path: Path, group: str, size: float, scale: float = 1.0) -> Mesh
 
 
 def _volume(shell: Floats) -> float:
-    """Volume inside of outward triangles, shape (triangles, 3, 3)."""
+    """Volume inside outward triangles, shape (triangles, 3, 3)."""
     return float(np.linalg.det(shell - shell.mean(axis=(0, 1))).sum() / 6)
 
 
 def _outward(triangles: list[tuple[int, int, int]], points: Floats) -> Ints:
-    """The triangles of a closed surface, all turned outwards."""
+    """The triangles of a closed surface, oriented outwards."""
     faces = np.array(triangles, np.int64)
     of_edge: dict[tuple[int, int], list[int]] = {}
     for number, (a, b, c) in enumerate(triangles):
@@ -150,7 +150,7 @@ def _outward(triangles: list[tuple[int, int, int]], points: Floats) -> Ints:
                 if other in seen:
                     continue
                 ring = faces[other].tolist()
-                if (p, q) in zip(ring, ring[1:] + ring[:1], strict=True):  # it runs the same way
+                if (p, q) in zip(ring, ring[1:] + ring[:1], strict=True):  # same direction
                     faces[other] = ring[::-1]
                 seen.add(other)
                 waiting.append(other)
@@ -158,7 +158,7 @@ def _outward(triangles: list[tuple[int, int, int]], points: Floats) -> Ints:
 
 
 def _bodies(path: Path, scale: float, unused: list[str]) -> list[Body]:
-    """All bodies of a file, in metres; what of it is not used is added to a list."""
+    """All bodies of a file, in metres; ignored parts are added to a list."""
     if not is_file(path):
         raise MeshError(f"{path}: no such file; give a path relative to the case file")
     kind = path.suffix.lower()
@@ -170,7 +170,7 @@ def _bodies(path: Path, scale: float, unused: list[str]) -> list[Body]:
     else:
         raise MeshError(f"{path}: bodies are read from {', '.join((*SHELLS, *CELLS))} files")
     if not bodies:
-        raise MeshError(f"{path}: holds no bodies")
+        raise MeshError(f"{path}: contains no bodies")
     for name, points, *_ in bodies:
         if not np.isfinite(points).all():
             raise MeshError(f"{path}: {name}: a corner has a coordinate that is not finite")
@@ -178,7 +178,7 @@ def _bodies(path: Path, scale: float, unused: list[str]) -> list[Body]:
 
 
 def _refuse_open(points: Floats, faces: Loops) -> None:
-    """Stop at edges that are not those of exactly two faces."""
+    """Refuse edges that do not have exactly two faces."""
     count: dict[tuple[int, int], int] = {}
     for loop in faces:
         for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
@@ -201,12 +201,12 @@ def _refuse_open(points: Floats, faces: Loops) -> None:
 
 
 def _surfaces(points: Floats, loops: Loops, parts: list[str] | None = None) -> Iterator[Body]:
-    """Bodies of a surface: each run of faces that closes, within what hangs together.
+    """Bodies of a surface: within each connected part, each run of faces that closes.
 
     Args:
-        points: Corners [m]; those of the same place are one.
-        loops: Faces, in the order of the file: objects, groups and solids stand there one by one, so
-            bodies that share a face, an edge or a corner close one after the other.
+        points: Corners [m]; corners at the same place count as one.
+        loops: Faces, in the order of the file: objects, groups and solids follow one another, so
+            bodies with a common face, edge or corner close one after the other.
         parts: Name of the object or solid of each face, if the file has any.
     """
     points, same = np.unique(points, axis=0, return_inverse=True)
@@ -227,7 +227,7 @@ def _surfaces(points: Floats, loops: Loops, parts: list[str] | None = None) -> I
 
 
 def _runs(loops: Loops, some: list[int]) -> Iterator[list[int]]:
-    """Parts of connected faces that close one after the other; an open rest makes all of them one."""
+    """Parts of connected faces that close one after the other; an open rest makes them one part."""
     runs: list[list[int]] = [[]]
     odd: set[tuple[int, int]] = set()
     for i in some:
@@ -243,7 +243,7 @@ def _runs(loops: Loops, some: list[int]) -> Iterator[list[int]]:
 
 
 def _own(name: str, points: Floats, loops: Loops, kind: str = "") -> Body:
-    """A body with corners of its own, numbered from 0."""
+    """A body with its own corners, numbered from 0."""
     used = np.unique(np.concatenate(loops))
     faces = [np.searchsorted(used, loop).tolist() for loop in loops]
     return name, points[used], faces, kind
@@ -272,7 +272,7 @@ def _obj(path: Path, unused: list[str]) -> Iterator[Body]:
         if words[:1] == ["f"] and not _within(loops[-1], len(points)):
             raise MeshError(f"{path}:{number}: a face needs three or more vertices from above it")
     if not loops:
-        raise MeshError(f"{path}: holds no faces")
+        raise MeshError(f"{path}: contains no faces")
     _tell_unused(path, others, unused)
     yield from _surfaces(np.array(points), loops, parts)
 
@@ -281,7 +281,7 @@ def _tell_unused(path: Path, others: Counter[str], unused: list[str]) -> None:
     if others:
         kinds = ", ".join(f"{count} of '{kind}'" for kind, count in others.most_common(SHOWN))
         more = f" and {len(others) - SHOWN} kinds more" if len(others) > SHOWN else ""
-        unused.append(f"{path.name}: only faces are used, not {kinds}{more}")
+        unused.append(f"{path.name}: only faces are used; {kinds}{more} ignored")
 
 
 def _within(loop: list[int], count: int) -> bool:
@@ -298,9 +298,9 @@ def _by_meshio(path: Path, unused: list[str]) -> Iterator[Body]:
         else:
             others[block.type] += len(block.data)
     if not loops:
-        raise MeshError(f"{path}: holds no faces that can be read; is it whole?")
+        raise MeshError(f"{path}: contains no readable faces; is the file complete?")
     if not all(_within(loop, len(raw.points)) for loop in loops):
-        raise MeshError(f"{path}: a face has a vertex that is not there")
+        raise MeshError(f"{path}: a face refers to a missing vertex")
     _tell_unused(path, others, unused)
     yield from _surfaces(np.asarray(raw.points, float), loops)
 

@@ -1,4 +1,4 @@
-"""Where the bolts of a case are: along points, in a pattern on a surface, in rings about a tunnel."""
+"""Positions of the bolts of a case: along points, in a pattern on a surface, in rings about a tunnel."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cdem.model.selection import select_faces
 Floats = NDArray[np.float64]
 
 MOST_BOLTS = 1_000_000
-"""Bolts that a pattern may have."""
+"""Most bolts of a pattern."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Polyline:
     """A bolt from head to toe.
 
     Attributes:
-        name: Of the bolt.
+        name: Name of the bolt.
         entry: Number of the entry of the case.
-        points: [m], shape (points, 3).
+        points: Points along it [m], shape (points, 3).
     """
 
     name: str
@@ -52,12 +52,12 @@ class Polyline:
         return float(self.starts[-1])
 
     def at(self, length: float) -> Floats:
-        """The place at a length from the head [m]."""
+        """The position at a length from the head [m]."""
         return np.array([np.interp(length, self.starts, x) for x in self.points.T])
 
 
 def polylines(case: Case, t: Topology, names: list[str]) -> list[Polyline]:
-    """All bolts of a case, those of a pattern by number from 1.
+    """All bolts of a case; bolts of a pattern are numbered from 1.
 
     Raises:
         CaseError: A pattern has no bolts, or too many.
@@ -85,15 +85,15 @@ def polylines(case: Case, t: Topology, names: list[str]) -> list[Polyline]:
 def _on_surface(
     case: Case, t: Topology, names: list[str], pattern: Pattern, path: str
 ) -> Iterator[Floats]:
-    """Heads on a grid in the mean plane of a surface: along it horizontally, then up the dip."""
+    """Heads on a grid in the mean plane of a surface: horizontal rows, then up the dip."""
     faces = select_faces(case, t, names, pattern.surface, path)
     triangles = _triangles(t, faces)
     areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normal = areas.sum(axis=0)
     if lengths(normal) < 1e-3 * lengths(areas).sum():
         raise CaseError(
-            f"{case.where(path)}: {path}.surface: its faces look in all directions; give one side of "
-            "it, or rings"
+            f"{case.where(path)}: {path}.surface: its faces look in all directions; give one side, "
+            "or rings"
         )
     normal /= lengths(normal)
     flat = np.hypot(normal[0], normal[1])
@@ -104,14 +104,15 @@ def _on_surface(
     way /= lengths(way)
     if along(way, normal) >= 0:
         raise CaseError(
-            f"{case.where(path)}: {path}.direction: leads out of the surface, whose outward normal "
-            f"is [{', '.join(f'{x:.3g}' for x in normal)}]; turn it round"
+            f"{case.where(path)}: {path}.direction: points out of the surface, whose outward "
+            f"normal "
+            f"is [{', '.join(f'{x:.3g}' for x in normal)}]; reverse it"
         )
     low, high = plane.min(axis=(0, 1)), plane.max(axis=(0, 1))
     counts = np.floor((high - low) / pattern.spacing + 1e-9).astype(int)
     if counts.prod() > MOST_BOLTS:
         raise CaseError(
-            f"{case.where(path)}: {path}.spacing: asks for {counts.prod():,} bolts, more than "
+            f"{case.where(path)}: {path}.spacing: gives {counts.prod():,} bolts, more than "
             f"{MOST_BOLTS:,}; give a wider spacing"
         )
     begin = 0.5 * (low + high - (counts - 1) * pattern.spacing)
@@ -132,7 +133,7 @@ def _triangles(t: Topology, faces: NDArray[np.intp]) -> Floats:
 
 
 def _in_triangles(place: Floats, plane: Floats, triangles: Floats) -> Floats | None:
-    """The point of the first triangle over a place in the plane."""
+    """The point of the first triangle over a position in the plane."""
     a, b, c = plane[:, 0], plane[:, 1], plane[:, 2]
     twice = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -175,13 +176,13 @@ def _in_rings(
             if head is None:
                 raise CaseError(
                     f"{case.where(path)}: {path}: the ray from {_text(origin)} towards {_text(way)} "
-                    "meets no rock; move the axis"
+                    "hits no rock; move the axis"
                 )
             yield np.stack([origin + head * way, origin + (head + rings.length) * way])
 
 
 def _enters(t: Topology, start: Floats, end: Floats, inside: int) -> float | None:
-    """How far from its start a ray enters the rock, after the group that fills the opening [m]."""
+    """Distance from its start at which a ray enters the rock, behind the group in the opening [m]."""
     length = float(lengths(end - start))
     for p in walk(passes(t, start, end), length, 1e-9 * length):
         if p.group != inside:

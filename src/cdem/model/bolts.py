@@ -1,4 +1,4 @@
-"""Bolts of a case in the rock: where they lie, their nodes, where they cross joints, their arrays."""
+"""Bolts of a case in the rock: their nodes, their crossings of joints, their arrays."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from cdem.model.flat_arrays import Floats, Ints
 from cdem.model.module import Built, Module, Parts
 
 HOSTS = 8
-"""Nodes of the rock that a point of a bolt lies between, at most."""
+"""Most rock nodes around a point of a bolt."""
 MOST_CELLS = 4000
-"""Nodes that a bolt may have."""
+"""Most nodes of a bolt."""
 LEAST_CELLS = 8
-"""Parts that a bolt has at least."""
+"""Fewest parts of a bolt."""
 CELLS_PER_LENGTH = 8
-"""Parts in the length over which the force of an elastic bolt falls to 1/e."""
+"""Parts per length over which the force of an elastic bolt falls to 1/e."""
 SHORT = 0.1
-"""Runs in a block shorter than so much of a part count as the next block's."""
+"""Paths in a block shorter than this fraction of a part go to the next block."""
 SLACK = 1e-3
-"""Gaps of joints, and heads outside the rock, up to so much of a bolt's length."""
+"""Allowed gap at joints and outside the rock at heads, relative to a bolt's length."""
 FIXTURE_LENGTH = 0.1
-"""Length of bolt that is as stiff as a plate or an anchor by default [m]."""
+"""Length of bolt with the default stiffness of a plate or an anchor [m]."""
 NEVER = 1e300
 """A limit that is never reached."""
 
 
 @dataclass
 class Crossing:
-    """Where a bolt leaves one block for another: the bar that leads across, and the place [m]."""
+    """A crossing from one block to another: the bar across it, and the place [m]."""
 
     bar: int
     sides: tuple[Pass, Pass]
@@ -47,16 +47,16 @@ class Crossing:
 
 @dataclass
 class Bolt:
-    """One bolt, cut into nodes.
+    """One bolt, divided into nodes.
 
     Attributes:
         name: Its name.
-        entry: The entry of the case that it is of.
-        kind: What it is made of.
-        length: [m].
-        places: Of its nodes [m].
-        hosts: Elements that they lie in.
-        grouted: Length of grouted bolt that each stands for [m].
+        entry: Number of its entry in the case.
+        kind: Its type.
+        length: Length [m].
+        places: Positions of its nodes [m].
+        hosts: Elements around them.
+        grouted: Grouted length of each node [m].
         crossings: Joints that it crosses.
     """
 
@@ -107,7 +107,7 @@ class BoltModel(Module):
 
     @property
     def first(self) -> Ints:
-        """First node of each bolt, and their number."""
+        """First node of each bolt, and total number."""
         return self.arrays["bolts.first"] if self.bolts else np.zeros(1, np.int32)
 
     def add_arrays(self, parts: Parts) -> None:
@@ -119,7 +119,7 @@ class BoltModel(Module):
         return self.arrays["bolts.hosts"] if self.bolts else super().corner_nodes()
 
     def node_stiffness(self, nodes: int) -> Floats:
-        """What bolts put on each node of the rock at most, installed or not [N/m], shape (nodes,)."""
+        """Largest stiffness of bolts at each rock node, installed or not [N/m], shape (nodes,)."""
         total = super().node_stiffness(nodes)
         if self.bolts:
             owner, weights = self.arrays["bolts.hosts"], self.arrays["bolts.weights"]
@@ -128,7 +128,7 @@ class BoltModel(Module):
         return total
 
     def joined_blocks(self) -> Ints:
-        """Pairs of blocks that a bolt of the start joins, shape (pairs, 2)."""
+        """Pairs of blocks joined by a bolt at the start, shape (pairs, 2)."""
         if not self.bolts:
             return super().joined_blocks()
         pairs = [
@@ -148,7 +148,7 @@ class BoltModel(Module):
         return np.array([getattr(b.entry, when) == stage for b in self.bolts], np.int8)
 
     def report(self, build: Built) -> dict[str, dict[str, Any]]:
-        """What the audit says of bolts, by type."""
+        """Data on bolts for the audit, by type."""
         out: dict[str, dict[str, Any]] = {}
         for bolt, first in zip(self.bolts, self.first, strict=False):
             of = out.setdefault(
@@ -191,7 +191,7 @@ def part_length(kind: BoltType, length: float) -> float:
 
 
 def _cut(case: Case, t: Topology, line: Polyline, kind: BoltType) -> Bolt:
-    """Cut a bolt into nodes: in the middle of parts of even length, none of which crosses a joint."""
+    """Divide a bolt into nodes: at the middle of parts of even length, none of which crosses a joint."""
     entry = case.bolts[line.entry]
     bolt = Bolt(line.name, entry, kind, line.length)
     part = part_length(kind, line.length)
@@ -216,7 +216,7 @@ def _cut(case: Case, t: Topology, line: Polyline, kind: BoltType) -> Bolt:
 
 
 def _add_run(bolt: Bolt, line: Polyline, run: list[Pass], part: float) -> None:
-    """Nodes of a bolt in one block: grouted parts, and one node where there is no grout."""
+    """Nodes of a bolt in one block: grouted parts, and one node for an ungrouted length."""
     grout_from = bolt.entry.free_length if bolt.kind.grout is not None else np.inf
     first, last = run[0].first, run[-1].last
     middle = min(max(first, grout_from), last)
@@ -231,7 +231,7 @@ def _add_run(bolt: Bolt, line: Polyline, run: list[Pass], part: float) -> None:
 
 
 def _inside(case: Case, t: Topology, line: Polyline) -> list[Pass]:
-    """Elements along a bolt, all of which must be in the rock."""
+    """Elements along a bolt; the whole bolt must be in the rock."""
     found: list[Pass] = []
     for k in range(len(line.points) - 1):
         found += passes(t, line.points[k], line.points[k + 1], line.starts[k])
@@ -252,7 +252,7 @@ def _inside(case: Case, t: Topology, line: Polyline) -> list[Pass]:
 
 
 def _runs(path: list[Pass], short: float) -> list[list[Pass]]:
-    """Parts of a path in one block each; what is very short goes to the block before it."""
+    """Parts of a path in one block each; very short parts go to the block before."""
     runs: list[list[Pass]] = []
     for p in path:
         if runs and runs[-1][-1].block == p.block:
@@ -281,7 +281,7 @@ def _fixture(fixture: Fixture | None, axial: float) -> tuple[float, float]:
 
 
 def _dowel(kind: BoltType, crossing: Crossing, young: Floats) -> tuple[float, float]:
-    """Stiffness [N/m] and limit [N] where a bolt crosses a joint."""
+    """Stiffness [N/m] and limit [N] of a bolt at a joint."""
     if kind.dowel is None or not crossing.grouted or kind.grout is None:
         return 0.0, 0.0
     bending = kind.young_modulus * kind.area**2 / (4 * np.pi)  # E I of a round bar
@@ -350,9 +350,9 @@ def _springs(bolt: Bolt, axial: float) -> tuple[Floats, Floats]:
 
 
 def _node_stiffness(bolt: Bolt, axial: float, springs: Floats) -> Floats:
-    """What a node puts on the rock at most [N/m].
+    """Largest stiffness of a bolt node on the rock [N/m].
 
-    Along the bolt: that of its springs, behind which are its bars. Across it: the force of its bars
+    Along the bolt: its springs, which are in series with its bars. Across it: the force of its bars
     turns with them.
     """
     places = np.array(bolt.places)

@@ -1,10 +1,11 @@
-"""What part of the compliance of its bonds each face stands for, and what bonds add by direction.
+"""Shares of faces in the compliance of bonds, and the compliance of bonds by direction.
 
-Under a uniform stress S a bond of area A, normal n and stiffness k opens by S n / k. An element that
-others surround has half of that at each of its faces; so with k = a E' / h, h its height above the
-face, equal bricks gain 1 / (a E') along each axis. A face that is free takes its half from none.
-What it lacks goes to the faces that look as it does, up or down: that across from it, in a brick.
-Where that is free too, as in a slice one element thick, nothing can stand for it.
+Under a uniform stress S a bond of area A, normal n and stiffness k opens by S n / k. An inner
+element
+gets half of the openings at each of its faces; so with k = a E' / h, h its height above the face,
+equal bricks gain 1 / (a E') along each axis. A free face gets no half from a bond. Its missing part
+goes to the element's faces with a similar direction, up or down: in a brick, to the opposite face.
+If this one is free too, as in a slice one element thick, no face can replace it.
 """
 
 from __future__ import annotations
@@ -22,19 +23,19 @@ from cdem.model.homogenize import COLUMN, ROW, STATES
 Floats = NDArray[np.float64]
 
 MOST_FACES = 6
-"""Of an element."""
+"""Most faces of an element."""
 SHARPNESS = 2
-"""A face stands for another by |cos|^(2 this) between them."""
+"""A face replaces another with the weight |cos|^(2 this) of the angle between them."""
 
 
 @dataclass(frozen=True)
 class Shares:
-    """Of the faces of some elements.
+    """Shares of the faces of some elements.
 
     Attributes:
-        faces: Which they are, ascending.
-        share: What part of the compliance of its bonds each stands for: 1/2 in the midst of others [1].
-        bonded: What part of its area is bonded [1].
+        faces: Their numbers, ascending.
+        share: Share of each in the compliance of its bonds: 1/2 inside a mesh [1].
+        bonded: Bonded fraction of its area [1].
         weight: Its area times the h of its bonds over the volume of all elements [1].
         normal: shape (faces, 3).
     """
@@ -46,12 +47,12 @@ class Shares:
     normal: Floats
 
     def fabric(self, share: Floats | float | None = None) -> Floats:
-        """M of what bonds add to 1 / E along d, d M d / (a E'), shape (3, 3); or with other shares."""
+        """M of the part of 1 / E along d from bonds, d M d / (a E'), shape (3, 3); or with other shares."""
         some = self.weight * self.bonded * (self.share if share is None else share)
         return _moment(some, self.normal)
 
     def surrounded(self) -> Floats:
-        """The same if all faces were bonded, shape (3, 3)."""
+        """The same with all faces bonded, shape (3, 3)."""
         return _moment(0.5 * self.weight, self.normal)
 
 
@@ -60,7 +61,7 @@ def _moment(weight: Floats, normal: Floats) -> Floats:
 
 
 def longest(t: Topology, elements: NDArray[np.bool_], volume: Floats) -> Floats:
-    """Weights of directions of some elements, in sum 1: those along which they reach far, shape (3, 3).
+    """Weights of directions of some elements, in sum 1, large along their long axes, shape (3, 3).
 
     The square of the second moment of their volume: 10,000 to 1 for a column of ten bricks.
     """
@@ -75,7 +76,7 @@ def longest(t: Topology, elements: NDArray[np.bool_], volume: Floats) -> Floats:
 
 
 def bonded_parts(t: Topology, between: NDArray[np.bool_], area: Floats) -> Floats:
-    """What part of each face is bonded to a face of a kind that it is made up for with, (faces,)."""
+    """Fraction of each face bonded to a face of a kind that it is compensated with, (faces,)."""
     out = np.zeros(len(area))
     overlap = np.zeros(0)
     if len(t.overlap_faces):
@@ -102,10 +103,10 @@ def shares(
 
     Args:
         t: The mesh.
-        elements: Which they are, shape (elements,).
-        volume: Of all elements [m3].
-        bonded: Of `bonded_parts`.
-        area: Of all faces [m2].
+        elements: Their numbers, shape (elements,).
+        volume: Volume of all elements [m3].
+        bonded: Result of `bonded_parts`.
+        area: Area of all faces [m2].
         height: h of the bonds of each face [m].
     """
     faces = np.flatnonzero(elements[t.face_element])
@@ -126,7 +127,7 @@ def shares(
 
 
 def _taken_over(rows: NDArray[np.intp], area: Floats, bonded: Floats, normal: Floats) -> Floats:
-    """What the faces of elements (rows, -1 past the last) stand for besides their own halves."""
+    """Additional shares of faces of elements (rows, -1 past the last), beyond their own halves."""
     a = np.where(rows >= 0, area[rows], 0.0)
     n, part = normal[rows], bonded[rows]
     alike = np.einsum("efx,egx->efg", n, n) ** (2 * SHARPNESS) * a[:, None]

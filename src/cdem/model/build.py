@@ -65,7 +65,7 @@ SHARED = {
     "face_element": "face.element", "edge_nodes": "edge.nodes", "edge_faces": "edge.faces",
     "node_ring_first": "edge_star.first", "node_ring": "edge_star.node",
 }  # fmt: skip
-"""Arrays of the topology that the core has too, under its name."""
+"""Arrays of the topology that are also in the core, with their names there."""
 
 
 @dataclass
@@ -76,19 +76,19 @@ class Build:
         case: The case it was made from.
         mesh: The mesh, all pieces merged.
         topology: Blocks, faces and pairs.
-        assembly: Counts and sums of what the core was given, which holds the arrays now.
+        assembly: Counts and sums of the arrays given to the core, which owns them now.
         core: The compiled core, holding model and state.
-        curves: Those of load and velocity histories; the first is constant.
+        curves: Load and velocity histories; the first curve is constant.
         start_position: Positions at the start [m], shape (nodes, 3).
-        born: Positions at which the rock is free of stress [m]: those of the start but for groups
-            that have come in since, shape (nodes, 3).
-        compensation: By group, what makes up for the compliance of bonds between its elements.
+        born: Positions without stress [m]: initial ones, except for groups
+            added since, shape (nodes, 3).
+        compensation: Compensation for the compliance of bonds between elements, by group.
         bonded: Whether the interface of two kinds of faces (see `Topology.face_kind`) was bonded
             at the start, shape (kinds, kinds).
-        paired: Whether such faces that touch are pairs: those that were bonded, and all where
+        paired: Whether such faces that touch are pairs: bonded faces, and all with
             `pairs_loose_joints`.
-        initial: Under what stress the rock begins; None: under none.
-        modules: What acts on nodes besides, by its name.
+        initial: Initial stress of the rock, or None.
+        modules: Modules by name.
     """
 
     case: Case
@@ -114,17 +114,17 @@ class Build:
 
     @cached_property
     def fingerprint(self) -> str:
-        """The same for models with the same nodes, elements, groups, in the same order, and with the
-        same water in them as far as that comes from files."""
+        """Equal for models with the same nodes, elements and groups in the same order, and with the
+        same water from files."""
         digest = hashlib.sha256(self.start_position.tobytes())
         for shape, cells in sorted(self.mesh.cells.items()):
             digest.update(shape.encode() + cells.tobytes() + self.mesh.cell_group[shape].tobytes())
-        digest.update(self.arrays["water.node_kept"].tobytes())  # from files; empty where dry
+        digest.update(self.arrays["water.node_kept"].tobytes())  # from files; empty without water
         return digest.hexdigest()
 
     @property
     def bolts(self) -> BoltModel:
-        """Bolts in the rock, and which stage installs and removes them."""
+        """Bolts in the rock, with the stages that install and remove them."""
         bolts = self.modules[BoltModel.name]
         assert isinstance(bolts, BoltModel)
         return bolts
@@ -135,7 +135,7 @@ class Build:
         return self.mesh.group_names
 
     def compensate_again(self, names: Iterable[str]) -> None:
-        """Make up again for the bonds of groups whose material a stage has changed."""
+        """Compensate again for the bonds of groups whose material a stage has changed."""
         groups = [self.group_names.index(name) for name in names if name in self.compensation]
         laws, interface_of = interfaces_of(self.case, self.group_names)
         made_up = [self.group_names.index(name) for name in self.compensation]
@@ -157,7 +157,7 @@ def build(case: Case) -> Build:
     Raises:
         CaseError: Something in the case file does not fit the model.
         MeshError: A mesh cannot be used.
-        ModelError: It takes more memory than there is.
+        ModelError: It needs more memory than available.
     """
     with case.blame("model"):
         check_memory(case, pieces_of_boxes(case))
@@ -187,7 +187,7 @@ def build(case: Case) -> Build:
     )
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
-    parts.arrays.clear()  # the core has its own
+    parts.arrays.clear()  # the core has copies
     _share(topology, core.model())
     hand_over(core, curves, {})
     core.set_interfaces(parts.interfaces)
@@ -214,7 +214,7 @@ def build(case: Case) -> Build:
 
 
 def _set_motion(built: Build) -> None:
-    """Give groups the velocities that they begin with, and driven nodes those of their supports."""
+    """Set initial velocities of groups, and of driven nodes from their supports."""
     velocity = rows_of(built.core, "node.motion").velocity
     set_velocities(
         built.case, built.topology, built.group_names, built.arrays["node.mass"], velocity
@@ -224,13 +224,14 @@ def _set_motion(built: Build) -> None:
     for group in np.unique(groups[lost]):
         count, of = (lost & (groups == group)).sum(), (groups == group).sum()
         built.mesh.notes.append(
-            f"group {built.group_names[group]}: {count:,} of its {of:,} nodes are supported; they begin with "
-            "the velocity of their support, not with that of the group"
+            f"group {built.group_names[group]}: {count:,} of its {of:,} nodes are supported; they "
+            f"start with "
+            "the velocity of their support, not of the group"
         )
 
 
 def _share(topology: Topology, arrays: dict[str, NDArray]) -> None:
-    """Let the topology see the core's arrays where it has the same, so that they are kept once."""
+    """Replace equal arrays of the topology by views of the core's, to store them once."""
     for name, column in SHARED.items():
         own = getattr(topology, name)
         setattr(topology, name, arrays[column][: own.size].reshape(own.shape))
@@ -248,10 +249,10 @@ def _assemble(
     added_mass: Floats | None,
     modules: dict[str, Module],
 ) -> Assembly:
-    """Arrays of the core, with supports and loads as the case has them now.
+    """Arrays of the core, with the present supports and loads of the case.
 
-    What mass scaling adds is as given, or follows from the case. Elements are free of stress where
-    their nodes are in `born`.
+    Mass scaling is as given, or follows from the case. Elements have no stress when
+    their nodes are at `born`.
     """
     names = topology.group_names
     entries = interface_entries(case, laws, names, topology.node_position)
@@ -299,7 +300,7 @@ def _assemble(
 
 
 def _made_up(t: Topology, made_up: dict[str, Compensation]) -> tuple[Floats, Floats]:
-    """How much stiffer the elements of each group are, (groups,), and the bonds of each face, or 0."""
+    """Stiffening of the elements of each group, (groups,), and bond stiffness of each face, or 0."""
     found = [made_up.get(name) for name in t.group_names]
     of_groups = np.array([0.0 if c is None else c.stiffness for c in found])
     kind = t.face_kind
@@ -312,7 +313,7 @@ def _made_up(t: Topology, made_up: dict[str, Compensation]) -> tuple[Floats, Flo
 
 
 def _unloading_row(entry: dict[str, Any]) -> list[float]:
-    """(value, factor) of k_n / e_n^2, then of k_s / e_t^2: the stiffness of contacts that unload."""
+    """(value, factor) of k_n / e_n^2, then of k_s / e_t^2: stiffness of unloading contacts."""
     sides = zip(("stiffness_n", "stiffness_s"), entry["restitution"], strict=True)
     return [k / e**2 for key, e in sides for k in entry[key]]
 
@@ -324,20 +325,21 @@ def _averages(case: Case, materials: list[Material]) -> NDArray[np.bool_]:
 
 
 def _law_row(material: Material) -> list[float]:
-    """Numbers of a material's law and of how it softens."""
+    """Numbers of a material's law and of its softening."""
     numbers = BLOCK_LAWS[material.law].numbers(material)
     return native.material_numbers(material.law, numbers, tables_of(material))
 
 
 def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
-    """Arrays of the core that follow from the parts of a case that a stage may change.
+    """Arrays of the core that depend on parts of the case that a stage may change.
 
-    Their description says which they are (`ColumnInfo::changes`). The assembly of the model gets the
-    interfaces that the case has now. Supports change the inverse mass matrices of small blocks, so those are made again too.
+    Their descriptions name them (`ColumnInfo::changes`). The assembly of the model gets the present
+    interfaces of the case. Supports change the inverse mass matrices of small blocks, so these are
+    made again too.
 
     Args:
-        built: The model; its case as it is now.
-        places: With those that follow from where nodes of groups lie that have come in.
+        built: The model; with its present case.
+        places: Include arrays that depend on the positions of added groups.
     """
     case, names = built.case, built.group_names
     laws, interface_of = interfaces_of(case, names)
@@ -346,7 +348,7 @@ def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
     for name in built.compensation.keys() - {names[group] for group in groups}:
         raise CaseError(
             f"{case.where('interfaces')}: stiffness_n and stiffness_s of the interface of group {name!r} cannot change: its "
-            "elements make up for the bonds that it had at the start"
+            "elements compensate for its initial bonds"
         )
     parts = _assemble(
         case,

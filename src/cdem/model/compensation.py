@@ -1,4 +1,4 @@
-"""Rock whose every element is a block: its elements are made so stiff that the whole is as given.
+"""Rock with every element a block: stiffer elements compensate for the compliance of bonds.
 
 Bonds add to the compliance of the elements. With one stiffness k = a E' / h for all bonds of a group,
 normal and shear, and isotropic faces, the whole has
@@ -6,12 +6,13 @@ normal and shear, and isotropic faces, the whole has
     1/E = (1 + q / (3 a)) / E',    nu / E = nu' / E',    q = S_v h,
 
 S_v the area of faces per volume and h their mean distance from the middle of the elements behind: so
-E' = e E and nu' = e nu with e = 1 + q / (3 a). Irregular tets are less compliant than that sum says,
-which takes their stress for uniform: their q is found numerically.
+E' = e E and nu' = e nu with e = 1 + q / (3 a). Irregular tets are less compliant than this sum,
+which assumes a uniform stress: their q is found numerically.
 
-Bricks and other shapes, and tets that are nowhere surrounded by others or of sizes that differ much,
-have a bond stiffness of each face: see `bond_shares`. So what lies at the surface is as compliant as what lies inside, and slices
-and columns are right along the directions in which they have bonds at all.
+Bricks and other shapes, and tets without inner tets or with very different sizes, get a bond
+stiffness
+for each face: see `bond_shares`. The surface is then as compliant as the interior, and slices and
+columns are correct along the directions in which they have bonds.
 """
 
 from __future__ import annotations
@@ -45,22 +46,22 @@ from cdem.model.homogenize import (
 Floats = NDArray[np.float64]
 
 FACTOR = 5.0
-"""a, where Poisson's ratio allows it: softer bonds no longer lengthen the step."""
+"""a, if Poisson's ratio allows it: softer bonds would not lengthen the step."""
 MOST_POISSON = 0.42
-"""nu' of the elements, at most: a larger one shortens the step, and 0.5 is out of reach."""
+"""Largest nu' of the elements: a larger one shortens the step, and 0.5 is out of reach."""
 LARGEST_POISSON = 0.4
-"""nu of the case, at most: a is 40 there, and grows without bound towards `MOST_POISSON`."""
+"""Largest nu of the case: a is 40 there, and grows without bound towards `MOST_POISSON`."""
 MOST_TETS = 2000
-"""So many tets around the middle of a group stand for all of them."""
+"""Number of tets around the middle of a group that represent it."""
 GRADED = 2.0
-"""So much larger than the smallest tets are the largest, but for 5 % of either, where bonds go with
-the size of tets."""
+"""Ratio of the largest to the smallest tet sizes (without 5 % at either end) above which bond
+stiffness depends on the size of tets."""
 LAYERS = 2
-"""Layers at the edge of those that do not count."""
+"""Layers at the edge that are ignored."""
 
 
 def _pulls() -> Floats:
-    """Unit pulls along the axes and diagonals of space, in the order of `STATES`."""
+    """Unit tensions along the axes and diagonals of space, in the order of `STATES`."""
     ways = [w for w in product((-1, 0, 1), repeat=3) if w > (0, 0, 0)]
     n = np.array(ways) / np.sqrt((np.array(ways) ** 2).sum(axis=1))[:, None]
     return n[:, ROW] * n[:, COLUMN]
@@ -75,9 +76,10 @@ class ElasticState:
 
     Attributes:
         tets: The tets.
-        tractions: On the faces, at their corners, of `homogenize.STATES`: pulling along the outward
+        tractions: Tractions of `homogenize.STATES` at the corners of the faces: tension along the
+            outward
             normal of the first tet [1], shape (faces, 3, xyz, 6).
-        counted: Tets that stand for the rock, shape (tets,).
+        counted: Tets that represent the rock, shape (tets,).
     """
 
     tets: BondedTets
@@ -87,21 +89,22 @@ class ElasticState:
 
 @dataclass(frozen=True)
 class Compensation:
-    """What the elements and bonds of a group have, so that the whole is as the case says.
+    """Properties of elements and bonds of a group with which the whole has the given elasticity.
 
     Attributes:
-        q: S_v h, as it acts.
+        q: Effective S_v h.
         area_per_volume: S_v, of the faces of inner elements [1/m].
         height: h [m].
-        factor: a.
-        stiffening: e = E' / E = nu' / nu, of the elements.
-        stiffness: Of the bonds; the mean by area where it varies [Pa/m].
-        errors: What is left: in E along the direction where it is worst, and in the isotropic G and K,
-            of what lies inside, or of the whole where nothing does [1].
-        along_xyz: What is left in E if the whole is pulled along x, y, z, surfaces included [1].
-        state: From which q was found; None where it is the sum over faces.
-        of_faces: Stiffness of a bond whose two faces are like each of these, and which they are; None
-            where all are the same [Pa/m].
+        factor: The factor a.
+        stiffening: e = E' / E = nu' / nu of the elements.
+        stiffness: Stiffness of the bonds; an area mean if it varies [Pa/m].
+        errors: Remaining errors: in E along the worst direction, and in the isotropic G and K,
+            of the interior, or of the whole if there is no interior [1].
+        along_xyz: Remaining error in E for tension of the whole along x, y, z, surfaces included
+            [1].
+        state: State that gave q; None if q is the sum over faces.
+        of_faces: Stiffness of a bond between two faces like each of these, and their numbers; None
+            if all are equal [Pa/m].
     """
 
     q: float
@@ -122,13 +125,13 @@ class _Group:
 
     Attributes:
         t: The mesh.
-        pairs: Those of its conforming bonds, inside the group.
-        elements: Which they are, shape (elements,).
-        bonded: What part of each face is made up for.
-        volume: Of all elements [m3].
-        area: Of all faces [m2].
-        height: Of the elements behind the faces above them [m].
-        young: [Pa].
+        pairs: Its conforming bonds, inside the group.
+        elements: Its elements, shape (elements,).
+        bonded: Compensated fraction of each face.
+        volume: Volume of all elements [m3].
+        area: Area of all faces [m2].
+        height: Height of the elements behind the faces [m].
+        young: Young's modulus [Pa].
         poisson: Poisson's ratio.
     """
 
@@ -143,7 +146,7 @@ class _Group:
     poisson: float
 
     def shares(self, height: Floats) -> Shares:
-        """Of its faces, with so high h of all faces [m]."""
+        """Shares of its faces, with these heights h of all faces [m]."""
         return shares(self.t, self.elements, self.volume, self.bonded, self.area, height)
 
     @property
@@ -154,18 +157,18 @@ class _Group:
 
     @cached_property
     def sizes(self) -> Floats:
-        """Of all elements: edges of cubes of their volume [m]."""
+        """Sizes of all elements: edges of cubes of the same volume [m]."""
         return same_everywhere(np.cbrt(self.volume))
 
     @property
     def is_graded(self) -> bool:
-        """Whether some of its elements are far smaller than others."""
+        """Whether some of its elements are much smaller than others."""
         low, high = np.quantile(self.sizes[self.elements], (0.05, 0.95))
         return bool(high > GRADED * low)
 
     @property
     def has_an_inside(self) -> bool:
-        """Whether a tet lies `LAYERS` layers of them inside."""
+        """Whether a tet lies at least `LAYERS` layers inside."""
         inside = surrounded(self.t, self.pairs)
         across = self.t.face_element[self.t.pair_faces[self.pairs]]
         for _ in range(LAYERS - 1):
@@ -177,17 +180,17 @@ class _Group:
 def compensate(
     case: Case, t: Topology, names: list[str], groups: list[int], between: NDArray[np.bool_]
 ) -> dict[str, Compensation]:
-    """What makes up for the bonds of groups, those of `compensated_groups`.
+    """Compensation for the bonds of groups, as listed by `compensated_groups`.
 
     Args:
-        case: With the rock of the groups.
+        case: The case, with the rock of the groups.
         t: The mesh.
-        names: Of all groups.
+        names: Names of all groups.
         groups: Which groups.
-        between: Of `made_up_between`, for all groups of `compensated_groups`.
+        between: Result of `made_up_between`, for all groups of `compensated_groups`.
 
     Raises:
-        CaseError: Poisson's ratio of one leaves no room for it, or its mesh cannot be solved.
+        CaseError: Poisson's ratio of one is too large for it, or its mesh cannot be solved.
     """
     out: dict[str, Compensation] = {}
     if not groups:
@@ -207,8 +210,8 @@ def compensate(
         if rock.poisson_ratio > LARGEST_POISSON:
             place = f"materials.{material}.poisson_ratio"
             raise CaseError(
-                f"{case.where(place)}: {place}: {rock.poisson_ratio:g} is too large for bonds "
-                f"between the elements of group {names[group]!r} to be made up for (at most "
+                f"{case.where(place)}: {place}: {rock.poisson_ratio:g} is too large to compensate "
+                f"for bonds between the elements of group {names[group]!r} (at most "
                 f"{LARGEST_POISSON:g}); give stiffness_n and stiffness_s of its interface"
             )
         of = _Group(
@@ -236,7 +239,7 @@ def compensated_groups(
     interface_of: NDArray[np.int32],
     bonds: NDArray[np.bool_],
 ) -> list[int]:
-    """Groups whose every element is a block, bonded to others with a stiffness left to the program."""
+    """Groups of elements that are all blocks, bonded with a stiffness chosen by the program."""
     elements = elements_of_blocks(t)
     kind = t.face_kind[t.pair_faces]
     bonded = np.unique(kind[(kind[:, 0] == kind[:, 1]) & bonds[kind[:, 0], kind[:, 1]], 0])
@@ -254,14 +257,14 @@ def made_up_between(
     bonds: NDArray[np.bool_],
     groups: list[int],
 ) -> NDArray[np.bool_]:
-    """Between which kinds of faces bonds are made up for by groups, shape (kinds, kinds)."""
-    automatic = np.array([*map(is_automatic, laws), False])  # the last where there is no interface
+    """Kinds of faces between which groups compensate for bonds, shape (kinds, kinds)."""
+    automatic = np.array([*map(is_automatic, laws), False])  # the last is for no interface
     made_up = np.isin(np.arange(len(bonds)), groups)
     return bonds & automatic[interface_of] & made_up & made_up[:, None]
 
 
 def elements_of_blocks(t: Topology) -> NDArray[np.int64]:
-    """How many elements each block has, shape (blocks,)."""
+    """Number of elements of each block, shape (blocks,)."""
     elements = np.zeros(len(t.block_group), np.int64)
     for block in t.element_block.values():
         elements += np.bincount(block, minlength=len(elements))
@@ -269,12 +272,12 @@ def elements_of_blocks(t: Topology) -> NDArray[np.int64]:
 
 
 def is_automatic(law: Interface) -> bool:
-    """Whether the case leaves the stiffness of an interface's bonds to the program."""
+    """Whether the program chooses the stiffness of an interface's bonds."""
     return law.stiffness_n == AUTO and law.stiffness_s == AUTO
 
 
 def _of_inside(g: _Group) -> Compensation:
-    """Of tets some of which lie inside: one stiffness for all bonds; they are right there."""
+    """Compensation of tets with an interior: one stiffness for all bonds, exact in the interior."""
     faces = g.t.pair_faces[g.pairs]
     elements = g.t.face_element[faces]
     count = np.bincount(elements.ravel(), minlength=len(g.volume))
@@ -306,16 +309,16 @@ def _of_inside(g: _Group) -> Compensation:
 
 
 def _of_faces(g: _Group) -> Compensation:
-    """Of other groups: each face has a stiffness of its own, and free ones are counted."""
+    """Compensation of other groups: each face has a stiffness of its own, and free faces count."""
     bonds, height = g.shares(g.height), g.height
     bonded = g.area[bonds.faces] * bonds.bonded * bonds.share
     h = _rounded((bonded * height[bonds.faces]).sum() / bonded.sum())
     if not g.elements[len(g.t.element_nodes["tet4"]) :].any():
-        size = g.sizes[g.t.face_element]  # tets stand on all their faces alike
+        size = g.sizes[g.t.face_element]  # tets use the same size for all faces
         height = size * h * bonded.sum() / (bonded * size[bonds.faces]).sum()
         bonds = g.shares(height)
     fabric, far = bonds.fabric(), longest(g.t, g.elements, g.volume)
-    # what has bonds in some of its parts only is to be right in these
+    # partly bonded groups are to be correct in their bonded parts
     q = 3 * max(float((far * m).sum()) for m in (fabric, bonds.surrounded()))
     a = _factor(q, g.poisson)
     e = 1 + q / (3 * a)
@@ -350,7 +353,7 @@ def _of_faces(g: _Group) -> Compensation:
 
 
 def _factor(q: float, poisson: float) -> float:
-    """a of bonds that act as q, as far as Poisson's ratio leaves room."""
+    """a of bonds with this q, limited by Poisson's ratio."""
     return max(FACTOR, _rounded(q * poisson / (3 * (MOST_POISSON - poisson))))
 
 
@@ -359,7 +362,7 @@ def _rounded(value: float) -> float:
 
 
 def _uncut(g: _Group, some: NDArray[np.integer], tets: BondedTets) -> NDArray[np.bool_]:
-    """Tets `LAYERS` layers away from those of the group that are not looked at, or all."""
+    """Tets `LAYERS` layers away from the ignored tets of the group, or all."""
     bonds = np.bincount(g.t.face_element[g.t.pair_faces[g.pairs]].ravel(), minlength=len(g.volume))
     away = np.bincount(tets.tet.ravel(), minlength=len(some)) == bonds[some]
     for _ in range(LAYERS - 1):
@@ -379,9 +382,9 @@ def _found(
 
     Args:
         tets: The tets.
-        counted: Those that stand for the rock.
-        e: Their stiffening.
-        stiffness: Of their bonds.
+        counted: Tets that represent the rock.
+        e: Stiffening of the tets.
+        stiffness: Stiffness of their bonds.
         poisson: Poisson's ratio of the rock.
     """
     u = displacements(tets, e, poisson * e, stiffness)
@@ -395,12 +398,12 @@ def _own(e: float, poisson: float) -> Floats:
 
 
 def _renewed(c: Floats, e: float, e_new: float, poisson: float) -> Floats:
-    """A compliance if e of its elements is another: that of bonds goes with 1 / e."""
+    """A compliance for another e of its elements: the part of bonds is proportional to 1 / e."""
     return (c - _own(e, poisson)) * e / e_new + _own(e_new, poisson)
 
 
 def _errors(left: Floats, poisson: float, pulls: Floats) -> tuple[float, float, float]:
-    """Of E where it is worst, and of the isotropic G and K, of a compliance for Young's modulus 1."""
+    """Errors of E in the worst direction, and of the isotropic G and K, of a compliance for unit E."""
     along = 1 / np.einsum("di,ij,dj->d", pulls, left, pulls) - 1
     worst = float(along[np.argmax(abs(along))])
     young, bulk = (1 / part for part in _isotropic(left))
@@ -421,7 +424,7 @@ def _isotropic(c: Floats) -> tuple[float, float]:
 
 
 def surrounded(t: Topology, pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Elements of which all faces are of these pairs, shape (elements,)."""
+    """Elements with all faces in these pairs, shape (elements,)."""
     count = sum(len(nodes) for nodes in t.element_nodes.values())
     faces = np.bincount(t.face_element, minlength=count)
     bonded = np.bincount(t.face_element[t.pair_faces[pairs]].ravel(), minlength=count)
@@ -431,7 +434,7 @@ def surrounded(t: Topology, pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
 def around_the_middle(
     t: Topology, pairs: NDArray[np.intp], inner: NDArray[np.bool_]
 ) -> NDArray[np.integer]:
-    """Tets of pairs around the middle of those inside, or of all, `MOST_TETS` at most."""
+    """Tets of pairs around the middle of the interior ones, or of all, at most `MOST_TETS`."""
     used = found_in([t.face_element[t.pair_faces[pairs]]], len(inner))
     center = t.node_position[t.element_nodes["tet4"][used]].mean(axis=1)
     inside = center[inner[used]] if inner[used].any() else center
@@ -441,13 +444,13 @@ def around_the_middle(
 
 
 def counted_tets(tets: BondedTets) -> NDArray[np.bool_]:
-    """Tets far enough inside the others to stand for the rock, or all where none is."""
+    """Tets far enough inside to represent the rock, or all if there are none."""
     layers = [tets.inner(n) for n in range(LAYERS, 0, -1)]
     return next((inside for inside in layers if inside.any()), np.ones(len(tets.x), bool))
 
 
 def bonded_tets(t: Topology, pairs: NDArray[np.intp], some: NDArray[np.integer]) -> BondedTets:
-    """Some tets, by their numbers, with those faces of pairs that two of them have."""
+    """Some tets, by number, with the faces of pairs between two of them."""
     number = np.full(len(t.element_nodes["tet4"]), -1)
     number[some] = np.arange(len(some))
     tet = number[t.face_element[t.pair_faces[pairs]]]
@@ -462,5 +465,5 @@ def bonded_tets(t: Topology, pairs: NDArray[np.intp], some: NDArray[np.integer])
 
 
 def _corner_of(nodes: NDArray, some: NDArray) -> NDArray[np.intp]:
-    """Which corners of tets, (n, 4), nodes of theirs are, (n, 3)."""
+    """Corner numbers in tets, (n, 4), of some of their nodes, (n, 3)."""
     return (nodes[:, None, :] == some[:, :, None]).argmax(axis=2)

@@ -1,4 +1,4 @@
-"""How much softer bonds make a body, and bodies whose mesh is too coarse to bend."""
+"""Compliance that bonds add to a body, and bodies whose mesh is too coarse for bending."""
 
 from __future__ import annotations
 
@@ -17,19 +17,20 @@ Floats = NDArray[np.float64]
 KINDS = ("triangles", "quads", "overlaps")
 PLANES = ((0, 1), (1, 2), (2, 0))
 BEAM = 4.0
-"""A body so many times as long as it is wide and high is a beam."""
+"""A body is a beam if its length exceeds its width and height by this factor."""
 HELD = 0.25
-"""Part of its points: a body that is held at more of them does not bend as a beam."""
+"""Fraction of its points: a body fixed at more of them does not bend as a beam."""
 DEEP = 2.5
-"""Tets over the depth of a beam below which the audit warns: 3, less what irregular ones vary."""
+"""Tets over the depth of a beam below which the audit warns: 3, less the scatter of irregular ones."""
 
 
 def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
     """One row per bonded pair of groups or set of joints: pairs, area, stiffness, compliance.
 
-    The compliance is that of the bonds over that of the rock beside them, both under the same uniform
-    stress, which is exact for layers. Of tension or bending along x, y, z,
-    and of shear in the three planes, the largest is given.
+    It is the compliance of the bonds over the compliance of the rock beside them, both under the
+    same
+    uniform stress, which is exact for layers. The largest value is given: of tension or bending
+    along x, y, z, and of shear in the three planes.
     """
     t, a, case = build.topology, build.assembly, build.case
     volume = np.concatenate(list(a.element_volume.values()))
@@ -79,11 +80,11 @@ def _row(key: tuple, row: dict[str, Any], volume: Floats) -> dict[str, Any]:
 
 
 def _softness(build: Build, kind: str) -> Floats:
-    """Strain that each pair adds, over that of the rock, times a volume [m3], (pairs, 6).
+    """Strain from each pair, over the strain of the rock, times a volume [m3], (pairs, 6).
 
     A plane of normal n and area A adds A (n_x^4 / k_n + n_x^2 (1 - n_x^2) / k_s) to the compliance
-    along x, and A (4 n_x^2 n_y^2 / k_n + (n_x^2 + n_y^2 - 4 n_x^2 n_y^2) / k_s) to that of shear in
-    the plane x, y.
+    along x, and A (4 n_x^2 n_y^2 / k_n + (n_x^2 + n_y^2 - 4 n_x^2 n_y^2) / k_s) to the compliance
+    of shear in the plane x, y.
     """
     t, case = build.topology, build.case
     faces = build.assembly.pair_faces[kind]
@@ -112,7 +113,7 @@ def _softness(build: Build, kind: str) -> Floats:
 
 
 def coarse_beams(build: Build) -> Iterator[str]:
-    """Say which bodies are beams of tets less than three deep: they bend too little."""
+    """Warn of bodies that are beams of tets less than three deep: they bend too little."""
     t = build.topology
     pairs = np.concatenate([t.face_block[build.assembly.pair_faces[kind]] for kind in KINDS])
     block_body = components(len(t.block_group), *pairs.T)
@@ -133,9 +134,9 @@ def coarse_beams(build: Build) -> Iterator[str]:
         x = t.node_position[nodes[first]]
         _, axes = np.linalg.eigh(np.cov(x.T))
         high, wide, long = np.sort(np.ptp(x @ axes, axis=0))
-        if wide < 1.5 * high:  # a square section may be seen along its diagonals
+        if wide < 1.5 * high:  # the axes may be diagonals of a square section
             high = wide = np.sqrt(whole[number] / long)
-        cell = np.cbrt(6 * whole[number] / count[number])  # of a box that is cut into six tets
+        cell = np.cbrt(6 * whole[number] / count[number])  # edge of a box divided into six tets
         group = build.group_names[t.block_group[number]]
         if long >= BEAM * wide and high < DEEP * cell and group not in told:
             told.add(group)

@@ -1,4 +1,4 @@
-"""How stiff the contacts of each interface are, and how far blocks overlap there."""
+"""Stiffness of the contacts of each interface, and overlap of blocks."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from cdem.model.stiffness import (
 
 
 def contact_interfaces(build: Build) -> list[dict[str, Any]]:
-    """One row per interface of the case: stiffness, overlap under weight and at the greatest speed,
+    """One row per interface of the case: stiffness, overlap under weight and at the largest speed,
     and the smaller coefficient of restitution.
 
-    Overlaps are over the height of the element, the largest of all its groups: 2 rho g H / (k h) for
-    a column as high as the model, and v / c sqrt(2 E / (k h)) with c = sqrt(E / rho).
+    Overlaps are relative to the height of the element, the largest of all its groups: 2 rho g H /
+    (k h) for a column as high as the model, and v / c sqrt(2 E / (k h)) with c = sqrt(E / rho).
     """
     case, names = build.case, build.group_names
     laws, _ = interfaces_of(case, names)

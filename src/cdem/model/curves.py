@@ -15,8 +15,8 @@ class Curve(NamedTuple):
     """Values over time.
 
     Attributes:
-        times: From the start of the run, or from the begin of a stage [s].
-        values: At these times, linear between; the first holds before, the last behind.
+        times: Times from the start of the run, or of a stage [s].
+        values: Values at these times, linear between; constant before the first and after the last.
         stage: Name of that stage, or None.
     """
 
@@ -33,7 +33,7 @@ class Curve(NamedTuple):
         """Times from the start of the run [s], and values; the first value until its stage begins.
 
         Args:
-            begins: When the stages began that have begun, by name [s].
+            begins: Start times of the stages begun, by name [s].
         """
         if self.stage is None:
             return self.times, self.values
@@ -46,14 +46,14 @@ Curves = list[Curve]
 
 
 def constant() -> Curves:
-    """The curves before any history is added: the first is 1 at all times."""
+    """The initial curves: the first is 1 at all times."""
     return [Curve([0.0], [1.0], None)]
 
 
 def add_curve(
     history: Sequence[tuple[float, float]] | None, stage: str | None, curves: Curves
 ) -> int:
-    """Index of a history's curve; without one, the constant."""
+    """Index of a history's curve; of the constant curve without a history."""
     if history is None:
         return 0
     curves.append(Curve([float(t) for t, _ in history], [float(f) for _, f in history], stage))
@@ -61,12 +61,12 @@ def add_curve(
 
 
 def hand_over(core: Core, curves: Curves, begins: Mapping[str, float]) -> None:
-    """Give the core the curves as they are while no other stage begins.
+    """Give the core the curves, valid until another stage begins.
 
     Args:
-        core: Gets them.
-        curves: Of the model.
-        begins: When the stages began that have begun, by name [s].
+        core: The core.
+        curves: Curves of the model.
+        begins: Start times of the stages begun, by name [s].
     """
     in_run = [curve.in_run(begins) for curve in curves]
     core.set_curves([times for times, _ in in_run], [values for _, values in in_run])

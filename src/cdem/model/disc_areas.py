@@ -1,4 +1,4 @@
-"""Joints of finite size in a model: how many discs, the area of joints and of rock bridges."""
+"""Joints of finite size in a model: number of discs, area of joints and of rock bridges."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cdem.model.build import Build
 
 
 def disc_areas(build: Build) -> dict[str, dict[str, Any]]:
-    """Of each set of discs: discs, those that meet a block, and areas of joint and bridges [m2]."""
+    """For each set of discs: number of discs, number that meet a block, areas of joint and bridges [m2]."""
     found = {}
     for joint in build.case.model.joints:
         if joint.name not in build.mesh.discs:
@@ -28,7 +28,7 @@ def disc_areas(build: Build) -> dict[str, dict[str, Any]]:
 
 
 def _area(build: Build, surface: str) -> float:
-    """Area of a surface of which both sides are there [m2]."""
+    """Area of a surface with a face on both sides [m2]."""
     both = 0.0
     for faces in build.mesh.surfaces[surface]:
         x = build.mesh.points[faces]
@@ -37,7 +37,7 @@ def _area(build: Build, surface: str) -> float:
 
 
 def disc_lines(discs: dict[str, dict[str, Any]]) -> list[str]:
-    """The same in lines of text."""
+    """The same as lines of text."""
     return [
         f"  joint set {name}: {of['discs']:,} discs, {of['met']:,} of them meet blocks; joint "
         f"{of['joint_area']:.6g} m2, rock bridges {of['bridge_area']:.6g} m2"

@@ -28,8 +28,8 @@ def leaving(
     Args:
         domain: The box.
         middle: Centre of mass of each block [m], shape (blocks, 3).
-        body: Label of each block's body: what bonds join is one.
-        out: Whether each block is out already.
+        body: Label of each block's body: bonded blocks are one body.
+        out: Whether each block has already been removed.
     """
     low, high = bounds(domain)
     outside = ((middle < low) | (middle > high)).any(axis=1)
@@ -37,10 +37,10 @@ def leaving(
 
 
 def check_domain(case: Case, topology: Topology, names: list[str]) -> None:
-    """Make sure that the whole model begins inside of its domain.
+    """Make sure that the whole model begins inside its domain.
 
     Raises:
-        CaseError: It does not; says what reaches out where.
+        CaseError: It does not; names the place.
     """
     if case.model.domain is None:
         return
@@ -55,6 +55,7 @@ def check_domain(case: Case, topology: Topology, names: list[str]) -> None:
     path = f"model.domain.{side}"
     raise CaseError(
         f"{case.where(path)}: {path}: is {limit[axis]:.10g} m along {'xyz'[axis]}, but group {group!r} "
-        f"begins at ({', '.join(f'{x:.6g}' for x in position[node])}) m; the domain must hold the "
+        f"begins at ({', '.join(f'{x:.6g}' for x in position[node])}) m; the domain must contain "
+        f"the "
         "whole model at the start"
     )

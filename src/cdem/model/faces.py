@@ -16,12 +16,12 @@ def face_heights(t: Topology, volume: Floats, area: Floats) -> Floats:
     """Height of the element behind each face above it [m]: the h of k_n = factor E / h.
 
     Args:
-        t: The faces.
-        volume: Of all elements, shapes in the order of `element_shapes.NODES` [m3].
+        volume: Volume of all elements, shapes in the order of `element_shapes.NODES` [m3].
+        area: Area of all faces [m2].
         area: Of all faces [m2].
     """
-    # volume = area * height / divisor, for a prism 1 and for a pyramid 3; the sides of a wedge stand
-    # across from an edge (2), those of a pyramid between the two cases
+    # volume = area * height / divisor: 1 for a prism, 3 for a pyramid; the sides of a wedge are
+    # opposite an edge (2), the sides of a pyramid lie between the two cases
     by_sides = {
         "tet4": (3.0, 3.0),
         "pyramid5": (3.0, 3.0),

@@ -1,4 +1,4 @@
-"""The flat arrays of the core: what they are made from, what they are, and how they lie in memory."""
+"""The flat arrays of the core: their sources, meanings and layout in memory."""
 
 from __future__ import annotations
 
@@ -19,37 +19,38 @@ Ints = NDArray[np.int32]
 
 @dataclass
 class Properties:
-    """What the case says, by group.
+    """Properties from the case, by group.
 
     Attributes:
         density: [kg/m3], shape (groups,).
         young_modulus: [Pa], shape (groups,).
         poisson_ratio: shape (groups,).
         law: Number of the block law in the core, shape (groups,).
-        law_parameters: Its parameters, shape (groups, most parameters of a law).
+        law_parameters: Its parameters, shape (groups, largest number of parameters of a law).
         interface_of: Index of the interface between two kinds of faces (see
             `Topology.face_kind`), shape (kinds, kinds).
-        paired: Whether faces of it that touch at the start are pairs: if it has strength, or where
+        paired: Whether faces with it that touch at the start are pairs: if it has strength, or with
             `pairs_loose_joints`, the same shape.
         breaks: Whether bonds of it may break, see `that_may_break`, shape (interfaces,).
-        strength_factors: From faces of pairs, shape (pairs, 2), to factors on their strength, by
+        strength_factors: Function from faces of pairs, shape (pairs, 2), to factors on their
+            strength, by
             interface; None: all are 1.
         stiffness: (value, factor) of k_n and k_s of bonds by interface, shape (interfaces, 4).
-        automatic: Whether the case leaves them to the program, shape (interfaces,).
-        stiffening: How much stiffer the elements are than the whole, see `Compensation`, shape
+        automatic: Whether the program chooses it, shape (interfaces,).
+        stiffening: Stiffening of the elements relative to the whole, see `Compensation`, shape
             (groups,).
-        bond_stiffness: Of bonds that are made up for between faces like each [Pa/m], else 0, shape
+        bond_stiffness: Stiffness of compensated bonds between faces like each [Pa/m], else 0, shape
             (faces,).
-        contact_stiffness: (value, factor) of k_n and k_s of contacts that unload by interface,
+        contact_stiffness: (value, factor) of k_n and k_s of unloading contacts by interface,
             shape (interfaces, 4).
-        in_series: Whether E / h of contacts is that of both sides in series, shape (interfaces,).
+        in_series: Whether E / h of contacts combines both sides in series, shape (interfaces,).
         exact_mass: Whether blocks have their exact inertia, at least once they have no bonds.
         lumped_while_bonded: Whether they have it only then.
-        supported: Components of nodes that are held or moved, shape (nodes, 3).
-        driven: Nodes that are moved, shape (nodes,).
-        mass_scaling: What mass to add, if any.
-        safety: Share of the stable step that is used.
-        added_mass: What mass scaling has added to each node at the start, once that is known [kg],
+        supported: Components of nodes that are fixed or driven, shape (nodes, 3).
+        driven: Nodes that are driven, shape (nodes,).
+        mass_scaling: Settings of mass scaling, if any.
+        safety: Fraction of the stable step in use.
+        added_mass: Mass that mass scaling has added to each node at the start, once known [kg],
             shape (nodes,).
         one_point: Whether hexahedra have one Gauss point and hourglass springs.
         nodal_mean: Whether tets of blocks of several average their dilatation at the nodes, shape
@@ -99,12 +100,13 @@ class Properties:
 
 @dataclass
 class Assembly:
-    """Flat arrays of the model by name, counts, and what the audit wants to know.
+    """Flat arrays of the model by name, counts, and data for the audit.
 
-    `interfaces` are those of the core, `module_stiffness` is what modules put on each node at most
-    [N/m]. `added_mass` is that of mass scaling by node, `least_mass` a diagonal that is no more than the mass
-    matrix of each block, `limits` the stable step without it and with 0.1 %
-    of mass added [s], `free_mass` that of the nodes that are not held [kg].
+    `interfaces` are the interfaces of the core, `module_stiffness` the largest stiffness of modules
+    at
+    each node [N/m]. `added_mass` is the scaled mass by node, `least_mass` a diagonal not above the
+    mass matrix of each block, `limits` the stable step without it and with 0.1 % of mass added [s],
+    `free_mass` the mass of free nodes [kg].
     """
 
     arrays: dict[str, NDArray] = field(default_factory=dict)
@@ -125,7 +127,7 @@ class Assembly:
 def table(rows: NDArray, stride: int) -> NDArray:
     """Rows of numbers per item, shape (rows, items), padded to the core's stride and flattened.
 
-    The padding repeats the last item, so that a lane that reads past the end meets sane numbers.
+    The padding repeats the last item, so that a lane past the end reads valid numbers.
     """
     count = rows.shape[1]
     if count == 0:

@@ -1,4 +1,4 @@
-"""The elastic compliance of tets that hold together by springs on their faces, found numerically."""
+"""The elastic compliance of tets connected by springs on their faces, found numerically."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class BondedTets:
     Attributes:
         x: Positions of the tets' corners [m], shape (tets, 4, 3).
         tet: The tets on either side of each face, shape (faces, 2).
-        corner: Which of their corners the face has, those that touch in the same place, shape
+        corner: Their corners on the face, touching corners in the same place, shape
             (faces, 2, 3).
-        pair: Which pairs of faces of the model these are, shape (faces,).
+        pair: Numbers of the model's pairs of faces, shape (faces,).
     """
 
     x: Floats
@@ -55,7 +55,7 @@ class BondedTets:
 
     @cached_property
     def volume(self) -> Floats:
-        """Of the tets [m3], shape (tets,)."""
+        """Volumes of the tets [m3], shape (tets,)."""
         return element_shapes.volumes("tet4", self.x)[:, 0]
 
     @cached_property
@@ -74,7 +74,7 @@ class BondedTets:
         return vector * np.sign(out.sum(axis=1))[:, None]
 
     def inner(self, layers: int) -> NDArray[np.bool_]:
-        """Tets that lie so many layers of faces inside the rest, shape (tets,)."""
+        """Tets at least this many layers of faces inside the rest, shape (tets,)."""
         faces = np.bincount(self.tet.ravel(), minlength=len(self.x))
         inside = faces == 4
         for _ in range(layers - 1):
@@ -86,14 +86,14 @@ class BondedTets:
 def compliance(
     tets: BondedTets, u: Floats, young: float, poisson: float, inner: NDArray[np.bool_]
 ) -> Floats:
-    """Compliance of the whole under six uniform stresses, from what its inner tets do.
+    """Compliance of the whole under six uniform stresses, from its inner tets.
 
     Args:
         tets: The tets.
         u: Their `displacements` [m].
         young: Young's modulus of the tets [Pa].
         poisson: Their Poisson's ratio.
-        inner: Tets whose mean strain and stress count.
+        inner: Tets for the mean strain and stress.
 
     Returns:
         Strains (engineering shears) by stresses, in the order of `STATES` [1/Pa], shape (6, 6).
@@ -112,10 +112,10 @@ def displacements(
         tets: The tets.
         young: Young's modulus of the tets [Pa].
         poisson: Their Poisson's ratio.
-        stiffness: Of the faces, normal and shear, one or shape (faces,) [Pa/m].
+        stiffness: Stiffness of the faces, normal and shear, one value or shape (faces,) [Pa/m].
 
     Raises:
-        ModelError: No equilibrium was found.
+        ModelError: The iteration found no equilibrium.
     """
     rows = tets.strain_rows
     stresses_of = matrix_product(elasticity(young, poisson), rows)
@@ -181,15 +181,15 @@ def _points(mate: NDArray[np.intp], spring: Floats) -> Ints:
 
 
 def jumps(tets: BondedTets, u: Floats) -> Floats:
-    """Of displacements of the corners, (tets, 12, states), across the faces from the first tet to
-    the other, at their corners, shape (faces, 3, xyz, states) [m]."""
+    """Jumps of displacements of the corners, (tets, 12, states), across the faces from the first
+    tet to the other, at their corners, shape (faces, 3, xyz, states) [m]."""
     at = u.reshape(-1, 4, 3, u.shape[2])
     a, b = (at[tets.tet[:, side, None], tets.corner[:, side]] for side in (0, 1))
     return b - a
 
 
 def _springs(tets: BondedTets, stiffness: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Which corner touches each corner on each of its three faces, and by what spring (or 0)."""
+    """Corner that touches each corner on each of its three faces, and the spring (or 0)."""
     mate = np.zeros((4 * len(tets.x), 3), np.intp)
     spring = np.zeros(mate.shape)
     place = np.array([[0, 0, 0, 0], [0, 0, 1, 1], [1, 1, 0, 2], [2, 2, 2, 0]])  # [opposite, corner]
@@ -209,8 +209,8 @@ def elasticity(young: float, poisson: float) -> Floats:
 
 
 def _loads(tets: BondedTets) -> Floats:
-    """Forces on the corners by the six stresses on the faces that no other tet touches [N]."""
-    # a uniform stress in the tets balances that on all their faces; less that on the inner faces
+    """Forces on the corners by the six stresses on faces without another tet [N]."""
+    # a uniform stress in the tets balances the stress on all faces; less the inner faces
     load = (tets.volume[:, None, None] * tets.strain_rows).transpose(0, 2, 1).reshape(-1, 4, 3, 6)
     load = np.ascontiguousarray(load)
     traction = np.einsum("sxy,fy->fxs", STATES, tets.vectors) / 3
@@ -223,14 +223,14 @@ def _loads(tets: BondedTets) -> Floats:
 def means(
     tets: BondedTets, u: Floats, young: float, poisson: float, inner: NDArray[np.bool_]
 ) -> tuple[Floats, Floats]:
-    """Mean strain and stress of the inner tets, half of their faces to others included.
+    """Mean strain and stress of the inner tets, including half of their faces to others.
 
     Args:
         tets: The tets.
         u: Displacements of their corners in several states [m], shape (tets, 12, states).
         young: Young's modulus of the tets [Pa].
         poisson: Their Poisson's ratio.
-        inner: Tets that count.
+        inner: The inner tets.
 
     Returns:
         Strains (engineering shears) [1] and stresses [Pa], shape (6, states), as in `STATES`.

@@ -1,4 +1,4 @@
-"""Stress of the rock at the start: of elements, as strain that is taken off; of bonds and joints."""
+"""Initial stress of the rock: of elements, as a subtracted strain; of bonds and joints."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 
 @dataclass(frozen=True)
 class InitialState:
-    """What the rock begins with.
+    """The initial stress of the rock.
 
     Attributes:
         lowest: Lowest xx, yy, zz of an element [Pa]: the largest pressures.
         highest: Highest xx, yy, zz [Pa].
-        cut: Bond points whose traction their joint could not bear.
+        cut: Bond points whose joint could not carry the traction.
         most_cut: Largest traction that was cut [Pa].
-        cut_at: Where that is [m], or None.
-        pulled: Numbers of the entries that pull the rock in all directions wherever they hold.
+        cut_at: Place of that traction [m], or None.
+        pulled: Numbers of the entries with tension in all directions everywhere.
     """
 
     lowest: list[float]
@@ -65,12 +65,12 @@ class InitialState:
 def set_initial_stress(
     case: Case, t: Topology, names: list[str], laws: list[Interface], core: Core
 ) -> InitialState | None:
-    """Put the rock of a started core under the stress that its case asks for.
+    """Give the rock of a started core the initial stress of its case.
 
-    Joints without strength that are pairs begin broken, also where it asks for none.
+    Paired joints without strength begin broken, even without initial stress.
 
     Returns:
-        What it begins with; None where the case asks for none.
+        The initial stress; None if the case gives none.
 
     Raises:
         CaseError: An entry does not fit the model.
@@ -89,7 +89,7 @@ def set_initial_stress(
     stress = field.at(points, group[:, 0])
     differ = np.flatnonzero(group[:, 0] != group[:, 1])  # the mean of both sides
     stress[differ] = 0.5 * (stress[differ] + field.at(points[differ], group[differ, 1]))
-    if field.water is not None:  # joints bear what is left of the whole stress of the rock
+    if field.water is not None:  # joints carry the rest of the total stress of the rock
         joint = field.water.in_wet_joints(core.model(), points, faces[:, 0])
         pores = 0.5 * sum(field.in_pores(points, group[:, side]) for side in (0, 1))
         stress[:, :3] += (joint - pores)[:, None]
@@ -111,7 +111,7 @@ def _set_elements(t: Topology, field: _Field, core: Core) -> tuple[list[float], 
             continue
         corners = t.node_position[t.element_nodes[shape]]
         places = element_shapes.gauss_positions(shape, corners)
-        if len(arrays[f"{shape}.hourglass"]):  # one point, in the middle
+        if len(arrays[f"{shape}.hourglass"]):  # one point in the middle
             volume = element_shapes.volumes(shape, corners)
             places = (np.einsum("ep,epx->ex", volume, places) / volume.sum(axis=1)[:, None])[
                 :, None
@@ -132,15 +132,15 @@ def _set_elements(t: Topology, field: _Field, core: Core) -> tuple[list[float], 
 
 
 class _Field:
-    """The stress that a case asks for.
+    """The initial stress given by a case.
 
     Args:
-        case: With entries of `initial_stress`.
+        case: Case with entries of `initial_stress`.
         t: Blocks and faces.
-        names: Of the groups.
+        names: Names of the groups.
 
     Attributes:
-        absent: Groups that a later stage adds, which are free of stress, shape (groups,).
+        absent: Groups added by a later stage, which have no stress, shape (groups,).
     """
 
     def __init__(self, case: Case, t: Topology, names: list[str]) -> None:
@@ -170,7 +170,7 @@ class _Field:
         return found
 
     def in_pores(self, points: Floats, group: NDArray[np.integer]) -> Floats:
-        """Pressure that water in the pores takes from the stress [Pa], shape (points,)."""
+        """Part of the pore pressure that reduces the stress [Pa], shape (points,)."""
         if self.water is None:
             return np.zeros(len(points))
         biot = np.array([m.biot for m in self._materials])
@@ -181,7 +181,7 @@ class _Field:
         return [self._case.materials[self._case.groups[name].material] for name in self._names]
 
     def pulled(self) -> list[int]:
-        """Entries that pull the rock in all directions wherever they hold."""
+        """Entries with tension in all directions everywhere."""
         return [i for i, pulls in self._pulls.items() if pulls]
 
     def _of(self, entry: InitialStress, points: Floats, group: NDArray[np.integer]) -> Floats:
@@ -215,9 +215,9 @@ class _Field:
         return -pressure[:, None] * np.array([ratio[i, j] for i, j in PLACES])
 
     def _water_above(self, points: Floats, group: NDArray[np.integer], top: Floats) -> Floats:
-        """Mass of water over the ground, and of that which saturates the rock above [kg/m2].
+        """Mass of water above the ground, and of the water that saturates the rock above [kg/m2].
 
-        The rock between a point and the water table counts as that of the point.
+        The rock between a point and the water table gets the density at the point.
         """
         assert self.water is not None
         unit = self.water.unit
@@ -243,14 +243,14 @@ class _Field:
         if entry.surface != "top" and entry.surface < top:
             raise CaseError(
                 f"{self._case.where(f'initial_stress.{number}.surface')}: {entry.surface:g} m lies below the top "
-                f"of the model, {top:g} m; leave it out where the model ends at the ground"
+                f"of the model, {top:g} m; leave it out if the model ends at the ground"
             )
 
 
 def _of_principal(principal: PrincipalStress | None) -> list[float]:
-    assert principal is not None  # the schema wants one of three
+    assert principal is not None  # the schema requires one of three
     d = principal.directions()
-    for _ in range(6):  # to the nearest that are at right angles; LAPACK's bits depend on the CPU
+    for _ in range(6):  # to the nearest orthogonal directions; LAPACK's bits depend on the CPU
         d = 1.5 * d - 0.5 * matrix_product(d, matrix_product(d.T, d))
     tensor = np.einsum("k,ki,kj->ij", principal.values, d, d)
     return [float(tensor[i, j]) for i, j in PLACES]

@@ -1,4 +1,4 @@
-"""Which interface holds between two kinds of faces."""
+"""The interface between two kinds of faces."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ from cdem.mesh.topology import Topology, group_touching
 from cdem.model.flat_arrays import Floats
 
 UNBREAKABLE = 1e8
-"""Strength [Pa] that no rock has: cohesion up to 50 MPa, tensile strength up to 25 MPa."""
+"""Strength [Pa] above any rock: cohesion up to 50 MPa, tensile strength up to 25 MPa."""
 
 
 def interfaces_of(case: Case, names: list[str]) -> tuple[list[Interface], NDArray[np.int32]]:
     """Interface laws in use, and the index for each pair of kinds of faces (-1: none was given).
 
-    Kinds of faces are those of `Topology.face_kind`. What touches a face made by a set of joints has
+    Kinds of faces are those in `Topology.face_kind`. A contact on a face made by a set of joints
+    has
     the law of that set, if there is one and the toucher (first index) is of the same set or group:
-    a corner that rests on a joint may touch it as a corner of any face of its block. All else has the
-    law of its groups.
+    a corner that rests on a joint may touch it as a corner of any face of its block. All other
+    contacts have the law of their groups.
     """
     laws: list[Interface] = list(case.interfaces.pairs)
     table = np.full((len(names), len(names)), -1, np.int32)
@@ -56,7 +57,7 @@ def interfaces_of(case: Case, names: list[str]) -> tuple[list[Interface], NDArra
 def check_interfaces(
     case: Case, topology: Topology, names: list[str], table: NDArray[np.int32]
 ) -> None:
-    """Refuse a model of which two groups touch, or may come to touch, without an interface."""
+    """Refuse a model in which two groups touch, or may come to touch, without an interface."""
     for a, b in sorted(group_touching(topology)):
         if table[names.index(a), names.index(b)] < 0:
             raise CaseError(
@@ -77,7 +78,7 @@ def check_interfaces(
 
 
 def name_of(law: Interface) -> str:
-    """What an interface is called in messages."""
+    """Name of an interface in messages."""
     if not isinstance(law, InterfacePair):
         return "default"
     if law.name:
@@ -86,9 +87,9 @@ def name_of(law: Interface) -> str:
 
 
 def that_may_break(case: Case) -> NDArray[np.bool_]:
-    """Which interfaces, in the order of `interfaces_of`, have a strength that rock may have in any stage.
+    """Interfaces, in the order of `interfaces_of`, with a realistic strength of rock in any stage.
 
-    Strengths of `UNBREAKABLE` or more keep bonds whole whatever happens.
+    Bonds with strengths of `UNBREAKABLE` or more never break.
     """
     trial = case.model_copy(deep=True)
 
@@ -111,7 +112,7 @@ def _least_strength(law: Interface) -> float:
 
 
 def strength_factors_of(law: Interface) -> Callable[[NDArray[np.int32]], Floats] | None:
-    """From faces of pairs, shape (pairs, 2), to factors on their strength; None: all are 1."""
+    """Function from faces of pairs, shape (pairs, 2), to factors on their strength; None: all are 1."""
     given = law.heterogeneity
     if given is None:
         return None
@@ -124,6 +125,6 @@ def strength_factors_of(law: Interface) -> Callable[[NDArray[np.int32]], Floats]
 
 
 def bonded_pairs(laws: list[Interface], table: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Which pairs of groups have strength, shape (groups, groups); those without a law have none."""
+    """Pairs of groups with strength, shape (groups, groups); False for groups without a law."""
     strong = [INTERFACE_LAWS[law.law].bonds(law) for law in laws]
     return np.array([*strong, False])[table]

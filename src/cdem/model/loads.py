@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def drop_gravity(case: Case, topology: Topology, names: list[str], parts: Assembly) -> None:
-    """Take the weight off groups on which gravity does not act."""
+    """Remove the weight of groups without gravity."""
     groups = topology.block_group[topology.node_block]
     for name, group in case.groups.items():
         if not group.gravity:
@@ -65,8 +65,8 @@ def set_velocities(
         case: The case.
         topology: The model, at its start.
         names: Names of the groups, by index.
-        mass: Of each node [kg].
-        velocity: Of each node [m/s], shape (nodes, 3); is changed.
+        mass: Mass of each node [kg].
+        velocity: Velocity of each node [m/s], shape (nodes, 3); is changed.
     """
     groups = topology.block_group[topology.node_block]
     for name, group in case.groups.items():
@@ -78,15 +78,15 @@ def set_velocities(
 
 
 def start_on_supports(core: Core, curves: Curves, velocity: Floats) -> NDArray[np.bool_]:
-    """Let supported components begin with the velocity that their support gives: no jolt.
+    """Let supported components start with the velocity of their support, without a jolt.
 
     Args:
         core: The compiled core.
-        curves: Of the model.
-        velocity: Of each node [m/s], shape (nodes, 3); is changed.
+        curves: Curves of the model.
+        velocity: Velocity of each node [m/s], shape (nodes, 3); is changed.
 
     Returns:
-        Nodes that had another velocity, not zero, of their own, shape (nodes,).
+        Nodes that had another nonzero velocity of their own, shape (nodes,).
     """
     support = core.model()["support.row"]
     nodes = np.flatnonzero(support >= 0)

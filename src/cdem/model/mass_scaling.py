@@ -1,8 +1,8 @@
-"""Mass added where small elements, bonds and contacts would hold up all others (`time.mass_scaling`).
+"""Mass added where small elements, bonds and contacts would shorten the step (`time.mass_scaling`).
 
-A step t is stable where every node has a mass of t^2 / 4 (S + 2 k) at least: S = sum w_e^2 m_e of its
-elements, k the stiffness of its bonds and contacts (Gershgorin). Of a mass matrix M the diagonal
-below it counts, M >= diag(least).
+A step t is stable if every node has a mass of at least t^2 / 4 (S + 2 k): S = sum w_e^2 m_e of its
+elements, k the stiffness of its bonds and contacts (Gershgorin). For a mass matrix M, use a
+diagonal below it, M >= diag(least).
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from cdem.model.flat_arrays import Assembly, Floats, Properties
 from cdem.model.masses import one_element_blocks
 
 OFFER = 0.001
-"""Share of the mass that is not held, of which the audit says what it would buy."""
+"""Fraction of the mass of free nodes; the audit reports the step for it."""
 ROUNDS = 60
-"""Halvings, at most, of the range in which the step lies that a share of the mass buys."""
+"""Most halvings of the range of the step for a given mass."""
 
 
 class Scaling:
-    """What mass each node needs for a step: with bonds intact, and with those broken that may break.
+    """Mass of each node for a step: with bonds intact, and with breakable bonds broken.
 
     Attributes:
-        free_mass: Of the nodes that are not held in all directions [kg].
+        free_mass: Mass of the nodes that are not fixed in all directions [kg].
 
     Args:
         t: Blocks, elements, faces and pairs.
-        p: What the case says about them.
+        p: Properties from the case.
         out: Masses without scaling, and pairs.
     """
 
@@ -54,7 +54,7 @@ class Scaling:
         return np.maximum.reduce([state.added(limit) for state in self._states])
 
     def limit(self, share: float) -> float:
-        """The longest stable step [s] for which no more than a share of what is not held is added."""
+        """The longest stable step [s] that needs no more than this fraction of the free mass."""
         largest = max(state.largest for state in self._states)
         if not largest > 0:
             return np.inf
@@ -66,7 +66,7 @@ class Scaling:
             total[needing] = np.maximum.reduce(here)
             if total.sum() <= share * self.free_mass:
                 low = middle
-            else:  # what needs none now needs none for shorter steps
+            else:  # nodes without added mass need none for shorter steps
                 high, needing = middle, needing[total[needing] > 0]
             if same_everywhere(np.array(low)) == same_everywhere(np.array(high)):
                 break
@@ -80,10 +80,10 @@ class Scaling:
         return float(same_everywhere(np.clip(intact.limit(added), *_steps(intact.largest))))
 
     def wanted(self, asked: MassScaling, safety: float) -> Floats:
-        """What a case asks for, when this share of the stable step is used: as `added`.
+        """Mass asked for by a case, for this fraction of the stable step: as `added`.
 
         Raises:
-            CaseError: The step is longer than mass may buy: 100 times the stable one without.
+            CaseError: The step is longer than 100 times the stable step without added mass.
         """
         limit = np.inf if asked.step is None else asked.step / safety
         if asked.most is not None:
@@ -92,27 +92,27 @@ class Scaling:
         if 0 < longest < limit < np.inf:
             raise CaseError(
                 f"time.mass_scaling.step: {asked.step:.3g} s is more than 100 times the stable step of "
-                f"the model; write at most {safety * longest:.2g} s, or most: 0.001 in place of it"
+                f"the model; write at most {safety * longest:.2g} s, or most: 0.001 instead"
             )
         return self.added(limit)
 
 
 def _steps(largest: float) -> tuple[float, float]:
-    """The stable step of the largest squared frequency, and the longest that mass may buy [s]."""
+    """The stable step of the largest squared frequency, and the longest that mass may give [s]."""
     return 2 / np.sqrt(largest), 200 / np.sqrt(largest)
 
 
 class _Needs:
-    """What mass each node needs in one state of the bonds.
+    """Mass of each node in one state of the bonds.
 
     Attributes:
-        mass: Without more [kg], shape (nodes,).
-        largest: Squared frequency that bounds the step without more mass [1/s2].
+        mass: Mass without scaling [kg], shape (nodes,).
+        largest: Squared frequency that limits the step without scaling [1/s2].
 
     Args:
         t, p, out: As for `Scaling`.
-        stiffness: Of bonds and contacts at each node [N/m], shape (nodes,).
-        bonded: Whether blocks that are lumped while they have bonds are.
+        stiffness: Stiffness of bonds and contacts at each node [N/m], shape (nodes,).
+        bonded: Whether blocks that are lumped while bonded have lumped masses.
     """
 
     def __init__(
@@ -131,14 +131,14 @@ class _Needs:
         load = arrays["node.lumped_frequency_squared"] * self.mass + springs
         self._load = np.where(held, 0.0, load)
         self._least = np.where(lumped, self.mass, out.least_mass)
-        # of blocks with a matrix, as the core has it: whatever the step, less need not be
+        # for blocks with a matrix, as in the core: a lower bound for any step
         square = arrays["node.frequency_squared"] + _most_of_block(
             springs * arrays["node.inverse_mass_bound"], t
         )
         by_matrix = np.where(held, 0.0, _most_of_block(square, t))
         by_node = _most_of_block(self._load / self._least, t)
         self._square = np.where(lumped, np.inf, by_matrix)
-        # single elements keep the shape of their matrix: all their nodes grow by one factor
+        # single elements keep the shape of their matrix: one factor for all nodes
         self._alone = dense & alone[t.node_block]
         self._factor_square = np.minimum(by_node, np.where(lumped, np.inf, by_matrix))
         one_by_one = np.minimum(self._square, self._load / self._least)
@@ -161,7 +161,7 @@ class _Needs:
 
 
 def bond_stiffness(t: Topology, out: Assembly, broken: NDArray[np.bool_] | None = None) -> Floats:
-    """Stiffness of bonds at each node [N/m], shape (nodes,), but of those of broken interfaces."""
+    """Stiffness of intact bonds at each node [N/m], shape (nodes,), without broken interfaces."""
     nodes = len(t.node_position)
     total = np.zeros(nodes)
     for kind, n in (("triangles", 3), ("quads", 4)):
@@ -187,7 +187,7 @@ def bond_stiffness(t: Topology, out: Assembly, broken: NDArray[np.bool_] | None 
 def _holds(
     out: Assembly, kind: str, count: int, broken: NDArray[np.bool_] | None
 ) -> NDArray[np.bool_]:
-    """Which pairs of a kind hold while bonds of some interfaces are broken, shape (count,)."""
+    """Pairs of a kind that hold while bonds of some interfaces are broken, shape (count,)."""
     interface = out.arrays[f"{kind}.interface"][:count]
     return np.ones(count, bool) if broken is None else ~broken[interface]
 
@@ -209,11 +209,12 @@ def contact_stiffness(
     *,
     any_mate: bool = False,
 ) -> Floats:
-    """Stiffness that contacts of exposed faces may have at each node [N/m], shape (nodes,).
+    """Stiffness of possible contacts of exposed faces at each node [N/m], shape (nodes,).
 
-    Of faces that lie on each other at the start their own contact counts; of all others one with a
-    face of the same kind, area and stiffness. In rubble a face may meet any other (`any_mate`): where
-    both sides are in series one that is rigid counts.
+    Faces that lie on each other at the start count with their own contact; all others with a
+    contact on
+    a face of the same kind, area and stiffness. In rubble a face may meet any other (`any_mate`):
+    then the other side counts as rigid if both sides are in series.
     """
     if len(p.contact_stiffness) == 0:
         return np.zeros(len(t.node_position))
@@ -240,13 +241,13 @@ def contact_stiffness(
         count(*mates.T)
     ends = t.face_nodes[faces]
     used = ends >= 0
-    # semi-springs of either side, as much again for semi-edges
+    # semi-springs of either side, the same for semi-edges
     share = np.repeat(2 * most[faces], used.sum(axis=1))
     return np.bincount(ends[used], share, len(t.node_position)).astype(float)
 
 
 def _most_of_block(of_nodes: Floats, t: Topology) -> Floats:
-    """The largest of the nodes of each block, for each of them; nodes of a block follow one another."""
+    """The largest value in each block, for each of its nodes; nodes of a block are contiguous."""
     return np.maximum.reduceat(of_nodes, t.block_first_node[:-1])[t.node_block]
 
 

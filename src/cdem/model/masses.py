@@ -1,4 +1,4 @@
-"""Masses of the nodes, mass matrices of small blocks, and the frequencies that bound the time step."""
+"""Masses of the nodes, mass matrices of small blocks, and the frequencies that limit the time step."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DENSE_NODES = 16
 DENSE_NODES_MOST = 256
 """Larger blocks get it only if no lumped masses have the exact inertia (one element thick)."""
 LEAST_LUMP = 0.3
-"""A corrected lumped mass may not fall below this part of the uncorrected one."""
+"""Lower limit of a corrected lumped mass, relative to the uncorrected one."""
 
 
 def node_masses(
@@ -28,15 +28,15 @@ def node_masses(
     added: Floats,
     out: Assembly,
 ) -> None:
-    """Masses of the nodes, and the squared frequency that bounds the time step.
+    """Masses of the nodes, and the squared frequency that limits the time step.
 
     Args:
         t: Blocks and elements.
-        p: What the case says about them.
+        p: Properties from the case.
         matrices: Mass matrices of the elements by shape [kg].
-        geometry: Of the elements by shape.
-        added: To the mass of each node by mass scaling [kg], shape (nodes,).
-        out: Gets the arrays of the nodes.
+        geometry: Geometry of the elements by shape.
+        added: Mass added to each node by mass scaling [kg], shape (nodes,).
+        out: Receives the arrays of the nodes.
     """
     first = t.block_first_node
     size = np.diff(first)
@@ -54,7 +54,7 @@ def node_masses(
         without = _correct_lumps(t, matrices, lumped, mass, dense_block | held, out)
         if len(without) == 0:
             break
-        dense_block[without] = True  # a full matrix has other frequencies: once more
+        dense_block[without] = True  # a full matrix has other frequencies: repeat
     # u K u <= sum_e w_e^2 u_e M_e u_e: with lumped masses that is a sum over the nodes, and no
     # frequency of the mesh exceeds the largest sum_e w_e^2 m_e / m of a node
     mass += added
@@ -88,8 +88,8 @@ def _lumped_masses(
     """For each node its lumped mass, the sum of w_e^2 m_e over its elements, with the frequencies of
     lumped masses, and their largest w_e^2.
 
-    The last counts elements of blocks with a full mass matrix with that, all others with lumped
-    masses.
+    The last counts elements of blocks with a full mass matrix with this matrix, all others with
+    lumped masses.
     """
     lumped = np.zeros(len(t.node_position))
     stiffness = np.zeros(len(t.node_position))
@@ -156,8 +156,8 @@ def _correct_lumps(
 ) -> NDArray[np.intp]:
     """Shift the lumped masses of larger blocks, as little as possible, to their exact inertia.
 
-    Minimises sum (m - m_lumped)^2 / m_lumped with mass, centre and second moments given. Blocks for
-    which that needs a mass near zero (one element thick) are returned if small enough for the full
+    Minimises sum (m - m_lumped)^2 / m_lumped with mass, centre and second moments given. Blocks
+    that would need a mass near zero (one element thick) are returned if small enough for the full
     mass matrix; else they keep their lumped masses and are counted for the audit.
     """
     todo = np.flatnonzero(~skip)
@@ -192,10 +192,10 @@ def _correct_lumps(
 
 
 def _least_masses(t: Topology, matrices: dict[str, Floats], added: Floats, out: Assembly) -> Floats:
-    """Diagonal that is no more than the mass matrix of each block, D <= M [kg], shape (nodes,).
+    """Diagonal not above the mass matrix of each block, D <= M [kg], shape (nodes,).
 
-    Of an element with row sums m it is lambda diag(m), lambda the least eigenvalue of
-    diag(m)^-1/2 M diag(m)^-1/2: 1/5 for a tet, 1/27 for a box. Of lumped masses it is these.
+    For an element with row sums m it is lambda diag(m), lambda the smallest eigenvalue of
+    diag(m)^-1/2 M diag(m)^-1/2: 1/5 for a tet, 1/27 for a box. For lumped masses, the masses.
     """
     dense = out.arrays["node.mass_row_first"] >= 0
     least = np.zeros(len(dense))
@@ -218,11 +218,11 @@ def _least_masses(t: Topology, matrices: dict[str, Floats], added: Floats, out: 
 
 
 class _MatrixTable:
-    """The mass matrices of small blocks as the core reads them, one after the other.
+    """The mass matrices of small blocks in the core's format, one after the other.
 
     Attributes:
-        first: By node, where its row of the matrix starts, or -1.
-        step: By node, from one axis's matrix to the next; 0 where all axes have the same.
+        first: Start of each node's row of the matrix, or -1.
+        step: For each node, distance between the matrices of two axes; 0 if they are equal.
         inverse: Inverses, each row times its node's mass.
         matrix: Matrices, each row over its node's mass.
     """
@@ -234,7 +234,7 @@ class _MatrixTable:
         self._size = 0
 
     def keep(self, nodes: NDArray, inverses: Floats, matrices: Floats) -> None:
-        """Nodes of blocks, (blocks, n), with a matrix for each or for all, or one for each axis."""
+        """Nodes of blocks, (blocks, n), with one matrix for each or for all, or one for each axis."""
         n = nodes.shape[1]
         rows = self._size + matrices[0].size * np.arange(len(matrices))[:, None] + n * np.arange(n)
         self.first[nodes] = rows
@@ -253,7 +253,7 @@ def _dense_blocks(
     dense_block: NDArray[np.bool_],
     out: Assembly,
 ) -> None:
-    """Mass matrices of small blocks and their inverses, with supported nodes taken out."""
+    """Mass matrices of small blocks and their inverses, without supported nodes."""
     mass, frequency2 = out.arrays["node.mass"], out.arrays["node.frequency_squared"]
     first, size = t.block_first_node, np.diff(t.block_first_node)
     bound = 1 / mass
@@ -264,7 +264,7 @@ def _dense_blocks(
     for n in np.unique(size[dense_block]).tolist():
         free = np.flatnonzero(dense_block & ~held & (size == n))
         bound_to = np.flatnonzero(dense_block & held & (size == n))
-        if n == 4 and len(free):  # tets: all have the same over their mass
+        if n == 4 and len(free):  # tets: one matrix for all, over their mass
             nodes = first[free][:, None] + np.arange(n)
             bound[nodes] = 5 / mass[nodes]
             frequency2[nodes] *= (mass - added)[nodes] / mass[nodes]
@@ -281,7 +281,7 @@ def _dense_blocks(
             m = np.where(one, heavier[:, None, None] * m, m + added[nodes][:, :, None] * np.eye(n))
             frequency2[nodes] /= np.where(one[:, 0], heavier[:, None], 1.0)
             bound[nodes] = same_everywhere(1 / np.linalg.eigvalsh(m)[:, 0])[:, None]
-            # K <= diag(stiffness) as well, which the worst element alone often exceeds
+            # K <= diag(stiffness) as well, often below the bound of the worst element
             root = np.sqrt(stiffness[nodes])
             least = np.linalg.eigvalsh(m / root[:, :, None] / root[:, None])[:, 0]
             frequency2[nodes] = np.minimum(frequency2[nodes], same_everywhere(1 / least)[:, None])
@@ -317,11 +317,11 @@ def _block_matrices(t: Topology, masses: dict[str, Floats], blocks: NDArray, n: 
 
 
 def _supported_inverses(matrices: Floats, supported: NDArray[np.bool_]) -> Floats:
-    """Inverses per axis of the parts of mass matrices that are free along it, zero elsewhere.
+    """Inverses per axis of the free parts of mass matrices, zero elsewhere.
 
     Args:
-        matrices: [kg], shape (blocks, n, n).
-        supported: Components of the blocks' nodes that are held or moved, shape (blocks, n, 3).
+        matrices: Mass matrices [kg], shape (blocks, n, n).
+        supported: Components of the blocks' nodes that are fixed or driven, shape (blocks, n, 3).
     """
     out = np.zeros((len(matrices), 3, *matrices.shape[1:]))
     for b, m in enumerate(matrices):

@@ -1,4 +1,4 @@
-"""Memory that a model takes, and how much there is: refused before it is built, not killed half-way."""
+"""Memory needed by a model and available: a model too large is refused before it is built."""
 
 from __future__ import annotations
 
@@ -16,22 +16,23 @@ from cdem.mesh.element_shapes import FACES, NODES
 from cdem.mesh.mesh import Mesh
 
 START = 70e6
-"""Bytes of the program before it has a model."""
+"""Bytes of the program without a model."""
 WHILE_BUILT = {"tet4": 1500, "pyramid5": 4600, "wedge6": 5900, "hex8": 12_500}
-"""Bytes an element of the largest arrays that are there only while the model is built."""
+"""Bytes per element of the largest temporary arrays while the model is built."""
 NODE = 600
-"""Bytes a node at that time."""
+"""Bytes per node at that time."""
 BUILT = {"tet4": 1000, "pyramid5": 2000, "wedge6": 1500, "hex8": 2500}
-"""Bytes an element once it is built, without its faces."""
+"""Bytes per element of a built model, without its faces."""
 BONDED = {3: 1250, 4: 2090}
-"""Bytes a bonded pair, by vertices of its faces."""
+"""Bytes per bonded pair, by vertices of its faces."""
 EXPOSED = {3: 4100, 4: 3600}
-"""Bytes an exposed face that touches another, by vertices: its lists and contacts."""
+"""Bytes per exposed face that touches another, by vertices: its lists and contacts."""
 SOLVED = {"tet4": 8300, "pyramid5": 13_000, "wedge6": 17_200, "hex8": 29_400}
-"""Bytes an element that is a block of its own, while `relax: solve` solves."""
+"""Bytes per element that is a block of its own, while `relax: solve` solves."""
 SOLVED_WHOLE = {"tet4": 1500, "pyramid5": 4000, "wedge6": 4000, "hex8": 8300}
 """The same where elements share nodes; pyramids and wedges are guessed from the others."""
-# Solves measured with 2,700 to 27,000 elements (28 Nov 2026, a68b9a1). The others are fitted to the peaks of 15 meshes of 27,000 to 132,000 elements (25 Nov 2026), exposed faces to nine
+# Solves measured with 2,700 to 27,000 elements (28 Nov 2026, a68b9a1). The others are fitted to the
+# peaks of 15 meshes of 27,000 to 132,000 elements (25 Nov 2026), exposed faces to nine
 # of 2,700 to 48,000 (26 Nov 2026): within 15 %, but for connected plates of tets one element thick,
 # which take up to twice as much.
 
@@ -40,7 +41,7 @@ Pieces = Counter[tuple[str, bool, bool]]
 
 
 def pieces_of_boxes(case: Case) -> Pieces:
-    """What the boxes of a case will be, before they are made."""
+    """Elements that the boxes of a case will have."""
     per_cell = {"hex8": 1, "wedge6": 2, "pyramid5": 6, "tet4": 6}
     pieces: Pieces = Counter()
     for block in case.model.blocks:
@@ -52,7 +53,7 @@ def pieces_of_boxes(case: Case) -> Pieces:
 
 
 def pieces_of_mesh(case: Case, mesh: Mesh) -> Pieces:
-    """What a mesh will be."""
+    """Elements that a mesh will have."""
     pieces: Pieces = Counter()
     for shape, groups in mesh.cell_group.items():
         for name, count in zip(
@@ -89,10 +90,10 @@ def need(pieces: Pieces, *, solves: bool = False) -> float:
 
 
 def room(root: Path = Path("/")) -> tuple[float, str]:
-    """Memory that this process can still take [bytes], and what limits it.
+    """Memory still available to this process [bytes], and the limit behind it.
 
     Args:
-        root: Where /proc and /sys are.
+        root: Root of /proc and /sys.
     """
     limits = [(np.inf, "nothing"), *_of_machine(root), *_of_groups(root)]
     most = resource.getrlimit(resource.RLIMIT_AS)[0]
@@ -105,7 +106,7 @@ def room(root: Path = Path("/")) -> tuple[float, str]:
 def _of_machine(root: Path) -> Iterator[tuple[float, str]]:
     try:
         lines = (root / "proc/meminfo").read_text().splitlines()
-    except OSError:  # no Linux
+    except OSError:  # not Linux
         return
     for line in lines:
         if line.startswith("MemAvailable:"):
@@ -113,7 +114,7 @@ def _of_machine(root: Path) -> Iterator[tuple[float, str]]:
 
 
 def _of_groups(root: Path) -> Iterator[tuple[float, str]]:
-    """Room in the control groups of the process and those above them, of both versions."""
+    """Room in the control groups of the process and their parents, of both versions."""
     try:
         lines = (root / "proc/self/cgroup").read_text().splitlines()
     except OSError:
@@ -129,7 +130,7 @@ def _of_groups(root: Path) -> Iterator[tuple[float, str]]:
         else:
             continue
         folder = Path(path.lstrip("/"))
-        for level in (folder, *folder.parents):  # in a container the path may not be there
+        for level in (folder, *folder.parents):  # in a container the path may be missing
             here = root / base / level
             for name in limits:
                 limit = _number(here / name)
@@ -147,7 +148,7 @@ def _number(path: Path) -> float | None:
 
 
 def _cache(path: Path) -> float:
-    """Bytes of files in memory that make room when it is wanted."""
+    """Bytes of cached files, which are freed on demand."""
     try:
         words = path.read_text().split()
     except OSError:
@@ -164,13 +165,13 @@ def check_memory(case: Case, pieces: Pieces) -> None:
         pieces: What its model is made of.
 
     Raises:
-        ModelError: Says how much it needs, how much there is, and what limits it.
+        ModelError: Names the memory needed, the memory available, and its limit.
     """
     solves = any(stage.relax == "solve" for stage in case.stages)
     wanted, (free, limit) = need(pieces, solves=solves), room()
     if wanted > free:
         raise ModelError(
-            f"{sum(pieces.values()):,} elements need about {wanted / 1e9:.3g} GB of memory to be "
-            f"built; there are {max(free, 0) / 1e9:.3g} GB, by {limit}. Use fewer elements, or a "
+            f"{sum(pieces.values()):,} elements need about {wanted / 1e9:.3g} GB of memory; "
+            f"{max(free, 0) / 1e9:.3g} GB are available ({limit}). Use fewer elements, or a "
             "machine with more memory"
         )

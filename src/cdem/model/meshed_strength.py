@@ -1,14 +1,15 @@
-"""What part of the strength of their bonds irregular tets have, from their elastic stress.
+"""Strength of bonded irregular tets, as a fraction of the strength of their bonds, from elastic
+stress.
 
-In irregular tets that hold together by springs the tractions of bonds scatter about those of the mean
+In irregular tets connected by springs the tractions of bonds scatter about the tractions of the
+mean
 stress: forces that the balance of nodes leaves free run from bond to bond around every edge. Brittle
-rock breaks with the bonds that they load most, at a part f0 of its strength that does not depend on the
-stiffness of bonds. Where bonds have fracture energies, others take over first:
-
+rock breaks with its most loaded bonds, at a fraction f0 of its strength that does not depend on the
+stiffness of bonds. With fracture energies, other bonds take over first:
     f = f0 + 1.5 (1 - f0) D / (D + D0),    D = 2 G1 k / T^2 or 2 G2 k / (c (c - c_r))
 
-D is how much further a bond moves while it breaks than up to its strength. 1.5 and D0 were fitted to
-runs of pulled and pressed columns (docs/decisions/0045-strength-as-meshed.md).
+D is the displacement of a bond while it breaks, over its displacement up to its strength. 1.5 and
+D0 were fitted to runs of pulled and pressed columns (docs/decisions/0045-strength-as-meshed.md).
 """
 
 from __future__ import annotations
@@ -42,37 +43,39 @@ from cdem.rows import rows_of
 Floats = NDArray[np.float64]
 
 STRENGTHS = ("friction_angle", "cohesion", "tensile_strength")
-"""Parameters of the laws that are looked at."""
+"""Parameters that a law must have."""
 HALFWAY = (6.0, 9.0)
 """D0 in tension and in compression."""
 GAIN = 1.5
-"""What bonds with much fracture energy regain, over what brittle ones lack."""
+"""Strength that bonds with much fracture energy regain, over the deficit of brittle ones."""
 WANTED = (10.0, 22.0)
-"""D in tension and in compression that are told: f is 0.93 to 1.05 there. With more a Brazilian disc,
-which splits at 0.95 to 1.25 of T, becomes too strong."""
+"""Recommended D in tension and in compression: f is 0.93 to 1.05 there. With more, a Brazilian
+disc, which splits at 0.95 to 1.25 of T, becomes too strong."""
 LEAST = 0.9
-"""Part of the strength below which the report says what helps."""
+"""Fraction of the strength below which the report suggests remedies."""
 WAYS = ("tension", "compression")
 TINY = 1e-300
 ALONG_XYZ = [int(DIRECTIONS[:, axis].argmax()) for axis in range(3)]
-"""Places of the axes in `compensation.DIRECTIONS`."""
+"""Indices of the axes in `compensation.DIRECTIONS`."""
 
 
 def meshed_strengths(build: Build) -> dict[str, dict[str, Any]]:
-    """By group of bonded tets: what part of the strength of its law it has in its mesh.
+    """Strength in its mesh over the strength of its law, for each group of bonded tets.
 
-    Groups are told whose every element is a block and a tet, and whose bonds have cohesion and tensile
-    strength that rock may have. Of each, six uniform stresses act on up to
-    `compensation.MOST_TETS` tets around its middle, and 13 uniaxial stresses are made of these.
+    Only for groups in which every element is a tet and a block, and whose bonds have cohesion and
+    tensile strength that rock may have. Six uniform stresses act on up to
+    `compensation.MOST_TETS` tets around the middle of each; 13 uniaxial stresses are combined from
+    these.
 
     Returns:
-        strength: Part of the uniaxial strength of even rock: of "tension" and "compression" the
+        strength: Fraction of the uniaxial strength of uniform rock: for "tension" and "compression"
+            the
             smallest and the largest among the directions of the load [1], shape (2,).
         strength_along_xyz: The same along the axes [1], shape (3,).
-        brittle, brittle_along_xyz: The same if its bonds were brittle.
-        faces: Bonds that were looked at.
-        ductility: D of tension and compression, 0 where bonds are brittle [1].
-        fracture_energies: Which G1 and G2 give the group the strength of its bonds [J/m2].
+        brittle, brittle_along_xyz: The same for brittle bonds.
+        faces: Number of bonds in the sample.
+        ductility: D of tension and compression, 0 for brittle bonds [1].
+        fracture_energies: G1 and G2 that give the group the strength of its bonds [J/m2].
     """
     laws, interface_of = interfaces_of(build.case, build.group_names)
     breaks = that_may_break(build.case)
@@ -86,13 +89,13 @@ def meshed_strengths(build: Build) -> dict[str, dict[str, Any]]:
         pairs = _pairs_of_tets(build.topology, group)
         if law is None or not surrounded(build.topology, pairs).any():
             continue
-        with suppress(ModelError):  # no equilibrium of a mesh so flat; a run needs none
+        with suppress(ModelError):  # no equilibrium for very flat meshes; a run does not need it
             out[name] = _of_group(build, name, pairs, laws[number], law)
     return out
 
 
 def _pairs_of_tets(t: Topology, group: int) -> NDArray[np.intp]:
-    """Pairs of faces inside a group whose every element is a block and a tet, else none."""
+    """Pairs of faces inside a group with every element a tet and a block, else none."""
     pairs = np.flatnonzero((t.face_kind[t.pair_faces] == group).all(axis=1))
     single = (elements_of_blocks(t)[t.block_group == group] == 1).all()
     tets = (t.face_element[t.pair_faces[pairs]] < len(t.element_nodes["tet4"])).all()
@@ -100,7 +103,7 @@ def _pairs_of_tets(t: Topology, group: int) -> NDArray[np.intp]:
 
 
 def _strengths_of(law: Interface) -> dict[str, float] | None:
-    """Numbers of a law that has all of a Coulomb bond's strengths, or None."""
+    """Parameters of a law with all strengths of a Coulomb bond, or None."""
     numbers = INTERFACE_LAWS[law.law].numbers(law)
     if not numbers.keys() >= set(STRENGTHS):
         return None
@@ -145,7 +148,7 @@ def _of_group(
 
 
 def borne(brittle: Floats, ductility: float, halfway: float) -> Floats:
-    """f of f0, D and D0, see above; directions in which even brittle bonds are strong keep theirs."""
+    """f of f0, D and D0, see above; directions in which brittle bonds are already strong keep f0."""
     return brittle + GAIN * np.maximum(1 - brittle, 0) * ductility / (ductility + halfway)
 
 
@@ -165,22 +168,23 @@ def brittle_parts(
     cohesion: float,
     tensile_strength: float,
 ) -> tuple[Floats, Floats]:
-    """Uniaxial stresses that brittle bonds bear, over those of even rock.
+    """Uniaxial strengths of brittle bonds, over the strength of uniform rock.
 
-    Pulled rock breaks with its first bond. Pressed rock outlives one, which keeps its friction, and
-    breaks with the second.
+    Rock in tension breaks with its first bond. Rock in compression survives one, which keeps its
+    friction, and breaks with the second.
 
     Args:
-        tractions: At the points of the bonds under `homogenize.STATES`, of 1 Pa, on the face whose
-            normal points the other way, shape (faces, 3, xyz, 6).
+        tractions: Tractions at the points of the bonds under `homogenize.STATES` of 1 Pa, on the
+            face with
+            the opposite normal, shape (faces, 3, xyz, 6).
         normals: Unit normals, shape (faces, xyz).
         weakness: 1 over the factor on the strength of each bond, shape (faces,).
         tan_friction: Tangent of the friction angle.
-        cohesion: [Pa].
-        tensile_strength: [Pa].
+        cohesion: Cohesion [Pa].
+        tensile_strength: Tensile strength [Pa].
 
     Returns:
-        In tension and in compression along each of `compensation.DIRECTIONS` [1].
+        Strengths in tension and in compression along each of `compensation.DIRECTIONS` [1].
     """
     root = np.sqrt(1 + tan_friction**2)
     even = (
@@ -233,14 +237,14 @@ def _energies(law: dict[str, float], stiffness: float) -> list[float]:
 
 
 def _squares(law: dict[str, float]) -> tuple[float, float]:
-    """T^2, and c times what is lost of it [Pa2]."""
+    """T^2, and c times its loss [Pa2]."""
     lost = law["cohesion"] - (law["residual_cohesion"] if "fracture_energy_2" in law else 0.0)
     return law["tensile_strength"] ** 2, max(law["cohesion"] * lost, TINY)
 
 
 def strength_text(strengths: dict[str, dict[str, Any]]) -> list[str]:
-    """Lines of the report on what `meshed_strengths` gives."""
-    lines = ["", "  strength as meshed, as a part of that of the bonds"] if strengths else []
+    """Lines of the report on the result of `meshed_strengths`."""
+    lines = ["", "  strength as meshed, as a fraction of the bond strength"] if strengths else []
     for name, of in strengths.items():
         brittle, all_of = (_words(of[key]) for key in ("brittle", "strength"))
         if not any(of["ductility"]):
@@ -250,7 +254,8 @@ def strength_text(strengths: dict[str, dict[str, Any]]) -> list[str]:
         if min(of["strength"][way][0] for way in WAYS) < LEAST:
             g1, g2 = of["fracture_energies"]
             lines.append(
-                "      irregular tets overload some bonds: divide tensile_strength and cohesion by these parts, "
+                "      irregular tets overload some bonds: divide tensile_strength and cohesion by "
+                "these fractions, "
                 f"or use law softening with fracture_energy_1 of about {g1:.3g} and fracture_energy_2 of "
                 f"about {g2:.3g} J/m2"
             )

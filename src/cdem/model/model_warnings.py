@@ -1,4 +1,4 @@
-"""Geometry of a model that is possible but odd: crowded edges, strengths that bond nothing."""
+"""Unusual geometry of a model: crowded edges, strengths without bonds."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from cdem.model.interfaces import interfaces_of, name_of
 Floats = NDArray[np.float64]
 
 NEAR = 0.01
-"""Gap over the size of the smaller group below which two groups seem meant to touch."""
+"""Gap over the size of the smaller group below which two groups are probably meant to touch."""
 COMPARED = 2_000
-"""Vertices and faces on each side that are compared for a gap; the nearest by their boxes."""
+"""Number of vertices and faces on each side compared for a gap; the nearest by their boxes."""
 UNEVEN = 4
-"""Ratio of contact areas over the faces that a body may slide on, from which it is told of."""
+"""Ratio of contact areas over the faces under a sliding body above which a warning is given."""
 ALIKE = 0.9
-"""Part of a joint's stiffness that its contacts have, from which nothing is said of it."""
+"""Fraction of a joint's stiffness in its contacts above which no warning is given."""
 FACING = -0.9
-"""Cosine of the normals of faces that lie on each other."""
+"""Cosine limit for the normals of faces that lie on each other."""
 
 
 def crowded_edges(t: Topology) -> Iterator[str]:
-    """Say where more than two outer faces of a block meet at an edge: the mesh is no manifold."""
+    """Warn if more than two outer faces of a block meet at an edge: the mesh is not a manifold."""
     used = t.face_edges[t.face_edges >= 0]
     crowded = np.flatnonzero(np.bincount(used, minlength=len(t.edge_nodes)) > 2)
     if len(crowded) == 0:
@@ -40,13 +40,13 @@ def crowded_edges(t: Topology) -> Iterator[str]:
     place = ", ".join(f"{x:.6g}" for x in t.node_position[nodes].mean(axis=0))
     yield (
         f"group {group}: more than two outer faces meet at {len(crowded)} edge(s), the first at "
-        f"({place}): bodies that hang together by an edge, or a mesh that is no manifold. Mend the "
+        f"({place}): bodies connected by an edge only, or a non-manifold mesh. Correct the "
         "mesh, or use model.split"
     )
 
 
 def idle_bonds(build: Build) -> Iterator[str]:
-    """Say which interfaces are given strength in the case but bond nothing at the start."""
+    """Warn of interfaces with strength in the case but without bonds at the start."""
     case, t = build.case, build.topology
     used = [
         build.arrays[f"{kind}.interface"][: build.assembly.counts[f"{kind}.count"]]
@@ -78,13 +78,13 @@ def _why(t: Topology, law: Interface) -> str:
             f": group {a} is one block (see model.split)" if single else f": no faces in {a} touch"
         )
     gap, size = _gap(t, a, b)
-    near = "; put them face on face if they are meant to be bonded" if gap < NEAR * size else ""
+    near = "; place them face on face if they should be bonded" if gap < NEAR * size else ""
     away = f"the nearest vertex is about {gap:.3g} m from the other's surface"
     return f": no faces of {a} and {b} touch at the start, {away}{near}"
 
 
 def _gap(t: Topology, a: str, b: str) -> tuple[float, float]:
-    """Least distance of vertices of one group to faces of the other, and size of the smaller [m]."""
+    """Smallest distance of vertices of one group to faces of the other, and size of the smaller [m]."""
     sides = [np.flatnonzero(t.face_group == t.group_names.index(name)) for name in (a, b)]
     corners = [t.node_position[t.face_nodes[faces]] for faces in sides]
     for faces, x in zip(sides, corners, strict=True):
@@ -103,17 +103,17 @@ def _gap(t: Topology, a: str, b: str) -> tuple[float, float]:
 
 
 def _nearest(items: Floats, low: Floats, high: Floats, box_low: Floats, box_high: Floats) -> Floats:
-    """The items whose boxes lie nearest to a box, `COMPARED` at most."""
+    """The items with boxes nearest to a box, at most `COMPARED`."""
     away = np.maximum(np.maximum(box_low - high, low - box_high), 0)
     return items[np.argsort(lengths(away), kind="stable")[:COMPARED]]
 
 
 def _distances(points: Floats, triangles: Floats) -> Floats:
-    """Distance of each point to the nearest triangle: over its inside, or to a corner [m]."""
+    """Distance of each point to the nearest triangle: to its interior, or to a corner [m]."""
     u, v = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     normal = np.cross(u, v)
     square = np.einsum("ij,ij->i", normal, normal)
-    sound = square > 0  # the second half of a triangle that is written as a quadrilateral is flat
+    sound = square > 0  # a triangle stored as a quadrilateral has a flat second half
     triangles, u, v, normal, square = (x[sound] for x in (triangles, u, v, normal, square))
     best = np.full(len(points), np.inf)
     for number, point in enumerate(points):
@@ -128,9 +128,9 @@ def _distances(points: Floats, triangles: Floats) -> Floats:
 
 
 def uneven_tiles(build: Build) -> Iterator[str]:
-    """Say where a group lies on faces of another, smaller than its own, whose areas differ much.
+    """Warn of a group on smaller faces of another whose areas differ much.
 
-    Blocks of one group, as joints cut them, always differ and seldom travel over many seams.
+    Blocks of one group cut by joints always differ, and seldom slide over many seams.
     """
     t, core = build.topology, build.core.fields()
     exposed, first = core["search.exposed_face"], core["outer.slot_first"]
@@ -151,16 +151,16 @@ def uneven_tiles(build: Build) -> Iterator[str]:
         yield (
             f"group {a} lies on faces of {b} that are smaller than its own and whose areas differ "
             f"{most / least:.2g} times: where it slides over their seams without being lifted, it "
-            "goes down by up to half its settlement at each. Make these faces alike, or larger"
+            "drops by up to half its settlement at each. Make these faces similar, or larger"
         )
 
 
 def unlike_sides(build: Build) -> Iterator[str]:
-    """Say where contacts have less of a soft joint's given stiffness, since its two sides are meshed
-    differently.
+    """Warn of contacts with less than a soft joint's given stiffness, because its two sides have
+    different meshes.
 
-    A vertex has the smaller of both faces' area over their vertices, and half the stiffness is that
-    of either side: (1 + q) / 2 of k A for q as the ratio of both, 0.56 for nine faces on one.
+    A vertex gets the smaller of both faces' area per vertex, and each side contributes half the
+    stiffness: (1 + q) / 2 of k A with q the ratio of both, 0.56 for nine faces on one.
     """
     t, a = build.topology, build.arrays
     laws, _ = interfaces_of(build.case, build.group_names)
@@ -184,12 +184,12 @@ def unlike_sides(build: Build) -> Iterator[str]:
         yield (
             f"interface {name_of(laws[number])}: faces of {' and '.join(names)} lie on each other and "
             f"differ in size; where they are not bonded the joint has about {part:.2g} of the stiffness "
-            "that is given. Mesh both sides alike, or give more"
+            "given. Mesh both sides alike, or give a larger stiffness"
         )
 
 
 def _given_stiffness(law: Interface) -> list[Stiffness]:
-    """Stiffnesses of contacts that a case gives."""
+    """Contact stiffnesses given by a case."""
     own = law.contact_stiffness
     several = [law.stiffness_n, law.stiffness_s] if own == AUTO else [own]
     return [k for k in several if isinstance(k, Stiffness) and k != AUTO]

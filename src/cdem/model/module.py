@@ -1,4 +1,4 @@
-"""What the build asks of a module: of what acts on nodes and is no part of the method itself.
+"""Interface of a module in the build: an action on nodes beyond the basic method.
 
 The list of modules is `modules.MODULES`; `core/model/module.hpp` has the answers of the core.
 """
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Parts:
-    """What arrays of a module are made from.
+    """Data for the arrays of a module.
 
     Attributes:
-        case: The case as it is now.
-        topology: Blocks, elements, faces and pairs, as the mesh has them.
+        case: The present case.
+        topology: Blocks, elements, faces and pairs of the mesh.
         laws: Interfaces, see `interfaces_of`.
-        interface_of: Which of them is between two kinds of faces, shape (kinds, kinds).
-        curves: Those of the model; a module adds its own.
+        interface_of: Index of the interface between two kinds of faces, shape (kinds, kinds).
+        curves: Curves of the model; a module adds its own.
         stride: The core's function from item count to table stride.
-        assembly: All but modules; takes the arrays of modules.
+        assembly: All arrays except those of modules; receives the arrays of modules.
     """
 
     case: Case
@@ -51,7 +51,7 @@ class Parts:
 
 
 class Built(Protocol):
-    """What a report may ask of a model that is ready to run, see `Build`."""
+    """A model ready to run, as a report sees it, see `Build`."""
 
     @property
     def case(self) -> Case: ...
@@ -70,16 +70,16 @@ class Built(Protocol):
 class Module:
     """A module in one model: its items.
 
-    It adds no arrays where the case has no items: the core does without them. What a module does not
-    answer has the answer of most.
+    It adds no arrays if the case has no items: the core then runs without them. Methods that a
+    module does not override have the usual answer.
     """
 
     name: ClassVar[str]
-    """Of its items in the core, and of its report."""
+    """Name of its items in the core, and of its report."""
 
     @classmethod
     def of(cls, case: Case, t: Topology, names: list[str]) -> Module:
-        """That of a case; made once, at the start.
+        """The module of a case; made once, at the start.
 
         Args:
             case: The case.
@@ -89,19 +89,19 @@ class Module:
         raise NotImplementedError
 
     def corner_nodes(self) -> Ints:
-        """Node of each of its rows among the corner forces, -1 where there is none, shape (rows,)."""
+        """Node of each of its rows among the corner forces, or -1, shape (rows,)."""
         return np.zeros(0, np.int32)
 
     def node_stiffness(self, nodes: int) -> Floats:
-        """What it puts on each node at most [N/m], shape (nodes,)."""
+        """Its largest stiffness at each node [N/m], shape (nodes,)."""
         return np.zeros(nodes)
 
     def joined_blocks(self) -> Ints:
-        """Pairs of blocks that it joins at the start, shape (pairs, 2)."""
+        """Pairs of blocks joined at the start, shape (pairs, 2)."""
         return np.zeros((0, 2), np.int32)
 
     def add_arrays(self, parts: Parts) -> None:
-        """Add its arrays and counts to the assembly, from the case as it is now.
+        """Add its arrays and counts to the assembly, from the present case.
 
         Raises:
             CaseError: An entry cannot be read.
@@ -109,19 +109,19 @@ class Module:
         raise NotImplementedError
 
     def refuse_change(self, case: Case, was: dict[str, int], now: dict[str, int]) -> None:
-        """Refuse what no stage can change.
+        """Refuse changes that no stage can make.
 
         Args:
-            case: The case as it is now.
+            case: The present case.
             was: Counts of the assembly at the start.
-            now: The same of the case as it is now.
+            now: Counts of the present case.
 
         Raises:
             CaseError: A stage has changed it.
         """
 
     def report(self, build: Built) -> Any:
-        """What the audit says of it, ready for JSON; empty or None where the case has no items."""
+        """Its data for the audit, ready for JSON; empty or None if the case has no items."""
         raise NotImplementedError
 
     def lines(self, report: Any) -> list[str]:

@@ -1,4 +1,4 @@
-"""The modules of a model: what acts on nodes and is no part of the method itself."""
+"""The modules of a model: actions on nodes beyond the basic method."""
 
 from __future__ import annotations
 
@@ -14,5 +14,5 @@ MODULES: tuple[type[Module], ...] = (BoltModel, WaterModel, SurfaceModel)
 
 
 def modules_of(case: Case, t: Topology, names: list[str]) -> dict[str, Module]:
-    """Every module of a case, by its name, see `Module.of`."""
+    """All modules of a case, by name, see `Module.of`."""
     return {kind.name: kind.of(case, t, names) for kind in MODULES}

@@ -11,19 +11,19 @@ from cdem.case.case import Case
 from cdem.case.schema import Material
 
 BOND_INDENTATION = {"vertex": (0.0, 0.0), "quadrature": (0.5, 1 - 1 / np.sqrt(3))}
-"""Where bond points sit, on triangles and on quadrilaterals: at the vertices, or where the points
+"""Positions of bond points, on triangles and on quadrilaterals: at the vertices, or at points that
 integrate a linear stress exactly (method of the theory page on bonds)."""
 
 
 def pairs_loose_joints(case: Case) -> bool:
-    """Whether joints without strength begin as pairs that are broken: so they have the traction of
-    initial stress, water knows all of their faces, and what a stage adds lies on what is there."""
+    """Whether joints without strength begin as broken pairs: they then carry the traction of
+    initial stress, water reaches all their faces, and added groups lie on the present rock."""
     adds = any(stage.add for stage in case.stages)
     return bool(case.initial_stress) or case.water is not None or adds
 
 
 def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:
-    """What the core is told by name, for a model of these materials."""
+    """Options of the core by name, for a model of these materials."""
     contact = case.contact
     nu = [m.poisson_ratio for m in materials]
     wave = max(
@@ -47,6 +47,6 @@ def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:
         "rebuild_interval": 0 if contact.refresh == "displacement" else int(contact.refresh),
         "step_safety": case.time.safety,
         "step_given": 0.0 if case.time.step == "auto" else case.time.step,
-        "speed_limit": float(wave),  # nothing in rock moves faster than its P wave
+        "speed_limit": float(wave),  # no rock moves faster than its P wave
         "gravity": [float(g) for g in case.loads.gravity],
     }

@@ -10,24 +10,24 @@ from cdem.mesh.topology import Topology
 Floats = NDArray[np.float64]
 
 ASIDE = np.array([0.7320508, 0.4142136]) * 1e-6
-"""Points are looked at so far aside, in parts of the model: none is above an edge."""
+"""Lateral shift of points, relative to the model's size: no point is exactly above an edge."""
 AT_ONCE = 2_000_000
-"""Pairs of a point and a triangle that are looked at together."""
+"""Pairs of a point and a triangle that are computed together."""
 
 
 def weight_above(topology: Topology, density: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """Mass above points, per horizontal area, and the height where the highest rock ends.
+    """Mass above points, per horizontal area, and the height of the top of the rock.
 
-    Of each block, faces that look up count with plus, others with minus: what lies between two of
-    them is rock, however many blocks, gaps and densities there are.
+    Upward faces of each block count positive, others negative: the space between two of them is
+    rock, for any blocks, gaps and densities.
 
     Args:
         topology: Blocks and their faces.
-        density: By group [kg/m3]; 0 where it is no part of the model.
-        points: [m], shape (points, 3).
+        density: Density by group [kg/m3]; 0 for absent groups.
+        points: Points [m], shape (points, 3).
 
     Returns:
-        [kg/m2] and [m] (-inf where there is none), shape (points,).
+        Mass [kg/m2] and height [m] (-inf without rock above), shape (points,).
     """
     triangle, mass = _triangles(topology, density)
     size = np.ptp(triangle[..., :2].reshape(-1, 2), axis=0).max(initial=0.0)
@@ -48,7 +48,7 @@ def weight_above(topology: Topology, density: Floats, points: Floats) -> tuple[F
 
 
 def _triangles(t: Topology, density: Floats) -> tuple[Floats, Floats]:
-    """Triangles of faces that end the rock of one density, and their density with a sign."""
+    """Triangles of faces that bound rock of one density, and their signed density."""
     ends = density[t.face_group] > 0
     a, b = t.pair_faces.reshape(-1, 2).T
     same = density[t.face_group[a]] == density[t.face_group[b]]
@@ -65,7 +65,7 @@ def _triangles(t: Topology, density: Floats) -> tuple[Floats, Floats]:
 
 
 def _near(triangle: Floats, mass: Floats, at: Floats):  # type: ignore[no-untyped-def]
-    """Points with triangles whose cells of a grid they share: numbers of points, corners, masses."""
+    """Points and triangles in the same cells of a grid: numbers of points, corners, masses."""
     if not len(triangle) or not len(at):
         return
     low, high = triangle[..., :2].min(axis=(0, 1)), triangle[..., :2].max(axis=(0, 1))

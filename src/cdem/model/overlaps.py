@@ -7,7 +7,7 @@ from cdem.model.build import Build
 
 
 def adopt_overlaps(build: Build) -> tuple[float, int, int]:
-    """Let overlaps at the start count as free of stress where contacts can hold them.
+    """Accept overlaps at the start as free of stress if contacts can hold them.
 
     Returns:
         Depth of the deepest vertex [m], number of vertices, a face of the deepest; for `Audit`.
@@ -23,8 +23,9 @@ def adopt_overlaps(build: Build) -> tuple[float, int, int]:
     where = ", ".join(f"{x:.4g}" for x in place)
     pairs = "1 pair" if count == 1 else f"{count:,} pairs"
     raise ModelError(
-        f"blocks overlap at the start, too deep for contacts to hold: block {a} (group {names[0]}) "
-        f"and block {b} (group {names[1]}) by {depth:.3g} m near ({where}), where contacts begin "
-        f"down to {allowed:.3g} m; {pairs} of elements in all. Move the blocks apart, cut one of "
-        "them, or remove what is there twice"
+        f"blocks overlap at the start, too deeply for contacts: block {a} (group {names[0]}) "
+        f"and block {b} (group {names[1]}) by {depth:.3g} m near ({where}), where contacts work "
+        f"down to {allowed:.3g} m; {pairs} pairs of elements in all. Move the blocks apart, cut "
+        f"one of "
+        "them, or remove duplicates"
     )

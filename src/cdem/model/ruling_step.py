@@ -1,4 +1,4 @@
-"""What rules the time step: elements, bonds or contacts, of which group, where; and what would help."""
+"""Limit of the time step: elements, bonds or contacts, group and place; and remedies."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from cdem.rows import rows_of
 
 PLURAL = {"element": "elements", "bond": "bonds", "contact": "contacts"}
 GAIN = 1.1
-"""Steps so many times longer are worth a word."""
+"""A step longer by this factor is worth a suggestion."""
 
 
 @dataclass
 class RulingStep:
-    """What holds up the step just now.
+    """The present limit of the step.
 
     Attributes:
         limit: Stable step, damping included [s].
-        group: Group of the node that has the least.
-        place: Where that node is [m].
-        shares: Of the squared frequency there: of elements, bonds and contacts; they add up to 1.
+        group: Group of the limiting node.
+        place: Position of that node [m].
+        shares: Shares of the squared frequency there: of elements, bonds and contacts; in sum 1.
     """
 
     limit: float
@@ -34,7 +34,7 @@ class RulingStep:
 
     @property
     def rules(self) -> str:
-        """What has the largest share: element, bond or contact."""
+        """The largest share: element, bond or contact."""
         return max(self.shares, key=lambda what: self.shares[what])
 
     def words(self) -> str:
@@ -46,7 +46,7 @@ class RulingStep:
 
 
 def ruling_step(build: Build) -> RulingStep:
-    """What rules the step of a model as it is now."""
+    """The limit of the step of a model in its present state."""
     limit, node, elements, springs, bonds = build.core.step_limit()
     t = build.topology
     x, y, z = rows_of(build.core, "node.motion").position[node].tolist()
@@ -58,7 +58,7 @@ def ruling_step(build: Build) -> RulingStep:
 
 
 def remedy(build: Build, ruling: RulingStep, dt: float) -> str:
-    """What would make a step [s] longer at the least cost in accuracy, or nothing."""
+    """The most accurate way to a longer step [s], or nothing."""
     case, (now, with_mass) = build.case, build.assembly.limits
     if case.time.step != "auto":
         return ""

@@ -1,4 +1,4 @@
-"""Nodes and faces that an entry of loads means: by group, surface, point or box."""
+"""Nodes and faces of an entry of loads: by group, surface, point or box."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from cdem.mesh.topology import Topology
 from cdem.model.faces import face_normals
 
 LOOKS_ALONG = 1e-3
-"""Faces whose normal is within about 2.5 degrees of a wanted direction look along it."""
+"""A face has a given direction if its normal is within about 2.5 degrees."""
 
 
 def select_nodes(
     case: Case, topology: Topology, names: list[str], item: Any, path: str
 ) -> NDArray[np.intp]:
-    """Nodes that an entry of loads means: by group, surface, point or box."""
+    """Nodes of an entry of loads: by group, surface, point or box."""
     position = topology.node_position
     groups = topology.block_group[topology.node_block]
     among = np.ones(len(position), bool)
@@ -41,18 +41,18 @@ def select_nodes(
     if getattr(item, "point", None) is not None:
         candidates = np.flatnonzero(among)
         distance = np.linalg.norm(position[candidates] - item.point, axis=1)
-        # every node at that point: blocks that touch there have one each
+        # all nodes at that point: each touching block has one
         among = np.zeros(len(position), bool)
         among[candidates[distance <= distance.min() * (1 + 1e-9) + 1e-12]] = True
     if not among.any():
-        raise CaseError(f"{case.where(path)}: {path}: selects no nodes; check where it points")
+        raise CaseError(f"{case.where(path)}: {path}: selects no nodes; check its coordinates")
     return np.flatnonzero(among)
 
 
 def select_faces(
     case: Case, topology: Topology, names: list[str], surface: Any, path: str
 ) -> NDArray[np.intp]:
-    """Exterior faces of a surface by name, or those of a group that look along a normal."""
+    """Exterior faces of a surface by name, or of a group with a given normal."""
     path += ".surface"
     if isinstance(surface, str):
         if surface not in topology.surfaces:
@@ -67,11 +67,11 @@ def select_faces(
             f"{', '.join(names)}"
         )
     free = topology.face_group == names.index(surface.group)
-    free[topology.pair_faces.ravel()] = False  # what touches another block is inside the rock
+    free[topology.pair_faces.ravel()] = False  # faces touching another block are inside the rock
     faces = np.flatnonzero(free)
     normal = face_normals(topology.node_position, topology.face_nodes[faces])
     wanted = np.asarray(surface.normal, float)
     faces = faces[normal @ (wanted / np.linalg.norm(wanted)) > 1 - LOOKS_ALONG]
     if len(faces) == 0:
-        raise CaseError(f"{case.where(path)}: {path}: no free face of the group looks that way")
+        raise CaseError(f"{case.where(path)}: {path}: no free face of the group has this normal")
     return faces

@@ -1,4 +1,4 @@
-"""Values of a case that a model can have, but that are hardly meant: each is told in one line."""
+"""Possible values that are probably mistakes: a one-line warning for each."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from cdem.mesh.arrays import lengths
 from cdem.model.build import Build
 
 MOST_FRAMES = 10_000
-"""More frames than this of a stage are hardly meant."""
+"""More frames of a stage than this are probably a mistake."""
 DEEP = 0.1
-"""Overlap over an element up to which a free fall is stopped: 0.08 was, 0.14 was not, of one boulder."""
+"""Overlap over an element up to which a free fall is stopped (one boulder: 0.08 was, 0.14 was not)."""
 
 
 def slips(build: Build, threads: int, unheld: dict[str, int]) -> Iterator[str]:
-    """What is hardly meant.
+    """Values that are probably mistakes.
 
     Args:
         build: The model.
-        threads: Threads that are going to compute.
-        unheld: Blocks of each group that nothing holds at the start.
+        threads: Number of threads for the run.
+        unheld: Blocks of each group that are not held at the start.
     """
     yield from _tense_bolts(build)
     yield from _points_outside(build)
@@ -54,7 +54,7 @@ def _tense_bolts(build: Build) -> Iterator[str]:
 
 
 def _points_outside(build: Build) -> Iterator[str]:
-    """Points of histories from which the nearest node is farther away than an element is long."""
+    """Points of histories farther from the nearest node than the length of an element."""
     t, x = build.topology, build.start_position
     edges = t.node_position[t.edge_nodes]
     longest = float(lengths(edges[:, 1] - edges[:, 0]).max(initial=0.0))
@@ -67,7 +67,7 @@ def _points_outside(build: Build) -> Iterator[str]:
             node = ", ".join(f"{c:.4g}" for c in x[lengths(x - place).argmin()])
             yield (
                 f"{build.case.where(f'histories.{index}')}: histories.{index}: the point of "
-                f"{entry.name!r} lies outside of the model; the nearest node, which is followed, is "
+                f"{entry.name!r} lies outside the model; the nearest node, which is used, is "
                 f"{away:.3g} m away at ({node})"
             )
 
@@ -87,7 +87,7 @@ def _frames(build: Build) -> Iterator[str]:
 
 
 def falls(build: Build, unheld: dict[str, int]) -> Iterator[str]:
-    """Blocks that may fall free so far that contacts are too soft to stop them."""
+    """Blocks that may fall freely so far that contacts are too soft to stop them."""
     from cdem.model.contact_overlaps import contact_interfaces
 
     case = build.case
@@ -108,7 +108,7 @@ def falls(build: Build, unheld: dict[str, int]) -> Iterator[str]:
             needed = row["stiffness_n"][1] * (overlap / DEEP) ** 2
             yield (
                 f"group {name} may fall {height:.3g} m, to {speed:.3g} m/s: contacts of "
-                f"{row['interface']} would give way by {100 * overlap:.2g} % of an element, and "
-                f"corners, which meet with less area, might go through. Give them contact_stiffness: "
+                f"{row['interface']} would overlap by {100 * overlap:.2g} % of an element, and "
+                f"corners, with less area, might penetrate. Give them contact_stiffness: "
                 f"{needed:.2g} Pa/m, or rock a Young's modulus {(overlap / DEEP) ** 2:.2g} times as high"
             )

@@ -19,14 +19,15 @@ KINDS = ("triangles", "quads", "overlaps")
 
 
 def check_fall(case: Case, t: Topology, laws: list[Interface], parts: Assembly) -> None:
-    """Refuse bonds of a law whose strength falls over so little that they would snap back.
+    """Refuse bonds of a law whose strength falls over so small a displacement that they snap back.
 
-    A law loses strength by A [Pa/m] with opening and by B with slip at most, and a bond unloads by
-    k_n and k_s: A / k_n + B / k_s must be below 1, in any mix of modes. Where stiffness follows from
+    A law loses strength at a rate of at most A [Pa/m] with opening and B with slip, and a bond
+    unloads by
+    k_n and k_s: A / k_n + B / k_s must be below 1, in any mix of modes. If stiffness follows from
     the elements, smaller ones help.
 
     Raises:
-        ModelError: It is not; with the worst place and what it would take.
+        ModelError: It is not; with the worst place and a remedy.
     """
     for number, law in enumerate(laws):
         own = INTERFACE_LAWS[law.law]
@@ -75,11 +76,11 @@ PER_CELL = {"hex8": 1, "wedge6": 2, "pyramid5": 6, "tet4": 6}
 def check_softening(case: Case, t: Topology, names: list[str], parts: Assembly) -> None:
     """Refuse elements so large that their rock would snap back.
 
-    With h the side of a cube of the volume of a cell, tensile strength that falls by A [Pa/m] with
-    slip asks for A h < E, cohesion for A h < mu.
+    With h the edge of a cube of the volume of a cell, tensile strength that falls by A [Pa/m] with
+    slip needs A h < E, cohesion A h < mu.
 
     Raises:
-        ModelError: It is not so; with the worst element and the size it would take.
+        ModelError: It is not; with the worst element and the size needed.
     """
     for group, name in enumerate(names):
         material = case.materials[case.groups[name].material]

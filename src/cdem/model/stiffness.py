@@ -1,4 +1,4 @@
-"""Stiffness of bonds and contacts: as the case gives it, by default, or by an allowed overlap."""
+"""Stiffness of bonds and contacts: from the case, by default, or from an allowed overlap."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from cdem.mesh.arrays import along, lengths
 Floats = NDArray[np.float64]
 
 BOND = Stiffness(10.0, relative=True)
-"""Of joints: they add a tenth of the compliance of the elements beside them."""
+"""Factor for joints: they add a tenth of the compliance of the elements beside them."""
 CONTACT = 1.0
-"""Of contacts in E / h, at least, where nothing is known: friction and limit loads do not depend on
-it, and steps are long."""
+"""Least factor for contacts: friction and limit loads do not depend on it, and it allows long
+steps."""
 DEEPEST = Overlap(overlap=0.01, impact=0.02)
-"""Where 1 E / h would let blocks overlap by more, as soft rock does, contacts are stiffer."""
+"""Contacts are stiffer if blocks would overlap by more at 1 E / h, as in soft rock."""
 SOFTEST, STIFFEST = 0.03, 10.0
-"""Bounds of a stiffness from an allowed overlap, in E / h."""
+"""Limits of a stiffness from an allowed overlap, in E / h."""
 
 
 def bond_row(law: Interface) -> list[float]:
@@ -36,13 +36,13 @@ def bond_row(law: Interface) -> list[float]:
 def interface_entries(
     case: Case, laws: list[Interface], names: list[str], position: Floats
 ) -> list[dict[str, Any]]:
-    """Interfaces as the core takes them, with stiffness, restitution and rolling resistance.
+    """Interfaces in the core's format, with stiffness, restitution and rolling resistance.
 
     Args:
         case: The case.
         laws: Its interfaces.
         names: Groups of the model.
-        position: Of the model's nodes at the start [m], shape (nodes, 3).
+        position: Initial positions of the model's nodes [m], shape (nodes, 3).
     """
     entries, height = [], height_along_gravity(case, position)
     for law in laws:
@@ -69,7 +69,7 @@ def _of_bonds(law: Interface) -> tuple[Stiffness, Stiffness]:
 def _of_contacts(
     case: Case, law: Interface, names: list[str], height: float
 ) -> tuple[Stiffness, Stiffness, bool]:
-    """k_n, k_s, and whether E / h is that of both sides in series (else of the stiffer one)."""
+    """k_n, k_s, and whether E / h combines both sides in series (else the stiffer side)."""
     given = law.contact_stiffness
     if isinstance(given, Overlap):
         both = Stiffness(overlap_factor(case, law, given, names, height), relative=True)
@@ -86,11 +86,12 @@ def _of_contacts(
 def overlap_factor(
     case: Case, law: Interface, allowed: Overlap, names: list[str], height: float
 ) -> float:
-    """Stiffness over E / h with which contacts overlap so much under weight and in impacts.
+    """Stiffness over E / h with which contacts overlap by a given amount under weight and in
+    impacts.
 
-    A column of rock of this height makes a joint overlap by rho g H / k, twice as much where the
+    A column of rock of this height makes a joint overlap by rho g H / k, twice as much if the
     vertices of one side alone touch; a block of speed v by v / c sqrt(2 E h / k), c = sqrt(E / rho).
-    Of the groups that may have the interface the softest counts.
+    The softest group that may have the interface is used.
     """
     gravity = math.hypot(*case.loads.gravity)
     speed = greatest_speed(case, law)
@@ -112,7 +113,7 @@ def groups_of(law: Interface, names: list[str]) -> list[str]:
 
 
 def greatest_speed(case: Case, law: Interface) -> float:
-    """Of impacts: as given, or the largest with which a group starts or is driven [m/s]."""
+    """Speed of impacts: as given, or the largest initial or driven speed of a group [m/s]."""
     allowed = law.contact_stiffness
     if isinstance(allowed, Overlap) and allowed.speed is not None:
         return allowed.speed
@@ -124,7 +125,7 @@ def greatest_speed(case: Case, law: Interface) -> float:
 
 
 def height_along_gravity(case: Case, position: Floats) -> float:
-    """Height of a model along gravity, or its greatest length where nothing has weight [m]."""
+    """Height of a model along gravity, or its greatest length without gravity [m]."""
     gravity = np.array(case.loads.gravity)
     if not gravity.any():
         return float(np.ptp(position, axis=0).max())

@@ -1,4 +1,4 @@
-"""Supported and driven nodes."""
+"""Fixed and driven nodes."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from cdem.model.selection import select_nodes
 
 
 def held_components(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
-    """Components of nodes that are held or moved, shape (nodes, 3); from `supports_of`."""
+    """Components of nodes that are fixed or driven, shape (nodes, 3); from `supports_of`."""
     row = supports["row"]
     return (row >= 0)[:, None] & (supports["component"][np.maximum(row, 0)] != 0)
 
 
 def driven_nodes(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
-    """Nodes that a velocity is given to, shape (nodes,); from `supports_of`."""
+    """Nodes with a prescribed velocity, shape (nodes,); from `supports_of`."""
     row, driven = supports["row"], np.asarray(supports["velocity"].any(axis=1))
     return (row >= 0) & driven[row]
 
@@ -28,7 +28,7 @@ def driven_nodes(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
 def supports_of(
     case: Case, topology: Topology, names: list[str], curves: Curves
 ) -> dict[str, NDArray]:
-    """Rows of supported nodes: which components, at which velocity, on which curve."""
+    """Rows of supported nodes: components, velocities, curves."""
     count = len(topology.node_position)
     component = np.zeros((count, 3), np.int8)
     velocity = np.zeros((count, 3))

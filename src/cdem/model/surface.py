@@ -1,4 +1,4 @@
-"""Surface laws for the core: the faces that each entry of the case acts on."""
+"""Surface laws for the core: the faces of each entry of the case."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cdem.model.module import Built, Module, Parts
 from cdem.model.selection import select_faces
 
 KINDS = {"surface_triangles": 3, "surface_quads": 4}
-"""Sets of faces of the core, and how many vertices theirs have."""
+"""Sets of faces in the core, with the number of vertices of a face."""
 
 
 @dataclass
@@ -28,8 +28,8 @@ class SurfaceModel(Module):
     """Surface laws of a model.
 
     Attributes:
-        entries: What no stage may change, by entry: surface, law, stage.
-        found: Faces of each entry and their area at the start [m2].
+        entries: Parts of each entry that no stage may change: surface, law, stage.
+        found: Faces of each entry and their initial area [m2].
     """
 
     name = "surface"

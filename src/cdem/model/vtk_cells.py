@@ -1,4 +1,4 @@
-"""Volume cells of VTK files, polyhedra too; read aside, see `cdem.case.reader_process`."""
+"""Volume cells of VTK files, also polyhedra; read in a process of its own, see `cdem.case.reader_process`."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from cdem.mesh.mesh_files import MEND, cell_groups
 
 
 def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]], str]]:
-    """Every volume cell: what to call it, the points of the file, its faces, its material.
+    """Every volume cell: its name, the points of the file, its faces, its material.
 
-    The material is empty where the file has one only, else e.g. `material2`, after its cell data.
+    The material is empty in a file with one material, else e.g. `material2`, from its cell data.
 
     Raises:
         MeshError: The file cannot be read, or pyvista is missing.
@@ -26,7 +26,7 @@ def cells(path: Path) -> Iterator[tuple[str, NDArray[np.float64], list[list[int]
     points, sizes, corners = read["points"], read["sizes"], read["corners"]
     wrong = (corners < 0) | (corners >= len(points))
     if (read["faces"] < 4).any() or (sizes < 3).any() or wrong.any():
-        raise MeshError(f"{path}: a cell has less than four faces, or corners that are not there")
+        raise MeshError(f"{path}: a cell has less than four faces, or missing corners")
     loops = [loop.tolist() for loop in np.split(corners, np.cumsum(sizes)[:-1])]
     ends = np.cumsum(read["faces"])
     rows = zip(read["numbers"], ends - read["faces"], ends, read["kinds"].tolist(), strict=True)
@@ -40,7 +40,7 @@ def _cells(path: Path) -> reader_process.Arrays:
     refuse_entities(path)
     grid = pyvista.read(path)
     if not isinstance(grid, pyvista.UnstructuredGrid):
-        raise MeshError(f"{path}: holds no volume cells, but {type(grid).__name__}")
+        raise MeshError(f"{path}: contains no volume cells, but {type(grid).__name__}")
     sizes, corners, faces, numbers = [], [], [], []
     for number in range(grid.n_cells):
         cell = grid.get_cell(number)
@@ -64,7 +64,7 @@ def _cells(path: Path) -> reader_process.Arrays:
 
 if __name__ == "__main__":
     try:
-        import pyvista  # noqa: F401  # loading it takes more memory and time than reading may
+        import pyvista  # noqa: F401  # loading it takes more memory and time than reading is allowed
     except ImportError:
         raise SystemExit("bodies in VTK files need pyvista; pip install 'cdem[viz]'") from None
     reader_process.answer(lambda path, _: _cells(path), MEND)

@@ -1,4 +1,4 @@
-"""Water for the core: the faces that it may press on, the pores, saturated weight."""
+"""Water for the core: possibly wet faces, the pores, saturated weight."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from cdem.model.water_fields import WaterTables
 from cdem.model.wetted import water_text, wetted
 
 OPEN = 0.05
-"""Joints keep their water up to this part of the length of a face."""
+"""Joints keep their water up to this opening, relative to the length of a face."""
 FLUSH = 0.9
-"""Cosine between the normals of faces that make one wall of a joint."""
+"""Cosine between the normals of faces of one wall of a joint."""
 KINDS = ("triangles", "quads", "overlaps")
-"""Of pairs, in the order of the core."""
+"""Kinds of pairs, in the order of the core."""
 
 
 @dataclass
 class WaterModel(Module):
-    """Water of a model: its arrays follow from the case as it is in each stage."""
+    """Water of a model: its arrays follow from the case in each stage."""
 
     name = "water"
 
@@ -66,8 +66,9 @@ class WaterModel(Module):
         keys = ("wet_triangles.count", "wet_quads.count")
         if [was.get(key) for key in keys] != [now.get(key) for key in keys]:
             raise CaseError(
-                f"{case.where('water')}: a stage cannot change which joints and faces may be wet at all; "
-                "begin with wet: always or broken, and a level that is too low"
+                f"{case.where('water')}: a stage cannot change the set of joints and faces that "
+                f"may be wet; "
+                "begin with wet: always or broken, and a low level"
             )
 
     def report(self, build: Built) -> dict[str, Any] | None:
@@ -78,22 +79,22 @@ class WaterModel(Module):
 
 
 def _materials(parts: Parts) -> list[Material]:
-    """Of the groups, by index."""
+    """Names of the groups, by index."""
     return [parts.case.materials[parts.case.groups[name].material] for name in parts.names]
 
 
 @dataclass
 class _Faces:
-    """Faces that water may press on; each array has one value a face, but those of mates.
+    """Faces that may be wet; each array has one value per face, except arrays of mates.
 
     Attributes:
-        joint: Field where the face is in a joint.
-        open: Field where it is free.
+        joint: Field if the face is in a joint.
+        open: Field if the face is free.
         bonded: Whether the joint is wet while bonds hold.
-        aperture: Up to which an open joint keeps its water [m].
-        mate_of: Place of the face of each mate, ascending.
-        mate: Faces that lie on it at the start, then those beside them on the same wall.
-        pair: Their pair: 3 times its number plus its kind; -1 where they are not paired.
+        aperture: Largest opening of a joint that keeps its water [m].
+        mate_of: Index of the face of each mate, ascending.
+        mate: Faces that lie on it at the start, then their neighbours on the same wall.
+        pair: Their pair: 3 times its number plus its kind; -1 for unpaired faces.
     """
 
     face: NDArray[np.integer]
@@ -106,12 +107,12 @@ class _Faces:
     pair: NDArray[np.integer]
 
     def of(self, t: Topology, corners: int) -> _Faces:
-        """Those with so many corners."""
+        """The faces with this number of corners."""
         some = (t.face_nodes[self.face] >= 0).sum(axis=1) == corners
         return self.take(some)
 
     def take(self, some: NDArray[np.bool_]) -> _Faces:
-        """Some of them."""
+        """A selection of the faces."""
         place = np.cumsum(some) - 1
         mates = some[self.mate_of]
         return _Faces(
@@ -128,13 +129,13 @@ def _joints(parts: Parts, biot: Floats, tables: WaterTables) -> _Faces:
     kinds = t.face_kind[face], t.face_kind[mate]
     interface = parts.interface_of[kinds[0], kinds[1]]
     groups = t.face_group[face], t.face_group[mate]
-    # of each mate: its joint's field, and whether bonds keep it dry
+    # for each mate: its joint's field, and whether bonds keep it dry
     rows = np.stack([interface, *groups], axis=1)
     unique, which = np.unique(rows, axis=0, return_inverse=True)
     found = [_of_joint(parts, biot, tables, row.tolist()) for row in unique]
     field = np.array([f for f, _ in found], np.int32)[which.ravel()] if found else face
     wet = np.array([w for _, w in found], bool)[which.ravel()] if found else face.astype(bool)
-    # the first mate of a face decides; faces without have the field of their group's joints
+    # the first mate of a face decides; faces without a mate have the field of their group's joints
     alone = [tables.in_joint([name], None) for name in names]
     joint = np.array([_unless_never(tables, f) for f in alone], np.int32)[t.face_group]
     bonded = np.ones(count, bool)
@@ -183,7 +184,7 @@ def _unless_never(tables: WaterTables, field: int) -> int:
 def _mates(
     t: Topology, out: Assembly
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """Faces that lie on one another at the start, both ways: face, mate, code of the pair or -1."""
+    """Faces that lie on one another at the start, in both directions: face, mate, code of the pair or -1."""
     pairs = [out.pair_faces[kind].reshape(-1, 2) for kind in KINDS]
     codes = [3 * np.arange(len(faces)) + kind for kind, faces in enumerate(pairs)]
     paired = np.zeros(len(t.face_nodes), bool)
@@ -205,7 +206,7 @@ def _mates(
 def _beside(
     t: Topology, face: NDArray[np.intp], mate: NDArray[np.intp]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Faces with the flush neighbours of their mates, over which they come when the joint slips."""
+    """Faces with the flush neighbours of their mates, which they reach when the joint slips."""
     walls = np.unique(face)
     nodes = t.face_nodes[walls]
     used = nodes >= 0
@@ -227,7 +228,7 @@ def _beside(
 
 
 def _wet_set(name: str, corners: int, faces: _Faces, tables: WaterTables, parts: Parts) -> None:
-    """Add the faces of so many corners that water may press on."""
+    """Add the faces with this number of corners that may be wet."""
     t = parts.topology
     nodes = t.face_nodes[faces.face][:, :corners]
     count, stride = len(nodes), parts.stride(len(nodes))
@@ -250,7 +251,7 @@ def _wet_set(name: str, corners: int, faces: _Faces, tables: WaterTables, parts:
 
 
 def _weigh(parts: Parts, tables: WaterTables, node_field: NDArray[np.integer]) -> None:
-    """Give elements with water in the middle their saturated weight."""
+    """Give elements with water at their middle their saturated weight."""
     t, materials = parts.topology, _materials(parts)
     more = np.array([(m.saturated_density or m.density) - m.density for m in materials])
     more *= [parts.case.groups[name].gravity for name in parts.names]

@@ -1,4 +1,4 @@
-"""Pressure fields of water, as the core reads them and at any point at the start."""
+"""Pressure fields of water, in the core's format and at any point at the start."""
 
 from __future__ import annotations
 
@@ -19,18 +19,19 @@ from cdem.model.flat_arrays import Floats
 from cdem.model.overburden import weight_above
 
 SIDE = 1e-5
-"""Points are looked at so far aside, in parts of the model."""
+"""Lateral shift of points, relative to the model's size."""
 Pressure = Callable[[Floats], Floats]
 
 
 @dataclass
 class _Field:
-    """A pressure field: the row that the core reads, and what it is at a place at the start.
+    """A pressure field: its row in the core, and its initial pressure at points.
 
     Attributes:
-        row: See `WaterFields` in the core; 8 numbers, the sixth the pressure for each metre of lift.
-        curves: Of lift and factor.
-        at: Pressure [Pa] that points keep, shape (points,), or None where it follows from the row.
+        row: See `WaterFields` in the core; 8 numbers, the sixth the pressure per metre of lift.
+        curves: Curves of lift and factor.
+        at: Function for the stored pressure of points [Pa], shape (points,), or None if the row
+            gives it.
     """
 
     row: list[float]
@@ -38,7 +39,7 @@ class _Field:
     at: Pressure | None = None
 
     def kept(self, points: Floats) -> Floats:
-        """What points keep [Pa], shape (points,)."""
+        """Stored pressure of points [Pa], shape (points,)."""
         return np.zeros(len(points)) if self.at is None else self.at(points)
 
     def pressure(self, points: Floats, curves: Curves) -> Floats:
@@ -60,16 +61,16 @@ class WaterTables:
     """The water of a case over a model.
 
     Attributes:
-        fields: One for each entry, then that of the reservoir if there is one, then a dry one.
-        reservoir: Number of its field, that of the dry one where there is none.
-        density: Of the water [kg/m3].
-        unit: Its weight [Pa/m].
+        fields: One for each entry, then the reservoir's if there is one, then a dry one.
+        reservoir: Number of the reservoir's field, or of the dry one.
+        density: Density of the water [kg/m3].
+        unit: Unit weight of the water [Pa/m].
 
     Args:
-        case: With water.
+        case: Case with water.
         t: Blocks and faces.
-        names: Of the groups.
-        curves: Gets those of the histories.
+        names: Names of the groups.
+        curves: Receives the curves of the histories.
 
     Raises:
         CaseError: An entry cannot be read.
@@ -96,9 +97,9 @@ class WaterTables:
         """Pressure [Pa] at points of joints that are wet at the start, shape (points,).
 
         Args:
-            arrays: Of the core.
-            points: [m], shape (points, 3).
-            face: On which each lies.
+            arrays: Arrays of the core.
+            points: Points [m], shape (points, 3).
+            face: Face of each point.
         """
         field = np.full(len(arrays["face.area"]), self.dry, np.int32)
         for kind in ("triangles", "quads"):
@@ -117,7 +118,7 @@ class WaterTables:
         return self.near(np.array(of_group, np.int32)[group], points)
 
     def near(self, field: NDArray[np.int32], points: Floats) -> NDArray[np.int32]:
-        """The fields, but dry where the reservoir does not reach points, shape (points,)."""
+        """The fields, but dry at points that the reservoir does not reach, shape (points,)."""
         water = self._water.reservoir
         if water is None or water.box is None:
             return field
@@ -131,7 +132,7 @@ class WaterTables:
         )
 
     def entry(self, field: int) -> WaterField | None:
-        """The entry that a field comes from; None for reservoir and dry."""
+        """The entry of a field; None for reservoir and dry."""
         return self._water.fields[field] if field < len(self._water.fields) else None
 
     def pressure(self, field: NDArray[np.integer], points: Floats) -> Floats:
@@ -144,7 +145,7 @@ class WaterTables:
         return found
 
     def kept(self, field: NDArray[np.integer], points: Floats) -> Floats:
-        """What points keep of fields [Pa], shape (points,)."""
+        """Stored pressure of fields at points [Pa], shape (points,)."""
         found = np.zeros(len(points))
         for number in np.unique(field):
             if self.fields[number].at is not None:
@@ -154,7 +155,7 @@ class WaterTables:
         return found
 
     def rows(self) -> tuple[Floats, NDArray[np.int32]]:
-        """Rows of the fields as the core reads them, and their curves."""
+        """Rows of the fields in the core's format, and their curves."""
         return (
             np.array([f.row for f in self.fields], float).ravel(),
             np.array([f.curves for f in self.fields], np.int32).ravel(),
@@ -164,7 +165,7 @@ class WaterTables:
         return self._last(lambda e: e.interface is None and _holds(e, [name]))
 
     def _last(self, holds: Callable[[WaterField], bool]) -> int:
-        """The last entry that holds, else the reservoir, else dry."""
+        """The last entry that applies, else the reservoir, else dry."""
         found = [i for i, entry in enumerate(self._water.fields) if holds(entry)]
         return found[-1] if found else self.reservoir
 
@@ -219,7 +220,7 @@ class WaterTables:
         density = np.array([m.density for m in materials])
 
         def kept(points: Floats) -> Floats:
-            # vertices at the sides of the rock lie under it on one side at least
+            # vertices at the sides of the rock lie under it on at least one side
             size = np.ptp(self._t.node_position[:, :2], axis=0).max()
             masses = [
                 weight_above(self._t, density, points + SIDE * size * np.array([x, y, 0]))[0]
@@ -241,7 +242,7 @@ def _by_formula(formula: Formula) -> Pressure:
         bad = ~np.isfinite(values)
         if bad.any():
             x, y, z = points[int(np.argmax(bad))]
-            raise ValueError(f"formula has no value at {x:g}, {y:g}, {z:g}")
+            raise ValueError(f"the formula has no value at {x:g}, {y:g}, {z:g}")
         return np.array(values)
 
     return kept
@@ -260,12 +261,12 @@ def _by_table(case: Case, file: str) -> Pressure:
             f"{path}: a table needs columns x, y, z, pressure in its first line ({error})"
         ) from None
     if not (np.isfinite(points).all() and np.isfinite(pressure).all()):
-        raise CaseError(f"{path}: a value of the table is missing or no number")
+        raise CaseError(f"{path}: a value of the table is missing or not a number")
     interpolation = extra("scipy.interpolate")
     nearest = interpolation.NearestNDInterpolator(points, pressure)
     try:
         linear = interpolation.LinearNDInterpolator(points, pressure)
-    except Exception as error:  # of Qhull: too few points, or all in a plane
+    except Exception as error:  # from Qhull: too few points, or all in a plane
         raise CaseError(
             f"{path}: the points of a table must span a volume ({type(error).__name__})"
         ) from None

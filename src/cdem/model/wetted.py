@@ -1,4 +1,4 @@
-"""What water does at the start, for the audit."""
+"""Effect of water at the start, for the audit."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def wetted(build: Built) -> dict[str, Any] | None:
-    """What water does at the start: wet faces, their area, the force on what is free to move.
+    """Effect of water at the start: wet faces, their area, the force on free nodes.
 
     Returns:
-        Ready for JSON; None where the case has no water.
+        Ready for JSON; None for a case without water.
     """
     if build.case.water is None:
         return None
@@ -45,11 +45,12 @@ def wetted(build: Built) -> dict[str, Any] | None:
 def face_pressures(
     build: Built, position: NDArray[np.float64]
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.float64]]]:
-    """Faces that may be wet, and the pressure of water at their vertices [Pa], shape (vertices, faces).
+    """Faces that may be wet, and the water pressure at their vertices [Pa], shape (vertices,
+    faces).
 
     Args:
         build: A model with water.
-        position: Of its nodes [m], shape (nodes, 3).
+        position: Positions of its nodes [m], shape (nodes, 3).
     """
     core = build.core
     for kind in ("wet_triangles", "wet_quads"):
@@ -63,13 +64,13 @@ def face_pressures(
 def signed_pressure(
     core: Core, field: NDArray[np.int32], at: NDArray[np.float64], kept: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Pressure of fields as they are in this step, below zero above the water [Pa].
+    """Pressure of fields in this step, negative above the water [Pa].
 
     Args:
-        core: That of a model with water.
-        field: Of each point.
-        at: Where it is [m], one axis more.
-        kept: What it keeps of the start where its field does so [Pa].
+        core: The core of a model with water.
+        field: Field of each point.
+        at: Position of each point [m], with one more axis.
+        kept: Its stored initial pressure, if its field uses one [Pa].
     """
     now = rows_of(core, "water.fields_now")
     linear = now.pressure[field] + (now.slope[field] * at).sum(axis=-1)
@@ -77,7 +78,7 @@ def signed_pressure(
 
 
 def water_text(water: dict[str, Any] | None) -> list[str]:
-    """Lines on what `wetted` found."""
+    """Lines on the result of `wetted`."""
     if water is None:
         return []
     force = ", ".join(f"{f:.4g}" for f in water["force_on_free_nodes"])
@@ -92,32 +93,35 @@ def water_text(water: dict[str, Any] | None) -> list[str]:
 
 
 def idle_water(build: Built, water: dict[str, Any] | None) -> list[str]:
-    """A warning where the water that `wetted` looked for does nothing."""
+    """A warning if the water found by `wetted` has no effect."""
     if water is None or water["highest_pressure"] or water["porous_groups"]:
         return []
     sets = any(path.startswith("water.") for stage in build.case.stages for path in stage.set)
-    bares = any(stage.add or stage.remove for stage in build.case.stages)  # other faces
-    if sets or bares or build.arrays["water.field_curve"].any():  # it may come later
+    bares = any(stage.add or stage.remove for stage in build.case.stages)  # exposes other faces
+    if sets or bares or build.arrays["water.field_curve"].any():  # water may come later
         return []
     return [
         f"{build.case.where('water')}: water presses nowhere at the start: no rock has pores (biot), and "
-        "no joint or face is wet; look at levels, and at wet of the fields"
+        "no joint or face is wet; check levels, and wet of the fields"
     ]
 
 
 def dry_bonds(build: Built, bonded: set[str]) -> list[str]:
-    """A warning where water lies at joints that hold by bonds, which let none in until they break.
+    """A warning if water lies at bonded joints, which stay dry until their bonds break.
 
     Args:
         build: The model.
-        bonded: Names of the sets of joints that hold by bonds.
+        bonded: Names of the sets of bonded joints.
     """
     case = build.case
     if case.water is None or not bonded or any(rock.biot for rock in case.materials.values()):
         return []
-    if not any("wet" not in water.model_fields_set for water in case.water.fields):  # auto, unsaid
+    if not any(
+        "wet" not in water.model_fields_set for water in case.water.fields
+    ):  # auto by default
         return []
     return [
         f"{case.where('water')}: water: no water presses in {', '.join(sorted(bonded))} until bonds "
-        "break (wet: auto); if it stands in these joints, write wet: always, else wet: auto"
+        "break (wet: auto); for water in these joints write wet: always, else confirm with wet: "
+        "auto"
     ]

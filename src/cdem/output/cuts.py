@@ -1,4 +1,4 @@
-"""Cuts through the volume of a run by a plane, as faces with the fields of the elements they cut."""
+"""Cuts through the volume of a run by a plane: faces with the fields of the elements that they cut."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane to cut by, seen from its front.
+    """A cutting plane, seen from its front.
 
     Attributes:
-        text: As the user wrote it.
+        text: The user's text.
         place: A point of it [m].
         back: Unit normal, towards the viewer.
-        ends: An upright one ends there in plan [m], shape (2, 3); None where it goes on.
+        ends: Ends of an upright plane in plan [m], shape (2, 3); None for an infinite plane.
     """
 
     text: str
@@ -39,7 +39,7 @@ class Plane:
         The eye is south of y=VALUE, east of x=VALUE and above z=VALUE; X0,Y0 is at its left.
 
         Raises:
-            CdemError: It is neither.
+            CdemError: The text is neither.
         """
         try:
             found = re.fullmatch(r"\s*([xyz])\s*=\s*(\S+)\s*", text)
@@ -56,7 +56,7 @@ class Plane:
         ends = np.array([[x0, y0, 0.0], [x1, y1, 0.0]])
         along = ends[1] - ends[0]
         if not np.linalg.norm(along) > 0:
-            raise CdemError(f"--slice {text}: the two points of the line are one")
+            raise CdemError(f"--slice {text}: the two points of the line are equal")
         back = np.cross(along / np.linalg.norm(along), [0.0, 0.0, 1.0])
         return cls(text, ends[0], back, ends)
 
@@ -71,7 +71,7 @@ class Cuts:
         return len(self.volumes)
 
     def __getitem__(self, frame: int) -> Surface:
-        """The cut of a frame, without blocks that are not there.
+        """The cut of a frame, without absent blocks.
 
         Raises:
             CdemError: The plane misses the model.
@@ -95,7 +95,7 @@ class Cuts:
 
 
 def _polygons(mesh: Any) -> NDArray[np.int64]:
-    """Point ids of the faces of a mesh, with -1 last where a face has fewer corners than others."""
+    """Point ids of the faces of a mesh, with -1 last in faces with fewer corners."""
     from pyvista import convert_array
 
     cells = mesh.GetPolys()

@@ -18,13 +18,14 @@ Floats = NDArray[np.float64]
 
 @dataclass
 class Deposit:
-    """Thickness of solid rock, as if its pieces lay without voids, over a grid in plan.
+    """Thickness of solid rock, without voids between pieces, over a grid in plan.
 
     Attributes:
         x: Western edge [m].
         y: Southern edge [m].
         cell: Side of a cell [m]; edges lie at multiples of it, so that maps of several runs agree.
-        thickness: Volume over a cell by its area [m], shape (rows, columns), from south to north.
+        thickness: Volume over a cell divided by its area [m], shape (rows, columns), from south to
+            north.
     """
 
     x: float
@@ -37,7 +38,7 @@ class Deposit:
         """Map elements; the default cell is about as large as a mean element.
 
         Raises:
-            CdemError: The cell is not above zero, or so small that the map would be huge.
+            CdemError: The cell is not above zero, or so small that the map would be too large.
         """
         cell = checked_cell(solids, cell)
         _, (rows, columns) = solids.grid(cell)
@@ -47,22 +48,22 @@ class Deposit:
 
     @property
     def covered(self) -> NDArray[np.bool_]:
-        """Cells over which rock lies, shape (rows, columns)."""
+        """Cells covered by rock, shape (rows, columns)."""
         return self.thickness > TRACE * self.thickness.max()
 
     @property
     def volume(self) -> float:
-        """Volume of the map [m3]: that of the elements, to round-off."""
+        """Volume of the map [m3]: equals the volume of the elements to round-off."""
         return float(self.thickness.sum() * self.cell**2)
 
     @property
     def area(self) -> float:
-        """Area of the cells over which rock lies [m2]."""
+        """Area of the cells covered by rock [m2]."""
         return float(self.covered.sum() * self.cell**2)
 
     @property
     def raster(self) -> Raster:
-        """Thickness where rock lies."""
+        """Thickness in the covered cells."""
         return Raster(self.x, self.y, self.cell, np.where(self.covered, self.thickness, np.nan))
 
     def write_asc(self, path: Path) -> None:
@@ -77,10 +78,10 @@ class Deposit:
 
 
 def checked_cell(solids: Solids, cell: float | None) -> float:
-    """The cell of a map [m]: that which is given, else about as large as a mean element.
+    """The given cell of a map [m], or by default about the size of a mean element.
 
     Raises:
-        CdemError: It is not above zero.
+        CdemError: The given cell is not above zero.
     """
     if cell is None:
         return _round(float(np.cbrt(solids.volumes().mean())))

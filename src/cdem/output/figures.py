@@ -27,7 +27,7 @@ def pyplot() -> Any:
     import matplotlib.pyplot as plt
 
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False, "figure.dpi": 130})
-    plt.rcParams["text.parse_math"] = False  # a name with dollar signs is no formula
+    plt.rcParams["text.parse_math"] = False  # a name may contain dollar signs
     return plt
 
 

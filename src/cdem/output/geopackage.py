@@ -16,7 +16,7 @@ from cdem.terrain.rasters import Raster
 
 WHAT = "runout.gpkg"
 STYLES = "layer_styles"
-"""The table in which QGIS looks for styles."""
+"""The table of styles for QGIS."""
 
 
 @dataclass
@@ -24,11 +24,11 @@ class Features:
     """One layer.
 
     Attributes:
-        name: Of the layer.
-        kind: Of its geometries: "Point Z", "LineString", "LineString Z" or "MultiPolygon".
-        geometries: Of shapely.
-        columns: By name, with the unit in it; one value for each geometry.
-        color: Of its style.
+        name: Name of the layer.
+        kind: Kind of its geometries: "Point Z", "LineString", "LineString Z" or "MultiPolygon".
+        geometries: Geometries of shapely.
+        columns: Columns by name with unit; one value per geometry.
+        color: Colour of its style.
     """
 
     name: str
@@ -67,7 +67,7 @@ def points(name: str, places: NDArray, columns: Mapping[str, NDArray], color: st
 
 
 def write_geopackage(path: Path, layers: Sequence[Features], crs: str | None) -> None:
-    """Write layers into a new file, and beside them their styles.
+    """Write layers into a new file, with their styles.
 
     Args:
         path: The file; an older one is replaced.
@@ -87,7 +87,7 @@ def write_geopackage(path: Path, layers: Sequence[Features], crs: str | None) ->
         )  # fmt: skip
 
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "'crs' was not provided")  # which is said elsewhere
+        warnings.filterwarnings("ignore", "'crs' was not provided")  # reported elsewhere
         for layer in layers:
             shapes = np.asarray(layer.geometries, dtype=object)
             write(layer.name, layer.kind, shapely.to_wkb(shapes), layer.columns)

@@ -39,7 +39,7 @@ def write_geotiff(
 
     Args:
         path: The file.
-        raster: What it holds.
+        raster: The raster to write.
         epsg: Code of the projection of x and y, which are metres; None names none.
         name: Description of the band.
         unit: Unit of the band.
@@ -59,7 +59,7 @@ def write_geotiff(
         (42113, ASCII, (f"{NOTHING:g}\0".encode(),)),
     ]  # fmt: skip
     directory, more = b"", b""
-    first = 8 + len(pixels) + len(pixels) % 2  # of the directory; long values follow it
+    first = 8 + len(pixels) + len(pixels) % 2  # place of the directory; long values follow it
     after = first + 2 + 12 * len(entries) + 4
     for tag, kind, values in entries:
         data = values[0] if kind == ASCII else struct.pack(f"<{len(values)}{kind}", *values)
@@ -92,12 +92,12 @@ def _metadata(name: str, unit: str, tags: Mapping[str, str]) -> bytes:
 
 
 def epsg_of(crs: str | None) -> int | None:
-    """EPSG code of the plan of a projection; None where it has none, or no projection is given."""
+    """EPSG code of the horizontal part of a projection; None without code or projection."""
     if crs is None:
         return None
     try:
         system = look_up(crs)
-    except BackendError:  # without the extra that knows projections a code is taken at its word
+    except BackendError:  # without the extra a code is used unchecked
         return int(crs[5:]) if crs.startswith("EPSG:") else None
     code = horizontal(system).to_epsg()
     return None if code is None else int(code)

@@ -18,12 +18,12 @@ COLUMNS = {"diameter": "m", "passing": "%"}
 
 @dataclass
 class GrainSizes:
-    """Part of the volume in pieces that are no larger than a diameter.
+    """Fraction of the volume in pieces up to a diameter.
 
     Attributes:
-        diameter: Of a sphere of the volume of each piece, rising [m].
-        passing: Part of the volume in pieces up to it [%].
-        elements: Such a curve of the elements, diameters and passing: none can be finer.
+        diameter: Diameter of a sphere of the volume of each piece, in increasing order [m].
+        passing: Fraction of the volume in pieces up to it [%].
+        elements: The same curve for the elements, diameters and passing: pieces cannot be finer.
     """
 
     diameter: Floats
@@ -37,11 +37,11 @@ class GrainSizes:
 
     @property
     def element(self) -> float:
-        """Diameter of a sphere of the volume of the median element [m]."""
+        """Diameter of a sphere with the volume of the median element [m]."""
         return float(np.median(self.elements[0]))
 
     def size(self, percent: float) -> float:
-        """Diameter of the piece with which the passing volume reaches so many per cent [m]."""
+        """Diameter at which the passing volume reaches this percentage [m]."""
         number = int(np.searchsorted(self.passing, percent * (1 - 1e-12)))
         return float(self.diameter[min(number, len(self.diameter) - 1)])
 
@@ -77,7 +77,7 @@ class GrainSizes:
 
 
 def _curve(volume: Floats) -> tuple[Floats, Floats]:
-    """Diameters, rising [m], and the part of the volume up to each [%]."""
+    """Diameters in increasing order [m], and the fraction of the volume up to each [%]."""
     volume = np.sort(volume)
     return np.cbrt(6 * volume / np.pi), 100 * np.cumsum(volume) / volume.sum()
 

@@ -1,4 +1,4 @@
-"""The maps of a run-out as layers: what each is called, its unit, colours and classes, its style."""
+"""The maps of a run-out as layers: name, unit, colours, classes and style of each."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 FOLDER = "maps"
 CLASSES = 8
-"""Classes of a map at most, with limits at round numbers."""
+"""Most classes of a map, with limits at round numbers."""
 EARTH = ("#ffffd4", "#fee391", "#fec44f", "#fe9929", "#d95f0e", "#993404")
 VIRIDIS = ("#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#fde725")
 PLASMA = ("#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921")
@@ -33,8 +33,8 @@ class Layer:
     """One map.
 
     Attributes:
-        unit: Of its values.
-        title: What it shows.
+        unit: Unit of its values.
+        title: Its title.
         colors: From the lowest class to the highest.
         scale: Factor from SI to its unit.
     """
@@ -73,9 +73,9 @@ class Maps:
 
     Attributes:
         rasters: By name, in the order and units of `LAYERS`.
-        flow: What they were made from.
-        from_frames: Why largest values are those of frames; empty if they were followed in the run.
-        affected: Where rock has been, the values true or not a number.
+        flow: Largest values and arrivals that they are made from.
+        from_frames: Why largest values come from frames; empty if the run recorded them.
+        affected: Cells reached by rock, 1 or not a number.
         classes: Limits of the classes of each map.
     """
 
@@ -102,9 +102,9 @@ class Maps:
             flow: Largest values and arrivals.
             start: Thickness at the start.
             end: Thickness at the end, on cells of the same size.
-            from_frames: Why `flow` is not what the run has followed.
+            from_frames: Why `flow` does not come from records of the run.
             left_out: Names of maps that cannot be made.
-            classes: Limits of the classes by name; others are made to fit.
+            classes: Limits of the classes by name; other maps get fitting classes.
         """
         cell, met = flow.cell, flow.affected
         corner = (flow.low[0] * cell, flow.low[1] * cell)
@@ -134,11 +134,11 @@ class Maps:
 
     @property
     def has_gaps(self) -> bool:
-        """Whether an element may have passed a cell between two looks."""
+        """Whether an element may have crossed a cell between two looks."""
         return self.flow.jump > 1
 
     def as_dict(self) -> dict[str, Any]:
-        """What runout.json says of the maps."""
+        """The maps in runout.json."""
         return {
             "cell": self.flow.cell,
             "met": self.flow.met,
@@ -165,7 +165,7 @@ class Maps:
 
 
 def _spread(deposit: Deposit, flow: FlowMaps) -> Floats:
-    """Thickness over the grid of the maps, which holds that of the deposit [m]."""
+    """Thickness on the grid of the maps, which contains the grid of the deposit [m]."""
     rows, columns = flow.layers.shape[1:]
     out = np.zeros((rows, columns))
     column = round(deposit.x / deposit.cell) - flow.low[0]
@@ -178,7 +178,7 @@ def _spread(deposit: Deposit, flow: FlowMaps) -> Floats:
 
 
 def _limits(name: str, values: Floats) -> list[float]:
-    """Limits of classes at round numbers: from 0, or as far below 0 as above."""
+    """Limits of classes at round numbers: from 0, or symmetric about 0."""
     most = float(np.nanmax(np.abs(values), initial=0.0))
     if not most > 0:
         return [0.0, 1.0]
@@ -190,13 +190,13 @@ def _limits(name: str, values: Floats) -> list[float]:
 
 
 def _round_up(size: float) -> float:
-    """The least of 1, 2, 2.5 or 5 times a power of ten that is not below a size."""
+    """The smallest of 1, 2, 2.5 or 5 times a power of ten that is not below a size."""
     power = 10.0 ** np.floor(np.log10(size))
     return float(next(f for f in (1, 2, 2.5, 5, 10) if f * power >= size * (1 - 1e-12)) * power)
 
 
 def colors_of(layer: Layer, count: int) -> list[str]:
-    """Colours of so many classes, from the lowest to the highest."""
+    """Colours of this number of classes, from the lowest to the highest."""
     table = np.array([[int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in layer.colors])
     places = np.linspace(0, len(table) - 1, count) if count > 1 else np.zeros(1)
     mixed = [np.interp(places, np.arange(len(table)), channel) for channel in table.T]

@@ -16,35 +16,35 @@ from cdem.terrain.rasters import Raster
 Floats = NDArray[np.float64]
 
 MARGIN = 0.08
-"""Ground shown beyond the rock, by the larger side of what rock has met."""
+"""Ground shown around the rock, relative to the larger side of the affected area."""
 SHADED = 300
 """Points of the hillshade along the larger side."""
 SUN = (315.0, 45.0)
-"""Azimuth and height of the light, as maps have it [deg]."""
+"""Azimuth and height of the light, as usual on maps [deg]."""
 DARKEST = 0.45
 """Grey of ground without light."""
 CONTOURS = 9
-"""Contour lines of the ground, about."""
+"""Approximate number of contour lines of the ground."""
 FLAT = 1e-3
-"""Ground whose heights differ by less than this part of its width has none."""
+"""Ground with height differences below this fraction of its width gets no contours."""
 SHEET = ("thickness_max", "velocity_mean_max", "energy_area_max", "arrival")
 """Layers of maps.png."""
 TICKS = 5
 UNDER = 0.55
-"""Where the legend begins under a map [in]."""
+"""Top of the legend under a map [in]."""
 
 
 @dataclass
 class View:
-    """What lies under and over every map of one run-out.
+    """Background and overlays of every map of one run-out.
 
     Attributes:
         west, east, south, north: Edges of the picture [m].
-        ground: Heights of the ground over it [m], nan where there is none.
+        ground: Heights of the ground in it [m], nan for missing ground.
         source: The thickness at the start.
         centre: Places of the centre of mass [m], shape (frames, 3).
-        crown: [m].
-        front: [m].
+        crown: Position of the crown [m].
+        front: Position of the front [m].
         sections: x0, y0, x1, y1 of each [m].
         outline: Lines mapped in the field [m], each of shape (points, 2).
     """
@@ -68,14 +68,14 @@ class View:
 
 
 def frame_of(raster: Raster) -> tuple[float, float, float, float]:
-    """West, east, south and north of a picture that shows a raster and some ground round it [m]."""
+    """West, east, south and north of a picture with a raster and some ground around it [m]."""
     west, east, south, north = raster.extent
     more = MARGIN * max(east - west, north - south)
     return west - more, east + more, south - more, north + more
 
 
 def ground_grid(edges: tuple[float, float, float, float]) -> tuple[Floats, Floats]:
-    """x and y of the points at which the ground is shaded [m]."""
+    """x and y of the points where the ground is shaded [m]."""
     west, east, south, north = edges
     step = max(east - west, north - south) / SHADED
     return np.arange(west + step / 2, east, step), np.arange(south + step / 2, north, step)
@@ -101,7 +101,7 @@ def draw_sheet(path: Path, maps: Maps, view: View, plt: Any) -> Path:
     """Draw largest thickness, velocity and energy, and arrival, on one sheet."""
     names = [name for name in SHEET if name in maps.rasters]
     wide, high = _size(view, 4.0 if view.is_upright else 6.0)
-    columns = len(names) if view.is_upright else 2  # upright maps stand side by side
+    columns = len(names) if view.is_upright else 2  # upright maps are placed side by side
     rows = -(-len(names) // columns)
     figure, all_axes = plt.subplots(
         rows, columns, figsize=(columns * wide, rows * high), squeeze=False
@@ -169,7 +169,7 @@ def _outline_of(raster: Raster) -> Any:
 
 
 def _shade(axes: Any, ground: Raster) -> None:
-    """Hillshade and contour lines of the ground; white where there is none."""
+    """Hillshade and contour lines of the ground; white for missing ground."""
     z = ground.values
     if min(z.shape) < 2 or not np.isfinite(z).any():
         return
@@ -185,7 +185,7 @@ def _shade(axes: Any, ground: Raster) -> None:
 
 
 def hillshade(z: Floats, cell: float) -> Floats:
-    """Light that a surface takes from `SUN`, 0 to 1; nan where there is no surface.
+    """Light on a surface from `SUN`, 0 to 1; nan for missing surface.
 
     Args:
         z: Heights [m], shape (rows, columns), from south to north.

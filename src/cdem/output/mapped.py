@@ -1,4 +1,4 @@
-"""How well the area that rock has met fits an outline mapped in the field."""
+"""Fit of the area reached by rock to an outline mapped in the field."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ Floats = NDArray[np.float64]
 
 WHAT = "reading a mapped outline"
 ENDS_MEET = 0.05
-"""A line whose ends are nearer than this part of its length is an outline."""
+"""A line is closed if its ends are nearer than this fraction of its length."""
 
 
 @dataclass
 class Fit:
-    """Cells met by the model against those within a mapped outline, by their middles.
+    """Cells reached by the model compared with cells of a mapped outline, by their middles.
 
     Attributes:
-        file: The outline's.
-        hit: Area met in both [m2].
-        beyond: Area that only the model has met [m2].
-        missed: Area that only the outline holds [m2].
-        front_gap: How much farther the model's front lies than the outline's, along the motion [m].
+        file: File of the outline.
+        hit: Area in both [m2].
+        beyond: Area in the model only [m2].
+        missed: Area in the outline only [m2].
+        front_gap: Distance of the model's front beyond the outline's, along the motion [m].
         rings: The outline [m], each of shape (points, 2).
-        notes: What was done to bring the outline to the model.
+        notes: How the outline was transformed to the model.
     """
 
     file: str
@@ -48,22 +48,22 @@ class Fit:
 
     @property
     def csi(self) -> float:
-        """Critical success index, also called Jaccard's: 1 if both are the same, 0 if apart."""
+        """Critical success index, also called Jaccard's: 1 for equal areas, 0 for separate ones."""
         return self.hit / (self.hit + self.beyond + self.missed)
 
     @property
     def hit_rate(self) -> float:
-        """Part of the outline that the model has met."""
+        """Fraction of the outline that the model reached."""
         return self.hit / (self.hit + self.missed)
 
     @property
     def precision(self) -> float:
-        """Part of the model's area that lies within the outline."""
+        """Fraction of the model's area inside the outline."""
         return self.hit / (self.hit + self.beyond)
 
     @property
     def area_factor(self) -> float:
-        """Area of the model over that of the outline: the factor of conservativeness, FoC."""
+        """Area of the model over the area of the outline: the factor of conservativeness, FoC."""
         return (self.hit + self.beyond) / (self.hit + self.missed)
 
     def as_dict(self) -> dict[str, Any]:
@@ -75,7 +75,7 @@ class Fit:
         }  # fmt: skip
 
     def text(self) -> str:
-        """Lines for the user."""
+        """Lines of text for the user."""
         side = "beyond" if self.front_gap >= 0 else "short of"
         return (
             f"  against {self.file}, area met at any time: CSI {self.csi:.3f}, hit rate "
@@ -90,14 +90,14 @@ def compare(affected: Raster, path: Path, crs: str | None, way: Floats, front: f
     """Compare with the polygons of a file.
 
     Args:
-        affected: Numbers where rock has been, nan elsewhere.
+        affected: Numbers in cells reached by rock, else nan.
         path: GIS file, see `read_features`.
-        crs: Projection of the model; None if it is not known.
+        crs: Projection of the model; None if unknown.
         way: Direction of the motion in plan, a unit vector.
-        front: Place of the model's front along it [m].
+        front: Position of the model's front along it [m].
 
     Raises:
-        CaseError: The file cannot be read, holds no area, or lies elsewhere.
+        CaseError: The file cannot be read, contains no area, or lies elsewhere.
     """
     projection = Projection(None if crs is None else look_up(crs))
     outline = read_outline(path, projection)
@@ -141,10 +141,10 @@ def read_outline(path: Path, projection: Projection) -> Any:
 
     Args:
         path: GIS file, see `read_features`.
-        projection: Of the model.
+        projection: Projection of the model.
 
     Raises:
-        CaseError: The file cannot be read, or holds no area.
+        CaseError: The file cannot be read, or contains no area.
     """
     shapely = extra("shapely", WHAT)
     found = read_features(path)
@@ -152,7 +152,7 @@ def read_outline(path: Path, projection: Projection) -> Any:
         shapes = [shapely.geometry.shape(geometry) for geometry, _ in found.items]
         areas = [area for shape in shapes for area in _areas(shapely.force_2d(shape))]
     if not areas:
-        raise CaseError(f"{path}: holds no polygon or closed line to compare with")
+        raise CaseError(f"{path}: contains no polygon or closed line; --against needs one")
     outline = shapely.union_all(shapely.make_valid(np.array(areas)))
     return shapely.transform(
         outline, lambda points: projection.bring(path, found.label, None, points)
@@ -160,7 +160,7 @@ def read_outline(path: Path, projection: Projection) -> Any:
 
 
 def _areas(shape: Any) -> list[Any]:
-    """Polygons of a geometry, closed lines among them."""
+    """Polygons of a geometry, including closed lines."""
     shapely = extra("shapely", WHAT)
     areas = []
     for part in shapely.get_parts(shape):

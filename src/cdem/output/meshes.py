@@ -21,7 +21,7 @@ def surface_mesh(surface: Surface) -> Any:
 
 
 def volume_mesh(series: FrameSeries, frame: int) -> Any:
-    """All elements of a frame, from 0, with all their fields, an UnstructuredGrid."""
+    """All elements of a frame with all their fields, an UnstructuredGrid; frames count from 0."""
     cells = [np.column_stack([np.full(len(ids), NODES[shape]), ids]).ravel()
              for shape, ids in series.cells.items()]  # fmt: skip
     types = [np.full(len(ids), VTK_TYPES[shape]) for shape, ids in series.cells.items()]
@@ -43,7 +43,7 @@ def _pyvista() -> Any:
 
 
 def _told(mesh: Any, time: float, group_names: list[str]) -> Any:
-    """A mesh that knows its time and the names of its groups."""
+    """A mesh with its time and the names of its groups."""
     mesh.field_data["time"] = [time]
     mesh.field_data["group_names"] = group_names
     return mesh

@@ -1,4 +1,4 @@
-"""A picture of a model before anything is run: groups, what holds and loads it, its interfaces."""
+"""A picture of a model before the run: groups, supports, loads, interfaces."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ if TYPE_CHECKING:
 
 SIZE = (1000, 850)
 MOST_INNER = 5000
-"""More pairs of faces inside one group would hide everything else: they are counted, not drawn."""
+"""Above this number, pairs of faces inside one group are only counted: drawn, they would hide the rest."""
 INNER_SIZE = 0.6
-"""Faces of pairs inside a group are drawn smaller by this, so that one sees between them."""
+"""Scale of drawn faces of pairs inside a group, so that gaps remain visible."""
 ARROW = 0.08
 """Length of the arrow of the largest load over the size of the model."""
 _BACK = np.array([0.6, -0.8, 0.75])
-"""Where one looks from."""
+"""Direction of view."""
 DOTS = ("black", "#d62728", "#9467bd", "#17becf", "#8c564b", "#7f7f7f", "#2ca02c")
-"""Colours of the dots, one for each way of being held."""
+"""Colours of the dots, one for each kind of support."""
 
 
 def draw_model(sim: RunState) -> NDArray[np.uint8]:
     """Two views side by side, shape (height, width, 3).
 
-    Left the groups, with dots where nodes are held or driven and arrows where they are loaded; right
-    the pairs of faces that touch, by pair of groups, in the body made translucent.
+    The left view has the groups, with dots at fixed or driven nodes and arrows at loaded nodes. The
+    right view has the pairs of touching faces, by pair of groups, in the translucent body.
 
     Raises:
-        CdemError: pyvista is not installed, or there is no OpenGL to draw with.
+        CdemError: pyvista is not installed, or OpenGL is missing.
     """
     pyvista = load_pyvista()
     panels = [_Panel(pyvista, sim) for _ in range(2)]
@@ -53,10 +53,10 @@ def draw_model(sim: RunState) -> NDArray[np.uint8]:
 
 
 def draw_refused(refused: BodyError) -> NDArray[np.uint8]:
-    """The body that was refused, with what is wrong in red, shape (height, width, 3).
+    """The refused body, with its faults in red, shape (height, width, 3).
 
     Raises:
-        CdemError: pyvista is not installed, or there is no OpenGL to draw with.
+        CdemError: pyvista is not installed, or OpenGL is missing.
     """
     pyvista = load_pyvista()
     points = np.asarray(refused.points, float)
@@ -90,7 +90,7 @@ class _Panel:
         self.surface = snapshot(sim)
 
     def add(self, mesh: Any, color: str, label: str | None = None, **how: Any) -> None:
-        """Draw a mesh in one colour; with a label it is in the legend."""
+        """Draw a mesh in one colour; a label adds it to the legend."""
         self.plotter.add_mesh(mesh, color=color, **MATTE, **how)
         if label is not None:
             self.legend.append((label, color))
@@ -120,7 +120,7 @@ def _groups(panel: _Panel, sim: RunState) -> None:
 
 
 def _held(panel: _Panel, sim: RunState) -> None:
-    """Dots at the nodes of outer faces that are held or driven, one colour for each way."""
+    """Dots at fixed or driven nodes of outer faces, one colour for each kind."""
     row = sim.build.arrays["support.row"]
     component = rows_of(sim.core, "support.component").numbers
     driven = (rows_of(sim.core, "support.velocity").numbers != 0).any(axis=1)
@@ -138,7 +138,7 @@ def _held(panel: _Panel, sim: RunState) -> None:
 
 
 def _loads(panel: _Panel, sim: RunState) -> None:
-    """Arrows of the nodal forces that come from tractions, the largest at full length."""
+    """Arrows of the nodal forces of tractions, the largest at full length."""
     first = sim.build.arrays["load.first"]
     nodes = np.repeat(np.arange(len(first) - 1), np.diff(first))
     if len(nodes) == 0:

@@ -1,4 +1,4 @@
-"""The moving elements of a run, frame by frame: their pieces, and what passes through sections."""
+"""The moving elements of a run, frame by frame: their pieces, and flow through sections."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from cdem.output.reader import FrameSeries
 Floats = NDArray[np.float64]
 
 STILL = 1e-6
-"""Rock that moved less than this part of its size has not moved."""
+"""Rock counts as unmoved below this displacement, relative to its size."""
 MOVING = 0.1
-"""Groups that moved at least this part of what the farthest group moved are the moving ones."""
+"""Moving groups moved at least this fraction of the farthest group's displacement."""
 SECTION = {"time": "s", "area": "m2", "velocity": "m/s", "discharge": "m3/s", "passed": "m3"}
 FRAGMENT = {
     "piece": "1", "elements": "1", "volume": "m3", "mass": "kg", "diameter": "m", "x": "m",
@@ -32,11 +32,11 @@ class Body:
 
     Attributes:
         folder: The result folder.
-        frames: From the start, where displacements were last reset, to the end.
+        frames: From the last reset of displacements to the end.
         start: The elements at the start.
-        mass: Of each element [kg].
-        gravity: Size of gravity [m/s2].
-        crs: Projection of the coordinates as the case has it, or None.
+        mass: Mass of each element [kg].
+        gravity: Magnitude of gravity [m/s2].
+        crs: Projection of the coordinates as given in the case, or None.
     """
 
     def __init__(self, folder: Path, groups: Sequence[str] | None) -> None:
@@ -45,7 +45,7 @@ class Body:
         self.frames = range(self._first(), len(self.series))
         if len(self.frames) < 2:
             raise CdemError(
-                f"{self.series.folder}: holds no frame after the start at "
+                f"{self.series.folder}: has no frame after the start at "
                 f"{self.series.times[self.frames[0]]:.6g} s; run-out needs a later one"
             )
         names = self.series.group_names
@@ -57,7 +57,7 @@ class Body:
         self.chosen = np.isin(self.group, [names.index(name) for name in self.groups])
         self.cells = self._cells(self.chosen)
         self.nodes = np.unique(np.concatenate([c.ravel() for c in self.cells.values()]))
-        case, _ = load_case_data(folder / "case.yaml")  # as data: its own laws need not be there
+        case, _ = load_case_data(folder / "case.yaml")  # as data: its own laws may be missing
         densities = [
             case["materials"][case["groups"][name]["material"]]["density"] for name in names
         ]
@@ -65,7 +65,7 @@ class Body:
         self.gravity = float(np.linalg.norm([float(g) for g in case["loads"]["gravity"]]))
         self.crs: str | None = case.get("crs")
         self.start = self.solids(self.frames[0])
-        self.mass = self.density * self.solids(0).volumes()  # the mesh is free of stress
+        self.mass = self.density * self.solids(0).volumes()  # the mesh is undeformed
 
     def _cells(self, chosen: NDArray[np.bool_]) -> dict[str, NDArray[np.int64]]:
         """Nodes of chosen elements by shape."""
@@ -78,7 +78,7 @@ class Body:
         return cells
 
     def _first(self) -> int:
-        """Last frame without displacements: settling that a stage has reset is no run-out."""
+        """Last frame without displacements: settling before a reset does not count as run-out."""
         if "displacement" in self.series.names["PointData"]:
             for frame in reversed(range(len(self.series))):
                 if not self.series.field("PointData", "displacement", frame).any():
@@ -86,7 +86,7 @@ class Body:
         return 0
 
     def _moving(self, names: list[str]) -> list[str]:
-        """Groups that moved, on average, a tenth of what the farthest one moved, or more."""
+        """Groups with a mean displacement of at least a tenth of the farthest group's."""
         start = self.series.points(self.frames[0])
         moved = self.series.points(self.frames[-1]) - start
         elements = np.concatenate(
@@ -96,7 +96,7 @@ class Body:
         way = [np.bincount(self.group, e, len(names)) / np.maximum(count, 1) for e in elements.T]
         distance = np.linalg.norm(way, axis=0)
         if distance.max() <= STILL * np.ptp(start, axis=0).max():
-            raise CdemError(f"{self.series.folder}: nothing has moved; name the groups to look at")
+            raise CdemError(f"{self.series.folder}: nothing has moved; name the groups to measure")
         return [n for n, d in zip(names, distance, strict=True) if d >= MOVING * distance.max()]
 
     def solids(self, frame: int) -> Solids:
@@ -110,7 +110,7 @@ class Body:
         return np.concatenate([nodal[nodes].mean(axis=1) for nodes in self.cells.values()])
 
     def ground(self, x: Floats, y: Floats) -> Floats:
-        """Height of what does not move, at the end, at the points of a grid: see `Solids.tops` [m]."""
+        """Height of unmoved rock at the end, at the points of a grid: see `Solids.tops` [m]."""
         last = self.frames[-1]
         others = ~self.chosen
         if "out" in self.series.names["CellData"]:
@@ -120,10 +120,10 @@ class Body:
         return Solids.of(self.series.points(last), self._cells(others)).tops(x, y)
 
     def stays(self, frame: int) -> NDArray[np.bool_]:
-        """Which elements have not left the domain of the case.
+        """Elements still inside the domain of the case.
 
         Raises:
-            CdemError: All have.
+            CdemError: All elements have left.
         """
         if "out" not in self.series.names["CellData"]:
             return np.ones(len(self.mass), bool)
@@ -131,17 +131,18 @@ class Body:
         if not stays.any():
             raise CdemError(
                 f"{self.series.folder}: all of {', '.join(self.groups)} has left model.domain at t = "
-                f"{self.series.times[frame]:.6g} s, so there is no run-out to measure; make it larger"
+                f"{self.series.times[frame]:.6g} s, so no run-out can be measured; enlarge "
+                f"model.domain"
             )
         return stays
 
     def pieces(self, frame: int, volume: Floats, stays: NDArray[np.bool_]) -> Pieces | None:
-        """Connected pieces of the elements that stay, or None if they were not recorded.
+        """Connected pieces of the remaining elements, or None if they were not recorded.
 
         Args:
             frame: Number of the frame.
-            volume: Of these elements [m3].
-            stays: Which of the moving elements they are.
+            volume: Volume of these elements [m3].
+            stays: Mask of the remaining elements among the moving ones.
         """
         if "piece" not in self.series.names["CellData"]:
             return None
@@ -153,7 +154,7 @@ class Body:
 
 @dataclass
 class Pieces:
-    """Connected pieces: number, member of each element, volume [m3], whether others hang on."""
+    """Connected pieces: number, piece of each element, volume [m3], whether attached to other groups."""
 
     ids: NDArray[np.int32]
     member: NDArray[np.intp]
@@ -161,7 +162,7 @@ class Pieces:
     attached: NDArray[np.bool_]
 
     def row(self) -> tuple[float, float, float]:
-        """Number of pieces, and the parts of the volume in the largest and in attached ones."""
+        """Number of pieces, and the volume fractions of the largest and of attached ones."""
         whole = self.volume.sum()
         return (
             float(len(self.ids)),
@@ -189,7 +190,7 @@ class Pieces:
 
 @dataclass
 class Section:
-    """Rock through an upright section over a line in plan; what moves forward counts as positive.
+    """Flow of rock through an upright section over a line in plan; positive forwards.
 
     Attributes:
         line: x and y of its ends [m].
@@ -201,12 +202,12 @@ class Section:
 
 
 class Line:
-    """Follows the rock through one section.
+    """Records the rock through one section.
 
     Args:
         line: x0, y0, x1, y1 [m].
         forward: Direction of motion in plan, shape (2,).
-        start: The elements at the start; their volumes are those that pass.
+        start: The elements at the start; the section counts their initial volumes.
     """
 
     def __init__(self, line: Sequence[float], forward: Floats, start: Solids) -> None:
@@ -234,13 +235,13 @@ class Line:
         before: Floats,
         now: Floats,
     ) -> None:
-        """Add a frame: its time [s], elements, which of them have not left the domain, their
-        velocities, and centroids before and now."""
+        """Add a frame: its time [s], elements, mask of elements still inside the domain, their
+        velocities, and old and new centroids."""
         area = stays * solids.cut_areas(self.begin, self.along, self.length)
         discharge = float(area @ (velocity[:, :2] @ self.normal))
         share = solids.shares_ahead(self.begin, self.normal)
         last, here = ((c[:, :2] - self.begin) @ self.normal for c in (before, now))
-        # where the straight way of the centroid since the last frame comes nearest to the line
+        # point of the centroid's straight path since the last frame nearest to the line
         t = np.clip(last / np.where(last == here, 1.0, last - here), 0.0, 1.0)[:, None]
         r = ((before + t * (now - before))[:, :2] - self.begin) @ self.along
         within = (r >= 0) & (r <= self.length)

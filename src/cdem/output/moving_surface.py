@@ -1,7 +1,7 @@
-"""The surface of a run as one set of rows that all its frames share: what a page draws from.
+"""The surface of a run as one set of rows shared by all its frames: the data of a page.
 
-Faces come when bonds break and go when rock is dug out. Each has a row from the frame that first
-shows it, so that rows are in the order in which they come and new frames only add to them.
+Faces appear when bonds break and disappear when rock is removed. Each gets a row at its first
+frame: rows are in order of appearance, and new frames only add rows.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from cdem.errors import CdemError
 from cdem.output.reader import Surface
 
 NEVER = np.iinfo(np.int32).max
-"""Frame in which a face goes that stays."""
-FLOW_LABELS = ("has not flowed", "has flowed", "flows now")
+"""Last frame of a face that never disappears."""
+FLOW_LABELS = ("has not yielded", "has yielded", "yields now")
 FLOWS_NOW = 1 + 2 + 16 + 32
-"""Bits of the field "yielded" that say that rock flows in this moment."""
+"""Bits of the field "yielded" for present plastic flow."""
 COLORS = 251
-"""So many colours tell blocks and pieces apart; a prime, so that neighbours differ."""
+"""Number of colours for blocks and pieces; a prime, so that neighbours differ."""
 
 
 @dataclass(frozen=True)
 class PageField:
-    """A field as a page shows it.
+    """A field on a page.
 
     Attributes:
-        name: Of the field, or `MISES`.
-        label: What a reader sees.
-        unit: As of an output field.
+        name: Name of the field, or `MISES`.
+        label: Text for the reader.
+        unit: Unit, as of an output field.
         on: "node", "element" or "face".
         kind: "amount", coloured from 0 to `top`; "label", by few colours; "scattered", by many.
-        labels: What the numbers of a label stand for.
+        labels: Meanings of the numbers of a label.
     """
 
     name: str
@@ -48,7 +48,7 @@ class PageField:
 
 
 class _Rows:
-    """Rows of things that come one after the other, by their numbers."""
+    """Rows of items in order of appearance, found by their numbers."""
 
     def __init__(self) -> None:
         self.number = np.zeros(0, np.int64)
@@ -59,14 +59,14 @@ class _Rows:
         return len(self.number)
 
     def of(self, numbers: NDArray) -> NDArray[np.int64]:
-        """Rows of numbers that are known."""
+        """Rows of known numbers."""
         return self._row[numbers]
 
     def add(self, numbers: NDArray, frame: int, again: NDArray | None = None) -> NDArray[np.int64]:
-        """Give rows to numbers that have none, and new ones to those that come again.
+        """Give rows to new numbers, and new rows to numbers that reappear.
 
         Returns:
-            The rows that are new.
+            The new rows.
         """
         if len(numbers) and numbers.max() >= len(self._row):
             grown = np.full(2 * int(numbers.max()) + 1, -1)
@@ -91,8 +91,8 @@ class Faces:
         nodes: Rows of nodes, shape (faces, 4), -1 last in a triangle.
         element: Row of the element.
         joint: Set of joints.
-        born: Frame that first shows it.
-        goes: First frame that does not show it any more, or `NEVER`.
+        born: First frame of the face.
+        goes: First frame without the face, or `NEVER`.
     """
 
     nodes: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 4), np.int64))
@@ -103,15 +103,15 @@ class Faces:
 
 
 class MovingSurface:
-    """Rows of nodes, elements and faces over the frames that have been added.
+    """Rows of nodes, elements and faces over the added frames.
 
     Attributes:
-        times: Of the frames [s].
-        faces: By row.
-        group, block: Of each row of elements.
-        group_names: By the numbers of the groups.
-        fields: Those that every frame has.
-        top: Value of a field that gets the last colour: the largest 99.5th percentile of a frame.
+        times: Times of the frames [s].
+        faces: Faces by row.
+        group, block: Group and block of each row of elements.
+        group_names: Names by group number.
+        fields: Fields in every frame.
+        top: Value with the last colour: the largest 99.5th percentile of a frame.
         most: Largest value of a field.
         lowest, highest: Corners of the box of all frames [m].
     """
@@ -134,15 +134,15 @@ class MovingSurface:
 
         Args:
             surface: With the fields `node`, `element` and `face`.
-            stress: Of all elements [Pa], shape (elements, 6), or None.
+            stress: Stress of all elements [Pa], shape (elements, 6), or None.
 
         Raises:
-            CdemError: The surface has no numbers of nodes, elements and faces.
+            CdemError: The surface lacks numbers of nodes, elements and faces.
         """
         if "node" not in surface.point_data or "face" not in surface.cell_data:
             raise CdemError(
                 "No moving picture: an older cdem wrote these frames, without the numbers of nodes and "
-                "faces; run the case again, or look at them with cdem render"
+                "faces; run the case again, or use cdem render"
             )
         frame = len(self.times)
         self._add_nodes(surface, frame)
@@ -206,10 +206,10 @@ class MovingSurface:
         )
 
     def rows(self, surface: Surface) -> dict[str, NDArray[np.int64]]:
-        """Rows of the points and cells of a frame that has been added.
+        """Rows of the points and cells of an added frame.
 
         Returns:
-            By what has them: "node" of the points; "element" and "face" of the cells.
+            By kind: "node" for the points; "element" and "face" for the cells.
         """
         cells = surface.cell_data
         return {
@@ -220,7 +220,7 @@ class MovingSurface:
 
 
 def values_of(surface: Surface, stress: NDArray | None) -> dict[str, NDArray]:
-    """Values of the fields of a frame that change, one number for each of its points or cells."""
+    """Values of the changing fields of a frame, one number for each of its points or cells."""
     points, cells = surface.point_data, surface.cell_data
     values: dict[str, NDArray] = {}
     for f in OUTPUT_FIELDS:
@@ -240,7 +240,7 @@ def values_of(surface: Surface, stress: NDArray | None) -> dict[str, NDArray]:
 
 
 def fields_of(surface: Surface, values: Mapping[str, NDArray]) -> dict[str, PageField]:
-    """The fields of a frame that a page offers, in the order of its list."""
+    """The fields of a frame on a page, in the order of its list."""
     labels: dict[str, tuple[str, ...]] = {
         "yielded": FLOW_LABELS,
         "group": tuple(surface.group_names),
@@ -265,4 +265,4 @@ def fields_of(surface: Surface, values: Mapping[str, NDArray]) -> dict[str, Page
 
 
 SurfaceOf = Callable[[int], tuple[Surface, NDArray | None]]
-"""Gives the surface of a frame, and the stress of all elements where there is one."""
+"""Gives the surface of a frame, and the stress of all elements or None."""

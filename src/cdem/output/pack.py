@@ -1,13 +1,14 @@
-"""Frames of a moving surface as few bytes: what report.html holds and what `cdem view` sends.
+"""Frames of a moving surface in few bytes: the data of report.html and `cdem view`.
 
-A pack is the length of a header in JSON (four bytes), the header, and arrays one after the other;
-all of it compressed by gzip. `unpack` of the page's run.js reads it.
+A pack is the length of a header in JSON (four bytes), the header, and arrays one after the other,
+compressed by gzip. `unpack` of the page's run.js reads it.
 
-- Positions are whole numbers in the box of the frames. A frame holds the second difference in time,
-  of that the difference from node to node, folded so that small ones are small numbers (zigzag), low
-  bytes before high bytes.
-- Amounts are bytes of their largest value, labels their numbers; a frame holds the difference.
-- Rows that a frame does not have keep what they had, or have what they will come with: no difference.
+- Positions are whole numbers in the box of the frames. A frame holds the second difference in time
+  and its difference from node to node, folded so that small values are small numbers (zigzag),
+  low bytes before high bytes.
+- Amounts are bytes relative to their largest value, labels are numbers; a frame holds differences.
+- Rows that a frame lacks keep their last value, or have their first value in advance: no
+difference.
 """
 
 from __future__ import annotations
@@ -23,25 +24,25 @@ from numpy.typing import NDArray
 from cdem.output.moving_surface import NEVER, MovingSurface, SurfaceOf, values_of
 
 LEVEL = 6
-"""Of gzip: level 9 takes three times as long and saves 2 %."""
+"""Level of gzip: level 9 takes three times as long and saves 2 %."""
 SAMPLES = 6
-"""Frames whose size tells that of all."""
+"""Number of frames for an estimate of the total size."""
 GZIP = 31
-"""How zlib is told to write gzip, which has no time in it then."""
+"""Setting of zlib for gzip, without a time stamp."""
 WIDEST = 8.0
-"""The largest value of a field that is kept apart, over the value of the last colour."""
+"""Largest distinct value of a field, over the value of the last colour."""
 HELD = 100_000_000
-"""Positions of all frames take so much memory at most [bytes]; else frames are left out before."""
+"""Most memory for positions of all frames [bytes]; else some frames are skipped at once."""
 
 
 @dataclass(frozen=True)
 class Rung:
-    """One way of leaving things out.
+    """A level of reduction.
 
     Attributes:
-        bits: Of a coordinate.
-        fine: Steps of 255 from one amount to the next.
-        every: Frames from one that is kept to the next.
+        bits: Bits of a coordinate.
+        fine: Steps, of 255, from one amount to the next.
+        every: Distance of kept frames.
     """
 
     bits: int
@@ -52,19 +53,19 @@ class Rung:
 LADDER = [Rung(16, 1, 1), Rung(14, 1, 1), Rung(14, 5, 1), Rung(12, 5, 1)] + [
     Rung(12, 5, every) for every in (2, 3, 4, 5, 7, 10, 15, 22, 33, 50)
 ]
-"""From all that there is to the least."""
+"""Levels from no reduction to the strongest."""
 
 
 @dataclass
 class _Held:
-    """What the frames that are kept hold, by row.
+    """Values of the kept frames, by row.
 
     Attributes:
         frames: Their numbers.
-        place: Positions in steps of the finest rung, shape (frames, nodes, 3).
-        values: By field, shape (frames, rows).
-        high: Value of 255, by field.
-        bars: Ends of the bars of bolts from the low corner of the box [m], by frame.
+        place: Positions in the finest steps, shape (frames, nodes, 3).
+        values: Values by field, shape (frames, rows).
+        high: Value of byte 255, by field.
+        bars: Ends of the bars of bolts relative to the low corner of the box [m], by frame.
     """
 
     frames: NDArray[np.int64]
@@ -75,10 +76,10 @@ class _Held:
 
 
 class Pack:
-    """Arrays and a header, to be written as one piece.
+    """Arrays and a header, written as one piece.
 
     Attributes:
-        header: What JSON can hold.
+        header: Data for JSON.
     """
 
     def __init__(self, header: dict[str, Any]) -> None:
@@ -87,14 +88,14 @@ class Pack:
         self._size = 0
 
     def put(self, name: str, values: NDArray) -> None:
-        """Add an array; its bytes are those of the type that it has, little end first."""
+        """Add an array as bytes of its own type, little-endian."""
         content = np.ascontiguousarray(values).tobytes()
         self.header["arrays"][name] = [self._size, len(content)]
         self._parts.append(content)
         self._size += len(content)
 
     def compressed(self) -> bytes:
-        """The whole, the same bytes for the same content."""
+        """All bytes; equal contents give equal bytes."""
         header = json.dumps(self.header).encode()
         squeeze = zlib.compressobj(LEVEL, wbits=GZIP)
         parts = [len(header).to_bytes(4, "little"), header, *self._parts]
@@ -104,19 +105,19 @@ class Pack:
 def put_frames(
     pack: Pack, moving: MovingSurface, surface_of: SurfaceOf, first: int, budget: int
 ) -> list[str]:
-    """Put the frames from one on into a pack, and the rows that come with them.
+    """Add the frames from `first` on to a pack, with their new rows.
 
-    Where they take more than the budget, digits are left out, then frames.
+    To meet the budget, digits are dropped first, then frames.
 
     Args:
-        pack: For them.
-        moving: All frames have been added to it.
+        pack: The pack.
+        moving: The surface with all frames added.
         surface_of: Gives the surface of a frame.
         first: Number of the first frame.
-        budget: Bytes that they should take at most.
+        budget: Largest size of the frames [bytes].
 
     Returns:
-        What was left out, in words.
+        The reductions, in words.
     """
     total = len(moving.times)
     bytes_a_frame = max(6 * len(moving.nodes), 1)
@@ -154,7 +155,7 @@ def put_frames(
 
 
 def _every(first: int, total: int, step: int) -> NDArray[np.int64]:
-    """Every so many numbers below a total, counted from the last, and the first."""
+    """Numbers below a total at a fixed distance, counted from the last, and the first."""
     return (
         np.unique([first, *range(total - 1, first - 1, -step)])
         if total > first
@@ -204,7 +205,7 @@ def _hold(moving: MovingSurface, surface_of: SurfaceOf, frames: NDArray[np.int64
 
 
 def _bytes(values: NDArray, high: float | None) -> NDArray[np.uint8]:
-    """Amounts as parts of the largest; labels as they are."""
+    """Amounts relative to the largest; labels unchanged."""
     if high is None:
         return np.clip(values, 0, 255).astype(np.uint8)
     part = np.nan_to_num(values / high, nan=0.0, posinf=1.0, neginf=0.0)
@@ -212,14 +213,14 @@ def _bytes(values: NDArray, high: float | None) -> NDArray[np.uint8]:
 
 
 def _coarse(place: NDArray[np.uint16], bits: int) -> NDArray[np.uint16]:
-    """Places of 16 bits in fewer."""
+    """Round 16-bit positions to fewer bits."""
     if bits == 16:
         return place
     return np.round(place * np.float32((2**bits - 1) / 65535)).astype(np.uint16)
 
 
 def _rounded(values: NDArray[np.uint8], fine: int) -> NDArray[np.uint8]:
-    """Bytes as multiples of a divisor of 255."""
+    """Round bytes to multiples of a divisor of 255."""
     if fine == 1:
         return values
     return ((values.astype(np.uint16) + fine // 2) // fine * fine).astype(np.uint8)
@@ -233,7 +234,7 @@ def _coded_places(place: NDArray[np.uint16]) -> NDArray[np.uint8]:
     for k, now in enumerate(place):
         difference = now - before
         second = difference - change if k > 1 else difference.copy()
-        second[1:] -= second[:-1].copy()  # nodes of an element move much alike
+        second[1:] -= second[:-1].copy()  # nodes of an element move similarly
         signed = second.view(np.int16)
         folded = ((signed << 1) ^ (signed >> 15)).view(np.uint16).ravel()
         coded[k] = folded & 255, folded >> 8
@@ -256,7 +257,7 @@ def _coded_bytes(values: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _estimate(held: _Held, rung: Rung) -> float:
-    """Bytes that the frames will take, from a few of them [bytes]."""
+    """Estimated size of the frames, from a few of them [bytes]."""
     kept = _every(0, len(held.frames), rung.every)
     if not len(kept):
         return 0.0
@@ -273,7 +274,7 @@ def _estimate(held: _Held, rung: Rung) -> float:
 
 
 def _put_rows(pack: Pack, moving: MovingSurface, first: int) -> None:
-    """Put the triangles and elements that come from a frame on."""
+    """Add the triangles and elements that appear from a frame on."""
     triangles, face, edges = _triangles(moving)
     faces = moving.faces
     new = faces.born[face] >= first
@@ -295,7 +296,7 @@ def _put_rows(pack: Pack, moving: MovingSurface, first: int) -> None:
 def _put_coming_and_going(
     pack: Pack, moving: MovingSurface, first: int, frames: NDArray[np.int64]
 ) -> None:
-    """Put how many triangles have come by each frame, and which go when."""
+    """Add the number of triangles that have appeared by each frame, and the disappearing ones."""
     _, face, _ = _triangles(moving)
     born, goes = moving.faces.born[face], moving.faces.goes[face]
     went = np.flatnonzero((goes != NEVER) & (goes >= first))
@@ -304,7 +305,7 @@ def _put_coming_and_going(
 
 
 def _top(moving: MovingSurface, name: str) -> float:
-    """Value that gets the last colour."""
+    """Value with the last colour."""
     if name == "damage":
         return 1.0
     return moving.top.get(name, 0.0) or moving.most.get(name, 0.0) or 1.0
@@ -313,10 +314,10 @@ def _top(moving: MovingSurface, name: str) -> float:
 def _triangles(
     moving: MovingSurface,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Triangles of all faces in their order: rows of nodes, of faces, and which sides are edges.
+    """Triangles of all faces in their order: rows of nodes, of faces, and a mask of true edges.
 
-    The sides are bits: 1, 2, 4 for the one opposite to the first, second, third corner. The diagonal
-    of a quadrilateral is no edge.
+    The sides are bits: 1, 2, 4 for the side opposite the first, second, third corner. The diagonal
+    of a quadrilateral is not an edge.
     """
     nodes = moving.faces.nodes
     halves = np.where(nodes[:, 3] >= 0, 2, 1)

@@ -1,4 +1,4 @@
-"""The texts of a run's page: state, warnings, tables, how to repeat it. All of it is plain text."""
+"""The texts of a run's page: state, warnings, tables, reproduction. All are plain text."""
 
 from __future__ import annotations
 
@@ -16,26 +16,28 @@ from cdem.run.energy_terms import ENERGY_TERMS
 from cdem.run.rest import REST_SPEED, SLOW_SPEED
 
 DOUBTFUL = 0.01
-"""Closing error of the energy balance that is flagged, as a share of its largest term."""
+"""Closing error of the energy balance above which it is flagged, relative to its largest term."""
 MOST_LOG = 200_000
-"""Characters of run.log that a page holds, from its end."""
+"""Most characters of run.log on a page, counted from its end."""
 BROKEN = "springs broken in tension / shear"
 WARNING = "warning: "
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"))
 
 
 def closing(energies: dict[str, float]) -> str:
-    """How well the energy balance closes, with a word if that is not well enough."""
+    """Closing error of the energy balance, with a remark if it is large."""
     error = energies["error"]
     doubt = (
-        "" if abs(error) <= DOUBTFUL else f": above {100 * DOUBTFUL:g} %, look before you trust it"
+        ""
+        if abs(error) <= DOUBTFUL
+        else f": above {100 * DOUBTFUL:g} %, check the run before you trust it"
     )
     return f"{100 * error:.3g} %{doubt}"
 
 
 def moving(summary: dict[str, Any]) -> str:
-    """Say how fast the fastest block moved at the end of a run; nothing if all rest, or not known."""
-    # of a run that failed, numbers that are not finite are null
+    """Speed of the fastest block at the end of a run; empty if all rest, or if unknown."""
+    # a failed run has null for non-finite numbers
     speeds = {name: g.get("fastest_block") or 0.0 for name, g in summary["groups"].items()}
     name = max(speeds, key=speeds.__getitem__)
     if speeds[name] < (SLOW_SPEED if summary["status"] == "at rest" else REST_SPEED):
@@ -44,7 +46,7 @@ def moving(summary: dict[str, Any]) -> str:
 
 
 def rested(summary: dict[str, Any]) -> str:
-    """Say how far what came to rest has moved; nothing of other ends."""
+    """Displacement of a run that came to rest; empty for other ends."""
     if summary["status"] != "converged":
         return ""
     ways = {name: g.get("max_displacement") or 0.0 for name, g in summary["groups"].items()}
@@ -53,7 +55,7 @@ def rested(summary: dict[str, Any]) -> str:
 
 
 def departed(summary: dict[str, Any]) -> str:
-    """Say which blocks are not at rest, but have left the domain; nothing if the run ended otherwise."""
+    """Blocks that have left the domain, while all others rest; empty for other ends."""
     if summary["status"] != "at rest":
         return ""
     gone = [
@@ -65,10 +67,10 @@ def departed(summary: dict[str, Any]) -> str:
 
 
 def page_facts(folder: Path) -> dict[str, Any]:
-    """What the page of a run says.
+    """The texts and tables of a run's page.
 
     Args:
-        folder: Result folder; the run may go on.
+        folder: Result folder; the run may be in progress.
     """
     log, case = _text(folder / "run.log"), _text(folder / "case.yaml")
     try:
@@ -95,7 +97,7 @@ def page_facts(folder: Path) -> dict[str, Any]:
 
 
 def is_over(folder: Path) -> bool:
-    """Whether the summary is of the last row of the histories: a run that goes on has passed it."""
+    """Whether the summary belongs to the last row of the histories: an active run is past it."""
     try:
         steps = json.loads((folder / "summary.json").read_text())["steps"]
         last = (folder / "histories.csv").read_text().rstrip().rpartition("\n")[2]
@@ -121,7 +123,7 @@ def _title(summary: dict[str, Any] | None, case: str) -> str:
 
 
 def _warnings(log: str) -> list[str]:
-    """Each warning of the log once."""
+    """Each warning of the log, once."""
     found = [line.partition(WARNING)[2] for line in log.splitlines() if WARNING in line]
     return list(dict.fromkeys(found))
 
@@ -138,7 +140,7 @@ def _repeat(folder: Path, summary: dict[str, Any] | None) -> str:
 
 
 def _ended(s: dict[str, Any]) -> dict[str, Any]:
-    """The part that the summary tells."""
+    """The part from the summary."""
     energies = s["energies"]
     error = energies.get("error") if energies else None
     broken = s["broken"]
@@ -161,7 +163,7 @@ def _ended(s: dict[str, Any]) -> dict[str, Any]:
 
 
 def _going_on(columns: dict[str, Any]) -> dict[str, Any]:
-    """The part that the histories tell."""
+    """The part from the histories."""
     tiles = []
     if columns:
         last = {name: float(values[-1]) for name, values in columns.items()}
@@ -174,7 +176,7 @@ def _going_on(columns: dict[str, Any]) -> dict[str, Any]:
     return {
         "status": "not at its end",
         "tone": "live",
-        "subtitle": f"cdem {__version__} · the run goes on, or was interrupted",
+        "subtitle": f"cdem {__version__} · the run is in progress, or was interrupted",
         "tiles": tiles,
         "tables": [],
     }
@@ -184,7 +186,7 @@ def _closing_tile(error: float | None) -> list[str]:
     if error is None:
         return ["energy balance", "not sampled", ""]
     good = abs(error) <= DOUBTFUL
-    label = "energy balance closes to" if good else "energy balance: do not trust it unseen"
+    label = "energy balance closes to" if good else "energy balance: check before use"
     return [label, f"{100 * abs(error):.2g} %", "good" if good else "doubt"]
 
 
@@ -226,12 +228,12 @@ def _number(value: float | None) -> str:
 
 
 def _norm(vector: list[float | None]) -> str:
-    """Length of a vector; of a run that failed, numbers that are not finite are None."""
+    """Length of a vector; None for non-finite numbers of a failed run."""
     return "–" if None in vector else _number(float(np.linalg.norm(np.array(vector, float))))
 
 
 def _quantity(value: float, unit: str) -> str:
-    """A number with its unit, and a prefix where that shortens it."""
+    """A number with its unit, and a prefix if that is shorter."""
     if unit == "s" and abs(value) >= 1:
         return f"{value:.4g} s" if value < 3600 else f"{value / 3600:.3g} h"
     factor, prefix = next((p for p in PREFIXES if abs(value) >= p[0]), (1.0, ""))

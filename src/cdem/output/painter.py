@@ -1,4 +1,4 @@
-"""Draws frames of one run in one view and one range of colours."""
+"""Draws frames of one run with one view and one range of colours."""
 
 from __future__ import annotations
 
@@ -32,27 +32,27 @@ from cdem.output.scene import (
 )
 
 AMOUNTS, DIVERGING = "viridis", "RdBu_r"
-"""Maps of colours, also without red or green: of amounts, and of values below and above zero."""
+"""Colour maps that also work without red or green: for amounts, and for signed values."""
 GOLDEN = 0.6180339887
-"""Its multiples, modulo 1, lie far from one another."""
+"""Multiples of it, modulo 1, lie far from one another."""
 AROUND = 0.6
-"""Rock that has flown further out than this, in sizes of the model, is not framed."""
+"""Rock beyond this distance, in sizes of the model, does not affect the view."""
 THROUGH = 0.6
-"""Opacity of rock with bolts, which are seen through it."""
+"""Opacity of rock with bolts, which show through it."""
 FAINT = 0.1
-"""Opacity of rock round bolts whose force is shown."""
+"""Opacity of rock around bolts with coloured forces."""
 BOLT = 0.004
-"""Radius of a bolt whose force is shown, in heights of the picture."""
+"""Radius of a bolt with coloured force, in heights of the picture."""
 STILL = 1e-3
-"""What moves less, in sizes of the model, stays where it is."""
+"""Groups with smaller displacements, in sizes of the model, count as unmoved."""
 NEAR_NOTHING = 0.05
-"""An end of a range of values with a sign that is less of the other end is next to zero."""
+"""One end of a signed range is neglected below this fraction of the other."""
 SAMPLE = 9
-"""Frames that the view and the range of colours are taken from, evenly spread."""
+"""Number of frames, evenly spread, that determine the view and the range of colours."""
 
 
 class Frames(Protocol):
-    """Frames by number, each read when it is asked for."""
+    """Frames by number, each read on demand."""
 
     def __len__(self) -> int: ...
 
@@ -60,7 +60,7 @@ class Frames(Protocol):
 
 
 def signed_span(low: float, high: float) -> tuple[float, float]:
-    """Ends of the colours of values between these: even about zero, from zero, or as they are."""
+    """Ends of the colours for these values: symmetric about zero, from zero, or unchanged."""
     most = max(abs(low), abs(high), 1e-12)
     if min(-low, high) > NEAR_NOTHING * most:
         return -most, most
@@ -86,7 +86,7 @@ class Painter:
         occlusion: bool = False,
     ) -> None:
         self.pyvista, self.north, self.occlusion = pyvista, north, occlusion
-        # a field of a study may be any, and names its own unit
+        # a field of a study may be arbitrary, with its own unit
         self.shown = SHOWN.get(field) or Shown(field, field, "", "amount", field, np.asarray)
         self.plane = frames.plane if isinstance(frames, Cuts) else None
         last = len(frames) - 1
@@ -109,7 +109,7 @@ class Painter:
         raise CdemError(f"the run did not record {self.shown.of!r}; add it to output.fields")
 
     def _names(self, sample: Sequence[Surface]) -> list[str]:
-        """Names of the values of a label; empty if the field is none."""
+        """Names of the values of a label; empty for other fields."""
         if self.shown.looks != "label":
             return []
         if self.shown.name == "group" and sample[-1].group_names:
@@ -152,14 +152,14 @@ class Painter:
         return matplotlib.colormaps["tab20" if looks == "scattered label" else AMOUNTS]
 
     def _entries(self) -> list[tuple[str, str]]:
-        """Names and colours of a label; what is nothing has the colour of rock."""
+        """Names and colours of a label; "none" has the colour of rock."""
         if self.shown.name == "group":
             return [(name, color(k)) for k, name in enumerate(self.names)]
         rest = [(name, color(k)) for k, name in enumerate(self.names[1:])]
         return [(self.names[0], NEUTRAL), *rest]
 
     def _ground(self, sample: Sequence[Surface]) -> list[int]:
-        """Groups that stay where they are."""
+        """Groups that do not move."""
         moved: dict[int, float] = {}
         for surface in sample:
             if self.plane or "displacement" not in surface.point_data:
@@ -172,7 +172,7 @@ class Painter:
         return [group for group, most in moved.items() if most < STILL * self.size]
 
     def _view(self, sample: Sequence[Surface]) -> View:
-        """All of the model, seen across the main motion and from above; along -y when nothing moves
+        """The whole model, seen across the main motion and from above; along -y without motion
         in plan. A cut is seen from its front."""
         if self.plane:
             return View.fitting(np.vstack([s.points for s in sample]), self.plane.back)
@@ -183,14 +183,14 @@ class Painter:
         moves = np.linalg.norm(way) > STILL * self.size
         way = way / np.linalg.norm(way) if moves else np.array([1.0, 0])
         side = np.array([way[1], -way[0]])
-        # from the side, a little from where things go to, and from above
+        # from the side, a little from the front of the motion, and from above
         back = np.array([*(0.8 * side + 0.6 * way), 0.75])
         away = AROUND * self.size
         points = np.vstack([surface.points for surface in sample])
         return View.fitting(np.clip(points, low - away, high + away), back)
 
     def draw(self, surface: Surface, title: str = "") -> NDArray:
-        """One frame, called by its time if it has no title, shape (height, width, 3)."""
+        """One frame, titled by its time unless it has a title, shape (height, width, 3)."""
         plotter = new_plotter(self.pyvista, self.view.size)
         mesh = self.pyvista.PolyData(surface.points, faces=surface.faces)
         bolts = len(surface.bolts) > 0
@@ -239,13 +239,13 @@ class Painter:
         plotter.add_mesh(tubes, scalars="shown", show_scalar_bar=False, **MATTE, **self._colors())
 
     def with_foot(self, images: Sequence[NDArray]) -> NDArray:
-        """Pictures side by side, and below what the colours mean, a scale and directions."""
+        """Pictures side by side, above a legend, a scale and directions."""
         image = np.concatenate(images, axis=1)
         width = image.shape[1]
         if self.shown.looks == "label":
             entries = self._entries()
             legend = labels(entries, len(entries), SIZE[0] // 2)
-        elif self.shown.looks == "scattered label":  # whose numbers mean nothing
+        elif self.shown.looks == "scattered label":  # its numbers only tell things apart
             legend = np.full((1, 1, 3), 255, np.uint8)
         else:
             name = self.shown.name

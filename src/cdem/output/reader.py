@@ -1,4 +1,4 @@
-"""The files of a result folder read back: summary, histories, frames of surface and volume."""
+"""Reads the files of a result folder: summary, histories, frames of surface and volume."""
 
 from __future__ import annotations
 
@@ -42,8 +42,9 @@ def read_summary(folder: Path) -> dict[str, Any]:
     except FileNotFoundError:
         if has_checkpoint(Path(folder)):
             raise CdemError(
-                f"{folder}: the run has not come to an end: it is still going, or was killed (then "
-                "go on with cdem run --resume); its log is run.log, its last state checkpoint.h5"
+                f"{folder}: the run has not ended: it is in progress, or was killed (then continue "
+                f"it "
+                "with cdem run --resume); its log is run.log, its last state checkpoint.h5"
             ) from None
         raise CdemError(f"{folder}: no summary.json; is this a result folder?") from None
     except json.JSONDecodeError as error:
@@ -60,7 +61,7 @@ def read_histories(folder: Path) -> dict[str, NDArray[np.float64]]:
         names = next(reader)
         rows = [[float(v) for v in row] for row in reader if len(row) == len(names)]
     if not rows:
-        raise CdemError(f"{path}: holds no rows yet")
+        raise CdemError(f"{path}: contains no rows yet")
     return dict(zip(names, np.array(rows).T, strict=True))
 
 
@@ -71,11 +72,12 @@ class Surface:
     Attributes:
         time: [s].
         points: [m], shape (points, 3).
-        polygons: Point ids, shape (faces, corners), with -1 last where a face has fewer: (faces, 4) of
-            a surface, of a cut through it up to (faces, 6).
+        polygons: Point ids, shape (faces, corners), with -1 last in faces with fewer: (faces, 4)
+            for
+            a surface, up to (faces, 6) for a cut through it.
         point_data: By name.
         cell_data: By name.
-        group_names: By the numbers of the field "group"; empty where the file does not tell.
+        group_names: Names by number of the field "group"; empty if the file lacks them.
         bolts: Ends of the bars of bolts, shape (bars, 2, 3) [m].
         bolt_forces: Axial force of each bar, tension positive [N].
     """
@@ -91,18 +93,18 @@ class Surface:
 
     @property
     def faces(self) -> NDArray[np.int64]:
-        """Point ids with the number of vertices before each face, as pyvista wants it."""
+        """Point ids with the number of vertices before each face, in the format of pyvista."""
         corners = (self.polygons >= 0).sum(axis=1)
         faces = np.column_stack([corners, self.polygons])
         return faces[faces >= 0]
 
 
 class _Frames:
-    """Frames of a series by place: the files of its folder, opened one at a time.
+    """Frames of a series by index: the files of its folder, opened one at a time.
 
     Args:
         folder: The folder.
-        numbers: Of the frames; None for all.
+        numbers: Numbers of the frames; None for all.
 
     Attributes:
         times: [s].
@@ -116,7 +118,8 @@ class _Frames:
         self._paths = [frame_path(folder, number) for number in numbers]
         if not self._paths:
             raise CdemError(
-                f"{folder}: holds no frames; was output.frames switched off, or has the run only begun?"
+                f"{folder}: contains no frames; was output.frames switched off, or has the run "
+                f"only begun?"
             )
         self.times = np.array(
             [self.read(k, ["FieldData/TimeValue"])[0][0] for k in range(len(self))]
@@ -146,11 +149,11 @@ class _Frames:
                 yield hdf5["VTKHDF"]
         except (OSError, KeyError, RuntimeError, ValueError, IndexError) as error:
             raise CdemError(
-                f"{path}: is damaged ({error}); move it away to look at the other frames"
+                f"{path}: is damaged ({error}); move it away to read the other frames"
             ) from None
 
     def _check(self, path: Path, hdf5: Any) -> None:
-        """Stop at a file that leads to another but that of the elements beside it; once for each."""
+        """Refuse a file with links to files other than the elements' file; checked once per file."""
         import h5py
 
         if path in self._checked:
@@ -166,7 +169,7 @@ class _Frames:
 
 
 class SurfaceSeries(_Frames):
-    """Frames of the surface, read one at a time; those below 0 count from the end."""
+    """Frames of the surface, read one at a time; negative numbers count from the end."""
 
     def __init__(self, folder: Path) -> None:
         bolts, surface = Path(folder) / "bolts", Path(folder) / "surface"
@@ -177,7 +180,7 @@ class SurfaceSeries(_Frames):
 
     @property
     def has_bolts(self) -> bool:
-        """Whether the case has bolts, which may not all be installed."""
+        """Whether the case has bolts; some may not be installed yet."""
         return self._bolts is not None
 
     def _bars(self, frame: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -206,13 +209,14 @@ class SurfaceSeries(_Frames):
 
 
 class FrameSeries(_Frames):
-    """Frames of the whole volume, whose elements stay the same.
+    """Frames of the whole volume, with constant elements.
 
     Attributes:
         times: [s].
-        cells: By shape, node ids (elements, nodes of the shape); fields list the shapes in this order.
-        names: Fields that every frame has, by kind: "PointData", "CellData".
-        group_names: By the numbers of the field "group".
+        cells: Node ids by shape (elements, nodes of the shape); fields list the shapes in this
+            order.
+        names: Fields in every frame, by kind: "PointData", "CellData".
+        group_names: Names by number of the field "group".
     """
 
     def __init__(self, folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Pictures of surfaces: of the frames of a result folder, or of a simulation as it is now."""
+"""Pictures of surfaces: of the frames of a result folder, or of a simulation."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ OPENGL_HINT = "no OpenGL to draw with; on Debian or Ubuntu: sudo apt-get install
 
 
 def snapshot(sim: RunState) -> Surface:
-    """The surface of a simulation as it is now."""
+    """The present surface of a simulation."""
     from cdem.run.bolt_fields import bolt_lines
     from cdem.run.fields import surface_of, values_of
 
@@ -48,7 +48,7 @@ def snapshot(sim: RunState) -> Surface:
 @cache
 def can_draw() -> bool:
     """Whether off-screen drawing works; tried in another process, because a failure aborts it."""
-    if not os.environ.get("DISPLAY"):  # without a screen VTK would try, and complain about, X first
+    if not os.environ.get("DISPLAY"):  # without a screen VTK would try X first and complain
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
     code = (
         "import pyvista as p; q = p.Plotter(off_screen=True, window_size=(16, 16));"
@@ -62,7 +62,7 @@ def load_pyvista() -> Any:
     """pyvista, ready to draw without a screen.
 
     Raises:
-        CdemError: It is not installed, or there is no OpenGL to draw with.
+        CdemError: It is not installed, or OpenGL is missing.
     """
     try:
         import pyvista
@@ -98,7 +98,7 @@ def render(
         The files: PNG pictures, and a GIF for the movie.
 
     Raises:
-        CdemError: There is no such field in the run, the plane misses it, or nothing to draw with.
+        CdemError: The run has no such field, the plane misses it, or pyvista or OpenGL is missing.
     """
     folder = Path(folder)
     pyvista = load_pyvista()
@@ -129,7 +129,7 @@ def render(
 
 
 def _has_north(folder: Path) -> bool:
-    """Whether y of a run is north: its case names a map projection."""
+    """Whether y of a run points north: its case names a map projection."""
     from cdem.case.yaml_text import parse
 
     path = folder / "case.yaml"
@@ -138,10 +138,10 @@ def _has_north(folder: Path) -> bool:
 
 
 def _frames(folder: Path, field: str, cut: str | None) -> _Carried | Cuts:
-    """The frames of a folder that are drawn, with what a field follows from.
+    """The frames of a folder to draw, with the source of a field.
 
     Raises:
-        CdemError: They do not have it.
+        CdemError: They lack the field.
     """
     surfaces, volumes = SurfaceSeries(folder), FrameSeries(folder)
     of_volume = {name for names in volumes.names.values() for name in names}
@@ -151,15 +151,17 @@ def _frames(folder: Path, field: str, cut: str | None) -> _Carried | Cuts:
         known = known | {AXIAL_FORCE.of}
     there = [name for name, shown in SHOWN.items() if shown.of in known]
     if field not in there:
-        what = "no field" if field not in SHOWN else "a slice has no" if cut else "the run has no"
-        raise CdemError(f"{what} {field!r} to draw; choose one of: {', '.join(there)}")
+        missing = (
+            "no field" if field not in SHOWN else "a slice has no" if cut else ("the run has no")
+        )
+        raise CdemError(f"{missing} {field!r} to draw; choose one of: {', '.join(there)}")
     if cut:
         return Cuts(volumes, Plane.parse(cut))
     return _Carried(surfaces, volumes, SHOWN[field].of)
 
 
 class _Carried:
-    """Surfaces of a run, on whose faces lies a field of their elements."""
+    """Surfaces of a run, with a field of the elements on their faces."""
 
     def __init__(self, surfaces: SurfaceSeries, volumes: FrameSeries, field: str) -> None:
         self.surfaces, self.volumes, self.field = surfaces, volumes, field
@@ -173,7 +175,8 @@ class _Carried:
         if self.field not in known:
             if "element" not in surface.cell_data:
                 raise CdemError(
-                    f"{self.surfaces.folder}: is of an older cdem, whose surface does not tell its "
+                    f"{self.surfaces.folder}: comes from an older cdem, whose surface lacks the "
+                    f"numbers of "
                     f"elements: cannot draw {self.field}; run the case again, or use --slice"
                 )
             rows = self.volumes.field("CellData", self.field, frame)
@@ -184,18 +187,18 @@ class _Carried:
 def picture(
     surfaces: Sequence[Surface], field: str = "displacement", titles: Sequence[str] = ()
 ) -> NDArray[np.uint8]:
-    """Surfaces of one model side by side, in the same view and colours.
+    """Surfaces of one model side by side, with the same view and colours.
 
     Args:
         surfaces: Frames of one run, or the same frame of several.
-        field: What to colour by.
-        titles: What to call them; their times if there are none.
+        field: Field that colours them.
+        titles: Titles; by default their times.
 
     Returns:
         The picture, shape (height, width, 3).
 
     Raises:
-        CdemError: The field was not recorded, or there is nothing to draw with.
+        CdemError: The field was not recorded, or pyvista or OpenGL is missing.
     """
     scene = Painter(load_pyvista(), surfaces, field)
     titles = titles or [""] * len(surfaces)
@@ -203,7 +206,7 @@ def picture(
 
 
 def write_image(path: Path, image: NDArray) -> None:
-    """Write a picture, shape (height, width, 3), as the file's name says."""
+    """Write a picture, shape (height, width, 3); the file's name gives the format."""
     from PIL import Image
 
     Image.fromarray(image).save(path)
@@ -216,7 +219,7 @@ def _write_movie(path: Path, scene: Painter, frames: Frames) -> Path:
     some = pictures[:: max(1, len(pictures) // 8)]
     palette = Image.fromarray(np.concatenate(some)).quantize(
         256
-    )  # of all, so that nothing flickers
+    )  # one palette for all frames avoids flicker
     images = [Image.fromarray(picture).quantize(palette=palette) for picture in pictures]
     images[0].save(path, save_all=True, append_images=images[1:], duration=100, loop=0)
     return path

@@ -1,4 +1,4 @@
-"""What a run did, as text and as a page, from its folder alone."""
+"""Summary of a run as text and as a page, from its folder alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cdem.run.energy_terms import ENERGY_TERMS
 from cdem.whole_files import write_text
 
 BUDGET = 10_000_000
-"""Size of report.html at most [bytes]."""
+"""Largest size of report.html [bytes]."""
 
 
 def info(folder: Path) -> str:
@@ -52,13 +52,14 @@ def info(folder: Path) -> str:
         )
     for name, count in s.get("yielded", {}).items():
         lines.append(
-            f"  yielded: {count['ever']:,} elements of group {name}, {count['now']:,} of them flow now"
+            f"  yielded: {count['ever']:,} elements of group {name}, {count['now']:,} of them "
+            f"yield now"
         )
     for name, lost in s.get("taken_out", {}).items():
         share = lost["mass"] / s["groups"][name]["mass"]
-        what = "dug out" if lost.get("dug_out") else "left the domain"
+        fate = "removed" if lost.get("dug_out") else "left the domain"
         lines.append(
-            f"  {what}: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
+            f"  {fate}: {lost['blocks']:,} blocks of group {name}, {lost['mass']:.5g} kg "
             f"({100 * share:.3g} % of its mass)"
         )
     warnings = [
@@ -76,7 +77,7 @@ def report(folder: Path, path: Path | None = None, *, budget: int = BUDGET) -> P
     Args:
         folder: Result folder.
         path: The file; None for report.html in the folder.
-        budget: Bytes that it should take at most; frames and digits are left out until it does.
+        budget: Largest size [bytes]; digits and frames are dropped to meet it.
 
     Raises:
         DiskError: It cannot be written.

@@ -17,26 +17,26 @@ from cdem.output.report import info
 from cdem.output.web_page import RunPage
 
 NOTEBOOK = 3_000_000
-"""Size at most of the page that a notebook keeps [bytes]."""
+"""Largest size of the page inside a notebook [bytes]."""
 
 
 def open_results(folder: str | Path) -> Results:
-    """Open the result folder of a run, which may be going on.
+    """Open the result folder of a run, which may be in progress.
 
     Args:
-        folder: What `cdem run -o` or `Simulation(output=...)` wrote to.
+        folder: The folder written by `cdem run -o` or `Simulation(output=...)`.
 
     Raises:
-        CdemError: It is no result folder.
+        CdemError: It is not a result folder.
     """
     return Results(Path(folder))
 
 
 class Results:
-    """What a run has left in its folder; files are read when they are asked for.
+    """Results of a run in its folder; files are read on demand.
 
-    Frames are numbered from 0; those below 0 count from the end. In a notebook it shows
-    the page of the run.
+    Frames are numbered from 0; negative numbers count from the end. A notebook shows it as the
+    page of the run.
 
     Attributes:
         folder: The result folder.
@@ -65,7 +65,7 @@ class Results:
         """Content of summary.json.
 
         Raises:
-            CdemError: The run has not come to an end.
+            CdemError: The run has not ended.
         """
         return read_summary(self.folder)
 
@@ -100,7 +100,7 @@ class Results:
         return FrameSeries(self.folder)
 
     def surface(self, frame: int = -1) -> Any:
-        """The outer and broken faces of a frame, a PolyData of pyvista with the fields that it carries.
+        """The outer and broken faces of a frame, a PolyData of pyvista with fields.
 
         Raises:
             CdemError: pyvista is not installed, or there is no such frame.
@@ -122,7 +122,7 @@ class Results:
             raise CdemError(f"{self.folder}: no frame {frame}; there are {len(self)}")
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the page of the run, and its summary where pages are not shown."""
+        """Display in a notebook: the page of the run, or its summary if pages are not shown."""
         try:
             text = info(self.folder)
         except CdemError as error:

@@ -1,7 +1,7 @@
-"""Run-out of a finished run: how far, how thick, how fast through sections, in how many pieces.
+"""Run-out of a run: reach, thickness, speed through sections, number of pieces.
 
-The definitions, with their sources, are in docs/runout.md. All follow from the frames of the result
-folder; lengths are horizontal, along one direction, from the crown.
+docs/runout.md has the definitions with their sources. All values follow from the frames of the
+result folder; lengths are horizontal, along one direction, from the crown.
 """
 
 from __future__ import annotations
@@ -44,17 +44,18 @@ def measure(
 
     Args:
         folder: Result folder of `cdem run`.
-        groups: Moving groups; by default those that moved a tenth as far as the farthest, or more,
-            since displacements were last reset.
-        direction: Of motion, clockwise from y (north) [deg]; by default that in which the
-            centre of mass moved in plan.
+        groups: Moving groups; by default groups with at least a tenth of the largest mean
+            displacement since the last reset.
+        direction: Direction of motion, clockwise from y (north) [deg]; by default the direction in
+            which the centre of mass moved in plan.
         cell: Side of a cell of the thickness map [m]; by default about the size of an element.
-        sections: x0, y0, x1, y1 of lines in plan [m] through which rock is followed.
-        against: Vector file with the outline of the area that rock has met, as mapped.
-        classes: Result folder of another run whose classes the maps take.
+        sections: x0, y0, x1, y1 of lines in plan [m] for flow through sections.
+        against: Vector file with the mapped outline of the affected area.
+        classes: Result folder of another run, whose map classes are used.
 
     Raises:
-        CdemError: The folder holds no frames; groups, direction, cell or a section make no sense; or
+        CdemError: The folder contains no frames; groups, direction, cell or a section are invalid;
+            or
             the outline or the classes cannot be read.
 
     Example:
@@ -118,10 +119,10 @@ def _measure(
 
 
 def _maps_to_fill(body: Body, left: Solids, cell: float | None) -> tuple[FlowMaps, str]:
-    """Maps that the run has followed, if they are of this body and cell up to the end; or empty ones.
+    """Maps recorded by the run, if they fit this body and cell up to the end; else empty ones.
 
     Returns:
-        The maps, and why they are not those of the run.
+        The maps, and why the run's records cannot be used.
     """
     first, last = (body.series.times[body.frames[k]] for k in (0, -1))
     empty = FlowMaps(checked_cell(left, cell), first)
@@ -130,16 +131,16 @@ def _maps_to_fill(body: Body, left: Solids, cell: float | None) -> tuple[FlowMap
         return empty, "the case has no output.maps"
     flow, groups, time = found
     if cell is not None and cell != flow.cell:
-        return empty, f"the run followed cells of {flow.cell:g} m"
+        return empty, f"the run recorded cells of {flow.cell:g} m"
     if set(groups) != set(body.groups):
-        return empty, f"the run followed {', '.join(groups)}"
+        return empty, f"the run recorded {', '.join(groups)}"
     if time < last:
-        return empty, f"the run followed them up to t = {time:.6g} s"
+        return empty, f"the run recorded them up to t = {time:.6g} s"
     return flow, ""
 
 
 def _azimuth(body: Body, end: Solids, direction: float | None) -> float:
-    """The direction of motion [deg]: that which is given, else that of the centre of mass."""
+    """The given direction of motion, or the direction of the centre of mass [deg]."""
     if direction is None:
         return direction_of(body, end)
     if not np.isfinite(direction):
@@ -148,7 +149,7 @@ def _azimuth(body: Body, end: Solids, direction: float | None) -> float:
 
 
 def _left_out(body: Body) -> set[str]:
-    """Maps that cannot be made of what was recorded."""
+    """Maps that the recorded fields do not allow."""
     names = body.series.names
     out = set() if "velocity" in names["PointData"] else set(OF_VELOCITY)
     return out if "piece" in names["CellData"] else out | OF_PIECES
@@ -161,7 +162,8 @@ def _classes_of(folder: Path) -> dict[str, list[float]]:
         return json.loads(path.read_text())["maps"]["classes"]
     except (OSError, ValueError, KeyError, TypeError):
         raise CdemError(
-            f"{path}: holds no classes of maps; --classes needs a result folder in which cdem runout "
+            f"{path}: contains no classes of maps; --classes needs a result folder in which cdem "
+            f"runout "
             "has written"
         ) from None
 

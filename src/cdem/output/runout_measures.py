@@ -1,4 +1,4 @@
-"""What is measured on the moving elements of a run, frame by frame and at the end."""
+"""Measurements on the moving elements of a run, frame by frame and at the end."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cdem.run.rest import SLOW_SPEED
 Floats = NDArray[np.float64]
 
 SAME = 1e-9
-"""Heights and lengths that differ by less than this part of the body's size are the same."""
+"""Heights and lengths count as equal within this fraction of the body's size."""
 
 
 HISTORY = {
@@ -34,12 +34,12 @@ HISTORY = {
 
 @dataclass
 class EndMotion:
-    """How the rock moves at the end: as recorded, but no faster than its mean since the frame before.
+    """Motion of the rock at the end: as recorded, but at most its mean since the previous frame.
 
     Attributes:
-        fastest: Speed of the fastest element that moves [m/s].
-        mean: Of the mass [m/s].
-        share: Part of the mass that moves: that is faster than `SLOW_SPEED`.
+        fastest: Speed of the fastest moving element [m/s].
+        mean: Mean speed of the mass [m/s].
+        share: Fraction of the mass faster than `SLOW_SPEED`.
     """
 
     fastest: float
@@ -48,13 +48,13 @@ class EndMotion:
 
     @classmethod
     def of(cls, body: Body, end: Solids, stays: NDArray[np.bool_]) -> EndMotion:
-        """Of the elements that stay."""
+        """Motion of the remaining elements."""
         last, before = body.frames[-1], body.frames[-2]
         passed = body.series.times[last] - body.series.times[before]
         way = np.linalg.norm(end.centroids() - body.solids(before).centroids(), axis=1) / passed
         recorded = np.linalg.norm(body.velocities(last), axis=1)
         speed = np.where(np.isnan(recorded), way, recorded)
-        lasting, mass = np.minimum(speed, way), body.mass[stays]  # else an element only vibrates
+        lasting, mass = np.minimum(speed, way), body.mass[stays]  # else an element may only vibrate
         moves = stays & (lasting >= SLOW_SPEED)
         return cls(
             float(speed[moves].max(initial=0.0)),
@@ -76,10 +76,10 @@ def follow(
     Args:
         body: The moving elements.
         way: Unit vector along the motion.
-        origin: Where distances along it count from [m].
-        lines: Sections through which rock is followed; they see every frame.
-        flow: Maps that frames are taken into.
-        seen: Those frames.
+        origin: Origin of distances along it [m].
+        lines: Sections that record the rock of every frame.
+        flow: Maps that add frames.
+        seen: Frames for the maps.
     """
     rows, before = [], body.start.centroids()
     for frame in body.frames:
@@ -117,17 +117,17 @@ def follow(
 
 
 def _row(now: Moment, volume: Floats, centroid: Floats, way: Floats, origin: float) -> list[float]:
-    """The columns `HISTORY` of a moment up to the kinetic energy.
+    """The columns `HISTORY` of a moment, up to the kinetic energy.
 
     Args:
-        now: The elements that stay.
-        volume: Of each [m3].
-        centroid: Of each [m], shape (elements, 3).
+        now: The remaining elements.
+        volume: Volume of each [m3].
+        centroid: Centroid of each [m], shape (elements, 3).
         way: Unit vector along the motion.
-        origin: Where distances along it count from [m].
+        origin: Origin of distances along it [m].
     """
     solids, mass = now.solids, now.mass
-    density = mass / volume  # the mass stays while the volume changes
+    density = mass / volume  # mass is constant, volume is not
     centre = mass @ centroid / mass.sum()
     speed = np.linalg.norm(now.velocity, axis=1)
     return [
@@ -148,14 +148,12 @@ def direction_of(body: Body, end: Solids) -> float:
     moved = body.mass @ (end.centroids() - body.start.centroids()) / body.mass.sum()
     size = np.ptp(body.start.middle, axis=0).max()
     if np.linalg.norm(moved[:2]) <= STILL * size:
-        raise CdemError(
-            "the centre of mass has not moved in plan, so give a direction (an azimuth)"
-        )
+        raise CdemError("the centre of mass has not moved in plan; give a direction (an azimuth)")
     return float(np.degrees(np.arctan2(moved[0], moved[1])))
 
 
 def crown_of(points: Floats, way: Floats) -> Floats:
-    """Highest point; of several, the one that is farthest back."""
+    """Highest point; of several, the rearmost."""
     near = SAME * np.ptp(points, axis=0).max()
     top = points[points[:, 2] >= points[:, 2].max() - near]
     return top[(top @ way).argmin()]
@@ -164,7 +162,7 @@ def crown_of(points: Floats, way: Floats) -> Floats:
 def front_of(body: Body, frame: int, way: Floats) -> Floats:
     """Farthest point, at the height of the lowest corner of its element.
 
-    A front may be upright, so that top and bottom are equally far; it is the foot that counts.
+    The top and the foot of an upright front are equally far; the foot counts.
     """
     points, stays = body.series.points(frame), body.stays(frame)
     best, foot, first = -np.inf, 0.0, 0

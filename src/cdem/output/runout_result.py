@@ -1,4 +1,4 @@
-"""The result of a run-out: its numbers, the page of text, files and pictures."""
+"""The result of a run-out: numbers, page of text, files and pictures."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from cdem.whole_files import write_json
 Floats = NDArray[np.float64]
 
 REST_MEAN = 0.05
-"""A deposit is slower than this on average [m/s] ..."""
+"""A deposit has a mean speed below this [m/s] ..."""
 REST_SHARE = 0.01
-"""... and less than this part of its mass is faster than `SLOW_SPEED`."""
+"""... and less than this fraction of its mass is faster than `SLOW_SPEED`."""
 
 
 @dataclass
@@ -39,20 +39,20 @@ class RunOut:
 
     Attributes:
         groups: The moving groups.
-        direction: Of motion, clockwise from y (north) [deg].
+        direction: Direction of motion, clockwise from y (north) [deg].
         crown: Highest point of the moving rock at the start [m].
-        front: Farthest point at the end; its height is the lowest of the element it belongs to [m].
+        front: Farthest point at the end, at the height of its element's lowest corner [m].
         history: Columns `HISTORY`, one value for each frame.
         fragments: Columns `FRAGMENT` at the end, largest first; empty if pieces were not recorded.
         sections: Histories through sections.
         deposit: Map of the thickness at the end.
         source: The same map of the start.
-        taken_out: Volume at the start of what has left the domain of the case by the end [m3].
-        end: How the rock moves at the end.
+        taken_out: Initial volume of the elements that have left the domain by the end [m3].
+        end: Motion of the rock at the end.
         maps: Largest values and arrival at each place, and their styles.
-        view: What pictures of the maps show round them.
-        grain_sizes: Of the pieces at the end, or None if pieces were not recorded.
-        fit: Against a mapped outline, or None.
+        view: Background of pictures of the maps.
+        grain_sizes: Grain sizes of the pieces at the end, or None if pieces were not recorded.
+        fit: Comparison with a mapped outline, or None.
         crs: Projection of the case, or None.
     """
 
@@ -75,27 +75,27 @@ class RunOut:
 
     @property
     def speed_end(self) -> float:
-        """Speed of the fastest element that moves at the end [m/s]; 0 if none does."""
+        """Speed of the fastest moving element at the end [m/s]; 0 at rest."""
         return self.end.fastest
 
     @property
     def moving_share(self) -> float:
-        """Part of the mass that moves at the end: that is faster than `SLOW_SPEED`."""
+        """Fraction of the mass faster than `SLOW_SPEED` at the end."""
         return self.end.share
 
     @property
     def rests(self) -> bool:
-        """Whether the rock has come to rest, so that its map is one of a deposit."""
+        """Whether the rock has come to rest, so that its map shows a deposit."""
         return self.end.mean < REST_MEAN and self.end.share < REST_SHARE
 
     @property
     def noun(self) -> str:
-        """What the rock at the end is called: a deposit only if it rests."""
+        """Name of the rock at the end: a deposit only if it rests."""
         return "deposit" if self.rests else f"body at t = {self.history['time'][-1]:.6g} s"
 
     @property
     def motion(self) -> str:
-        """How fast the rock still moves, or nothing."""
+        """Speed of rock in motion, or nothing."""
         if self.rests:
             return ""
         return (
@@ -120,7 +120,7 @@ class RunOut:
 
     @property
     def centre_travel(self) -> float:
-        """Horizontal way of the centre of mass along the direction [m]."""
+        """Horizontal displacement of the centre of mass along the direction [m]."""
         return float(self.history["centre"][-1] - self.history["centre"][0])
 
     @property
@@ -141,7 +141,7 @@ class RunOut:
         return _ratio(float(line[0] - line[-1]), self.path)
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything but the maps and the pieces, ready for JSON."""
+        """All results except maps and pieces, ready for JSON."""
         h, d = self.history, self.deposit
         volume = self.fragments.get("volume", np.zeros(0))
         return {
@@ -236,7 +236,7 @@ class RunOut:
                 f"  pieces: {h['pieces'][-1]:,.0f}, the largest {100 * h['largest'][-1]:.3g} % of "
                 f"the volume; half of it in pieces below "
                 f"{_median(self.fragments['volume']):.4g} m3; "
-                f"{100 * h['attached'][-1]:.3g} % hangs on other groups"
+                f"{100 * h['attached'][-1]:.3g} % is attached to other groups"
             )
         else:
             lines.append("  pieces: not recorded; add piece to output.fields")
@@ -258,7 +258,7 @@ class RunOut:
         return "\n".join(lines) + "\n"
 
     def _text_of_maps(self) -> list[str]:
-        """What the page says of energy line, maps and outline."""
+        """Lines on energy line, maps and outline."""
         lines = []
         if np.isfinite(self.energy_slope):
             lines.append(
@@ -267,7 +267,7 @@ class RunOut:
             )
         maps = self.maps
         lines.append(
-            f"  maps: rock met {maps.flow.affected.sum() * maps.flow.cell**2:.6g} m2 (at least "
+            f"  maps: rock reached {maps.flow.affected.sum() * maps.flow.cell**2:.6g} m2 (at least "
             f"{maps.flow.met:g} m thick), "
             f"{_how(maps)}; an element passed up "
             f"to {maps.flow.jump:.2g} cells between two looks"
@@ -276,7 +276,9 @@ class RunOut:
         if self.crs is None:
             lines.append("  maps carry no projection: the case has none (crs: EPSG:...)")
         elif epsg_of(self.crs) is None:
-            lines.append("  rasters carry no projection: that of the case has no EPSG code")
+            lines.append(
+                "  rasters carry no projection: the projection of the case has no EPSG code"
+            )
         return lines + ([] if self.fit is None else [self.fit.text()])
 
     # ------------------------------------------------------------------ files
@@ -311,7 +313,7 @@ class RunOut:
 
     @property
     def _tags(self) -> dict[str, str]:
-        """What every raster says of itself."""
+        """Metadata of every raster."""
         return {
             "cdem_what": self.noun,
             "cdem_at_rest": str(self.rests),
@@ -406,7 +408,7 @@ def _place(point: Floats) -> str:
 
 
 def _how(maps: Maps) -> str:
-    return f"from frames ({maps.from_frames})" if maps.from_frames else "followed during the run"
+    return f"from frames ({maps.from_frames})" if maps.from_frames else "recorded during the run"
 
 
 def _ratio(drop: float, reach: float) -> float:
@@ -422,7 +424,7 @@ def _row(what: str, reach: float, drop: float | None = None) -> str:
 
 
 def _median(volume: Floats) -> float:
-    """Volume of the piece below which half of the whole volume lies; volumes fall."""
+    """Volume of the piece below which half of the whole volume lies; volumes are in decreasing order."""
     if len(volume) == 0:
         return np.nan
     return float(volume[np.searchsorted(np.cumsum(volume), 0.5 * volume.sum())])

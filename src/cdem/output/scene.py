@@ -1,4 +1,4 @@
-"""How pictures look: the view that frames a model, light and edges, the strip with legend and scale."""
+"""Layout of pictures: the view of a model, light and edges, the strip with legend and scale."""
 
 from __future__ import annotations
 
@@ -13,51 +13,51 @@ Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 SIZE = (1100, 760)
-"""Width and height of a view, without the strip below it [pixels]."""
+"""Width and height of a view, without the strip below [pixels]."""
 LOWEST = 300
-"""A view is at least so high [pixels]."""
+"""Least height of a view [pixels]."""
 SMOOTH = True
-"""Every pixel is the mean of many, which is most of the time of a picture."""
+"""Every pixel is the mean of many; this takes most of the time of a picture."""
 MARGIN = 1.06
-"""The view is so much wider or higher than what it frames."""
+"""Margin of a view, relative to the framed size."""
 NEUTRAL = "#e2dccf"
-"""Rock where an amount is next to nothing."""
+"""Colour of rock with an amount near zero."""
 NOTHING = 0.004
-"""So much of the range is next to nothing."""
+"""Fraction of the range that counts as near zero."""
 BLEND = 0.08
-"""From there to this much of the range, the colour of rock goes over into those of the map."""
+"""Between it and this fraction of the range, the colour of rock blends into the colour map."""
 PALE = "#efece6"
-"""Rock round bolts that are coloured."""
+"""Colour of rock around coloured bolts."""
 REACH, BIAS = 0.03, 0.1
-"""Corners and gaps of a still are darkened within this radius, in heights of the picture; what is
-nearer than this part of it does not count."""
+"""Radius within which corners and gaps of a still are darkened, in heights of the picture, and the
+fraction of it that is ignored."""
 SHARP = 25.0
-"""Edges between faces that meet at a larger angle are drawn [deg]."""
+"""Edges between faces at a larger angle are drawn [deg]."""
 LIFT = 1e-3
-"""Edges are drawn so far before their faces, in heights of the picture."""
+"""Distance of drawn edges in front of their faces, in heights of the picture."""
 MOST_LINES = 20_000
-"""Faces of a mesh whose lines are drawn, at most."""
+"""Most faces of a mesh whose lines are drawn."""
 MATTE = {"ambient": 0.45, "diffuse": 0.65, "specular": 0.0}
-"""How surfaces take light: so little shading that colours stay those of the legend."""
+"""Response of surfaces to light: little shading, so that colours match the legend."""
 TITLE = 44
 """Height of the row of a title [pixels]."""
 ROW = 28
 """Height of a row of the strip [pixels]."""
 END = 24
-"""Room at the ends of a colour bar [pixels]."""
+"""Margin at the ends of a colour bar [pixels]."""
 ARROW = 30
-"""Length of an axis in the strip, where it lies in the picture [pixels]."""
+"""Length of an axis in the strip, for an axis in the plane of the picture [pixels]."""
 PREFIXES = {-3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
 @dataclass(frozen=True)
 class View:
-    """A parallel view along a direction that frames points.
+    """A parallel view along a direction, with given points in the picture.
 
     Attributes:
-        focus: In the middle of the picture [m].
+        focus: Middle of the picture [m].
         back: Unit vector from there to the camera.
-        height: Of the picture [m].
+        height: Height of the picture [m].
         far: Distance of the camera [m].
         size: Width and height of the picture [pixels].
     """
@@ -80,12 +80,12 @@ class View:
 
     @property
     def metres(self) -> float:
-        """That a pixel stands for [m]."""
+        """Size of a pixel [m]."""
         return self.height / self.size[1]
 
     @classmethod
     def fitting(cls, points: Floats, back: Floats) -> View:
-        """The same as wide as `SIZE`, and at most as high: a low one shows what is low."""
+        """The same view at the width of `SIZE` and at most its height: low models give low pictures."""
         view = cls.framing(points, back)
         places = points @ view.right, points @ view.up
         width, height = (max(float(np.ptp(place)), 1e-9) for place in places)
@@ -94,7 +94,7 @@ class View:
 
     @classmethod
     def framing(cls, points: Floats, back: Floats, size: tuple[int, int] = SIZE) -> View:
-        """The view of a picture of this size [pixels] that shows all points, shape (points, 3)."""
+        """The view with a picture of this size [pixels] and all points, shape (points, 3)."""
         back = back / np.linalg.norm(back)
         right = _right(back)
         up = np.cross(back, right)
@@ -116,7 +116,7 @@ class View:
 
 
 def _right(back: Floats) -> Floats:
-    """What is right for one who looks against this unit vector: along x for a plan."""
+    """Unit vector to the right for a viewer against this vector: x for a plan."""
     right = np.cross([0.0, 0.0, 1.0], back)
     length = np.linalg.norm(right)
     return np.array([1.0, 0.0, 0.0]) if length < 1e-6 else right / length
@@ -133,7 +133,7 @@ def new_plotter(pyvista: Any, size: tuple[int, int] = SIZE) -> Any:
 
 
 def add_rock(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
-    """Draw faces of rock in the colours of `look`, its sharp edges, and thin lines of its mesh."""
+    """Draw faces of rock with the colours of `look`, its sharp edges, and thin lines of its mesh."""
     lines = {}
     if mesh.n_cells < MOST_LINES:
         lines = {
@@ -147,7 +147,7 @@ def add_rock(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
 
 
 def add_ground(plotter: Any, mesh: Any, view: View, **look: Any) -> None:
-    """Draw faces of rock that stays, smooth between its sharp edges, without the lines of its mesh."""
+    """Draw faces of static rock, smooth between its sharp edges, without the lines of its mesh."""
     whole = mesh.clean(tolerance=1e-6 * view.height, absolute=True)
     smooth = whole.compute_normals(
         cell_normals=False, split_vertices=True, feature_angle=SHARP, consistent_normals=False
@@ -161,17 +161,17 @@ def _add_edges(plotter: Any, mesh: Any, view: View) -> None:
         feature_angle=SHARP, boundary_edges=True, manifold_edges=False, non_manifold_edges=False
     )
     if edges.n_cells:
-        edges.points += LIFT * view.height * view.back  # not half in the faces
+        edges.points += LIFT * view.height * view.back  # keeps them out of the faces
         plotter.add_mesh(edges, color="#222222", line_width=1.3, lighting=False)
 
 
 def take(plotter: Any, view: View, *, occlusion: bool = False) -> Image:
-    """The picture of a plotter, which is closed, shape (height, width, 3).
+    """The picture of a plotter, which is then closed, shape (height, width, 3).
 
     Args:
-        plotter: What to draw.
-        view: Where from.
-        occlusion: Whether corners and gaps are darkened, which takes a second or more.
+        plotter: The plotter.
+        view: The view.
+        occlusion: Whether to darken corners and gaps, which takes a second or more.
     """
     view.aim(plotter)
     if occlusion:
@@ -185,15 +185,15 @@ def take(plotter: Any, view: View, *, occlusion: bool = False) -> Image:
 
 
 def color(index: int) -> str:
-    """One of twelve colours that are easy to tell apart, also without red or green (Tol), again and
-    again."""
+    """One of twelve colours that are easy to tell apart, also without red or green (Tol); they
+    repeat."""
     colors = ("4477aa", "ee6677", "228833", "ccbb44", "66ccee", "aa3377", "bbbbbb", "332288",
               "ddcc77", "44aa99", "882255", "999933")  # fmt: skip
     return "#" + colors[index % len(colors)]
 
 
 def color_map(name: str) -> Any:
-    """A colour map of amounts, in which next to nothing is neutral and little is nearly so."""
+    """A colour map of amounts, neutral near zero and pale for small values."""
     import matplotlib
     from matplotlib.colors import ListedColormap, to_rgba
 
@@ -226,11 +226,11 @@ def bar(name: str, unit: str, colors: Any, span: tuple[float, float], width: int
     """A colour bar, shape (3 ROW, width, 3).
 
     Args:
-        name: Of what is coloured.
-        unit: Of its values; a prefix is put before it where that makes them shorter.
+        name: Name of the coloured field.
+        unit: Unit of its values; a prefix is added if that makes them shorter.
         colors: Colour map of matplotlib.
         span: Values at its two ends.
-        width: Of the picture [pixels].
+        width: Width of the picture [pixels].
     """
     from matplotlib.ticker import MaxNLocator
     from PIL import Image as Pictures
@@ -258,13 +258,13 @@ def bar(name: str, unit: str, colors: Any, span: tuple[float, float], width: int
 
 
 def foot(legend: Image, view: View, width: int, *, north: bool) -> Image:
-    """What stands below a picture: a scale and directions at the left, a legend in the right half.
+    """The strip below a picture: scale and directions on the left, a legend in the right half.
 
     Args:
-        legend: At most half as wide.
-        view: Of the picture.
-        width: Of the picture [pixels].
-        north: Whether y is north: there is an arrow to it, else the three axes.
+        legend: At most half as wide as the picture.
+        view: View of the picture.
+        width: Width of the picture [pixels].
+        north: Whether y is north: then a north arrow is drawn, else the three axes.
     """
     from PIL import Image as Pictures
     from PIL import ImageDraw
@@ -272,14 +272,14 @@ def foot(legend: Image, view: View, width: int, *, north: bool) -> Image:
     picture = Pictures.new("RGB", (width, max(len(legend), 3 * ROW)), "white")
     picture.paste(Pictures.fromarray(legend), (width // 2, 0))
     draw = ImageDraw.Draw(picture)
-    single = min(width, SIZE[0])  # of several side by side, the first
+    single = min(width, SIZE[0])  # the first of several side by side
     _draw_scale(draw, view.metres, single)
     _draw_directions(draw, view, (0.36 * single, 1.7 * ROW), north=north)
     return np.asarray(picture)
 
 
 def _draw_scale(draw: Any, metres: float, width: int) -> None:
-    """A scale bar at the left of a strip, of a round length up to a fifth of the picture."""
+    """A scale bar on the left of a strip, of a round length up to a fifth of the picture."""
     most = 0.2 * width * metres
     base = 10.0 ** np.floor(np.log10(most))
     length = base * max(step for step in (1, 2, 5) if step * base <= most)
@@ -293,12 +293,12 @@ def _draw_scale(draw: Any, metres: float, width: int) -> None:
 
 
 def _draw_directions(draw: Any, view: View, place: tuple[float, float], *, north: bool) -> None:
-    """An arrow to the north, or arrows along the axes, as they lie in the picture."""
+    """A north arrow, or arrows along the axes, in the directions of the picture."""
     arrows = [("N", np.array([0.0, 1.0, 0.0]))] if north else zip("xyz", np.eye(3), strict=True)
     for name, way in arrows:
         flat = np.array([way @ view.right, -(way @ view.up)])
         length = float(np.linalg.norm(flat))
-        if length < 0.15:  # towards the reader
+        if length < 0.15:  # towards the viewer
             continue
         ahead = flat / length
         side = np.array([-ahead[1], ahead[0]])

@@ -18,15 +18,15 @@ from cdem.output.figures import pyplot
 Floats = NDArray[np.float64]
 
 LEVELS = (2.0, 4.0, 8.0, 16.0, 32.0)
-"""Contours of density, as multiples of that of joints without any order."""
+"""Contours of density, as multiples of a uniform density."""
 CELLS = 301
 MOST_POINTS = 5000
-"""Of more points, evenly chosen ones are drawn."""
+"""Most points to draw; of more, evenly chosen ones are drawn."""
 ZONE = "#d62728"
 
 
 def project(vectors: Floats) -> tuple[Floats, Floats]:
-    """Places of lines on the net, in a circle of radius 1; north is up.
+    """Positions of lines on the net, in a circle of radius 1; north is up.
 
     Lambert's equal-area projection of the lower hemisphere: a line of plunge p lies
     sqrt(2) sin((90 deg - p) / 2) from the centre.
@@ -42,7 +42,7 @@ def project(vectors: Floats) -> tuple[Floats, Floats]:
 def net() -> tuple[Floats, Floats]:
     """Coordinates along both axes [1], and the downward unit vector at each point of that grid.
 
-    Outside of the net the vectors are nan; shape (cells, cells, 3).
+    Outside the net the vectors are nan; shape (cells, cells, 3).
     """
     axis = np.linspace(-1, 1, CELLS)
     x, y = np.meshgrid(axis, axis)
@@ -55,13 +55,13 @@ def net() -> tuple[Floats, Floats]:
 
 
 def density(vectors: Floats, axes: Floats) -> Floats:
-    """Density of axes, as a multiple of the uniform one.
+    """Density of axes, as a multiple of the uniform density.
 
     The kernel is Fisher's distribution with kappa = 2 (1 + N / 9), at most 400: exponential Kamb
     contours (Vollmer 1995).
 
     Args:
-        vectors: Where, unit vectors, shape (places, 3).
+        vectors: Directions to evaluate, unit vectors, shape (places, 3).
         axes: Unit vectors, shape (axes, 3).
     """
     kappa = np.array(min(2 * (1 + len(axes) / 9), 400.0))
@@ -72,7 +72,7 @@ def density(vectors: Floats, axes: Floats) -> Floats:
 
 
 def draw(survey: Survey, path: Path) -> Path:
-    """Draw the joints and, if there is a slope, what may slide or topple on it; returns the path.
+    """Draw the joints and, for a slope, its failure zones; returns the path.
 
     Raises:
         CdemError: matplotlib is not installed.
@@ -117,7 +117,7 @@ def _great_circle(axes: Any, dip: float, direction: float, **style: Any) -> None
 
 
 def _some(items: Floats) -> Floats:
-    """At most `MOST_POINTS` of them, evenly chosen."""
+    """At most `MOST_POINTS` rows, evenly chosen."""
     if len(items) <= MOST_POINTS:
         return items
     return items[np.linspace(0, len(items) - 1, MOST_POINTS).astype(int)]
@@ -152,7 +152,7 @@ def _draw_sets(survey: Survey, axes: Any) -> None:
     axes.text(
         -1.12,
         1.08,
-        f"density: {', '.join(f'{v:g}' for v in LEVELS)}\ntimes the uniform one",
+        f"density: {', '.join(f'{v:g}' for v in LEVELS)}\ntimes the uniform density",
         fontsize=7,
         va="top",
     )
@@ -197,7 +197,7 @@ def _lines(vectors: Floats) -> tuple[Floats, Floats]:
 
 
 def _zone(axes: Any, test: Callable[[Floats], NDArray[np.bool_]]) -> None:
-    """Shade where a test holds for a downward vector."""
+    """Shade the zone where a test holds for a downward vector."""
     axis, vectors = net()
     inside = np.isfinite(vectors[..., 0])
     held = np.zeros(inside.shape)

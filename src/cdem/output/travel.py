@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 STEP = 0.01
-"""Points of a path nearer to one another than this part of its length say nothing of its course."""
+"""Points of a path within this fraction of its length are too close to give its direction."""
 
 
 def lengths(places: Floats) -> Floats:
-    """Length in plan of a path up to each of its points [m].
+    """Length in plan along a path, at each of its points [m].
 
     Args:
         places: x, y (and more) of its points [m], shape (points, 2 or more).
@@ -22,7 +22,7 @@ def lengths(places: Floats) -> Floats:
 
 
 class Path:
-    """The way of the centre of mass in plan, going on straight at both ends.
+    """The path of the centre of mass in plan, extended straight at both ends.
 
     Args:
         places: Its points [m], shape (points, 2 or more).
@@ -35,9 +35,9 @@ class Path:
         self.moves = len(self.points) > 1 and length[-1] > 0
 
     def length_at(self, place: Floats) -> float:
-        """Length along the path of its point nearest to a place in plan [m]; nan if it does not move.
+        """Length along the path at its point nearest to a place in plan [m]; nan without motion.
 
-        Before its begin lengths are negative.
+        Before its start lengths are negative.
         """
         if not self.moves:
             return np.nan
@@ -55,13 +55,13 @@ class Path:
 def energy_line(height: Floats, kinetic: Floats, weight: Floats) -> Floats:
     """Height of the centre of mass and, above it, kinetic energy over weight [m].
 
-    Over the length of the path its slope is that part of the weight which resists the motion: for a
-    rigid block that slides on a plane, the tangent of the angle of friction.
+    Over the length of the path, its slope is the fraction of the weight that resists the motion:
+    for a rigid block sliding on a plane, the tangent of the friction angle.
 
     Args:
-        height: Of the centre of mass [m].
-        kinetic: Energy [J].
-        weight: [N]; where it is 0 there is no such line.
+        height: Height of the centre of mass [m].
+        kinetic: Kinetic energy [J].
+        weight: Weight [N]; 0 gives no such line.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         line = height + kinetic / weight

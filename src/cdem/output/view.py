@@ -1,7 +1,8 @@
-"""The page of a run, served to a browser on this machine; it follows a run that goes on.
+"""The page of a run, served to a browser on this machine, live while it runs.
 
-Who wants to see it needs the address: it holds a token. Other machines cannot reach it, and pages of
-other sites neither, though they may make the browser ask (the token, and the name of the host).
+A viewer needs the address, which contains a token. Other machines cannot reach it; neither can
+pages
+of other sites, although they can make the browser send requests (token and host name prevent this).
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from cdem.output.web_page import RunPage
 
 HERE = "127.0.0.1"
 MOST = 100_000_000
-"""Bytes that are sent at once at most; else digits and frames are left out."""
+"""Most bytes sent at once; else digits and frames are dropped."""
 MOST_THREADS = 32
-"""Requests that are answered at a time; a browser has six."""
+"""Requests answered at the same time; a browser sends six."""
 PATIENCE = 30.0
 """Wall time of a request from its first byte to the last of the answer [s]."""
 
@@ -35,13 +36,13 @@ class ViewServer(ThreadingHTTPServer):
 
     Args:
         folder: Result folder.
-        port: Where to listen; 0 for any that is free.
+        port: Port to listen on; 0 for any free port.
 
     Attributes:
-        address: Where the page is.
+        address: Address of the page.
 
     Raises:
-        CdemError: The port is in use, or may not be used.
+        CdemError: The port is in use, or not allowed.
     """
 
     daemon_threads = True
@@ -61,7 +62,7 @@ class ViewServer(ThreadingHTTPServer):
         self.address = f"http://{HERE}:{self.server_port}/{self.token}/"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Answer in a thread, if one is free; else close."""
+        """Answer in a thread, if one is free; else close the connection."""
         if not self._free.acquire(blocking=False):
             self.shutdown_request(request)
             return
@@ -72,7 +73,7 @@ class ViewServer(ThreadingHTTPServer):
             self.shutdown_request(request)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Answer a request; who takes longer than `PATIENCE` to ask or to take is cut off."""
+        """Answer a request; a client slower than `PATIENCE` is cut off."""
         late = threading.Timer(PATIENCE, _cut, [request])
         late.daemon = True
         late.start()
@@ -83,13 +84,13 @@ class ViewServer(ThreadingHTTPServer):
             self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing of a browser that went away."""
+        """Ignore a browser that closed the connection."""
         if not isinstance(sys.exc_info()[1], OSError | ValueError):
             super().handle_error(request, client_address)
 
 
 def _cut(request: socket.socket) -> None:
-    """End a connection, whoever waits for it."""
+    """End a connection, even while a thread waits for it."""
     with contextlib.suppress(OSError):
         request.shutdown(socket.SHUT_RDWR)
 
@@ -101,7 +102,7 @@ class _Handler(BaseHTTPRequestHandler):
     server_version, sys_version = "cdem", ""
 
     def do_GET(self) -> None:
-        """Send the page, the state of the run, or what is new."""
+        """Send the page, the state of the run, or new data."""
         try:
             url = urlsplit(self.path)
         except ValueError:
@@ -110,7 +111,7 @@ class _Handler(BaseHTTPRequestHandler):
         _, token, *rest = (*url.path.split("/"), "")[:3]
         known = hmac.compare_digest(token.encode(), self.server.token.encode())
         if not known or self.headers.get("Host") not in self.server.hosts:
-            self._send(403, "text/plain", b"wrong address: take that which cdem view has printed\n")
+            self._send(403, "text/plain", b"wrong address: use the address printed by cdem view\n")
             return
         try:
             self._answer(rest[0], parse_qs(url.query))
@@ -147,7 +148,7 @@ class _Handler(BaseHTTPRequestHandler):
                 self.send_header(name, value)
             self.end_headers()
             self.wfile.write(body)
-        except OSError:  # the browser has closed the page meanwhile, or was too slow
+        except OSError:  # the browser closed the page, or was too slow
             self.close_connection = True
 
     def log_message(self, format: str, *args: object) -> None:

@@ -1,4 +1,4 @@
-"""The page of a run: HTML, style and script in one, with the frames packed in it or served to it."""
+"""The page of a run: HTML, style and script in one file, with packed frames or a server for them."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from cdem.output.reader import FrameSeries, Surface, SurfaceSeries, read_histori
 from cdem.run.frame_files import frame_numbers
 
 SCRIPTS = ("numbers.js", "run.js", "picture.js", "maps.js", "plot.js", "page.js")
-"""In the order in which they lean on one another."""
+"""Scripts in the order of their dependence."""
 MOST_ROWS = 1000
-"""Rows of the histories that a page shows."""
+"""Most rows of the histories on a page."""
 STRESSES = ("stress", "effective_stress")
-"""Fields that give the von Mises stress, which water does not change."""
+"""Fields for the von Mises stress, which water does not change."""
 
 
 class RunPage:
-    """The page of a result folder; it goes on with the run.
+    """The page of a result folder; it grows with the run.
 
     Args:
         folder: Result folder.
@@ -49,14 +49,14 @@ class RunPage:
         self._missing = ""
 
     def run_id(self) -> str:
-        """Tells runs in the folder apart: it changes when one begins, or is resumed."""
+        """Identifies a run in the folder: it changes when a run starts or is resumed."""
         try:
             return str((self.folder / "case.yaml").stat().st_mtime_ns)
         except OSError:
             return ""
 
     def state(self) -> dict[str, Any]:
-        """What a page that follows the run looks at: how much there is now."""
+        """State of the data for a live page: the present amounts."""
         rows = 0
         try:
             with (self.folder / "histories.csv").open("rb") as file:
@@ -71,7 +71,7 @@ class RunPage:
         }
 
     def html(self, data: str = "") -> str:
-        """The page: with its data, or one that asks its server for them."""
+        """The page: with its data, or with requests to its server for them."""
         folder = resources.files("cdem.output") / "page"
         style = (folder / "page.css").read_text(encoding="utf-8")
         script = "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)
@@ -82,7 +82,7 @@ class RunPage:
         ]  # fmt: skip
         if not data:
             rules.append("connect-src 'self'")
-        # case files come from strangers: whatever they name is escaped
+        # case files may come from strangers: all their names are escaped
         template = Environment(autoescape=True, keep_trailing_newline=True).from_string(
             (folder / "page.html").read_text(encoding="utf-8")
         )
@@ -96,21 +96,21 @@ class RunPage:
         """The page with all data in it.
 
         Args:
-            budget: Bytes that it should take at most.
+            budget: Largest size of the page [bytes].
         """
         room = (budget - len(self.html("-").encode())) * 3 // 4
         data = self.pack(0, 0, room)
-        for part in (0.96, 0.9, 0.7):  # how small frames become is estimated
+        for part in (0.96, 0.9, 0.7):  # the size of frames is an estimate
             if len(data) > room:
                 data = self.pack(0, 0, int(part * room))
         return self.html(base64.b64encode(data).decode())
 
     def pack(self, frames: int, rows: int, budget: int) -> bytes:
-        """Frames and rows of the histories that somebody does not know, and all texts.
+        """Frames and rows of the histories that are new to a client, and all texts.
 
         Args:
-            frames, rows: So many are known.
-            budget: Bytes that it should take at most.
+            frames, rows: Numbers already known to the client.
+            budget: Largest size [bytes].
         """
         if self._run != self.run_id():
             self._begin()
@@ -131,7 +131,7 @@ class RunPage:
     # ------------------------------------------------------------------ reading
 
     def _look(self) -> None:
-        """Add the frames that are new."""
+        """Add the new frames."""
         known = len(self._moving.times)
         if known == len(frame_numbers(self.folder / "surface")) and known:
             return
@@ -148,7 +148,7 @@ class RunPage:
             self._missing = str(error)
 
     def _find_stress(self) -> None:
-        """Look which frames of the volume have stress, and which belong to those of the surface."""
+        """Find the frames of the volume with stress, and match them to frames of the surface."""
         try:
             self._series = FrameSeries(self.folder)
         except CdemError:
@@ -167,7 +167,7 @@ class RunPage:
         return surface, self._series.field("CellData", self._stress, place)
 
     def _put_histories(self, pack: Pack, known: int) -> list[str]:
-        """Put the rows of the histories that are new; returns what was left out."""
+        """Add the new rows of the histories; returns the reductions."""
         try:
             columns = read_histories(self.folder)
         except CdemError:
@@ -182,5 +182,5 @@ class RunPage:
 
 
 def _hash(text: str) -> str:
-    """A script or style as a policy names it."""
+    """Hash of a script or style for the content policy."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

@@ -1,4 +1,4 @@
-"""What a script does at intervals of a run: look, write, change values, end a stage."""
+"""Actions of a script at intervals of a run: look, write, change values, end a stage."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from cdem.errors import CdemError
 from cdem.run.state import RunState
 
 Act = Callable[[Any], object]
-"""Takes the simulation; True ends the running stage, anything else does not."""
+"""Takes the simulation; True ends the running stage, any other value does not."""
 
 
 @dataclass
 class Action:
-    """A function that is called at the first step at or after each multiple of an interval.
+    """A function called at the first step at or after each multiple of an interval.
 
     Attributes:
-        interval: [s] of simulated time.
+        interval: Simulated time [s].
         act: The function.
-        count: Of the multiple that comes next.
+        count: Number of the next multiple.
     """
 
     interval: float
@@ -39,11 +39,11 @@ class Action:
         return self.count * self.interval
 
     def skip_to(self, time: float) -> None:
-        """Let the next call be the first after a time [s]."""
+        """Make the first multiple after a time [s] the next call."""
         self.count = max(self.count, int(time / self.interval) + 1)
 
     def call(self, simulation: RunState) -> bool:
-        """Call the function if its time has come; whether it ends the stage."""
+        """Call the function if it is due; returns whether it ends the stage."""
         if simulation.time < self.due:
             return False
         self.count += 1

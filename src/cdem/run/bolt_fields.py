@@ -1,4 +1,4 @@
-"""Bolts as lines, for frames and pictures: where they are now, and what they bear."""
+"""Bolts as lines for frames and pictures: their present positions and forces."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from cdem.run.state import RunState
 Lines = tuple[NDArray[np.float64], NDArray[np.int32], dict[str, NDArray], dict[str, NDArray]]
 
 ACTS = (1, 2)
-"""Phases of a bolt that is installed."""
+"""Phases of an installed bolt."""
 
 
 def bolt_lines(sim: RunState) -> Lines:
-    """Places of the nodes of installed bolts [m], the bars between them, fields on both.
+    """Positions of the nodes of installed bolts [m], the bars between them, and fields on both.
 
     Fields of nodes: `slip` towards the toe [m], `grout_force` on the rock [N], `grout_state`
     (0 holds, 1 and 2 slips). Fields of bars: `axial_force`, tension positive [N], `bar_state`

@@ -1,4 +1,4 @@
-"""What differs between the case of a run and the one that it is resumed with."""
+"""Differences between the case of a run and the case with which it is resumed."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ FILES = (
 FREE = ("title", "crs", "output.every", "output.checkpoint_every", "time.energy_error")
 """Values that a resumed run may change."""
 ENDS = ("duration", "until", "tolerance", "max_steps")
-"""Values of the last stage that has begun which a resumed run may change."""
+"""Values of the last stage begun that a resumed run may change."""
 CURVES = ("loads.*.*.stage", "water.fields.*.stage", "water.reservoir.stage")
-"""From which stage curves count: to name the first says the same as to name none."""
+"""Stages where curves start: naming the first stage means the same as naming none."""
 
-Difference = tuple[str, Any, Any]  # path, value then, value now; None where there is none
+Difference = tuple[str, Any, Any]  # path, old value, new value; None for a missing value
 
 
 @dataclass
 class Changes:
-    """Differences between two cases, by whether a resumed run may have them.
+    """Differences between two cases, by whether a resumed run allows them.
 
     Attributes:
-        allowed: Those that take effect.
-        refused: Those that would make another run of it.
-        longer: Whether the last stage that has begun is to go on for longer.
+        allowed: Differences that take effect.
+        refused: Differences that would make it another run.
+        longer: Whether the last stage begun is to be prolonged.
     """
 
     allowed: list[Difference] = field(default_factory=list)
@@ -45,10 +45,10 @@ class Changes:
     longer: bool = False
 
     def check(self, case: Case, *, force: bool) -> list[str]:
-        """Say what has changed; one line for each value.
+        """Report the changes, one line for each value.
 
         Raises:
-            CaseError: Something has that may not, and it is not forced.
+            CaseError: A change is not allowed, and it is not forced.
         """
         if self.refused and not force:
             raise CaseError(
@@ -57,7 +57,7 @@ class Changes:
                     for path, then, now in self.refused
                 )
                 + "\nA resumed run may change durations, tolerances, stages that have not begun, and "
-                "output.every. Set the others back, go on as it is with --force, or run the case "
+                "output.every. Set other values back, continue with --force, or run the case "
                 "again in another folder (-o)"
             )
         lines = [f"{path} changes from {then} to {now}" for path, then, now in self.allowed]
@@ -70,9 +70,9 @@ class Changes:
 def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
     """Compare two cases by meaning: after units, defaults and inheritance.
 
-    Args:
+    then: The case at the start of the run, as given by `Case.model_dump`.
         then: The case that the run was begun with, as `Case.model_dump` gives it.
-        now: The case that it is resumed with.
+        now: The case for resuming.
         begun: Stages that have begun.
     """
     found = Changes(refused=list(_other_start(then, now)))
@@ -97,11 +97,11 @@ def _is_of(path: str, patterns: tuple[str, ...]) -> bool:
 
 
 def _other_start(then: dict[str, Any], now: dict[str, Any]) -> Iterator[Difference]:
-    """What later stages have changed of the start: groups that are not there, and what are pairs."""
+    """Changes of later stages that alter the start: groups that are absent there, and pairs of faces."""
     cases = [[(stage.get("remove", []), stage.get("add", [])) for stage in case.get("stages", [])]
              for case in (then, now)]  # fmt: skip
     was, new = (set(absent_groups(changes, 0)) for changes in cases)
-    words = ("there from the start", "not there at the start")
+    words = ("present from the start", "absent at the start")
     for name in sorted(was ^ new):
         yield f"groups.{name}", words[name in was], words[name in new]
     added, adds = (any(come for _, come in changes) for changes in cases)
@@ -113,7 +113,7 @@ def _other_start(then: dict[str, Any], now: dict[str, Any]) -> Iterator[Differen
 def differences(then: Any, now: Any, path: str = "") -> Iterator[Difference]:
     """Places where two nests of dicts and lists differ, in order.
 
-    A key that `then` did not know yet says nothing where its list is empty now.
+    A key that `then` did not know yet is no difference if its list is empty now.
     """
     if isinstance(then, dict) and isinstance(now, dict):
         now = {key: value for key, value in now.items() if key in then or value not in ([], {})}

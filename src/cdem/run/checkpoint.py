@@ -1,4 +1,4 @@
-"""Checkpoints: all that a run needs to go on to the bit, with a checksum, in two generations."""
+"""Checkpoints: all data to continue a run bit for bit, with a checksum, in two generations."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from cdem.whole_files import replaced
 
 CHECKPOINT = "checkpoint.h5"
 CHECKPOINT_BEFORE = "checkpoint-before.h5"
-"""The one before, which is read if the last one is damaged."""
+"""The previous checkpoint; it is read if the last one is damaged."""
 ATTRIBUTES = "attributes"
 HEAD_BYTES = 512
-"""Size of what stands before the HDF5 part: a user block, which HDF5 passes over."""
+"""Size of the head before the HDF5 part: a user block, which HDF5 skips."""
 PIECE_BYTES = 1 << 20
 
 
 class DamagedError(CdemError):
-    """A checkpoint is not what was written, or not there."""
+    """A checkpoint has changed since it was written, or is missing."""
 
 
 def has_checkpoint(folder: Path) -> bool:
-    """Whether a result folder holds something to resume from."""
+    """Whether a result folder holds a checkpoint."""
     return any((folder / name).is_file() for name in (CHECKPOINT, CHECKPOINT_BEFORE))
 
 
 def write_checkpoint(folder: Path, arrays: Mapping[str, NDArray], attributes: str) -> None:
-    """Write a checkpoint into a result folder; the one before is kept.
+    """Write a checkpoint into a result folder; the previous one is kept.
 
     Args:
         folder: The result folder.
-        arrays: By name, with dots.
-        attributes: Everything else, as JSON.
+        arrays: Arrays by name, with dots.
+        attributes: All other data, as JSON.
 
     Raises:
         DiskError: It cannot be written.
@@ -58,10 +58,10 @@ def write_checkpoint(folder: Path, arrays: Mapping[str, NDArray], attributes: st
 
 
 def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
-    """Read the arrays and attributes that `write_checkpoint` wrote, to the bit.
+    """Read the arrays and attributes of `write_checkpoint`, bit for bit.
 
     Raises:
-        DamagedError: The file is not what was written.
+        DamagedError: The file has changed since it was written.
     """
     import h5py
 
@@ -70,7 +70,7 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
     try:
         with path.open("rb") as file:
             if file.read(HEAD_BYTES) != _head(file):
-                raise DamagedError(f"{path}: is damaged (its checksum is another)")
+                raise DamagedError(f"{path}: is damaged (its checksum is wrong)")
             file.seek(0)
             with h5py.File(file, "r") as hdf5:
                 refuse_links(hdf5, path)
@@ -78,16 +78,16 @@ def read_checkpoint(path: Path) -> tuple[dict[str, NDArray], bytes]:
                 arrays = {name.replace("/", "."): values for name, values in stored}
                 attributes = bytes(hdf5[ATTRIBUTES][()])
     except FileNotFoundError:
-        raise DamagedError(f"{path}: is not there") from None
+        raise DamagedError(f"{path}: is missing") from None
     except DamagedError:
         raise
-    except Exception as error:  # a right checksum, but not of a checkpoint; h5py raises many kinds
-        raise DamagedError(f"{path}: not a checkpoint that can be read ({error})") from error
+    except Exception as error:  # correct checksum, but no checkpoint; h5py raises many kinds
+        raise DamagedError(f"{path}: cannot be read as a checkpoint ({error})") from error
     return arrays, attributes
 
 
 def _head(file: BinaryIO) -> bytes:
-    """What stands at the start of a file: the checksum of all that comes after it."""
+    """Head of a file: the checksum of everything after it."""
     checksum = hashlib.sha256()
     file.seek(HEAD_BYTES)
     while piece := file.read(PIECE_BYTES):

@@ -1,4 +1,4 @@
-"""Datasets of HDF5 by its own calls: a run has thousands, and those of h5py cost three times more."""
+"""Datasets of HDF5 by low-level calls: a run has thousands, and h5py's own calls are three times slower."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 def put(
     root: h5py.Group, name: str, values: NDArray, chunks: tuple[int, ...] | None = None
 ) -> None:
-    """Write a dataset, and the groups on the way to it.
+    """Write a dataset, and missing groups on its path.
 
     Args:
-        root: Gets it.
-        name: With slashes.
+        root: The file or group that gets it.
+        name: Path with slashes.
         values: Numbers of any shape.
-        chunks: Shape of the pieces that get a checksum each; None for none.
+        chunks: Shape of the pieces with a checksum each; None for none.
     """
     values = np.asarray(values, order="C")
     properties = h5p.create(h5p.DATASET_CREATE)

@@ -14,8 +14,8 @@ class EnergyTerm:
     """One term of the ledger.
 
     Attributes:
-        name: As the core reports it.
-        kind: Whether it is stored in the model, or the work that something has done.
+        name: Its name in the core.
+        kind: "stored" energy of the model, or "work" done.
     """
 
     name: str
@@ -28,15 +28,15 @@ class EnergyTerm:
 
 
 OF_SURFACES = ("surface", "radiated")
-"""Terms of surface laws: only a case that has some tells them."""
+"""Terms of surface laws: present only in a case with such laws."""
 
 ENERGY_TERMS = [
     EnergyTerm(term["name"], "energy" if term["kind"] in ("stored", "hidden") else "work")
     for term in native.energy_terms()
 ]
-"""As the core lists them."""
+"""All terms, in the order of the core."""
 
 
 def terms_of(case: Case) -> list[EnergyTerm]:
-    """Those that the files of a case tell."""
+    """The terms in the files of a case."""
     return [term for term in ENERGY_TERMS if case.loads.surfaces or term.name not in OF_SURFACES]

@@ -1,4 +1,4 @@
-"""How long a case will take and how much memory: measured by steps of the model itself."""
+"""Estimate of a case's run time and memory, measured by steps of the model itself."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from cdem.run.state import RunState, StageState
 SECONDS = 1.0
 """Wall time given to each measurement [s]."""
 LEAST_STEPS = 40
-"""Steps of a measurement at least: a rebuild of the pair lists should be among them."""
+"""Least number of steps of a measurement: it should include a rebuild of the pair lists."""
 PIECE = (20, 0.02)
-"""Between two looks at the clock there are so many steps, or as many as take so long [s]."""
+"""Between two looks at the clock: this many steps, or as many as take this long [s]."""
 BALANCED = 1e-3
-"""Rock that begins under stress is in equilibrium if its unbalanced force is below this."""
+"""Rock with initial stress is in equilibrium if its unbalanced force is below this."""
 REPORT = (10_000_000, 21.0, 350_000_000)
-"""Memory that writing report.html takes [bytes]: at least, a node and frame, and at most; measured."""
+"""Measured memory for writing report.html [bytes]: minimum, per node and frame, and maximum."""
 
 
 @dataclass
@@ -37,10 +37,10 @@ class StageEstimate:
     Attributes:
         name: Its name.
         mode: "static" or "dynamic".
-        step_seconds: Wall time of a step as the stage begins [s].
-        wall_time: Of the whole stage if bonds break no more than they do as it begins [s]; None for
-            a static stage, whose number of steps nobody knows beforehand.
-        wall_time_broken: The same with all bonds without strength; None where nothing is bonded.
+        step_seconds: Wall time of a step at the beginning of the stage [s].
+        wall_time: Wall time of the stage if bonds break only at the initial rate [s]; None for
+            a static stage, whose number of steps is unknown in advance.
+        wall_time_broken: The same with all bonds broken; None for a model without bonds.
     """
 
     name: str
@@ -51,7 +51,7 @@ class StageEstimate:
 
     @property
     def expected(self) -> float | None:
-        """The middle of the two, as a ratio [s]."""
+        """Geometric mean of the two [s]."""
         if self.wall_time is None or self.wall_time_broken is None:
             return self.wall_time
         return float(np.sqrt(self.wall_time * self.wall_time_broken))
@@ -63,9 +63,9 @@ class Estimate:
 
     Attributes:
         stages: In their order.
-        peak_memory: Largest memory of a run: building the model, its contacts with all bonds
-            broken, drawing the report [bytes].
-        unbalance: Unbalanced force of the first step over the loads, of rock that begins under
+        peak_memory: Largest memory of a run, from building the model, from its contacts with all
+            bonds broken, or from drawing the report [bytes].
+        unbalance: Unbalanced force of the first step over the loads, for rock with initial
             stress.
     """
 
@@ -96,33 +96,34 @@ class Estimate:
             if self.unbalance > BALANCED:
                 lines.append(
                     "    the initial stress is not in equilibrium with gravity and supports: begin with "
-                    "a static stage, and look at initial_stress (sign, gradient, surface) if it moves much"
+                    "a static stage, and check initial_stress (sign, gradient, surface) if it "
+                    "moves much"
                 )
         for s in self.stages:
             step = f"  stage {s.name}: {1e3 * s.step_seconds:.3g} ms a step"
             if s.wall_time is None:
-                lines.append(f"{step}; it takes as many steps as rest needs")
+                lines.append(f"{step}; the number of steps until rest is unknown")
             elif s.wall_time_broken is None:
                 lines.append(f"{step}, about {_clock(s.wall_time)}")
             else:
                 low, high = sorted((s.wall_time, s.wall_time_broken))
                 lines.append(
-                    f"{step}, about {_clock(s.expected or 0)} ({_clock(low)} to {_clock(high)}, as "
-                    "few or all bonds break)"
+                    f"{step}, about {_clock(s.expected or 0)} ({_clock(low)} to {_clock(high)}, "
+                    "depending on broken bonds)"
                 )
         return "\n".join(lines) + "\n"
 
 
 def estimate(sim: RunState) -> Estimate:
-    """Measure every stage by some of its steps; the simulation is of no use afterwards.
+    """Measure every stage by some of its steps; the simulation cannot be used afterwards.
 
-    A stage that these steps end leads to the next as in a run.
+    A stage that ends within these steps is followed by the next, as in a run.
 
     Args:
-        sim: A simulation that has not begun.
+        sim: A simulation before its first step.
 
     Raises:
-        CaseError: What a run would end with up to there.
+        CaseError: An error that would end a run within these steps.
     """
     found, unbalance = [], None
     for index, stage in enumerate(sim.case.stages):
@@ -150,7 +151,7 @@ def _bonded(sim: RunState) -> bool:
 
 
 def _take_strength(sim: RunState) -> None:
-    """Take from all interfaces what bonds them; the case stays."""
+    """Remove the bonds from all interfaces; the case stays unchanged."""
     names, position = sim.build.group_names, sim.build.start_position
     entries = interface_entries(sim.case, interfaces_of(sim.case, names)[0], names, position)
     for entry in entries:
@@ -160,31 +161,31 @@ def _take_strength(sim: RunState) -> None:
 
 
 def _follow(sim: RunState, stage: StageState, steps: int) -> bool:
-    """Run a stage as a run does, at most so many steps; whether it goes on."""
+    """Run a stage as a run does, for at most this many steps; returns whether it continues."""
     outcome = stages.advance(sim, stage, steps, np.inf)[0]
-    stages.record_is_due(sim, stage, outcome)  # counts the rows up to which a run steps at once
+    stages.record_is_due(sim, stage, outcome)  # a run steps without a break up to these rows
     ended = stages.status(sim, stage, outcome) is not None
     return outcome in ("steps_done", "time_reached") and not ended
 
 
 def _go_on(sim: RunState, steps: int) -> bool:
-    """Step on, whatever ends a stage."""
+    """Step on, and ignore the end of a stage."""
     return bool(sim.core.run(steps)[0] == "steps_done")
 
 
 def _measure(sim: RunState, run: Callable[[int], bool]) -> tuple[float, float]:
-    """Wall time and simulated time of a step [s]: the second half of what `SECONDS` allow.
+    """Wall time and simulated time of a step [s]: measured in the second half of `SECONDS`.
 
     Args:
         sim: The simulation.
-        run: Does at most so many steps; whether there are more to do.
+        run: Does at most the given number of steps; returns whether more are left.
     """
     begin = (time.perf_counter(), sim.step_count, sim.time)
     marks, steps = [begin], PIECE[0]
     while marks[-1][0] - begin[0] < SECONDS or marks[-1][1] - begin[1] < LEAST_STEPS:
         try:
             goes_on = run(steps)
-        except RuntimeError:  # the core cannot go on: no room left for contacts
+        except RuntimeError:  # the core has no room left for contacts
             break
         marks.append((time.perf_counter(), sim.step_count, sim.time))
         if not goes_on:
@@ -198,21 +199,21 @@ def _measure(sim: RunState, run: Callable[[int], bool]) -> tuple[float, float]:
 
 
 def peak_memory(sim: RunState) -> int:
-    """Largest memory that a run takes [bytes].
+    """Largest memory of a run [bytes].
 
-    That of this process so far, or what it has now and what writing the report takes.
+    The larger of this process's peak so far, and its present memory plus the report's.
     """
-    try:  # what getrusage says begins with the memory of the process that began this one
+    try:  # getrusage would include memory of the parent process
         lines = [line.split() for line in Path("/proc/self/status").read_text().splitlines()]
         kilobytes = {words[0]: int(words[1]) for words in lines if words[-1] == "kB"}
         most, now = 1024 * kilobytes["VmHWM:"], 1024 * kilobytes["VmRSS:"]
-    except OSError:  # no Linux
+    except OSError:  # not Linux
         most = now = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS
     return max(most, now + _report_memory(sim))
 
 
 def _report_memory(sim: RunState) -> int:
-    """Memory that writing report.html takes [bytes], if every node is seen in every frame."""
+    """Memory for writing report.html [bytes], if every node is visible in every frame."""
     least, each, at_most = REPORT
     output = sim.case.output
     if not output.frames:

@@ -1,4 +1,4 @@
-"""Friction that falls with the speed of slip faster than a step can follow."""
+"""Friction that falls with the speed of slip too fast for the time step."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class FastWeakening:
     """The worst contact of an interface.
 
     Attributes:
-        interface: Its name, or what it is between.
-        ratio: Part of a change of speed that comes back in the next step by the change of friction [1].
-        place: Where the contact is [m].
+        interface: Its name, or the two groups.
+        ratio: Fraction of a change of speed that returns in the next step through friction [1].
+        place: Position of the contact [m].
         step: Time step [s].
     """
 
@@ -25,17 +25,17 @@ class FastWeakening:
     step: float
 
     def text(self) -> str:
-        """One line for the user."""
+        """A one-line warning."""
         place = ", ".join(f"{x:.4g}" for x in self.place)
         return (
             f"friction of interface {self.interface} falls with the speed of slip {self.ratio:.3g} times "
-            f"as fast as a step of {self.step:.3g} s can follow at ({place}) m: the contact may "
+            f"too fast for a step of {self.step:.3g} s at ({place}) m: the contact may "
             f"chatter. Take time.step below {0.5 * self.step / self.ratio:.2g} s, or a larger velocity"
         )
 
 
 def fast_weakenings(sim: RunState) -> list[FastWeakening]:
-    """The worst contact of each interface that falls faster than a step can follow."""
+    """The worst contact of each interface whose friction falls too fast for the step."""
     found = [one for one in sim.core.fast_weakenings() if one[1] >= 1]
     if not found:
         return []

@@ -1,4 +1,4 @@
-"""Fields of a run as it is now: damage, pieces, stress, and the surface that carries them."""
+"""Present fields of a run: damage, pieces, stress, and the surface with its values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _VALUES: dict[str, Values] = {}
 
 
 def output_field(name: str) -> Callable[[Values], Values]:
-    """The function below gives the values of this field on nodes or elements."""
+    """Register a function that computes this field on nodes or elements."""
 
     def keep(function: Values) -> Values:
         _VALUES[name] = function
@@ -37,18 +37,19 @@ output_field("yielded")(yielded_of)
 
 
 def values_of(sim: RunState, fields: Iterable[OutputField]) -> dict[str, NDArray]:
-    """Values of fields by name; those of elements have the shapes one after the other."""
+    """Values of fields by name; values of elements follow shape by shape."""
     return {field.name: _VALUES[field.name](sim) for field in fields}
 
 
 def surface_of(
     sim: RunState, values: Mapping[str, NDArray]
 ) -> tuple[NDArray, NDArray, dict[str, NDArray], dict[str, NDArray]]:
-    """Outer and broken faces now: positions, vertices of the faces (-1 after a triangle's), fields.
+    """Present outer and broken faces: positions, vertices of the faces (-1 after a triangle's),
+    fields.
 
     Args:
         sim: The simulation.
-        values: Fields on its nodes and elements, to be carried over to points and faces.
+        values: Fields on its nodes and elements, to be copied to points and faces.
     """
     t = sim.build.topology
     faces, broken = visible_faces(sim)
@@ -118,12 +119,12 @@ def block_of(sim: RunState) -> NDArray[np.int32]:
 
 @output_field("out")
 def out_of(sim: RunState) -> NDArray[np.int8]:
-    """Whether the block of each element has left the domain, shapes one after the other."""
+    """Whether the block of each element has left the domain, shape by shape."""
     return sim.out[block_of(sim)].astype(np.int8)
 
 
 def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Bonded pairs of faces, shape (pairs, 2), and the part of each one's bond points that holds."""
+    """Bonded pairs of faces, shape (pairs, 2), and the intact fraction of each pair's bond points."""
     b = sim.build
     faces, intact = [], []
     for kind in ("triangles", "quads"):
@@ -140,7 +141,7 @@ def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
 
 @output_field("damage")
 def damage_of(sim: RunState) -> NDArray[np.float64]:
-    """Broken part of the bonded faces of each element, 0 to 1, shapes one after the other."""
+    """Broken fraction of the bonded faces of each element, 0 to 1, shape by shape."""
     t = sim.build.topology
     count = sum(len(e) for e in t.element_nodes.values())
     broken, total = np.zeros(count), np.zeros(count)
@@ -154,18 +155,18 @@ def damage_of(sim: RunState) -> NDArray[np.float64]:
 
 @output_field("slip")
 def slip_of(sim: RunState) -> NDArray[np.float64]:
-    """How far faces that met at the start have slid along one another [m], the most of each element."""
+    """Slip between faces that met at the start [m], largest of each element."""
     return _largest_of_elements(sim, _apart(sim)[0])
 
 
 @output_field("opening")
 def opening_of(sim: RunState) -> NDArray[np.float64]:
-    """How far faces that met at the start have parted [m], the most of each element."""
+    """Opening between faces that met at the start [m], largest of each element."""
     return _largest_of_elements(sim, _apart(sim)[1])
 
 
 def _apart(sim: RunState) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Slip and opening of each pair of faces whose vertices met at the start [m]; the most of them."""
+    """Slip and opening of each pair of faces whose vertices met at the start [m]; largest values."""
     t, at = sim.build.topology, rows_of(sim.core, "node.motion").position
     first, second = t.face_nodes[t.pair_faces[:, 0]], t.face_nodes[t.pair_faces[:, 1]]
     corners = (first >= 0).sum(axis=1, keepdims=True)
@@ -190,10 +191,10 @@ def _largest_of_elements(sim: RunState, of_pairs: NDArray[np.float64]) -> NDArra
 
 @output_field("piece")
 def pieces_of(sim: RunState) -> NDArray[np.int32]:
-    """Piece of each element, shapes one after the other: the least block that it hangs together with.
+    """Piece of each element, shape by shape: the lowest block number of the connected piece.
 
-    Blocks hang together through every pair of faces of which a bond point still holds, and whose
-    interface has a strength: one whose cohesion and tension a stage has set to zero joins nothing.
+    Blocks are connected by every pair of faces with an intact bond point and a strength of the
+    interface; a pair whose cohesion and tension a stage has set to zero does not connect.
     """
     t = sim.build.topology
     laws, interface = interfaces_of(sim.case, sim.build.group_names)
@@ -219,7 +220,7 @@ def stress_of(sim: RunState) -> NDArray[np.float64]:
 
 @output_field("pore_pressure")
 def pore_pressure_of(sim: RunState) -> NDArray[np.float64]:
-    """Pressure of the water in the ground [Pa], mean of the nodes of each element, as `stress_of`."""
+    """Pore pressure [Pa], mean of the nodes of each element, ordered as `stress_of`."""
     if sim.case.water is None:
         return np.zeros(len(group_of(sim)))
     arrays, at = sim.build.arrays, rows_of(sim.core, "node.motion").position
@@ -231,15 +232,15 @@ def pore_pressure_of(sim: RunState) -> NDArray[np.float64]:
 
 @output_field("effective_stress")
 def effective_stress_of(sim: RunState) -> NDArray[np.float64]:
-    """Mean stress that the law of each element gives [Pa], as `stress_of`."""
+    """Mean stress from the law of each element [Pa], ordered as `stress_of`."""
     shapes = sim.core.stress()
     return np.concatenate([rows_of(sim.core, f"{shape}.stress").numbers for shape in shapes])
 
 
 def visible_faces(sim: RunState) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Outer faces and those whose bonds are all broken; the second says which are the latter.
+    """Outer faces and faces with all bonds broken; the second array marks the latter.
 
-    Those of blocks that have left the domain are not among them.
+    Faces of blocks that have left the domain are left out.
     """
     b = sim.build
     glued = np.zeros(len(b.topology.face_nodes), bool)

@@ -1,6 +1,6 @@
-"""The largest thickness, velocity, energy ... that each place in plan has seen, and when it was met.
+"""Largest thickness, velocity, energy ... at each place in plan so far, and arrival times.
 
-Each moment is cut at the lines of the grid exactly; docs/runout.md defines every quantity.
+At each moment the rock is cut exactly along the grid lines; docs/runout.md defines every quantity.
 """
 
 from __future__ import annotations
@@ -24,28 +24,28 @@ MAXIMA = (
     "energy_piece_max",
     "pressure_max",
 )
-"""Layers that hold the largest value so far; 0 where no rock was."""
+"""Layers with the largest value so far; 0 in cells without rock."""
 ARRIVAL = "arrival"
 LAYERS = (*MAXIMA, ARRIVAL)
 MET = 0.1
-"""A cell is met by rock at least this thick [m] ..."""
+"""Rock has reached a cell at this thickness [m] ..."""
 MET_SHARE = 0.1
-"""... or by this part of a cell's side, if that is less."""
+"""... or at this fraction of a cell's side, if that is less."""
 TRACE = 1e-9
-"""Less than this part of the greatest thickness, or of a cell, is round-off."""
+"""Thickness or cell area below this fraction of the largest is round-off."""
 MOST_CELLS = 4_000_000
 
 
 @dataclass
 class Moment:
-    """Elements at one moment, with what they bring.
+    """Elements at one moment, with their motion.
 
     Attributes:
         time: [s].
         solids: The elements.
-        velocity: Of each [m/s], shape (elements, 3).
-        mass: Of each [kg].
-        piece: Number of the piece that each belongs to, or None if it is not known.
+        velocity: Velocity of each [m/s], shape (elements, 3).
+        mass: Mass of each [kg].
+        piece: Piece number of each, or None if unknown.
     """
 
     time: float
@@ -55,7 +55,7 @@ class Moment:
     piece: NDArray[np.integer] | None
 
     def energies_of_pieces(self) -> Floats:
-        """Kinetic energy of the piece that each element belongs to [J]."""
+        """Kinetic energy of each element's piece [J]."""
         energy = 0.5 * self.mass * np.einsum("ij,ij->i", self.velocity, self.velocity)
         if self.piece is None:
             return np.full(len(energy), np.nan)
@@ -69,12 +69,12 @@ class FlowMaps:
 
     Attributes:
         cell: Side of a cell [m]; the lines of the grid lie at multiples of it.
-        start: Time from which arrivals count [s].
+        start: Start of arrival times [s].
         low: Column and row of the south-western cell, counted from the origin.
         layers: `LAYERS` one after the other, shape (layers, rows, columns), rows from the south.
-        last: Time of the last moment taken in [s].
-        middles: Middle of each element in plan then [m], shape (elements, 2).
-        jump: Longest way of an element in plan between two moments, in cells.
+        last: Time of the last moment included [s].
+        middles: Middle of each element in plan at that time [m], shape (elements, 2).
+        jump: Longest path of an element in plan between two moments, in cells.
     """
 
     cell: float
@@ -87,7 +87,7 @@ class FlowMaps:
 
     @property
     def met(self) -> float:
-        """Thickness from which rock counts as having met a cell [m]."""
+        """Thickness at which rock has reached a cell [m]."""
         return min(MET, MET_SHARE * self.cell)
 
     def __getitem__(self, name: str) -> Floats:
@@ -96,14 +96,14 @@ class FlowMaps:
 
     @property
     def affected(self) -> NDArray[np.bool_]:
-        """Cells that rock has met."""
+        """Cells reached by rock."""
         return np.isfinite(self[ARRIVAL])
 
     def take_in(self, moment: Moment) -> None:
-        """Raise the layers to what they are at a moment.
+        """Raise the layers to their values at a moment.
 
         Raises:
-            CdemError: The grid would be huge.
+            CdemError: The grid would be too large.
         """
         middles = moment.solids.middle[:, :2].copy()
         if len(middles) == len(self.middles):
@@ -125,7 +125,7 @@ class FlowMaps:
         arrival[new] = moment.time - self.start
 
     def _grow(self, low: tuple[int, int], shape: tuple[int, int]) -> None:
-        """Make room for the cells of another grid, given as its corner, and rows and columns."""
+        """Extend the layers to the cells of another grid, given by its corner, rows and columns."""
         if self.layers.size == 0:
             self.low, have = low, (0, 0)
         else:
@@ -143,21 +143,21 @@ class FlowMaps:
 
 
 def check_size(cell: float, rows: int, columns: int) -> None:
-    """Refuse a grid that is huge.
+    """Check the size of a grid.
 
     Raises:
-        CdemError: It is.
+        CdemError: The grid is too large.
     """
     if rows * columns > MOST_CELLS:
         raise CdemError(
-            f"cells of {cell:g} m make a map of {rows:,} x {columns:,}; choose a larger cell"
+            f"cells of {cell:g} m give a map of {rows:,} x {columns:,} cells; choose a larger cell"
         )
 
 
 def _values(
     moment: Moment, cell: float, low: tuple[int, int], shape: tuple[int, int]
 ) -> dict[str, Floats]:
-    """What the layers `MAXIMA` are at a moment, over the grid that just holds its elements."""
+    """The layers `MAXIMA` at a moment, over the smallest grid around its elements."""
     count = shape[0] * shape[1]
     velocity, density = moment.velocity, moment.mass / moment.solids.volumes()
     speed = np.linalg.norm(velocity, axis=1)

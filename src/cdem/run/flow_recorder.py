@@ -1,4 +1,4 @@
-"""Follows the largest values of `FlowMaps` during a run, so that nothing passes between two frames."""
+"""Records the largest values of `FlowMaps` during a run, also between two frames."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ Floats = NDArray[np.float64]
 
 FILE = "maxima.h5"
 PREFIX = "maps."
-"""Names of the arrays in a checkpoint begin with it."""
+"""Prefix of the names of its arrays in a checkpoint."""
 STEP = 0.5
-"""Part of a cell that the fastest node goes in plan between two looks."""
+"""Fraction of a cell that the fastest node may move in plan between two looks."""
 FALL = 9.81
-"""Acceleration that a node may take up between two looks, at least [m/s2]."""
+"""Least acceleration assumed for a node between two looks [m/s2]."""
 
 
 class FlowRecorder:
-    """Looks at the moving groups whenever the fastest node may have gone half a cell in plan.
+    """Takes in the moving groups whenever the fastest node may have moved half a cell in plan.
 
     Args:
         sim: A run whose case has `output.maps`.
 
     Attributes:
-        maps: What was seen.
-        due: Time of the next look [s]; inf while none is due by itself.
-        ended: Why nothing is followed any more, or "".
+        maps: The recorded values.
+        due: Time of the next look [s]; inf if none is scheduled.
+        ended: Why recording stopped, or "".
     """
 
     def __init__(self, sim: RunState) -> None:
@@ -62,10 +62,10 @@ class FlowRecorder:
         return [sim.build.group_names.index(name) for name in self.groups]
 
     def begin(self, sim: RunState, stage: StageState) -> None:
-        """A stage begins: one that resets displacements begins the run-out again.
+        """Start a stage: one that resets displacements restarts the run-out.
 
         Raises:
-            CdemError: The cell is so small that the maps would be huge.
+            CdemError: The cell is so small that the maps would be too large.
         """
         if sim.case.stages[sim.stage_index].reset_displacement:
             self.maps = FlowMaps(self.maps.cell, sim.time)
@@ -74,20 +74,20 @@ class FlowRecorder:
             self.take_in(sim)
 
     def look(self, sim: RunState) -> None:
-        """Take in what is there now, if the maps have room for it: a run does not end for them."""
-        if self.ended or not np.isfinite(sim.motion).all():  # the core says where it failed
+        """Record the present values if the maps have room; else recording stops, not the run."""
+        if self.ended or not np.isfinite(sim.motion).all():  # the core reports the place
             self.due = np.inf
             return
         try:
             self.take_in(sim)
         except CdemError as error:
-            self.due, self.ended = np.inf, f"output.maps: followed no more: {error}"
+            self.due, self.ended = np.inf, f"output.maps: recording stopped: {error}"
 
     def take_in(self, sim: RunState) -> None:
-        """Take in what is there now, and say when the next look is due.
+        """Record the present values and schedule the next look.
 
         Raises:
-            CdemError: The maps would be huge.
+            CdemError: The maps would be too large.
         """
         stays = ~sim.out[self._block]
         motion = rows_of(sim.core, "node.motion")
@@ -106,7 +106,7 @@ class FlowRecorder:
 
     @property
     def arrays(self) -> dict[str, Floats]:
-        """All that is needed to go on to the bit."""
+        """All data to continue bit for bit."""
         m = self.maps
         numbers = [m.start, *m.low, *m.layers.shape[1:], m.last, m.jump, self.due, bool(self.ended)]
         return {
@@ -116,14 +116,14 @@ class FlowRecorder:
         }
 
     def restore(self, arrays: dict[str, Floats]) -> str:
-        """Go on from the arrays of a checkpoint; what is wrong with them, or ""."""
+        """Continue from the arrays of a checkpoint; returns the fault in them, or ""."""
         try:
             numbers, layers, middles = (arrays[name] for name in self.arrays)
             self.maps = _maps_of(self.maps.cell, numbers, layers, middles)
             self.due = float(numbers[-2])
-            self.ended = "output.maps: followed no more" if numbers[-1] else ""
+            self.ended = "output.maps: recording stopped" if numbers[-1] else ""
         except (KeyError, ValueError, IndexError, OverflowError):
-            return "its maps are not whole"
+            return "its maps are incomplete"
         return ""
 
     def write(self, folder: Path, time: float) -> None:
@@ -131,7 +131,7 @@ class FlowRecorder:
 
         Args:
             folder: The result folder.
-            time: Up to which the run was followed [s].
+            time: End of the recording [s].
         """
         import h5py
 
@@ -144,7 +144,7 @@ class FlowRecorder:
 
 
 def read_maxima(folder: Path) -> tuple[FlowMaps, list[str], float] | None:
-    """The maps that a run has followed, their groups, and the time up to which; None without.
+    """The maps recorded by a run, their groups, and the end of the recording; None without maps.
 
     Raises:
         CdemError: The file is damaged.
@@ -169,7 +169,7 @@ def read_maxima(folder: Path) -> tuple[FlowMaps, list[str], float] | None:
 
 
 def _maps_of(cell: float, numbers: Floats, layers: Floats, middles: Floats) -> FlowMaps:
-    """Maps from the arrays that were kept."""
+    """Maps from the stored arrays."""
     start, column, row, rows, columns, last, jump = (float(n) for n in numbers[:7])
     return FlowMaps(
         cell, start, (int(column), int(row)),

@@ -16,7 +16,7 @@ from cdem.run.written_files import LOCK, mark
 class FolderLock:
     """The right to write into a result folder, until it is released or the process ends.
 
-    The system itself lets go of the lock of a process that has ended, however it ended.
+    The system itself releases the lock of a process that has ended in any way.
 
     Args:
         folder: The result folder.
@@ -27,10 +27,10 @@ class FolderLock:
         self._lock = FileLock(folder / LOCK, timeout=0, thread_local=False)
 
     def take(self) -> None:
-        """Take the lock, and say in the mark of the folder who has it.
+        """Take the lock, and write its owner into the mark of the folder.
 
         Raises:
-            CdemError: Another run has it, or the file system knows no locks.
+            CdemError: Another run has it, or the file system has no locks.
         """
         if self._lock.is_locked:
             return
@@ -43,13 +43,13 @@ class FolderLock:
             ) from None
         except NotImplementedError:
             raise CdemError(
-                f"{self._folder}: its file system has no locks, so that two runs could spoil one "
-                "another's results; name a folder on another disk with -o"
+                f"{self._folder}: its file system has no locks, so two runs could damage each "
+                "other's results; name a folder on another disk with -o"
             ) from None
         mark(self._folder, f"process {os.getpid()} on {socket.gethostname()}")
 
     def release(self) -> None:
-        """Let others write."""
+        """Release the lock."""
         self._lock.release()
 
     def _holder(self) -> str:

@@ -1,9 +1,9 @@
 """Frames of a run: one VTKHDF file each, and one that lists them for ParaView and pyvista.
 
 `frames.vtkhdf` holds no fields itself: virtual datasets of HDF5 point into the files of the folder
-`frames`, one for each frame, as VTK writes time steps into files of their own. Every file is
-replaced as a whole, so that a kill at any moment leaves a series that can be read. All of a frame has
-checksums: HDF5 keeps them for chunks of numbers, and for the rest in the format of 1.10.
+`frames`, one for each frame, like time steps that VTK writes into separate files. Every file is
+replaced as a whole, so that the series stays readable after a kill at any moment. All data of a
+frame have checksums: HDF5 keeps them for chunks of numbers, and for the rest in the format of 1.10.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from cdem.whole_files import ASIDE, replaced
 VTK_TYPES = {"tet4": 10, "pyramid5": 14, "wedge6": 13, "hex8": 12}
 VTK_LINE, VTK_TRIANGLE, VTK_QUAD = 3, 5, 9
 POLYGONS = np.array([0, 0, VTK_LINE, VTK_TRIANGLE, VTK_QUAD], np.uint8)
-"""Type of a cell by its corners."""
+"""Type of a cell by its number of corners."""
 COUNTS = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
 KINDS = ("PointData", "CellData")
 ELEMENTS = "elements.h5"
-"""The file of what all frames of the volume share."""
+"""The file with the data shared by all frames of the volume."""
 CHUNK_BYTES = 1 << 20
 FORMAT = ("v110", "v110")
-"""Of HDF5: names and sizes have checksums too, and a dataset of one chunk needs no list of chunks."""
+"""HDF5 version: names and sizes have checksums too, and a dataset of one chunk needs no index."""
 LIST_PATIENCE = 20
-"""The list is written again after so many times as long as writing it took, and by `sync`."""
+"""The list is rewritten after this multiple of its writing time, and by `sync`."""
 
 
 def frame_path(folder: Path, number: int) -> Path:
@@ -53,13 +53,13 @@ def frame_numbers(folder: Path) -> list[int]:
 
 @dataclass
 class _Frame:
-    """What the list needs to know of a frame.
+    """Data of a frame for the list.
 
     Attributes:
         number: Its number, from 0.
         time: [s].
         counts: Points, cells and connectivity ids.
-        datasets: Shape and type of each dataset that is its own.
+        datasets: Shape and type of each of its own datasets.
     """
 
     number: int
@@ -73,11 +73,11 @@ class _Series:
 
     Args:
         path: The list, a .vtkhdf file; the folder has its name.
-        group_names: By the numbers of the field "group".
+        group_names: Names by number of the field "group".
         keep: Frames to keep of an existing series; None for a new one.
 
     Attributes:
-        lost: Numbers of the frames that were to be kept and are damaged or not there.
+        lost: Numbers of frames to keep that are damaged or missing.
     """
 
     shared: Sequence[str] = ()  # datasets of ELEMENTS
@@ -95,7 +95,7 @@ class _Series:
             self._keep(keep)
 
     def sync(self) -> None:
-        """Bring the list up to date; frames are on the disk once they are written."""
+        """Bring the list up to date; frames themselves are on the disk once written."""
         if self._listed != len(self._frames):
             self._write_list()
 
@@ -111,7 +111,7 @@ class _Series:
         return self._frames[-1].time if self._frames else None
 
     def _add(self, number: int, time: float, counts: tuple[int, ...], own: dict[str, Any]) -> None:
-        """Write a frame and, if it is due, the list."""
+        """Write a frame and, if due, the list."""
         frame = _Frame(number, time, counts)
         with _replaced_hdf5(frame_path(self.folder, number)) as hdf5:
             root = self._root(hdf5)
@@ -140,14 +140,14 @@ class _Series:
         return root
 
     def _name_groups(self, root: h5py.Group) -> None:
-        """Say what the numbers of the field "group" stand for."""
+        """Give the names for the numbers of the field "group"."""
         if "CellData/group" not in self.shared and "CellData/group" in root:
             _put_names(root["CellData/group"], self.group_names)
 
     # ------------------------------------------------------------------ the list
 
     def _write_list(self) -> None:
-        """Write the file that holds the datasets of all frames one after the other."""
+        """Write the file that presents the datasets of all frames as one."""
         frames, began = self._frames, time_now()
         with _replaced_hdf5(self.path) as hdf5:
             root = self._root(hdf5)
@@ -167,7 +167,7 @@ class _Series:
         self._list_due = time_now() + LIST_PATIENCE * (time_now() - began)
 
     def _put_steps(self, root: h5py.Group, names: Sequence[str]) -> None:
-        """Write times, and where the rows of each frame begin."""
+        """Write times, and the first row of each frame."""
         frames, count = self._frames, len(self._frames)
         none = np.zeros(count, int)
         points, cells, ids = (_starts([f.counts[k] for f in frames]) for k in range(3))
@@ -189,13 +189,13 @@ class _Series:
     # ------------------------------------------------------------------ resuming
 
     def _keep(self, count: int) -> None:
-        """Keep the first frames only, and nothing of one that was being written."""
+        """Keep the first frames only, and remove a half-written one."""
         for number in range(count):
             try:
                 self._frames.append(self._look(number))
             except Exception:  # h5py raises many kinds for a damaged file
                 self.lost.append(number)
-        self._write_list()  # before what it does not list any more goes
+        self._write_list()  # before files that it no longer lists are removed
         for number in frame_numbers(self.folder):
             if number >= count:
                 frame_path(self.folder, number).unlink()
@@ -216,7 +216,7 @@ class _Series:
             fields = (f"{kind}/{name}" for kind in KINDS for name in root[kind])
             for name in [*(cells or ("Points",)), *fields]:
                 if name not in self.shared:
-                    values = root[name][()]  # its checksums are looked at
+                    values = root[name][()]  # this verifies its checksums
                     frame.datasets[name] = (values.shape, values.dtype)
             names_of_groups(root)
         return frame
@@ -229,7 +229,7 @@ class FrameFiles(_Series):
         path: The .vtkhdf file.
         cells: By shape, node ids (cells, nodes).
         cell_data: Fields that do not change, one value per cell.
-        group_names: By the numbers of the field "group".
+        group_names: Names by number of the field "group".
         keep: Frames to keep of an existing series; None for a new one.
 
     Raises:
@@ -283,7 +283,7 @@ class SurfaceFiles(_Series):
 
     Args:
         path: The .vtkhdf file.
-        group_names: By the numbers of the field "group".
+        group_names: Names by number of the field "group".
         keep: Frames to keep of an existing series; None for a new one.
 
     Raises:
@@ -304,8 +304,9 @@ class SurfaceFiles(_Series):
         Args:
             number: From 0.
             time: [s].
-            points: [m], shape (points, 3).
-            polygons: Point ids, shape (faces, 3) or (faces, 4) with -1 last in a triangle; of lines
+            points: Positions [m], shape (points, 3).
+            polygons: Point ids, shape (faces, 3) or (faces, 4) with -1 last in a triangle; for
+                lines
                 (lines, 2).
             point_data: Fields on points.
             cell_data: Fields on faces.
@@ -323,7 +324,7 @@ class SurfaceFiles(_Series):
 
 @contextmanager
 def _replaced_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Make an HDF5 file in memory, and replace the one on the disk by it in one write."""
+    """Make an HDF5 file in memory, then replace the file on the disk with one write."""
     content = io.BytesIO()
     with h5py.File(content, "w", libver=FORMAT) as hdf5:
         yield hdf5
@@ -343,25 +344,25 @@ def _fields(
 
 
 def _starts(counts: Sequence[int]) -> NDArray[np.int64]:
-    """Where each of several ranges of rows begins."""
+    """First row of each of several ranges of rows."""
     return np.cumsum([0, *counts])[:-1].astype(np.int64)
 
 
 def _put(root: h5py.Group, name: str, values: NDArray) -> None:
-    """Write a dataset with checksums, which HDF5 keeps for chunks only."""
+    """Write a dataset with checksums, which HDF5 has for chunks only."""
     rows = max(1, CHUNK_BYTES // values[0].nbytes) if values.size else 0
     put(root, name, values, (min(rows, len(values)), *values.shape[1:]) if rows else None)
 
 
 def _put_names(dataset: h5py.Dataset, names: Sequence[str]) -> None:
-    """Write names of groups, all of one length: HDF5 keeps no checksum of others."""
+    """Write group names at equal length: HDF5 has no checksum for others."""
     texts = [name.encode() for name in names]
     length = max(map(len, texts), default=1)
     dataset.attrs["names"] = np.array(texts, h5py.string_dtype("utf-8", length))
 
 
 def names_of_groups(root: h5py.Group) -> list[str]:
-    """By the numbers of the field "group" of a frame; empty where it does not tell."""
+    """Names by number of the field "group" of a frame; empty if the file lacks them."""
     if "CellData/group" not in root:
         return []
     names = root["CellData/group"].attrs.get("names", [])
@@ -374,20 +375,20 @@ def _put_virtual(
     paths: Sequence[bytes],
     datasets: Sequence[tuple[tuple[int, ...], np.dtype]],
 ) -> None:
-    """Make a dataset of those of all frames; where a file is missing, numbers are NaN.
+    """Combine the datasets of all frames into one; rows of a missing file are NaN.
 
     Args:
-        root: Gets it.
-        name: Its own, and theirs.
-        paths: Of the frames, from the folder of the list.
-        datasets: Shape and type of theirs.
+        root: The file or group that gets it.
+        name: Name of the new dataset and of the old ones.
+        paths: Files of the frames, relative to the folder of the list.
+        datasets: Shape and type of the frames' datasets.
     """
     shapes = [shape for shape, _ in datasets]
     rows = [shape[0] for shape in shapes]
     dtype = datasets[0][1]
     space = h5py.h5s.create_simple((sum(rows), *shapes[0][1:]))
     properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
-    properties.set_obj_track_times(False)  # so that the same frames give the same bytes
+    properties.set_obj_track_times(False)  # equal frames give equal bytes
     if dtype.kind == "f":
         properties.set_fill_value(np.array(np.nan, dtype))
     source_name = f"VTKHDF/{name}".encode()

@@ -1,4 +1,4 @@
-"""What belongs to a group of a running model."""
+"""The nodes, elements and blocks of a group of a running model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Group:
-    """Ids of a group's parts, which pick their rows in fields; read-only.
+    """Ids of a group's parts, for rows of fields; read-only.
 
     Attributes:
         nodes: Rows of `Simulation.fields`.

@@ -1,4 +1,4 @@
-"""What the histories of a case follow: column names and values."""
+"""Histories of a case: column names and values."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cdem.run.state import RunState
 
 
 def tracks(sim: RunState) -> list[tuple[str, Any]]:
-    """Column name and value of everything that the case's histories follow."""
+    """Column name and value of every quantity in the case's histories."""
     units = {
         "centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N", "water_force": "N",
         "surface_force": "N",
@@ -44,7 +44,7 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
 def _of_bolts(
     sim: RunState, name: str, bolt: str, quantities: Sequence[str]
 ) -> list[tuple[str, Any]]:
-    """Of a bolt, or of all bolts of an entry, what is largest in size."""
+    """Value of a bolt, or the value of largest magnitude among the bolts of an entry."""
     bolts = sim.build.bolts
     first = bolts.first
     numbers = bolts.numbers(bolt)
@@ -71,7 +71,7 @@ def _of_bolts(
 
 def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:
     fields = sim.fields
-    if quantity == "force":  # of supports, which is what a user measures at a loading plate
+    if quantity == "force":  # force of supports, as measured at a loading plate
         return fields["reaction"][nodes].sum(axis=0)
     if quantity == "water_force":
         return rows_of(sim.core, "node.water").force[nodes].sum(axis=0)

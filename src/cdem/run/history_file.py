@@ -17,16 +17,16 @@ SUM_DIGITS = 8
 
 
 class HistoryFile:
-    """Histories that are being written.
+    """Histories under construction.
 
     Args:
         path: The .csv file.
         columns: Names with units.
-        keep: Checksums of the rows to keep of an existing file, as `sums`; None for a new one.
+        keep: Checksums of rows to keep of an existing file, as in `sums`; None for a new file.
 
     Attributes:
-        rows: Rows that it holds.
-        lost: Rows that were to be kept and are damaged or not there.
+        rows: Number of its rows.
+        lost: Number of rows to keep that are damaged or missing.
         sums: CRC-32 of each row, `SUM_DIGITS` hexadecimal digits each.
     """
 
@@ -50,10 +50,10 @@ class HistoryFile:
         return "".join(self._sums)
 
     def append(self, row: Sequence[float]) -> None:
-        """Add a row; numbers are written so that they read back to the same bits.
+        """Add a row; numbers read back to the same bits.
 
         Raises:
-            DiskError: It cannot be written; another try begins where this one began.
+            DiskError: It cannot be written; another try starts at the same place.
         """
         line = _line([int(v) if isinstance(v, Integral) else repr(float(v)) for v in row]).encode()
         try:
@@ -71,18 +71,18 @@ class HistoryFile:
         sync(self.path)
 
     def _read(self, width: int, keep: str) -> list[bytes]:
-        """The rows of the file that have the checksums, in their order."""
+        """The rows of the file with these checksums, in order."""
         if not self.path.is_file():
             return []
         sums = [keep[k : k + SUM_DIGITS] for k in range(0, len(keep), SUM_DIGITS)]
         rows: list[bytes] = []
-        at = 0  # of the next row; two rows may be the same, at the end and begin of stages
-        # the text after the last line end was being written when the run was killed
+        at = 0  # index of the next row; rows at the end and start of stages may be equal
+        # a kill may have left an incomplete last line
         for line in self.path.read_bytes().split(b"\n")[1:-1]:
             if at == len(sums):
                 break
             row = line + b"\n"
-            with suppress(ValueError):  # it is none of them
+            with suppress(ValueError):  # none of these rows
                 place = sums.index(_sum(row), at)
                 if row.count(b",") == width - 1:
                     rows.append(row)

@@ -1,4 +1,4 @@
-"""Fields of what the laws remember: the state variables that they declare, by element."""
+"""Fields of state variables, as declared by the laws, by element."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from cdem.rows import rows_of
 from cdem.run.state import RunState
 
 NOW = 0x33
-"""The bits of `yielded` that say what flows now."""
+"""The bits of `yielded` for present flow."""
 
 
 def wanted_fields(case: Case) -> list[str]:
-    """The output fields of a case, without the states of laws and the water that it does not have."""
+    """The output fields of a case, without states of laws and water that it does not have."""
     i = case.interfaces
     used = [BLOCK_LAWS[material.law] for material in case.materials.values()]
     used += [INTERFACE_LAWS[one.law] for one in (i.default, *i.pairs) if one is not None]
@@ -36,7 +36,7 @@ def wanted_fields(case: Case) -> list[str]:
 
 
 def yielded_of(sim: RunState) -> NDArray[np.int32]:
-    """What flows in each element now and what ever has (`YIELDED`), shapes one after the other."""
+    """Present and past plastic flow of each element (`YIELDED`), shape by shape."""
     tables = sim.core.yielded()
     counts = {shape: len(nodes) for shape, nodes in sim.build.topology.element_nodes.items()}
     rows = [tables[shape][:count] if tables[shape].size else np.zeros(count)
@@ -45,7 +45,7 @@ def yielded_of(sim: RunState) -> NDArray[np.int32]:
 
 
 def yielded_counts(sim: RunState) -> dict[str, dict[str, int]]:
-    """How many elements flow now and how many ever have, of each group whose material can."""
+    """Number of elements that yield now, and that ever have, for each group with a plastic material."""
     case, names = sim.case, sim.build.group_names
     flow = [n for n in names if BLOCK_LAWS[case.materials[case.groups[n].material].law].flows]
     if not flow:
@@ -59,28 +59,28 @@ def yielded_counts(sim: RunState) -> dict[str, dict[str, int]]:
 
 
 def state_of(sim: RunState, name: str) -> NDArray[np.float64]:
-    """The largest value of a state variable in each element, shapes one after the other.
+    """The largest value of a state variable in each element, shape by shape.
 
-    Of a block law it is that of its Gauss points; of an interface law that of the bond points,
+    For a block law, the largest of its Gauss points; for an interface law, of the bond points,
     vertices and sides of its faces. Elements without the law have 0.
     """
     return np.maximum(_of_block_laws(sim, name), _of_interface_laws(sim, name))
 
 
 STRAIN_THAT_ENDS = 1.0
-"""Plastic strain above which a run ends: the stress is no longer that of the rock."""
+"""Plastic strain above which a run ends: the stress is then wrong."""
 
 
 @dataclass
 class LargeStrain:
-    """The largest plastic strain of a group, above the limit of the case.
+    """The largest plastic strain of a group above the limit of the case.
 
     Attributes:
         group: The group.
-        state: Which strain.
-        value: How much [1].
-        place: Middle of the element now [m].
-        limit: What the case takes [1].
+        state: Name of the strain.
+        value: Its value [1].
+        place: Present middle of the element [m].
+        limit: Limit of the case [1].
     """
 
     group: str
@@ -90,17 +90,18 @@ class LargeStrain:
     limit: float
 
     def text(self) -> str:
-        """One line for the user."""
+        """A one-line warning."""
         place = ", ".join(f"{x:.4g}" for x in self.place)
         return (
             f"{self.state} of group {self.group} is {self.value:.3g} at ({place}) m, above "
-            f"elements.strain_limit {self.limit:g}: stress is exact for small strain only. Let rock that "
-            "moves far break along faces (bonds between blocks)"
+            f"elements.strain_limit {self.limit:g}: the stress is exact for small strain only. Let "
+            f"rock "
+            "with large displacements break along faces (bonds between blocks)"
         )
 
 
 def large_strains(sim: RunState) -> list[LargeStrain]:
-    """The largest plastic strain of each group that is above the limit of the case."""
+    """The largest plastic strain of each group above the limit of the case."""
     case, names = sim.case, sim.build.group_names
     group = np.concatenate(list(sim.build.topology.element_group.values()))
     found = []
@@ -120,7 +121,7 @@ def large_strains(sim: RunState) -> list[LargeStrain]:
 
 
 def _middle(sim: RunState, element: int) -> list[float]:
-    """Where the middle of an element is, counted over the shapes one after the other."""
+    """Middle of an element, with its number counted over all shapes."""
     position = rows_of(sim.core, "node.motion").position
     for nodes in sim.build.topology.element_nodes.values():
         if element < len(nodes):
@@ -131,7 +132,7 @@ def _middle(sim: RunState, element: int) -> list[float]:
 
 
 def _places(laws: dict[str, Law], name: str) -> dict[int, int]:
-    """Number of a law in the core, and place of the variable in its state."""
+    """Number of a law in the core, and index of the variable in its state."""
     return {
         number: [v.name for v in law.state].index(name)
         for number, law in enumerate(laws.values())
@@ -168,7 +169,7 @@ def _of_interface_laws(sim: RunState, name: str) -> NDArray[np.float64]:
 
 
 def _bonds(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]:
-    """Faces of bonded pairs that have the law, and the largest value at their points."""
+    """Faces of bonded pairs with the law, and the largest value at their points."""
     b, fields, width = sim.build, sim.core.fields(), native.interface_law_state
     used, _ = interfaces_of(sim.case, b.group_names)
     numbers = np.array([list(INTERFACE_LAWS).index(one.law) for one in used])
@@ -193,7 +194,7 @@ def _bonds(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]
 
 
 def _walls(sim: RunState, law: int, place: int) -> list[tuple[NDArray, NDArray]]:
-    """Exposed faces with vertices or sides that remember the law, and their values."""
+    """Exposed faces whose vertices or sides have a state of the law, and their values."""
     fields, width = sim.core.fields(), native.interface_law_state
     found = []
     for kind in ("spring", "edge"):

@@ -1,4 +1,4 @@
-"""How far a run is: one display on a terminal, a line a minute in a log file."""
+"""Progress of a run: a live display on a terminal, a line per minute in a log file."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from threading import Event, Thread
 from typing import Any
 
 LINE_SECONDS = 60.0
-"""Wall time between lines where nothing can be redrawn [s]."""
+"""Wall time between lines in a log file [s]."""
 SILENT_SECONDS = {True: 3.0, False: 20.0}
-"""Work that takes longer says what it is, by whether there is a terminal [s]."""
+"""Longer work is announced; times by whether there is a terminal [s]."""
 BAR_WIDTH = 20
-"""Of the bar on a terminal [characters]."""
+"""Width of the bar on a terminal [characters]."""
 
 Show = Callable[[str, str, float | None], None]
-"""Shows (topic, text, part that is done)."""
+"""Shows (topic, text, fraction done)."""
 
 
 @dataclass
 class Progress:
-    """Where a run is.
+    """Progress of a run.
 
     Attributes:
         stage: Name of the running stage.
@@ -31,14 +31,14 @@ class Progress:
         end_time: Time at which the stage ends [s], or None for a static stage.
         step: Steps done.
         dt: Time step [s].
-        rules: What rules it and where, or nothing where masses are made for it.
+        rules: Cause and place of the limit of the step, or nothing if masses are scaled to it.
         unbalance_ratio: Out-of-balance over applied forces.
         energy_error: Closing error of the energy ledger.
         broken: Broken semi-springs.
         steps_per_second: Speed over the last report.
         time_left: Estimate of the stage's remaining wall time [s], or None.
         fraction: Part of the stage that is done, or None.
-        note: What a user should know now, or nothing.
+        note: Advice for the user, or nothing.
     """
 
     stage: str
@@ -58,19 +58,19 @@ class Progress:
 
 @contextmanager
 def watch(*, silent: bool, tty: bool) -> Iterator[Callable[[Progress], None] | None]:
-    """Give the function that a run calls with its progress; see `line`."""
+    """Give the progress function of a run; see `line`."""
     with line(silent=silent, tty=tty) as show:
         yield None if show is None else lambda p: show(p.stage, describe(p), p.fraction)
 
 
 @contextmanager
 def line(*, silent: bool, tty: bool) -> Iterator[Show | None]:
-    """Give the function that shows how far something is on stderr.
+    """Give the function that shows progress on stderr.
 
     Args:
         silent: Show nothing.
-        tty: Whether stderr is a terminal, which can be redrawn; else there is a line at each new
-            topic and one a minute.
+        tty: Whether stderr is a terminal, which can be redrawn; else a line appears for each new
+            topic and every minute.
     """
     if silent:
         yield None
@@ -86,11 +86,11 @@ def line(*, silent: bool, tty: bool) -> Iterator[Show | None]:
 
 @contextmanager
 def busy(what: str, *, silent: bool = False) -> Iterator[None]:
-    """Say on stderr what takes so long, once it does: live on a terminal, else a line a minute.
+    """Announce long work on stderr: live on a terminal, else a line per minute.
 
     Args:
-        what: Is done within the block, e.g. "building the model".
-        silent: Say nothing.
+        what: The work within the block, e.g. "building the model".
+        silent: Print nothing.
     """
     if silent:
         yield
@@ -122,7 +122,7 @@ def _tell(what: str, done: Event, tty: bool) -> None:
 
 @contextmanager
 def _display(*, timed: bool = False) -> Iterator[Any]:
-    """A bar and a text, with the time that has passed for work of which no more is known."""
+    """A bar and a text; for work of unknown length, the elapsed time."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
     from rich.table import Column

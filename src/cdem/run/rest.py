@@ -1,4 +1,4 @@
-"""Whether blocks are at rest, how fast they still move, and whether one has left the model."""
+"""Rest of blocks: their speeds, whether they are at rest, and blocks that have left the model."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 SLOW_SPEED = 0.1
-"""A block that is faster moves [m/s]: the cut-off of rockfall codes (RocFall). Slower ones may rock
-on their contacts: they can climb half a millimetre."""
+"""Speed above which a block moves [m/s]: the cut-off of rockfall codes (RocFall). Slower blocks may
+rock on their contacts: they can climb half a millimetre."""
 REST_SPEED = 0.01
-"""A block rests if its middle moves slower than this, on average over `REST_SPAN` [m/s]."""
+"""A block rests if the mean speed of its centre over `REST_SPAN` is lower [m/s]."""
 STILL_SPEED = 1e-3
-"""Slower than this everything rests, even if it was never faster [m/s]."""
+"""Below this speed every block rests, even if none was ever faster [m/s]."""
 REST_ENERGY = 1e-3
-"""Part of the stage's largest kinetic energy: momentum of 3 %; RAMMS stops at 5 % of the largest
-momentum (Christen, Kowalski & Bartelt 2010)."""
+"""Fraction of the stage's largest kinetic energy: 3 % of the momentum; RAMMS stops at 5 % of the
+largest momentum (Christen, Kowalski & Bartelt 2010)."""
 REST_SPAN = 0.5
-"""Time through which rest must last [s]: at the top of its throw a block is slow for 2 ms."""
+"""Time that rest must last [s]: at the top of its throw a block is slow for 2 ms."""
 
 
 @dataclass
 class Motion:
-    """Blocks as rigid bodies: their elastic vibration does not count.
+    """Blocks as rigid bodies, without their elastic vibration.
 
     Attributes:
         speed: Root mean square speed of each block's mass in its rigid motion [m/s].
@@ -38,7 +38,7 @@ class Motion:
     middle: Floats
 
     def without(self, blocks: NDArray[np.intp]) -> Motion:
-        """The motion of all other blocks."""
+        """The motion of all blocks except these."""
         columns = (self.speed, self.energy, self.middle)
         return Motion(*(np.delete(column, blocks, axis=0) for column in columns))
 
@@ -49,7 +49,7 @@ def middles(first: NDArray[np.int32], mass: Floats, position: Floats) -> Floats:
     return np.add.reduceat(mass[:, None] * position, first[:-1], axis=0) / whole[:, None]
 
 
-@np.errstate(over="ignore", invalid="ignore")  # a run that failed is summed up, too
+@np.errstate(over="ignore", invalid="ignore")  # also used for a failed run
 def rigid_motion(
     first: NDArray[np.int32], mass: Floats, position: Floats, velocity: Floats
 ) -> Motion:
@@ -81,13 +81,13 @@ def rigid_motion(
 
 @dataclass
 class Quiet:
-    """How long nothing has moved, as the rows of the histories see it.
+    """How long all blocks have rested, judged at the rows of the histories.
 
     Attributes:
         peak: Largest kinetic energy of the stage so far [J].
-        since: Time at which rest began [s], or None while something moves.
-        middle: x, y, z of the blocks' middles then [m], one after the other.
-        rests: Whether it has lasted.
+        since: Start of rest [s], or None during motion.
+        middle: x, y, z of the blocks' middles at that time [m], one after the other.
+        rests: Whether rest has lasted long enough.
     """
 
     peak: float = 0.0
@@ -96,7 +96,7 @@ class Quiet:
     rests: bool = False
 
     def look(self, time: float, motion: Motion) -> None:
-        """Take in the motion at a time [s]."""
+        """Add the motion at a time [s]."""
         energy, fastest = float(motion.energy.sum()), float(motion.speed.max(initial=0.0))
         self.peak = max(self.peak, energy)
         slow = fastest < SLOW_SPEED and energy <= REST_ENERGY * self.peak
@@ -107,7 +107,7 @@ class Quiet:
         self.rests = self.since is not None and time - self.since >= REST_SPAN
 
     def _moved(self, motion: Motion) -> float:
-        """How far the farthest middle has moved since rest began [m]; inf where a block has left."""
+        """Largest displacement of a middle since rest began [m]; inf if a block has left."""
         before = np.reshape(self.middle, (-1, 3))
         if before.shape != motion.middle.shape:
             return np.inf
@@ -116,15 +116,15 @@ class Quiet:
 
 @dataclass
 class Departure:
-    """The first block of a group that fell below the model, or left its domain.
+    """The first block of a group that fell below the model or left its domain.
 
     Attributes:
         group: Its group.
         block: Its number.
-        time: When it was seen [s].
-        place: Its middle then [m].
-        speed: Root mean square speed of its mass then [m/s].
-        out: Whether it left the domain, and was taken out.
+        time: Time of detection [s].
+        place: Its middle at that time [m].
+        speed: Root mean square speed of its mass at that time [m/s].
+        out: Whether it left the domain and was removed.
     """
 
     group: str
@@ -135,30 +135,32 @@ class Departure:
     out: bool = False
 
     def text(self) -> str:
-        """One line for the user."""
+        """A one-line warning."""
         place = ", ".join(f"{x:.4g}" for x in self.place)
         if self.out:
             return (
                 f"block {self.block} of group {self.group} left model.domain at {self.speed:.3g} m/s: it "
-                f"was at ({place}) m at t = {self.time:.4g} s, and is taken out, as all will be that "
+                f"was at ({place}) m at t = {self.time:.4g} s, and is removed, like all blocks "
+                f"that "
                 "follow it"
             )
         return (
             f"block {self.block} of group {self.group} fell past the edge of the model: it is at "
-            f"({place}) m at t = {self.time:.4g} s, below everything at the start, and falls on at "
-            f"{self.speed:.3g} m/s unless model.domain takes it out"
+            f"({place}) m at t = {self.time:.4g} s, below the whole initial model, and keeps "
+            f"falling at "
+            f"{self.speed:.3g} m/s unless model.domain removes it"
         )
 
 
 def fallen(
     first: NDArray[np.int32], start: Floats, position: Floats, gravity: list[float]
 ) -> NDArray[np.intp]:
-    """Blocks that lie, whole, below the lowest point at the start; none without gravity.
+    """Blocks that lie completely below the lowest initial point; none without gravity.
 
     Args:
         first: First node of each block, and the end.
         start: Positions of the nodes at the start [m], shape (nodes, 3).
-        position: Now.
+        position: Present positions [m].
         gravity: [m/s2].
     """
     down = np.asarray(gravity, float)

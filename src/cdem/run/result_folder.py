@@ -1,4 +1,4 @@
-"""The result folder of a run: what is written when, and how a resumed run goes on with it."""
+"""The result folder of a run: its files, and how a resumed run continues them."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ from cdem.run.written_files import BEGUN, check_replaceable, refuse_links, remov
 from cdem.whole_files import disk_error, write_json, write_text
 
 RESULT_FILES = {"case.yaml", "run.log", "summary.json", CHECKPOINT, CHECKPOINT_BEFORE}
-"""A folder that holds one of these is read as a result folder; `--overwrite` asks for more."""
+"""A folder with one of these is a result folder; `--overwrite` checks more."""
 
 
 def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) -> None:
-    """Stop before anything is computed if the folder must not be written to."""
+    """Raise an error before any computation if the folder must not be written to."""
     if folder.exists() and not folder.is_dir():
         raise CdemError(f"{folder}: is a file; name another folder with -o")
     inside = _inside(folder) if folder.exists() else set()
@@ -59,13 +59,13 @@ def _guard(folder: Path, case_folder: Path, *, overwrite: bool, resume: bool) ->
 
 
 def _inside(folder: Path) -> set[str]:
-    """Names of what a folder holds besides the marks of a run that has begun."""
+    """Names in a folder, without the marks of a run that has begun."""
     return {path.name for path in folder.iterdir()} - BEGUN
 
 
 def _exists(folder: Path) -> CdemError:
     return CdemError(
-        f"{folder}: exists already; use --overwrite to replace it, --resume to go on, or -o "
+        f"{folder}: exists already; use --overwrite to replace it, --resume to continue it, or -o "
         "for another folder"
     )
 
@@ -75,15 +75,15 @@ class Results:
 
     Args:
         folder: The result folder.
-        case_folder: Where the case lies: never overwritten.
+        case_folder: Folder of the case: never overwritten.
         overwrite: Replace the results in an existing folder.
-        resume: Go on in an existing one.
+        resume: Continue an existing one.
 
     Attributes:
-        notes: What a user should know of an interrupted run that goes on.
+        notes: Messages for the user about the run that is continued.
 
     Raises:
-        CdemError: The folder exists and neither was asked for, it holds other things than results,
+        CdemError: The folder exists and neither was asked for, it holds other files than results,
             another run writes into it, or there is nothing to resume.
     """
 
@@ -119,7 +119,7 @@ class Results:
         self._open_series(sim, None, None)
 
     def reopen(self, sim: RunState, attributes: Attributes) -> None:
-        """Go on with the files of an interrupted run, cut back to its checkpoint."""
+        """Continue the files of an interrupted run, cut back to its checkpoint."""
         self.frames = attributes.frames
         self._open_series(sim, self.frames, attributes.row_sums)
         write_text(self.folder / "case.yaml", sim.given_case.dump())
@@ -128,7 +128,7 @@ class Results:
         self.log(f"resumed at step {sim.step_count}, t = {sim.time:.6g} s")
 
     def hold(self) -> None:
-        """Take the lock of the folder again after `release`, if no other run has written there.
+        """Take the lock of the folder again after `release`, unless another run has written there.
 
         Raises:
             CdemError: Another run writes, or has written.
@@ -136,12 +136,12 @@ class Results:
         self._lock.take()
         if self._checkpoint is not None and _identity(self._stat()) != _identity(self._checkpoint):
             raise CdemError(
-                f"{self.folder}: another run has written here meanwhile; open it again with resume"
+                f"{self.folder}: another run has written here since; open it again with resume"
             )
 
     def release(self) -> None:
-        """Let another run write into the folder; what is there is listed."""
-        with contextlib.suppress(DiskError):  # all that a run needs is on the disk already
+        """Let another run write into the folder; the files are listed first."""
+        with contextlib.suppress(DiskError):  # all data of the run are on the disk already
             for series in self._series():
                 series.sync()
         self._lock.release()
@@ -157,8 +157,9 @@ class Results:
         self._history = HistoryFile(self.folder / "histories.csv", columns, rows)
         if self._history.lost:
             self.notes.append(
-                f"histories.csv: {self._history.lost} rows are lost (damaged or missing); the run goes "
-                "on without them: to have them, run the case again in another folder (-o)"
+                f"histories.csv: {self._history.lost} rows are lost (damaged or missing); the run "
+                f"continues "
+                "without them. To get them back, run the case again in another folder (-o)"
             )
         if not sim.case.output.frames:
             return
@@ -172,12 +173,13 @@ class Results:
             if series.lost:
                 self.notes.append(
                     f"{series.path.name}: frames {_ranges(series.lost)} are lost (damaged or missing); "
-                    f"move those files in {series.folder.name}/ away to read the others; to have them, "
+                    f"move those files out of {series.folder.name}/ to read the others. To get "
+                    f"them back, "
                     "run the case again in another folder (-o)"
                 )
 
     def _series(self) -> list[FrameFiles | SurfaceFiles]:
-        """The series of frames that are written."""
+        """The series of frames being written."""
         return [s for s in (self._volume, self._surface, self._bolts) if s is not None]
 
     # ------------------------------------------------------------------ writing
@@ -192,7 +194,7 @@ class Results:
             raise disk_error(path, error) from error
 
     def record(self, sim: RunState, frame: bool) -> None:
-        """Write a history row, and a frame of the fields with it if asked."""
+        """Write a history row and, if asked, a frame of the fields."""
         self._drop_stop()
         e = sim.energies
         broken = sim.broken
@@ -205,7 +207,7 @@ class Results:
             self._record_frame(sim, self._volume, self._surface)
 
     def show_stop(self, sim: RunState) -> None:
-        """Write a frame of a run that stops, behind its checkpoint: one that goes on drops it."""
+        """Write a frame of a stopped run, after its checkpoint; a resumed run drops it."""
         if self._volume is None or self._surface is None or self._volume.last_time == sim.time:
             return
         self._record_frame(sim, self._volume, self._surface)
@@ -239,7 +241,7 @@ class Results:
         self.frames += 1
 
     def checkpoint(self, sim: RunState) -> None:
-        """Write the checkpoint, once all that it counts on is on the disk."""
+        """Write the checkpoint, after all files that it relies on are on the disk."""
         self._drop_stop()
         self._history.sync()
         for series in self._series():
@@ -251,7 +253,7 @@ class Results:
         self._checkpoint = self._stat()
 
     def read_checkpoint(self) -> tuple[Path, dict[str, NDArray], Attributes]:
-        """Read the last checkpoint that is whole: its path, arrays and attributes.
+        """Read the last intact checkpoint: its path, arrays and attributes.
 
         Raises:
             CdemError: There is none.
@@ -272,7 +274,7 @@ class Results:
                     f"{path}: is damaged, or of another version of cdem ({place}: {first['msg']})"
                 )
                 continue
-            self.notes += [f"{why}; going on from the one before, {path}" for why in said]
+            self.notes += [f"{why}; continuing from the previous one, {path}" for why in said]
             self._checkpoint = self._stat()
             return path, arrays, attributes
         raise CdemError(f"{'; '.join(said)}; run the case again with --overwrite")
@@ -282,7 +284,7 @@ class Results:
         return path.stat() if path.is_file() else None
 
     def ended(self, sim: RunState) -> str | None:
-        """The status in a summary of just this state, if the run has come to its end and said so."""
+        """The status in a summary of exactly this state, if the run was complete."""
         try:
             summary = json.loads((self.folder / "summary.json").read_text())
         except (OSError, ValueError):
@@ -297,15 +299,15 @@ class Results:
         self.log(f"{status} at step {sim.step_count}, t = {sim.time:.6g} s")
 
     def fail(self, sim: RunState) -> None:
-        """Record where a run failed."""
-        with np.errstate(all="ignore"):  # numbers may be beyond measure
+        """Record the state of a failed run."""
+        with np.errstate(all="ignore"):  # numbers may be huge
             summary = sim.summary("failed")
         write_json(self.folder / "summary.json", summary)
         self.log(f"failed at step {sim.step_count}, t = {sim.time:.6g} s")
 
 
 def _kept_in_frames(sim: RunState) -> list[OutputField]:
-    """Fields that change and that each frame of the volume has."""
+    """Changing fields in each frame of the volume."""
     case = sim.case
     wanted = wanted_fields(case)
     leave = case.model.domain is not None or any(s.remove or s.add for s in case.stages)
@@ -321,7 +323,7 @@ def _identity(stat: os.stat_result | None) -> tuple[int, ...]:
 
 
 def _ranges(numbers: Sequence[int]) -> str:
-    """Numbers in order, those that follow one another as a range."""
+    """Numbers in order; successive ones as a range."""
     parts: list[list[int]] = []
     for number in numbers:
         if parts and number == parts[-1][1] + 1:

@@ -1,4 +1,4 @@
-"""What is shown of a run: how far it is, and where it is as a table in a notebook."""
+"""Display of a run: its progress, and its state as a table in a notebook."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from cdem.run.state import RunState, StageState
 
 
 def progress(run: RunState, stage: StageState, speed: float, note: str) -> Progress:
-    """How far a run is.
+    """Progress of a run.
 
     Args:
         run: The run.
         stage: Its running stage.
         speed: Steps per second of wall time.
-        note: What a user should know now, or nothing.
+        note: Advice for the user, or nothing.
     """
     end = stage.end_time
     fraction = left = None
     if end is not None:
-        # a stage shorter than the resolution of the time is over when it begins
+        # a stage shorter than the time resolution ends at once
         length = end - stage.start_time
         fraction = (run.time - stage.start_time) / length if length > 0 else 1.0
         if fraction > 0:
@@ -45,13 +45,13 @@ def progress(run: RunState, stage: StageState, speed: float, note: str) -> Progr
 
 
 def _rules(run: RunState) -> str:
-    """What rules the step, where the program chooses it and masses are not made for it."""
+    """Limit of the step, if the program chooses the step and masses are not scaled to it."""
     made = run.case.time.step != "auto" or len(run.core.fields()["node.relax_mass"])
     return "" if made else ruling_step(run.build).words()
 
 
 def table(run: RunState, folder: Path | None) -> str:
-    """What a notebook shows: where a run is, as a table in HTML.
+    """Display in a notebook: the state of a run as a table in HTML.
 
     Args:
         run: The run.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from cdem.run.result_folder import Results
 
 CHUNK_SECONDS = 0.25
-"""The loop comes back about this often to look for signals and report progress [s of wall time]."""
+"""The loop returns about this often to check for signals and report progress [s of wall time]."""
 CHECK_INTERVAL = 20
 """Steps between checks of the run's health and, in static stages, of the unbalance ratio."""
 
@@ -45,15 +45,15 @@ class Simulation(RunState):
         case: A `Case`, or the path of a case file.
         threads: Threads of the core; None for all cores.
         output: Result folder, or None to record nothing.
-        overwrite: Replace what an existing result folder holds.
-        resume: Go on from the checkpoint in the result folder.
-        force: Go on though the case has changed in a way that a run cannot change.
-        strict: Refuse a model that `cdem check` warns of, before anything is written.
+        overwrite: Replace the contents of an existing result folder.
+        resume: Continue from the checkpoint in the result folder.
+        force: Continue although the case has changed in a way that is normally refused.
+        strict: Treat warnings of `cdem check` as errors, before anything is written.
 
     Raises:
-        CaseError: The case or its files are wrong, or not those of the run that is resumed, or
+        CaseError: The case or its files are wrong, or differ from the run to resume, or
             strict and there are warnings.
-        CdemError: The result folder is in use, or cannot be used.
+        CdemError: The result folder is in use or unusable.
 
     Example:
         >>> import cdem
@@ -90,7 +90,9 @@ class Simulation(RunState):
         self._fast_weakening: dict[str, FastWeakening] = {}
         self._actions: list[Action] = []
         if output is not None:
-            from cdem.run.result_folder import Results  # needs HDF5 and locks; check needs neither
+            from cdem.run.result_folder import (
+                Results,
+            )  # needs HDF5 and locks; cdem check needs neither
 
             self.results = Results(
                 Path(output), case.path_of("."), overwrite=overwrite, resume=resume
@@ -105,8 +107,8 @@ class Simulation(RunState):
             raise
 
     def _begin(self, *, resume: bool, force: bool, strict: bool) -> None:
-        """Bring the core to the state from which the run goes on."""
-        if self.case.stages:  # so that it can be stepped before any stage begins
+        """Bring the core to the initial or restored state of the run."""
+        if self.case.stages:  # allows steps before any stage begins
             self.core.set_damping(*stages.damping_of(self.case.stages[0]))
             self.core.set_lumped(stages.is_lumped(self.case.stages[0]))
         if resume:
@@ -122,7 +124,7 @@ class Simulation(RunState):
             self.results.open(self)
 
     def _hold_back(self) -> None:
-        """Leave out of the core what a later stage adds."""
+        """Take groups that a later stage adds out of the core."""
         if names := self.case.absent(0):
             comes = nodes_of_groups(self.build.topology, names)
             self.core.take_out(comes.astype(np.int8))
@@ -135,11 +137,11 @@ class Simulation(RunState):
         progress: Callable[[Progress], None] | None = None,
         should_stop: Callable[[], bool] | None = None,
     ) -> str:
-        """Run all stages that are left.
+        """Run all remaining stages.
 
         Args:
             progress: Called a few times per second.
-            should_stop: Asked as often; True stops the run with a checkpoint.
+            should_stop: Called as often; True stops the run with a checkpoint.
 
         Returns:
             How the last stage ended: "converged" (it was static and reached its tolerance), "at
@@ -165,7 +167,7 @@ class Simulation(RunState):
     ) -> str:
         status = self.finished_stages[-1]["status"] if self.finished_stages else "finished"
         if self.is_over and self.results and (said := self.results.ended(self)):
-            return said  # a resumed run that had come to its end
+            return said  # a resumed run that was complete
         while not self.is_over:
             status = self._run_stage(progress, should_stop)
             if status == "stopped":
@@ -175,11 +177,11 @@ class Simulation(RunState):
         return status
 
     def _with_advice(self, error: DiskError) -> DiskError:
-        """Say in the error of a full disk what is safe, and how to go on."""
+        """Extend the error of a full disk by the state of the results and advice."""
         kept = "run the case again"
         if self.results and has_checkpoint(self.results.folder):
-            kept = "the last checkpoint is whole: go on from it with --resume"
-        return DiskError(f"{error}. Mend this, e.g. by making room on the disk; {kept}")
+            kept = "the last checkpoint is intact: continue from it with --resume"
+        return DiskError(f"{error}. Free disk space, for example; {kept}")
 
     def run_stage(self, name: str) -> str:
         """Run up to the end of the named stage; returns its status."""
@@ -194,7 +196,7 @@ class Simulation(RunState):
     def run_until(self, time: float) -> str:
         """Run stages up to the first step at or after a simulated time [s]; returns the status.
 
-        The time counts from the start of the first stage. The rest can be run afterwards, and gives
+        The time counts from the start of the first stage. The rest can be run afterwards, with
         the same bits as an unbroken run.
         """
         status = "finished"
@@ -203,17 +205,17 @@ class Simulation(RunState):
         return status
 
     def set(self, path: str, value: Any) -> None:
-        """Change a value now, in the middle of the run, as the `set` of a stage does at its beginning.
+        """Change a value now, in the middle of the run, like the `set` of a stage at its beginning.
 
-        It stays until a later stage sets it. A result folder keeps it: `run.log`, `summary.json`, and
-        the checkpoint, from which a resumed run goes on with it.
+        It holds until a later stage sets it. A result folder records it: `run.log`, `summary.json`,
+        and the checkpoint; a resumed run keeps it.
 
         Args:
             path: As in a stage's `set`: ``"interfaces.bed.friction_angle"``, ``"loads.gravity"``.
             value: In SI, or with a unit: ``"10 kPa"``.
 
         Raises:
-            CaseError: There is no such value, it is not allowed, or it holds from the start.
+            CaseError: The value does not exist, is not allowed, or is fixed at the start.
         """
         self.check_case()
         self.case.try_setting(path, value)
@@ -226,9 +228,9 @@ class Simulation(RunState):
             self.results.log(f"t = {self.time:.6g} s: {path} set to {value}")
 
     def every(self, interval: float, action: Act) -> None:
-        """Call a function with this simulation at each multiple of an interval, while it runs.
+        """Call a function with this simulation at each multiple of an interval during the run.
 
-        The call comes at the first step at or after that time; steps, and so results, do not depend
+        The call comes at the first step at or after that time; steps and results do not depend
         on it. Use it to look, to write files of one's own, to `set` values, or to end a stage.
 
         Args:
@@ -259,7 +261,7 @@ class Simulation(RunState):
         return outcome
 
     def summary(self, status: str) -> dict[str, Any]:
-        """What summary.json says."""
+        """The content of summary.json."""
         of_laws = {
             "yielded": yielded_counts(self),
             "fast_weakening": [worst.text() for worst in self._fast_weakening.values()],
@@ -268,7 +270,7 @@ class Simulation(RunState):
         return super().summary(status) | of_laws
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: where the simulation is."""
+        """Display in a notebook: the state of the simulation."""
         return shown.table(self, self.results.folder if self.results else None)
 
     def step(self, count: int = 1) -> None:
@@ -317,7 +319,7 @@ class Simulation(RunState):
                 self.checkpoint()
 
     def _look(self, stage: StageState, outcome: str) -> str | None:
-        """Do what is due after some steps: follow, act, record, check; how the stage ended, or None."""
+        """Do all tasks that are due: follow, act, record, check; returns the stage's end, or None."""
         self._look_at_flow()
         ended = any([action.call(self) for action in self._actions])
         if stages.record_is_due(self, stage, outcome) or ended:
@@ -336,7 +338,7 @@ class Simulation(RunState):
         return self.stage
 
     def _look_at_flow(self) -> None:
-        """Follow the largest values at each place, where they are followed and a look is due."""
+        """Record the largest values at each place, if this is requested and due."""
         if self.flow and self.time >= self.flow.due:
             self.flow.look(self)
             if self.flow.ended and self.results:
@@ -375,13 +377,13 @@ class Simulation(RunState):
             self.results.record(self, frame)
 
     def _check(self) -> None:
-        """End a run whose results are not to be trusted any more."""
+        """End a run whose results are no longer trustworthy."""
         stages.refuse_curves_over(self)
         if why := failures.of_energy(self) or failures.of_strain(self):
             raise self._failed(why)
 
     def _look_at_weakening(self) -> None:
-        """Tell once of an interface whose friction falls faster than a step can follow."""
+        """Warn once of an interface whose friction falls too fast for the step."""
         for worst in fast_weakenings(self):
             known = self._fast_weakening.get(worst.interface)
             if known is None and self.results:
@@ -390,7 +392,7 @@ class Simulation(RunState):
                 self._fast_weakening[worst.interface] = worst
 
     def _failed(self, why: str) -> UnstableError:
-        """The error that says where a run failed and why; the result folder says so, too."""
+        """The error with place and cause of the failure; the result folder records it too."""
         kept = ""
         if self.results:
             self.results.fail(self)
@@ -401,10 +403,10 @@ class Simulation(RunState):
         return UnstableError(f"step {self.step_count}, t = {self.time:.6g} s: {why}{kept}")
 
     def _guard(self, advance: Callable[[], tuple[str, int, float]]) -> str:
-        """Turn a failed outcome of the core into an error that says what, where and when."""
+        """Turn a failed outcome of the core into an error with cause, place and time."""
         try:
             outcome, culprit, value = advance()
-        except RuntimeError as error:  # the core cannot go on: no room left for contacts
+        except RuntimeError as error:  # the core has no room left for contacts
             raise self._failed(f"{error}. A smaller time.safety may help too.") from None
         if outcome in ("steps_done", "time_reached", "converged"):
             return outcome
@@ -413,12 +415,12 @@ class Simulation(RunState):
     # ------------------------------------------------------------------ keeping
 
     def close(self) -> None:
-        """Let another run write into the result folder; `run` does so by itself when it ends."""
+        """Let another run write into the result folder; `run` does so when it ends."""
         if self.results:
             self.results.release()
 
     def checkpoint(self) -> None:
-        """Write everything that is needed to go on bit for bit, if there is a result folder."""
+        """Write all data to continue bit for bit, if there is a result folder."""
         if self.results:
             self.results.checkpoint(self)
             if self.flow:
@@ -426,7 +428,7 @@ class Simulation(RunState):
 
     @property
     def kept(self) -> dict[str, NDArray[np.float64]]:
-        """Arrays that a checkpoint keeps besides those of the core."""
+        """Arrays in a checkpoint besides those of the core."""
         return super().kept | (self.flow.arrays if self.flow else {})
 
     def _restore(self, *, force: bool) -> None:
@@ -442,7 +444,7 @@ class Simulation(RunState):
             )
         except (TypeError, ValueError, KeyError, AttributeError) as error:
             raise CdemError(
-                f"{path}: is damaged (its case is none); run the case again with --overwrite"
+                f"{path}: is damaged (its case is invalid); run the case again with --overwrite"
             ) from error
         self.results.notes += changes.check(self.case, force=force)
         self._restore_core(path, arrays, attributes)
@@ -459,7 +461,7 @@ class Simulation(RunState):
             self.results.reopen(self, attributes)
 
     def _restore_core(self, path: Path, arrays: dict[str, NDArray], attributes: Attributes) -> None:
-        """Hand the arrays of a checkpoint to the core, if it can work with them."""
+        """Give the arrays of a checkpoint to the core, if they are valid."""
         followed = {n: arrays.pop(n) for n in list(arrays) if n.startswith(PREFIX)}
         own = {name: arrays.pop(name) for name in super().kept if name in arrays}
         fault = restored.wrong_kept(own, super().kept)

@@ -1,4 +1,4 @@
-"""Stages of a run: what each sets, when it records, when it ends."""
+"""Stages of a run: settings, times of records, end."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FRAMES = 50
 
 
 def _local(stage: Stage) -> float:
-    """Local damping of a stage, which the case has filled in where it was left out."""
+    """Local damping of a stage; the case has filled in its default."""
     assert stage.damping.local is not None
     return stage.damping.local
 
@@ -48,8 +48,8 @@ def is_lumped(stage: Stage) -> bool:
     """Whether a stage moves lumped masses.
 
     A static stage only looks for rest, which does not depend on inertia, and lumped masses allow a
-    longer step (2.2 times for a tet); local damping scales forces node by node, which is stable for
-    lumped masses alone.
+    longer step (2.2 times for a tet); local damping scales forces node by node, which is stable
+    only for lumped masses.
     """
     return stage.mode == "static" or _local(stage) > 0
 
@@ -72,7 +72,7 @@ def change_value(sim: RunState, setting: Setting) -> None:
 
 
 def update_core(sim: RunState, index: int) -> None:
-    """Hand the values that the case has now to the core."""
+    """Give the core the present values of the case."""
     b = sim.build
     names = b.group_names
     laws, table = interfaces_of(sim.case, names)
@@ -83,7 +83,7 @@ def update_core(sim: RunState, index: int) -> None:
         raise CaseError(
             f"{sim.case.where(f'stages.{index}.set')}: stages.{index}.set: the interface of "
             f"{names[i]!r} and {names[j]!r} was not bonded at the start (cohesion and "
-            "tensile_strength 0), so it cannot be given strength now; start with a strength"
+            "tensile_strength 0), so it cannot get strength now; give it strength from the start"
         )
     arrays = change(b)
     sim.core.set_interfaces(b.assembly.interfaces)
@@ -97,11 +97,11 @@ def begin(sim: RunState) -> StageState:
     """Start the next stage of a simulation.
 
     Raises:
-        CaseError: A curve is over before it; or what it adds does not fit in.
+        CaseError: A curve ends before it; or an added group does not fit in.
     """
     index = sim.stage_index
     stage = sim.case.stages[index]
-    sim.begins.setdefault(stage.name, sim.time)  # a search begins its last stage again and again
+    sim.begins.setdefault(stage.name, sim.time)  # a search starts its last stage many times
     if stage.remove:
         excavate(sim, stage.remove)
     change_bolts(sim, stage.name)
@@ -129,40 +129,40 @@ def begin(sim: RunState) -> StageState:
     )
     release = _release_of(stage)
     if release is not None and stage.mode == "dynamic":
-        sim.core.let_go(1 - release.to, sim.time + (release.over or 0.0))
+        sim.core.release_forces(1 - release.to, sim.time + (release.over or 0.0))
     elif release is not None:
         release_part(sim, begun)
     return begun
 
 
 def refuse_curves_over(sim: RunState) -> None:
-    """End a run whose curves are used up before the last dynamic stage, for which they may be meant.
+    """End a run whose curves end before the last dynamic stage, for which they may be meant.
 
     Raises:
-        CaseError: One is; says from when its times count.
+        CaseError: There is such a curve; says where its times start.
     """
     if sim.begun > last_dynamic(sim.case.stages):
         return
-    late = sim.stage_index * float(sim.core.scalars()["dt"])  # stages end up to a step late
+    late = sim.stage_index * float(sim.core.scalars()["dt"])  # each stage may end one step late
     for keys, what in over_early(sim.case, sim.time, late):
         path = ".".join(map(str, keys))
         raise CaseError(f"{sim.case.where(path)}: {path}: {what}")
 
 
 def _release_of(stage: Stage) -> Release | None:
-    """How a stage lets go of what was dug out: what it digs out itself, at once by default."""
+    """Release settings of a stage: by default, groups removed in it are released at once."""
     return stage.release or (Release() if stage.remove else None)
 
 
 def excavate(sim: RunState, names: list[str]) -> None:
-    """Dig groups out; the forces that they bore are kept until they are let go."""
+    """Remove groups; the forces that they carried are kept until they are released."""
     t = sim.build.topology
     leave = np.isin(t.block_group, [sim.build.group_names.index(name) for name in names])
     sim.core.excavate(leave[t.node_block].astype(np.int8))
 
 
 def fill(sim: RunState, names: list[str]) -> None:
-    """Bring groups in, free of stress where they lie between the rock as it is now."""
+    """Add groups, free of stress in their present positions between the rock."""
     b, t = sim.build, sim.build.topology
     comes, out = nodes_of_groups(t, names), sim.core.fields()["node.out"] != 0
     moved = rows_of(sim.core, "node.motion").position - b.start_position
@@ -174,7 +174,7 @@ def fill(sim: RunState, names: list[str]) -> None:
         raise CaseError(
             f"{sim.case.where(f'stages.{sim.stage_index}.add')}: stages.{sim.stage_index}.add: the rock "
             f"around group {group} has moved so far that an element near ({place}) would be turned "
-            "inside out; add it earlier, or give it larger elements"
+            "inside out; add the group earlier, or give it larger elements"
         )
     b.born = np.where(comes[:, None], lie, b.born)
     sim.reference = np.where(comes[:, None], lie, sim.reference)
@@ -184,14 +184,14 @@ def fill(sim: RunState, names: list[str]) -> None:
 
 
 def renewed(sim: RunState, names: Iterable[str]) -> dict[str, NDArray]:
-    """Arrays of the core once groups have come in where they are free of stress."""
+    """Arrays of the core once groups have been added free of stress."""
     b = sim.build
     b.compensate_again(names)
     return change(b, places=True)
 
 
 def change_bolts(sim: RunState, stage: str) -> None:
-    """Remove and install the bolts of a stage; those of the first are there already."""
+    """Remove and install the bolts of a stage; bolts of the first stage are already installed."""
     bolts = sim.build.bolts
     leave, come = bolts.flags(stage, "remove"), bolts.flags(stage, "install")
     if leave.any():
@@ -201,21 +201,21 @@ def change_bolts(sim: RunState, stage: str) -> None:
 
 
 def begin_surfaces(sim: RunState, stage: str) -> None:
-    """Let surface laws act that wait for a stage; those of the first act already."""
+    """Start surface laws that wait for this stage; laws of the first stage already act."""
     come = np.array([item.stage == stage for item in sim.case.loads.surfaces], np.int8)
     if come.any() and sim.stage_index > 0:
         sim.core.begin_surfaces(come)
 
 
 def release_part(sim: RunState, stage: StageState) -> bool:
-    """Let go of the next part of what was dug out in a static stage; whether there was one."""
+    """Release the next part of forces of removed groups in a static stage; returns whether there was one."""
     rules = sim.case.stages[sim.stage_index]
     release = _release_of(rules)
     if stage.mode != "static" or release is None or stage.parts >= release.parts:
         return False
     stage.parts += 1
     share = stage.parts / release.parts
-    sim.core.let_go(stage.held + share * (1 - release.to - stage.held), sim.time)
+    sim.core.release_forces(stage.held + share * (1 - release.to - stage.held), sim.time)
     stage.solved = ""
     return True
 
@@ -246,11 +246,11 @@ def solve(sim: RunState, stage: StageState) -> None:
 
 
 def change_end(sim: RunState, *, longer: bool) -> None:
-    """Let the stage of a resumed run end as the case has it now.
+    """Let the stage of a resumed run end according to the present case.
 
     Args:
         sim: The simulation, restored.
-        longer: Whether the last stage that has begun is to go on, if it has ended already.
+        longer: Whether to prolong the last stage begun if it has already ended.
     """
     if longer and sim.stage is None and sim.ended_stage is not None:
         sim.stage, sim.ended_stage = sim.ended_stage, None
@@ -262,7 +262,7 @@ def change_end(sim: RunState, *, longer: bool) -> None:
 
 
 def catch_up(sim: RunState) -> None:
-    """Give the core of a resumed run what its stages and its script have set and added so far."""
+    """Apply to the core of a resumed run all earlier settings and additions of stages and scripts."""
     for done in range(sim.begun + 1):
         if done:
             apply_settings(sim, done - 1)
@@ -276,7 +276,7 @@ def catch_up(sim: RunState) -> None:
 
 
 def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple[str, int, float]:
-    """Run towards the stage's next event or a time, at most `steps` steps; the core's report."""
+    """Run towards the stage's next event or a time, at most `steps` steps; returns the core's report."""
     rules = sim.case.stages[sim.stage_index]
     done = sim.step_count - stage.start_step
     if rules.max_steps is not None:
@@ -303,7 +303,7 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
 
 
 def record_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
-    """Whether a history row belongs to this moment; counts it."""
+    """Whether a history row is due now; counts it."""
     if stage.mode == "static":
         due = (sim.step_count - stage.start_step) % STATIC_RECORD_STEPS == 0
         due = due or status(sim, stage, outcome) is not None
@@ -320,7 +320,7 @@ def record_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
 
 
 def look_for_rest(sim: RunState, stage: StageState) -> None:
-    """At a history row: see whether the blocks of a stage with `until: rest` rest."""
+    """At a history row: check whether the blocks of a stage with `until: rest` rest."""
     if sim.case.stages[sim.stage_index].until == "rest":
         stage.quiet.look(sim.time, sim.motion_of_rest)
 
@@ -333,7 +333,7 @@ def frame_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
 
 
 def status(sim: RunState, stage: StageState, outcome: str) -> str | None:
-    """How the stage ended, or None while it goes on."""
+    """How the stage ended, or None if it continues."""
     rules = sim.case.stages[sim.stage_index]
     if outcome == "converged":
         return "converged"

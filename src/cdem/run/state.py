@@ -1,4 +1,4 @@
-"""What a run is at a moment: the model, its motion, the running stage."""
+"""State of a run: the model, its motion, the running stage."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from cdem.run.groups import Group, groups_of
 from cdem.run.rest import Departure, Motion, Quiet, fallen, middles, rigid_motion
 
 STALL_STEPS = 10_000
-"""A static stage that comes no nearer to rest in as many steps is said to stall."""
+"""A static stage with no progress towards rest in this many steps is said to stall."""
 
 
 @dataclass
@@ -38,16 +38,16 @@ class StageState:
         start_step: Steps done before it.
         end_time: [s], or None for a static stage.
         row_every: Time between history rows [s].
-        rows: Times of history rows that have passed after the first.
-        frame_due: Whether a time of a frame passed with the last of them.
+        rows: Number of history rows whose times have passed, after the first.
+        frame_due: Whether a frame was due with the last of them.
         wall_time: Wall time spent in it [s].
         least_unbalance: Smallest unbalance ratio of a static stage so far, or None.
         least_step: Step at which it was reached.
         quiet: Rest of a dynamic stage that ends with it: see `Quiet`.
-        parts: Of a static stage with `release`: how many have been let go.
-        held: Part of the forces of what was dug out that was left when the stage began [1].
-        solved: Of a static stage with `relax: solve`: what its solve has reached since its forces
-            last changed, or nothing.
+        parts: Static stage with `release`: number of parts released.
+        held: Fraction of the forces of removed groups still held at the start of the stage [1].
+        solved: Static stage with `relax: solve`: result of the last solve since the forces changed, or
+            nothing.
     """
 
     name: str
@@ -67,7 +67,7 @@ class StageState:
     solved: str = ""
 
     def note(self, step: int, unbalance: float) -> str:
-        """What a user should know about a static stage that does not come to rest, or nothing."""
+        """Advice about a static stage that does not come to rest, or nothing."""
         if self.mode != "static":
             return ""
         if self.least_unbalance is None or unbalance < 0.95 * self.least_unbalance:
@@ -76,7 +76,7 @@ class StageState:
         if waited < STALL_STEPS:
             return ""
         return (
-            f"no nearer to rest for {waited:,} steps (does a block move freely? "
+            f"no progress towards rest for {waited:,} steps (does a block move freely? "
             "else try a larger tolerance or another relax)"
         )
 
@@ -88,13 +88,13 @@ class StageState:
 
 @dataclass
 class Setting:
-    """A value that a script has set in the middle of a run.
+    """A value set by a script in the middle of a run.
 
     Attributes:
-        begun: Stages that had begun.
+        begun: Number of stages begun at that time.
         time: [s].
-        path: In the case.
-        value: As it was given.
+        path: Path in the case.
+        value: The given value.
     """
 
     begun: int
@@ -104,12 +104,12 @@ class Setting:
 
 
 class Attributes(BaseModel):
-    """What a checkpoint keeps besides arrays.
+    """Data in a checkpoint besides arrays.
 
     Attributes:
-        version: Of cdem.
+        version: Version of cdem.
         own_laws: SHA-256 of the headers of own laws, by name.
-        case: The case as it was given.
+        case: The given case.
         nodes: Fingerprint of the model.
         core: Scalars of the core.
         overlap, stage_index, stage, ended_stage, finished_stages, wall_time,
@@ -141,7 +141,7 @@ class Attributes(BaseModel):
     @field_validator("stage", "ended_stage", mode="before")
     @classmethod
     def _is_whole(cls, stage: Any) -> Any:
-        """Refuse a stage without one of its values: it would go on with a default."""
+        """Refuse a stage with a missing value: it would continue with a default."""
         if isinstance(stage, dict):
             quiet = stage.get("quiet")
             for kept, kind in ((stage, StageState), (quiet, Quiet)):
@@ -153,33 +153,33 @@ class Attributes(BaseModel):
 
 
 class RunState:
-    """A model and how far its run has come; looked at, and recorded, from here.
+    """A model and the progress of its run, for inspection and records.
 
     Attributes:
-        case: The case, with what its stages have set so far. The model is made from it: a later
-            change would do nothing, so it stops the run.
-        given_case: The case as it was given.
+        case: The case, with the settings of its stages so far. The model is made from it: a later
+            change would have no effect, so it stops the run.
+        given_case: The original case.
         threads: Threads of the core.
         build: The model.
         core: The compiled core, holding model and state.
         audit: The report on the model.
-        overlap: Of the blocks at the start: depth [m], number of vertices, a face.
+        overlap: Overlap of the blocks at the start: depth [m], number of vertices, a face.
         stage_index: The running stage or the next one.
         stage: The running stage, or None between stages.
-        ended_stage: The stage that ended last, as long as no other has begun.
+        ended_stage: The last stage that ended, until another begins.
         finished_stages: A row of the summary for each stage that has ended.
         reference: Positions from which displacements count [m], shape (nodes, 3).
-        departures: The first block of each group that fell past the edge of the model, and that left
-            its domain.
+        departures: The first block of each group that fell past the edge of the model, and the
+            first that left its domain.
         wall_time: Wall time spent in stages [s].
-        settings: Values that a script has set while it ran.
-        begins: When the stages began that have begun, by name [s].
+        settings: Values set by a script during the run.
+        begins: Start times of the stages begun, by name [s].
     """
 
     audit: Audit
 
     def __init__(self, case: Case, threads: int) -> None:
-        self.case = case.model_copy(deep=True)  # stages change it; the caller's stays
+        self.case = case.model_copy(deep=True)  # stages change the copy, not the caller's case
         self.given_case = case.model_copy(deep=True)
         self.keep_case()
         self.threads = threads
@@ -197,20 +197,20 @@ class RunState:
         self.begins: dict[str, float] = {}
 
     def keep_case(self) -> None:
-        """Remember the case that the core has now."""
+        """Store the case as the core has it now."""
         self._case = self.case.model_copy(deep=True)
 
     def check_case(self) -> None:
-        """Refuse to go on with a case that was changed after the core got it.
+        """Refuse to continue with a case that was changed after the core was made.
 
         Raises:
-            CaseError: It was changed; says where.
+            CaseError: It was changed; names the place.
         """
         if self.case != self._case:
             now, was = (case.model_dump(mode="json") for case in (self.case, self._case))
             raise CaseError(
                 f"simulation.case.{next(differences(was, now))[0]}: was changed after the model was "
-                "made from it, which would do nothing. Use simulation.set(path, value), or give a stage "
+                "made, which has no effect. Use simulation.set(path, value), or give a stage "
                 "a 'set'"
             )
 
@@ -231,10 +231,11 @@ class RunState:
 
     @property
     def fields(self) -> dict[str, NDArray[np.float64]]:
-        """Fields on nodes, read-only: views of the core, which change as the run goes on, or fresh arrays.
+        """Fields on nodes, read-only: views of the core, which change during the run, or new
+        arrays.
 
         "position", "velocity" [m, m/s] are views, shape (nodes, 3); "displacement" [m] is counted
-        from the last reset; "force" [N] is the last unbalanced force, "reaction" [N] that of
+        from the last reset; "force" [N] is the last unbalanced force, "reaction" [N] the force of
         supports; "mass" [kg]. To move nodes on purpose, write into `motion`.
         """
         motion = rows_of(self.core, "node.motion")
@@ -257,7 +258,7 @@ class RunState:
 
     @property
     def contacts(self) -> dict[str, NDArray]:
-        """Contacts that act now, one row each.
+        """Active contacts, one row each.
 
         Semi-springs, then semi-edges: "kind" (0 spring, 1 edge), "mother_face", "target_face" (face
         ids), "force_n" [N, compression positive], "force" [N, on the mother, shape (contacts, 3)].
@@ -289,13 +290,13 @@ class RunState:
 
     @property
     def out(self) -> NDArray[np.bool_]:
-        """Whether each block was dug out or has left the domain: it is no part of the computation."""
+        """Whether each block was removed or has left the domain."""
         first, flags = self.build.topology.block_first_node[:-1], self.core.fields()["node.out"]
         return flags[first] != 0 if len(flags) else np.zeros(len(first), bool)
 
     @property
     def fallen(self) -> NDArray[np.intp]:
-        """Blocks that have fallen past the edge of the model, and fall on."""
+        """Blocks that have fallen past the edge of the model and keep falling."""
         first, gravity = self.build.topology.block_first_node, self.case.loads.gravity
         position = rows_of(self.core, "node.motion").position
         below = fallen(first, self.build.start_position, position, gravity)
@@ -303,12 +304,12 @@ class RunState:
 
     @property
     def motion_of_rest(self) -> Motion:
-        """The rigid motion of the blocks that have not left the model."""
+        """The rigid motion of the blocks still in the model."""
         gone = np.concatenate([self.fallen, np.flatnonzero(self.out)])
         return self.rigid_motion.without(gone)
 
     def take_out(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-        """Take the bodies out that have left the domain since the last look.
+        """Remove bodies that have left the domain since the last check.
 
         Returns:
             Their blocks, and the speeds with which they left [m/s].
@@ -324,14 +325,15 @@ class RunState:
         speeds = self.rigid_motion.speed[blocks]
         leaves = np.zeros(len(t.block_group), np.int8)
         leaves[blocks] = 1
-        self.core.take_out(leaves[t.node_block])  # where they stand still
+        self.core.take_out(leaves[t.node_block])  # they stop there
         return blocks, speeds
 
     def look_for_departures(self) -> list[Departure]:
-        """Take out what has left the domain, and note what fell below the model since the last look.
+        """Remove bodies outside the domain, and note blocks that fell below the model since the
+        last check.
 
         Returns:
-            The first block of each group of which none had before.
+            The first block of each group that had none before.
         """
         t, found, position = self.build.topology, [], rows_of(self.core, "node.motion").position
         known = {(departure.group, departure.out) for departure in self.departures}
@@ -350,7 +352,7 @@ class RunState:
 
     @property
     def taken_out(self) -> dict[str, dict[str, float]]:
-        """Number and mass [kg] of the blocks that were taken out, of each group that lost any."""
+        """Number and mass [kg] of the removed blocks, for each group that lost any."""
         t, out = self.build.topology, self.out
         mass = np.add.reduceat(self.fields["mass"], t.block_first_node[:-1])
         lost = {}
@@ -365,19 +367,19 @@ class RunState:
 
     @property
     def dug_out(self) -> list[str]:
-        """Groups that stages so far have removed."""
+        """Groups removed by stages so far."""
         stages = self.case.stages[: self.begun]
         removed = {name for stage in stages for name in stage.remove}
         return sorted(removed & set(self.case.absent(self.begun)))
 
     @property
     def awaited(self) -> list[str]:
-        """Groups that have not been there yet."""
+        """Groups not yet added."""
         return sorted(set(self.case.absent(self.begun)) - set(self.dug_out))
 
     @property
     def begun(self) -> int:
-        """How many stages have begun."""
+        """Number of stages begun."""
         return self.stage_index + (self.stage is not None)
 
     @property
@@ -407,13 +409,13 @@ class RunState:
 
     @property
     def kept(self) -> dict[str, NDArray[np.float64]]:
-        """Arrays that a checkpoint keeps besides those of the core, shape (nodes, 3)."""
+        """Arrays in a checkpoint besides those of the core, shape (nodes, 3)."""
         adds = any(stage.add for stage in self.case.stages)
         born = {"simulation.born": self.build.born} if adds else {}
         return {"simulation.reference": self.reference} | born
 
     def attributes(self, row_sums: str, rows: int, frames: int) -> Attributes:
-        """What a checkpoint keeps besides arrays, after so many rows of histories and frames."""
+        """Data in a checkpoint besides arrays, after this many rows of histories and frames."""
         return Attributes(
             version=__version__,
             own_laws=digests,
@@ -434,7 +436,7 @@ class RunState:
         )
 
     def summary(self, status: str) -> dict[str, Any]:
-        """What summary.json says."""
+        """The content of summary.json."""
         fields = self.fields
         counts = self.audit.counts
         energies = dict(self.energies) if self.step_count else {}

@@ -1,4 +1,4 @@
-"""Which files of a result folder cdem wrote: only those does `--overwrite` ever remove."""
+"""Files of a result folder that cdem wrote: `--overwrite` removes no others."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from cdem.errors import CdemError
 from cdem.whole_files import ASIDE, refuse_link, write_text
 
 LOCK = ".cdem-lock"
-"""The file that a run holds while it writes."""
+"""The file held by a run while it writes."""
 BEGUN = {MARKER, MARKER + ASIDE, LOCK}
-"""What a run that is killed as it begins leaves: a folder with no more than these holds nothing."""
+"""Files left by a run killed at its start: a folder with no others holds no results."""
 FOLDERS = {
     "vtu": ["frame-*.vtu"],  # cdem export
     "frames": ["frame-*.vtkhdf", "elements.h5"],
     "surface": ["frame-*.vtkhdf"],
     "bolts": ["frame-*.vtkhdf"],
-    "maps": ["*.tif", "*.qml", "*.tif.aux.xml"],  # cdem runout, and what GIS put beside them
+    "maps": ["*.tif", "*.qml", "*.tif.aux.xml"],  # cdem runout, with files that GIS put beside them
 }
 """Folders inside a result folder, and patterns of the names of their files."""
 CUTS = ("", "-[xyz]=*", "-*,*,*,*")
-"""What follows a field in the name of a picture: nothing, or the plane of a cut."""
+"""Text after a field in the name of a picture: nothing, or the plane of a cut."""
 PICTURES = ("-[0-9][0-9][0-9][0-9].png", "-overview.png", "-before-after.png", ".gif")
-"""What ends it."""
+"""Ends of these names."""
 WRITTEN = {
     # cdem run
     MARKER, LOCK, "case.yaml", "run.log", "summary.json", "checkpoint.h5", "checkpoint-before.h5",
@@ -43,7 +43,7 @@ WRITTEN = {
 
 
 def mark(folder: Path, run: str) -> None:
-    """Say that cdem made a folder, and which run writes into it."""
+    """Mark a folder as made by cdem, with the run that writes into it."""
     write_text(
         folder / MARKER,
         "cdem run made this folder. With --overwrite it replaces the files that it writes here,\n"
@@ -52,7 +52,7 @@ def mark(folder: Path, run: str) -> None:
 
 
 def _is_written(path: Path) -> bool:
-    """Has a path the name and kind of what cdem writes, or of what a kill left of it?"""
+    """Whether a path has the name and kind of a file of cdem, or of its remains after a kill."""
     if path.is_dir() and not path.is_symlink():
         patterns = FOLDERS.get(path.name, [])
         return bool(patterns) and all(
@@ -66,14 +66,14 @@ def _matches(name: str, patterns: Iterable[str]) -> bool:
 
 
 def check_replaceable(folder: Path, case_folder: Path) -> None:
-    """Make sure that a folder holds results and nothing else.
+    """Make sure that a folder holds only results.
 
     Args:
         folder: It exists and is not empty.
-        case_folder: Where the case that is run lies.
+        case_folder: Folder of the case.
 
     Raises:
-        CdemError: It is not a result folder, holds the case, or something that cdem did not write.
+        CdemError: It is not a result folder, or holds the case or a file that cdem did not write.
     """
     advice = "so it is not overwritten; name another folder with -o"
     if folder.resolve() == case_folder.resolve():
@@ -81,7 +81,8 @@ def check_replaceable(folder: Path, case_folder: Path) -> None:
     refuse_link(folder / LOCK)
     if not (folder / MARKER).is_file():
         raise CdemError(
-            f"{folder}: is not a result folder ({MARKER} is not there), {advice}, or remove it yourself"
+            f"{folder}: is not a result folder ({MARKER} is missing), {advice}, or remove it "
+            f"yourself"
         )
     other = sorted(path.name for path in folder.iterdir() if not _is_written(path))
     if other:
@@ -92,10 +93,10 @@ def check_replaceable(folder: Path, case_folder: Path) -> None:
 
 
 def refuse_links(folder: Path) -> None:
-    """Make sure that what cdem writes into a result folder lies there, and nowhere else.
+    """Make sure that files of cdem in a result folder are not links to other places.
 
     Raises:
-        CdemError: A file or folder of a name that cdem writes is a link.
+        CdemError: A file or folder with a name used by cdem is a link.
     """
     for path in folder.iterdir():
         if path.name in FOLDERS:
@@ -107,7 +108,7 @@ def refuse_links(folder: Path) -> None:
 
 
 def remove_written(folder: Path) -> None:
-    """Remove from a folder what cdem wrote; its mark and lock stay."""
+    """Remove the files of cdem from a folder; its mark and lock stay."""
     for path in folder.iterdir():
         if path.name in (MARKER, LOCK) or not _is_written(path):
             continue

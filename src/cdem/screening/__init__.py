@@ -1,1 +1,1 @@
-"""Factors of safety over terrain by closed forms, and the bodies that deserve a computation."""
+"""Factors of safety over terrain by closed forms, and the bodies worth a computation."""

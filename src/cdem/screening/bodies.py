@@ -1,4 +1,4 @@
-"""Bodies between the ground and one or two planes through a point of it, on the cells of a grid."""
+"""Bodies between the ground and one or two planes through a point of the ground, on a grid."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 FIRST_REACH = 16
-"""Cells from the point to the edge of the first window; each next one is twice as wide."""
+"""Cells from the point to the edge of the first window; each further window is twice as wide."""
 NEAR = 2
-"""The body may begin so many cells from the point: on one of two planes it lies beside it."""
+"""Largest distance from the point to the body [cells]: on one of two planes it lies beside it."""
 LEAST_CELLS = 9
-"""Smaller bodies are not resolved by the grid."""
+"""Smaller bodies are not resolved by the grid [cells]."""
 COUNTED = 75.0
-"""The area of planes up to this dip is that of the cells above them; of steeper ones it follows
-from the ground, because few cells lie above them [deg]."""
+"""Up to this dip the area of a plane is computed from the cells above it; for steeper planes from
+the ground, because few cells lie above them [deg]."""
 TOUCHES = 1e-6
 
 
@@ -33,13 +33,13 @@ class Body:
 
     Attributes:
         planes: One or two planes that bound it below.
-        sliding: How it slides.
-        point: Where its line of sliding leaves the ground [m].
-        volume: [m3].
-        areas: Of its planes [m2].
-        factor: Of safety [1].
+        sliding: Its mode of sliding.
+        point: Point where its line of sliding daylights [m].
+        volume: Volume [m3].
+        areas: Areas of its planes [m2].
+        factor: Factor of safety [1].
         corner: Row and column of its window in the map.
-        cells: Which cells of the window it covers.
+        cells: Mask of its cells in the window.
     """
 
     planes: tuple[JointPlane, ...]
@@ -53,7 +53,7 @@ class Body:
 
     @property
     def name(self) -> str:
-        """Of its planes: the one it slides on alone first."""
+        """Name from its planes; a plane on which it slides alone comes first."""
         names = [plane.name for plane in self.planes]
         return "+".join(reversed(names) if self.sliding.kind == "second" else names)
 
@@ -64,18 +64,18 @@ class Body:
         return slice(i, i + rows), slice(j, j + columns)
 
     def bed(self, x: Any, y: Any) -> Floats:
-        """Height of its lower surface [m] at some places, beyond its rim too."""
+        """Height of its lower surface [m] at some points, extended beyond its rim."""
         return np.max([height_of(plane, self.point, x, y) for plane in self.planes], axis=0)
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Which bodies count.
+    """Limits of bodies.
 
     Attributes:
-        smallest: Volume [m3].
-        largest: Volume [m3].
-        unit_weight: Of rock [N/m3].
+        smallest: Smallest volume [m3].
+        largest: Largest volume [m3].
+        unit_weight: Unit weight of the rock [N/m3].
     """
 
     smallest: float
@@ -96,7 +96,8 @@ class Ground:
         grid: The heights.
         x, y: Coordinates of its columns and rows [m].
         cell_area: Area of a cell [m2].
-        normal: Of the ground, not of unit length: (-dz/dx, -dz/dy, 1), shape (rows, columns, 3).
+        normal: Normal of the ground, not of unit length: (-dz/dx, -dz/dy, 1), shape (rows, columns,
+            3).
     """
 
     def __init__(self, grid: Grid) -> None:
@@ -116,9 +117,9 @@ class Ground:
     def body(
         self, planes: tuple[JointPlane, ...], sliding: Sliding, at: tuple[int, int], limits: Limits
     ) -> Body | None:
-        """The body whose line of sliding leaves the ground at a cell.
+        """The body whose line of sliding daylights at a cell.
 
-        It is the connected part of the ground above all planes that begins at the cell. The window
+        It is the connected part of the ground above all planes from the cell on. The window
         grows until the body lies inside or is too large.
 
         Returns:
@@ -150,7 +151,7 @@ class Ground:
     def _whole(
         self, planes: tuple[JointPlane, ...], point: Floats, at: tuple[int, int], largest: float
     ) -> tuple[tuple[slice, slice], Bools, Floats, Floats] | None:
-        """A window that holds a whole body, and what `_part` tells of it; None if there is none."""
+        """A window around a whole body, with the results of `_part`; None if there is none."""
         shape = self.grid.values.shape
         reach = FIRST_REACH
         while True:
@@ -162,7 +163,7 @@ class Ground:
                 return None
             cells, t, beds = part
             volume = float(t[cells].sum()) * self.cell_area
-            if not volume <= largest:  # nor unknown
+            if not volume <= largest:  # NaN too
                 return None
             ends = _on_edges(cells)
             if not any(ends):
@@ -183,7 +184,9 @@ class Ground:
         x, y = self.x[None, window[1]], self.y[window[0], None]
         beds = np.array([height_of(plane, point, x, y) for plane in planes])
         t = self.grid.values[window] - beds.max(axis=0)
-        numbers, _ = self._label(~(t <= TOUCHES))  # unknown ground belongs to what it touches
+        numbers, _ = self._label(
+            ~(t <= TOUCHES)
+        )  # unknown ground belongs to the parts that it touches
         i, j = seed
         near = numbers[max(0, i - NEAR) : i + NEAR + 1, max(0, j - NEAR) : j + NEAR + 1]
         near = near[near > 0]
@@ -197,9 +200,9 @@ class Ground:
         window: tuple[slice, slice],
         thickness: Floats,
     ) -> bool:
-        """Whether the centre of mass lies above the one of two planes on which a body slides.
+        """Whether the centre of mass lies above the plane, of two, on which a body slides.
 
-        Else it turns about the edge of that plane, and no closed form holds.
+        Else the body rotates about the edge of that plane, and no closed form applies.
         """
         if sliding.kind not in ("first", "second"):
             return True
@@ -219,7 +222,7 @@ class Ground:
         normals = np.array([plane.normal for plane in planes])
         share = np.ones((1, int(cells.sum())))
         if len(planes) == 2:
-            # cells on the line in which both planes meet are divided between them
+            # cells on the intersection line of both planes are divided between them
             apart = beds[0][cells] - beds[1][cells]
             slope = np.diff(normals[:, :2] / normals[:, 2:], axis=0)[0]
             across = float(np.abs(slope) @ self.grid.step)
@@ -229,7 +232,7 @@ class Ground:
         areas = plan / normals[:, 2]
         steep = np.array([plane.dip > COUNTED for plane in planes])
         if steep.any():
-            # vector areas of a closed surface add up to nothing
+            # vector areas of a closed surface sum to zero
             ground = self.normal[window][cells].sum(axis=0)[:2] * self.cell_area
             rest = ground - areas[~steep] @ normals[~steep, :2]
             found = np.linalg.lstsq(normals[steep, :2].T, rest, rcond=None)[0]

@@ -30,17 +30,17 @@ GROWTH = 0.3
 BODY = "body"
 GRAVITY = 9.81
 BETWEEN = (0.5, 2.0)
-"""Factors that are tried first, over that of the closed form."""
+"""First factors to try, over the factor of the closed form."""
 FAR = 0.02
-"""A body has failed when a node has moved this part of the mean face size: rock beds hardly give."""
+"""A body has failed when a node has moved this fraction of the mean face size: rock beds are stiff."""
 
 
 def body_mesh(body: Body, ground: Ground) -> tuple[Solid, list[int]]:
     """Mesh a body and a layer of rock below it.
 
     Returns:
-        The mesh: the group `body` and a bed for each plane that it lies on; and the numbers of those
-        planes.
+        The mesh: the group `body` and a bed for each plane below it; and the numbers of those
+            planes.
 
     Raises:
         MeshError: It cannot be meshed.
@@ -93,7 +93,7 @@ def _parts(body: Body, polygon: Any) -> tuple[list[Any], list[int]]:
 
 
 def _side(body: Body) -> Floats:
-    """Horizontal unit vector from the line in which two planes meet to where the first is higher."""
+    """Horizontal unit vector from the intersection of two planes to the side where the first is higher."""
     first, second = (plane.normal[:2] / plane.normal[2] for plane in body.planes)
     return (second - first) / np.hypot(*(second - first))
 
@@ -108,9 +108,9 @@ def _rim(triangles: Ints) -> Ints:
 def _lift(
     plan: Plan, body: Body, planes: list[int], ground: Ground, rim: Ints, thin: float
 ) -> None:
-    """Give the plan its heights; the thickness vanishes at the rim and nowhere else.
+    """Give the plan its heights; the thickness is zero at the rim and nowhere else.
 
-    Points on the line in which the planes meet are put on it, so that both beds are plane.
+    Points on the intersection line of the planes are moved onto it, so that both beds are plane.
     """
     used = [np.unique(plan.triangles[plan.body == k]) for k in range(len(planes))]
     if len(planes) == 2:
@@ -147,9 +147,9 @@ def write_case(
 
     Args:
         body: The body.
-        number: Of the body in the list, from 1.
-        found: The map that it is from.
-        folder: Where.
+        number: Number of the body in the list, from 1.
+        found: The map with the body.
+        folder: Folder to write to.
         system: Map projection, EPSG code or WKT; None for none.
 
     Raises:
@@ -185,7 +185,7 @@ def _case_text(
         "  body: {material: rock}",
         *(f"  {bed}: {{material: rock, fix: [x, y, z]}}   # {plane.name}" for bed, plane in beds),
         "interfaces:",
-        "  # bonded while gravity comes on; the last stage has the strengths of the joints",
+        "  # bonded while gravity is applied; the last stage has the strengths of the joints",
         f"  default: {{law: residual, {held}}}",
         "  pairs:",
         *(f"    - {{name: {bed}, between: [{BODY}, {bed}], {held}}}" for bed, _ in beds),
@@ -196,7 +196,8 @@ def _case_text(
         "    mode: static",
         "    set:",
         "      # all cohesion acts together, as in the closed form; with a residual_cohesion of 0 bonds",
-        "      # break one after another, and the factor falls to about that of friction alone",
+        "      # break one after another, and the factor falls to about the value of friction "
+        "alone",
     ]
     for bed, plane in beds:
         lines += [

@@ -1,4 +1,4 @@
-"""The worst bodies of a screening, each computed: factors of safety by `cdem critical`."""
+"""The worst bodies of a screening, computed: factors of safety by `cdem critical`."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from cdem.study.study import Study
 from cdem.study.sweep import SweepProgress, run_studies
 
 TOLERANCE = 0.01
-"""Width of the bracket, over the factor of the closed form."""
+"""Width of the bracket, relative to the factor of the closed form."""
 
 
 @dataclass(frozen=True)
 class Confirmed:
-    """One body, computed.
+    """A computed body.
 
     Attributes:
-        number: Of the body in the list, from 1.
+        number: Number of the body in the list, from 1.
         closed: Factor of safety by the closed form.
-        computed: By `cdem critical`; nan if there is none.
-        why: Why there is none, or nothing.
+        computed: Factor by `cdem critical`; nan if there is none.
+        why: Why there is no computed factor, or nothing.
     """
 
     number: int
@@ -40,7 +40,7 @@ class Confirmed:
     def text(self) -> str:
         """Both numbers in one line."""
         if self.why:
-            return f"  {self.number:3}  closed form {self.closed:.3f}, none computed: {self.why}"
+            return f"  {self.number:3}  closed form {self.closed:.3f}, not computed: {self.why}"
         apart = 100 * (self.computed / self.closed - 1)
         return (
             f"  {self.number:3}  closed form {self.closed:.3f}, computed {self.computed:.3f} "
@@ -62,15 +62,15 @@ def confirm(
 
     Args:
         found: The bodies.
-        count: How many.
-        folder: Where cases, meshes and results go; finished results of the same cases are used.
+        count: Number of bodies.
+        folder: Folder of cases, meshes and results; finished results of the same cases are used.
         system: Map projection of the ground, EPSG code or WKT; None for none.
         workers: Local processes, each of one thread; None for one per core.
         progress: Called a few times per second.
-        should_stop: Asked as often; True ends it with the results so far.
+        should_stop: Called as often; True ends it with the results so far.
 
     Raises:
-        BackendError: A worker lacks what it needs.
+        BackendError: A worker lacks something.
     """
     folder.mkdir(parents=True, exist_ok=True)
     studies: dict[int, tuple[Study, Path]] = {}

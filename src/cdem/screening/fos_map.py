@@ -1,4 +1,4 @@
-"""A map of the least factor of safety: every wedge and plane of some sets through points of a ground."""
+"""A map of the smallest factor of safety: all wedges and planes of joint sets through the ground."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 REFINED = 1.5
-"""Around bodies of a lower factor every cell of the map begins one."""
+"""Around bodies with a lower factor, every cell of the map is a start."""
 REFINED_SHARE = 0.1
-"""The same around this part of the bodies, those of the lowest factors."""
+"""The same around this fraction of the bodies, those with the lowest factors."""
 MARGIN = 2
-"""No body begins so near to the edge [cells]."""
+"""Least distance of a body's start from the edge [cells]."""
 ALIKE = 0.5
-"""A body of which more than this part is covered by worse ones is not listed [1]."""
+"""A body is not listed if worse ones cover more than this fraction of it [1]."""
 MOST_LISTED = 200
 MODES = {"both": 1, "first": 2, "second": 2, "plane": 3}
 """Numbers of the map of modes."""
@@ -33,20 +33,21 @@ MODES = {"both": 1, "first": 2, "second": 2, "plane": 3}
 
 @dataclass
 class FosMap:
-    """What screening found.
+    """Results of a screening.
 
     Attributes:
         ground: The ground.
-        limits: Which bodies count.
-        factor: Least factor of safety of the bodies that cover a cell, nan elsewhere, shape
+        limits: Limits of bodies.
+        factor: Smallest factor of safety of the bodies that cover a cell, nan elsewhere, shape
             (rows, columns).
-        volume: Of that body [m3].
-        mode: Of that body: 1 a wedge on both planes, 2 on one of them, 3 a single plane; 0 none.
+        volume: Volume of that body [m3].
+        mode: Mode of that body: 1 a wedge on both planes, 2 on one of them, 3 a single plane; 0
+            none.
         profiles: Plane failure of profiles, per metre of width.
-        tried: Number of points at which bodies were sought.
+        tried: Number of starting points.
         count: Number of bodies found.
-        at_limit: How many of them are within a fifth of the largest volume.
-        bodies: Different ones, the worst first.
+        at_limit: Number of them within a fifth of the largest volume.
+        bodies: Distinct bodies, the worst first.
     """
 
     ground: Ground
@@ -61,7 +62,7 @@ class FosMap:
     bodies: list[Body] = field(default_factory=list)
 
     def _take(self, body: Body) -> None:
-        """Let a body have its cells, where it is the worst so far."""
+        """Write a body into its cells wherever it is the worst so far."""
         window = body.window
         worse = body.cells & ~(self.factor[window] <= body.factor)
         self.factor[window][worse] = body.factor
@@ -78,20 +79,20 @@ def screen(
     stride: int = 4,
     report: Callable[[str, float], None] | None = None,
 ) -> FosMap:
-    """Seek the bodies of all sets and pairs of sets.
+    """Search the bodies of all sets and pairs of sets.
 
-    Bodies begin at every `stride`-th cell at which their way of sliding leaves the ground, and at
-    every cell around those of a low factor.
+    Bodies start at every `stride`-th cell at which their direction of sliding daylights, and at
+    every cell around bodies with a low factor.
 
     Args:
         ground: The ground.
         planes: The sets.
-        limits: Which bodies count.
+        limits: Limits of bodies.
         stride: Cells between the points of the first search.
-        report: Called with a text and the part that is done.
+        report: Called with a text and the fraction done.
 
     Raises:
-        CaseError: The limits leave nothing to be found.
+        CaseError: The limits exclude all bodies.
     """
     _check(ground, limits, stride)
     shape = ground.grid.values.shape
@@ -182,7 +183,7 @@ def _bodies_at(
 
 
 def _different(bodies: list[Body], shape: tuple[int, ...]) -> list[Body]:
-    """The worst bodies that lie at different places; of equal ones the larger."""
+    """The worst bodies at different places; of equal ones the larger."""
     covered = np.zeros(shape, bool)
     out: list[Body] = []
     for body in sorted(bodies, key=lambda b: (b.factor, -b.volume)):

@@ -1,4 +1,4 @@
-"""The ground that is screened: a grid of heights, or the terrain of a landslide file."""
+"""The ground to screen: a grid of heights, or the terrain of a landslide file."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None
     """Read the heights to screen.
 
     Args:
-        path: A grid (`.asc`, `.tif`), or a landslide file (`.yaml`) whose terrain and extent count.
-        cell: Side of the cells [m]; by default those of the grid, or half of `sizes.body` where
-            there is none.
+        path: A grid (`.asc`, `.tif`), or a landslide file (`.yaml`) with terrain and extent.
+        cell: Size of the cells [m]; by default the grid's, or half of `sizes.body` without a
+            grid.
 
     Returns:
-        The heights; their map projection, EPSG code or WKT, or None; and what a user should know.
+        The heights; their map projection, EPSG code or WKT, or None; and messages for the user.
 
     Raises:
         CaseError: A file cannot be read, or the cells are too many.
@@ -43,7 +43,7 @@ def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None
     if (low < ground.low - 1e-6).any() or (high > ground.high + 1e-6).any():
         raise landslide.error(
             "extent",
-            f"reaches beyond the terrain, which is known from ({coordinates(ground.low)}) to "
+            f"reaches beyond the terrain, which extends from ({coordinates(ground.low)}) to "
             f"({coordinates(ground.high)})",
         )
     if cell is None and isinstance(ground, Grid):
@@ -54,14 +54,16 @@ def read_ground(path: Path, cell: float | None = None) -> tuple[Grid, str | None
 
 
 def _cropped(grid: Grid, low: Any, high: Any) -> Grid:
-    """The cells of a grid whose centres lie in a rectangle."""
+    """The cells of a grid with centres in a rectangle."""
     rows, columns = grid.values.shape
     x = grid.west + grid.step[0] * np.arange(columns)
     y = grid.south + grid.step[1] * np.arange(rows)
     i = np.flatnonzero((y >= low[1]) & (y <= high[1]))
     j = np.flatnonzero((x >= low[0]) & (x <= high[0]))
     if min(len(i), len(j)) < 2:
-        raise CaseError("the extent holds less than two rows and columns of the grid")
+        raise CaseError(
+            "the extent contains less than two rows and columns of the grid; enlarge it"
+        )
     return Grid(x[j[0]], y[i[0]], grid.step, grid.values[i[0] : i[-1] + 1, j[0] : j[-1] + 1])
 
 
@@ -72,7 +74,7 @@ def _sampled(heights: Heights, low: Any, high: Any, cell: float) -> Grid:
     columns, rows = np.floor((high - low) / cell * (1 + 1e-12)).astype(int)
     if min(rows, columns) < 2 or rows * columns > MOST_CELLS:
         raise CaseError(
-            f"cells of {cell:g} m make a map of {rows:,} x {columns:,}; give another cell"
+            f"cells of {cell:g} m give a map of {rows:,} x {columns:,}; give another cell"
         )
     x = low[0] + cell * (np.arange(columns) + 0.5)
     y = low[1] + cell * (np.arange(rows) + 0.5)

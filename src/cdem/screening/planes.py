@@ -1,4 +1,4 @@
-"""Sets of joints with their strength, as `cdem joints` writes them or a whole case has them."""
+"""Sets of joints with their strength, from the file of `cdem joints` or from a case."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from cdem.joints.directions import NamedPlane, mean_normal, pole
 Floats = NDArray[np.float64]
 
 STEEPEST = 89.5
-"""Steeper planes are taken as so steep [deg]: heights above a vertical plane have no meaning."""
+"""Steeper planes get this dip [deg]: heights above a vertical plane are undefined."""
 
 
 class _Sets(Part):
@@ -30,7 +30,7 @@ class _Sets(Part):
 
 
 class _JointedRock(Part):
-    """The part of a case that screening reads."""
+    """The part of a case used by screening."""
 
     model: _Sets
     interfaces: Interfaces = Field(Interfaces(), description="Their strength")
@@ -38,12 +38,12 @@ class _JointedRock(Part):
 
 @dataclass(frozen=True)
 class JointPlane(NamedPlane):
-    """A set of joints, each of its planes as long as a body asks.
+    """A set of joints; each of its planes is as long as a body needs.
 
     Attributes:
         friction: Friction angle of joint and rock bridges together [deg].
-        cohesion: Of joint and rock bridges together [Pa].
-        persistence: Part of the area that is joint, not rock bridge [1].
+        cohesion: Cohesion of joint and rock bridges together [Pa].
+        persistence: Fraction of the area that is joint, not rock bridge [1].
     """
 
     friction: float
@@ -52,22 +52,22 @@ class JointPlane(NamedPlane):
 
     @property
     def tangent(self) -> float:
-        """Of the friction angle [1]."""
+        """Tangent of the friction angle [1]."""
         return float(np.tan(np.radians(self.friction)))
 
 
 def read_planes(path: Path) -> tuple[list[JointPlane], list[str]]:
     """Read the sets of a file with `model.joints` and `interfaces`.
 
-    The strength of a set is that of the pair of interfaces that names it, else the default. With a
-    persistence k below 1 the rest of the area is rock bridges with the strength of the default:
-    c = k c_joint + (1 - k) c_rock, and the same of tan(phi) (Jennings 1970).
+    The strength of a set is from the pair of interfaces that names it, else from the default. With
+    a persistence k below 1 the rest of the area is rock bridges with the strength of the default:
+    c = k c_joint + (1 - k) c_rock, and the same for tan(phi) (Jennings 1970).
 
     Returns:
-        The planes, and what a user should know.
+        The planes, and messages for the user.
 
     Raises:
-        CaseError: The file is wrong, or a strength is missing; says where.
+        CaseError: The file is wrong, or a strength is missing; names the place.
     """
     data, source = load_case_data(path, what="case")
     model = data.get("model")
@@ -83,11 +83,11 @@ def read_planes(path: Path) -> tuple[list[JointPlane], list[str]]:
     planes, notes = [], []
     for number, joint in enumerate(rock.model.joints):
         if joint.discs is not None and joint.discs.file is not None:
-            notes.append(f"{joint.name}: discs of a file have no mean plane; left out")
+            notes.append(f"{joint.name}: ignored: discs from a file have no mean plane")
             continue
         plane = _plane(number, joint, rock.interfaces, source)
         if plane.dip > STEEPEST:
-            notes.append(f"{joint.name}: taken as dipping {STEEPEST:g} deg, not {plane.dip:.1f}")
+            notes.append(f"{joint.name}: dip set to {STEEPEST:g} deg instead of {plane.dip:.1f}")
             steep = pole(STEEPEST, plane.dip_direction)
             plane = JointPlane(plane.name, steep, plane.friction, plane.cohesion, plane.persistence)
         planes.append(plane)
@@ -95,7 +95,7 @@ def read_planes(path: Path) -> tuple[list[JointPlane], list[str]]:
         raise CaseError(f"{path}: has no set of joints with a direction")
     if all(plane.cohesion == 0 for plane in planes):
         notes.append(
-            "no set has cohesion: the factor does not depend on size, the map shows directions alone"
+            "no set has cohesion: the factor does not depend on size, the map shows only directions"
         )
     return planes, notes
 

@@ -1,4 +1,4 @@
-"""What screening writes: maps as GeoTIFF, bodies as a GeoPackage, a picture, and a report in text."""
+"""Output of a screening: maps as GeoTIFF, bodies as a GeoPackage, a picture, and a report as text."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ WORDS = {
 }
 BODIES = "bodies.gpkg"
 SHOWN = 10
-"""Bodies that the report lists."""
+"""Most bodies in the report."""
 LEVELS = (0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 3.0)
 """Classes of the factor of safety in the picture."""
 
 
 def outline(body: Body, ground: Ground) -> Any:
-    """Polygon of a body in plan [m], where its planes meet the ground (shapely)."""
+    """Polygon of a body in plan [m], bounded by the intersection of its planes with the ground (shapely)."""
     contourpy, shapely = extra("contourpy"), extra("shapely")
     rows, columns = body.window
-    # one more cell on each side, above which the planes lie
+    # one more cell on each side, where the planes lie above the ground
     i = np.arange(rows.start - 1, rows.stop + 1)
     j = np.arange(columns.start - 1, columns.stop + 1)
     x, y = ground.x[j], ground.y[i]
@@ -54,7 +54,7 @@ def write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
 
     Args:
         found: The maps.
-        folder: Where.
+        folder: Folder to write to.
         system: Map projection, EPSG code or WKT; None for none.
     """
     rasterio = extra("rasterio")
@@ -122,7 +122,7 @@ def write_bodies(
     }
     path.unlink(missing_ok=True)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that there is no map projection is said elsewhere
+        warnings.simplefilter("ignore")  # a missing map projection is reported elsewhere
         raw.write(
             path,
             geometry=shapely.to_wkb([outline(body, found.ground) for body in bodies]),
@@ -137,7 +137,7 @@ def write_bodies(
 
 
 def draw(found: FosMap, path: Path) -> Path:
-    """Draw the map over a hillshade, with the worst bodies; beside it plane failure of profiles.
+    """Draw the map over a hillshade, with the worst bodies; beside it, plane failure of profiles.
 
     Raises:
         CdemError: matplotlib is not installed.
@@ -151,7 +151,7 @@ def draw(found: FosMap, path: Path) -> Path:
     each = (min(6.0, 6.0 * width / height) + 0.9, min(6.0, 6.0 * height / width) + 0.9)
     size = (each[0] * shape[1] + 1.2, each[1] * shape[0])
     figure, axes = plt.subplots(*shape, figsize=size, squeeze=False, layout="constrained")
-    titles = ["bodies between joints", "plane failure of profiles, sides taken as free"]
+    titles = ["bodies between joints", "plane failure of profiles, sides assumed free"]
     maps = (found.factor, profiles.factor)
     for panel, values, title in zip(axes.ravel(), maps, titles, strict=False):
         shown = _draw_map(panel, ground, values, title)
@@ -193,7 +193,7 @@ def _draw_map(axes: Any, ground: Ground, values: Floats, title: str) -> Any:
 def text(
     found: FosMap, planes: Sequence[JointPlane], notes: Sequence[str], system: str | None
 ) -> str:
-    """What was found, for people."""
+    """The results as text."""
     limits, grid = found.limits, found.ground.grid
     rows, columns = grid.values.shape
     lines = [f"note: {note}" for note in notes]
@@ -216,9 +216,12 @@ def text(
     )
     if found.count and found.at_limit > 0.5 * found.count:
         share = 100 * found.at_limit / found.count
-        lines.append(f"note: {share:.0f} % of the bodies are near the largest volume: it decides")
+        lines.append(
+            f"note: {share:.0f} % of the bodies are near the largest volume, which limits "
+            f"the result"
+        )
     if found.bodies:
-        lines.append("  no.     factor  volume [m3]  planes, mode, and where the sliding begins")
+        lines.append("  no.     factor  volume [m3]  planes, mode, and point where they daylight")
     for number, body in enumerate(found.bodies[:SHOWN], 1):
         lines.append(
             f"  {number:3}  {body.factor:9.3f}  {body.volume:11,.0f}  {body.name}, "
@@ -229,7 +232,7 @@ def text(
 
 
 def facts(found: FosMap) -> dict[str, Any]:
-    """What was found, ready for JSON."""
+    """The results, ready for JSON."""
     return {
         "bodies_found": found.count,
         "points": found.tried,

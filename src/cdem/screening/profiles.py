@@ -1,4 +1,4 @@
-"""Plane failure of profiles down the dip of a set, per metre of width: what needs free sides."""
+"""Plane failure of profiles down the dip of a set, per metre of width: requires free sides."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from cdem.screening.sliding import LEAST_FALL, on_one
 Floats = NDArray[np.float64]
 
 AT_ONCE = 2_000_000
-"""Points of profiles that are looked at together."""
+"""Points of profiles computed together."""
 LEAST_POINTS = 3
-"""Shorter profiles are not resolved by the grid."""
+"""Shorter profiles are not resolved by the grid [cells]."""
 
 
 @dataclass
@@ -25,9 +25,9 @@ class Profiles:
     """Plane failure over a map.
 
     Attributes:
-        factor: Least factor of safety of the profiles over a cell, nan elsewhere, shape
+        factor: Smallest factor of safety of the profiles over a cell, nan elsewhere, shape
             (rows, columns).
-        set_of: Number of the set of that profile, from 1; 0 for none.
+        set_of: Set of that profile, from 1; 0 for none.
         count: Number of profiles found.
     """
 
@@ -37,11 +37,11 @@ class Profiles:
 
 
 def screen_profiles(ground: Ground, planes: Sequence[JointPlane], limits: Limits) -> Profiles:
-    """Seek plane failure at every cell.
+    """Search plane failure at every cell.
 
-    The profile goes up the dip direction from the point where the plane leaves the ground to where
-    the ground meets it again. F = (c L + W cos(dip) tan(phi)) / (W sin(dip)) per metre of width. Its
-    sides are taken as free. For the limits of volume it counts as wide as it is long in plan.
+    The profile goes against the dip direction from the point where the plane daylights to the point
+    where it meets the ground again. F = (c L + W cos(dip) tan(phi)) / (W sin(dip)) per metre of
+    width. Its sides are assumed free. For the limits of volume its width equals its length in plan.
     """
     shape = ground.grid.values.shape
     out = Profiles(np.full(shape, np.nan), np.zeros(shape, np.uint8), 0)
@@ -89,7 +89,7 @@ def _look(
         t = grid(at) - base[going] - k * step * rise
         inside = ((at >= grid.low) & (at <= grid.high)).all(axis=1) & np.isfinite(t)
         above = inside & (t > 0)
-        length[going[~inside]] = -1  # it goes on beyond what is known
+        length[going[~inside]] = -1  # it continues beyond the known ground
         area[going[above]] += t[above] * step
         length[going[above]] = k
         going = going[above]
@@ -114,8 +114,8 @@ def _draw(
     factor: Floats,
     along: Floats,
 ) -> None:
-    """Give the cells below profiles their factor, where it is the least."""
-    order = np.argsort(-factor, kind="stable")  # the least comes last and stays
+    """Give the cells below profiles their factor, if it is the smallest."""
+    order = np.argsort(-factor, kind="stable")  # the smallest comes last and remains
     places, length, factor = places[order], length[order], factor[order]
     rows, columns = out.factor.shape
     least = np.full(out.factor.shape, np.inf)

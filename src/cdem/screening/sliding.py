@@ -1,4 +1,4 @@
-"""How a body on one or two planes slides under its weight, and its factor of safety in closed form."""
+"""Mode of sliding of a body on one or two planes, and its factor of safety in closed form."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ Kind = Literal["both", "first", "second", "plane"]
 
 DOWN = np.array([0.0, 0.0, -1.0])
 LEAST_FALL = 1e-6
-"""A line of sliding that falls less than this does not slide."""
+"""A line of sliding with a smaller downward component does not slide."""
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """The way in which a body slides, and what holds it; all per weight.
+    """The mode of sliding of a body, and its resistance; all per weight.
 
     Attributes:
         kind: On both planes of a pair, on the first or second alone, or on a single plane.
-        direction: Unit vector.
+        direction: Unit vector of sliding.
         normal: Normal force on each plane over the weight [1].
         grip: Sum of normal forces times tan(friction) over the weight [1].
     """
@@ -40,7 +40,7 @@ class Sliding:
         return float(-self.direction[2])
 
     def factor(self, weight: float, resistance: float) -> float:
-        """Factor of safety, for a weight [N] and a resistance of the cohesion [N]."""
+        """Factor of safety, for a weight [N] and a resistance from cohesion [N]."""
         return (self.grip * weight + resistance) / (weight * self.drive)
 
 
@@ -56,8 +56,8 @@ def on_one(plane: JointPlane) -> Sliding | None:
 def on_two(first: JointPlane, second: JointPlane) -> Sliding | None:
     """Sliding of a wedge; None if it does not slide, or the planes are parallel.
 
-    After Warburton (1981): it goes down one plane if that way leaves the other plane, else along
-    the line in which both meet. Friction has no part in this.
+    After Warburton (1981): it slides down one plane if that direction leaves the other plane, else
+    along the intersection of both. Friction does not matter for the mode.
     """
     pairs: list[tuple[Kind, JointPlane, JointPlane]] = [
         ("first", first, second),
@@ -84,7 +84,7 @@ def on_two(first: JointPlane, second: JointPlane) -> Sliding | None:
 
 
 def _down_plane(normal: Floats) -> tuple[Floats, float] | None:
-    """Direction of the steepest fall of a plane, and its normal force per weight."""
+    """Direction of steepest descent of a plane, and its normal force per weight."""
     force = float(-normal @ DOWN)
     along = DOWN + force * normal
     size = float(np.linalg.norm(along))

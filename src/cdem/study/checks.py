@@ -1,4 +1,4 @@
-"""What a study must not contradict: checks between its parts."""
+"""Contradictions within a study: checks between its parts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cdem.study.schema import (
 
 
 def formulas(study: StudyParts) -> Iterator[tuple[Keys, str]]:
-    """Every formula that a run needs before it starts, and its place."""
+    """Every formula needed before a run starts, and its place."""
     yield from _inside(study.set, ("set",))
     if study.critical:
         yield from _inside(study.critical.between, ("critical", "between"))
@@ -58,7 +58,7 @@ def _results(study: StudyParts, used: set[str]) -> Iterator[tuple[Keys, str]]:
         elif study.critical and text not in CRITICAL_RESULTS:
             yield ("results", name), unknown(text, CRITICAL_RESULTS)
         if name in study.parameters:
-            yield ("results", name), "is the name of a parameter, too"
+            yield ("results", name), "is also the name of a parameter; choose another"
         known.append(name)
 
 
@@ -90,27 +90,30 @@ def _parameter(
 ) -> Iterator[tuple[Keys, str]]:
     keys: Keys = ("parameters", name)
     if "." not in name and name not in used:
-        yield keys, "is used by no formula, and a path in the case has a dot"
+        yield keys, "is neither used by a formula nor a path in the case (a path has a dot)"
     if parameter.is_drawn and study.sampling is None:
-        yield keys, "is drawn, so the study needs sampling: {count: 100}"
+        yield keys, "has a distribution, so the study needs sampling: {count: 100}"
     if parameter.is_drawn and study.combine == "one-at-a-time":
-        yield keys, "is drawn, which one-at-a-time does not go with; give values or a grid"
+        yield keys, "has a distribution, which one-at-a-time does not allow; give values or a grid"
     if name in study.set:
-        yield ("set", name), "is a parameter, too"
+        yield ("set", name), "is also a parameter; give it once"
 
 
 def _sampling(study: StudyParts) -> Iterator[tuple[Keys, str]]:
     lengths = {n: p.count for n, p in study.parameters.items() if not p.is_drawn}
     if study.combine == "together" and len(set(lengths.values())) > 1:
         counts = ", ".join(f"{name} {count}" for name, count in lengths.items())
-        yield ("combine",), f"together needs as many values of each parameter; there are: {counts}"
+        yield (
+            ("combine",),
+            (f"together needs the same number of values for each parameter; got {counts}"),
+        )
     if run_count(study) > MOST_RUNS:
         yield (
             ("combine",),
-            f"{run_count(study):,} runs are too many; at most {MOST_RUNS:,} are made",
+            f"{run_count(study):,} runs are too many; the limit is {MOST_RUNS:,}",
         )
     if study.sampling and len(lengths) == len(study.parameters):
-        yield ("sampling",), "no parameter has a distribution to draw from"
+        yield ("sampling",), "no parameter has a distribution; remove sampling"
 
 
 def _plots(study: StudyParts) -> Iterator[tuple[Keys, str]]:

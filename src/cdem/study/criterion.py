@@ -1,4 +1,4 @@
-"""When a trial of `cdem critical` counts as failed: by displacement, its rate, and kinetic energy."""
+"""Criterion of failure for trials of `cdem critical`: displacement, its rate, and kinetic energy."""
 
 from __future__ import annotations
 
@@ -14,21 +14,24 @@ from cdem.errors import CaseError
 
 
 class Criterion(Part):
-    """Limits beyond which a case that has not come to rest counts as failed."""
+    """Limits beyond which a case that has not come to rest has failed."""
 
     travel: Annotated[float, Quantity("1", above=0)] = Field(
         0.02,
-        description="A node has moved this part of the mean face size, and the kinetic energy is "
-        "higher than when it had moved half of that",
+        description="A node has moved this fraction of the mean face size, and the kinetic energy "
+        "is "
+        "higher than at half of this displacement",
     )
     far: Annotated[float, Quantity("1", above=0)] = Field(
-        1.0, description="A node has moved this part of the mean face size, however slowly"
+        1.0, description="A node has moved this fraction of the mean face size, at any speed"
     )
     stall_steps: int = Field(
         10_000,
         ge=1,
-        description="After so many steps or more, the last half of them moved the farthest node as "
-        "far as the quarter before did, and the unbalance ratio fell by less than half: it creeps on",
+        description="After this many steps or more, the farthest node moved as far in the last "
+        "half of "
+        "them as in the quarter before, and the unbalance ratio fell by less than half: it creeps "
+        "on",
     )
     most_moved: Annotated[float, Quantity("m", above=0)] | None = Field(
         None,
@@ -36,12 +39,12 @@ class Criterion(Part):
         "rests (--travel)",
     )
     most_steps: int = Field(
-        1_000_000, ge=1, description="There was no rest in so many steps (or the stage's max_steps)"
+        1_000_000, ge=1, description="No rest within this many steps (or the stage's max_steps)"
     )
 
     @classmethod
     def read(cls, texts: Iterable[str]) -> Criterion:
-        """Read ``"travel=0.05"`` and the like; what is not said keeps its default.
+        """Read texts like ``"travel=0.05"``; other limits keep their defaults.
 
         Raises:
             CaseError: An unknown limit, or a value that is not allowed.
@@ -60,10 +63,10 @@ class Criterion(Part):
             raise explain(error, source, cls) from None
 
     def text(self) -> str:
-        """The whole rule in one line."""
+        """The whole criterion in one line."""
         bound = f", or rests after more than {self.most_moved:g} m" if self.most_moved else ""
         return (
             f"fails when a node has moved {100 * self.travel:g} % of the mean face size with growing "
-            f"kinetic energy, or {100 * self.far:g} % in any way, or creeps on after "
+            f"kinetic energy, or {100 * self.far:g} % in any case, or creeps on after "
             f"{self.stall_steps:,} steps, or finds no rest in {self.most_steps:,} steps{bound}"
         )

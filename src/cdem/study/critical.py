@@ -28,16 +28,17 @@ Apply = Callable[[Case, float], None]
 
 @dataclass
 class Trial:
-    """One value tried.
+    """One trial.
 
     Attributes:
-        value: Of the parameter.
+        value: Value of the parameter.
         stable: Whether the case came to rest.
-        saw: What it did, see `Verdict`.
-        why: The same with figures.
-        steps: Steps that it took.
-        moved: How far its farthest node has moved since the first trial began, or since its own last
-            stage did where each trial builds its model [m].
+        saw: Its behaviour, see `Verdict`.
+        why: The behaviour with figures.
+        steps: Number of steps.
+        moved: Displacement of its farthest node since the first trial began, or since the start of
+            its
+            own last stage if each trial builds its model [m].
     """
 
     value: float
@@ -50,14 +51,14 @@ class Trial:
 
 @dataclass
 class Critical:
-    """What a search found.
+    """The result of a search.
 
     Attributes:
         stable: The last value at which the case rests.
         failed: The nearest value at which it fails.
-        criterion: What counted as failed.
+        criterion: Criterion of failure.
         trials: All values tried, in order.
-        body: The model as the trial at `failed` left it.
+        body: The model at the end of the trial at `failed`.
     """
 
     stable: float
@@ -72,7 +73,7 @@ class Critical:
         return 0.5 * (self.stable + self.failed)
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything, ready for JSON."""
+        """All results, ready for JSON."""
         return {
             "value": self.value,
             "stable": self.stable,
@@ -83,14 +84,14 @@ class Critical:
 
 
 WIDER = 1.5
-"""Ratio of the factors that are tried before there is a bracket."""
+"""Ratio of successive factors before there is a bracket."""
 WIDEST = 100.0
 """A factor beyond this, or below its inverse, ends the search for a bracket."""
 
 Report = Callable[["Critical"], None]
-"""Takes the search so far: its last trial is the newest, its bracket nan where there is none yet."""
+"""Receives the search so far: its last trial is the newest, its bracket is nan at first."""
 Tell = Callable[[list[str]], None]
-"""Takes the warnings of a model."""
+"""Receives the warnings of a model."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ class _OneValue:
 
     @property
     def makes_a_model(self) -> bool:
-        """Whether another value makes another model, which no state of an earlier trial fits."""
+        """Whether another value makes another model, which cannot use states of earlier trials."""
         return not self.path.startswith(SETTABLE)
 
     def __call__(self, case: Case, value: float) -> None:
@@ -114,19 +115,17 @@ def parameter(path: str) -> Apply:
 
 
 def strength_reduction() -> Apply:
-    """Divide all strengths of interfaces and materials by the varied factor; of an angle, the tangent.
+    """Divide all strengths of interfaces and materials by the varied factor (tangents of angles).
 
-    Which parameters are strengths says the law. They are those that hold in the last stage, its own
-    settings included.
+    Each law declares its strengths. Their values are taken from the last stage, including its own
+    settings.
     """
     whole: dict[str, tuple[Law, Part]] = {}
 
     def apply(case: Case, factor: float) -> None:
         if factor <= 0:
-            raise CaseError(
-                f"a factor that strengths are divided by must be above 0, got {factor:g}"
-            )
-        if not whole:  # the first trial: nothing is reduced yet
+            raise CaseError(f"a factor of safety must be above 0, got {factor:g}")
+        if not whole:  # the first trial: full strengths
             whole.update(_parts_with_strengths(case))
         for path, (law, part) in whole.items():
             reduced = law.reduced(part, factor) | reduced_tables(part, factor)
@@ -149,10 +148,12 @@ def _parts_with_strengths(case: Case) -> Iterator[tuple[str, tuple[Law, Part]]]:
 
 
 def check_last_stage(case: Case) -> None:
-    """Refuse a case whose last stage is not static: it decides what comes to rest."""
+    """Refuse a case whose last stage is not static: this stage decides on rest."""
     if case.stages[-1].mode != "static":
         where = case.where(f"stages.{len(case.stages) - 1}.mode")
-        raise CaseError(f"{where}: the last stage must be static: it decides what comes to rest")
+        raise CaseError(
+            f"{where}: the last stage must be static: it decides whether the case comes to rest"
+        )
 
 
 def find_critical(
@@ -168,20 +169,21 @@ def find_critical(
 ) -> Critical:
     """Bisect between a value at which a case rests and one at which it fails.
 
-    All stages but the last prepare the case with its own values. Each trial sets the value and runs
+    All stages except the last prepare the case with its own values. Each trial sets the value and
+    runs
     the last stage, which must be static, from the state of the last stable trial. It is stable when
-    the unbalance ratio falls below the stage's tolerance, and failed by the `criterion`.
+    the unbalance ratio falls below the stage's tolerance, and has failed according to `criterion`.
 
-    Where every value of a `parameter` makes another model (its geometry, its rock), each trial builds
-    it and runs all stages; then every static stage has to come to rest.
+    If each value of a `parameter` makes another model (its geometry, its rock), each trial builds
+    the model and runs all stages; every static stage must then come to rest.
 
     Args:
-        case: Is changed: it ends with the last value tried.
+        case: Is changed: it ends with the last trial's value.
         apply: Puts a value into the case; see `parameter` and `strength_reduction`.
         between: Two values, one stable and one not, in either order. None, for a factor: 1 and its
             multiples by 1.5, up or down, until both are found.
         tolerance: Width of the bracket at which the search ends.
-        criterion: What counts as failed; by default that of `Criterion`.
+        criterion: Criterion of failure; default `Criterion()`.
         threads: Threads of the core; None for all.
         report: Called after every trial.
         tell: Called once with the warnings of the model.
@@ -223,9 +225,9 @@ def _attempt(search: _Warm | _Cold, found: Critical, report: Report | None, valu
 def _try_ends(between: tuple[float, float], step: Callable[[float], Trial]) -> None:
     first, last = (step(float(value)) for value in between)
     if first.stable == last.stable:
-        what = "come to rest" if first.stable else "fail"
+        both = "come to rest" if first.stable else "fail"
         raise CaseError(
-            f"both {between[0]:g} and {between[1]:g} {what} ({last.why}); give a wider range"
+            f"both {between[0]:g} and {between[1]:g} {both} ({last.why}); give a wider range"
         )
 
 
@@ -234,14 +236,14 @@ def _widen(step: Callable[[float], Trial]) -> None:
     value, stable = 1.0, step(1.0).stable
     while step(value := value * WIDER if stable else value / WIDER).stable == stable:
         if not 1 / WIDEST < value < WIDEST:
-            what = "come to rest" if stable else "fail"
+            all_of = "come to rest" if stable else "fail"
             raise CaseError(
-                f"all factors from 1 to {value:.3g} {what}: is there anything to slide?"
+                f"all factors from 1 to {value:.3g} {all_of}: check that the model can slide"
             )
 
 
 class _Warm:
-    """Trials of one model, each from the state of the last stable one."""
+    """Trials of one model, each from the state of the last stable trial."""
 
     def __init__(
         self,
@@ -261,7 +263,7 @@ class _Warm:
         self.bisecting = False
 
     def begin_bisection(self) -> None:
-        """From now on trials start from rest, not from the state that the case was prepared in."""
+        """Let further trials start from rest instead of the prepared state."""
         self.bisecting = True
 
     def attempt(self, value: float) -> Trial:
@@ -290,13 +292,13 @@ class _Cold:
         self.tell: Tell | None = tell
 
     def begin_bisection(self) -> None:
-        """Nothing to do: no state is carried over."""
+        """No state is carried over."""
 
     def attempt(self, value: float) -> Trial:
         case = self.case.model_copy(deep=True)
         self.apply(case, value)
         sim = self.sim = Simulation(case, threads=self.threads)
-        if self.tell:  # of the first trial; others differ by a value only
+        if self.tell:  # warnings of the first trial only; others differ by one value
             self.tell(sim.audit.warnings)
             self.tell = None
         verdict = Verdict(True, "at rest", "")

@@ -1,4 +1,4 @@
-"""Workers of a sweep on other machines: those of a Dask scheduler that is there already."""
+"""Workers of a sweep on other machines: the workers of an existing Dask scheduler."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class DaskWorkers:
 
     @property
     def threads(self) -> int:
-        """Threads of all workers now; at least one, so that something waits for the first worker.
+        """Threads of all workers now; at least one, so that a task waits for the first worker.
 
         Raises:
-            BackendError: The scheduler does not answer any more.
+            BackendError: The scheduler no longer answers.
         """
         try:
             if self._client.status == "running":
@@ -32,12 +32,13 @@ class DaskWorkers:
         except (OSError, TimeoutError):
             pass
         raise BackendError(
-            "the Dask scheduler is gone; finished runs are kept: the same command goes on"
+            "the Dask scheduler no longer answers; finished runs are kept: the same command "
+            "continues"
         )
 
     @property
     def dashboard(self) -> str:
-        """Address of the page that shows them, or nothing."""
+        """Address of the scheduler's dashboard, or nothing."""
         return self._client.dashboard_link or ""
 
     def submit(self, task: dict[str, Any]) -> DaskTask:
@@ -45,15 +46,15 @@ class DaskWorkers:
         return DaskTask(self._client.submit(execute, task, pure=False))
 
     def cancel(self, tasks: list[DaskTask]) -> None:
-        """Give up what is under way."""
+        """Cancel all tasks."""
         self._client.cancel([task.future for task in tasks])
 
 
 class DaskTask:
-    """A task that a worker executes now or later.
+    """A task for a worker.
 
     Args:
-        future: Of dask.distributed.
+        future: Future of dask.distributed.
     """
 
     def __init__(self, future: Any) -> None:
@@ -61,11 +62,11 @@ class DaskTask:
 
     @property
     def done(self) -> bool:
-        """Whether it has come to an end; lost with its worker, another one computes it again."""
+        """Whether it has ended; if its worker is lost, another computes it again."""
         return self.future.status not in ("pending", "lost")
 
     def result(self) -> dict[str, Any]:
-        """What came of it.
+        """Its result.
 
         Raises:
             CdemError: The machine failed, not the case.

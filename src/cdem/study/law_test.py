@@ -1,4 +1,4 @@
-"""One law on its own: a cube, or a joint between two, led along a path of a laboratory test."""
+"""Test of one law: a cube, or a joint between two, along a path of a laboratory test."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ from cdem.units import to_number
 
 BLOCK_PATHS = {
     "uniaxial": "compression between smooth platens, sides free",
-    "tension": "the same, pulled",
+    "tension": "tension between smooth platens, sides free",
     "triaxial": "compression, a pressure on the sides: 'triaxial 5 MPa'",
-    "extension": "a pressure on the sides, pulled: 'extension 5 MPa'",
-    "oedometer": "compression, sides held",
+    "extension": "tension, a pressure on the sides: 'extension 5 MPa'",
+    "oedometer": "compression, sides fixed",
 }
 JOINT_PATHS = {
-    "shear": "a joint is sheared under a pressure that stays: 'shear 1 MPa'",
-    "opening": "it is pulled open",
+    "shear": "a joint is sheared under constant pressure: 'shear 1 MPa'",
+    "opening": "a joint is pulled open",
 }
 WITH_PRESSURE = ("triaxial", "extension", "shear")
 PULLS = ("tension", "extension")
 ROCK = {"density": 2500, "young_modulus": 10e9, "poisson_ratio": 0.25}
-"""Of a block law where nothing else is set, and of the blocks beside a joint."""
+"""Default stiffness of a block law, and of the blocks beside a joint."""
 SLOW = 4000
-"""A path takes as long as a wave needs for so many passes through a block."""
+"""Duration of a path, in passages of a wave through a block."""
 ROWS = 200
 STRAIN, WAY = 0.02, 0.01
-"""Where a path ends if nothing else is asked for: strain [1]; slip or opening [m]."""
+"""Default end of a path: strain [1]; slip or opening [m]."""
 
 
 @dataclass(frozen=True)
 class Curve:
-    """What a path has given.
+    """The curve of a test.
 
     Attributes:
         law: Name.
-        path: In words, as asked for.
+        path: Path, in the user's words.
         columns: Names with units.
         rows: Values, shape (rows, columns); stresses are positive in tension.
     """
@@ -101,17 +101,17 @@ def lead_law(
     to: float | None = None,
     speed: float | None = None,
 ) -> Curve:
-    """Lead a law along a path.
+    """Drive a law along a path.
 
     Args:
-        name: Of a block or an interface law.
-        path: One of `BLOCK_PATHS` or `JOINT_PATHS`, with its pressure where it has one.
+        name: Name of a block or an interface law.
+        path: One of `BLOCK_PATHS` or `JOINT_PATHS`, with its pressure if it needs one.
         settings: Texts ``"cohesion=1 MPa"`` that set keys of the material or the interface.
-        to: Axial strain [1], or slip or opening [m], at which it ends.
-        speed: Of a joint [m/s]; by default so slow that inertia does not matter.
+        to: Axial strain [1], or slip or opening [m], at the end.
+        speed: Slip rate of a joint [m/s]; by default so slow that inertia does not matter.
 
     Raises:
-        CaseError: There is no such law or path, or the law refuses its parameters.
+        CaseError: No such law or path, or the law refuses its parameters.
     """
     of_block = name in BLOCK_LAWS
     if not of_block and name not in INTERFACE_LAWS:
@@ -119,7 +119,7 @@ def lead_law(
         raise CaseError(f"no law '{name}'; there are: {known}")
     kind, pressure = _read_path(path, BLOCK_PATHS if of_block else JOINT_PATHS, name)
     if of_block and speed is not None:
-        raise CaseError("--speed goes with a law of interfaces: that of blocks knows no rate")
+        raise CaseError("--speed goes with interface laws; block laws do not depend on rate")
     own = read_settings(settings)
     if of_block:
         return _test_block(name, path, kind, pressure, own, STRAIN if to is None else to)
@@ -127,10 +127,10 @@ def lead_law(
 
 
 def number(option: str, text: str | None, unit: str) -> float | None:
-    """The number of an option, which may have a unit; above zero.
+    """The number of an option, positive, with or without a unit.
 
     Raises:
-        CaseError: It is none.
+        CaseError: It is not such a number.
     """
     if text is None:
         return None
@@ -180,7 +180,7 @@ def _test_block(
         supports += [
             {"surface": _face("rock", k, n), "fix": ["xy"[k]]} for k in (0, 1) for n in (-1, 1)
         ]
-    else:  # edges at the base: the cube may lean where its law is not the same in all directions
+    else:  # fixes edges at the base: a cube with an anisotropic law may lean
         for axis in (0, 1):
             far = [0.1 if k in (axis, 2) else 1.1 for k in range(3)]
             supports.append({"box": {"min": [-0.1] * 3, "max": far}, "fix": ["xy"[axis]]})
@@ -280,7 +280,7 @@ def _test_joint(
 
 
 def _follow(sim: Simulation, law: str, path: str, columns: list[str], row: Any, to: float) -> Curve:
-    """Rows of a simulation until the first column has reached where it shall."""
+    """Rows of a simulation until the first column reaches its end value."""
     own = BLOCK_LAWS.get(law) or INTERFACE_LAWS[law]
     end = sim.case.stages[0].duration
     assert end is not None

@@ -1,6 +1,6 @@
-"""Workers of a sweep on this machine: processes that are spoken to by pipes, and by nothing else.
+"""Workers of a sweep on this machine: processes with pipes as their only connection.
 
-No port is open, so no other user of the machine can enter; nothing is imported from the current
+No port is open, so other users of the machine cannot connect; nothing is imported from the current
 folder.
 """
 
@@ -17,21 +17,21 @@ from cdem.case import child
 from cdem.errors import CdemError
 
 TRIES = 3
-"""So often a run is begun whose worker dies."""
+"""Most starts of a run whose workers crash."""
 ALONE = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
 """Environment of a worker: it has one thread."""
-DIED = "its worker died again and again (out of memory?)"
+DIED = "its worker crashed repeatedly (out of memory?)"
 
 
 class LocalWorkers:
-    """Processes that execute tasks, each one at a time; a context that ends them.
+    """Processes that execute tasks, each one at a time; a context manager that ends them.
 
     Args:
         count: Processes; None for one per core that this process may use.
 
     Attributes:
-        threads: Tasks that are executed at a time.
-        dashboard: Address of a page that shows them: there is none.
+        threads: Number of simultaneous tasks.
+        dashboard: Empty: there is no dashboard.
     """
 
     dashboard = ""
@@ -57,7 +57,7 @@ class LocalWorkers:
         return LocalTask(self._pool.submit(self._execute, task))
 
     def cancel(self, _: list[LocalTask]) -> None:
-        """Give up what is under way."""
+        """Cancel all tasks."""
         for worker in self._all:
             worker.end()
 
@@ -76,18 +76,18 @@ class LocalWorkers:
 
 
 class LocalTask:
-    """A task that a worker executes now or later."""
+    """A task for a worker."""
 
     def __init__(self, future: Future[dict[str, Any]]) -> None:
         self._future = future
 
     @property
     def done(self) -> bool:
-        """Whether it has come to an end."""
+        """Whether it has ended."""
         return self._future.done()
 
     def result(self) -> dict[str, Any]:
-        """What came of it.
+        """Its result.
 
         Raises:
             CdemError: The machine failed, not the case.
@@ -96,14 +96,14 @@ class LocalTask:
 
 
 class _Worker:
-    """One process, which is begun when there is something to do, and again after it has died."""
+    """One process, started on demand, and again after a crash."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[str] | None = None
         self._ended = False
 
     def execute(self, task: dict[str, Any]) -> dict[str, Any]:
-        """What the process says of a task: "result" or "error"; nothing if it died."""
+        """The process's answer to a task: "result" or "error"; nothing if it crashed."""
         try:
             asks, tells = self._pipes()
             asks.write(json.dumps(task) + "\n")
@@ -113,7 +113,7 @@ class _Worker:
             return {}
 
     def end(self) -> None:
-        """End the process, whatever it does."""
+        """End the process at once."""
         self._ended = True
         if self._process is not None:
             self._process.kill()

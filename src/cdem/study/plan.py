@@ -1,4 +1,4 @@
-"""The runs of a study: the case of each, and a hash that knows it again."""
+"""The runs of a study: the case of each, and its hash."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from cdem.study.study import Study
 def plan(study: Study, folder: Path) -> list[Run]:
     """Make the case of every run.
 
-    Values that are drawn may be wrong (a cohesion below zero): such a run has an error. Values that
-    are written down are the user's mistake.
+    Random values may be invalid (a cohesion below zero): such a run has an error. Invalid values
+    in the study file are the user's mistake.
 
     Raises:
         CaseError: The case is wrong, or all runs are.
-        CdemError: The folder holds a sweep whose values are not known.
+        CdemError: The folder contains a sweep with unknown values.
         BackendError: The study needs an extra.
     """
     data, source = load_case_data(study.case_file)
@@ -91,7 +91,7 @@ def _make(
 def _check_search(study: Study, case: Case, search: dict[str, Any]) -> None:
     from cdem.study.critical import check_last_stage, parameter
 
-    if search["parameter"]:  # else the factor of safety is sought
+    if search["parameter"]:  # else the study seeks the factor of safety
         where = study._source.where(("critical", "parameter"))
         try:
             parameter(search["parameter"])(case.model_copy(deep=True), search["between"][0])
@@ -101,7 +101,7 @@ def _check_search(study: Study, case: Case, search: dict[str, Any]) -> None:
 
 
 def _computed(study: Study, keys: tuple[str | int, ...], value: Any, row: dict[str, Any]) -> Any:
-    """A value of the study with its formulas computed."""
+    """A value of the study with computed formulas."""
     if isinstance(value, dict):
         return {k: _computed(study, (*keys, k), v, row) for k, v in value.items()}
     if isinstance(value, list):
@@ -115,7 +115,7 @@ def _computed(study: Study, keys: tuple[str | int, ...], value: Any, row: dict[s
 
 
 def _identity(case: Case, search: dict[str, Any] | None) -> str:
-    """Hash of all that a result depends on; a file counts by what it holds."""
+    """Hash of all data that a result depends on, including the contents of files."""
     data = case.model_dump(mode="json")
     for holder, key in files_of(data):
         path = case.path_of(holder[key])

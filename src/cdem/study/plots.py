@@ -22,7 +22,7 @@ def draw_all(table: Table, folder: Path) -> list[Path]:
     """Draw all plots of a study as PNG; returns their paths.
 
     Raises:
-        CaseError: A plot needs numbers that the table does not have.
+        CaseError: A plot needs numbers that the table lacks.
         CdemError: matplotlib is not installed.
     """
     if not table.study.plots:
@@ -51,7 +51,7 @@ def _file_name(plot: Plot) -> str:
 
 
 def label_of(study: Study, name: str) -> str:
-    """What an axis calls a parameter."""
+    """Label of a parameter on an axis."""
     parameter = study.parameters[name]
     unit = f" [{parameter.unit}]" if parameter.unit else ""
     return parameter.label or f"{name}{unit}"
@@ -102,7 +102,7 @@ def _map(table: Table, plot: Plot, axes: Any) -> None:
         contours = axes.contour(columns, rows, grid, levels=12, colors="white", linewidths=0.5)
         axes.clabel(contours, fontsize=7)
         axes.plot(x, y, ".", color="black", ms=3)
-    else:  # drawn values
+    else:  # random values
         shown = axes.scatter(x, y, c=z, cmap="viridis", s=18)
     axes.figure.colorbar(shown, ax=axes, label=plot.label or plot.result)
     study = table.study
@@ -131,10 +131,10 @@ def _tornado(table: Table, plot: Plot, axes: Any) -> None:
 
 
 def effects(table: Table, result: str) -> dict[str, tuple[float, float]]:
-    """How much each parameter changes a result.
+    """Effect of each parameter on a result.
 
-    For drawn parameters (0, rank correlation of Spearman); for lists and grids the mean result at
-    the parameter's least and greatest value, over the runs in which it varies.
+    For random parameters (0, rank correlation of Spearman); for lists and grids the mean result at
+    the parameter's smallest and largest value, over the runs in which it varies.
     """
     study, z = table.study, table.column(result)
     columns = {name: table.column(name) for name in study.parameters}
@@ -156,7 +156,7 @@ def effects(table: Table, result: str) -> dict[str, tuple[float, float]]:
 
 
 def _ranks(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rank of each value; equal values share the mean of theirs."""
+    """Rank of each value; equal values share their mean rank."""
     _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
     last = np.cumsum(counts)
     return (last - 0.5 * (counts - 1))[inverse]

@@ -1,4 +1,4 @@
-"""The table of a study: one row per run, its parameters and what was collected from its result."""
+"""The table of a study: one row per run, with its parameters and collected results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cdem.study.study import Study
 from cdem.whole_files import replaced, write_text
 
 OF_THE_MACHINE = {"title", "version", "device", "threads", "wall_time", "counts", "stages"}
-"""Parts of a summary that are not in the table unless the study names them."""
+"""Parts of a summary that enter the table only if the study names them."""
 
 
 class Table:
@@ -51,7 +51,7 @@ class Table:
         ]
 
     def column(self, name: str) -> NDArray[np.float64]:
-        """A parameter or result of all runs as numbers, NaN where there is none."""
+        """A parameter or result of all runs as numbers; NaN for missing ones."""
         return np.array([_number(row.get(name)) for row in self.rows])
 
     @property
@@ -61,17 +61,17 @@ class Table:
 
     @property
     def warnings(self) -> list[str]:
-        """Each warning of the models of all runs once."""
+        """Each warning of the models of all runs, once."""
         told = [text for run in self.runs for text in (run.result or {}).get("warnings", [])]
         return list(dict.fromkeys(told))
 
     @property
     def waiting(self) -> int:
-        """How many runs have no result yet."""
+        """Number of runs without a result."""
         return sum(run.status == "waiting" for run in self.runs)
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything, ready for JSON."""
+        """All data, ready for JSON."""
         rows = [
             {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in row.items()}
             for row in self.rows
@@ -79,7 +79,7 @@ class Table:
         return {"runs": rows, "failed": len(self.failed), "waiting": self.waiting}
 
     def write(self, folder: Path) -> list[Path]:
-        """Write table.csv, and table.parquet if pyarrow is there; returns their paths."""
+        """Write table.csv, and table.parquet if pyarrow is installed; returns their paths."""
         units = {name: p.unit for name, p in self.study.parameters.items() if p.unit}
         units["wall_time"] = "s"
         rows = self.rows
@@ -95,7 +95,7 @@ class Table:
 
 
 def collect(study: Study, run: Run) -> dict[str, Any]:
-    """What the study wants from the result of a run, by name; nothing if it failed.
+    """The collected results of a run, by name; empty if it failed.
 
     Raises:
         ValueError: A path under ``results`` is not in the result.
@@ -120,7 +120,7 @@ def collect(study: Study, run: Run) -> dict[str, Any]:
 
 
 def check_results(study: Study, run: Run) -> None:
-    """Stop at the first result that shows that the study asks for what is not there.
+    """Stop at the first result if the study asks for a missing value.
 
     Raises:
         CaseError: A path under ``results`` is wrong.
@@ -162,7 +162,7 @@ def _number(value: Any) -> float:
 
 
 def _cell(value: Any) -> Any:
-    """A number so that it reads back to the same bits; nothing for one that is not there."""
+    """A number that reads back to the same bits; empty for a missing number."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if isinstance(value, float):

@@ -11,11 +11,11 @@ class Run:
     """One run of a study.
 
     Attributes:
-        name: Of its folder, the first digits of `identity`.
-        identity: Hash of the resolved case, of what is done with it, and of cdem's version.
+        name: Name of its folder, the first digits of `identity`.
+        identity: Hash of the resolved case, of its use, and of cdem's version.
         parameters: Value of each parameter.
-        task: What a worker needs to execute it.
-        result: What came of it, or None while there is none.
+        task: Data for the worker.
+        result: Its result, or None.
         error: Why there is no result, or nothing.
     """
 
@@ -28,7 +28,7 @@ class Run:
 
     @property
     def status(self) -> str:
-        """How it ended: that of the run, "found" (critical), "failed", or "waiting"."""
+        """Its status: of the run, "found" (critical), "failed", or "waiting"."""
         if self.error or (self.result and "error" in self.result):
             return "failed"
         return self.result["status"] if self.result else "waiting"
@@ -39,6 +39,6 @@ class Run:
         return self.error or str((self.result or {}).get("error", ""))
 
     def text(self) -> str:
-        """Name, parameters and why it failed, in one line."""
+        """Name, parameters and cause of failure, in one line."""
         values = ", ".join(f"{name} = {value}" for name, value in self.parameters.items())
         return f"{self.name or 'no case'} ({values}): {self.why}"

@@ -1,4 +1,4 @@
-"""Values that a study has drawn, kept in the folder of its sweep: the same whoever draws them again."""
+"""Random values of a study, stored in the folder of its sweep: they stay the same for every user."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ SAMPLES = "samples.json"
 
 
 def samples(study: Study, folder: Path) -> list[Row]:
-    """Draws of a study: those that the folder of its sweep keeps, or new ones.
+    """Random values of a study: stored in the folder of its sweep, or new.
 
     Raises:
-        CdemError: What it keeps are no samples, or were drawn by a cdem that did not keep them.
+        CdemError: The stored file is damaged, or an older cdem drew values without storing them.
         BackendError: Latin hypercubes need the extra `sweep`.
     """
     if study.sampling is None:
@@ -39,7 +39,7 @@ def samples(study: Study, folder: Path) -> list[Row]:
 
 
 def to_keep(study: Study, rows: list[Row]) -> dict[str, Any]:
-    """What a folder keeps of the draws of a study, which the first of its rows have one by one."""
+    """The stored values of a study; one by one, its first rows equal new draws."""
     assert study.sampling is not None
     drawn = _drawn(study)
     draws = [{name: row[name] for name in drawn} for row in rows[: study.sampling.count]]
@@ -51,20 +51,20 @@ def _drawn(study: Study) -> dict[str, Any]:
 
 
 def _asked(study: Study) -> dict[str, Any]:
-    """All that the draws depend on, as JSON has it."""
+    """All data that the random values depend on, for JSON."""
     assert study.sampling is not None
     parameters = {name: p.model_dump(mode="json") for name, p in _drawn(study).items()}
     return {"sampling": study.sampling.model_dump(mode="json"), "parameters": parameters}
 
 
 def _refuse_unknown(folder: Path) -> None:
-    """Stop at a sweep of Latin hypercubes that were not kept: others would take their place."""
+    """Refuse a sweep of Latin hypercubes whose values were not stored: new draws would differ."""
     try:
         before = json.loads((folder / "study.json").read_text(encoding="utf-8")).get("sampling")
     except (OSError, ValueError, AttributeError):
-        return  # no sweep yet; another file is refused by who opens the folder
+        return  # no sweep yet; opening the folder refuses other files
     if before and before.get("method", "latin-hypercube") == "latin-hypercube":
         raise CdemError(
-            f"{folder}: an earlier cdem drew the values of its runs and did not keep them, and this "
-            "one draws others; go on with that cdem, or name another folder with -o"
+            f"{folder}: an earlier cdem drew the values of its runs without storing them, and this "
+            "version draws others; continue with that cdem, or name another folder with -o"
         )

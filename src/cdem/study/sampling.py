@@ -1,4 +1,4 @@
-"""The runs of a study: lists and grids combined, and values drawn from distributions."""
+"""The runs of a study: combinations of lists and grids, and random values of distributions."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ Row = dict[str, Any]
 def rows(study: Study, draws: list[Row]) -> list[Row]:
     """Value of each parameter for every run, in the parameters' order.
 
-    Lists and grids are combined first; each combination then meets all draws.
+    Lists and grids are combined first; each combination is then run with all draws.
 
     Args:
         study: The study.
-        draws: Values of the parameters that are drawn; one without any if none is.
+        draws: Values of the random parameters; one empty draw if there are none.
     """
     lists = {n: _listed(p) for n, p in study.parameters.items() if not p.is_drawn}
     combined = _combine(lists, study.combine)
@@ -55,10 +55,11 @@ def _combine(lists: dict[str, list[Any]], how: str) -> list[Row]:
 
 
 def draw(parameters: dict[str, Parameter], sampling: Sampling) -> list[Row]:
-    """Draw values, the same for the same seed, count and name of a parameter, and the same SciPy.
+    """Random values: equal for equal seed, count, parameter name and SciPy version.
 
-    Latin hypercube: of `count` equally likely parts of each distribution every one gets one value,
-    and the parts of different parameters meet in random order (McKay, Beckman & Conover 1979).
+    Latin hypercube: each of `count` equally likely parts of a distribution gets one value,
+    and the parts of different parameters are combined in random order (McKay, Beckman & Conover
+    1979).
 
     Raises:
         BackendError: Latin hypercubes need the extra `sweep`.
@@ -88,7 +89,7 @@ def _latin_hypercube() -> Any:
 
 
 def quantile(parameter: Parameter, u: float) -> float:
-    """The value below which a part `u` of a distribution lies, 0 <= u < 1."""
+    """Quantile of a distribution: a fraction `u` of it lies below, 0 <= u < 1."""
     if parameter.uniform:
         low, high = parameter.uniform.low, parameter.uniform.high
         return low + u * (high - low)
@@ -114,6 +115,6 @@ def _cut(whole: NormalDist, u: float, low: float | None, high: float | None) -> 
     """Quantile of a normal distribution between two limits."""
     least = 0.0 if low is None else whole.cdf(low)
     most = 1.0 if high is None else whole.cdf(high)
-    tiny = 1e-16  # the ends themselves may be infinite
+    tiny = 1e-16  # the quantile may be infinite at the ends
     value = whole.inv_cdf(min(max(least + u * (most - least), tiny), 1 - tiny))
     return min(max(value, -math.inf if low is None else low), math.inf if high is None else high)

@@ -1,4 +1,4 @@
-"""The parts of a study: how parameters vary, what is sought, what is drawn."""
+"""The parts of a study: variation of parameters, search, results and plots."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ Number = Annotated[float, Quantity("1")]
 Positive = Annotated[float, Quantity("1", above=0)]
 CRITICAL_RESULTS = ("value", "stable", "failed", "trials", "steps")
 COLUMNS = ("run", "status", "wall_time", "error")
-"""Columns of every table, whose names a study cannot use for others."""
+"""Columns of every table; a study cannot use their names."""
 MOST_RUNS = 1_000_000
 KINDS = ("values", "grid", "uniform", "normal", "lognormal", "triangular")
 
 
 class Grid(Part):
-    """Values at equal distances."""
+    """Equally spaced values."""
 
     first: Number = Field(description="First value")
     last: Number = Field(description="Last value")
@@ -33,7 +33,7 @@ def _rising(low: float | None, high: float | None) -> None:
 
 
 class Uniform(Part):
-    """Every value between two limits is as likely as any other."""
+    """A uniform distribution between two limits."""
 
     low: Number = Field(description="Lowest value")
     high: Number = Field(description="Highest value")
@@ -45,7 +45,7 @@ class Uniform(Part):
 
 
 class Triangular(Part):
-    """A density that rises from the lowest value to the mode and falls to the highest value."""
+    """A triangular distribution: its density rises from the lowest value to the mode, then falls."""
 
     low: Number = Field(description="Lowest value")
     mode: Number = Field(description="Most likely value")
@@ -60,12 +60,12 @@ class Triangular(Part):
 
 
 class Normal(Part):
-    """The normal distribution, cut off at limits if there are any."""
+    """The normal distribution, optionally truncated."""
 
-    mean: Number = Field(description="Mean before it is cut off")
-    deviation: Positive = Field(description="Standard deviation before it is cut off")
-    low: Number | None = Field(None, description="No value is below this")
-    high: Number | None = Field(None, description="No value is above this")
+    mean: Number = Field(description="Mean before truncation")
+    deviation: Positive = Field(description="Standard deviation before truncation")
+    low: Number | None = Field(None, description="Lower truncation limit")
+    high: Number | None = Field(None, description="Upper truncation limit")
 
     @model_validator(mode="after")
     def _ordered(self) -> Normal:
@@ -74,11 +74,11 @@ class Normal(Part):
 
 
 class Lognormal(Normal):
-    """The distribution of a value whose logarithm is normal, cut off at limits if there are any."""
+    """The lognormal distribution, optionally truncated."""
 
-    mean: Positive = Field(description="Mean of the value itself, before it is cut off")
+    mean: Positive = Field(description="Mean of the value itself, before truncation")
     deviation: Positive = Field(
-        description="Standard deviation of the value itself, before it is cut off"
+        description="Standard deviation of the value itself, before truncation"
     )
 
     @model_validator(mode="after")
@@ -89,18 +89,18 @@ class Lognormal(Normal):
 
 
 class Parameter(Part):
-    """How one parameter varies. A plain list stands for its values."""
+    """Variation of one parameter. A plain list gives its values."""
 
     values: list[Any] | None = Field(None, min_length=1, description="These values")
-    grid: Grid | None = Field(None, description="Values at equal distances")
-    uniform: Uniform | None = Field(None, description="Drawn evenly between low and high")
-    normal: Normal | None = Field(None, description="Drawn from a normal distribution")
-    lognormal: Lognormal | None = Field(None, description="Drawn from a lognormal distribution")
-    triangular: Triangular | None = Field(None, description="Drawn from a triangular distribution")
+    grid: Grid | None = Field(None, description="Equally spaced values")
+    uniform: Uniform | None = Field(None, description="Uniform distribution between low and high")
+    normal: Normal | None = Field(None, description="Normal distribution")
+    lognormal: Lognormal | None = Field(None, description="Lognormal distribution")
+    triangular: Triangular | None = Field(None, description="Triangular distribution")
     unit: Name | None = Field(
-        None, description="Unit of all numbers here; by default that of the case (SI, degrees)"
+        None, description="Unit of all numbers here; default: as in the case (SI, degrees)"
     )
-    label: Name | None = Field(None, description="What plots call it")
+    label: Name | None = Field(None, description="Label in plots")
 
     @model_validator(mode="before")
     @classmethod
@@ -118,41 +118,41 @@ class Parameter(Part):
 
     @property
     def kind(self) -> str:
-        """Which of `KINDS` it is."""
+        """Its member of `KINDS`."""
         return next(kind for kind in KINDS if getattr(self, kind) is not None)
 
     @property
     def is_drawn(self) -> bool:
-        """Whether its values are drawn from a distribution."""
+        """Whether it has a distribution."""
         return self.kind not in ("values", "grid")
 
     @property
     def count(self) -> int:
-        """How many values are listed; 0 of a distribution."""
+        """Number of listed values; 0 for a distribution."""
         return len(self.values) if self.values else self.grid.count if self.grid else 0
 
 
 class Sampling(Part):
-    """How values are drawn from distributions."""
+    """Sampling of the distributions."""
 
     method: Literal["latin-hypercube", "monte-carlo"] = Field(
         "latin-hypercube",
         description="One value in each of COUNT equally likely parts, or independent values",
     )
     count: int = Field(ge=1, le=MOST_RUNS, description="Number of draws")
-    seed: int = Field(1, ge=0, le=MOST_SEEDS, description="Another seed draws other values")
+    seed: int = Field(1, ge=0, le=MOST_SEEDS, description="Seed of the random values")
 
 
 class CriticalSearch(Part):
-    """Find the value at which each case fails, as `cdem critical` does."""
+    """Find the value at which each case fails, like `cdem critical`."""
 
     parameter: Name | None = Field(None, description="Path of the value to vary")
-    factor: bool = Field(False, description="Vary the factor of safety on all strengths instead")
+    factor: bool = Field(False, description="Vary the factor of safety of all strengths instead")
     between: list[Any] = Field(
         min_length=2, max_length=2, description="A value that rests and one that fails; or formulas"
     )
     tolerance: Positive = Field(0.01, description="Width of the bracket to reach")
-    criterion: Criterion = Field(Criterion(), description="What counts as failed")
+    criterion: Criterion = Field(Criterion(), description="Criterion of failure")
 
     @model_validator(mode="after")
     def _one_target(self) -> CriticalSearch:
@@ -169,12 +169,12 @@ class Plot(Part):
     tornado: Name | None = Field(
         None, description="Draw how much each parameter changes this result"
     )
-    x: Name | None = Field(None, description="Parameter on the axis to the right")
-    y: Name | None = Field(None, description="Parameter on the axis upwards (map)")
+    x: Name | None = Field(None, description="Parameter on the horizontal axis")
+    y: Name | None = Field(None, description="Parameter on the vertical axis (map)")
     by: Name | None = Field(None, description="A line for each value of this parameter (lines)")
-    beside: Name | None = Field(None, description="A result drawn thin for comparison (lines)")
+    beside: Name | None = Field(None, description="Another result, in thin lines (lines)")
     title: str = Field("", description="Title; by default none")
-    label: Name | None = Field(None, description="What the picture calls the result")
+    label: Name | None = Field(None, description="Label of the result")
 
     @model_validator(mode="after")
     def _one_kind(self) -> Plot:
@@ -186,7 +186,7 @@ class Plot(Part):
         allowed = {"lines": {"x", "by", "beside"}, "map": {"x", "y"}, "tornado": set()}[self.kind]
         for field in ("x", "y", "by", "beside"):
             if getattr(self, field) is not None and field not in allowed:
-                raise ValueError(f"{field} has no meaning for {self.kind}; remove it")
+                raise ValueError(f"{field} has no effect for {self.kind}; remove it")
         for field in {"lines": ("x",), "map": ("x", "y"), "tornado": ()}[self.kind]:
             if getattr(self, field) is None:
                 raise ValueError(f"{self.kind} needs {field}, the name of a parameter")
@@ -194,17 +194,17 @@ class Plot(Part):
 
     @property
     def kind(self) -> str:
-        """Which kind of plot it is."""
+        """Kind of plot."""
         return next(kind for kind in ("lines", "map", "tornado") if getattr(self, kind))
 
     @property
     def result(self) -> str:
-        """The result that it shows."""
+        """The result in the plot."""
         return getattr(self, self.kind)
 
 
 def run_count(study: StudyParts) -> int:
-    """How many runs the parameters and draws of a study make."""
+    """Number of runs of a study, from its parameters and draws."""
     counts = [p.count for p in study.parameters.values() if not p.is_drawn]
     if study.combine == "together":
         combined = min(counts, default=1)
@@ -223,26 +223,28 @@ class StudyParts(Part):
     case: Name = Field(description="Case file, relative to the study file")
     parameters: dict[str, Parameter] = Field(
         min_length=1,
-        description="What varies: a path in the case, as for cdem run --set, or a name without a dot "
+        description="Parameters: a path in the case, as for cdem run --set, or a name without a "
+        "dot "
         "for use in formulas",
     )
     combine: Literal["product", "together", "one-at-a-time"] = Field(
         "product",
-        description="How lists and grids combine: all pairs, the first of each with the first of the "
-        "others and so on, or each alone while the others keep their first value",
+        description="Combination of lists and grids: all pairs; the first of each with the first "
+        "of the "
+        "others and so on; or one at a time while the others keep their first value",
     )
-    sampling: Sampling | None = Field(None, description="How values are drawn from distributions")
+    sampling: Sampling | None = Field(None, description="Sampling of the distributions")
     set: dict[str, Any] = Field(
         {}, description="Values of the case in all runs: {path: value}; formulas begin with ="
     )
     critical: CriticalSearch | None = Field(
-        None, description="Find the critical value of each case; by default each case is run"
+        None, description="Find the critical value of each case; default: run each case"
     )
-    keep: bool = Field(False, description="Also keep the result folder of each run")
+    keep: bool = Field(False, description="Keep the result folder of each run")
     results: dict[str, Name] = Field(
         {},
         description="Columns of the table: {name: path in summary.json, histories.COLUMN (its last "
         "value), one of value, stable, failed, trials, steps of a critical search, or a formula with "
-        "parameters and results named before}; by default all numbers there are",
+        "parameters and earlier results}; default: all available numbers",
     )
     plots: list[Plot] = Field([], description="Pictures of the table")

@@ -1,4 +1,4 @@
-"""A study: which parameters of a case vary and how, what is done with each, and what is collected."""
+"""A study: varied parameters of a case, the task of each run, and the collected results."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Study(StudyParts):
     """A whole study. Load one from a file, or build it here with the same names.
 
     Raises:
-        CaseError: Every problem found, one line each: file:line:column: path: what.
+        CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
     _source: Source = PrivateAttr(default_factory=Source)
@@ -61,7 +61,7 @@ class Study(StudyParts):
     def schema(cls) -> dict[str, Any]:  # type: ignore[override]
         """Return the JSON schema of a study file, for editors."""
         whole = cls.model_json_schema() | {"title": "cdem study"}
-        fields = whole["properties"]  # two of which may be lists for short
+        fields = whole["properties"]  # two of them may be plain lists
         parameter = fields["parameters"]["additionalProperties"]
         fields["parameters"]["additionalProperties"] = {"anyOf": [parameter, {"type": "array"}]}
         names = {"type": "array", "items": {"type": "string"}}

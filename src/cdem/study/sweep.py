@@ -1,4 +1,4 @@
-"""Parameter studies: many runs of a case on processes of this machine or on Dask, each done only once."""
+"""Parameter studies: many runs of a case on local processes or on Dask, each done only once."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from cdem.study.worker import finished
 from cdem.whole_files import refuse_link, write_json
 
 POLL_SECONDS, LOOK_SECONDS = 0.05, 0.5
-"""Wall time between looks at what is finished, and at the workers and the progress [s]."""
+"""Wall time between checks of finished runs, and of workers and progress [s]."""
 
 
 @dataclass
 class SweepProgress:
-    """Where a sweep is.
+    """Progress of a sweep.
 
     Attributes:
         total: Runs of the study.
-        finished: Runs that have a result, those of earlier sweeps included.
+        finished: Runs with a result, including earlier sweeps.
         failed: Runs that failed.
         time_left: Estimate of the remaining wall time [s], or None.
         dashboard: Address of the dashboard of a Dask scheduler, or nothing.
@@ -45,7 +45,7 @@ class SweepProgress:
 
 
 def describe(p: SweepProgress) -> tuple[str, float]:
-    """One line on where a sweep is, and the part that is done."""
+    """Progress in one line, and the fraction done."""
     failed = f", {p.failed} failed" if p.failed else ""
     left = "" if p.time_left is None else f", {clock(p.time_left)} left"
     dashboard = f", dashboard {p.dashboard}" if p.dashboard else ""
@@ -61,20 +61,20 @@ def run_study(
     progress: Callable[[SweepProgress], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
 ) -> Table:
-    """Execute the runs of a study that have no result yet, and collect all results.
+    """Execute the runs of a study without a result, and collect all results.
 
     Args:
         study: A `Study`, or the path of a study file.
-        folder: Where results go; what an earlier sweep finished there is used.
+        folder: Folder of results; finished runs of an earlier sweep are used.
         workers: Local processes, each of one thread; None for one per core.
         scheduler: Address of a Dask scheduler, instead of local processes. Its workers must see the
             mesh and `folder` under the same paths.
         progress: Called a few times per second.
-        should_stop: Asked as often; True ends the sweep with the results so far.
+        should_stop: Called as often; True ends the sweep with the results so far.
 
     Raises:
-        CaseError: The study or its case is wrong, or a name under ``results`` is.
-        BackendError: Dask is missing, or its scheduler cannot be reached (any more).
+        CaseError: The study, its case, or a name under ``results`` is wrong.
+        BackendError: Dask is missing, or its scheduler does not answer.
     """
     study = study if isinstance(study, Study) else Study.load(study)
     how: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
@@ -120,21 +120,21 @@ def run_studies(
 
 
 def _open(folder: Path, study: Study, runs: list[Run]) -> None:
-    """Make the folder of the sweep, unless it holds other things; keep what was drawn."""
+    """Make the folder of the sweep, unless it contains other files; store the random values."""
     if folder.exists() and not folder.is_dir():
         raise CdemError(f"{folder}: is a file; name another folder with -o")
     if folder.exists() and any(folder.iterdir()) and not (folder / "study.json").is_file():
-        raise CdemError(f"{folder}: holds other things than a sweep; name another folder with -o")
+        raise CdemError(f"{folder}: contains other files than a sweep; name another folder with -o")
     folder.mkdir(parents=True, exist_ok=True)
     refuse_link(folder / "plots")
-    if study.sampling:  # first, so that no folder has runs of values that are not kept
+    if study.sampling:  # first: no run without stored values
         write_json(folder / SAMPLES, to_keep(study, [run.parameters for run in runs]))
     write_json(folder / "study.json", study.model_dump(mode="json", exclude_unset=True))
 
 
 @contextmanager
 def _scheduler(address: str) -> Iterator[DaskWorkers]:
-    """The workers of a Dask scheduler that is there already."""
+    """The workers of an existing Dask scheduler."""
     try:
         from distributed import Client
     except ImportError as error:
@@ -150,11 +150,11 @@ def _scheduler(address: str) -> Iterator[DaskWorkers]:
 
 
 class _Execution:
-    """Runs on workers, as many at a time as they have threads.
+    """Runs on workers, as many at a time as there are threads.
 
     Args:
-        check: Looks at the result of a run, and raises if its study asks for what is not there.
-        waiting: Runs to execute; those of the same case, by its identity, are executed once.
+        check: Checks the result of a run for values that its study asks for.
+        waiting: Runs to execute; runs of the same case, by identity, are executed once.
         pool: The workers.
     """
 
@@ -171,20 +171,20 @@ class _Execution:
 
     @property
     def going(self) -> bool:
-        """Whether there is anything left to do."""
+        """Whether any run is left."""
         return bool(self._left or self._under_way)
 
     def submit(self, threads: int) -> None:
-        """Keep so many threads busy, and no more: a worker that dies takes only its own run along."""
+        """Keep all threads busy, with no queue: a worker that crashes loses only its own run."""
         while self._left and len(self._under_way) < threads:
             same = self._left.pop(0)
             self._under_way[self._pool.submit(same[0].task)] = same
 
     def collect(self) -> None:
-        """Take over what is finished.
+        """Collect finished runs.
 
         Raises:
-            CaseError: A result shows that the study asks for what is not there.
+            CaseError: The study asks for a value that a result lacks.
         """
         for task in list(self._under_way):
             if task.done:
@@ -193,11 +193,11 @@ class _Execution:
                 self._check(same[0])
 
     def cancel(self) -> None:
-        """Give up what is under way."""
+        """Cancel all tasks."""
         self._pool.cancel(list(self._under_way))
 
     def time_left(self) -> float | None:
-        """Estimate of the remaining wall time [s], or None before anything is finished."""
+        """Estimate of the remaining wall time [s], or None before the first run ends."""
         done = self._count - len(self._left) - len(self._under_way)
         if not done:
             return None
@@ -212,7 +212,7 @@ def _execute_all(
     progress: Callable[[SweepProgress], None] | None,
     should_stop: Callable[[], bool] | None,
 ) -> None:
-    """Keep every thread of the workers busy until all runs are done or the user wants to stop."""
+    """Keep all workers busy until all runs are done or the user stops the sweep."""
     execution = _Execution(check, waiting, pool)
     looked, threads = time.perf_counter(), pool.threads
     while execution.going:
@@ -239,7 +239,7 @@ def _progress(runs: list[Run], dashboard: str, time_left: float | None) -> Sweep
 
 
 def _settle(run: Run, task: LocalTask | DaskTask) -> None:
-    """Take over what became of a run."""
+    """Store the result or error of a run."""
     try:
         run.result = task.result()
     except CdemError as error:

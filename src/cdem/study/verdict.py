@@ -1,4 +1,4 @@
-"""Whether a static stage comes to rest, and what it does where it does not."""
+"""Whether a static stage comes to rest, and how it fails otherwise."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ LOOK = 10 * CHECK_INTERVAL
 """Steps between two looks at a stage."""
 
 STEADY = 0.9
-"""A body slides, and does not creep, where its unbalance ratio falls by less than a tenth while the
-number of steps doubles: a force is left over, which would go on to accelerate it."""
+"""A body slides, and does not creep, if its unbalance ratio falls by less than a tenth while the
+number of steps doubles: a remaining force would keep accelerating it."""
 
 Seen = Literal["at rest", "sliding", "creeping", "undecided", "unstable"]
 
@@ -33,12 +33,12 @@ class Verdict:
 
     Attributes:
         stable: Whether it came to rest.
-        saw: What it did: at rest; sliding, far or by a force that stays; creeping, on and on by a force
-            that falls too slowly; undecided at the last step allowed; unstable, a computation that
+        saw: Its behaviour: at rest; sliding, far or by a constant force; creeping, by a force that
+            falls too slowly; undecided at the last allowed step; unstable, a computation that
             failed.
-        why: The same with figures. Speeds are those of relaxation, which brakes.
-        moved: How far the farthest node came from where it was when the trial began, or where it was in
-            the state that is given [m].
+        why: The behaviour with figures. Speeds are from relaxation, which slows motion.
+        moved: Displacement of the farthest node since the trial began, or from the given
+            positions [m].
     """
 
     stable: bool
@@ -58,11 +58,11 @@ def rests(
 
     Args:
         sim: The simulation.
-        prepare: May change the case as the stage begins.
-        criterion: What counts as failed.
-        index: Of the stage.
-        start: Positions from which the way of nodes counts where it rests [m], shape (nodes, 3); None:
-            those when the stage begins.
+        prepare: May change the case at the beginning of the stage.
+        criterion: Criterion of failure.
+        index: Index of the stage.
+        start: Origin of displacements for the check of rest [m], shape (nodes, 3); None:
+            positions at the beginning of the stage.
     """
     c = criterion or Criterion()
     sim.stage_index = range(len(sim.case.stages))[index]
@@ -90,7 +90,7 @@ def rests(
 
 @dataclass
 class _Look:
-    """One look at a stage: steps done, way of the farthest node [faces], lowest unbalance ratio yet."""
+    """One look at a stage: steps, displacement of the farthest node [faces], lowest unbalance ratio."""
 
     steps: int = 0
     moved: float = 0.0
@@ -99,11 +99,11 @@ class _Look:
 
 @dataclass
 class _Watch:
-    """What the criterion sees of a stage."""
+    """A stage as the criterion sees it."""
 
     sim: Simulation
     criterion: Criterion
-    origin: Floats | None = None  # of the way that is told [m]
+    origin: Floats | None = None  # of reported displacements [m]
     looks: list[_Look] = field(default_factory=lambda: [_Look()])
     half_way: float = 0.0  # kinetic energy when half of the travel was reached [J]
 
@@ -114,11 +114,11 @@ class _Watch:
         self.begin = self.start if self.origin is None else self.origin
 
     def moved(self) -> float:
-        """Way of the farthest node from the origin [m]."""
+        """Displacement of the farthest node from the origin [m]."""
         return float(self._ways(self.begin).max())
 
     def rest(self) -> Verdict:
-        """What came to rest, and after how much it has moved."""
+        """The verdict on a model at rest, with its displacement."""
         left = self.sim.core.unbalance_ratio()  # 0 below the round-off of the coordinates
         ways = self._ways(self.begin)
         moved, ratio = float(ways.max()), f"unbalance ratio {left:.2g}" if left else "to round-off"
@@ -132,13 +132,13 @@ class _Watch:
         return np.linalg.norm(self.sim.fields["position"] - start, axis=1)
 
     def look(self, steps: int) -> Verdict | None:
-        """Take in the state after so many steps; a verdict where it has failed."""
+        """Check the state after a number of steps; returns a verdict if it has failed."""
         c, last = self.criterion, self.looks[-1]
         ways = self._ways(self.start)
         moved, kinetic = float(ways.max()) / self.size, float(self.sim.energies["kinetic"])
         now = _Look(steps, moved, min(last.least, self.sim.core.unbalance_ratio()))
         self.looks.append(now)
-        if last.steps == 0 or moved < 0.5 * c.travel:  # the first look sees loads come, too
+        if last.steps == 0 or moved < 0.5 * c.travel:  # the first look includes the onset of loads
             self.half_way = kinetic
         elif moved > c.far or (moved > c.travel and kinetic > self.half_way):
             return Verdict(False, "sliding", self._text(ways), self.moved())
@@ -147,8 +147,8 @@ class _Watch:
         return None
 
     def _goes_on(self, now: _Look, text: str) -> Verdict | None:
-        """Failed where the last half of all steps moved it as far as the quarter before, and the
-        unbalance ratio fell by less than half."""
+        """Failed if the farthest node moved as far in the last half of all steps as in the quarter
+        before, and the unbalance ratio fell by less than half."""
         count = len(self.looks) - 1
         half, quarter = self.looks[count // 2], self.looks[count // 4]
         slower = now.moved - half.moved < half.moved - quarter.moved

@@ -1,7 +1,7 @@
-"""What a worker does with one run: execute it once, and keep its result.
+"""Executes one run of a sweep once, and stores its result.
 
-Run as a program it is a worker of `cdem.study.local_workers`: a task as JSON in each line of stdin,
-an answer in each line of stdout.
+As a program it is a worker of `cdem.study.local_workers`: it reads a task as JSON from each line of
+stdin, and writes an answer into each line of stdout.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ def finished(task: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def execute(task: dict[str, Any]) -> dict[str, Any]:
-    """Execute one run on a worker, and write its result in one go.
+    """Execute one run on a worker, and write its result as a whole.
 
-    What the case itself makes fail is a result, too: it would fail again. A full disk or a wrong
+    A failure caused by the case is a result too: it would recur. A full disk or a wrong
     worker is not.
 
     Raises:
@@ -60,7 +60,7 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
         raise BackendError(f"a worker has cdem {__version__}, the sweep {task['version']}")
     for holder, key in files_of(task["case"]):
         if not Path(holder[key]).is_file():
-            raise BackendError(f"a worker does not see {holder[key]}; it must have the same files")
+            raise BackendError(f"a worker cannot read {holder[key]}; give it the same files")
     folder = Path(task["folder"]) / "runs" / task["name"]
     for part in (folder.parent, folder, folder / RESULT_FOLDER):
         refuse_link(part)
@@ -87,7 +87,7 @@ def execute(task: dict[str, Any]) -> dict[str, Any]:
 
 
 def _run(case: Case, task: dict[str, Any], folder: Path, tell: Tell) -> dict[str, Any]:
-    """Run the case as `cdem run` does, from its last checkpoint if it was broken off."""
+    """Run the case like `cdem run`, from its last checkpoint if it was interrupted."""
     from cdem.run.checkpoint import has_checkpoint
     from cdem.run.histories import tracks
     from cdem.run.simulation import Simulation
@@ -107,7 +107,7 @@ def _run(case: Case, task: dict[str, Any], folder: Path, tell: Tell) -> dict[str
 
 
 def _search(case: Case, search: dict[str, Any], tell: Tell) -> dict[str, Any]:
-    """Find the critical value as `cdem critical` does."""
+    """Find the critical value like `cdem critical`."""
     from cdem.study.critical import find_critical, parameter, strength_reduction
 
     vary = strength_reduction() if search["factor"] else parameter(search["parameter"])
@@ -125,7 +125,7 @@ def _search(case: Case, search: dict[str, Any], tell: Tell) -> dict[str, Any]:
 
 
 def serve() -> None:
-    """Execute the tasks of stdin until it ends: then the sweep has ended, and this process does."""
+    """Execute tasks from stdin until it closes: the sweep has then ended, and so does this process."""
     signal.signal(
         signal.SIGINT, signal.SIG_IGN
     )  # a Ctrl-C is for the sweep, which ends its workers

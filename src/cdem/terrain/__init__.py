@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from cdem.terrain.report import measure, text, write
     from cdem.terrain.solid import Solid
 
-# The module of each public name, imported at first use: processes that read a file need none of it.
+# Module of each public name, imported at first use: processes that read a file need none.
 _HOMES = {
     "Landslide": "cdem.terrain.landslide",
     "Solid": "cdem.terrain.solid",

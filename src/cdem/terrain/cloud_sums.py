@@ -1,6 +1,7 @@
-"""Heights of a point cloud summed by cells; as a program the process that unpacks LAZ.
+"""Heights of a point cloud summed by cells; run as a program, the process that unpacks LAZ.
 
-The decompressor of LAZ ends the whole program at some damaged files; see `cdem.case.reader_process`.
+The decompressor of LAZ ends the whole program on some damaged files; see
+`cdem.case.reader_process`.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from cdem.errors import CaseError
 from cdem.terrain.projection import moved
 
 MEND = "a point cloud is LAS or LAZ; if this one is, it is damaged: fetch it again"
-CHUNK = 1_000_000  # points that are held at a time
+CHUNK = 1_000_000  # points in memory at a time
 GROUND = 2  # class of ground points (ASPRS)
 
 
@@ -28,11 +29,11 @@ def cell_sums(path: Path, file: Any, asked: dict[str, Any]) -> reader_process.Ar
         file: A ``laspy.LasReader``.
         asked: ``low``: south-west corner [m]; ``cell`` [m], ``columns`` and ``rows`` of the grid;
             ``classes``: "ground" for points of class 2, "all" for all; ``own`` and ``target``: the
-            projections of the cloud and of the grid, None where they are the same.
+                projections of the cloud and of the grid, None if they are the same.
 
     Returns:
         ``total``: sums of heights, ``count``: numbers of points, both (rows * columns,) from the
-        south-west, row by row; ``taken``: points of those classes, inside or not.
+        south-west, row by row; ``taken``: number of points of those classes, inside or not.
     """
     low, cell, columns, rows = asked["low"], asked["cell"], asked["columns"], asked["rows"]
     systems = None if asked["own"] is None else (look_up(asked["own"]), look_up(asked["target"]))
@@ -61,13 +62,13 @@ def _unpack(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
         with laspy.open(path) as file:
             return cell_sums(path, file, asked)
     except BaseException as error:
-        if type(error).__name__ != "PanicException":  # of lazrs, which is no Exception
+        if type(error).__name__ != "PanicException":  # from lazrs, not an Exception
             raise
         raise CaseError(f"{path}: cannot be read ({error}); {MEND}") from None
 
 
 if __name__ == "__main__":
-    import laspy  # noqa: F401  # loading takes more time than reading may
+    import laspy  # noqa: F401  # loading takes longer than reading is allowed
     import lazrs  # noqa: F401
     import pyproj  # noqa: F401
 

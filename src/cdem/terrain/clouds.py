@@ -25,7 +25,7 @@ MOST_CELLS = 10_000_000
 
 
 def read_cloud_label(path: Path) -> str | None:
-    """What a point cloud says of its projection; None if it says nothing."""
+    """Projection named in a point cloud, or None."""
     with _opened(path) as file:
         return _label(file)
 
@@ -33,25 +33,25 @@ def read_cloud_label(path: Path) -> str | None:
 def read_cloud(
     path: Path, projection: Projection, told: str | None, box: Box, cell: float | None, classes: str
 ) -> Grid:
-    """Read a point cloud as a grid on lines at multiples of the cell.
+    """Read a point cloud as a grid with lines at multiples of the cell.
 
     Args:
-        path: ``.las`` or ``.laz``; it is read in parts, packed points by another process.
-        projection: Where it is brought to.
-        told: Its projection as the user says, or None.
-        box: The part that is needed, in the target [m].
+        path: ``.las`` or ``.laz``; it is read in parts, compressed points by another process.
+        projection: Target projection.
+        told: Its projection as given by the user, or None.
+        box: The required part, in the target [m].
         cell: Cell of the grid [m].
         classes: "ground" for points of class 2, "all" for all.
 
     Returns:
-        The grid: mean heights, in the unit of the file; NaN where no point is.
+        The grid: mean heights, in the unit of the file; NaN in cells without points.
 
     Raises:
-        CaseError: No cell is given, the file cannot be read, or holds no such points there.
+        CaseError: No cell is given, the file cannot be read, or has no such points there.
         BackendError: The extra `lidar` is not installed.
     """
     if cell is None:
-        raise CaseError(f"{path}: a point cloud needs the cell of the grid that it becomes")
+        raise CaseError(f"{path}: a point cloud needs a cell size for its grid; give cell")
     low = np.floor(box[0] / cell) * cell
     columns, rows = np.round((np.ceil(box[1] / cell) * cell - low) / cell).astype(int).tolist()
     if columns * rows > MOST_CELLS:
@@ -77,10 +77,10 @@ def read_cloud(
     if not sums["taken"] and head.point_count:
         raise CaseError(
             f"{path}: none of its {head.point_count:,} points has class 2 (ground); write classes: "
-            "all (--all-points) to take all, trees and houses too"
+            "all (--all-points) to use all points, including trees and houses"
         )
     if not count.any():
-        raise CaseError(f"{path}: has no points where they are needed")
+        raise CaseError(f"{path}: has no points in the required area")
     empty = int((count == 0).sum())
     projection.tell(
         f"{path.name}: {int(count.sum()):,} points to {columns} x {rows} cells of {cell:g} m, {empty} "

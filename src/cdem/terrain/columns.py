@@ -1,7 +1,7 @@
 """Factor of safety of a body by the ordinary method of columns, in closed form.
 
-Hovland (1977): no forces between the columns; each presses on its base with the part of its weight
-that is normal to it. Below the rigorous factor where the base is curved, equal to it on a plane.
+Hovland (1977): no forces between the columns; each presses on its base with the component of its
+weight normal to the base. Below the rigorous factor on a curved base, equal to it on a plane.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Columns:
     Attributes:
         volume: [m3], shape (columns,).
         slope: Gradient of the base in plan [1], shape (columns, 2).
-        area: Of the base in plan [m2].
+        area: Area of the base in plan [m2].
     """
 
     volume: Floats
@@ -58,7 +58,7 @@ def ordinary(
         unit_weight: Weight of the rock [N/m3].
 
     Returns:
-        The factor, infinite where nothing drives; and the azimuth of sliding [deg].
+        The factor, infinite without a driving force; and the azimuth of sliding [deg].
     """
     azimuth = np.radians(np.arange(360))
     fall = -columns.slope @ np.stack([np.sin(azimuth), np.cos(azimuth)])

@@ -23,11 +23,11 @@ WHAT = "terrain file"
 
 @dataclass
 class Features:
-    """What a file of lines and polygons holds.
+    """Contents of a file of lines and polygons.
 
     Attributes:
         items: Geometry as in GeoJSON (``type``, ``coordinates``), and properties, of each feature.
-        label: What the file says of its projection, for `look_up`; None if it says nothing.
+        label: Projection named in the file, for `look_up`, or None.
     """
 
     items: list[tuple[dict[str, Any], dict[str, Any]]]
@@ -40,9 +40,10 @@ def read_features(
     """Read the features of a file.
 
     Args:
-        path: ``.geojson``, or what GDAL reads with the extra `terrain`.
-        layer: Which layer; needed where there are several, except in KML, whose folders are.
-        where: Only features whose properties have these values.
+        path: ``.geojson``, or a format of GDAL with the extra `terrain`.
+        layer: Name of the layer; needed if there are several, except in KML, whose folders are
+            layers.
+        where: Use only features with these property values.
 
     Raises:
         CaseError: The file is missing, of another kind, or has no such layer or features.
@@ -79,7 +80,7 @@ def _chosen(path: Path, found: Features, where: dict[str, Any]) -> Features:
 
 def _geojson(path: Path, text: str) -> Features:
     if text.lstrip().startswith("<"):
-        raise CaseError(f"{path}: is XML, not GeoJSON; a KML file ends in .kml")
+        raise CaseError(f"{path}: is XML, not GeoJSON; name a KML file .kml")
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:
@@ -91,13 +92,13 @@ def _geojson(path: Path, text: str) -> Features:
     for feature in features:
         geometry, properties = feature.get("geometry") or feature, feature.get("properties") or {}
         if not isinstance(geometry, dict) or not isinstance(properties, dict):
-            raise CaseError(f"{path}: not GeoJSON: a geometry or properties are no {{...}}")
+            raise CaseError(f"{path}: not GeoJSON: a geometry or its properties are not {{...}}")
         items.append((geometry, properties))
     return Features(items, _geojson_label(data))
 
 
 def _geojson_label(data: dict[str, Any]) -> str | None:
-    """The name of the member `crs`, which older files have."""
+    """The name in the member `crs` of older files."""
     member = data.get("crs")
     properties = member.get("properties") if isinstance(member, dict) else None
     name = properties.get("name") if isinstance(properties, dict) else None

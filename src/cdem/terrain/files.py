@@ -30,11 +30,11 @@ COLUMNS = {
 }
 WHAT = "terrain file"
 LINE = re.compile(r"(line|id|contour_?id)", re.IGNORECASE)
-OPEN = 0.05  # gap between the ends of a line over its length, up to which it is closed
+OPEN = 0.05  # largest gap between the ends of a line over its length that is closed
 
 
 def as_it_is(label: str | None, points: Floats) -> Floats:
-    """Points of a file that is in metres already."""
+    """Points of a file already in metres."""
     return points
 
 
@@ -43,10 +43,10 @@ def read_lines(path: Path, elevation: str | None = None, bring: Bring = as_it_is
 
     Args:
         path: GIS file (`read_features`) of lines with a height among their properties or in
-            their coordinates, or CSV (``.csv``, ``.txt``) with columns x, y, z and, where lines
-            follow one another, one with the number of the line.
-        elevation: Name of the property or column that holds the height; found by itself if None.
-        bring: Moves all points to metres.
+            their coordinates, or CSV (``.csv``, ``.txt``) with columns x, y, z and, for several
+            lines in one file, a column with the number of the line.
+        elevation: Name of the property or column of the height; None to detect it.
+        bring: Transforms all points to metres.
 
     Raises:
         CaseError: The file is missing, of another kind, has no heights, or is in degrees.
@@ -67,10 +67,10 @@ def read_lines(path: Path, elevation: str | None = None, bring: Bring = as_it_is
         )
     lines = [line for line in lines if len(line)]
     if not lines:
-        raise CaseError(f"{path}: holds no lines")
+        raise CaseError(f"{path}: contains no lines")
     if len({float(z) for line in lines for z in line[:, 2]}) < 2:
         raise CaseError(
-            f"{path}: all points have the same height {lines[0][0, 2]:g}; if the heights stand in "
+            f"{path}: all points have the same height {lines[0][0, 2]:g}; if the heights are in "
             "another property or column, name it with 'elevation'"
         )
     points = bring(label, np.concatenate(lines))
@@ -84,25 +84,25 @@ def read_outline(
     where: dict[str, Any] | None = None,
     bring: Bring = as_it_is,
 ) -> tuple[Floats, list[str]]:
-    """Read the outline of a body: the largest polygon of all polygons and closed lines of a file.
+    """Read the outline of a body: the largest of all polygons and closed lines of a file.
 
     Args:
         path: GIS file, see `read_features`.
         layer: Its layer.
-        where: Values of properties.
-        bring: Moves the corners to metres.
+        where: Required values of properties.
+        bring: Transforms the corners to metres.
 
     Returns:
-        Its corners [m], shape (corners, 2), and what was done to it.
+        Its corners [m], shape (corners, 2), and notes on changes.
 
     Raises:
-        CaseError: The file holds no polygon, or its outline is open.
+        CaseError: The file contains no polygon, or its outline is open.
     """
     found = read_features(path, layer, where)
     with reading(path, CaseError, "an outline is a polygon or a closed line"):
         rings, notes = _rings(path, found)
     if not rings:
-        raise CaseError(f"{path}: holds no polygon")
+        raise CaseError(f"{path}: contains no polygon")
     points = bring(found.label, np.concatenate(rings))
     rings = np.split(points, np.cumsum([len(ring) for ring in rings])[:-1])
     corners, more = _largest(path, rings)
@@ -121,7 +121,7 @@ def _rings(path: Path, found: Features) -> tuple[list[Floats], list[str]]:
         for part in parts:
             if "Polygon" in str(kind):
                 if len(part) > 1:
-                    notes.append(f"{path.name}: holes of the outline are rock like the rest")
+                    notes.append(f"{path.name}: holes in the outline are filled")
                 part = part[0] if part else []
             ring = np.array([p[:2] for p in part], float)
             if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
@@ -152,7 +152,7 @@ def _largest(path: Path, rings: list[Floats]) -> tuple[Floats, list[str]]:
     if len(rings) == 1 and polygons[0].is_valid:
         return rings[0][:-1], notes
     if not all(polygon.is_valid for polygon in polygons):
-        notes.append(f"{path.name}: the outline crosses itself and was mended")
+        notes.append(f"{path.name}: the outline crossed itself and was corrected")
     whole = shapely.union_all([shapely.make_valid(polygon) for polygon in polygons])
     parts = [part for part in shapely.get_parts(whole) if part.area > 0]
     if not parts:
@@ -161,7 +161,8 @@ def _largest(path: Path, rings: list[Floats]) -> tuple[Floats, list[str]]:
     if len(parts) > 1:
         lost = 1 - largest.area / sum(part.area for part in parts)
         notes.append(
-            f"{path.name}: the largest of {len(parts)} parts is taken; the others have {lost:.1%} of "
+            f"{path.name}: the largest of {len(parts)} parts is used; the others have {lost:.1%} "
+            f"of "
             "the area"
         )
     return shapely.get_coordinates(largest.exterior)[:-1], notes
@@ -212,14 +213,14 @@ def _csv_lines(path: Path, text: str, elevation: str | None) -> Iterator[Floats]
         point = _point(path, number, row, at)
         if line_at is not None and line_at >= len(row):
             raise CaseError(f"{path}: row {number} has no {head[line_at]}: {','.join(row)}")
-        # without a column of lines each point stands for itself
+        # without a column of lines each point is on its own
         labelled.append((number if line_at is None else row[line_at], point))
     for _, line in groupby(labelled, key=itemgetter(0)):
         yield np.array([point for _, point in line])
 
 
 def _columns(path: Path, head: list[str], elevation: str | None) -> dict[str, int]:
-    """Where the columns x, y and z stand; z is that of the elevation, if one is named."""
+    """Columns of x, y and z; z is the elevation column, if one is named."""
     found = {}
     for key, pattern in COLUMNS.items():
         named = key == "z" and elevation
@@ -230,7 +231,7 @@ def _columns(path: Path, head: list[str], elevation: str | None) -> dict[str, in
         else:
             raise CaseError(
                 f"{path}: the first line must name the columns x, y and z (or elevation), e.g. "
-                f"'line,x,y,z'; it says: {', '.join(head)}"
+                f"'line,x,y,z'; it has: {', '.join(head)}"
             )
     return found
 

@@ -1,8 +1,8 @@
-"""GDAL shut in: only the drivers that a file needs, in a process that reads nothing else.
+"""GDAL in isolation: only the drivers that a file needs, in a process that reads nothing else.
 
-Drivers of GDAL follow links to other files and into the net, and guess the kind of a file from its
-content. So the process that reads (`cdem.case.reader_process`) drops all drivers but those of the kind that
-the file's ending and first bytes name.
+Drivers of GDAL follow links to other files and the internet, and guess the kind of a file from its
+content. So the reading process (`cdem.case.reader_process`) drops all drivers except those for the
+kind given by the file's ending and first bytes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ def keep_drivers(module: ModuleType, names: Iterable[str]) -> None:
     """Drop all drivers of a GDAL but these.
 
     Args:
-        module: The compiled module of pyogrio or rasterio, which bring a GDAL each.
+        module: The compiled module of pyogrio or rasterio; each contains its own GDAL.
         names: Names of drivers.
     """
     gdal = ctypes.CDLL(module.__file__)

@@ -23,17 +23,17 @@ DRIVERS = {
     ".fgb": ("FlatGeobuf",),
     ".dxf": ("DXF",),
 }
-"""Drivers that read the files of an ending; no other is there."""
+"""Drivers for each file ending; all others are removed."""
 BEGINS = {
     ".gpkg": b"SQLite format 3\0",
     ".shp": b"\0\0\x27\x0a",
     ".kmz": b"PK\x03\x04",
     ".fgb": b"fgb\x03fgb",
 }
-"""First bytes of the files of an ending."""
+"""First bytes of files, by ending."""
 HEAD, WAL = 4096, 2
 UNPACKED = 100
-"""A KMZ unpacks to at most so many times its size, and a million bytes more."""
+"""Largest ratio of unpacked to packed size of a KMZ, beyond the first million bytes."""
 
 
 def read(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
@@ -43,7 +43,7 @@ def read(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
         ``text``: JSON with ``label`` and ``items``, each a geometry as in GeoJSON and properties.
 
     Raises:
-        CaseError: It is not what its name says, leads to other files, or has no such layer.
+        CaseError: It does not match its ending, leads to other files, or has no such layer.
     """
     import pyogrio
     import pyogrio._ogr
@@ -69,7 +69,7 @@ def read(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
 
 
 def _layers(path: Path, plain: Path, kind: str, layer: str | None) -> list[str]:
-    """Names of the layers that are read."""
+    """Names of the layers to read."""
     import pyogrio
 
     layers = [str(name) for name in pyogrio.list_layers(plain)[:, 0]]
@@ -81,24 +81,24 @@ def _layers(path: Path, plain: Path, kind: str, layer: str | None) -> list[str]:
 
 
 def _parts(geometry: dict[str, Any]) -> list[dict[str, Any]]:
-    """The geometries of a collection, which KML makes of lines and points together."""
+    """The geometries of a collection; KML combines lines and points in one."""
     if geometry["type"] != "GeometryCollection":
         return [geometry]
     return [part for inner in geometry["geometries"] for part in _parts(inner)]
 
 
-# ------------------------------------------------------------------ what a file must be
+# ------------------------------------------------------------------ checks of a file
 
 
 def _checked(path: Path, kind: str, folder: Path) -> Path:
-    """The file that GDAL reads: the file itself, or what is unpacked or copied to a folder."""
+    """The file for GDAL: the file itself, or a copy unpacked to a folder."""
     with path.open("rb") as file:
         head = file.read(HEAD)
     begins = head.startswith(BEGINS.get(kind, b""))
     if kind == ".dxf":
         begins = head.removeprefix(b"\xef\xbb\xbf").split()[:1] in ([b"0"], [b"999"])
     if not begins:
-        raise CaseError(f"{path}: does not begin as a file that ends in {kind} does; {MEND}")
+        raise CaseError(f"{path}: its first bytes do not match its ending {kind}; {MEND}")
     if kind in (".kml", ".kmz"):
         plain = path if kind == ".kml" else _unpacked(path, folder)
         with plain.open("rb") as file:
@@ -114,21 +114,23 @@ def _unpacked(path: Path, folder: Path) -> Path:
     with zipfile.ZipFile(path) as packed:
         names = [one for one in packed.infolist() if one.filename.lower().endswith(".kml")]
         if len(names) != 1:
-            raise CaseError(f"{path}: holds {len(names)} KML files, not one; save them one by one")
+            raise CaseError(
+                f"{path}: contains {len(names)} KML files instead of one; save each on its own"
+            )
         most = 1_000_000 + UNPACKED * path.stat().st_size
         plain = folder / "doc.kml"
         with packed.open(names[0]) as file:
             content = file.read(most + 1)
         if len(content) > most:
             raise CaseError(
-                f"{path}: unpacks to more than {UNPACKED} times its size, as no map does"
+                f"{path}: unpacks to more than {UNPACKED} times its size, more than any map"
             )
         plain.write_bytes(content)
     return plain
 
 
 def _refuse_links(path: Path, file: BinaryIO) -> None:
-    """Stop at a KML file that declares entities, is none, or leads to other files."""
+    """Refuse a KML file that declares entities, is not KML, or leads to other files."""
     from defusedxml.common import DefusedXmlException
     from defusedxml.ElementTree import iterparse
 
@@ -137,28 +139,29 @@ def _refuse_links(path: Path, file: BinaryIO) -> None:
         for event, element in iterparse(file, events=("start", "end"), forbid_dtd=True):
             name = element.tag.rpartition("}")[2]
             if root is None and name.lower() != "kml":
-                raise CaseError(f"{path}: is XML, but no KML: it begins with <{name[:40]}>")
+                raise CaseError(f"{path}: is XML, but not KML: it begins with <{name[:40]}>")
             root = element if root is None else root
             if name == "NetworkLink":
                 raise CaseError(
-                    f"{path}: leads to another file (NetworkLink), which is not read; save the folder "
+                    f"{path}: leads to another file (NetworkLink), which is not followed; save the "
+                    f"folder "
                     "with the features themselves"
                 )
             if event == "end" and name == "Placemark":
                 element.clear()
     except DefusedXmlException:
-        raise CaseError(f"{path}: declares entities (DOCTYPE), which no KML needs") from None
+        raise CaseError(
+            f"{path}: declares entities (DOCTYPE), which are not allowed; remove them"
+        ) from None
 
 
 def _plain_database(path: Path, head: bytes, folder: Path) -> Path:
-    """A GeoPackage of plain tables: nothing in it computes, or reads another file, when it is read."""
+    """Check for a GeoPackage of plain tables: nothing in it computes, or reads another file, when read."""
     import sqlite3
 
     waiting = path.with_name(path.name + "-wal")
     if waiting.is_file() and waiting.stat().st_size:
-        raise CaseError(
-            f"{path}: is open in another program, which has not saved all; close it there"
-        )
+        raise CaseError(f"{path}: is open in another program with unsaved changes; close it there")
     with sqlite3.connect(f"file:{quote(str(path))}?mode=ro&immutable=1", uri=True) as base:
         base.execute("PRAGMA trusted_schema = OFF")
         rows = base.execute("SELECT type, name, sql FROM sqlite_master").fetchall()
@@ -168,14 +171,14 @@ def _plain_database(path: Path, head: bytes, folder: Path) -> Path:
                 words.startswith("CREATE VIRTUAL") and " USING RTREE" not in words
             ):
                 raise CaseError(
-                    f"{path}: has a view or virtual table '{name}', which computes when it is read; "
-                    "save the layer as a plain one"
+                    f"{path}: has a view or virtual table '{name}', which would compute when read; "
+                    "save the layer as a plain table"
                 )
         for name in [name for kind, name, _ in rows if kind == "table"]:
             quoted = str(name).replace('"', '""')
             if any(c[6] in (2, 3) for c in base.execute(f'PRAGMA table_xinfo("{quoted}")')):
                 raise CaseError(
-                    f"{path}: table '{name}' has computed columns; save it as a plain one"
+                    f"{path}: table '{name}' has computed columns; save it as a plain table"
                 )
     if head[18:20] == bytes([WAL, WAL]):  # SQLite would write files beside it
         return Path(shutil.copy(path, folder / "copy.gpkg"))
@@ -183,7 +186,7 @@ def _plain_database(path: Path, head: bytes, folder: Path) -> Path:
 
 
 if __name__ == "__main__":
-    import defusedxml.ElementTree  # noqa: F401  # loading takes more time than reading may
+    import defusedxml.ElementTree  # noqa: F401  # loading takes longer than reading is allowed
     import pyogrio  # noqa: F401
     import shapely  # noqa: F401
 

@@ -23,14 +23,15 @@ OPTIONS = {
 
 
 def read(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
-    """Read a grid, or the part that the process which asks wants of it.
+    """Read a grid, or the part requested by the asking process.
 
     Args:
         path: The file.
-        asked: ``driver``: of GDAL; ``vrt``: path of the VRT that is opened in place of the file.
+        asked: ``driver``: driver of GDAL; ``vrt``: path of the VRT that is opened instead of the
+            file.
 
     Returns:
-        ``values``: heights, rows from the north; nothing where no part is wanted.
+        ``values``: heights, rows from the north; nothing if no part is requested.
 
     Raises:
         CaseError: It is not such a file.
@@ -68,6 +69,6 @@ def _read(file: Any) -> reader_process.Arrays:
 
 
 if __name__ == "__main__":
-    import rasterio  # noqa: F401  # loading takes more time than reading may
+    import rasterio  # noqa: F401  # loading takes longer than reading is allowed
 
     reader_process.answer(read, MEND)

@@ -14,12 +14,12 @@ from cdem.errors import BackendError, CaseError
 
 Floats = NDArray[np.float64]
 MOST_POINTS, LONGEST = 2_000_000, 20_000
-"""Parts into which all lines together, and the way between two points, are divided."""
-FIT = 24  # triangles whose corners give the plane beyond the outermost lines
+"""Number of parts of all lines together, and of the path between two points."""
+FIT = 24  # triangles whose corners define the plane beyond the outermost lines
 
 
 class Heights(Protocol):
-    """A height [m] for every point of a plan; beyond its data it goes on evenly."""
+    """A height [m] for every point of a plan; extrapolated beyond its data."""
 
     low: Floats
     high: Floats
@@ -29,7 +29,7 @@ class Heights(Protocol):
 
 
 def extra(module: str, what: str = "meshing terrain") -> Any:
-    """Import a library of the extra `terrain`, which something needs.
+    """Import a library of the extra `terrain`, needed for a given purpose.
 
     Raises:
         BackendError: It is not installed.
@@ -45,11 +45,11 @@ def extra(module: str, what: str = "meshing terrain") -> Any:
 
 
 def refuse_degrees(path: Path, points: Floats) -> None:
-    """Longitudes and latitudes lie within a few units of one another; terrain does not.
+    """Refuse longitudes and latitudes: they lie within a few units of one another, unlike terrain.
 
     Args:
         path: File of the points.
-        points: In metres if all is well, shape (points, 3).
+        points: Points, supposedly in metres, shape (points, 3).
 
     Raises:
         CaseError: They are degrees.
@@ -70,7 +70,7 @@ class Plane:
 
     Attributes:
         dip: Angle to the horizontal [deg].
-        dip_direction: Azimuth in which it falls [deg]; y is north, x is east.
+        dip_direction: Azimuth of its dip [deg]; y is north, x is east.
         through: A point on it [m].
     """
 
@@ -90,12 +90,12 @@ class Plane:
 
 
 class Lines:
-    """Triangles between lines of known height; beyond the outermost, the plane that fits best.
+    """Triangles between lines of known height; beyond the outermost, the best-fitting plane.
 
     Args:
         lines: Points [m] of each line, shape (points, 3).
-        spacing: Largest distance of points along a line [m]; the lines are divided to it, so that
-            no triangle crosses a line that has a neighbour at that distance.
+        spacing: Largest distance of points along a line [m]; the lines are divided to it, so
+            no triangle crosses a line with a neighbour at that distance.
 
     Raises:
         CaseError: All points lie on one line, or the lines are millions of spacings long.
@@ -105,8 +105,9 @@ class Lines:
         sides = np.concatenate([np.hypot(*np.diff(line[:, :2], axis=0).T) for line in lines])
         if not sides.max(initial=0.0) < LONGEST * spacing or sides.sum() > MOST_POINTS * spacing:
             raise CaseError(
-                f"the lines are {sides.sum():.3g} m long, and {sides.max():.3g} m between two points: "
-                f"much for the {spacing:.3g} m at which they are divided; are the units the same?"
+                f"the lines are {sides.sum():.3g} m long, with up to {sides.max():.3g} m between "
+                f"two points: "
+                f"too much for a spacing of {spacing:.3g} m; are the units the same?"
             )
         points = np.concatenate([_divided(line, spacing) for line in lines])
         points = points[np.lexsort(points.T[::-1])]
@@ -122,7 +123,7 @@ class Lines:
             raise CaseError(
                 "the points lie on one straight line; give lines that span an area"
             ) from None
-        # made once, here; with several threads SciPy takes 200 times longer for its 3 x 3 systems
+        # made once, here; with several threads SciPy is 200 times slower for its 3 x 3 systems
         with extra("threadpoolctl").threadpool_limits(1):
             self._to_local = self._net.transform
         z = self.points[self._net.simplices, 2]
@@ -138,7 +139,7 @@ class Lines:
         first = np.einsum("ijk,ik->ij", to_local[:, :2], at - to_local[:, 2])
         weights = np.column_stack([first, 1 - first.sum(axis=1)])
         z = (self.points[self._net.simplices[triangle], 2] * weights).sum(axis=1)
-        # triangles without area, of three points in line, have no local coordinates
+        # triangles of three collinear points have no local coordinates
         for i in np.flatnonzero((triangle < 0) | ~np.isfinite(z)):
             z[i] = self._beyond(at[i])
         return z
@@ -153,7 +154,7 @@ class Lines:
 
 
 def _divided(line: Floats, spacing: float) -> Floats:
-    """A line with points added so that none are further apart than `spacing` in plan."""
+    """A line with points added so that no two are further apart than `spacing` in plan."""
     steps = np.hypot(*np.diff(line[:, :2], axis=0).T)
     pieces = [line[-1:]]
     for a, b, length in zip(line[:-1], line[1:], steps, strict=True):
@@ -179,7 +180,7 @@ class Grid:
     values: Floats
 
     def __post_init__(self) -> None:
-        # a value stands for its cell, so the data reach half a cell beyond the outermost points
+        # a value represents its cell, so the data reach half a cell beyond the outermost points
         rows, columns = self.values.shape
         half = np.array(self.step) / 2
         self.low = np.array([self.west, self.south]) - half
@@ -199,10 +200,10 @@ class Grid:
 
 
 class Smooth:
-    """Heights averaged with a normal distribution in plan; a plane stays what it is.
+    """Heights averaged with a normal distribution in plan; a plane is unchanged.
 
     Args:
-        heights: What to smooth.
+        heights: Heights to smooth.
         width: Standard deviation [m].
     """
 

@@ -33,10 +33,10 @@ Floats = NDArray[np.float64]
 
 
 class Landslide(LandslideParts):
-    """What `cdem mesh` reads: terrain, sliding surface, bodies, sizes.
+    """The input of `cdem mesh`: terrain, sliding surface, bodies, sizes.
 
     Raises:
-        CaseError: Every problem found, one line each: file:line:column: path: what.
+        CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
     _source: Source = PrivateAttr(default_factory=Source)
@@ -52,7 +52,10 @@ class Landslide(LandslideParts):
         names = [self.bedrock, *(body.group for body in self.bodies)]
         for index, body in enumerate(self.bodies):
             if body.group in names[: index + 1]:
-                raise self.error(f"bodies.{index}.group", f"the name '{body.group}' is taken")
+                raise self.error(
+                    f"bodies.{index}.group",
+                    f"the name '{body.group}' is used twice; choose another",
+                )
 
     @classmethod
     def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Landslide:
@@ -74,7 +77,7 @@ class Landslide(LandslideParts):
 
     @property
     def projection(self) -> Projection:
-        """The projection that everything is brought to; its notes say what was done.
+        """The common projection; its notes report transformations.
 
         Raises:
             CaseError: The terrain is in degrees or feet, and no other projection is given.
@@ -85,17 +88,17 @@ class Landslide(LandslideParts):
 
     @property
     def system(self) -> str | None:
-        """The projection as text for the case, e.g. ``EPSG:32632``; None if no file says one."""
+        """The projection as text for the case, e.g. ``EPSG:32632``; None if no file names one."""
         target = self.projection.target
         return None if target is None else name_of(target)
 
     def ground(self) -> Heights:
-        """The ground, smoothed if that is asked for."""
+        """The ground, smoothed on request."""
         heights = self._heights("terrain", self.terrain)
         return Smooth(heights, self.terrain.smooth) if self.terrain.smooth else heights
 
     def sliding_surface(self) -> Heights | None:
-        """The surface that the bodies slide on; None if it follows from ground and outlines."""
+        """The sliding surface of the bodies; None if it follows from ground and outlines."""
         by = self.surface
         if by is None or by.slbl is not None:
             return None
@@ -112,7 +115,7 @@ class Landslide(LandslideParts):
         return self._heights("surface", by)
 
     def planes(self, planes: Iterable[PlaneBy]) -> list[Plane]:
-        """Planes by their dips."""
+        """Planes of given dips."""
         return [self._plane(plane) for plane in planes]
 
     def outline(self, index: int) -> Floats:
@@ -129,7 +132,7 @@ class Landslide(LandslideParts):
         return corners
 
     def _bring(self, path: Path, told: str | None, unit: str | None = None) -> files.Bring:
-        """How points of a file, and their heights if they have any, come to metres."""
+        """Function that transforms points of a file, and their heights if any, to metres."""
 
         def bring(label: str | None, points: Floats) -> Floats:
             there = self.projection.bring(path, label, told, points)
@@ -141,7 +144,7 @@ class Landslide(LandslideParts):
         return bring
 
     def _target(self) -> Any | None:
-        """What all is brought to: as told, or as the terrain's file says."""
+        """The common projection: as given, or from the terrain's file."""
         if self.crs is not None:
             with self._source.blame("crs"):
                 system = look_up(self.crs)
@@ -161,7 +164,7 @@ class Landslide(LandslideParts):
         )
 
     def _advice(self, system: Any) -> str:
-        """The UTM zone of a terrain in degrees, for the words of an error."""
+        """The UTM zone of a terrain in degrees, for an error message."""
         if not horizontal(system).is_geographic or self.terrain.grid is None:
             return ""
         try:

@@ -1,4 +1,4 @@
-"""The plan: bodies cut off at the outcrop of the sliding surface, triangles that follow their outlines."""
+"""The plan: bodies limited by the outcrop of the sliding surface, and triangles along their outlines."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-CORNER = 20.0  # turn of an outline [deg] from which its corner is kept
-THIN = 0.1  # thickness in element sizes: less vanishes on an outline and is made so much inside
+CORNER = 20.0  # smallest turn of an outline [deg] at a kept corner
+THIN = 0.1  # least thickness in element sizes: less becomes zero on an outline and this inside
 
 
 @dataclass
 class Plan:
     """Triangles in plan.
 
-    Attributes:
+    points: Positions [m], shape (points, 2).
         points: [m], shape (points, 2).
         triangles: Counter-clockwise point ids, shape (triangles, 3).
         body: Number of each triangle's body, -1 for bedrock.
         ground: Height of the ground at the points [m].
-        bed: Height of the sliding surface [m]; NaN where no body is.
-        rim: Points of the extent's edge in turn, counter-clockwise from its south-west corner.
-        notes: What a user should know.
+        bed: Height of the sliding surface [m]; NaN outside bodies.
+        rim: Points of the extent's edge in order, counter-clockwise from its south-west corner.
+        notes: Messages for the user.
     """
 
     points: Floats
@@ -48,7 +48,8 @@ def make_plan(landslide: Landslide) -> Plan:
     """Triangulate the extent with the outlines of the bodies as constraints.
 
     Raises:
-        CaseError: An outline crosses itself, leaves the extent, or holds no rock above the surface.
+        CaseError: An outline crosses itself, leaves the extent, or contains no rock above the
+            surface.
         MeshError: The plan cannot be triangulated.
     """
     projection = landslide.projection
@@ -73,7 +74,7 @@ def make_plan(landslide: Landslide) -> Plan:
 
 
 def _base_level(landslide: Landslide, plan: Plan, ground: Heights) -> tuple[Heights, Ints]:
-    """The sloping local base level under the bodies, and the points where it meets the ground."""
+    """The sloping local base level under the bodies, and its points at ground level."""
     used, local = np.unique(plan.triangles[plan.body >= 0], return_inverse=True)
     points, triangles = plan.points[used], local.reshape(-1, 3)
     z = _known(landslide, "terrain", ground, points)
@@ -91,7 +92,8 @@ def _check_base(landslide: Landslide, plan: Plan) -> None:
     if lowest[at] < landslide.extent.base + landslide.sizes.body:
         raise landslide.error(
             "extent.base",
-            f"must lie an element below the ground and the sliding surface, which fall to "
+            f"must lie at least an element below the ground and the sliding surface, whose lowest "
+            f"point is "
             f"{lowest[at]:.5g} m at {_at(plan.points[at])}",
         )
 
@@ -101,7 +103,7 @@ def _at(point: Floats) -> str:
 
 
 def _known(landslide: Landslide, key: str, heights: Heights, points: Floats) -> Floats:
-    """Heights at points, which the data must cover."""
+    """Heights at points, which must lie within the data."""
     z = heights(points)
     reach = landslide.sizes.body * 1e-6
     outside = np.any((points < heights.low - reach) | (points > heights.high + reach), axis=1)
@@ -122,7 +124,7 @@ def _check_extent(landslide: Landslide, ground: Heights) -> None:
     if bool((low < ground.low - slack).any() or (high > ground.high + slack).any()):
         raise landslide.error(
             "extent",
-            f"{_at(low)} to {_at(high)} reaches beyond the terrain, which is known from "
+            f"{_at(low)} to {_at(high)} reaches beyond the terrain, which extends from "
             f"{_at(ground.low)} to {_at(ground.high)}; are the units the same?",
         )
     if landslide.sizes.far > (high - low).min():
@@ -177,8 +179,9 @@ def _cut_at_outcrop(
         if not kept:
             raise landslide.error(
                 path,
-                "holds no rock: the sliding surface lies above the ground everywhere in it, or it "
-                "is smaller than one element; look at surface, its units and sizes.body",
+                "contains no rock: the sliding surface lies above the ground everywhere in it, or "
+                "it "
+                "is smaller than one element; check surface, its units and sizes.body",
             )
         if area < 0.999 * own.area:
             notes.append(
@@ -198,7 +201,7 @@ def _cut_at_outcrop(
 
 
 def _above(landslide: Landslide, outline: Any, ground: Heights, surface: Heights) -> Any:
-    """Polygon in which the ground lies above the sliding surface, from a grid four times as fine."""
+    """Polygon where the ground lies above the sliding surface, from a grid four times as fine."""
     contourpy, shapely = extra("contourpy"), extra("shapely")
     step = landslide.sizes.body / 4
     west, south, east, north = outline.bounds
@@ -210,7 +213,7 @@ def _above(landslide: Landslide, outline: Any, ground: Heights, surface: Heights
     bed = _known(landslide, "surface", surface, xy[inside])
     thickness = np.zeros(len(xy))
     thickness[inside] = z - bed
-    # just outside the outline the sources may have no data: they go on evenly, or stay at zero
+    # just outside the outline the sources may lack data: they are extrapolated, or stay at zero
     beyond = ground(xy[~inside]) - surface(xy[~inside])
     thickness[~inside] = np.where(np.isfinite(beyond), beyond, 0.0)
     highest = thickness.max()
@@ -234,7 +237,7 @@ class Piece:
     Attributes:
         points: Ends of its edges [m], shape (edges + 1, 2).
         left, right: Number of the body on either side, -1 for bedrock.
-        outcrop: Whether it follows the outcrop, not an outline.
+        outcrop: Whether it follows the outcrop instead of an outline.
     """
 
     points: Floats
@@ -270,7 +273,7 @@ def pieces_of(bodies: list[Any], outlines: list[Any], size: float) -> list[Piece
 
 
 def _cuts(xy: Floats, outcrop: NDArray[np.bool_]) -> list[int]:
-    """Points of a chain that are kept: its ends, its corners, and where the outcrop begins."""
+    """Kept points of a chain: its ends, its corners, and the start of the outcrop."""
     step = np.diff(xy, axis=0)
     azimuth = np.arctan2(step[:, 1], step[:, 0])
     turn = np.abs((np.diff(azimuth) + np.pi) % (2 * np.pi) - np.pi)
@@ -316,7 +319,7 @@ def _triangulate(landslide: Landslide, pieces: list[Piece]) -> tuple[Floats, Int
     for piece in pieces:
         for ends in zip(piece.points[:-1], piece.points[1:], strict=True):
             lines.append((np.array(ends), piece.left + 2, piece.right + 2))
-    # bare ground is what blocks fall on: fine, above rock that grows coarser
+    # bare ground, for falling blocks, is fine, above rock that grows coarser
     around = sizes.far if landslide.bodies else sizes.body
     domain_size = [around] + [sizes.body] * len(landslide.bodies)
     points, triangles, domain = flat_mesh(lines, domain_size, sizes.growth)
@@ -337,7 +340,7 @@ def flat_mesh(
         growth: Growth of the edge length per distance [1].
 
     Returns:
-        Points, shape (points, 2), those of the lines first; counter-clockwise triangles; their
+        Points, shape (points, 2), first the points of the lines; counter-clockwise triangles; their
         domains.
 
     Raises:
@@ -366,7 +369,7 @@ def flat_mesh(
 
 
 def _rim(points: Floats) -> Ints:
-    """Points on the edge of the extent in turn, counter-clockwise from the south-west corner."""
+    """Points on the edge of the extent in order, counter-clockwise from the south-west corner."""
     low, high = points.min(axis=0), points.max(axis=0)
     x, y = points.T
     sides = [
@@ -385,7 +388,7 @@ def _rim(points: Floats) -> Ints:
 def _lift(
     landslide: Landslide, plan: Plan, ground: Heights, surface: Heights, outcrop: Ints
 ) -> None:
-    """Give the plan its heights; the thickness vanishes at the outcrop and nowhere inside a body."""
+    """Give the plan its heights; the thickness is zero at the outcrop and nowhere inside a body."""
     thin = THIN * landslide.sizes.body
     _look_up(landslide, plan, ground, surface)
     zero = np.zeros(len(plan.points), bool)
@@ -412,9 +415,9 @@ def _look_up(landslide: Landslide, plan: Plan, ground: Heights, surface: Heights
 
 
 def split_pinched(plan: Plan, zero: NDArray[np.bool_]) -> None:
-    """Divide edges inside a body whose ends have no thickness: ground and bed would be one there.
+    """Divide edges inside a body whose ends have no thickness: ground and bed would coincide there.
 
-    A triangle has at most one such edge, for those with three ends of no thickness are bedrock.
+    A triangle has at most one such edge, since three ends without thickness make it bedrock.
     """
     of_edge: dict[tuple[int, int], list[int]] = {}
     for t in np.flatnonzero(plan.body >= 0).tolist():

@@ -1,4 +1,4 @@
-"""Points with heights and, if they have them, dips: from CSV or GIS files of any tool."""
+"""Points with heights and, optionally, dips: from CSV or GIS files of any program."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NAMES = {
         "dip_direction", "dipdir", "dip_dir", "dir", "direction", "azimut", "azimuth", "azi",
     ),
 }  # fmt: skip
-"""Names of columns, in small letters, that are known for each quantity."""
+"""Known names of columns, in lower case, for each quantity."""
 Rows = list[dict[str, object]]
 
 
@@ -34,8 +34,8 @@ def read_points(path: Path, columns: Mapping[str, str], bring: Bring) -> dict[st
 
     Args:
         path: CSV with a first line of names, or a GIS file of points.
-        columns: Names of columns for x, y, z, dip, dip_direction; others are found by themselves.
-        bring: Moves the points to metres.
+        columns: Names of columns for x, y, z, dip, dip_direction; others are detected.
+        bring: Transforms the points to metres.
 
     Returns:
         x, y, z [m], and dip, dip_direction [deg] if the file has dips; each of shape (points,).
@@ -54,7 +54,7 @@ def read_points(path: Path, columns: Mapping[str, str], bring: Bring) -> dict[st
         found = read_features(path)
         label, rows = found.label, _of_features(path, found.items)
     if not rows:
-        raise CaseError(f"{path}: holds no points")
+        raise CaseError(f"{path}: contains no points")
     named = _named(path, rows[0], columns)
     values = {key: _numbers(path, rows, name) for key, name in named.items()}
     values["x"], values["y"], values["z"] = bring(
@@ -91,11 +91,11 @@ def _of_features(path: Path, items: list) -> Rows:
 
 
 def _named(path: Path, row: Mapping[str, object], columns: Mapping[str, str]) -> dict[str, str]:
-    """Which column holds which quantity."""
+    """Column of each quantity."""
     # AvaFrame's scarp points call the azimuth dip, and count it from east
     if "slopeangle" in row and "dip" in row and "dip" not in columns:
         raise CaseError(
-            f"{path}: has columns 'dip' and 'slopeangle'; say which is which, e.g. columns: {{dip: "
+            f"{path}: has columns 'dip' and 'slopeangle'; give their meaning, e.g. columns: {{dip: "
             "slopeangle, dip_direction: ...}; AvaFrame's 'dip' is an azimuth counted from east"
         )
     found = {}

@@ -1,4 +1,4 @@
-"""Numbers over a plan; readers of heights: ESRI ASCII by itself; GeoTIFF, VRT and Surfer by GDAL."""
+"""Grids over a plan; readers of heights: ESRI ASCII directly; GeoTIFF, VRT and Surfer by GDAL."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ KINDS = ".asc (ESRI ASCII), .tif (GeoTIFF), .vrt or .grd"
 MEND = f"a grid is one of {KINDS}"
 WHAT = "terrain file"
 NOTHING = -9999.0
-"""What files hold where there is no value, unless they say otherwise."""
+"""Values of files for missing data, unless they name others."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Raster:
         x: Western edge [m].
         y: Southern edge [m].
         cell: Side of a cell [m].
-        values: Shape (rows, columns), from south to north; not a number where there is none.
+        values: Values, shape (rows, columns), from south to north; NaN for missing values.
     """
 
     x: float
@@ -63,7 +63,7 @@ class Raster:
 
     @property
     def rows(self) -> Floats:
-        """Values from north to south, as maps are written."""
+        """Values from north to south, as in map files."""
         return np.where(np.isfinite(self.values), self.values, NOTHING)[::-1]
 
     def middles(self) -> tuple[Floats, Floats]:
@@ -75,12 +75,12 @@ class Raster:
 
 @dataclass
 class LabelledGrid:
-    """A grid as its file has it, with what the file says of it.
+    """A grid as in its file, with the labels of the file.
 
     Attributes:
         grid: Heights, in the units and the projection of the file.
-        label: What it says of its projection, for `look_up`; None if it says nothing.
-        unit: Unit of its heights as it says; empty if it says nothing.
+        label: Projection named in the file, for `look_up`, or None.
+        unit: Unit of heights named in the file, or empty.
     """
 
     grid: Grid
@@ -104,7 +104,7 @@ def read_grid(path: Path) -> Grid:
 
 
 def read_label(path: Path) -> str | None:
-    """What a grid says of its projection; None if it says nothing, or its kind cannot."""
+    """Projection named in a grid, or None."""
     driver = _driver(path)
     if driver is None:
         return _sidecar(path)
@@ -116,10 +116,10 @@ def read_raster(path: Path, part: Part | None = None) -> LabelledGrid:
 
     Args:
         path: ``.asc``, ``.grd``, ``.tif``, ``.tiff`` or ``.vrt``.
-        part: The part that is needed, from the label and the box of all; by default all is read.
+        part: Function from the label and the box to the required part; by default all is read.
 
     Raises:
-        CaseError: The file is missing, not such a grid, or has no heights there.
+        CaseError: The file is missing, not such a grid, or has no heights in that part.
     """
     driver = _driver(path)
     if driver is None:
@@ -140,8 +140,8 @@ def read_raster(path: Path, part: Part | None = None) -> LabelledGrid:
     if min(values.shape) < 2:
         raise CaseError(f"{path}: a grid needs at least two rows and two columns")
     if not np.isfinite(values).any():
-        where = "" if part is None else " where they are needed"
-        raise CaseError(f"{path}: holds no heights{where}, all cells are without data")
+        where = "" if part is None else " in the required area"
+        raise CaseError(f"{path}: has no heights{where}; all cells lack data")
     x, _, west, _, y, north = head["place"]
     west, north = west + x * (window[0] + 0.5), north + y * (window[1] + 0.5)
     grid = Grid(west, north + y * (len(values) - 1), (x, -y), values[::-1])
@@ -149,7 +149,7 @@ def read_raster(path: Path, part: Part | None = None) -> LabelledGrid:
 
 
 def _driver(path: Path) -> str | None:
-    """Driver of GDAL that reads a file; None for ESRI ASCII."""
+    """Driver of GDAL for a file; None for ESRI ASCII."""
     kind = path.suffix.lower()
     if kind not in (*ASCII, *DRIVERS):
         raise CaseError(f"{path}: grids are read from {KINDS}; gdal_translate makes them")
@@ -162,10 +162,10 @@ def _driver(path: Path) -> str | None:
 def _by_gdal(
     path: Path, driver: str, wanted: Callable[[dict[str, Any]], Window | None]
 ) -> tuple[dict[str, Any], Floats]:
-    """Read the window that is wanted of a grid, once its head is known, in a process of its own.
+    """Read the required window of a grid, once its head is known, in a process of its own.
 
     Returns:
-        The head, and the heights, rows from the north; no heights where no window is wanted.
+        The head, and the heights, rows from the north; no heights without a window.
     """
     if not is_file(path):
         raise CaseError(f"{path}: cannot read the {WHAT}: No such file or directory")
@@ -194,7 +194,7 @@ def _by_gdal(
 
 
 def _window(path: Path, head: dict[str, Any], part: Part | None) -> Window:
-    """The cells that are needed, two more around them: first column and row, and how many."""
+    """The required cells and two more around them: first column and row, and numbers of each."""
     x, bx, west, by, y, north = head["place"]
     columns, rows = head["size"]
     if bx or by or x <= 0 or y >= 0:
@@ -210,7 +210,7 @@ def _window(path: Path, head: dict[str, Any], part: Part | None) -> Window:
     if last[0] - first[0] < 2 or last[1] - first[1] < 2:
         raise CaseError(
             f"{path}: reaches from ({coordinates(low)}) to ({coordinates(high)}), and does not cover "
-            f"what is needed, ({coordinates(box[0])}) to ({coordinates(box[1])})"
+            f"the required area, ({coordinates(box[0])}) to ({coordinates(box[1])})"
         )
     return first[0], first[1], last[0] - first[0], last[1] - first[1]
 
@@ -220,7 +220,7 @@ def _refuse_other_units(path: Path, label: str | None) -> None:
         return
     try:
         system = look_up(label)
-    except BackendError:  # without the extra a .prj beside ESRI ASCII is not understood
+    except BackendError:  # the extra is needed to read a .prj beside ESRI ASCII
         return
     name = ":".join(system.to_authority() or [f"'{system.name}'"])
     if system.is_geographic:
@@ -236,13 +236,13 @@ def _refuse_other_units(path: Path, label: str | None) -> None:
 
 
 def _sidecar(path: Path) -> str | None:
-    """The projection in a file of the same name that ends in .prj."""
+    """The projection in a .prj file of the same name."""
     beside = path.with_suffix(".prj")
     return read_text(beside, "projection of the grid").strip() or None if is_file(beside) else None
 
 
 def _ascii_grid(path: Path, text: str) -> tuple[dict[str, Any], Floats]:
-    """The head of a grid as `gdal_grids` gives it, and its heights, rows from the north."""
+    """The head of a grid in the form of `gdal_grids`, and its heights, rows from the north."""
     lines = text.splitlines()
     head, count = _grid_head(path, lines)
     corner = "xllcorner" in head
@@ -260,7 +260,7 @@ def _ascii_grid(path: Path, text: str) -> tuple[dict[str, Any], Floats]:
         raise CaseError(f"{path}: {error}") from None
     if len(values) != rows * columns:
         raise CaseError(
-            f"{path}: holds {len(values)} heights, but its head says {rows} x {columns}"
+            f"{path}: contains {len(values)} heights, but its head says {rows} x {columns}"
         )
     values[values == head.get("nodata_value", NOTHING)] = np.nan
     shift = 0.0 if corner else step / 2
@@ -271,7 +271,7 @@ def _ascii_grid(path: Path, text: str) -> tuple[dict[str, Any], Floats]:
 
 
 def _grid_head(path: Path, lines: list[str]) -> tuple[dict[str, float], int]:
-    """Numbers of the head by their names, and the number of its lines."""
+    """Numbers of the head by name, and its number of lines."""
     head: dict[str, float] = {}
     for count, line in enumerate(lines):
         words = line.split()

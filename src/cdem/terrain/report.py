@@ -1,4 +1,4 @@
-"""What a landslide's mesh is: counts, volumes, dip of the bed, shape of its tets; and its file."""
+"""Report on a landslide's mesh: counts, volumes, dip of the bed, shape of its tets; and its file."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def measure(solid: Solid) -> dict[str, Any]:
 
 
 def _bed(solid: Solid) -> dict[str, float]:
-    """Dip and dip direction [deg] of the plane that fits the bed best, and how far it deviates [m]."""
+    """Dip and dip direction [deg] of the best-fitting plane of the bed, and its largest deviation [m]."""
     faces = np.concatenate([f for n, f in solid.surfaces.items() if n.startswith("bed_")])
     corners = solid.points[faces]
     weight = np.linalg.norm(
@@ -68,7 +68,7 @@ def _bed(solid: Solid) -> dict[str, float]:
 
 
 def text(facts: dict[str, Any]) -> str:
-    """The facts of `measure` for people."""
+    """The facts of `measure` as text."""
     lines = [f"{facts['points']:,} points, {facts['tets']:,} tets"]
     width = max(map(len, facts["groups"]))
     for name, group in facts["groups"].items():
@@ -96,12 +96,14 @@ def write(solid: Solid, path: Path) -> None:
     """Write a gmsh file (``.msh`` or ``.msh.gz``) whose physical groups a case can name.
 
     Raises:
-        CaseError: The name ends otherwise.
+        CaseError: The name has another ending.
     """
     import meshio
 
     if not path.name.endswith((".msh", ".msh.gz")):
-        raise CaseError(f"{path}: the mesh is written as .msh or .msh.gz (gmsh), to keep its names")
+        raise CaseError(
+            f"{path}: the mesh is written as .msh or .msh.gz (gmsh); choose such a name"
+        )
     cells, tags, names = [], [], {}
     for tag, name in enumerate(solid.groups, start=1):
         cells.append(("tetra", solid.tets[solid.tet_group == tag - 1]))
@@ -119,6 +121,6 @@ def write(solid: Solid, path: Path) -> None:
         if path.suffix != ".gz":
             shutil.copyfile(plain, path)
             return
-        # without name and time the same mesh gives the same bytes
+        # without name and time, equal meshes give equal bytes
         with path.open("wb") as file, gzip.GzipFile("", "wb", fileobj=file, mtime=0) as packed:
             packed.write(plain.read_bytes())

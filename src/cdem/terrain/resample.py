@@ -1,4 +1,4 @@
-"""Grids brought to metres and one projection, without gaps: resampled once, cubic."""
+"""Grids in metres and one projection, without gaps: resampled once, cubic."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ OTHER_NAMES = {
 
 @dataclass
 class Wanted:
-    """What is wanted of a grid.
+    """Requirements for a grid.
 
     Attributes:
-        box: South-west and north-east corner of the part that is needed, in the target [m].
-        told: Its projection as the user says, or None.
-        cell: Distance of points, or None for that of the file [m].
-        unit: Unit of its heights as the user says, or None.
-        nodata: More values that stand for no data.
-        classes: Points of a cloud that count: "ground" (class 2), or "all".
+        box: South-west and north-east corner of the required part, in the target [m].
+        told: Its projection as given by the user, or None.
+        cell: Distance of points, or None to keep the file's [m].
+        unit: Unit of its heights as given by the user, or None.
+        nodata: Further values for missing data.
+        classes: Points of a cloud to use: "ground" (class 2), or "all".
     """
 
     box: Box
@@ -50,12 +50,13 @@ class Wanted:
 
 
 def label_of(path: Path) -> str | None:
-    """What a grid or point cloud says of its projection, for `look_up`; None if it says nothing."""
+    """Projection named in a grid or point cloud, for `look_up`, or None."""
     return read_cloud_label(path) if path.suffix.lower() in KINDS else read_label(path)
 
 
 def read_heights(path: Path, projection: Projection, wanted: Wanted) -> Grid:
-    """Read a grid of heights, or a point cloud, and bring it to metres in the landslide's projection.
+    """Read a grid of heights, or a point cloud, and transform it to metres in the landslide's
+    projection.
 
     Raises:
         CaseError: The file cannot be read, or its projection or unit cannot be true.
@@ -75,7 +76,7 @@ def read_heights(path: Path, projection: Projection, wanted: Wanted) -> Grid:
         source = own if own is not None else projection.target
         grid = _warped(path, grid, source, projection, wanted)
     if not np.isfinite(grid.values).any():
-        raise CaseError(f"{path}: has no heights where they are needed")
+        raise CaseError(f"{path}: has no heights in the required area")
     return grid
 
 
@@ -92,7 +93,7 @@ def _of_cloud(path: Path, projection: Projection, wanted: Wanted) -> Grid:
 def _part(
     path: Path, label: str | None, whole: Box, projection: Projection, wanted: Wanted
 ) -> Box | None:
-    """The part of a file that is needed, in its own units; None for all of it."""
+    """The required part of a file, in its own units; None for all of it."""
     own = projection.own(path, label, wanted.told, *whole)
     if not np.isfinite(wanted.box).all():
         return None
@@ -103,7 +104,7 @@ def _part(
 
 
 def _edge(low: Floats, high: Floats) -> Floats:
-    """Points along the edge of a rectangle, which curves in another projection."""
+    """Points along the edge of a rectangle, which may be curved in another projection."""
     t = np.linspace(0, 1, 21)[:, None]
     corners = np.array([low, [high[0], low[1]], high, [low[0], high[1]], low])
     return np.concatenate([a + (b - a) * t for a, b in pairwise(corners)])
@@ -116,17 +117,17 @@ def metres_of_heights(
     told: str | None,
     projection: Projection,
 ) -> float:
-    """Metres in a unit of the heights: as told, as the band says, or as the heights' system says.
+    """Metres per unit of the heights: as given, as in the band, or as in the vertical datum.
 
     Args:
         path: The file.
-        label: Its projection, as the user or the file says; None if nobody does.
-        unit: Unit of its heights as it says; empty if it says nothing.
-        told: That unit as the user says, or None.
-        projection: Is told of what is assumed.
+        label: Its projection, given by the user or named in the file, or None.
+        unit: Unit of heights named in the file, or empty.
+        told: Unit given by the user, or None.
+        projection: Receives notes on assumptions.
 
     Raises:
-        CaseError: The unit is not known, or nobody says it and the projection is in feet.
+        CaseError: The unit is unknown, or missing while the projection is in feet.
     """
     if told is not None:
         return UNITS[told]
@@ -137,7 +138,7 @@ def metres_of_heights(
         )
     factor = UNITS[named] if named else _axis_factor(path, label)
     if factor != 1.0:
-        projection.tell(f"{path.name}: its heights are taken times {factor:.10g}")
+        projection.tell(f"{path.name}: its heights are multiplied by {factor:.10g}")
     return factor
 
 
@@ -150,26 +151,27 @@ def _axis_factor(path: Path, label: str | None) -> float:
     plan = horizontal(system)
     if plan.is_projected and abs(plan.axis_info[0].unit_conversion_factor - 1) > 1e-9:
         raise CaseError(
-            f"{path}: its projection is in {plan.axis_info[0].unit_name}, and it does not say in what "
-            "its heights are; write 'unit' beside it (--unit), us-ft, ft or m"
+            f"{path}: its projection is in {plan.axis_info[0].unit_name}, but it does not name the "
+            f"unit "
+            "of its heights; write 'unit' beside it (--unit), us-ft, ft or m"
         )
     return 1.0
 
 
 def _warped(path: Path, grid: Grid, source: Any, projection: Projection, wanted: Wanted) -> Grid:
-    """A grid on lines at multiples of the cell, cubic."""
+    """A grid with lines at multiples of the cell, resampled by cubic interpolation."""
     warp = extra("rasterio.warp")
     transform = extra("rasterio.transform")
     crs = extra("rasterio.crs").CRS
     system = projection.target
-    if source is None:  # all in the same metres: any projection does
+    if source is None:  # all in the same metres: any projection works
         source = system = extra("pyproj").CRS.from_epsg(32631)
     cell = wanted.cell or _native(grid, source, system)
     low = np.floor(np.array(wanted.box[0]) / cell - 1) * cell
     high = np.ceil(np.array(wanted.box[1]) / cell + 1) * cell
     columns, rows = (np.round((high - low) / cell)).astype(int).tolist()
     out = np.full((rows, columns), np.nan)
-    # GDAL averages over larger cells; over little larger ones that is uneven, by 0.1 m at 30 deg
+    # GDAL averages over larger cells; for slightly larger ones this is uneven, by 0.1 m at 30 deg
     sharp = {"XSCALE": 1.0, "YSCALE": 1.0} if cell < 2 * _native(grid, source, system) else {}
     warp.reproject(
         np.ascontiguousarray(grid.values[::-1]),
@@ -185,13 +187,13 @@ def _warped(path: Path, grid: Grid, source: Any, projection: Projection, wanted:
         **sharp,
     )
     if not np.isfinite(out).any():
-        raise CaseError(f"{path}: does not cover what is needed")
+        raise CaseError(f"{path}: does not cover the required area")
     projection.tell(f"{path.name}: resampled once, cubic, to cells of {cell:.6g} m")
     return trimmed(Grid(low[0] + cell / 2, low[1] + cell / 2, (cell, cell), out[::-1].copy()))
 
 
 def _native(grid: Grid, source: Any, target: Any) -> float:
-    """Distance of points that keeps what a grid knows, in two digits [m]."""
+    """Distance of points that keeps the detail of a grid, with two digits [m]."""
     middle = (grid.low + grid.high) / 2
     steps = middle + np.array([[0, 0], [grid.step[0], 0], [0, grid.step[1]]])
     there = moved(steps, source, target)
@@ -201,7 +203,7 @@ def _native(grid: Grid, source: Any, target: Any) -> float:
 
 
 def trimmed(grid: Grid) -> Grid:
-    """A grid without edges that have gaps: the side with most gaps is taken off first."""
+    """A grid without gaps at its edges: the side with most gaps is removed first."""
     known = np.isfinite(grid.values)
     rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
     south, north, west, east = rows[0], rows[-1] + 1, columns[0], columns[-1] + 1
@@ -225,7 +227,7 @@ def trimmed(grid: Grid) -> Grid:
 def filled(
     path: Path, grid: Grid, fill: float | Literal["all"], outlines: list[Floats]
 ) -> tuple[Grid, list[str]]:
-    """A grid whose gaps are filled from their edges.
+    """A grid with gaps filled from their edges.
 
     Args:
         path: Its file.
@@ -234,7 +236,7 @@ def filled(
         outlines: Corners of the bodies [m].
 
     Returns:
-        The grid, and how much was filled.
+        The grid, and a note on filled cells.
 
     Raises:
         CaseError: A gap touches an outline.

@@ -22,7 +22,7 @@ class PlaneBy(Part):
     """A plane by its dip."""
 
     dip: Dip = Field(description="Angle to the horizontal [deg]")
-    dip_direction: Angle = Field(description="Azimuth in which it falls, north (y) over east [deg]")
+    dip_direction: Angle = Field(description="Azimuth of its dip, clockwise from north (y) [deg]")
     through: Length3 = Field(description="A point on it [m]")
 
 
@@ -39,26 +39,26 @@ class EllipsoidBy(Part):
     axes: Size3 = Field(
         description="Half axes: in the direction of azimuth, across it, normal to both [m]"
     )
-    azimuth: Angle = Field(description="Direction of the first axis, north over east [deg]")
+    azimuth: Angle = Field(description="Azimuth of the first axis, clockwise from north [deg]")
     tilt: Annotated[float, Quantity("deg", above=-90, below=90)] = Field(
-        0.0, description="How far the first axis plunges below the horizontal [deg]"
+        0.0, description="Plunge of the first axis below the horizontal [deg]"
     )
 
 
 class SlblBy(Part):
-    """The sloping local base level: a surface of even curvature below the ground in the outlines."""
+    """The sloping local base level: a surface of constant curvature below the ground in the outlines."""
 
     depth: Size | None = Field(None, description="Greatest depth below the ground [m]")
     volume: Annotated[float, Quantity("m3", above=0)] | None = Field(
         None, description="Volume of the bodies [m3]"
     )
     curvature: Annotated[float, Quantity("1/m")] | None = Field(
-        None, description="Laplacian of the surface; above 0 it is hollow [1/m]"
+        None, description="Laplacian of the surface; positive for a concave surface [1/m]"
     )
     deepest: Size | None = Field(
-        None, description="Nowhere deeper than this below the ground, whatever the volume [m]"
+        None, description="Largest depth below the ground, for any volume [m]"
     )
-    above: list[PlaneBy] = Field([], description="Planes that the surface stays above")
+    above: list[PlaneBy] = Field([], description="Planes below the surface everywhere")
 
     @model_validator(mode="after")
     def _one_measure(self) -> SlblBy:
@@ -87,13 +87,11 @@ class HeightsBy(Part):
         None, min_length=1, description="Polylines of points [x, y, z] [m]"
     )
     elevation: Name | None = Field(
-        None, description="Property or column of the contours that holds the height"
+        None, description="Property or column of the contours with the height"
     )
-    crs: MapSystem | None = Field(
-        None, description="Projection of the file, whatever it says itself"
-    )
+    crs: MapSystem | None = Field(None, description="Projection of the file; overrides its own")
     cell: Size | None = Field(
-        None, description="Resample a grid to cells of this size; needed of a point cloud [m]"
+        None, description="Resample a grid to this cell size; required for a point cloud [m]"
     )
     fill: (
         Annotated[
@@ -103,19 +101,21 @@ class HeightsBy(Part):
         | None
     ) = Field(
         None,
-        description="Fill gaps of a grid up to this distance [m]; all: any, also inside outlines",
+        description="Fill gaps of a grid up to this distance [m]; all: any gap, also inside "
+        "outlines",
     )
     unit: Literal["m", "ft", "us-ft", "cm", "dm"] | None = Field(
         None,
-        description="Unit of the heights of a grid or contours; by default what it says, else metres",
+        description="Unit of the heights of a grid or contours; default: as in the file, else "
+        "metres",
     )
-    nodata: list[float] = Field([], description="More values of a grid that mean no data")
+    nodata: list[float] = Field([], description="Further values of a grid for missing data")
     classes: Literal["ground", "all"] = Field(
-        "ground", description="Points of a cloud that count: those of class 2, or all"
+        "ground", description="Points of a cloud to use: class 2 (ground), or all"
     )
 
     def source(self) -> str:
-        """Name of the one source that is given."""
+        """Name of the given source."""
         return next(key for key in SURFACE if getattr(self, key, None) is not None)
 
 
@@ -134,8 +134,8 @@ class Terrain(HeightsBy):
     plane: PlaneBy | None = Field(None, description="A plane")
     smooth: Annotated[float, Quantity("m", at_least=0)] = Field(
         0.0,
-        description="Standard deviation of a normal distribution in plan over which heights are "
-        "averaged; half a body's element takes off what the mesh could not follow [m]",
+        description="Standard deviation of a normal distribution in plan for smoothing heights; "
+        "half a body's element size removes details finer than the mesh [m]",
     )
 
     @model_validator(mode="after")
@@ -155,7 +155,7 @@ class Surface(HeightsBy):
 
     plane: AnyPlane | None = Field(None, description="A plane, by its dip or through lines")
     planes: list[AnyPlane] | None = Field(
-        None, min_length=2, description="Planes; what stands above all of them slides (wedge)"
+        None, min_length=2, description="Planes; the rock above all of them slides (wedge)"
     )
     ellipsoid: EllipsoidBy | None = Field(None, description="The lower half of an ellipsoid")
     points: Name | None = Field(
@@ -175,7 +175,7 @@ class Surface(HeightsBy):
 
 
 class Extent(Part):
-    """The rectangle that is meshed."""
+    """The rectangle to mesh."""
 
     x: Span = Field(description="From west to east [m]")
     y: Span = Field(description="From south to north [m]")
@@ -193,11 +193,9 @@ class OutlineFile(Part):
     """An outline in a GIS file."""
 
     file: Name = Field(description="GeoJSON, GeoPackage, Shapefile, KML, FlatGeobuf or DXF")
-    layer: Name | None = Field(None, description="Layer, where there are several")
-    where: dict[Name, Any] = Field({}, description="Only features whose properties are so")
-    crs: MapSystem | None = Field(
-        None, description="Projection of the file, whatever it says itself"
-    )
+    layer: Name | None = Field(None, description="Layer, if there are several")
+    where: dict[Name, Any] = Field({}, description="Use only features with these properties")
+    crs: MapSystem | None = Field(None, description="Projection of the file; overrides its own")
 
 
 def _kind_of_outline(value: Any) -> str:
@@ -207,7 +205,7 @@ def _kind_of_outline(value: Any) -> str:
 
 
 class Body(Part):
-    """A part of the rock above the sliding surface, seen in plan."""
+    """A part of the rock above the sliding surface, outlined in plan."""
 
     group: Name = Field(description="Group of its elements")
     outline: Annotated[
@@ -216,15 +214,15 @@ class Body(Part):
         | Annotated[OutlineFile, Tag("file")],
         Discriminator(_kind_of_outline),
     ] = Field(
-        description="Corners [x, y] in turn, or a GIS file; may reach beyond the outcrop of the "
-        "sliding surface, where the body ends [m]"
+        description="Corners [x, y] in order, or a GIS file; may reach beyond the outcrop of the "
+        "sliding surface, which limits the body [m]"
     )
 
 
 class Sizes(Part):
     """Edge lengths of the elements."""
 
-    body: Size = Field(description="In the bodies; of bare ground at its surface [m]")
+    body: Size = Field(description="In the bodies; for bare ground at its surface [m]")
     far: Size = Field(description="Largest, far from the bodies [m]")
     growth: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.3, description="Growth of the edge length per distance from the bodies [1]"
@@ -240,16 +238,16 @@ class Sizes(Part):
 class LandslideParts(Part):
     """All parts of a landslide file."""
 
-    title: Line = Field("", description="One line for people")
+    title: Line = Field("", description="One line for reports")
     crs: MapSystem | None = Field(
         None,
-        description="Projection in metres of everything here; by default that of the terrain's file",
+        description="Projection in metres of everything here; default: as in the terrain's file",
     )
     terrain: Terrain = Field(description="The ground")
-    extent: Extent = Field(description="The rectangle that is meshed")
+    extent: Extent = Field(description="The rectangle to mesh")
     surface: Surface | None = Field(None, description="The sliding surface; needed by bodies")
     bodies: list[Body] = Field(
-        [], description="Where they overlap the first one counts; none for bare ground"
+        [], description="Bodies; the first one counts where they overlap; none for bare ground"
     )
     bedrock: Name = Field("bedrock", description="Group of everything below and around the bodies")
     sizes: Sizes = Field(description="Edge lengths of the elements")
@@ -258,8 +256,8 @@ class LandslideParts(Part):
     def _bodies_have_a_surface(self) -> LandslideParts:
         if bool(self.bodies) != (self.surface is not None):
             raise ValueError(
-                "bodies need a surface that they slide on"
+                "bodies need a sliding surface; give surface"
                 if self.bodies
-                else "a surface without bodies has no meaning; list bodies, or leave it out"
+                else "a surface without bodies has no effect; list bodies, or leave it out"
             )
         return self

@@ -33,30 +33,30 @@ from cdem.terrain.projection import (
 from cdem.terrain.resample import Wanted, filled, label_of, read_heights
 
 Floats = NDArray[np.float64]
-ACROSS = 15  # elements across a body by default
-FAR = 4.0  # size of the far elements over that in the body
-BEYOND = 3  # elements between a body and the end of the terrain, at least
+ACROSS = 15  # default number of elements across a body
+FAR = 4.0  # size of far elements over the size in the body
+BEYOND = 3  # least number of elements between a body and the edge of the terrain
 
 
 @dataclass
 class Question:
-    """What a user asks of `cdem site`.
+    """The input of `cdem site`.
 
     Attributes:
         dem: File of the ground.
         outline: File of the outline.
-        folder: Where to write.
+        folder: Folder to write to.
         surface: Mapping under `surface` of the landslide file; None: write the ground alone.
-        crs: Projection to work in; by default that of the DEM, or the UTM zone.
-        dem_crs, outline_crs: Projections of the files, whatever they say.
-        layer, where: Choose a layer and features of the outline.
+        crs: Projection to work in; by default as the DEM, or the UTM zone.
+        dem_crs, outline_crs: Projections of the files; they override the files.
+        layer, where: Select a layer and features of the outline.
         cell: Cell of the DEM [m]; by default its own.
         size: Size of the elements in the body [m]; by default a fifteenth of its width.
-        margin: Terrain around the outline, as a part of its longer side.
+        margin: Terrain around the outline, as a multiple of its longer side.
         fill: Longest distance over which gaps of the DEM are filled [m], or "all".
-        unit: Unit of the heights, whatever the file says.
-        classes: Points of a cloud that count.
-        cut: Cut off what lies beyond the DEM.
+        unit: Unit of the heights; overrides the file.
+        classes: Points of a cloud to use.
+        cut: Cut the outline off at the edge of the DEM.
     """
 
     dem: Path
@@ -79,15 +79,15 @@ class Question:
 
 @dataclass
 class Site:
-    """What `cdem site` has found.
+    """The results of `cdem site`.
 
     Attributes:
         facts: Numbers by name, SI and degrees.
-        notes: A line for each thing that was done.
-        files: What was written.
+        notes: A line for each step.
+        files: Files written.
         ground: Heights of the ground.
         ring: Corners of the outline [m], shape (corners, 2).
-        bed: Heights of the sliding surface, NaN beside the body; None if none was chosen.
+        bed: Heights of the sliding surface, NaN outside the body; None if none was chosen.
     """
 
     facts: dict[str, Any]
@@ -105,7 +105,7 @@ class Ground:
     Attributes:
         grid: Heights.
         ring: Corners of the outline [m].
-        projection: Where they are.
+        projection: Their projection.
         low, high: Corners of the rectangle to mesh [m].
         size: Size of the elements in the body [m].
     """
@@ -122,7 +122,7 @@ def make_site(question: Question) -> Site:
     """Read, project, clip and fill; find the sliding surface; write the folder.
 
     Raises:
-        CaseError: A file cannot be read, lies about its projection, or does not cover the outline.
+        CaseError: A file cannot be read, has a wrong projection, or does not cover the outline.
     """
     ground = _ground(question)
     folder = question.folder
@@ -234,7 +234,8 @@ def _grid(question: Question, projection: Projection, ring: Floats, box: Any) ->
     projection.tell(*notes)
     if np.isnan(grid.values).any():
         raise CaseError(
-            f"{question.dem}: has gaps wider than --fill {question.fill}; give a larger one, or all"
+            f"{question.dem}: has gaps wider than --fill {question.fill}; give a larger value, or "
+            f"all"
         )
     return grid
 
@@ -261,9 +262,9 @@ def _target(question: Question) -> Any | None:
     if own is None and system is None:
         return None
     if own is None:
-        raise CaseError(f"{question.outline}: says no projection; give --outline-crs or --crs")
+        raise CaseError(f"{question.outline}: names no projection; give --outline-crs or --crs")
     if system is None:
-        raise CaseError(f"{question.dem}: says no projection; give it with --dem-crs")
+        raise CaseError(f"{question.dem}: names no projection; give it with --dem-crs")
     corners, _ = read_outline(question.outline, question.layer, question.where)
     return utm_zone(*moved(corners, look_up(own), look_up(WGS84)).mean(axis=0).tolist())
 
@@ -271,7 +272,10 @@ def _target(question: Question) -> Any | None:
 def _tell_stretch(projection: Projection, ring: Floats) -> None:
     target: Any = projection.target
     scale = stretch(ring, target)
-    note = f"{short_name(target)} ({target.name}): lengths differ from those on the ground by {scale:+.1e}"
+    note = (
+        f"{short_name(target)} ({target.name}): lengths differ from lengths on the ground by "
+        f"{scale:+.1e}"
+    )
     if abs(scale) > NOT_TRUE:
         note += "; use the projection of the land survey, or another UTM zone"
     projection.tell(note)
@@ -280,7 +284,7 @@ def _tell_stretch(projection: Projection, ring: Floats) -> None:
 def _within(
     question: Question, ring: Floats, low: Floats, high: Floats, projection: Projection
 ) -> Floats:
-    """The outline, which must lie in the terrain; or what does, if that is asked for."""
+    """The outline, which must lie in the terrain; or its part in the terrain, on request."""
     shapely = extra("shapely")
     polygon, frame = shapely.Polygon(ring), shapely.box(*low, *high)
     if frame.covers(polygon):
@@ -291,19 +295,20 @@ def _within(
     if not question.cut or lost > 0.99:
         raise CaseError(
             f"{question.outline}: {lost:.1%} of the outline lies beyond the terrain of "
-            f"{question.dem.name}, or within {BEYOND} elements of its end; take a larger DEM"
+            f"{question.dem.name}, or within {BEYOND} elements of its edge; use a larger DEM"
             + ("" if lost > 0.99 else ", or accept the cut with --cut")
         )
     wall = kept.exterior.intersection(frame.exterior).length
     projection.tell(
-        f"{question.outline.name}: {lost:.1%} of the outline is cut off at the end of the terrain, "
+        f"{question.outline.name}: {lost:.1%} of the outline is cut off at the edge of the "
+        f"terrain, "
         f"along {wall:,.0f} m"
     )
     return shapely.get_coordinates(kept.exterior)[:-1]
 
 
 def _base(ground: Ground, surface: dict[str, Any] | None) -> float:
-    """A flat base well below the ground, and below a base level of the depth or volume asked for."""
+    """A flat base well below the ground, and below a base level of the given depth or volume."""
     lowest = float(np.nanmin(ground.grid.values))
     relief = float(np.nanmax(ground.grid.values)) - lowest
     by = (surface or {}).get("slbl") or {}
@@ -330,16 +335,16 @@ def surface_of(
     volume: float | None,
     given: str | None,
 ) -> dict[str, Any] | None:
-    """What the options of the command say of the sliding surface, as in a landslide file.
+    """The sliding surface from the options of the command, as in a landslide file.
 
     Args:
-        folder: Of the landslide file, at which its paths start.
+        folder: Folder of the landslide file; its paths start there.
         depth: Greatest depth of a sloping local base level [m].
         volume: Its volume [m3].
         given: A file of heights, or a mapping as under `surface`.
 
     Raises:
-        CaseError: More than one is given, or the mapping is none.
+        CaseError: More than one is given, or the mapping is invalid.
     """
     options = [o for o in (depth, volume, given) if o is not None]
     if len(options) > 1:

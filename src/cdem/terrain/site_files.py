@@ -1,4 +1,4 @@
-"""What `cdem site` writes: rasters, the outline, the landslide file and a case to start from."""
+"""Files of `cdem site`: rasters, the outline, the landslide file and a case to start from."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ Floats = NDArray[np.float64]
 BETWEEN = (
     0.8,
     2.0,
-)  # a body that does not break rests on a curved bed at more than the columns say
+)  # an unbroken body rests on a curved bed at a higher factor than the columns
 GROUP = "slide"
 FRICTION, COHESION, DENSITY, GRAVITY = 25.0, 0.0, 2600.0, 9.81
-"""What the cases assume of the sliding surface [deg], [Pa], and of the rock [kg/m3]."""
+"""Assumptions of the cases for the sliding surface [deg], [Pa], and for the rock [kg/m3]."""
 
 
 def write_raster(path: Path, grid: Grid, crs: Any | None) -> Path:
@@ -32,7 +32,7 @@ def write_raster(path: Path, grid: Grid, crs: Any | None) -> Path:
 
     Args:
         path: The file.
-        grid: Heights; NaN where there is none.
+        grid: Heights; NaN for missing data.
         crs: Its projection, or None.
     """
     rasterio = extra("rasterio")
@@ -59,7 +59,7 @@ def write_outline(path: Path, ring: Floats, volume: float | None, crs: Any | Non
     fields = [np.array([GROUP], object)] + ([] if volume is None else [np.array([volume])])
     names = ["group", "volume_m3"][: len(fields)]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a missing projection
+        warnings.simplefilter("ignore")  # about a missing projection
         raw.write(
             path,
             np.array([shapely.to_wkb(shapely.Polygon(ring))]),
@@ -74,7 +74,7 @@ def write_outline(path: Path, ring: Floats, volume: float | None, crs: Any | Non
 
 
 def bed_on_grid(plan: Plan, grid: Grid) -> Grid:
-    """The sliding surface at the points of a grid; NaN where no body is."""
+    """The sliding surface at the points of a grid; NaN outside bodies."""
     shapely = extra("shapely")
     rows, columns = grid.values.shape
     x = grid.west + grid.step[0] * np.arange(columns)
@@ -107,7 +107,7 @@ def landslide_text(
     ]
     if surface is None:
         lines += [
-            "# choose where it slides, then take the # away; see docs/terrain.md",
+            "# choose a sliding surface, then remove the #; see docs/terrain.md",
             '# surface: {slbl: {depth: "60 m"}}',
             f"# bodies: [{{group: {GROUP}, outline: {{file: site.gpkg, layer: outline}}}}]",
         ]
@@ -121,13 +121,11 @@ def landslide_text(
 
 def sizes_text(size: float, far: float) -> str:
     """The last line of a landslide file."""
-    return (
-        f"sizes: {{body: {size:g}, far: {far:g}}}   # ASSUMED: halve body to see what it changes\n"
-    )
+    return f"sizes: {{body: {size:g}, far: {far:g}}}   # ASSUMED: halve body to see its effect\n"
 
 
 def between_text(factor: float) -> str:
-    """Factors at which a search may begin, from that of the columns."""
+    """Factors at which a search may begin, from the factor of the columns."""
     if not np.isfinite(factor):
         return "RESTS FAILS"
     return " ".join(f"{part * factor:.2f}" for part in BETWEEN)
@@ -145,7 +143,7 @@ STAGES = {
     reset_displacement: true
 """,
 }
-"""The last stage of the two cases: the slide, and the question whether it rests."""
+"""The last stage of the two cases: the slide, and the test whether the body rests."""
 
 
 def case_text(kind: str, title: str, landslide: Landslide, facts: dict[str, Any]) -> str:
@@ -170,7 +168,7 @@ def case_text(kind: str, title: str, landslide: Landslide, facts: dict[str, Any]
 #
 #   {how}
 #
-# What has the mark ASSUMED was measured by nobody; cdem check lists it.
+# Values marked ASSUMED are not measured; cdem check lists them.
 cdem: 2
 title: {_quoted(title)}
 {crs}units: SI
@@ -186,7 +184,7 @@ groups:
   {rock}: {{material: rock, fix: [x, y, z]}}
   {GROUP}: {{material: rock}}
 interfaces:
-  # bonded while its weight settles; the last stage lets go
+  # bonded while its weight settles; the last stage releases it
   default: {{friction_angle: "{FRICTION:g} deg", cohesion: "100 MPa", tensile_strength: "100 MPa"}}   # ASSUMED
   pairs:
     - {{name: bed, between: [{rock}, {GROUP}]}}   # friction as in default

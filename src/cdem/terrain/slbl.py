@@ -1,9 +1,9 @@
-"""Sloping local base level: the surface of even curvature below the ground in an outline.
+"""Sloping local base level: the surface of constant curvature below the ground in an outline.
 
-Jaboyedoff et al. (2004, 2020) lower a grid of heights again and again to the mean of its neighbours
-less a constant. In the limit that is an obstacle problem: the Laplacian of the surface is k where it
-is free, and it touches the ground at the outline and where it would rise above it. Here it is solved
-on the triangles of the plan, whose edge is the outline.
+Jaboyedoff et al. (2004, 2020) repeatedly lower a grid of heights to the mean of its neighbours
+less a constant. In the limit this is an obstacle problem: the Laplacian of the surface is k where
+the surface is free, and it touches the ground at the outline and wherever it would rise above the
+ground. Here it is solved on the triangles of the plan, whose edge is the outline.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from cdem.terrain.schema import SlblBy
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 PASSES = 100
-NEAR = 1e-9  # heights are the same [m]
-VOLUME_ERROR = 0.01  # part by which the volume may differ from the one asked for
-TOUCHES = 1e-6  # so near to the ground a surface is counted as touching it [m]
+NEAR = 1e-9  # tolerance of equal heights [m]
+VOLUME_ERROR = 0.01  # relative tolerance of the volume
+TOUCHES = 1e-6  # distance below which a surface touches the ground [m]
 
 
 @dataclass
 class Membrane:
-    """Triangles on which the surface is sought.
+    """Triangles of the surface.
 
     Attributes:
-        points: [m], shape (points, 2).
+        points: Positions [m], shape (points, 2).
         triangles: Point ids, shape (triangles, 3).
         ground: Height of the ground at the points [m].
-        edge: Whether a point is held at the ground.
-        floor: Height below which the surface never is [m]; by default there is none.
+        edge: Whether a point is fixed at the ground.
+        floor: Lower limit of the surface [m]; by default none.
     """
 
     points: Floats
@@ -68,7 +68,7 @@ class Membrane:
         """Heights [m] of the surface at the points, by active sets.
 
         Args:
-            curvature: Its Laplacian where it is free [1/m].
+            curvature: Its Laplacian in the free part [1/m].
         """
         solve: Callable[..., Any] = extra("scipy.sparse.linalg").spsolve
         load = -curvature * self._weight
@@ -79,7 +79,7 @@ class Membrane:
             if free.any():
                 rows = self._stiffness[free]
                 s[free] = solve(rows[:, free].tocsc(), load[free] - rows[:, ~free] @ s[~free])
-            pull = self._stiffness @ s - load  # above 0 it would go down
+            pull = self._stiffness @ s - load  # above 0 it would move down
             new = at.copy()
             new[free & (s > self.ground + NEAR)] = 1
             new[free & (s < self.floor - NEAR)] = -1
@@ -92,7 +92,7 @@ class Membrane:
         return s
 
     def thickened(self, surface: Floats, thin: float) -> Floats:
-        """A surface at least so far below the ground [m] where it does not touch it."""
+        """A surface at least this far below the ground [m], except where it touches the ground."""
         bare = self.ground - surface < TOUCHES
         lower = np.minimum(surface, self.ground - thin)
         return np.where(bare, self.ground, lower)
@@ -109,15 +109,16 @@ class Membrane:
 def curvature_for(
     measure: Callable[[float], float], wanted: float, first: float, what: str
 ) -> float:
-    """The curvature [1/m] at which a measure that grows with it has a value.
+    """The curvature [1/m] at which a measure that grows with it has a given value.
 
-    Below 0 the surface bulges: needed where the ground is so convex that a flat one cuts off more.
+    A negative curvature (a bulge) is needed if the ground is so convex that a flat surface cuts off
+    more.
 
     Args:
-        measure: Depth or volume from the curvature.
+        measure: Function from the curvature to depth or volume.
         wanted: Its value.
         first: A curvature of the right order [1/m].
-        what: What is measured, for the error.
+        what: Name of the measure, for the error.
 
     Raises:
         CaseError: No curvature gives the value.
@@ -138,15 +139,15 @@ def curvature_for(
 
 
 def base_level(landslide: Landslide, membrane: Membrane, thin: float) -> tuple[Floats, list[str]]:
-    """The surface that a landslide file asks for.
+    """The surface of a landslide file.
 
     Args:
-        landslide: What is asked for.
-        membrane: Its triangles; takes the floor that is asked for.
+        landslide: The landslide.
+        membrane: Its triangles; receives the floor.
         thin: Least thickness of the body [m].
 
     Returns:
-        Heights at the points [m], those of the ground where it comes out; and what was found.
+        Heights at the points [m], ground heights at its outcrop; and a note.
 
     Raises:
         CaseError: No surface has that depth or volume.
@@ -164,23 +165,23 @@ def base_level(landslide: Landslide, membrane: Membrane, thin: float) -> tuple[F
         raise landslide.error("surface.slbl", str(error)) from None
     bed = membrane.thickened(membrane.surface(k), thin)
     if (bed == z).all():
-        raise landslide.error("surface.slbl", "leaves no rock between itself and the ground")
+        raise landslide.error("surface.slbl", "has no rock between itself and the ground")
     notes = [
         f"slbl: curvature {k:.4g} 1/m, depth {membrane.depth(bed):.2f} m, "
         f"{membrane.volume(bed):,.0f} m3"
     ]
     if k < 0:
         notes.append(
-            "slbl: the surface bulges: the ground is so convex that a flat one cuts off more"
+            "slbl: the surface bulges: on this convex ground a flat one would cut off more"
         )
     return bed, notes
 
 
 def _curvature(by: SlblBy, membrane: Membrane, thin: float) -> float:
-    """The curvature [1/m] that a landslide file asks for.
+    """The curvature [1/m] for a landslide file.
 
     Raises:
-        CaseError: No curvature does, or the body would be thinner than its elements may be.
+        CaseError: No curvature fits, or the body would be thinner than its elements allow.
     """
     size = float(np.sqrt(np.ptp(membrane.points, axis=0)).prod())
     if by.curvature is not None:
@@ -198,19 +199,19 @@ def _curvature(by: SlblBy, membrane: Membrane, thin: float) -> float:
     k = curvature_for(volume, by.volume, by.volume / size**4, "volume [m3]")
     if abs(volume(k) / by.volume - 1) > VOLUME_ERROR:
         raise CaseError(
-            f"a volume of {by.volume:,.0f} m3 makes a body thinner than elements of this size can be; "
+            f"a volume of {by.volume:,.0f} m3 makes a body too thin for elements of this size; "
             "give a smaller sizes.body"
         )
     return k
 
 
 class OnTriangles:
-    """Heights on triangles, linear in between; beyond them as on the nearest.
+    """Heights on triangles, linear in between; beyond them as on the nearest triangle.
 
     Args:
-        points: [m], shape (points, 2).
+        points: Positions [m], shape (points, 2).
         triangles: Point ids, shape (triangles, 3).
-        heights: At the points [m].
+        heights: Heights at the points [m].
     """
 
     def __init__(self, points: Floats, triangles: Ints, heights: Floats) -> None:

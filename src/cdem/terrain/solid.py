@@ -1,4 +1,4 @@
-"""The solid: columns of tets in the bodies, a closed shell around the bedrock, tets that fill it."""
+"""The solid: columns of tets in the bodies, a closed shell around the bedrock, and tets inside it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-FLAT = 0.05  # height over longest edge of tets that are taken off the ground
+FLAT = 0.05  # height over longest edge of tets to remove at the ground
 TET_FACES = np.array([(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)])  # outward, opposite a corner
 
 
@@ -25,13 +25,13 @@ class Solid:
     """Tets in groups, with labelled surfaces.
 
     Attributes:
-        points: [m], shape (points, 3).
+        points: Positions [m], shape (points, 3).
         tets: Point ids of positive volume, shape (tets, 4).
         tet_group: Number of each tet's group in `groups`.
         groups: The bedrock, then the bodies.
         surfaces: By name, point ids of triangles, shape (faces, 3).
-        notes: What a user should know.
-        crs: Projection of the points as text for a case; None if no file says one.
+        notes: Messages for the user.
+        crs: Projection of the points as text for a case; None if no file names one.
     """
 
     points: Floats
@@ -44,7 +44,7 @@ class Solid:
 
 
 class Columns:
-    """Points stacked over the plan: each column from low to high, with its heights as parts of 1."""
+    """Points stacked over the plan: each column from low to high, with its heights as fractions."""
 
     def __init__(self) -> None:
         self.ids: dict[int, list[int]] = {}
@@ -57,11 +57,11 @@ class Columns:
     def climb(self, feet: list[int]) -> list[tuple[list[int], int, int]]:
         """From the bottom of some columns to their top, one point at a time.
 
-        All columns are climbed in the same order, by part and then by number, so two neighbours
-        that share columns divide the wall between them alike.
+        All columns are climbed in the same order, by fraction and then by number, so two neighbours
+        divide the wall between common columns alike.
 
         Returns:
-            For each point passed: the points stood on before, which foot moves, and where to.
+            For each step: the points before it, the moving foot, and its new point.
         """
         steps = sorted(
             (part, at, k, foot)
@@ -80,8 +80,8 @@ class Columns:
 def make_solid(landslide: Landslide, plan: Plan) -> Solid:
     """Fill the space between base and ground with tets.
 
-    The bodies are stacked in columns between bed and ground; the bedrock is filled by netgen from
-    its closed surface, of which the bodies' undersides and walls are a part.
+    The bodies are stacked in columns between bed and ground; netgen fills the bedrock from
+    its closed surface, which includes the bodies' undersides and walls.
 
     Raises:
         MeshError: A shell does not close, or the bedrock cannot be filled.
@@ -145,7 +145,7 @@ def stack(plan: Plan, columns: Columns) -> tuple[Ints, Ints]:
 
 
 def _skin(tets: Ints) -> Ints:
-    """Faces that only one tet has, outward."""
+    """Faces of only one tet, outward."""
     faces = tets[:, TET_FACES].reshape(-1, 3)
     _, where, count = np.unique(
         np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
@@ -210,7 +210,7 @@ def _check_closed(shell: Ints, points: Floats) -> None:
     bad = _open_edges(shell)
     if len(bad):
         raise MeshError(
-            f"the surface of the bedrock has {len(bad)} edges that are not shared by two faces, "
+            f"the surface of the bedrock has {len(bad)} edges without exactly two faces, "
             f"e.g. at ({coordinates(points[bad[0]].mean(axis=0))}); give another outline or sizes.body"
         )
 
@@ -236,7 +236,7 @@ def shape(corners: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _check_conforming(solid: Solid, outside: Ints) -> None:
-    """Bodies and bedrock must share every face between them, and leave the outside alone."""
+    """Check that bodies and bedrock share every face between them, and that the outside is unchanged."""
     skin = np.sort(_skin(solid.tets), axis=1)
     wanted = np.sort(outside, axis=1)
     same = (
@@ -256,13 +256,13 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
     """Fill a closed surface with tets.
 
     Args:
-        points: [m], shape (points, 3); those that the shell does not use are left alone.
+        points: Positions [m], shape (points, 3); unused ones are kept.
         shell: Outward triangles, every edge twice.
         size: Largest edge length [m].
         growth: Growth of the edge length per distance [1].
 
     Returns:
-        The points, new ones at their end, and tets of positive volume.
+        The points, new ones at the end, and tets of positive volume.
 
     Raises:
         MeshError: The surface crosses itself, or is too uneven to be filled.
@@ -297,9 +297,9 @@ def fill(points: Floats, shell: Ints, size: float, growth: float) -> tuple[Float
 
 
 def _peel(points: Floats, tets: Ints, plan: Plan) -> Ints:
-    """Take flat tets off the ground of the bedrock: two of its triangles are turned for each.
+    """Remove flat tets at the ground of the bedrock: two of its triangles are reoriented for each.
 
-    Where the ground is nearly plane the mesher lays tets over the edge between two triangles,
+    On a nearly plane ground the mesher places tets over the edge between two triangles,
     a few centimetres high. Without them the ground is divided by the other diagonal.
     """
     ground = np.flatnonzero(plan.body < 0)
@@ -330,7 +330,7 @@ def _peel(points: Floats, tets: Ints, plan: Plan) -> Ints:
 
 
 def _sound(triangles: Floats) -> bool:
-    """Whether triangles [m], shape (triangles, 3, 3), look upwards and are no needles."""
+    """Whether triangles [m], shape (triangles, 3, 3), face upwards and are no needles."""
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
     doubled = np.linalg.norm(normal, axis=1)
@@ -338,7 +338,7 @@ def _sound(triangles: Floats) -> bool:
 
 
 def _name_surfaces(solid: Solid, plan: Plan, columns: Columns) -> None:
-    """Name the ground and the bed by group, and the walls by the two groups they part."""
+    """Name the ground and the bed by group, and the walls by the two adjacent groups."""
     names = solid.groups
     feet = np.full(len(solid.points), -1)
     for at, ids in columns.ids.items():

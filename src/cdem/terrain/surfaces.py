@@ -16,11 +16,11 @@ from cdem.terrain.points import read_points
 
 Floats = NDArray[np.float64]
 PLANAR, ALIGNED = 4.0, 0.8
-"""A plane through lines is told to be doubtful with M below the first, or K above the second."""
+"""A plane through lines is reported as doubtful with M below the first, or K above the second."""
 
 
 class Highest:
-    """The highest of several surfaces: what stands above all of them slides.
+    """The highest of several surfaces: the rock above all of them slides.
 
     Args:
         surfaces: The surfaces.
@@ -36,13 +36,13 @@ class Highest:
 
 
 class Ellipsoid:
-    """The lower half of an ellipsoid; beyond its edge it rises like its mirror image.
+    """The lower half of an ellipsoid; beyond its edge it continues as its mirror image.
 
     Args:
-        centre: [m], shape (3,).
+        centre: Centre [m], shape (3,).
         axes: Half axes along the azimuth, across it, and normal to both [m], shape (3,).
-        azimuth: Direction of the first axis in plan, north over east [deg].
-        tilt: How far the first axis plunges below the horizontal [deg].
+        azimuth: Direction of the first axis in plan, clockwise from north [deg].
+        tilt: Plunge of the first axis below the horizontal [deg].
     """
 
     def __init__(self, centre: Floats, axes: Floats, azimuth: float, tilt: float) -> None:
@@ -64,10 +64,10 @@ class Ellipsoid:
 
 
 class Spline:
-    """A thin plate through points: the smoothest surface; a plane where the points lie in one.
+    """A thin plate through points: the smoothest surface; a plane for coplanar points.
 
     Args:
-        points: [m], shape (points, 3).
+        points: Points [m], shape (points, 3).
 
     Raises:
         CaseError: There are fewer than three, two at one place, or all lie on one line.
@@ -86,7 +86,7 @@ class Spline:
                 f"a surface through {len(points)} points needs three or more, not on one line and no "
                 "two at one place"
             ) from None
-        # as far as the points go; beyond them errors of a metre grow to several
+        # within the points; beyond them errors of a metre grow to several
         self.low, self.high = np.full(2, -np.inf), np.full(2, np.inf)
 
     def _local(self, xy: Floats) -> Floats:
@@ -100,26 +100,26 @@ def fit_plane(points: Floats, name: str) -> tuple[Plane, list[str]]:
     """The plane with the least squares of distances to points.
 
     Args:
-        points: [m], shape (points, 3).
-        name: What to call them in notes.
+        points: Points [m], shape (points, 3).
+        name: Their name in notes.
 
     Returns:
-        The plane, and how well it is known: M = ln(l1/l3) is large where the points lie in a
-        plane, K = ln(l1/l2) / ln(l2/l3) where they lie on a line (Fernandez, 2005).
+        The plane, and its quality: M = ln(l1/l3) is large for coplanar points,
+        K = ln(l1/l2) / ln(l2/l3) for collinear ones (Fernandez, 2005).
 
     Raises:
-        CaseError: The points lie on one line, or the plane stands upright.
+        CaseError: The points are collinear, or the plane is vertical.
     """
     middle = points.mean(axis=0)
     spread, axes = np.linalg.eigh(np.cov((points - middle).T))
     if len(points) < 3 or spread[1] <= 1e-12 * spread[2]:
-        raise CaseError(f"{name}: its points lie on one line; no plane is known from them")
+        raise CaseError(f"{name}: its points lie on one line, which defines no plane")
     normal = axes[:, 0] * (np.sign(axes[2, 0]) or 1.0)
     dip = math.degrees(math.acos(min(1.0, float(normal[2]))))
     if dip > 89.9:
-        raise CaseError(f"{name}: the plane through its points stands upright")
+        raise CaseError(f"{name}: the plane through its points is vertical")
     direction = math.degrees(math.atan2(normal[0], normal[1])) % 360
-    # what is flat to rounding is flat
+    # flat to rounding counts as flat
     least = max(float(spread[0]), 1e-12 * float(spread[2]))
     planar = math.log(spread[2] / least)
     aligned = math.log(spread[2] / spread[1]) / math.log(spread[1] / least)
@@ -128,12 +128,12 @@ def fit_plane(points: Floats, name: str) -> tuple[Plane, list[str]]:
         f"off (M = {planar:.1f}, K = {aligned:.2f})"
     )
     if planar < PLANAR or aligned > ALIGNED:
-        note += "; doubtful: the lines are nearly one, or not in a plane"
+        note += "; doubtful: the lines are nearly collinear, or not in a plane"
     return Plane(dip, direction, (float(middle[0]), float(middle[1]), float(middle[2]))), [note]
 
 
 def through_points(path: Path, columns: Mapping[str, str], bring: Bring) -> Heights:
-    """A surface through points of a file: planes where they have dips, else a thin plate.
+    """A surface through points of a file: planes for points with dips, else a thin plate.
 
     Raises:
         CaseError: The file cannot be read, or does not determine a surface.

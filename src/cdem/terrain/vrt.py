@@ -1,8 +1,8 @@
-"""Virtual rasters (VRT): mosaics of plain grids below their own folder, written again before GDAL sees
+"""Virtual rasters (VRT): mosaics of plain grids below their own folder, rewritten before GDAL sees
 one.
 
-A VRT may name files, addresses, programs and services in many ways. What is read is a copy that has
-only what is known here, with sources that were looked at.
+A VRT may name files, addresses, programs and services in many ways. GDAL reads only a copy with
+known elements and checked sources.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from cdem.errors import CaseError
 
 PLAIN = {".tif": (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"), ".tiff": (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"),
          ".asc": (b"ncols", b"NCOLS", b"nrows", b"NROWS"), ".grd": (b"DSAA", b"DSBB", b"DSRB")}  # fmt: skip
-"""Endings of grids that a VRT may name, and how these begin."""
+"""Endings of grids that a VRT may name, and their first bytes."""
 MEND = "gdalbuildvrt makes VRT files of grids beside them; gdal_translate makes a .tif of any other"
 MOST = 50_000_000
-"""Bytes of a VRT at most."""
+"""Largest size of a VRT [bytes]."""
 WHOLE = ("SRS", "GeoTransform")
-"""Parts of a VRT that are taken over as they are."""
+"""Elements of a VRT that are copied unchanged."""
 PASSED = ("Metadata", "BlockXSize", "BlockYSize", "OverviewList")
-"""Parts of a VRT that heights do not depend on."""
+"""Elements of a VRT that do not affect heights."""
 BAND = (
     "NoDataValue",
     "UnitType",
@@ -53,15 +53,15 @@ ATTRIBUTES = {
 
 
 def plain(path: Path) -> tuple[str, list[Path]]:
-    """A VRT written again, and the grids that it names.
+    """A rewritten VRT, and the grids that it names.
 
     Raises:
-        CaseError: It has anything but heights from plain grids below its folder; says which.
+        CaseError: It contains anything but heights from plain grids below its folder; names it.
     """
     from defusedxml.ElementTree import parse
 
     if path.stat().st_size > MOST:
-        raise CaseError(f"{path}: a VRT of more than {MOST // 1_000_000} MB; {MEND}")
+        raise CaseError(f"{path}: is larger than {MOST // 1_000_000} MB; {MEND}")
     root = parse(path, forbid_dtd=True).getroot()
     if root.tag != "VRTDataset":
         raise CaseError(f"{path}: not a VRT: it begins with <{root.tag[:40]}>")
@@ -80,10 +80,10 @@ def plain(path: Path) -> tuple[str, list[Path]]:
 
 
 def refuse_links(path: Path) -> None:
-    """Stop where the ``.aux.xml`` beside a grid leads to another file, as it does to overviews.
+    """Refuse an ``.aux.xml`` beside a grid that leads to another file, e.g. to overviews.
 
     Raises:
-        CaseError: It does; or it is no XML.
+        CaseError: It does; or it is not XML.
     """
     from defusedxml.common import DefusedXmlException
     from defusedxml.ElementTree import ParseError, parse
@@ -94,13 +94,13 @@ def refuse_links(path: Path) -> None:
     try:
         root = parse(beside, forbid_dtd=True).getroot()
     except (ParseError, DefusedXmlException):
-        raise CaseError(f"{beside}: is no plain XML; remove it") from None
+        raise CaseError(f"{beside}: is not plain XML; remove it") from None
     for part in root.iter():
         if (
             "overview"
             in " ".join([part.tag, part.text or "", *part.attrib, *part.attrib.values()]).lower()
         ):
-            raise CaseError(f"{beside}: leads to another file, with overviews; remove it")
+            raise CaseError(f"{beside}: leads to another file of overviews; remove it")
 
 
 def _band(path: Path, band: Any, files: list[Path]) -> Element:
@@ -136,22 +136,22 @@ def _grid(path: Path, part: Any) -> Path:
     there = (home / name).resolve() if relative else home
     shown = f"{path}: names '{name[:80]}', which is"
     if not relative or Path(name).is_absolute() or home not in there.parents:
-        raise CaseError(f"{shown} no relative path (relativeToVRT) below its own folder; {MEND}")
+        raise CaseError(f"{shown} not a relative path (relativeToVRT) below its own folder; {MEND}")
     begins = PLAIN.get(there.suffix.lower())
     if begins is None:
         raise CaseError(f"{shown} none of {', '.join(PLAIN)}; {MEND}")
     if not there.is_file():
-        raise CaseError(f"{shown} not there")
+        raise CaseError(f"{shown} missing")
     with there.open("rb") as file:
         head = file.read(4096)
     if not head.startswith(begins) or b"<VRTDataset" in head:
-        raise CaseError(f"{shown} not what its ending says; {MEND}")
+        raise CaseError(f"{shown} not of the kind of its ending; {MEND}")
     refuse_links(there)
     return there
 
 
 def _same(path: Path, part: Any, more: dict[str, tuple[str, ...]] | None = None) -> Element:
-    """An empty element with the attributes that are known."""
+    """An empty element with its known attributes."""
     allowed = ATTRIBUTES.get(part.tag, ())
     for name, value in part.items():
         if name not in allowed and value not in (more or {}).get(name, ()):
@@ -168,4 +168,4 @@ def _text(path: Path, part: Any) -> Element:
 
 
 def _foreign(path: Path, what: str) -> CaseError:
-    return CaseError(f"{path}: has <{what[:80]}>, which is not read from a VRT; {MEND}")
+    return CaseError(f"{path}: has <{what[:80]}>, which is not supported in a VRT; {MEND}")

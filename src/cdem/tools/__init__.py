@@ -1,1 +1,1 @@
-"""What an installation can do: its speed, and what works on this machine."""
+"""Tests of an installation: its speed, and its working parts."""

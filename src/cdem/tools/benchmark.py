@@ -1,5 +1,5 @@
-"""``cdem benchmark``: what a simulated second costs here, how fast the kernels are, and what part of
-the machine's limits that is."""
+"""``cdem benchmark``: cost of a simulated second, speed of the kernels, and this speed as a
+fraction of the machine's limits."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ from cdem.tools import benchmark_cases as cases
 from cdem.tools.benchmark_errors import modulus_error, wave_error
 
 REPEATS = 5
-"""Timed runs of a row; the median counts, least and most are shown."""
+"""Timed runs per row; the median counts, minimum and maximum are shown."""
 SECONDS = 0.3
-"""Least wall time of a timed run [s]."""
+"""Shortest wall time of a timed run [s]."""
 STEPS = 40
-"""Least steps of a timed run: as in any run, the first computes all and the last sums up energies."""
+"""Fewest steps of a timed run: as in any run, the first computes everything and the last sums energies."""
 SIZES = {"1e4": 6, "1e5": 13, "1e6": 28}
-"""Cells in the width of the bars (8 m x m x m cells of 6 tets), by number of tets."""
+"""Cells across the bars (8 m x m x m cells of 6 tets), by number of tets."""
 TRIAD_BYTES = 400_000_000
-"""Size of the arrays of the bandwidth test: no cache holds them [B]."""
+"""Size of the arrays of the bandwidth test, too large for any cache [B]."""
 RUBBLE = 4
-"""Cells in the width of the bar that is broken to rubble: 3,072 tets."""
+"""Cells across the bar that is broken to rubble: 3,072 tets."""
 RUBBLE_STEPS = 100
-"""Steps of a timed run of rubble: its lists last about 25, and making them takes half the time."""
+"""Steps of a timed run of rubble: its lists last about 25 steps, and making them takes half the time."""
 MOMENTS = (5, 20, 50)
-"""When rubble is timed: its tets meet, then part [ms after release]."""
+"""Times of measuring rubble: its tets meet, then part [ms after release]."""
 SHAKEN = 4
-"""Cells in the width of the irregular bar: 3,072 tets whose corners are moved by up to a quarter."""
+"""Cells across the irregular bar: 3,072 tets with corners moved by up to a quarter."""
 WALL = 26
-"""Rows of cubes in the wall of which a second is measured."""
+"""Rows of cubes in the wall for the cost of a simulated second."""
 MIXED = 15
-"""Cells in the width of the bar of all shapes: 101,250 elements."""
+"""Cells across the bar of all shapes: 101,250 elements."""
 PHASES = ("refresh", "search", "contact", "element", "node")
 
 
@@ -54,12 +54,12 @@ class Row:
     """One measurement.
 
     Attributes:
-        name: What is run.
-        size: Of what.
-        unit: Of the rates.
-        rate: Median.
-        least: Slowest run.
-        most: Fastest run.
+        name: Name of the scene.
+        size: Its size.
+        unit: Unit of the rates.
+        rate: Median rate.
+        least: Rate of the slowest run.
+        most: Rate of the fastest run.
         threads: Threads of the core.
         more: Other figures by name.
     """
@@ -109,7 +109,7 @@ def _counts(threads: int) -> list[int]:
 
 
 def run(sizes: list[str], threads: int) -> Iterator[Row]:
-    """Measure everything, row by row, with 1, 2, 4 ... and all threads."""
+    """Measure all rows with 1, 2, 4 ... and all threads."""
     counts = _counts(threads)
     yield from seconds()
     for size in sizes:
@@ -131,7 +131,7 @@ def run(sizes: list[str], threads: int) -> Iterator[Row]:
 
 
 def seconds() -> Iterator[Row]:
-    """CPU seconds of one thread that a simulated second takes, plain and at the defaults, and at what
+    """CPU seconds of one thread per simulated second, plain and with defaults, and the
     accuracy."""
     little = {"time": {"mass_scaling": {"most": 0.001}}}
     overlap = {"contact_stiffness": {"overlap": 1e-3}}
@@ -181,9 +181,9 @@ def tets_shared(m: int, threads: int) -> Row:
     row = _time("P1 tets, shared nodes", f"{tets:,}", "tets/s", sim, tets)
     # gradients, volume, places of nodes, material
     moved: float = 9 * 8 + 8 + 4 * 4 + 4
-    # a tile finds its nodes and their rows, reads motion and writes rows; nodes read these
+    # a tile reads its nodes, rows and motion, and writes rows; nodes read these
     moved += len(rows_of(sim.core, "tile.force").numbers) / tets * (2 * 4 + 64 + 2 * 32)
-    # a node reads six lists and two masses, books work and force, and moves
+    # a node reads six lists and two masses, sums work and force, and moves
     moved += len(sim.fields["mass"]) / tets * (6 * 4 + 2 * 8 + 2 * 8 + 32 + 2 * 64)
     row.more["B/tet moved"] = moved
     row.more["of bandwidth"] = row.rate * moved / bandwidth(threads)
@@ -202,7 +202,7 @@ def tets_bonded(m: int, threads: int) -> Row:
 
 
 def tets_broken(m: int, threads: int) -> Row:
-    """P2 on the path that keeps a history: every interface broken, and still where it was."""
+    """P2 with history: every interface broken, but still in its place."""
     row, sim = _bonded("P2 tets, all faces broken", "0.001 Pa", m, threads)
     bonds = 3 * sim.audit.counts["bonded_pairs"]
     row.more["broken [%]"] = 100 * sum(sim.broken.values()) / bonds
@@ -222,7 +222,7 @@ def _bonded(name: str, strength: str, m: int, threads: int) -> tuple[Row, Simula
 
 
 def rubble(m: int, threads: int) -> Iterator[Row]:
-    """P3: the same with every bond cut, while it slides and tumbles on a plate; S: its search."""
+    """P3: the same with every bond broken, sliding and tumbling on a plate; S: its search."""
     case = cases.rubble(m)
     sim, start = cases.start(case, threads)
     tets = sim.audit.groups["bar"]["elements"]
@@ -245,7 +245,7 @@ def rubble(m: int, threads: int) -> Iterator[Row]:
 
 
 def _search(row: Row, refreshes: int, steps: int, sim: Simulation) -> Row:
-    """S: targets of all semi-springs by the lists, and the making of the lists, from a P3 row."""
+    """S: targets of all semi-springs by the lists, and the rebuild of the lists, from a P3 row."""
     springs = 3 * len(sim.core.fields()["search.exposed_face"])  # all faces are triangles
     tets = sim.audit.groups["bar"]["elements"]
     made = int(sim.core.scalars()["rebuilds"]) - refreshes
@@ -284,7 +284,7 @@ def hexes(threads: int, hexahedra: str) -> Row:
 
 
 def mixed(m: int, threads: int) -> Row:
-    """A quarter each of the bar in hexahedra, wedges, pyramids and tets, bonded where they meet."""
+    """A quarter each of the bar in hexahedra, wedges, pyramids and tets, bonded to each other."""
     sim, start = cases.start(cases.mixed(m), threads)
     count = sim.audit.counts["elements"]
     row = _time("mixed mesh", f"{count:,}", "elements/s", sim, count)
@@ -295,8 +295,8 @@ def mixed(m: int, threads: int) -> Row:
 def _time(
     name: str, size: str, unit: str, sim: Simulation, items: int, steps: int | None = None
 ) -> Row:
-    """Time runs of so many steps, or of as many as take `SECONDS`; rates are items times steps per
-    second of wall time. CPU time is that of all threads, of user and system."""
+    """Time runs of a given number of steps, or of as many as take `SECONDS`; rates are items times
+    steps per second of wall time. CPU time is user and system time of all threads."""
     steps = steps or _steps_for(lambda n: sim.step(n))
     before = np.array(sim.core.seconds())
     walls, cpus = [], []

@@ -1,4 +1,4 @@
-"""Cases of the benchmark: bars of tets, rubble, a wall of cubes, and a cube that is pulled."""
+"""Cases of the benchmark: bars of tets, rubble, a wall of cubes, and a cube in tension."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from cdem.run.simulation import Simulation
 
 ROCK = {"density": 2500, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
 CUBE = 6
-"""Cells along the cube that is pulled for its Young's modulus."""
+"""Cells along the cube in tension for its Young's modulus."""
 COLUMNS = 20
 """Cubes in a row of the wall."""
 
 
 def start(data: dict[str, Any], threads: int) -> tuple[Simulation, float]:
-    """A simulation of a case after 20 steps, without frames, and how long it took to build [s].
+    """A simulation of a case after 20 steps, without frames, and its build time [s].
 
     Raises:
         CaseError: The case is wrong.
@@ -34,7 +34,7 @@ def start(data: dict[str, Any], threads: int) -> tuple[Simulation, float]:
 
 
 def plain(case: dict[str, Any]) -> dict[str, Any]:
-    """A case of these with exact masses, and bonds and contacts of 10 E/h that nothing makes up for."""
+    """A variant of a case with exact masses, and bonds and contacts of 10 E/h without compensation."""
     interface = {"stiffness_n": "10 E/h", "stiffness_s": "10 E/h"}
     default = interface | case["interfaces"]["default"]
     blocks = [_alike(block) for block in case["model"].get("blocks", [])]
@@ -54,17 +54,18 @@ def _alike(block: dict[str, Any]) -> dict[str, Any]:
 
 
 def _undamped(stage: dict[str, Any]) -> dict[str, Any]:
-    """A stage without damping of contacts, unless it names one."""
+    """A stage without contact damping, unless it gives one."""
     return stage | {"damping": {"contact": 0} | stage.get("damping", {})}
 
 
 def bar(m: int, shape: str, **more: Any) -> dict[str, Any]:
-    """A bar of 8 m x m x m cells of 1 m, held at its left end, that begins to move at 1 mm/s.
+    """A bar of 8 m x m x m cells of 1 m, fixed at its left end, with an initial speed of 1 mm/s.
 
     Args:
-        m: Cells in its width.
-        shape: Of its elements: "hex8", "wedge6", "pyramid5" or "tet4".
-        more: More keys of `model`, of its `group` and of its `interface`, and of the case itself.
+        m: Cells across it.
+        shape: Shape of its elements: "hex8", "wedge6", "pyramid5" or "tet4".
+        more: Further keys of `model`, of its `group` and of its `interface`, and of the case
+            itself.
     """
     return {
         "model": {
@@ -85,7 +86,7 @@ def bar(m: int, shape: str, **more: Any) -> dict[str, Any]:
 
 
 def breakable(strength: str) -> dict[str, Any]:
-    """Every element of a bar a block of its own, bonded to the others; keys for `bar`.
+    """Keys for a `bar` with every element a block of its own, bonded to the others.
 
     Args:
         strength: Cohesion and tensile strength of the interfaces, with its unit.
@@ -97,7 +98,7 @@ def breakable(strength: str) -> dict[str, Any]:
 
 
 def mixed(m: int) -> dict[str, Any]:
-    """A quarter each of the bar in hexahedra, wedges, pyramids and tets, bonded where they meet."""
+    """A quarter each of the bar in hexahedra, wedges, pyramids and tets, bonded to each other."""
     case = bar(m, "hex8", interface={"cohesion": "1 GPa", "tensile_strength": "1 GPa"})
     case["model"]["blocks"] = [
         {"group": "bar", "translate": [2 * m * i, 0, 0],
@@ -121,7 +122,7 @@ def _shaken(folder: Path, size: list[int]) -> str:
 
 
 def irregular(m: int, folder: Path) -> dict[str, Any]:
-    """The bonded bar of a mesh, written into a folder, whose inner corners are moved."""
+    """The bonded bar of a mesh with moved inner corners, written into a folder."""
     case = bar(m, "tet4", **breakable("1 GPa"))
     mesh = _shaken(folder, [8 * m, m, m])
     case["model"] = {"mesh": mesh, "split": {"default": "elements"}}
@@ -131,7 +132,7 @@ def irregular(m: int, folder: Path) -> dict[str, Any]:
 
 
 def pulled() -> dict[str, Any]:
-    """A cube of bonded tets, group "bar", that is pulled along x by 0.1 MPa."""
+    """A cube of bonded tets, group "bar", in tension of 0.1 MPa along x."""
     size = [CUBE] * 3
     return _pull(
         "bar",
@@ -140,12 +141,12 @@ def pulled() -> dict[str, Any]:
 
 
 def pulled_irregular(folder: Path) -> dict[str, Any]:
-    """The same of a mesh, written into a folder, whose inner corners are moved; group "default"."""
+    """The same with moved inner corners, its mesh written into a folder; group "default"."""
     return _pull("default", {"mesh": _shaken(folder, [CUBE] * 3)})
 
 
 def _pull(group: str, model: dict[str, Any]) -> dict[str, Any]:
-    """Pull the bonded tets of the only group of a model along x."""
+    """Apply tension along x to the bonded tets of the only group of a model."""
     return {
         "model": {"split": {group: "elements"}, **model},
         "materials": {"rock": ROCK},
@@ -160,11 +161,11 @@ def _pull(group: str, model: dict[str, Any]) -> dict[str, Any]:
 
 
 def rubble(m: int, speed: float = 1.0) -> dict[str, Any]:
-    """The bonded bar with every bond cut, above a plate; it slides and tumbles.
+    """The bonded bar with every bond broken, above a plate; it slides and tumbles.
 
     Args:
-        m: Cells in its width.
-        speed: Of its motion, in parts of 21 m/s (rms).
+        m: Cells across it.
+        speed: Speed of its motion, relative to 21 m/s (rms).
     """
     case = bar(
         m,

@@ -1,5 +1,5 @@
-"""How far models of the benchmark are from exact solutions: a speed with a wrong stiffness is worth
-nothing."""
+"""Errors of models of the benchmark against exact solutions: a fast run with a wrong stiffness is
+worthless."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cdem.tools import benchmark_cases as cases
 
 
 def modulus_error(plain: bool, *, irregular: bool) -> float:
-    """Error of Young's modulus of a cube of bonded tets that is pulled along x, in parts of it.
+    """Relative error of Young's modulus of a cube of bonded tets in tension along x.
 
     The modulus is the mean of its inner tets and their faces.
 
@@ -40,11 +40,11 @@ def modulus_error(plain: bool, *, irregular: bool) -> float:
 
 
 def wave_error(m: int, more: dict[str, Any]) -> float:
-    """Error of the speed of P waves, in parts of it, by the first mode of the bar, held laterally.
+    """Relative error of the speed of P waves, by the first mode of the laterally fixed bar.
 
     Args:
-        m: Cells in the width of the bar.
-        more: More keys of its case; see `benchmark_cases.bar`.
+        m: Cells across the bar.
+        more: Further keys of its case; see `benchmark_cases.bar`.
     """
     group = {"velocity": [1, 0, 0], "fix": ["y", "z"]}
     sim, _ = cases.start(

@@ -1,4 +1,4 @@
-"""``cdem doctor``: what works on this machine, and how to mend what does not."""
+"""``cdem doctor``: check what works on this machine, and say how to mend the rest."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ OPENGL_HINT = "apt install libosmesa6, or libegl1 libgl1-mesa-dri libopengl0"
 
 
 def report() -> tuple[str, bool]:
-    """Look at the machine.
+    """Check the machine.
 
     Returns:
-        The report, and whether cases can be run.
+        The report, and whether cases can run.
     """
     core, healthy = _core()
     rows = [
@@ -52,7 +52,7 @@ def _core() -> tuple[str, bool]:
         from cdem._native import available, name
     except Exception as error:  # an extension module can fail to load in many ways
         return f"not usable: {error}", False
-    why = ", as CDEM_ISA says" if os.environ.get("CDEM_ISA") else ""
+    why = ", chosen by CDEM_ISA" if os.environ.get("CDEM_ISA") else ""
     return f"{name} is used{why}; built for {', '.join(available)}", True
 
 
@@ -73,13 +73,13 @@ def _cuda() -> str:
         works = driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0
         devices = f"{count.value} device(s)" if works else "the NVIDIA driver does not work"
         if module is not None and works and count.value > 0:
-            return f"usable: {devices}; CDEM_ISA=cuda takes it"
+            return f"usable: {devices}; CDEM_ISA=cuda selects it"
     return f"module {f'absent ({GPU})' if module is None else 'present'}; {devices}"
 
 
 def _opengl() -> str:
     if importlib.util.find_spec("pyvista") is None:
-        return "not tried: pyvista is missing"
+        return "not tested: pyvista is missing"
     try:  # in a process of its own, because a bad driver ends it
         done = subprocess.run(
             child.code(RENDER),
@@ -94,11 +94,11 @@ def _opengl() -> str:
 
 
 def _extras() -> list[tuple[str, str]]:
-    """What the package calls optional, from its own metadata."""
+    """Optional parts of the package, from its own metadata."""
     try:
         requirements = importlib.metadata.requires("cdem") or []
     except importlib.metadata.PackageNotFoundError:
-        return [("extras", "unknown: cdem is not installed, only found on the path")]
+        return [("extras", "unknown: cdem is not installed, only on the path")]
     wanted: dict[str, list[str]] = {}
     for line in requirements:
         found = re.match(r"([\w.-]+).*extra\s*==\s*['\"]([^'\"]+)", line)

@@ -1,4 +1,4 @@
-"""Laws of users: a header to start from, and the library that is made of headers."""
+"""Laws of users: a header to start from, and the library made of headers."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ ANSWERS = {
     "INTERFACE": re.compile(r"\brespond\s*\(\s*const\s+JointInput\b"),
     "SURFACE": re.compile(r"\brespond\s*\(\s*const\s+SurfacePoint\b"),
 }
-"""What a law of each kind answers."""
+"""The method that a law of each kind must have."""
 BUILD, LOCK = "build", "lock"
-"""Folders of builds begin so, among the libraries; the lock in each."""
+"""Prefix of build folders among the libraries; each has a lock."""
 SHOWN = 8
-"""Lines of what the compiler says."""
+"""Most lines of compiler output in an error."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Header:
         path: The file.
         structure: Name of its structure.
         law: Name of the law in a case.
-        kind: Of `ANSWERS`.
+        kind: Kind, of `ANSWERS`.
     """
 
     path: Path
@@ -58,10 +58,10 @@ class Header:
 
     @classmethod
     def read(cls, path: Path) -> Header:
-        """Look at a header.
+        """Check a header.
 
         Raises:
-            CaseError: It has not one law, or includes files that are not of cdem.
+            CaseError: It has no law or several, or includes files outside cdem.
         """
         if not path.is_file():
             raise CaseError(f"{path}: no such file")
@@ -71,41 +71,47 @@ class Header:
             if KNOWN.fullmatch(other):
                 continue
             raise CaseError(
-                f"{path}: includes {other.strip()}; a law stands in one header, which includes files of "
-                "core/ and of the language only"
+                f"{path}: includes {other.strip()}; a law is a single header that includes only "
+                f"files of "
+                "core/ and of the language"
             )
         laws = LAW.findall(text)
         if len(laws) != 1:
             raise CaseError(
-                f"{path}: has {len(laws)} laws (structures with a LawText text), not one; "
+                f"{path}: has {len(laws)} laws (structures with a LawText text) instead of one; "
                 "cdem law new writes a header to start from"
             )
         ((structure, law),) = laws
         if not NAME.fullmatch(law):
-            raise CaseError(f"{path}: the law's name {law!r} is not of small letters, digits and -")
+            raise CaseError(
+                f"{path}: the law's name {law!r} may only have small letters, digits and -"
+            )
         kinds = [kind for kind, answer in ANSWERS.items() if answer.search(text)]
         if len(kinds) != 1:
             raise CaseError(
-                f"{path}: {structure} needs flow (of blocks), or respond to a const JointInput (of "
-                "interfaces) or a const SurfacePoint (of surfaces)"
+                f"{path}: {structure} needs a method flow (block law), or respond to a const "
+                f"JointInput "
+                "(interface law) or a const SurfacePoint (surface law)"
             )
         return cls(path.resolve(), structure, law, kinds[0])
 
 
 def new_law(name: str, kind: str, folder: Path, *, force: bool) -> list[Path]:
-    """Write a header to start from, and a test of it.
+    """Write a header to start from, and a test for it.
 
     Args:
-        name: Of the law, e.g. ``"my-clay"``.
+        name: Name of the law, e.g. ``"my-clay"``.
         kind: "block", "interface" or "surface".
-        folder: Where to.
-        force: Whether files that exist are replaced.
+        folder: Folder to write to.
+        force: Whether to replace existing files.
 
     Raises:
-        CaseError: The name is none, or a file exists.
+        CaseError: The name is invalid, or a file exists.
     """
     if not NAME.fullmatch(name):
-        raise CaseError(f"{name!r}: a law's name is of small letters, digits and -, e.g. my-clay")
+        raise CaseError(
+            f"{name!r}: a law's name may only have small letters, digits and -, e.g. my-clay"
+        )
     home = resources.files("cdem") / "templates" / "laws"
     stem = name.replace("-", "_")
     own, structure = _named((home / f"{kind}.hpp").read_text())
@@ -150,14 +156,14 @@ def build(files: list[Path]) -> Path:
         others = {*BLOCK_LAWS, *INTERFACE_LAWS, *SURFACE_LAWS, *(h.law for h in headers[:number])}
         if header.law in others:
             raise CaseError(
-                f"{header.path}: there is a law {header.law} already; name it otherwise"
+                f"{header.path}: the name {header.law} is taken by another law; choose another"
             )
     isa = choose()
     paths = [header.path for header in headers]
     if len({path.name for path in paths}) < len(paths):
-        raise CaseError("own laws of one library need file names that differ")
+        raise CaseError("own laws of one library need different file names")
     with _workplace() as folder:
-        # what is compiled is what the digest is of, whatever becomes of the files meanwhile
+        # compile the text of the digest, even if the files change meanwhile
         copies = [Path(shutil.copy(path, folder)) for path in paths]
         library, made = library_of(copies, isa), record_of(copies, isa)
         built = _compile(headers, isa, folder)
@@ -169,9 +175,9 @@ def build(files: list[Path]) -> Path:
 
 @contextmanager
 def _workplace() -> Iterator[Path]:
-    """A folder to build in, which is gone afterwards. What builds that were killed have left goes too.
+    """A temporary folder to build in. It also removes the folders of killed builds.
 
-    A build holds the lock of its folder, which the system lets go of when its process ends.
+    A build holds the lock of its folder, which the system releases when its process ends.
     """
     place = home()
     with ExitStack() as kept:
@@ -206,7 +212,7 @@ def _compile(headers: list[Header], isa: str, folder: Path) -> Path:
 
 
 def _needs(missing: str) -> str:
-    """What to install where something is missing."""
+    """Advice for a missing tool."""
     return f"cdem law build finds no {missing}: pip install 'cdem[laws]', and g++ or clang of the system"
 
 

@@ -1,4 +1,4 @@
-"""The verification manual: what `cdem verify` found, as a page with formulas, plots and pictures."""
+"""The verification manual: results of `cdem verify` as a page with formulas, plots and pictures."""
 
 from __future__ import annotations
 

@@ -47,14 +47,14 @@ def course(
 
 
 def block(group: str, box: Iterable[float], y: float = 0.0) -> str:
-    """A box of the wall as an entry of ``model.blocks``; y is where its front is [m]."""
+    """A box of the wall as an entry of ``model.blocks``; y is the place of its front [m]."""
     left, bottom, width, height, depth = (f"{v:.9g}" for v in box)
     return (f"{{group: {group}, box: {{size: [{width}, {depth}, {height}]}}, "
             f"translate: [{left}, {y:.9g}, {bottom}]}}")  # fmt: skip
 
 
 def turning_limit(boxes: ArrayLike) -> float:
-    """Tilt at which a part of the wall turns over its right face, by hand [deg].
+    """Tilt at which a part of the wall overturns about its right face, by hand [deg].
 
     A box at the face turns about its lower right corner and lifts all that stands on it, and all
     that stands on that: in a running bond a wedge behind a stepped crack. It turns as one, without
@@ -114,7 +114,7 @@ def tilt_limit(boxes: ArrayLike, bed_friction: float, head_friction: float) -> f
 
 
 def joints(boxes: Floats) -> list[tuple[int, int, Floats, Floats]]:
-    """Where boxes touch: (box, other or -1 for the floor, point, normal into the box)."""
+    """Contacts of boxes: (box, other or -1 for the floor, point, normal into the box)."""
     found: list[tuple[int, int, Floats, Floats]] = []
     up, right = np.eye(2)[::-1]
     for i, (x, z, wide, high, _) in enumerate(boxes):

@@ -98,7 +98,7 @@ def simulate(
     groups: Sequence[str] | None = None,
     sides: Mapping[str, ArrayLike] | None = None,
 ) -> Simulation:
-    """A simulation of a plane mesh, extruded along y to wedges; the plane is that of x and z.
+    """A simulation of a plane mesh, extruded along y to wedges; the plane has axes x and z.
 
     Args:
         study: Of the problem; the mesh takes the place of the blocks of its case.

@@ -38,7 +38,7 @@ INFLUENCES = {
     ),
     "share of the stable step": (["time.safety={}"], (0.2, 0.4, 0.8)),
 }
-"""What ought not to matter to a strength: the settings that change it, and values to try."""
+"""Settings that should not affect a strength, and values to try."""
 
 
 @dataclass
@@ -46,13 +46,13 @@ class Check:
     """One number against its theory.
 
     Attributes:
-        quantity: What it is.
-        theory: What it should be.
-        ours: What cdem computes.
+        quantity: Name of the quantity.
+        theory: Exact value.
+        ours: Value from cdem.
         within: Largest error that passes.
         absolute: Whether errors are differences, or parts of the theory.
         unit: Of theory, paper and ours.
-        paper: What Feng et al. (2014) found, if they looked.
+        paper: Value of Feng et al. (2014), or None.
     """
 
     quantity: str
@@ -65,7 +65,7 @@ class Check:
 
     @property
     def error(self) -> float:
-        """Ours less theory, as a part of the theory unless `absolute`."""
+        """Ours less theory, relative to the theory unless `absolute`."""
         difference = self.ours - self.theory
         return difference if self.absolute else difference / abs(self.theory)
 
@@ -111,13 +111,13 @@ class Picture:
 
 
 class Study:
-    """What the ``run`` of a problem works with: its cases in, checks, curves and pictures out.
+    """Tools for the ``run`` of a problem: its cases in; checks, curves and pictures out.
 
     Attributes:
         full: Whether all variants and finer meshes are wanted, not just the quick ones.
         threads: Threads of the core; None for all.
-        checks: Collected so far.
-        exhibits: Curves and pictures collected so far.
+        checks: Checks so far.
+        exhibits: Curves and pictures so far.
     """
 
     def __init__(self, folder: Path, *, full: bool = False, threads: int | None = None) -> None:
@@ -128,7 +128,7 @@ class Study:
         self.exhibits: list[Curve | Picture] = []
 
     def case(self, *settings: str, file: str = "case.yaml") -> Case:
-        """Load a case of the problem's folder; settings are like those of ``cdem run --set``."""
+        """Load a case of the problem's folder; settings are as for ``cdem run --set``."""
         return Case.load(self._folder / file, settings)
 
     def simulate(self, *settings: str, file: str = "case.yaml") -> Simulation:
@@ -164,9 +164,9 @@ class Study:
         """Check that indentation, contact stiffness and time step hardly matter; show the errors.
 
         Args:
-            quantity: What is measured.
+            quantity: Name of the quantity.
             measure: Gives it for settings of the case, as `simulate` takes them.
-            theory: What it should be, whatever the settings.
+            theory: Its value, for any settings.
             within: Largest error that passes; see `Check`, as for the others.
             absolute: Whether errors are differences.
             unit: Of theory and measure.
@@ -201,7 +201,7 @@ class Study:
 
 @dataclass
 class Outcome:
-    """What a problem gave.
+    """Results of a problem.
 
     Attributes:
         problem: The problem.
@@ -294,7 +294,7 @@ class Problem:
         return bool(getattr(self.module, "QUICK", True))
 
     def run(self, *, full: bool = False, threads: int | None = None) -> Outcome:
-        """Run it; what goes wrong inside is a failure of the outcome, not an exception."""
+        """Run it; an error inside is a failure of the outcome, not an exception."""
         study = Study(self.folder, full=full, threads=threads)
         failure, began = "", time.perf_counter()
         try:
@@ -312,7 +312,7 @@ def problems(names: Iterable[str] = ()) -> list[Problem]:
     """Find problems.
 
     Args:
-        names: Names of shipped problems or paths of folders; all that are shipped if there are none.
+        names: Names of shipped problems or paths of folders; default all shipped problems.
 
     Raises:
         CaseError: A name is neither.

@@ -52,7 +52,7 @@ TEST_CASE("a block that lay on another bears on it until it is let go") {
   const Vec before = tower.position(top);
   tower.step(2000);
   CHECK(distance(tower.position(top), before) < 1e-9);
-  let_go(tower.state, 0, tower.state.time);
+  release_forces(tower.state, 0, tower.state.time);
   tower.step(2000);
   CHECK(tower.state.relief.part == 0);
 }
@@ -75,7 +75,7 @@ TEST_CASE("a bonded block that is dug out lets its mate be touched, and keeps wh
 TEST_CASE("what was kept of an earlier excavation adds up by the part that is left") {
   Tower tower;
   tower.dig(tower.high);
-  let_go(tower.state, 0.25, tower.state.time);
+  release_forces(tower.state, 0.25, tower.state.time);
   tower.step(2000);
   const Real before = norm(tower.relief());
   std::vector<Flag> none(tower.model.node_count);
@@ -87,12 +87,12 @@ TEST_CASE("what was kept of an earlier excavation adds up by the part that is le
 TEST_CASE("forces are let go evenly over a time") {
   State s;
   s.time = 2;
-  let_go(s, 0.2, 6);
+  release_forces(s, 0.2, 6);
   CHECK(s.relief.at(2) == 1);
   CHECK(s.relief.at(4) == doctest::Approx(0.6));
   CHECK(s.relief.at(9) == 0.2);
   s.time = 4;
-  let_go(s, 0, 4);  // at once
+  release_forces(s, 0, 4);  // at once
   CHECK(s.relief.at(4) == 0);
 }
 

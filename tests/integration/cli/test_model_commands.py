@@ -30,4 +30,4 @@ def test_the_verb_writes_a_mesh_and_says_what_it_holds(run_cli, tmp_path: Path, 
     (tmp_path / "slope.yaml").write_text(json.dumps(data))
     status, out, err = run_cli("mesh", "slope.yaml")
     assert status == 1 and out == ""
-    assert "slope.yaml:1:" in err and "bodies.0.outline: holds no rock" in err
+    assert "slope.yaml:1:" in err and "bodies.0.outline: contains no rock" in err

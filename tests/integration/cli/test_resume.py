@@ -169,7 +169,7 @@ def test_the_checkpoint_before_is_used_when_the_last_is_damaged(run_cli, whole, 
     status, _, err = run_cli(*WORDS[:-1], "--resume")
     assert status == 0
     assert (
-        "checkpoint.h5: is damaged (its checksum is another); going on from the one before" in err
+        "checkpoint.h5: is damaged (its checksum is wrong); continuing from the previous one" in err
     )
     assert differences(whole, stopped) == []
 
@@ -179,7 +179,7 @@ def test_the_checkpoint_before_is_used_when_the_last_is_damaged(run_cli, whole, 
     [
         ("rows", "stage: Value error, not the values of a StageState"),
         ("name", "its stage 'junk'"),
-        ("all", "it is neither in a stage nor behind one"),
+        ("all", "it is neither in a stage nor after one"),
     ],
 )
 def test_a_stage_without_a_value_or_of_another_case_is_damage(run_cli, stopped, value, said):
@@ -234,7 +234,7 @@ def test_a_flipped_bit_of_a_frame_is_told_at_resume_and_when_it_is_read(run_cli,
     status, _, err = run_cli(*WORDS[:-1], "--resume")
     assert status == 0 and "Traceback" not in err
     assert f"{series}.vtkhdf: frames 1 are lost" in err
-    assert "move those files in" in err
+    assert "move those files out of" in err
     frames = FrameSeries(stopped) if series == "frames" else SurfaceSeries(stopped)
     with pytest.raises(CdemError, match=r"frame-0001.vtkhdf: is damaged .* move it away"):
         frames.points(1) if isinstance(frames, FrameSeries) else frames[1]
@@ -286,7 +286,7 @@ def test_a_full_disk_is_one_message_and_the_run_can_go_on(run_cli, folder, whole
     program = [sys.executable, "-c", f"{limit}; from cdem.cli import main; main()"]
     done = subprocess.run([*program, *WORDS], capture_output=True, text=True, check=False)
     assert done.returncode == 1 and done.stdout == ""
-    assert "checkpoint.h5: cannot be written (File too large). Mend this" in done.stderr
+    assert "checkpoint.h5: cannot be written (File too large). Free disk space" in done.stderr
     assert done.stderr.count("\n") == 1
     assert run_cli(*WORDS, "--overwrite")[0] == 0
     assert differences(whole, Path("out")) == []

@@ -33,7 +33,7 @@ def test_a_signal_stops_with_a_checkpoint_and_the_run_goes_on(run_cli, cube_fold
     out, err = child.communicate(timeout=20)
     assert child.returncode == 4
     assert "stopped; results are in cube.results" in out
-    assert "go on with: cdem run cube.yaml -o cube.results --resume" in err
+    assert "continue with: cdem run cube.yaml -o cube.results --resume" in err
     assert (
         json.loads((cube_folder / "cube.results/summary.json").read_text())["status"] == "stopped"
     )

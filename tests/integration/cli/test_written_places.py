@@ -31,4 +31,4 @@ def test_a_case_writes_into_its_result_folder_only(run_cli, tmp_path, monkeypatc
             CUBE + f"histories: [{{name: '{name}', group: cube, quantities: [velocity]}}]"
         )
         status, _, err = run_cli("run", str(case), "-o", "results", "--overwrite")
-        assert status == 1 and "names files, so it cannot have the character" in err
+        assert status == 1 and "names files, so it cannot contain the character" in err

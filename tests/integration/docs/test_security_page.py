@@ -20,7 +20,7 @@ GUARDS = {
     "No settings of matplotlib": "integration/output/test_settings.py::"
     "test_settings_of_a_stranger_s_folder_are_not_read",
     "Only `cdem law build` compiles.": LAWS + "test_a_library_must_be_there",
-    "What runs is what was read": LAWS + "test_a_library_beside_the_header_is_not_loaded",
+    "The text that was read": LAWS + "test_a_library_beside_the_header_is_not_loaded",
     "A folder of libraries": LAWS + "test_a_folder_that_others_may_write_is_refused",
     "A header includes": LAWS + "test_a_header_includes_no_other_file",
     "Nothing is written outside": "integration/cli/test_written_places.py::"
@@ -39,13 +39,13 @@ GUARDS = {
     "Meshes in several files": STRANGERS,
     "Time and memory of reading": "unit/case/test_input_file.py::"
     "test_a_small_file_does_not_take_gigabytes",
-    "What takes more": "unit/case/test_reader_process.py::test_what_goes_wrong_is_one_message",
-    "Time is that of the processor": "unit/case/test_input_file.py::"
+    "A file that takes more": "unit/case/test_reader_process.py::test_what_goes_wrong_is_one_message",
+    "Time means processor time": "unit/case/test_input_file.py::"
     "test_processor_time_counts_not_that_of_a_clock_on_the_wall",
     "GDAL, HDF5, VTK and LAZ": "unit/case/test_reader_process.py::test_what_goes_wrong_is_one_message",
     "A local sweep has no ports.": "integration/study/test_sweep.py::"
     "test_a_sweep_that_is_killed_goes_on",
-    "Its workers are spoken": "integration/study/test_sweep.py::"
+    "Its workers are connected": "integration/study/test_sweep.py::"
     "test_workers_import_nothing_from_the_current_folder",
     "Reports show names as text.": "integration/output/test_report.py::"
     "test_names_of_a_case_are_text_in_its_report",

@@ -65,7 +65,7 @@ def test_e_of_a_bonded_slice_is_that_of_the_case_as_check_tells(run_cli):
     name = "bonded_hex_slice_modulus"
     status, out, _ = run_cli("check", str(FAULTS / f"physics/{name}.yaml"))
     told = re.search(
-        r"in E of the whole, with its surfaces, along x, y, z (\S+), (\S+), (\S+) %", out
+        r"in E of the whole, including its surfaces, along x, y, z (\S+), (\S+), (\S+) %", out
     )
     assert status == 0 and told
     sim = begin(name)

@@ -64,7 +64,7 @@ def test_the_small_cases_of_mini_go_on_to_the_same_bytes(case, stage, tmp_path):
 
 def test_the_case_of_mini_that_sets_without_add_is_refused():
     """`m_set`: a body that is in the model keeps its material."""
-    told = r"stages.2.set.groups.tunnel.material: 'material' of a group holds from the start"
+    told = r"stages.2.set.groups.tunnel.material: 'material' of a group is fixed at the start"
     with pytest.raises(CaseError, match=told) as caught:
         Case.from_dict(lining("add"))
     assert "\n" not in str(caught.value)

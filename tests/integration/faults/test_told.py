@@ -149,7 +149,7 @@ BOLTS = {
         ({"bolt_types": {"bar": BOLTS["bolt_types"]["bar"] | {"area": 491}}},
          'did you mean "491 mm2"?'),
         ({"histories": [{"name": "h", "point": [9, 0, 0], "quantities": ["velocity"]}]},
-         "the point of 'h' lies outside of the model; the nearest node, which is followed, is 8 m"),
+         "the point of 'h' lies outside the model; the nearest node, which is used, is 8 m"),
         ({"output": {"every": 1e-9}}, "output.every: 1e-09 s makes 1e+07 frames of stage 's'"),
         ({"damping": {"local": 0.8}}, "it belongs to a stage"),
         ({"materials": {"r": CASE["materials"]["r"] | {"young_modulus": "5 000 000 000"}}},

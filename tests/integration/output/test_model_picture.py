@@ -83,7 +83,7 @@ def test_a_refused_body_is_drawn(run_cli, tmp_path, monkeypatch, wrong):
     )
     status, said, complaint = run_cli("check", "case.yaml", "--picture", "refused.png")
     assert status == 1
-    assert "what is wrong in red" in said
+    assert "its faults in red" in said
     image = np.asarray(Image.open("refused.png")).astype(int)
     assert ((image[..., 0] > 150) & (image[..., 1:].max(axis=2) < 80)).sum() > 200
     assert ("not closed" if wrong == "open" else "not convex") in complaint

@@ -155,7 +155,9 @@ def test_a_scheduler_that_is_killed_is_said_and_the_sweep_goes_on(folder, cluste
 
     with LocalCluster(n_workers=1, dashboard_address=":0", silence_logs=50) as lost:
         address = lost.scheduler_address
-        with pytest.raises(BackendError, match="scheduler is gone; finished runs are kept"):
+        with pytest.raises(
+            BackendError, match="scheduler no longer answers; finished runs are kept"
+        ):
             run_study("study.yaml", "out", scheduler=address, should_stop=end)
     before = results_of(folder / "out")
     assert 1 <= len(before) < 6
@@ -215,7 +217,7 @@ def test_a_sweep_that_is_killed_goes_on(folder, cluster, number):
         os.killpg(child.pid, number)  # as a terminal does
     _, err = child.communicate(timeout=30)
     if number == signal.SIGINT:
-        assert child.returncode == 4 and "the same command goes on" in err
+        assert child.returncode == 4 and "the same command continues" in err
         assert "Traceback" not in err
     assert not psutil.wait_procs(workers, timeout=10)[1]
     before = results_of(folder / "out")

@@ -38,7 +38,7 @@ def test_two_files_in_degrees_become_a_case_that_runs(maps, run_cli):
     assert status == 0, err
     assert "note: outline.kml: brought from EPSG:4326 to EPSG:32632" in out
     assert (
-        "EPSG:32632 (WGS 84 / UTM zone 32N): lengths differ from those on the ground by -3.0e-04"
+        "EPSG:32632 (WGS 84 / UTM zone 32N): lengths differ from lengths on the ground by -3.0e-04"
         in out
     )
     assert "40.0 m deep" in out and "F = 0.8" in out
@@ -87,7 +87,7 @@ def test_factor_volume_and_words_agree_with_the_mesh(maps):
 def test_without_a_surface_it_writes_the_ground_and_asks(maps, run_cli):
     status, out, _ = run_cli("site", "dem.tif", "outline.kml")
     assert status == 0
-    assert "choose where it slides: again with --force and --depth, --volume or --surface" in out
+    assert "choose a sliding surface: repeat with --force and --depth, --volume or --surface" in out
     assert not (maps / "site" / "case.yaml").exists()
     landslide = Landslide.load(maps / "site" / "landslide.yaml")
     assert landslide.bodies == []
@@ -107,7 +107,7 @@ def test_an_outline_must_lie_in_the_terrain(maps, run_cli):
         "site", "dem.tif", "wide.gpkg", "--depth", "30", "--size", "40", "--cut"
     )
     assert status == 0, err
-    assert "of the outline is cut off at the end of the terrain, along 400 m" in out
+    assert "of the outline is cut off at the edge of the terrain, along 400 m" in out
 
 
 @pytest.mark.parametrize(
@@ -117,11 +117,11 @@ def test_an_outline_must_lie_in_the_terrain(maps, run_cli):
         (["--depth", "40 kg"], "--depth: '40 kg' has the wrong dimension"),
         (["--depth", "-4"], "--depth: must be above 0"),
         (["--crs", "EPSG:3857"], "--crs EPSG:3857: .*Web Mercator"),
-        (["--crs", "EPSG:9999999"], "there is no projection 'EPSG:9999999'"),
+        (["--crs", "EPSG:9999999"], "no projection 'EPSG:9999999'"),
         (["--where", "name"], "--where name: write NAME=VALUE"),
         (["--surface", "none.tif"], "--surface none.tif: no such file; or write a mapping"),
         (["--surface", "{slbl: {dept: 3}}"], "surface.slbl.dept: unknown key; did you mean depth"),
-        (["--dem-crs", "EPSG:32632"], "dem.tif: .*does not cover what is needed"),
+        (["--dem-crs", "EPSG:32632"], "dem.tif: .*does not cover the required area"),
     ],
 )
 def test_mistakes_are_one_line(maps, run_cli, words, message):
@@ -153,7 +153,7 @@ def test_local_metres_need_no_projection(tmp_path):
         tmp_path / "site" / "landslide.msh",
     )
     assert Case.load(tmp_path / "site" / "case.yaml").crs is None
-    with pytest.raises(CaseError, match="says no projection; give it with --dem-crs"):
+    with pytest.raises(CaseError, match="names no projection; give it with --dem-crs"):
         make_site(Question(tmp_path / "dem.tif", write_shape(tmp_path / "o.gpkg"), tmp_path / "x"))
 
 

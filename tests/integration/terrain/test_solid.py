@@ -189,7 +189,7 @@ def test_a_dem_in_degrees_and_a_kml_line_become_a_mesh(tmp_path: Path):
     assert facts["groups"]["slide"]["volume"] == pytest.approx(2e6, rel=1e-6)
     ground = solid.points[np.unique(solid.surfaces["ground_slide"])]
     assert np.abs(ground[:, 2] - height(ground[:, :2])).max() < 0.1
-    for key, words in (("crs", r"crs: there is no projection"), ("terrain.crs", "terrain.grid: ")):
+    for key, words in (("crs", r"crs: no projection"), ("terrain.crs", "terrain.grid: ")):
         with pytest.raises(CaseError, match=words):
             make_mesh(Landslide.load(file, [f"{key}=EPSG:99999"]))
     with pytest.raises(CaseError, match=r"crs at the top; its UTM zone is EPSG:32632"):
@@ -206,7 +206,7 @@ def test_bare_ground_is_meshed_without_bodies():
     mean_height = 100 - 50 * math.tan(math.radians(30))
     assert facts["groups"]["bedrock"]["volume"] == pytest.approx(1e4 * mean_height, rel=1e-12)
     assert "bed:" not in text(facts)
-    with pytest.raises(CaseError, match="bodies need a surface that they slide on"):
+    with pytest.raises(CaseError, match="bodies need a sliding surface"):
         Landslide(**{k: v for k, v in slope().items() if k != "surface"})
-    with pytest.raises(CaseError, match="a surface without bodies has no meaning"):
+    with pytest.raises(CaseError, match="a surface without bodies has no effect"):
         Landslide(**{k: v for k, v in slope().items() if k != "bodies"})

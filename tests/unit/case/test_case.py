@@ -100,7 +100,7 @@ def test_set_leaves_the_original_of_a_copy_alone(write):
         ("interfaces.base.cohesion", -1, "interfaces.pairs.0.cohesion: must be at least 0"),
         ("interfaces.base.cohesion", "1 m", "wrong dimension"),
         ("loads.gravity.z", 1, "no entry 'z' in loads.gravity; it has: 0 to 2"),
-        ("contact.check.deep", 1, "contact.check has nothing inside"),
+        ("contact.check.deep", 1, "contact.check has no entries"),
         ("groups.block", {"material": "granite", "fx": []}, "unknown key; did you mean fix?"),
     ],
 )
@@ -133,7 +133,7 @@ def test_overrides_replace_values_and_make_mappings(write):
         (
             "units: SI\n",
             "units: SI\nunits: SI\n",
-            "slope.yaml:4:1: units: key is there twice; keep one",
+            "slope.yaml:4:1: units: this key is given twice; keep one",
         ),
         ("groups:\n", "groups: [\n", "not valid YAML"),
     ],
@@ -188,8 +188,8 @@ def test_schema_knows_units_and_refuses_unknown_keys():
 @pytest.mark.parametrize(
     ("path", "message"),
     [
-        ("interfaces.default.friction_angle", "interfaces.default is not given, so nothing in it"),
-        ("groups.none.fix.0", "groups.none is not given, so nothing in it can change"),
+        ("interfaces.default.friction_angle", "interfaces.default is not given, so its entries"),
+        ("groups.none.fix.0", "groups.none is not given, so its entries cannot change"),
         ("loads.gravity.²", "no entry '²' in loads.gravity; it has: 0 to 2"),
         (f"loads.gravity.{'9' * 900}", "in loads.gravity; it has: 0 to 2"),
     ],

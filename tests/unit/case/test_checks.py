@@ -77,17 +77,17 @@ def test_a_similar_mesh_file_is_suggested(write, tmp_path):
         (
             "interfaces.base.cohesion: 0",
             "groups.block.material: rock",
-            "'material' of a group holds from the start and cannot change",
+            "'material' of a group is fixed at the start and cannot change",
         ),
         (
             "interfaces.base.cohesion: 0",
             "materials.rock.young_modulus: 1e9",
-            "'young_modulus' of a material holds from the start and cannot change",
+            "'young_modulus' of a material is fixed at the start and cannot change",
         ),
         (
             "interfaces.base.cohesion: 0",
             "groups.block.velocity: [1, 0, 0]",
-            "'velocity' of a group holds from the start and cannot change",
+            "'velocity' of a group is fixed at the start and cannot change",
         ),
         ("name: slide", "name: settle", "stages.1.name: 'settle' is the name of two entries"),
         ("  blocks:\n", "  mesh: slop.msh\n  blocks:\n", "slope.yaml:5:3: model.mesh: no file "),

@@ -143,7 +143,7 @@ def test_a_curve_cannot_begin_in_a_stage_where_its_group_is_not_there():
             case(stages, model=model, groups=groups, **load)
             continue
         said = refusal(stages, model=model, groups=groups, **load)
-        assert said.count(f"fill is not there in the stage {stage}") == 2
+        assert said.count(f"fill is not present in the stage {stage}") == 2
 
 
 def test_a_history_that_a_stage_sets_counts_from_the_start_of_the_run_too():

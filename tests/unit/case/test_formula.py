@@ -16,7 +16,7 @@ def test_formula():
     assert math.isnan(Formula("= (0 - 8) ** 0.5").value({}))
     with pytest.raises(ValueError, match="sin takes 1"):
         Formula("= sin(1, 2)")
-    with pytest.raises(ValueError, match="phi is no number"):
+    with pytest.raises(ValueError, match="phi is not a number"):
         Formula("= phi").value({"phi": "10 deg"})
 
 
@@ -26,14 +26,14 @@ def test_formula():
      "= " + "sin(" * 150 + "1" + ")" * 150, "= 1" + " + 1" * 240, "= x\0"],
 )  # fmt: skip
 def test_formulas_that_nobody_writes_are_refused(text):
-    with pytest.raises(ValueError, match=r"characters|operations in a row|no formula"):
+    with pytest.raises(ValueError, match=r"characters|operations in a row|not a formula"):
         Formula(text)
 
 
 def test_a_formula_reaches_nothing_but_numbers():
     assert Formula("= a.__class__").names == {"a.__class__"}
-    with pytest.raises(ValueError, match="is not known"):
+    with pytest.raises(ValueError, match="is unknown"):
         Formula("= a.__class__").value({"a": 1.0})
     for text in ("= (1).real", "= [1][0]", "= (lambda: 1)()", "= __import__(a)", "= f'{a}'"):
-        with pytest.raises(ValueError, match=r"formula is made of|is not known"):
+        with pytest.raises(ValueError, match=r"formula is made of|is unknown"):
             Formula(text)

@@ -22,10 +22,10 @@ def fail(error):
     ("act", "message"),
     [
         (lambda: fail(ValueError("bad\n  thing")), "a.msh: cannot be read (bad thing); mend it"),
-        (lambda: fail(KeyError("x")), "cannot be read (x is named, but not there); mend it"),
-        (lambda: sys.exit(1), "cannot be read (its reader gave up); mend it"),
-        (lambda: fail(MemoryError()), "asks for more memory than a sound file does"),
-        (lambda: fail(RecursionError()), "is nested deeper than a sound file does"),
+        (lambda: fail(KeyError("x")), "cannot be read (x is missing); mend it"),
+        (lambda: sys.exit(1), "cannot be read (its reader stopped); mend it"),
+        (lambda: fail(MemoryError()), "needs more memory than a sound file"),
+        (lambda: fail(RecursionError()), "is nested more deeply than a sound file"),
         (lambda: fail(ValueError("x" * 5000)), "xxx ...); mend it"),
         (lambda: Path("none.msh").read_text(), "cannot be read (No such file or directory)"),
     ],
@@ -45,7 +45,7 @@ def test_a_small_file_does_not_take_gigabytes(tmp_path):
     import resource
 
     before = resource.getrlimit(resource.RLIMIT_AS)
-    with pytest.raises(MeshError, match="asks for more memory"), reading(path, MeshError, "mend"):
+    with pytest.raises(MeshError, match="needs more memory"), reading(path, MeshError, "mend"):
         np.ones(2_000_000_000, np.int8)
     assert resource.getrlimit(resource.RLIMIT_AS) == before
 

@@ -26,7 +26,9 @@ def test_a_pair_takes_what_it_does_not_say_from_the_default(write):
 
 def test_a_pair_without_default_needs_a_friction_angle(write):
     text = INCLINE.replace('  default: {friction_angle: "26 deg", ', "  # {")
-    with pytest.raises(CaseError, match=r"friction_angle is missing, and so is interfaces.default"):
+    with pytest.raises(
+        CaseError, match=r"friction_angle is missing here and in interfaces.default"
+    ):
         Case.load(write(text))
 
 
@@ -46,7 +48,7 @@ def test_a_pair_without_default_needs_a_friction_angle(write):
         (
             "stiffness_n: auto,",
             "stiffness_n: auto, heterogeneity: {weibull: 5},",
-            "default: heterogeneity is of bonds; it needs cohesion or tensile_strength above 0",
+            "default: heterogeneity varies bonds; it needs cohesion or tensile_strength above 0",
         ),
         (
             'name: base, cohesion: "10 kPa",',
@@ -117,7 +119,7 @@ def test_a_wrong_restitution_is_refused(value):
 def test_a_stage_cannot_change_the_restitution(setting):
     stage = {"name": "late", "mode": "dynamic", "duration": 1, "set": setting}
     default = {"friction_angle": 30, "restitution": 0.7}
-    with pytest.raises(CaseError, match="'restitution' of an interface holds from the start"):
+    with pytest.raises(CaseError, match="'restitution' of an interface is fixed at the start"):
         scenes.case(
             [{"group": "a", "box": {"size": [1, 1, 1]}}],
             {"a": {}},
@@ -129,7 +131,7 @@ def test_a_stage_cannot_change_the_restitution(setting):
 def test_a_stage_cannot_change_how_strength_varies():
     setting = {"interfaces.default.heterogeneity": {"weibull": 5, "seed": 2}}
     default = {"friction_angle": 30, "cohesion": 1, "heterogeneity": {"weibull": 5}}
-    with pytest.raises(CaseError, match="'heterogeneity' of an interface holds from the start"):
+    with pytest.raises(CaseError, match="'heterogeneity' of an interface is fixed at the start"):
         scenes.case(
             [{"group": "a", "box": {"size": [1, 1, 1]}}],
             {"a": {}},

@@ -149,7 +149,7 @@ def test_an_unknown_law_is_refused():
 
 
 def test_a_stage_cannot_change_the_law():
-    with pytest.raises(CaseError, match="'law' of an interface holds from the start"):
+    with pytest.raises(CaseError, match="'law' of an interface is fixed at the start"):
         Case(
             model={"blocks": [{"group": "rock", "box": {"size": [1, 1, 1]}}]},
             materials={"m": {"density": 2700, "young_modulus": 1e9, "poisson_ratio": 0.25}},

@@ -23,8 +23,8 @@ def test_a_projection_travels_with_the_case(write):
     ("crs", "message"),
     [
         ("UTM 32", "slope.yaml:1:1: crs: must be a code such as EPSG:32632, or WKT, got 'UTM 32'"),
-        ("EPSG:99999", "crs: there is no projection 'EPSG:99999'"),
-        ("EPSG:4326", "crs: 'WGS 84' is no map projection: coordinates in it are no metres"),
+        ("EPSG:99999", "crs: no projection 'EPSG:99999'"),
+        ("EPSG:4326", "crs: 'WGS 84' is not a map projection: its coordinates are not metres"),
         ("EPSG:2263", "is in US survey foot, not in metres"),
         ("EPSG:3857", "(Web Mercator) stretches lengths"),
     ],

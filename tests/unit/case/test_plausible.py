@@ -53,11 +53,11 @@ def test_the_impossible_is_refused(tmp_path, old, new, place, said):
          '4:24: interfaces.default.friction_angle: 0.35 deg is unusual; usual is 2 deg to 75 deg; '
          'did you mean "0.35 rad"?'),
         ("loads: {gravity: [0, 0, -10]}", "output: {every: 1}",
-         "fall.yaml: loads.gravity: is not given, so nothing has weight"),
+         "fall.yaml: loads.gravity: is not given, so there is no weight"),
         ("[0, 0, -10]", "[0, 0, 9.81]", "5:9: loads.gravity: [0, 0, 9.81] m/s2 points up"),
-        ("[0, 0, -10]", "[0, -9.81, 0]", "has no part downwards"),
+        ("[0, 0, -10]", "[0, -9.81, 0]", "has no downward part"),
         ('"5 ms"', '"5 ms", damping: {local: 0.99}', "stages.0.damping.local: 0.99 is unusual"),
-        ('"5 ms"', '"5 ms", damping: {local: 0.8}', "0.8 in a dynamic stage brakes every motion"),
+        ('"5 ms"', '"5 ms", damping: {local: 0.8}', "0.8 in a dynamic stage slows every motion"),
         ("cohesion: 0", "cohesion: 10",
          '10 Pa is unusual; usual is 100 Pa to 100 GPa; did you mean "10 kPa" or "10 MPa"?'),
         ('"1 GPa"', '"2 kPa"', 'young_modulus: 2 kPa is unusual'),
@@ -92,9 +92,9 @@ def test_what_a_stage_sets_is_looked_at_too(tmp_path):
     stage = '"5 ms", set: {interfaces.default.friction_angle: 0.35, loads.gravity.2: 9.81}'
     told = in_file(tmp_path, '"5 ms"', stage).warnings
     assert len(told) == 2
-    assert "stages.0.set: leads to interfaces.default.friction_angle: 0.35 deg" in told[0]
-    assert "stages.0.set: leads to loads.gravity: [0, 0, 9.81] m/s2 points up" in told[1]
-    with pytest.raises(CaseError, match=r"stages\.0\.set: leads to loads\.gravity: 6000 m/s2"):
+    assert "stages.0.set: gives interfaces.default.friction_angle: 0.35 deg" in told[0]
+    assert "stages.0.set: gives loads.gravity: [0, 0, 9.81] m/s2 points up" in told[1]
+    with pytest.raises(CaseError, match=r"stages\.0\.set: gives loads\.gravity: 6000 m/s2"):
         in_file(tmp_path, '"5 ms"', '"5 ms", set: {loads.gravity.2: -6000}')
 
 

@@ -30,8 +30,8 @@ def load(tmp_path, monkeypatch):
         ("# only a comment\n", "a.yaml: the file is empty"),
         ("- 1\n", "a.yaml:1:1: a case is a mapping (key: value), got a list of 1"),
         ("just words", "a.yaml:1:1: a case is a mapping (key: value), got 'just words'"),
-        ("a: 1\na: 2\n", "a.yaml:2:1: a: key is there twice; keep one"),
-        ("b: {a: 1, a: 2}\n", "a.yaml:1:11: a: key is there twice; keep one"),
+        ("a: 1\na: 2\n", "a.yaml:2:1: a: this key is given twice; keep one"),
+        ("b: {a: 1, a: 2}\n", "a.yaml:1:11: a: this key is given twice; keep one"),
         ("a: [1, 2\nb: 3\n", "a.yaml:2:2: not valid YAML"),
         ("a: b: c\n", "a.yaml:1:5: not valid YAML"),
         ("a:\n\t- 1\n", "a.yaml:2:1: not valid YAML"),
@@ -40,7 +40,7 @@ def load(tmp_path, monkeypatch):
         ("a: 1\n---\nb: 2\n", "not valid YAML"),
         ("a: {b: [1, .nan]}\n", "a.yaml:1:12: a.b.1: must be a finite number, got nan"),
         ("a: \x07\n", "not valid YAML"),
-        ("? {a: [1]}\n: 2\n", "a list or mapping stands as a key"),
+        ("? {a: [1]}\n: 2\n", "a list or mapping is used as a key"),
         (b"\x89HDF\xff\xfe", "a.yaml: not a text file"),
     ],
 )
@@ -108,7 +108,7 @@ def test_overrides(load):
         ("a.b.x.y=3", "no entry 'x' in a.b"),
         ("a.b=[1", "--set a.b=[1:1:3: not valid YAML"),
         ("a.b=.inf", "must be a finite number"),
-        ("s.t=1", "--set s.t=1: s has nothing inside"),
+        ("s.t=1", "--set s.t=1: s has no entries"),
     ],
 )
 def test_bad_overrides(load, override, message):

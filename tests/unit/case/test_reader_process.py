@@ -88,16 +88,16 @@ def test_wall_time_is_a_last_resort_and_is_told(ask, monkeypatch):
     [
         (
             "die",
-            "a.bin: its reader died (SIGABRT), as it does on damaged files and for want of memory; mend it",
+            "a.bin: its reader crashed (SIGABRT); the file may be damaged, or memory too small; mend it",
         ),
-        ("leave", "a.bin: its reader ended without a word (status 0); mend it"),
+        ("leave", "a.bin: its reader ended without a message (status 0); mend it"),
         (
             "hang",
-            "a.bin: reading it takes more than 3 s of processor time, as no sound file of its size does; mend it",
+            "a.bin: reading it takes more than 3 s of processor time, longer than a sound file of its size; mend it",
         ),
         (
             "loop",
-            "a.bin: reading it takes more than 0.2 s of processor time, as no sound file of its size does; mend it",
+            "a.bin: reading it takes more than 0.2 s of processor time, longer than a sound file of its size; mend it",
         ),
         ("refuse", "a.bin: is not good"),
         ("raise", "a.bin: cannot be read (bad bytes); mend it"),

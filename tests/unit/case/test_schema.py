@@ -38,7 +38,7 @@ import pytest
         (
             "mode: static",
             "mode: static, duration: 2",
-            "stages.0: duration has no meaning in a static stage",
+            "stages.0: duration has no effect in a static stage",
         ),
         (', duration: "2 s"', "", "slope.yaml:30:5: stages.1: a dynamic stage needs a duration"),
         ("refresh: 50", "refresh: 0", "contact.refresh: must be at least 1, got 0"),

@@ -50,7 +50,7 @@ def test_an_old_case_is_told_once_which_keys_it_has_to_write(tmp_path):
     with pytest.raises(CaseError) as error:
         Case.load(tmp_path / "slope.yaml")
     assert str(error.value) == (
-        f"{tmp_path}/slope.yaml:2:1: cdem: 1 is gone; remove it, and for the same results write "
+        f"{tmp_path}/slope.yaml:2:1: cdem: 1 is no longer supported; remove it, and for the same results write "
         "stages.0.relax: local; stages.1.damping.contact: 0; elements.mass: exact; "
         "interfaces.pairs.0.stiffness_n: 10.0 E/h; interfaces.pairs.0.stiffness_s: 10.0 E/h; "
         "model.blocks.0.box.cells: alike"
@@ -58,14 +58,16 @@ def test_an_old_case_is_told_once_which_keys_it_has_to_write(tmp_path):
 
 
 def test_an_old_case_that_says_all_itself_has_nothing_to_write():
-    with pytest.raises(CaseError, match=r"^case: cdem: 1 is gone; remove it; the case has all"):
+    with pytest.raises(
+        CaseError, match=r"^case: cdem: 1 is no longer supported; remove it; the case gives all"
+    ):
         Case.from_dict(plain(CASE) | {"cdem": 1})
 
 
 @pytest.mark.parametrize("old", ["stages:", "title: old", "model: {", "groups: {a"])
 def test_an_old_case_that_is_wrong_besides_is_told_both(tmp_path, old):
     (tmp_path / "slope.yaml").write_text(FILE.replace(old, "elements: 5\nwater: x\n" + old))
-    with pytest.raises(CaseError, match=r"cdem: 1 is gone") as error:
+    with pytest.raises(CaseError, match=r"cdem: 1 is no longer supported") as error:
         Case.load(tmp_path / "slope.yaml")
     assert "elements: must be a mapping" in str(error.value)
 
@@ -116,5 +118,5 @@ def test_the_case_beside_results_is_read_as_it_was_run(tmp_path):
 
 def test_cells_are_of_tets():
     box = {"size": [1, 1, 1], "cells": "alike"}
-    with pytest.raises(CaseError, match="cells is of shape: tet4; others are divided in one way"):
+    with pytest.raises(CaseError, match="cells is of shape: tet4; other shapes have one division"):
         Case.from_dict(CASE | {"model": {"blocks": [{"group": "a", "box": box}]}})

@@ -18,8 +18,12 @@ import pytest
         ('"2.7 t/m3"', "0", "must be above 0 [kg/m3], got 0"),
         ('"50 GPa"', "[1]", "must be a number [Pa], got a list of 1"),
         ('"50 GPa"', '"2,700"', "must be a number without a comma, got '2,700'; write 2700 for"),
-        ('"50 GPa"', "2,700", "materials.granite.700: stands as a key; if it is the end of a num"),
-        ('"50 GPa"', "9" * 400, "young_modulus: is a number of too many digits"),
+        (
+            '"50 GPa"',
+            "2,700",
+            "materials.granite.700: is a key without a value; if it ends a num",
+        ),
+        ('"50 GPa"', "9" * 400, "young_modulus: is a number with too many digits"),
         ("[0, 0, -9.81]", "-9.81", "loads.gravity: must be a list, e.g. [0, 0, -9.81] (x, y, z)"),
         ('"50 GPa"', "true", "must be a number [Pa], got true"),
         (
@@ -37,7 +41,11 @@ def test_numbers_that_are_not_allowed_are_answered(complaint, old, new, message)
     ("old", "new", "message"),
     [
         ("name: toe", "name: a/b", "slope.yaml:34:6: histories.0.name: names files, so it cannot"),
-        ("name: toe", "name: '<b>'", "histories.0.name: names files, so it cannot have the char"),
+        (
+            "name: toe",
+            "name: '<b>'",
+            "histories.0.name: names files, so it cannot contain the char",
+        ),
         ("name: toe", f"name: {'x' * 300}", "names files, so it cannot be longer than 200 bytes"),
         ("name: toe", 'name: "a\\nb"', "must be plain text of one line, got the character '\\n'"),
         ("name: settle", 'name: "\\e[2J"', "stages.0.name: must be plain text of one line"),

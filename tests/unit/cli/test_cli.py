@@ -57,7 +57,7 @@ def test_wrong_usage_is_status_2(run_cli, words):
         (["check", "none.yaml"], "none.yaml: cannot read the case file: No such file"),
         (["check", "cube.yaml", "--set", "loads.gravty=0"], "loads.gravty: unknown key; did you"),
         (["run", "cube.yaml", "--set", "stages=[]"], "stages: needs at least 1 entry, got 0"),
-        (["run", "cube.yaml", "--device", "cuda"], "a core for a GPU has to be built, in a clone"),
+        (["run", "cube.yaml", "--device", "cuda"], "for a GPU build the core for it, in a clone"),
         (["run", "cube.yaml", "--resume"], "no checkpoint to resume from"),
         (["run", "cube.yaml", "-o", "cube.yaml"], "cube.yaml: is a file"),
         (["info", "nowhere"], "nowhere: no such folder"),

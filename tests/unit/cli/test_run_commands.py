@@ -24,7 +24,7 @@ def test_run_writes_its_folder_and_guards_it(run_cli, cube_folder):
 
     status, out, err = run_cli("run", "cube.yaml")
     assert status == 1
-    assert "exists already; use --overwrite to replace it, --resume to go on" in err
+    assert "exists already; use --overwrite to replace it, --resume to continue it" in err
     assert run_cli("run", "cube.yaml", "--overwrite", "--quiet") == (0, "", "")
 
 

@@ -76,8 +76,8 @@ def test_encodings(tmp_path, text, encoding, said):
         ("dip (true),dd\n40,121\n", "not used: '(true)' in the heading of 'dip (true)'"),
         ("strike LHR,dip\n211,40\n", "left-hand rule: dip direction = strike - 90"),
         ("40,121\n", "no line of names: column 1 is dip, column 2 is dip direction"),
-        ("trend,plunge\n301,50\n", "those of poles"),
-        ("dip,dd\n40,481\n", "dd: 1 beyond 0 to 360, taken by full turns"),
+        ("trend,plunge\n301,50\n", "describe poles"),
+        ("dip,dd\n40,481\n", "dd: 1 outside 0 to 360, corrected by full turns"),
     ],
 )
 def test_what_is_assumed_or_not_used_is_said(tmp_path, text, note):
@@ -87,10 +87,10 @@ def test_what_is_assumed_or_not_used_is_said(tmp_path, text, note):
 @pytest.mark.parametrize(
     "text, what",
     [
-        ("strike,dip,dip_quadrant\n31,40,NE\n", ":2: strike '31' and the side 'NE' do not fit"),
-        ("strike,dip,dip_quadrant\n31,40,SE\n31,40,\n", ":3: says no side to which"),
+        ("strike,dip,dip_quadrant\n31,40,NE\n", ":2: strike '31' and the side 'NE' contradict"),
+        ("strike,dip,dip_quadrant\n31,40,SE\n31,40,\n", ":3: gives no side of the dip"),
         ("strike,dip\nN31E,40\n", "beside a dip with its side, as 40SE, got 'N31E'"),
-        ("dip,dip_direction\n40SE,301\n", "'301' and the side 'SE' do not fit"),
+        ("dip,dip_direction\n40SE,301\n", "'301' and the side 'SE' contradict"),
         ("40,45\n50,60\n", "has no line of names"),
         ("dip [grad],dd\n40,121\n", "has the unit 'grad'; use one of deg"),
         ("pendage;direction\n40;121\n", "may be strike or dip direction"),

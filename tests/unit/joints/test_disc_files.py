@@ -45,7 +45,11 @@ def test_one_disc_in_all_that_is_read(tmp_path, name, text):
     [
         ("a.csv", "a;b\n1;2\n", "columns x, y, z, dip, dip_direction, radius .*it says: a, b"),
         ("a.csv", "x,y,z,nx,ny,nz\n1,1,1,0,0,1\n", "the radius a diameter; it says: x, y, z"),
-        ("a.dat", "nPolygons: 2\n3 {0,0,0} {1,0,0} {0,1,0}\n", "1 polygons, its first line says 2"),
+        (
+            "a.dat",
+            "nPolygons: 2\n3 {0,0,0} {1,0,0} {0,1,0}\n",
+            "1 polygons, but its first line says 2",
+        ),
         ("a.dat", "nPolygons: 1\n4 {0,0,0} {1,0,0} {0,1,0}\n", ":2: a polygon is a row"),
     ],
 )

@@ -132,9 +132,9 @@ def test_radii(radius, mean):
     [
         ({"discs": {"count": 3}}, "random discs need a radius"),
         ({"discs": {"count": 3, "density": 1, "radius": 1}}, "give exactly one of file, density"),
-        ({"discs": {"count": 3, "radius": 1}, "spacing": 1}, "spacing has no meaning with random"),
-        ({"discs": {"file": "a.csv"}, "seed": 1}, "dip has no meaning with discs of a file"),
-        ({"bridge": "b"}, "bridge has a meaning with discs only"),
+        ({"discs": {"count": 3, "radius": 1}, "spacing": 1}, "spacing has no effect with random"),
+        ({"discs": {"file": "a.csv"}, "seed": 1}, "dip has no effect with discs of a file"),
+        ({"bridge": "b"}, "bridge goes with discs only"),
         (
             {"discs": {"count": 3, "radius": 1}, "bridge": "dfn"},
             "'dfn' is the name of two surfaces",

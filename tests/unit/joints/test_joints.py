@@ -152,7 +152,7 @@ def test_a_jointed_case_is_checked_and_run(run_cli, tmp_path, monkeypatch):
     resolved = Case.load(tmp_path / "rock.results" / "case.yaml")
     assert resolved.model.joints[1].persistence == 0.7
     status, out, _ = run_cli("check", "rock.yaml", "--set", "model.joints.2.origin=[90, 0, 0]")
-    assert status == 0 and "joint set fault cuts nothing" in out
+    assert status == 0 and "joint set fault makes no cut" in out
 
 
 def test_a_group_of_which_joints_leave_nothing_is_named(tmp_path):
@@ -164,5 +164,5 @@ def test_a_group_of_which_joints_leave_nothing_is_named(tmp_path):
         "groups: {a: {material: m}, b: {material: m}}\n"
         "stages: [{name: fall, mode: dynamic, duration: 1}]\n"
     )
-    with pytest.raises(cdem.MeshError, match=r"model.joints: nothing is left of group 'a'"):
+    with pytest.raises(cdem.MeshError, match=r"model.joints: group 'a' has vanished"):
         cdem.Simulation(path)

@@ -64,5 +64,5 @@ def test_what_is_refused(tmp_path, text, what):
 
 
 def test_two_sources_of_scanlines_are_refused(tmp_path):
-    with pytest.raises(CaseError, match="give no other scanline"):
+    with pytest.raises(CaseError, match="leave out the scanline"):
         read(tmp_path, "dip,azi,trend,plunge\n30,90,0,90\n", scanline=(0, 90))

@@ -54,5 +54,5 @@ def test_an_element_that_is_cut_short_does_not_take_its_tags_for_nodes(tmp_path)
 def test_an_id_belongs_to_one_node(tmp_path):
     path = write(tmp_path / "a.msh", "gmsh22", False)
     path.write_text(path.read_text().replace("\n6 9.0", "\n5 9.0"))
-    with pytest.raises(MeshError, match="says that it has 6 nodes, but has 5 different ids"):
+    with pytest.raises(MeshError, match="declares 6 nodes, but has 5 different ids"):
         read_mesh(path)

@@ -19,5 +19,5 @@ def test_a_mesh_without_groups_is_explained(tmp_path):
     )
     case = cdem.Case.load(path)
     names = read_model(case).group_names
-    with pytest.raises(cdem.CaseError, match=r"has: default; elements that are in no group of the"):
+    with pytest.raises(cdem.CaseError, match=r"has: default; elements without a group in the"):
         check_groups(case, names)

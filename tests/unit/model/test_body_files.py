@@ -98,7 +98,7 @@ def test_what_of_an_obj_is_not_used_is_told_and_no_other_file_is_opened(tmp_path
     )
     (tmp_path / "a.mtl").mkdir()  # opening it would fail
     made = read_bodies(tmp_path / "a.obj", "rock")
-    assert made.notes == ["a.obj: only faces are used, not 2 of 'l', 1 of 'curv'"]
+    assert made.notes == ["a.obj: only faces are used; 2 of 'l', 1 of 'curv' ignored"]
 
 
 def test_corners_that_are_not_finite_are_refused(tmp_path):
@@ -211,14 +211,14 @@ def test_vtk_may_die_of_a_file(tmp_path):
     grid.save(path, binary=False)
     assert volume(read_bodies(path, "rock")) == pytest.approx(1, rel=1e-12)
     path.write_text(re.sub(r"(?<=\s)7(?=\s)", "99999999", path.read_text()))
-    with pytest.raises(cdem.MeshError, match=r"a\.vtu: its reader died"):
+    with pytest.raises(cdem.MeshError, match=r"a\.vtu: its reader crashed"):
         read_bodies(path, "rock")
     grid = pyvista.UnstructuredGrid([5, 1, 3, 0, 1, 2], [pyvista.CellType.POLYHEDRON], points)
     grid.save(tmp_path / "b.vtu", binary=False)
     with pytest.raises(cdem.MeshError, match=r"b\.vtu: a cell has less than four faces"):
         read_bodies(tmp_path / "b.vtu", "rock")
     path.write_text(path.read_text()[:700])
-    with pytest.raises(cdem.MeshError, match=r"a\.vtu: holds no bodies"):
+    with pytest.raises(cdem.MeshError, match=r"a\.vtu: contains no bodies"):
         read_bodies(path, "rock")
 
 
@@ -226,12 +226,12 @@ def test_vtk_may_die_of_a_file(tmp_path):
     ("a.txt", "", "bodies are read from .obj, .stl, .ply, .vtu, .vtk files"),
     ("a.obj", "v 1 2 3\nv x 0 0\n", "a.obj:2: cannot be read"),
     ("a.obj", "v 1 2 3\nv 1 2\n", "a.obj:2: cannot be read"),
-    ("a.obj", "", "holds no faces"),
+    ("a.obj", "", "contains no faces"),
     ("a.stl", "not one", "a.stl: cannot be read"),
     ("a.ply", "not one", "a.ply: cannot be read"),
-    ("a.ply", PLY_HEAD.format(3, 0) + "0 0 0\n1 0 0\n0 1 0\n", "holds no faces that can be read"),
-    ("a.ply", PLY_HEAD.format(1, 1) + "0 0 0\n3 0 0 -1\n", "cannot be read|vertex that is not there"),
-    ("a.ply", PLY_HEAD.format(2, 1) + "0 0 0\n1 0 0\n3 0 1 7\n", "a face has a vertex that is not there"),
+    ("a.ply", PLY_HEAD.format(3, 0) + "0 0 0\n1 0 0\n0 1 0\n", "contains no readable faces"),
+    ("a.ply", PLY_HEAD.format(1, 1) + "0 0 0\n3 0 0 -1\n", "cannot be read|refers to a missing vertex"),
+    ("a.ply", PLY_HEAD.format(2, 1) + "0 0 0\n1 0 0\n3 0 1 7\n", "a face refers to a missing vertex"),
 ])  # fmt: skip
 def test_files_that_are_no_bodies(tmp_path, name, text, message):
     (tmp_path / name).write_text(text)
@@ -297,5 +297,5 @@ def test_what_cannot_be_filled_is_refused(tmp_path):
     write_obj(tmp_path / "crossed.obj", points, faces)
     with pytest.raises(cdem.MeshError, match=r"body 0: its surface cannot be filled with tets"):
         fill_bodies(tmp_path / "crossed.obj", "rock", 0.7)
-    with pytest.raises(cdem.MeshError, match=r"size is for surfaces, \.obj, \.stl, \.ply"):
+    with pytest.raises(cdem.MeshError, match=r"size goes with surfaces, \.obj, \.stl, \.ply"):
         fill_bodies(tmp_path / "a.vtu", "rock", 0.7)

@@ -85,7 +85,7 @@ def test_a_pattern_covers_a_surface_at_its_spacing():
 def test_rings_begin_where_the_opening_ends():
     rings = {"axis": [[3, 0.5, 1], [3, 1.5, 1]], "spacing": 1, "count": 2, "angles": [90, 270],
              "inside": "right", "length": 0.5}  # fmt: skip
-    with pytest.raises(CaseError, match="meets no rock"):  # to the right there is none
+    with pytest.raises(CaseError, match="hits no rock"):  # to the right there is none
         model({"rings": rings})
     found = model({"rings": rings | {"count": 1, "angles": [270, 270]}})
     assert found.bolts[0].places[0] == pytest.approx([2 - found.bolts[0].grouted[0] / 2, 0.5, 1])
@@ -96,15 +96,15 @@ def test_rings_begin_where_the_opening_ends():
     [
         ({"points": [[0.5, 1, 1], [5, 1, 1]]}, r"b is outside the rock 3.5 m from its head"),
         ({"points": [[-1, 1, 1], [1, 1, 1]]}, "b is outside the rock 0 m from its head"),
-        ({"points": [[0.5, 1, 1], [0.5, 1, 1]]}, "two that follow each other are the same"),
+        ({"points": [[0.5, 1, 1], [0.5, 1, 1]]}, "two successive points are equal"),
         (ACROSS | {"pretension": 1e4}, "pretension needs a plate"),
         (ACROSS | {"type": "baar"}, "did you mean bar"),
         (ACROSS | {"install": "onn"}, "no stage 'onn'; did you mean on"),
-        (ACROSS | {"install": "on", "remove": "go"}, "must be a stage after 'on'"),
+        (ACROSS | {"install": "on", "remove": "go"}, "must be a later stage than 'on'"),
         ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [9, 9],
                       "length": 1}}, "the pattern has no bolts"),
         ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [1, 1],
-                      "length": 1, "direction": [0, 0, 1]}}, "leads out of the surface"),
+                      "length": 1, "direction": [0, 0, 1]}}, "points out of the surface"),
         (ACROSS | {"rings": {"axis": [[0, 0, 0], [0, 1, 0]], "spacing": 1, "count": 3, "length": 1}},
          "points"),
     ],
@@ -116,7 +116,7 @@ def test_what_is_refused(bolt, what):
 
 def test_nothing_holds_a_bolt_without_grout_plate_and_anchor():
     bare = {key: value for key, value in BAR.items() if key != "grout"}
-    with pytest.raises(CaseError, match="nothing holds them at both ends"):
+    with pytest.raises(CaseError, match="no grout, plate or anchor holds both ends"):
         model(ACROSS | {"plate": True}, kind=bare)
     assert len(model(ACROSS | {"plate": True, "anchor": True}, kind=bare).bolts) == 1
 

@@ -129,7 +129,9 @@ def test_a_stage_cannot_take_back_what_the_elements_make_up_for():
 def test_the_report_tells_what_is_left_along_each_axis():
     slice_ = {"size": [8, 1, 8], "divisions": [8, 1, 8], "shape": "hex8"}
     text = cdem.Simulation(bonded(slice_)).audit.text()
-    assert "left in E up to +20 %" in text and "along x, y, z +0.0, +20.0, +0.0 %" in text
+    assert (
+        "remaining error in E up to +20 %" in text and "along x, y, z +0.0, +20.0, +0.0 %" in text
+    )
 
 
 def test_bonds_beside_a_free_end_stand_for_both(regular):

@@ -100,7 +100,7 @@ def test_what_joints_cannot_bear_is_cut_and_told():
     limit = 1e5 * np.tan(np.radians(30))
     assert sim.build.initial.cut == 3 * 8
     assert sim.build.initial.most_cut == pytest.approx(9e4 - limit)
-    assert "24 points of joints and bonds cannot bear it" in sim.audit.text()
+    assert "24 points of joints and bonds cannot carry it" in sim.audit.text()
 
 
 def test_pull_in_all_directions_is_doubted():

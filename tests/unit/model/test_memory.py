@@ -103,7 +103,7 @@ def test_a_limit_of_the_process_is_known(tmp_path):
     refused = run(2_500_000_000)
     assert refused.returncode == 1
     assert "216,000 elements need about 2.9 GB" in refused.stderr
-    assert "by the limit of the process (ulimit -v)" in refused.stderr
+    assert "(the limit of the process (ulimit -v))" in refused.stderr
     assert len(refused.stderr.splitlines()) == 1
 
 

@@ -127,7 +127,7 @@ def test_nothing_is_said_where_nothing_is_known_or_breaks(changes):
 def test_the_report_says_what_helps(tmp_path):
     brittle = "\n".join(strength_text(meshed_strengths(shaken(tmp_path, BRITTLE))))
     assert "in compression, by direction of the load: bonds are brittle" in brittle
-    assert "divide tensile_strength and cohesion by these parts" in brittle
+    assert "divide tensile_strength and cohesion by these fractions" in brittle
     much = SOFT | {"fracture_energy_1": 500, "fracture_energy_2": 5000}
     soft = "\n".join(strength_text(meshed_strengths(shaken(tmp_path, much))))
     assert "default: about 1." in soft and "brittle 0." in soft and "divide" not in soft

@@ -50,7 +50,7 @@ def test_a_gap_that_leaves_a_named_strength_idle_is_told_with_its_width():
     assert warnings == [
         "case: interfaces.pairs.0: cohesion and tensile_strength bond nothing: no faces of bed and "
         "block touch at the start, the nearest vertex is about 0.001 m from the other's surface; "
-        "put them face on face if they are meant to be bonded"
+        "place them face on face if they should be bonded"
     ]
 
 
@@ -119,7 +119,7 @@ def test_bodies_that_hang_together_by_an_edge_are_told():
 def test_a_body_given_twice_is_refused():
     data = two(0, {"default": {"friction_angle": 30}}).model_dump(mode="json", exclude_none=True)
     data["model"]["blocks"].append(data["model"]["blocks"][1])
-    with pytest.raises(ModelError, match=r"\(group block\).* remove what is there twice"):
+    with pytest.raises(ModelError, match=r"\(group block\).* remove duplicates"):
         told(Case(**data))
 
 

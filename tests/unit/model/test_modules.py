@@ -73,5 +73,7 @@ def test_a_stage_does_not_make_other_faces_wet(first, then):
     built = cdem.Simulation(case(BLOCKS, {"a": {}, "b": {}}, **(gravity | first)), threads=1).build
     other = case(BLOCKS, {"a": {}, "b": {}}, **(gravity | then))
     built.case = other
-    with pytest.raises(CaseError, match=r"a stage cannot change which joints and faces may be wet"):
+    with pytest.raises(
+        CaseError, match=r"a stage cannot change the set of joints and faces that may be wet"
+    ):
         change(built)

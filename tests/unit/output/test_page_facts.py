@@ -31,7 +31,7 @@ def test_a_run_that_goes_on(folder):
     facts = page_facts(folder)
     assert (facts["title"], facts["tone"], facts["over"]) == ("A slope", "live", False)
     assert ["time simulated", "2.5 s", ""] in facts["tiles"]
-    assert ["energy balance: do not trust it unseen", "2 %", "doubt"] in facts["tiles"]
+    assert ["energy balance: check before use", "2 %", "doubt"] in facts["tiles"]
     assert facts["warnings"] == ["odd", "twice"]
 
 

@@ -288,7 +288,7 @@ def test_files_read_back(thrown, tmp_path):
     ("words", "message"),
     [
         ({"groups": ["rare"]}, "no group 'rare'; it has: cliff, rear, ahead"),
-        ({"groups": ["cliff"]}, "has not moved in plan, so give a direction"),
+        ({"groups": ["cliff"]}, "has not moved in plan; give a direction"),
         ({"direction": np.nan}, "the direction must be an azimuth in degrees"),
         ({"cell": -1.0}, "the cell of the map must be above 0 m, got -1"),
         ({"cell": 1e-4}, "choose a larger cell"),
@@ -346,7 +346,7 @@ def test_the_program_prints_a_table_and_writes_files(run_cli, thrown):
     [
         (["--groups", "rare"], 1, "no group 'rare'"),
         (["--direction", "up"], 2, "--direction needs a number, got 'up'"),
-        (["--section", "1,2,3"], 2, "--section needs 4 numbers with commas between, got '1,2,3'"),
+        (["--section", "1,2,3"], 2, "--section needs 4 numbers separated by commas, got '1,2,3'"),
     ],
 )
 def test_the_program_says_what_is_wrong(run_cli, thrown, words, status, message):

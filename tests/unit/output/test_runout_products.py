@@ -142,7 +142,7 @@ def test_classes_are_round_and_those_of_another_run_are_taken(slid, tmp_path):
     )
     labels = [item.get("label") for item in style.iter("item")]
     assert labels[-1] == "1.75 - 40 m/s"
-    with pytest.raises(CdemError, match="holds no classes of maps"):
+    with pytest.raises(CdemError, match="contains no classes of maps"):
         runout.measure(slid, classes=tmp_path / "none")
 
 
@@ -213,7 +213,7 @@ def test_an_outline_in_degrees_is_brought_to_the_case(slid, tmp_path):
     ("rings", "message"),
     [
         ([square(50, 50, 60, 60)], "has no cell in common with the run-out"),
-        ([], "holds no polygon or closed line"),
+        ([], "contains no polygon or closed line"),
     ],
 )
 def test_an_outline_that_cannot_be_compared_is_said(slid, tmp_path, rings, message):

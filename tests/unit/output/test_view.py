@@ -58,7 +58,7 @@ def test_the_page_is_sent_with_its_policy(server):
 @pytest.mark.parametrize("path", ["/", "/wrong/", "/wrong/state", "//", "/%C3%A9"])
 def test_without_the_token_nothing_is_told(server, path):
     status, _, body = ask(server, path)
-    assert (status, body) == (403, b"wrong address: take that which cdem view has printed\n")
+    assert (status, body) == (403, b"wrong address: use the address printed by cdem view\n")
 
 
 def test_a_name_that_another_site_has_bent_to_this_machine_is_refused(server):

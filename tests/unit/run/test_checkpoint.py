@@ -59,7 +59,7 @@ def test_what_is_no_checkpoint_is_said_so(tmp_path):
     for name in ("junk.h5", "old.h5"):
         with pytest.raises(DamagedError, match="is damaged"):
             read_checkpoint(tmp_path / name)
-    with pytest.raises(DamagedError, match="is not there"):
+    with pytest.raises(DamagedError, match="is missing"):
         read_checkpoint(tmp_path / "none.h5")
 
 

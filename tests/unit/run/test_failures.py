@@ -22,7 +22,11 @@ def run(tmp_path):
     [
         ("missed_contact", 3, ["found 3 contact(s)", "report this case"]),
         ("lost_contact", 0, ["a loaded contact of block 0 (group cube)", "contact_stiffness"]),
-        ("not_finite", np.nan, ["node 5 of block 0 (group cube) has no finite", "time.safety"]),
+        (
+            "not_finite",
+            np.nan,
+            ["node 5 of block 0 (group cube) no longer has a finite", "time.safety"],
+        ),
         ("too_fast", 9e3, ["node 5 of block 0 (group cube) moves at 9e+03 m/s", "time.safety"]),
     ],
 )

@@ -49,10 +49,10 @@ def test_what_flies_between_two_frames_is_seen(followed):
     late = row[first + 1 : first + 21] - (np.arange(20) + 0.1) / SPEED
     assert late.min() > -1e-6
     assert late.max() < 0.51 / SPEED
-    assert "followed during the run" in found.text()
+    assert "recorded during the run" in found.text()
     # from frames there are gaps
     gaps = runout.measure(followed, cell=2.0)
-    assert gaps.maps.from_frames == "the run followed cells of 1 m"
+    assert gaps.maps.from_frames == "the run recorded cells of 1 m"
     assert gaps.maps.flow.jump > 4
     assert gaps.maps.flow.affected.sum() < 10
     assert "maxima have gaps" in gaps.text()
@@ -122,9 +122,9 @@ def test_maps_of_other_groups_or_of_an_earlier_time_are_not_taken(followed, tmp_
     shutil.copytree(followed, copy)
     with h5py.File(copy / FILE, "r+") as file:
         file.attrs["time"] = 0.5
-    assert runout.measure(copy).maps.from_frames == "the run followed them up to t = 0.5 s"
+    assert runout.measure(copy).maps.from_frames == "the run recorded them up to t = 0.5 s"
     found = runout.measure(followed, groups=["cube", "plate"], direction=90)
-    assert found.maps.from_frames == "the run followed cube"
+    assert found.maps.from_frames == "the run recorded cube"
     assert json.loads((followed / "summary.json").read_text())["status"] == "finished"
     (copy / FILE).write_bytes(b"no map")
     with pytest.raises(CdemError, match=r"maxima\.h5: is damaged"):
@@ -135,7 +135,7 @@ def test_a_map_that_grows_too_large_ends_and_the_run_goes_on(tmp_path, monkeypat
     monkeypatch.setattr(flow_maps, "MOST_CELLS", 40)
     sim = cdem.Simulation(thrown({"cell": 0.5}), threads=1, output=tmp_path / "r")
     assert sim.run() == "finished"
-    assert "output.maps: followed no more: cells of 0.5 m make a map" in sim.flow.ended
+    assert "output.maps: recording stopped: cells of 0.5 m give a map" in sim.flow.ended
     assert sim.flow.ended in (tmp_path / "r" / "run.log").read_text()
     _, _, time = read_maxima(tmp_path / "r")
     assert time < 0.5
@@ -161,5 +161,5 @@ def test_what_makes_no_sense_is_said(maps, message):
 
 def test_a_case_in_which_nothing_moves_has_no_maps():
     blocks = [{"group": "plate", "box": {"size": [1, 1, 1]}}]
-    with pytest.raises(CdemError, match=r"output\.maps: there is no group to follow"):
+    with pytest.raises(CdemError, match=r"output\.maps: no group moves"):
         case(blocks, {"plate": {"fix": ["x", "y", "z"]}}, output={"maps": {"cell": 1}})

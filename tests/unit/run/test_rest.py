@@ -212,7 +212,7 @@ def test_until_belongs_to_dynamic_stages(run_cli, slide):
         "check", "slide.yaml", "--set", "stages=[{name: a, mode: static, until: rest}]"
     )
     assert status == 1
-    assert "until has no meaning in a static stage; remove it" in err
+    assert "until has no effect in a static stage; remove it" in err
 
 
 def test_info_of_a_run_that_failed(run_cli, slide):

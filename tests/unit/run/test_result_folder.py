@@ -17,7 +17,7 @@ def test_a_folder_of_other_things_is_never_overwritten(run_cli, cube_folder):
     (cube_folder / "mine/thesis.tex").touch()
     status, _, err = run_cli("run", "cube.yaml", "-o", "mine", "--overwrite")
     assert status == 1
-    assert "is not a result folder (.cdem-results is not there), so it is not overwritten" in err
+    assert "is not a result folder (.cdem-results is missing), so it is not overwritten" in err
     assert (cube_folder / "mine/thesis.tex").exists()
 
 
@@ -28,7 +28,7 @@ def test_a_checkpoint_of_another_mesh_is_refused(run_cli):
         "run", "cube.yaml", "--resume", "--set", "model.blocks.0.box.size=[1, 1, 1.5]"
     )
     assert status == 1
-    assert "belongs to another model, with other elements or groups, or whose nodes" in err
+    assert "belongs to another model, with other elements or groups, other initial" in err
 
 
 def test_a_checkpoint_of_other_elements_between_the_same_nodes_is_refused(run_cli, tmp_path):

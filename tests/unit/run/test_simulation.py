@@ -110,4 +110,4 @@ def test_a_case_that_is_changed_after_the_start_stops_the_run():
 
 def test_energy_that_is_off_by_more_than_a_percent_is_flagged():
     assert closing({"error": 0.0099}) == "0.99 %"
-    assert closing({"error": -0.02}) == "-2 %: above 1 %, look before you trust it"
+    assert closing({"error": -0.02}) == "-2 %: above 1 %, check the run before you trust it"

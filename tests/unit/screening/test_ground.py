@@ -35,7 +35,7 @@ def test_a_grid_as_it_is_or_with_other_cells(tmp_path):
     assert grid.values.shape == (7, 11) and (system, notes) == (None, [])
     fine, _, _ = read_ground(path, 4.0)
     assert fine.values.shape == (17, 27) and is_plane(fine) and fine.west == -3
-    with pytest.raises(CaseError, match=r"cells of 0\.001 m make a map of"):
+    with pytest.raises(CaseError, match=r"cells of 0\.001 m give a map of"):
         read_ground(path, 0.001)
 
 

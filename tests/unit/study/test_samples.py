@@ -68,7 +68,7 @@ def test_damaged_samples_are_one_line(study, tmp_path, spoil):
 def test_a_sweep_whose_hypercube_is_not_known_is_refused(study, tmp_path, before, refused):
     (tmp_path / "study.json").write_text(json.dumps(before))
     if refused:
-        with pytest.raises(CdemError, match="did not keep them") as error:
+        with pytest.raises(CdemError, match="without storing them") as error:
             samples(study(DRAWN), tmp_path)
         assert "\n" not in str(error.value) and "-o" in str(error.value)
     else:

@@ -60,6 +60,6 @@ def test_folders_and_addresses_that_are_wrong(run_cli, folder):
     (folder / "mine").mkdir()
     (folder / "mine/thesis.tex").touch()
     status, _, err = run_cli("sweep", "study.yaml", "-o", "mine")
-    assert (status, err.count("\n")) == (1, 1) and "holds other things than a sweep" in err
+    assert (status, err.count("\n")) == (1, 1) and "contains other files than a sweep" in err
     status, _, err = run_cli("sweep", "study.yaml", "--scheduler", "nowhere")
     assert (status, err.count("\n")) == (1, 1) and "no Dask scheduler answers at nowhere" in err

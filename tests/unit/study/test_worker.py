@@ -59,5 +59,5 @@ def test_water_tables_of_files_go_along(study, tmp_path, monkeypatch):
     (tmp_path / "high.asc").write_text(RASTER.format(4))
     assert first.identity != runs()[0].identity
     (tmp_path / "high.asc").unlink()
-    with pytest.raises(BackendError, match=r"a worker does not see .*high\.asc"):
+    with pytest.raises(BackendError, match=r"a worker cannot read .*high\.asc"):
         execute(first.task | {"folder": str(tmp_path / "other")})

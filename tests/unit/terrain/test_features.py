@@ -46,7 +46,7 @@ def test_an_outline_comes_back_from_every_format(tmp_path, name, crs, line):
     corners, notes = outline(path)
     # DXF keeps 15 digits; KML and GeoJSON have degrees
     assert same_ring(corners) < 1e-3
-    brought = any("brought from" in note or "RFC 7946" in note for note in notes)
+    brought = any("transformed from" in note or "RFC 7946" in note for note in notes)
     assert brought == (crs != UTM32)
 
 
@@ -54,7 +54,7 @@ def test_a_file_without_projection_is_taken_as_the_rest_and_told(tmp_path):
     path = write_shape(tmp_path / "o.shp", label=False)
     corners, notes = outline(path)
     assert same_ring(corners) < 1e-6
-    assert notes == ["o.shp: says no projection, taken to be in EPSG:32632"]
+    assert notes == ["o.shp: names no projection; EPSG:32632 is assumed"]
 
 
 def test_layers_and_features_are_chosen(tmp_path):
@@ -87,5 +87,5 @@ def test_files_that_are_no_shapes_are_refused(tmp_path):
     with pytest.raises(CaseError, match=r"o\.gpkg: cannot be read \(.*; lines and polygons"):
         read_features(tmp_path / "o.gpkg")
     (tmp_path / "o.shp").write_text("<OGRVRTDataSource></OGRVRTDataSource>")
-    with pytest.raises(CaseError, match=r"does not begin as a file that ends in \.shp does"):
+    with pytest.raises(CaseError, match=r"its first bytes do not match its ending \.shp"):
         read_features(tmp_path / "o.shp")

@@ -28,7 +28,7 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
         ),
         (
             {"surface": {"plane": {"dip": 30, "dip_direction": 90, "through": [0, 0, 110]}}},
-            r"bodies\.0\.outline: holds no rock: the sliding surface lies above the ground",
+            r"bodies\.0\.outline: contains no rock: the sliding surface lies above the ground",
         ),
         (
             {"surface": {"plane": {"dip": 345, "dip_direction": 21, "through": [0, 0, 90]}}},
@@ -40,7 +40,7 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
         ),
         (
             {"extent": {"x": [0, 100], "y": [0, 100], "base": 45}},
-            r"extent\.base: must lie an element below the ground",
+            r"extent\.base: must lie at least an element below the ground",
         ),
         ({"extent": {"x": [100, 0], "y": [0, 100], "base": 0}}, r"extent: x must rise"),
         ({"sizes": {"body": 10, "far": 300}}, r"sizes\.far: is larger than the extent"),
@@ -59,7 +59,7 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
         ),
         (
             {"bodies": [{"group": "bedrock", "outline": SQUARE}]},
-            r"bodies\.0\.group: the name 'bedrock' is taken",
+            r"bodies\.0\.group: the name 'bedrock' is used twice",
         ),
         ({"body": []}, r"body: unknown key; did you mean bodies"),
     ],

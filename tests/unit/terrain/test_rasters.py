@@ -66,5 +66,5 @@ def test_bad_grids_are_refused(tmp_path: Path):
     with pytest.raises(CaseError, match=r"g\.asc: cannot be read .*; a grid is one of .asc"):
         read_grid(path)
     path.write_text("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3\n")
-    with pytest.raises(CaseError, match="holds 3 heights, but its head says 2 x 2"):
+    with pytest.raises(CaseError, match="contains 3 heights, but its head says 2 x 2"):
         read_grid(path)

@@ -34,7 +34,7 @@ def test_a_dem_is_resampled_once_and_exactly(tmp_path, crs):
     # lines at multiples of the cell
     assert (np.array([grid.west, grid.south]) - 5) % 10 == pytest.approx(0)
     assert notes == [
-        f"dem.tif: brought from {crs} to EPSG:32632",
+        f"dem.tif: transformed from {crs} to EPSG:32632",
         "dem.tif: resampled once, cubic, to cells of 10 m",
     ]
     native, _ = heights(tmp_path / "dem.tif")
@@ -66,11 +66,11 @@ def test_other_formats_are_read_alike(tmp_path, kind):
 
 def test_a_label_that_lies_is_refused_and_replaced(tmp_path):
     path = write_raster(tmp_path / "dem.tif", label="EPSG:4326")
-    with pytest.raises(CaseError, match=r"says EPSG:4326 \(degrees\), but its edges are \(590980"):
+    with pytest.raises(CaseError, match=r"names EPSG:4326 \(degrees\), but its edges are \(590980"):
         heights(path)
     grid, notes = heights(path, told=UTM32)
     assert worst(grid) < 0.02
-    assert notes == ["dem.tif: says EPSG:4326, taken as EPSG:32632 as told"]
+    assert notes == ["dem.tif: names EPSG:4326, but EPSG:32632 is used as given"]
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("ft", 0.3048), ("us-ft", 1200 / 3937), ("cm", 0.01)])
@@ -82,7 +82,7 @@ def test_heights_of_other_units_become_metres(tmp_path, unit, factor):
         file.units = ({"ft": "foot", "us-ft": "US survey foot", "cm": "cm"}[unit],)
     grid, notes = heights(path)
     assert worst(grid) < 0.02
-    assert notes == [f"dem.tif: its heights are taken times {factor:.10g}"]
+    assert notes == [f"dem.tif: its heights are multiplied by {factor:.10g}"]
     with rasterio.open(path, "r+") as file:
         file.units = ("cubits",)
     with pytest.raises(CaseError, match=r"in 'cubits'; write 'unit' beside it, one of m, ft"):
@@ -110,9 +110,9 @@ def test_heights_of_a_projection_in_feet_are_asked_for(tmp_path):
         tmp_path, FEET, None, np.array([low, low + 1500, low + [1500, 0], low + [0, 1500]])
     )
     box = ring.min(axis=0), ring.max(axis=0)
-    with pytest.raises(CaseError, match=r"plan\.tif: its projection is in US survey foot, and it"):
+    with pytest.raises(CaseError, match=r"plan\.tif: its projection is in US survey foot, but it"):
         heights(tmp_path / "plan.tif", "EPSG:32613", box)
-    with pytest.raises(CaseError, match="does not say in what its heights are; write 'unit'"):
+    with pytest.raises(CaseError, match="does not name the unit of its heights; write 'unit'"):
         heights(tmp_path / "plan.tif", "EPSG:32613", box, told=FEET)
     for name, unit in (("plan", "us-ft"), ("feet", None), ("metres", None)):
         grid, _ = heights(tmp_path / f"{name}.tif", "EPSG:32613", box, unit=unit)
@@ -125,7 +125,7 @@ def test_heights_above_sea_and_ellipsoid_are_not_mixed(tmp_path):
     high = write_raster(tmp_path / "bed.tif", label="EPSG:4979", crs="EPSG:4326")
     projection = Projection(look_up(UTM32))
     read_heights(low, projection, Wanted(BOX))
-    with pytest.raises(CaseError, match=r"bed\.tif: its heights are of 'ellipsoid of WGS 84'"):
+    with pytest.raises(CaseError, match=r"bed\.tif: its heights refer to 'ellipsoid of WGS 84'"):
         read_heights(high, projection, Wanted(BOX))
 
 
@@ -154,9 +154,11 @@ def test_gaps_are_filled_counted_and_refused_in_an_outline(tmp_path):
 def test_files_of_nowhere_and_of_another_place(tmp_path):
     path = write_raster(tmp_path / "dem.tif")
     away = BOX[0] + 5000, BOX[1] + 5000
-    with pytest.raises(CaseError, match=r"and does not cover what is needed, \(596000"):
+    with pytest.raises(CaseError, match=r"and does not cover the required area, \(596000"):
         heights(path, box=away)
-    with pytest.raises(CaseError, match=r"'WGS 84' is no map projection.*write the projection of"):
+    with pytest.raises(
+        CaseError, match=r"'WGS 84' is not a map projection.*write the projection of"
+    ):
         heights(write_raster(tmp_path / "deg.tif", "EPSG:4326"), target=None)
 
 

@@ -75,7 +75,7 @@ def test_a_plane_through_crown_and_toe():
     assert "doubtful" in fit_plane(line, "crown.gpkg")[1][0]
     with pytest.raises(CaseError, match="lie on one line"):
         fit_plane(np.column_stack([t, t, t]), "crown.gpkg")
-    with pytest.raises(CaseError, match="stands upright"):
+    with pytest.raises(CaseError, match="is vertical"):
         fit_plane(np.column_stack([t, t * 0, t**2]), "crown.gpkg")
 
 
@@ -102,7 +102,7 @@ def test_points_of_other_tools_are_read(tmp_path):
         ("x,y,z,dip,azi\n0,0,1,120,30\n", {}, r"dips must lie in \[0, 90\) deg, got 120 to 120"),
         ("x,y,z\n0,0,1\n", {"depth": "z"}, "columns are x, y, z, dip, dip_direction, not 'depth'"),
         ("x,y,z\n0,0,1\n", {"z": "h"}, "has no column 'h'; it has: x, y, z"),
-        ("", {}, "holds no points"),
+        ("", {}, "contains no points"),
     ],
 )
 def test_bad_points_are_refused(tmp_path, text, columns, message):

@@ -20,7 +20,7 @@ def test_doctor_says_who_chose_the_core(monkeypatch):
     monkeypatch.setenv("CDEM_ISA", doctor._core()[0].split()[0])
     core, usable = doctor._core()
     assert usable
-    assert " is used, as CDEM_ISA says; built for " in core
+    assert " is used, chosen by CDEM_ISA; built for " in core
 
 
 def test_doctor_says_how_to_get_a_core_for_a_gpu(monkeypatch):

@@ -41,7 +41,7 @@ struct Weakening {
                 .is_strength = true,
                 .bonds = true}};
   static constexpr std::array state{
-      StateVariable{.name = "joint_slip", .unit = "m", .meaning = "How far the joint has slipped"}};
+      StateVariable{.name = "joint_slip", .unit = "m", .meaning = "Slip of the joint"}};
 
   T tan_peak, tan_residual, distance, cohesion;
 

@@ -13,7 +13,7 @@ GRAVITY = 9.81
 def theory(north, west):
     """Critical friction angle [deg] of a rigid body on a bed that dips `north` and `west` [deg].
 
-    It slides north along a vertical wall on its west side, whose tan(phi) is half that of the bed:
+    It slides north along a vertical wall on its west side, whose tan(phi) is half the bed's:
 
         N_bed = W cos^2(a) sqrt(1 + tan^2 a + tan^2 b),  N_wall = W cos^2(a) tan b,  T = W sin a.
     """

@@ -34,7 +34,7 @@ def tractions(simulation):
 
 
 def near(moved, peak):
-    """Where every step is looked at."""
+    """Displacements at which every step is evaluated."""
     return abs(moved / peak - 1) < 0.003
 
 

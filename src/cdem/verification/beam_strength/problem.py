@@ -8,7 +8,7 @@ SIDE, COUPLE = 1.0, 1e4  # [m]; moment at the end of the history [N m]
 
 
 def theory(points, divisions):
-    """Bending stiffness and strength over those of the section, b^4 / 12 and T b^3 / 6.
+    """Bending stiffness and strength relative to the section's values, b^4 / 12 and T b^3 / 6.
 
     Bonds at the vertices are a trapezoidal rule: both are 1 + 2 / n^2 for n faces. Bonds at the
     Gauss points integrate bending exactly, and the outermost sits (1 - 1 / sqrt 3) b / 2n inside.

@@ -28,7 +28,7 @@ def bolt(angle, length=3.4):
 
 
 def factor(study, *settings, far=2e-4):
-    """Factor of safety by strength reduction; what moves farther than `far` of 1.5 m has failed."""
+    """Factor of safety by strength reduction; displacement above `far` of 1.5 m is failure."""
     return find_critical(study.case(*settings), strength_reduction(), (0.5, 2.5), tolerance=1e-3,
                          threads=study.threads, criterion=Criterion(far=far)).value  # fmt: skip
 

@@ -96,8 +96,8 @@ def halves(study, count):
 def press(simulation, down_to=0.9):
     """Time [s], load [N], tension at the centre [Pa]; how far from it bonds broke first, over R.
 
-    Load and tension (that of a whole disc) follow from the forces on the lower jaw, which is at
-    rest. Until the load has come down to a part of its peak.
+    Load and tension (of a whole disc) follow from the forces on the lower jaw, which is at
+    rest. Ends when the load has fallen to a fraction of its peak.
     """
     start = simulation.build.start_position
     jaw = np.flatnonzero(start[:, 2] < -RADIUS * np.cos(HALF) + 1e-5)
@@ -146,7 +146,7 @@ def elastic(study):
 def split(study, name, simulation, within, *, even=True):
     """Check one disc that splits; only an even mesh must begin to do so inside.
 
-    Returns its load over time, and its strength over that of its bonds.
+    Returns its load over time, and its strength relative to its bonds.
     """
     strength = simulation.case.interfaces.default.tensile_strength
     time, load, tension, place = press(simulation)
@@ -164,7 +164,7 @@ def split(study, name, simulation, within, *, even=True):
 
 
 def run(study):
-    """The whole disc, one of two halves, and discs of which every element is a block."""
+    """The whole disc, one of two halves, and discs with every element a block."""
     elastic(study)
     for count, within in [(8, 0.03), (16, 0.02)][: 2 if study.full else 1]:
         split(study, f"two halves, {count} rings", halves(study, count), within)

@@ -13,7 +13,7 @@ def theory(young):
 
 
 def joints(k_n, k_s, points):
-    """What joints across the beam, one at each of its cubes of 1 m, add to the deflection [m].
+    """Deflection from joints across the beam, one at each of its cubes of 1 m [m].
 
     Each turns by P (L - x) / (k_n I), which moves the end by (L - x) times as much, and slips by
     P / (k_s A). I is h^4 / 12 for bonds at Gauss points, and three times as much for four in the
@@ -75,4 +75,4 @@ def bonded(study, young):
             softness, [joints(young / s, young / s, points) for s in softness])  # fmt: skip
         lines[f".cdem, bonds at {points}"] = softness, added
     if study.full:
-        study.curve("What the joints add", "E / (k h) [1]", "deflection [m]", lines, log=True)
+        study.curve("Deflection from joints", "E / (k h) [1]", "deflection [m]", lines, log=True)

@@ -8,7 +8,7 @@ MESHES = {"1:1": (1, 1), "1:2": (1, 2), "2:3": (2, 3)}  # faces along each side,
 
 
 def theory(cohesion, slope=0.0, friction_angle=0.0):
-    """Traction at failure [Pa]; `slope` is height over side where it pushes the top alone, else 0.
+    """Traction at failure [Pa]; `slope` is height over side for a push on the top alone, else 0.
 
     The moment P h of a push on the top pulls the rear row of bonds (half the area, b from the front
     row) by 2 P h / b: c = P + 2 (P h / b) tan(phi), Mohr-Coulomb in tension.

@@ -20,7 +20,7 @@ def theory(bridge, on_bridge, on_joint, rock, crack):
 def drive(simulation, start, fine, end):
     """Rows of time, force on the slab's base along x and z, and forces of contacts, until all breaks.
 
-    Forces of contacts are those of one side on the other: sums of friction and of pressure. The last
+    Forces of contacts act from one side on the other: sums of friction and of pressure. The last
     row is the last with all bonds whole.
     """
     base = np.flatnonzero(simulation.build.start_position[:, 2] < 1e-9)

@@ -5,7 +5,7 @@ import numpy as np
 from cdem.output.render import snapshot
 
 HEIGHT, THICKNESS, WIDTH = 0.05, 0.01, 0.025  # [m]
-COUNT, SETTLED = 18, 12  # dominoes, of which the wave is measured from the one on
+COUNT, SETTLED = 18, 12  # dominoes, and the first one for measuring the wave
 SPIN = 13.0  # of the first domino at the start [rad/s]
 
 
@@ -46,7 +46,7 @@ def theory(spacing, gravity=9.81, parts=400):
 
 
 def settings(spacing, *, hinged):
-    """The row as values of the case; hinges hold the front lower edges."""
+    """The row as values of the case; hinges fix the front lower edges."""
     starts = [n * (spacing + THICKNESS) for n in range(COUNT)]
     length = starts[-1] + 0.2
     rows = [

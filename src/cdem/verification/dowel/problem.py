@@ -1,4 +1,4 @@
-"""Dowel: what a bolt across a joint adds to its friction."""
+"""Dowel: resistance that a bolt adds to a joint's friction."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The cone of Drucker and Prager where it meets that of Mohr and Coulomb."""
+"""The cone of Drucker and Prager at its contact with the cone of Mohr and Coulomb."""
 
 import numpy as np
 

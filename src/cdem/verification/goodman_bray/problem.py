@@ -22,7 +22,8 @@ def heights():
 def theory(low=0.5, high=1.2):
     """Friction angle [deg] at which the toe needs no support (Goodman & Bray 1976).
 
-    From the top down, column n must be held from below by the larger of what stops it from toppling
+    From the top down, column n must be held from below by the larger of the forces that stop it
+    from toppling
     about its lower edge and from sliding on its base, when the column above pushes with P at the
     height M and rubs with P tan(phi); it is held at the height L.
     """

@@ -20,7 +20,7 @@ def theory(rock, side):
 
 
 def tensile_strength(rock):
-    """What is borne without pressure on the sides [Pa]: s1 = 0 at s3 = -t, by bisection."""
+    """Strength without lateral pressure [Pa]: s1 = 0 at s3 = -t, by bisection."""
     m, s, a = constants(rock)
     low, high = 0.0, s / m
     for _ in range(200):

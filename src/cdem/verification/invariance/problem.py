@@ -33,7 +33,7 @@ class Scene:
         frame: For another frame or hand.
         noise: For nodes that are moved by `NOISE`.
         step: For half the time step.
-        bonds: Whether there are bonds, of which as many must break.
+        bonds: Whether there are bonds; the same number must break.
         quick: Whether it belongs to the quick part.
     """
 
@@ -210,7 +210,7 @@ def in_order(built):
 
 @dataclass
 class Answer:
-    """What a run gave.
+    """Results of a run.
 
     Attributes:
         way: Of each node [m], shape (nodes, 3), in the frame of the scene.

@@ -89,7 +89,7 @@ def compare(study, ratio, *settings, name=""):
     """Check R, T and A for one amplitude; returns what `cross` does."""
     lag, ours, seen = cross(study, ratio, *settings)
     exact = theory(ratio, lag)
-    # below the strength nothing is absorbed, and A is the root of what is left of 1 - R^2 - T^2
+    # below the strength nothing is absorbed, and A is the root of the remainder of 1 - R^2 - T^2
     for letter, e, o in list(zip("RTA", exact, ours, strict=True))[: 3 if ratio > 1 else 2]:
         study.check(f"{letter}, amplitude {ratio:g} of the strength{name}", theory=e, ours=o,
                     within=2e-3, absolute=True)  # fmt: skip

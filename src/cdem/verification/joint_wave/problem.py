@@ -32,7 +32,7 @@ def run(study):
         rock, law = joint.case.materials["rock"], joint.case.interfaces.default
         modulus = rock.young_modulus * (1 if kind == "P" else 0.5)  # nu = 0
         c = np.sqrt(modulus / rock.density)
-        until = 245 / c  # before what the far end reflects comes back
+        until = 245 / c  # before the reflection from the far end arrives
         ours, seen = spectrum(joint, axis, frequencies, until)
         whole = ["model.blocks.0.box={size: [200, 0.5, 0.5], divisions: [400, 1, 1]}",
                  "model.blocks.1.translate=[0, 10, 0]"]  # fmt: skip

@@ -13,7 +13,7 @@ AHEAD = 1.5  # way from the slab to the kink [m]
 
 
 def bed(angle):
-    """Corners of two hexahedra that meet at x = 0: a plane that comes down by `angle`, and a floor."""
+    """Corners of two hexahedra that meet at x = 0: a plane that descends by `angle`, and a floor."""
     slope = np.radians(angle)
     top = np.array([(-5 * np.cos(slope), 5 * np.sin(slope)), (0, 0), (8, 0)])
     normals = np.array([(np.sin(slope), np.cos(slope)), (0, 1)])

@@ -1,4 +1,4 @@
-"""A hole that is dug out of rock under equal pressure, and lined before it is let go (Lamé)."""
+"""A hole excavated in rock under equal pressure, and lined before the release (Lamé)."""
 
 import tempfile
 from pathlib import Path
@@ -15,16 +15,16 @@ ROWS = 8  # cells along the hole for one row of cells across the lining
 
 
 def theory(case, inside, outside):
-    """Inward way of the wall when nothing holds it, and of both once the lining bears [m]; Lamé (1852).
+    """Inward displacement of the unlined wall, and of both with the lining [m]; Lamé (1852).
 
-    Rock that is let go by a part of its pressure gives way by C times that; the lining that bears p by
-    D p, the bond between them by p / k_n. What is let go later, (1 - s) P, is shared by both:
+    Rock moves by C times the released pressure; a lining under pressure p moves by
+    D p, the bond between them by p / k_n. The later release, (1 - s) P, is shared by both:
     p (C + D + 1 / k_n) = C (1 - s) P.
 
     Args:
         case: The case.
         inside: Inner radius of the lining [m].
-        outside: Outer radius of the rock [m]; that of the hole is 1 m.
+        outside: Outer radius of the rock [m]; the radius of the hole is 1 m.
     """
     rock, concrete = case.materials["rock"], case.materials["concrete"]
     nu, e = rock.poisson_ratio, rock.young_modulus
@@ -55,7 +55,7 @@ def mesh(cells):
 
 
 def run(study):
-    """Lined when 40 % are let go; finer when full."""
+    """Lined after a release of 40 %; a finer mesh if full."""
     for cells in (8, 16) if study.full else (8,):
         plate, inside, kirsch = mesh(cells)
         with tempfile.TemporaryDirectory() as folder:

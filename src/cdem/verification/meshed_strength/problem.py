@@ -1,4 +1,4 @@
-"""Columns and discs of irregular tets: the strength that cdem check tells, and that of the bonds."""
+"""Columns and discs of irregular tets: strength reported by cdem check, and strength of bonds."""
 
 import tempfile
 from pathlib import Path
@@ -57,7 +57,7 @@ def areas(points, triangles):
 
 
 def outward(x, cells):
-    """The same tets, none inside out."""
+    """The same tets, all correctly oriented."""
     a, b, c, d = (x[cells[:, k]] for k in range(4))
     turned = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) < 0
     cells[turned] = cells[turned][:, [0, 2, 1, 3]]
@@ -65,7 +65,7 @@ def outward(x, cells):
 
 
 def column(kind, across):
-    """1 m x 1 m x 2 m, so many elements across."""
+    """1 m x 1 m x 2 m, with this number of elements across."""
     if kind == "netgen":
         shape = extra("netgen.csg")
         return by_netgen(
@@ -84,7 +84,7 @@ def column(kind, across):
 
 
 def disc(kind, count):
-    """1 m across, so many elements in its radius."""
+    """1 m across, with this number of elements in its radius."""
     if kind == "netgen":
         s = extra("netgen.csg")
         body = s.Cylinder(s.Pnt(0, -1, 0), s.Pnt(0, 1, 0), RADIUS)
@@ -151,7 +151,7 @@ def brazilian(study, mesh, *settings):
 
 
 def peak(simulation, load):
-    """The greatest value of a load, until bonds have broken and it has come down to 0.9 of it."""
+    """The peak of a load; ends when bonds have broken and it has fallen to 0.9 of the peak."""
     most, now = 0.0, 0.0
     while simulation.time < simulation.case.stages[0].duration:
         simulation.step(10)
@@ -163,7 +163,7 @@ def peak(simulation, load):
 
 
 def told(study, mesh):
-    """What cdem check says of the strength of a mesh."""
+    """Strength of a mesh as reported by cdem check."""
     alone = simulate(study, mesh, "loads={gravity: [0, 0, 0]}")
     return alone.audit.meshed_strength["default"]
 
@@ -177,7 +177,7 @@ def softening(energies):
 
 
 def run(study):
-    """Brittle bonds have the strength that is told; with the energies that are told, their own."""
+    """Brittle bonds have the reported strength; with the reported energies, their own."""
     for kind in KINDS if study.full else KINDS[1:2]:
         for across in (4, 6) if study.full else (4,):
             columns(study, f"{kind}, {across} across", column(kind, across))
@@ -186,7 +186,7 @@ def run(study):
 
 
 def columns(study, name, mesh):
-    """Pull and press one mesh: brittle, softening and, as it is told to, with stronger bonds."""
+    """Pull and press one mesh: brittle, softening and, as recommended, with stronger bonds."""
     law, of = study.case().interfaces.default, told(study, mesh)
     parts = {what: of["strength_along_xyz"][what][2] for what in WAYS}
     soft = softening(of["fracture_energies"])

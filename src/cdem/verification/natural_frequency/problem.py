@@ -67,7 +67,7 @@ def shape(kind, x):
 
 
 def frequency(simulation, kind):
-    """From the zero crossings of what moves as the mode does, over `PERIODS` [Hz]."""
+    """Frequency from the zero crossings of the modal motion, over `PERIODS` [Hz]."""
     motion = shape(kind, simulation.build.start_position)
     rows_of(simulation.core, "node.motion").velocity[:] = SPEED * motion
     weight = simulation.fields["mass"][:, None] * motion

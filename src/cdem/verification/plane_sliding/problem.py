@@ -12,7 +12,7 @@ DIP = 35.0  # of the plane [deg]
 def theory(case, dip):
     """Factor of safety of a slice on a plane (Hoek & Bray 1981, plane failure), its two shares.
 
-    F = (c A + W cos(dip) tan(phi)) / (W sin(dip)): the first share is that of cohesion.
+    F = (c A + W cos(dip) tan(phi)) / (W sin(dip)): the first term is from cohesion.
     """
     law, turn = case.interfaces.pairs[0], np.radians(dip)
     weight = -case.loads.gravity[2] * case.materials["rock"].density * LENGTH * WIDTH * HEIGHT
@@ -60,7 +60,7 @@ def stiffen(study, exact):
             study.check(f"factor of safety, bonds of {stiffness:g} GPa/m", theory=exact, ours=ours,
                         within=3e-3 * stiffness)  # fmt: skip
     stiffness, short = np.transpose(rows)
-    study.curve("What the factor of safety falls short by", "stiffness of the bonds [GPa/m]",
+    study.curve("Error of the factor of safety", "stiffness of the bonds [GPa/m]",
                 "relative error [1]", {".cdem": (stiffness, short),
                 "first order": (stiffness, short[0] * stiffness / stiffness[0])}, log=True)  # fmt: skip
 

@@ -31,7 +31,7 @@ def theory(friction):
 
 
 def size_of_soil(friction):
-    """Width from the middle and depth [m] that hold Prandtl's mechanism and 15 % more."""
+    """Width from the middle and depth [m] of Prandtl's mechanism plus 15 %."""
     phi = np.radians(friction)
     angle = np.linspace(0, np.pi / 2, 100)
     spiral = np.exp(angle * np.tan(phi)) / np.cos(np.pi / 4 + phi / 2)
@@ -119,5 +119,5 @@ def run(study):
             lines[f"{name}, {friction} deg"] = (path[:, 0], path[:, 1] / exact)
             if tetrahedra == "nodal-mean":
                 shown = simulation
-    study.curve("Load over Prandtl's", "time over that of the test [1]", "load [1]", lines)
+    study.curve("Load over Prandtl's", "time over duration of the test [1]", "load [1]", lines)
     study.picture("The mechanism", snapshot(shown), field="plastic_shear")

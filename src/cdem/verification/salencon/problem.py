@@ -71,7 +71,7 @@ def load(study, cells, pressures, *settings):
 
 
 def rim_of(simulation, r):
-    """Where plastic shear fades, by a line in 1 / r^2 through the outermost rows that flow."""
+    """Radius where plastic shear ends, by a line in 1 / r^2 through the outermost plastic rows."""
     shear = state_of(simulation, "plastic_shear")
     radii = np.unique(r.round(6))
     means = np.array([shear[np.abs(r - one) < 1e-5].mean() for one in radii])

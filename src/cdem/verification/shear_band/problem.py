@@ -17,11 +17,11 @@ WAYS = {
         ),
     ),
 }
-"""What flows, and the settings of the drive."""
+"""The yielding strength, and the settings of the drive."""
 
 
 def theory(rock, way):
-    """Work per area [J/m2] until the strength is what stays.
+    """Work per area [J/m2] until the strength is residual.
 
     Of simple shear by an angle g the plastic shear strain is g / sqrt(3).
     """

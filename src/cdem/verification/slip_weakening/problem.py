@@ -11,7 +11,7 @@ SPEED = 0.002
 def theory(law, pressure, stiffness):
     """Fracture energy [J/m2], critical stiffness [Pa/m], and slip over loading rate or infinity.
 
-    The traction falls by sigma (mu_p - mu_r) / Dc per slip; what loads the joint unloads by its
+    The traction falls by sigma (mu_p - mu_r) / Dc per slip; the loading system unloads by its
     stiffness. If that is larger the slip follows at K / (K - K_c) times the speed of loading; else
     it runs away.
     """
@@ -61,12 +61,12 @@ def run(study):
                         ours=stiffness / critical)  # fmt: skip
             study.check("stable: fracture energy", theory=energy, within=1e-4, unit="J/m2",
                         ours=simulation.energies["friction"] - left * 1e6 * slipped)  # fmt: skip
-            study.check("stable: slip rate over that of loading", theory=rate, within=0.02,
+            study.check("stable: slip rate over loading rate", theory=rate, within=0.02,
                         ours=np.polyfit(time[inside], slip[inside], 1)[0] / SPEED)  # fmt: skip
             study.check("stable: error of the energy ledger", theory=0, within=1e-4,
                         ours=simulation.energies["error"], absolute=True)  # fmt: skip
         else:
-            study.check("unstable: it slips ten times as fast as it is loaded", theory=1, within=0,
+            study.check("unstable: slip rate above ten times the loading rate", theory=1, within=0,
                         ours=float(rate_most > 10), absolute=True)  # fmt: skip
     line = np.linspace(0, 0.0105)
     study.curve("Traction against slip", "slip [m]", "traction [Pa]", curves | {

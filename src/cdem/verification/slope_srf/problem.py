@@ -16,7 +16,7 @@ SLOPES = {
     "Dawson": {"angle": 45.0, "crest": 15.0, "cohesion": 12.38e3, "dilation": 20.0,
                "allowed": (0.98, 1.05)},
 }  # fmt: skip
-"""Angle [deg], crest [m], cohesion [Pa], dilation angle [deg] and what factors of safety are allowed:
+"""Angle [deg], crest [m], cohesion [Pa], dilation angle [deg] and allowed factors of safety:
 
 Griffiths & Lane (1999), example 1, 2:1, c / (gamma H) = 0.05: 1.4 by finite elements, 1.38 by
 Bishop & Morgenstern. Dawson, Roth & Drescher (1999): the cohesion at which limit analysis gives 1.
@@ -24,7 +24,7 @@ Bishop & Morgenstern. Dawson, Roth & Drescher (1999): the cohesion at which limi
 
 
 def theory(slope):
-    """Factor of safety: the middle of what is allowed, and half of its width."""
+    """Factor of safety: the middle of the allowed range, and half of its width."""
     low, high = SLOPES[slope]["allowed"]
     return (low + high) / 2, (high - low) / 2
 

@@ -13,8 +13,8 @@ def theory(law, slip, moved, released):
     """Shear force in the end [N], fracture and friction [J] of a joint sheared under pressure.
 
     Friction falls in a straight line from its peak to its residual value over the slip distance; the
-    part c - c_r of the cohesion is lost over 2 G2 / (c - c_r). What is left of it acts on the area
-    of the joint, 1 m by 1 m less what the block has moved [m] once the pair is released.
+    part c - c_r of the cohesion is lost over 2 G2 / (c - c_r). Its remainder acts on the area
+    of the joint, 1 m by 1 m less the displacement of the block [m] once the pair is released.
     """
     peak, left = np.tan(np.radians([law.friction_angle, law.residual_friction_angle]))
     end = law.residual_cohesion * (1 - moved) + PRESSURE * left
@@ -30,14 +30,14 @@ def lead(simulation, end):
     rows = []
     while simulation.time < end - 1e-9 and sum(simulation.broken.values()) == 0:
         moved = simulation.fields["displacement"][block].mean(axis=0)
-        simulation.step(1)  # its forces are those of the place where it began
+        simulation.step(1)  # its forces belong to its initial position
         force = -rows_of(simulation.core, "node.reaction").force[bed].sum(axis=0)
         rows.append((moved[0], moved[2], force[0], force[2]))
     return np.array(rows).T
 
 
 def run(study):
-    """Straight ways of all directions; shear under pressure to what is left."""
+    """Straight paths in all directions; shear under pressure down to the residual strength."""
     energies = {}
     for angle in ANGLES:
         x, z = 0.004 * np.sin(np.radians(angle)), 0.004 * np.cos(np.radians(angle))

@@ -90,4 +90,4 @@ def run(study):
         lines[update], volumes[update] = (time, np.degrees(angle)), (time, 100 * (size - 1))
     study.curve("Angle of the square", "time [s]", "angle [deg]", lines)
     del volumes["paper-total"]  # a thousandfold
-    study.curve("What incremental updates do to the volume", "time [s]", "change [%]", volumes)
+    study.curve("Volume change by incremental updates", "time [s]", "change [%]", volumes)

@@ -8,7 +8,7 @@ PULLS = {"x": 0.0215, "x and y": 0.0415, "x, y and z": 0.062}  # time when each 
 
 
 def theory(rock, axes):
-    """Principal stresses [Pa] after pulls along so many axes: the others stay elastic."""
+    """Principal stresses [Pa] after tension along this number of axes: the others stay elastic."""
     nu, strength = rock.poisson_ratio, rock.tensile_strength
     held = {1: nu / (1 - nu), 2: 2 * nu, 3: 1.0}[axes] * strength
     return [strength] * axes + [held] * (3 - axes)

@@ -7,7 +7,7 @@ from cdem.run.simulation import Simulation
 from cdem.study.critical import find_critical
 from cdem.verification.masonry import block, course, tilt, tilt_limit
 
-CELL, DEPTH = 0.1, 0.1  # height of a course, of which the stones are one or two long; depth [m]
+CELL, DEPTH = 0.1, 0.1  # height of a course (stones have one or two times this length); depth [m]
 QUICK = False
 FRICTION = 26.0  # [deg]
 TEST = (19.5, 21.8)  # failure angles of the experiment [deg]
@@ -16,7 +16,7 @@ TEST = (19.5, 21.8)  # failure angles of the experiment [deg]
 def theory(boxes):
     """Tilt [deg] at which rigid blocks fail: the linear programme of `tilt_limit`.
 
-    Head joints bear no friction: the part that turns away opens them. With 26 degrees in them as
+    Head joints carry no friction: the rotating part opens them. With 26 degrees in them as
     well the programme gives an upper bound. By hand, without slip anywhere: `turning_limit`.
     """
     return tilt_limit(boxes, FRICTION, 0.0)

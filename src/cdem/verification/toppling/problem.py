@@ -31,7 +31,7 @@ def act_at_indented(study, limit, width, height):
         study.check(f"tilt, contacts act at the indented, indentation {indentation}", unit="deg",
                     theory=there, ours=angle, within=0.003, absolute=True)  # fmt: skip
     whole = theory(width, height)
-    study.curve("What acting at the indented point costs", "indentation [1]", "error [deg]",
+    study.curve("Error of forces at the indented point", "indentation [1]", "error [deg]",
                 {"atan((1 - a) b / h)": (values, [whole - t for t in exact]),
                  ".contact.action: indented": (values, [whole - a for a in angles])}, log=True)  # fmt: skip
 

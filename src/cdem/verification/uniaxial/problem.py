@@ -35,7 +35,7 @@ def jointed(study, angle):
 
 
 def regular(angle, across):
-    """Rows of triangles with sides along x and at nearly `angle` to it; also what it really is."""
+    """Rows of triangles with sides along x and at nearly `angle` to it; also the actual angle."""
     side = WIDTH / across
     rows = 2 * round(HEIGHT / (side * np.tan(np.radians(angle))))
     points, triangles, first = [], [], [0]
@@ -92,7 +92,7 @@ def weakest_bond(points, triangles, law):
     ring = np.zeros_like(points)
     ring[inner] = -total[inner] / weight[inner, None]
     traction = even + ring[a] / length[:, None]
-    traction[(points[a, 1] == 0) | (points[a, 1] == HEIGHT)] = 0  # a platen holds all its corners
+    traction[(points[a, 1] == 0) | (points[a, 1] == HEIGHT)] = 0  # a platen fixes all its corners
     pull = (traction * normal).sum(axis=1)
     shear = np.linalg.norm(traction - pull[:, None] * normal, axis=1)
     slip = (shear + pull * np.tan(np.radians(law.friction_angle))).max()
@@ -103,7 +103,7 @@ def press(simulation, down_to=0.9):
     """Shortening over height, mean stress [Pa] and kinetic over strain energy until it has failed.
 
     The mean is over the volume, which is load over area but for waves. It has failed when the
-    stress has come down to a part of its peak.
+    stress has fallen to a fraction of its peak.
     """
     volume = simulation.build.assembly.element_volume["wedge6"]
     upper = np.flatnonzero(simulation.build.start_position[:, 2] > HEIGHT - 1e-6)[0]

@@ -11,7 +11,7 @@ FOOT = HEIGHT - CRACK
 
 
 def theory(filled, cohesion=100e3, friction=35.0):
-    """Factor of safety with the crack filled to a part of its depth; forces of a metre of slope."""
+    """Factor of safety with the crack filled to a fraction of its depth; forces per metre of slope."""
     b, depth = np.radians(PLANE), filled * CRACK
     area = FOOT / np.sin(b)
     cut = 1 - (CRACK / HEIGHT) ** 2

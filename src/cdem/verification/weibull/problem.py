@@ -17,7 +17,7 @@ def theory(shape):
 
 
 def strengths(simulation, strength, stiffness):
-    """Tensile strength of every pair over that of the interface, from when its bonds break."""
+    """Tensile strength of every pair over the interface's, from when its bonds break."""
     pairs = simulation.build.assembly.counts["quads.count"]
     found, step = np.full(pairs, np.nan), simulation.core.scalars()["dt"]
     while np.isnan(found).any():
