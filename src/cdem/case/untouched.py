@@ -16,23 +16,24 @@ class Untouched:
     """
 
     def __init__(self, value: Any) -> None:
-        self._holders = [(holder, _parts(holder).copy()) for holder in _holders(value)]
+        holders = list(_holders(value))
+        # a model gets a new dict when a value is assigned
+        self._models = [(h, h.__dict__.copy()) for h in holders if isinstance(h, BaseModel)]
+        self._others = [(h, h.copy()) for h in holders if not isinstance(h, BaseModel)]
 
     def holds(self) -> bool:
         """Whether nothing has changed."""
-        return all(_parts(holder) == kept for holder, kept in self._holders)  # `is` comes first
-
-
-def _parts(holder: Any) -> Any:
-    """What a holder holds; a model gets a new dict when a value is assigned."""
-    return holder.__dict__ if isinstance(holder, BaseModel) else holder
+        for model, kept in self._models:  # what is the same object counts as equal
+            if model.__dict__ != kept:
+                return False
+        return all([holder == kept for holder, kept in self._others])
 
 
 def _holders(value: Any) -> Iterator[Any]:
     """All that can be changed in a value."""
     if isinstance(value, BaseModel | dict | list):
         yield value
-    parts = _parts(value)
+    parts = value.__dict__ if isinstance(value, BaseModel) else value
     if isinstance(parts, dict | list | tuple):
         for part in parts.values() if isinstance(parts, dict) else parts:
             yield from _holders(part)
