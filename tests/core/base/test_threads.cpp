@@ -37,7 +37,7 @@ TEST_CASE("work on one thread is alone, and else has all numbers") {
   for (const bool several : {false, true}) {
     std::vector<Index> calls(256);
     Index threads = 0;
-    on_threads(several, [&](Thread thread) {
+    cdem::on_threads(several, [&](Thread thread) {
       ++calls[thread.number];
       if (thread.number == 0) threads = thread.count;
     });
