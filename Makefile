@@ -26,13 +26,14 @@ check: setup
 	$(BIN)/python tools/check.py $(F)
 
 # All tests, or with T=path (and any other words for pytest) some of those in Python. Folders of long
-# tests go first: one that begins last would keep one processor busy and the others idle.
+# tests go first: one that begins last would keep one processor busy and the others idle. Each
+# process runs on one thread, as the others take the other processors.
 LONG := tests/validation/ tests/integration/
 ALL := -n auto --dist loadfile --no-loadscope-reorder $(LONG) $(filter-out $(LONG),$(wildcard tests/*/))
 test: setup
 	$(BIN)/python tools/build.py --own-laws $(if $(T),,--tests)
 	$(if $(T),,build/core/core_tests)
-	$(BIN)/python -m pytest $(or $(T),$(ALL))
+	$(if $(T),,OMP_NUM_THREADS=1) $(BIN)/python -m pytest $(or $(T),$(ALL))
 
 validate: build
 	$(BIN)/python -m pytest -m slow

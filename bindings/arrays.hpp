@@ -7,7 +7,9 @@
 
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/model/describe.hpp"
@@ -62,25 +64,84 @@ void copy(nb::handle from, Column<T>& column) {
   column.assign(array.data(), array.size());
 }
 
+/// Only the core writes such rows.
+inline void copy(nb::handle, Column<ExposedRow>&) { throw nb::type_error("rows of the core"); }
+
+/// One array of model or state, whatever its numbers are.
+struct ArrayEntry {
+  ColumnInfo info;
+  std::variant<Column<Real>*, Column<Index>*, Column<Flag>*, Column<float>*, Column<ExposedRow>*>
+      column;
+  const char* origin;           ///< "given", "stored" or "rebuilt"
+  const char* rebuilt_by = "";  ///< Name of what rebuilds it.
+};
+using ArrayEntries = std::vector<ArrayEntry>;
+
+/// Puts arrays on a list, all or that of one name: the one visitor of all arrays, since each takes
+/// as long to compile as half of all other bindings.
+struct ListArrays {
+  ArrayEntries& list;
+  const char* origin;
+  std::string_view name = {};
+
+  void operator()(const ColumnInfo& info, auto& column) const {
+    if (name.empty() || info.name == name) list.push_back({info, &column, origin});
+  }
+  void operator()(RebuiltBy by, const ColumnInfo& info, auto& column) const {
+    if (name.empty() || info.name == name)
+      list.push_back({info, &column, origin, by.rebuild().name});
+  }
+};
+
+/// Every array, in the order of the manual, or that of one name.
+inline ArrayEntries array_entries(Core& core, std::string_view name = {}) {
+  ArrayEntries list;
+  describe(core.model, core.state, ListArrays{list, "given", name},
+           ListArrays{list, "stored", name}, ListArrays{list, "rebuilt", name});
+  return list;
+}
+
+/// Those of one module.
+template <class Module>
+ArrayEntries module_entries(Core& core) {
+  ArrayEntries list;
+  const ListArrays given{list, "given"}, stored{list, "stored"}, rebuilt{list, "rebuilt"};
+  Module::describe(given_of<Module>(core.model), state_of<Module>(core.state),
+                   ArrayVisit{given, stored, rebuilt});
+  return list;
+}
+
+inline bool is_of(const ArrayEntry& one, std::string_view origin) { return one.origin == origin; }
+
+inline nb::object view(const ArrayEntry& one, nb::handle owner) {
+  return std::visit([&](auto* column) { return view(*column, owner); }, one.column);
+}
+
+inline void copy(const Views& from, const ArrayEntry& one) {
+  std::visit([&]<class T>(Column<T>* column) { copy(from[one.info.name.c_str()], *column); },
+             one.column);
+}
+
+/// Views of the arrays of one origin.
+inline Views views_of(nb::handle_t<Core> self, std::string_view origin) {
+  Views arrays;
+  for (const ArrayEntry& one : array_entries(nb::cast<Core&>(self)))
+    if (is_of(one, origin)) arrays[one.info.name.c_str()] = view(one, self);
+  return arrays;
+}
+
 /// Names of arrays of modules missing in the dict: the case has no items of these modules.
 inline std::set<std::string> without_modules(Core& core, const Views& arrays) {
   std::set<std::string> missing;
-  const auto look = [&](auto&& describe) {
+  Modules::for_each([&]<class Module>() {
     std::set<std::string> names;
     bool given = false;
-    describe([&](const ColumnInfo& info, const auto&) {
-      names.insert(info.name);
-      given = given || arrays.contains(info.name.c_str());
-    });
+    for (const ArrayEntry& one : module_entries<Module>(core)) {
+      if (!is_of(one, "given")) continue;
+      names.insert(one.info.name);
+      given = given || arrays.contains(one.info.name.c_str());
+    }
     if (!given) missing.merge(names);
-  };
-  Modules::for_each([&]<class Module>() {
-    look([&](const auto& visit) {
-      const auto skip = [](const ColumnInfo&, const auto&) {};
-      const auto skip_rebuilt = [](RebuiltBy, const ColumnInfo&, const auto&) {};
-      Module::describe(given_of<Module>(core.model), state_of<Module>(core.state),
-                       ArrayVisit{visit, skip, skip_rebuilt});
-    });
   });
   return missing;
 }
@@ -88,18 +149,22 @@ inline std::set<std::string> without_modules(Core& core, const Views& arrays) {
 /// Names of the stored arrays of modules that the case does not have.
 inline std::vector<std::string> absent_fields(Core& core) {
   std::vector<std::string> names;
-  const auto note = [&](const ColumnInfo& info, const auto&) { names.push_back(info.name); };
-  const auto skip = [](const ColumnInfo&, const auto&) {};
-  const auto skip_rebuilt = [](RebuiltBy, const ColumnInfo&, const auto&) {};
+  const auto note = [&](const ArrayEntries& list) {
+    for (const ArrayEntry& one : list)
+      if (is_of(one, "stored")) names.push_back(one.info.name);
+  };
   Modules::for_each([&]<class Module>() {
     auto& given = given_of<Module>(core.model);
     if constexpr (Module::port == Port::applied) {
       if (Module::is_there(given)) return;
-      describe_forces(Module::name, applied_of<Module>(core.state), note, skip_rebuilt);
+      ArrayEntries list;
+      const ListArrays stored{list, "stored"}, rebuilt{list, "rebuilt"};
+      describe_forces(Module::name, applied_of<Module>(core.state), stored, rebuilt);
+      note(list);
     } else if (given.count > 0) {
       return;
     }
-    Module::describe(given, state_of<Module>(core.state), ArrayVisit{skip, note, skip_rebuilt});
+    note(module_entries<Module>(core));
   });
   return names;
 }
@@ -108,9 +173,8 @@ inline std::vector<std::string> absent_fields(Core& core) {
 /// of them; another missing one is our own mistake.
 inline void take_model(Core& core, const Views& arrays) {
   const std::set<std::string> missing = without_modules(core, arrays);
-  describe_model(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    if (!missing.contains(info.name)) copy(arrays[info.name.c_str()], column);
-  });
+  for (const ArrayEntry& one : array_entries(core))
+    if (is_of(one, "given") && !missing.contains(one.info.name)) copy(arrays, one);
   for_each_element_set(core.model, core.state,
                        [](const auto& kind, ElementSet& e, const ElementState&) {
                          e.points = kind.points;  // one where there are hourglass springs
@@ -118,49 +182,30 @@ inline void take_model(Core& core, const Views& arrays) {
 }
 
 /// Views of the model's arrays; only until one of them is changed.
-inline Views model_arrays(nb::handle_t<Core> self) {
-  Core& core = nb::cast<Core&>(self);
-  Views arrays;
-  describe_model(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    arrays[info.name.c_str()] = view(column, self);
-  });
-  return arrays;
-}
+inline Views model_arrays(nb::handle_t<Core> self) { return views_of(self, "given"); }
 
 /// Copy the arrays of the dict into the model; one that no stage may change is our own
 /// mistake.
 inline void update_model(Core& core, const Views& arrays) {
   std::size_t taken = 0;
-  describe_model(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    if (info.changes == Changes::never || !arrays.contains(info.name.c_str())) return;
-    copy(arrays[info.name.c_str()], column);
+  for (const ArrayEntry& one : array_entries(core)) {
+    if (!is_of(one, "given") || one.info.changes == Changes::never) continue;
+    if (!arrays.contains(one.info.name.c_str())) continue;
+    copy(arrays, one);
     ++taken;
-  });
+  }
   if (taken != arrays.size()) throw nb::key_error("an array that no stage may change");
   hold_taken_out(core.model, core.state);
 }
 
 /// Views of the arrays that a checkpoint keeps; only until one of them is resized.
-inline Views stored_arrays(nb::handle_t<Core> self) {
-  Core& core = nb::cast<Core&>(self);
-  Views arrays;
-  describe_stored(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    arrays[info.name.c_str()] = view(column, self);
-  });
-  return arrays;
-}
+inline Views stored_arrays(nb::handle_t<Core> self) { return views_of(self, "stored"); }
 
 /// Views of the arrays that the core rebuilds from the others; the same holds for them.
-inline Views rebuilt_arrays(nb::handle_t<Core> self) {
-  Core& core = nb::cast<Core&>(self);
-  Views arrays;
-  describe_rebuilt(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    arrays[info.name.c_str()] = view(column, self);
-  });
-  return arrays;
-}
+inline Views rebuilt_arrays(nb::handle_t<Core> self) { return views_of(self, "rebuilt"); }
 
-inline Dict dict_of(const ColumnInfo& info, const char* origin, const char* rebuilt_by) {
+inline Dict dict_of(const ArrayEntry& entry) {
+  const ColumnInfo& info = entry.info;
   static constexpr const char* layouts[] = {"rows", "columns", "starts"};
   static constexpr const char* changes[] = {"never", "with_stage", "with_places"};
   nb::list refers_to, parts;
@@ -173,39 +218,21 @@ inline Dict dict_of(const ColumnInfo& info, const char* origin, const char* rebu
   one["layout"] = layouts[int(info.layout)];
   one["refers_to"] = refers_to, one["opposite"] = info.opposite;
   one["optional"] = info.optional, one["changes"] = changes[int(info.changes)];
-  one["origin"] = origin, one["rebuilt_by"] = rebuilt_by;
+  one["origin"] = entry.origin, one["rebuilt_by"] = entry.rebuilt_by;
   return one;
 }
 
 /// View of one array, valid until it is changed or resized, and its contents.
 inline ViewAndDict array_by_name(nb::handle_t<Core> self, const std::string& name) {
-  Core& core = nb::cast<Core&>(self);
-  ViewAndDict found;
-  const auto look = [&](const ColumnInfo& info, auto& column, const char* origin,
-                        const char* by = "") {
-    if (info.name == name) found = nb::make_tuple(view(column, self), dict_of(info, origin, by));
-  };
-  describe(
-      core.model, core.state,
-      [&](const ColumnInfo& info, auto& column) { look(info, column, "given"); },
-      [&](const ColumnInfo& info, auto& column) { look(info, column, "stored"); },
-      [&](RebuiltBy by, const ColumnInfo& info, auto& column) {
-        look(info, column, "rebuilt", by.rebuild().name);
-      });
-  if (found.size() == 0) throw nb::key_error(name.c_str());
-  return found;
+  const ArrayEntries found = array_entries(nb::cast<Core&>(self), name);
+  if (found.empty()) throw nb::key_error(name.c_str());
+  return nb::make_tuple(view(found[0], self), dict_of(found[0]));
 }
 
 /// Contents and origin of every array.
 inline Dicts describe_arrays(Core& core) {
   Dicts infos;
-  describe(
-      core.model, core.state,
-      [&](const ColumnInfo& info, const auto&) { infos.append(dict_of(info, "given", "")); },
-      [&](const ColumnInfo& info, const auto&) { infos.append(dict_of(info, "stored", "")); },
-      [&](RebuiltBy by, const ColumnInfo& info, const auto&) {
-        infos.append(dict_of(info, "rebuilt", by.rebuild().name));
-      });
+  for (const ArrayEntry& one : array_entries(core)) infos.append(dict_of(one));
   return infos;
 }
 
@@ -222,9 +249,8 @@ inline Dicts describe_row_kinds(Core& core) {
 
 /// Bring back the arrays and scalars of a checkpoint.
 inline void restore(Core& core, const Views& arrays, const Dict& scalars) {
-  describe_stored(core.model, core.state, [&](const ColumnInfo& info, auto& column) {
-    if (arrays.contains(info.name.c_str())) copy(arrays[info.name.c_str()], column);
-  });
+  for (const ArrayEntry& one : array_entries(core))
+    if (is_of(one, "stored") && arrays.contains(one.info.name.c_str())) copy(arrays, one);
   describe_scalars(core.state, [&]<class T>(const ScalarInfo& info, T& number) {
     number = nb::cast<T>(scalars[info.name]);
   });

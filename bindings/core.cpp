@@ -228,6 +228,17 @@ Views yielded(nb::handle_t<Core> self) {
   return tables;
 }
 
+/// Bond points broken so far, in tension and in shear.
+auto broken_points(Core& c) {
+  Real tension = 0, shear = 0;
+  for_each_pair_set(c.model, c.state, [&](const auto&, const PairSet& p, PairState& s) {
+    const auto in_tension = on_host(s.broken_tension), in_shear = on_host(s.broken_shear);
+    for (Index pair = 0; pair < p.count; ++pair)
+      tension += in_tension[pair], shear += in_shear[pair];
+  });
+  return std::make_tuple(std::int64_t(tension), std::int64_t(shear));
+}
+
 /// Position and both faces of every bond point.
 auto bond_place_arrays(Core& c) {
   std::vector<Real> position;
@@ -341,6 +352,7 @@ void bind_views(nb::class_<Core>& core) {
 /// Values computed from the state.
 void bind_diagnostics(nb::class_<Core>& core) {
   core.def("energies", &energy_ledger)
+      .def("broken", &broken_points, "Bond points broken so far, in tension and in shear.")
       .def("seconds",
            [](const Core& c) {
              const Real* t = c.state.seconds;

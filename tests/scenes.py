@@ -61,7 +61,7 @@ def case(blocks, groups, *, interfaces=None, rock=None, stages=None, defaults=Fa
     """
     data = {
         "model": {"blocks": blocks, **more.pop("model", {})},
-        "materials": {"rock": ROCK | (rock or {})},
+        "materials": {"rock": ROCK | (rock or {}), **more.pop("materials", {})},
         "groups": {name: {"material": "rock", **entry} for name, entry in groups.items()},
         "interfaces": interfaces or {"default": {"friction_angle": 0}},
         "stages": stages or [{"name": "run", "mode": "dynamic", "duration": 1.0}],

@@ -10,6 +10,7 @@
 #include "core/base/emulated.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/prefetch.hpp"
+#include "core/base/threads.hpp"
 
 namespace cdem {
 
@@ -127,33 +128,44 @@ template <class Kernel>
 
 template <class Kernel>
 bool any_item(Queue, Index count, const Kernel& kernel) {
-  Index whole = 0;
-  bool found = false;
-  if constexpr (requires { kernel(Lane{0}); }) {
-    whole = count - count % lanes;
-#pragma omp parallel for schedule(static) reduction(|| : found) if (count >= worth_threads)
-    for (Index i = 0; i < whole; i += lanes) found = any_of(kernel(Lane{i})) || found;
-  }
-#pragma omp parallel for schedule(static) reduction(|| : found) if (count - whole >= worth_threads)
-  for (Index i = whole; i < count; ++i) found = any_of(kernel(One{i})) || found;
-  return found;
+  constexpr bool packs = requires { kernel(Lane{0}); };
+  constexpr Index size = packs ? lanes : 1;
+  Flag found = 0;
+  on_threads(count >= worth_threads, [&](Thread thread) {
+    const Range part = thread.part_of(count / size);
+    bool own = false;
+    for (Index k = part.first; k < part.last; ++k) {
+      if constexpr (packs)
+        own = any_of(kernel(Lane{k * size})) || own;
+      else
+        own = any_of(kernel(One{k})) || own;
+    }
+    if (own) set(found);
+  });
+  for (Index i = count - count % size; i < count; ++i)
+    if (any_of(kernel(One{i}))) found = 1;
+  return found != 0;
 }
 
 /// Run a straight-line kernel for every item: whole lanes, then the remainder one by one.
 template <class Kernel>
 void for_each_lane(Queue, Index count, const Kernel& kernel) {
-  const Index whole = count - count % lanes;
-#pragma omp parallel for schedule(static) if (count >= worth_threads)
-  for (Index i = 0; i < whole; i += lanes) kernel(Lane{i});
-  for (Index i = whole; i < count; ++i) run_one(kernel, i);
+  on_threads(count >= worth_threads, [&](Thread thread) {
+    const Range part = thread.part_of(count / lanes);
+    for (Index k = part.first; k < part.last; ++k) kernel(Lane{k * lanes});
+  });
+  for (Index i = count - count % lanes; i < count; ++i) run_one(kernel, i);
 }
 
 /// Run a kernel whose items take different paths (searches, ragged sums): one number at a time,
 /// in small parts for each thread, as the faces that are in contact lie together.
 template <class Kernel>
 void for_each_item(Queue, Index count, const Kernel& kernel) {
-#pragma omp parallel for schedule(static, 128) if (count >= worth_threads)
-  for (Index i = 0; i < count; ++i) kernel(One{i});
+  on_threads(count >= worth_threads, [&](Thread thread) {
+    thread.deal(count, 128, [&](Index first, Index last) {
+      for (Index i = first; i < last; ++i) kernel(One{i});
+    });
+  });
 }
 
 /// Run a kernel for the items that it selects of each of `count` rows: whole lanes with items of
@@ -161,13 +173,11 @@ void for_each_item(Queue, Index count, const Kernel& kernel) {
 /// could not predict it.
 template <class Kernel>
 void for_each_selected(Queue, Index count, const Kernel& kernel) {
-#pragma omp parallel if (count >= worth_threads)
-  {
+  on_threads(count >= worth_threads, [&](Thread thread) {
     constexpr Index most = 8 * lanes;
     SelectedLane some[most / lanes];
     Index selected = 0;
-#pragma omp for schedule(static, 128) nowait
-    for (Index row = 0; row < count; ++row) {
+    const auto select_of = [&](Index row) {
       const Range all = kernel.items(row);
       for (Index id = all.first; id < all.last; ++id) {
         some[selected / lanes].row.id[selected % lanes] = row;
@@ -177,11 +187,14 @@ void for_each_selected(Queue, Index count, const Kernel& kernel) {
         for (const SelectedLane& lane : some) kernel(lane);
         selected = 0;
       }
-    }
+    };
+    thread.deal(count, 128, [&](Index first, Index last) {
+      for (Index row = first; row < last; ++row) select_of(row);
+    });
     for (Index j = 0; j < selected / lanes; ++j) kernel(some[j]);
     for (Index j = selected - selected % lanes; j < selected; ++j)
       kernel(Selected{some[j / lanes].row.id[j % lanes], some[j / lanes].id.id[j % lanes]});
-  }
+  });
 }
 
 /// Have the kernel fetch what it needs for a block to come, if it knows what the machine does not
@@ -201,24 +214,28 @@ template <class Kernel>
 void for_each_lane(Queue, Index count, Blocks blocks, const Kernel& kernel) {
   static_assert(block_size % lanes == 0);
   const Index whole = count - count % lanes, number = blocks.count_in(count);
-#pragma omp parallel for schedule(static) if (number * block_size >= worth_threads)
-  for (Index b = 0; b < number; ++b) {
-    const Index first = blocks.first(b);
-    const Index last = first + block_size < count ? first + block_size : count;
-    fetch_ahead(kernel, blocks, b);
-    Index i = first;
-    for (; i < last && i < whole; i += lanes) kernel(Lane{i});
-    for (; i < last; ++i) run_one(kernel, i);
-  }
+  on_threads(number * block_size >= worth_threads, [&](Thread thread) {
+    const Range part = thread.part_of(number);
+    for (Index b = part.first; b < part.last; ++b) {
+      const Index first = blocks.first(b);
+      const Index last = first + block_size < count ? first + block_size : count;
+      fetch_ahead(kernel, blocks, b);
+      Index i = first;
+      for (; i < last && i < whole; i += lanes) kernel(Lane{i});
+      for (; i < last; ++i) run_one(kernel, i);
+    }
+  });
 }
 template <class Kernel>
 void for_each_item(Queue, Index count, Blocks blocks, const Kernel& kernel) {
   const Index number = blocks.count_in(count);
-#pragma omp parallel for schedule(static) if (number * block_size >= worth_threads)
-  for (Index b = 0; b < number; ++b) {
-    const Index first = blocks.first(b);
-    for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
-  }
+  on_threads(number * block_size >= worth_threads, [&](Thread thread) {
+    const Range part = thread.part_of(number);
+    for (Index b = part.first; b < part.last; ++b) {
+      const Index first = blocks.first(b);
+      for (Index i = first; i < first + block_size && i < count; ++i) kernel(One{i});
+    }
+  });
 }
 
 #endif

@@ -25,8 +25,9 @@ struct Parts {
   /// Call run(part, range) for each, on a thread of its own.
   template <class Run>
   void for_each(const Run& run) const {
-#pragma omp parallel for schedule(static, 1) if (count > 1)
-    for (Index part = 0; part < count; ++part) run(part, at(part));
+    on_threads(count > 1, [&](Thread thread) {
+      thread.deal(count, 1, [&](Index part, Index) { run(part, at(part)); });
+    });
   }
 
  private:
@@ -64,14 +65,13 @@ void set_all(Queue queue, Index count, T* items, T value) {
 template <class Kernel>
 Most most(Queue, Index count, const Kernel& kernel) {
   Most all;
-#pragma omp parallel if (count >= worth_threads)
-  {
+  on_threads(count >= worth_threads, [&](Thread thread) {
     Most own;
-#pragma omp for schedule(static) nowait
-    for (Index i = 0; i < count; ++i) own.meet(kernel(One{i}), i);
+    const Range part = thread.part_of(count);
+    for (Index i = part.first; i < part.last; ++i) own.meet(kernel(One{i}), i);
 #pragma omp critical(cdem_most)
     all.meet(own.value, own.item);
-  }
+  });
   return all;
 }
 
@@ -79,19 +79,18 @@ template <class Kernel>
 Real exact_sum(Queue, Index count, const Kernel& kernel) {
   constexpr Index chunk = ExactSum::most;
   ExactSum all;
-#pragma omp parallel if (count >= worth_threads)
-  {
+  on_threads(count >= worth_threads, [&](Thread thread) {
     ExactSum own;
     alignas(64) Real numbers[chunk];
-#pragma omp for schedule(static) nowait
-    for (Index c = 0; c < count / chunk + (count % chunk > 0); ++c) {
+    const Range part = thread.part_of(count / chunk + (count % chunk > 0));
+    for (Index c = part.first; c < part.last; ++c) {
       const Index first = c * chunk, here = std::min(chunk, count - first);
       for (Index i = 0; i < here; ++i) numbers[i] = kernel(One{first + i});
       own.add(numbers, here);
     }
 #pragma omp critical(cdem_exact_sum)
     all.add(own);
-  }
+  });
   return all.value();
 }
 

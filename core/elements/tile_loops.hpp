@@ -179,16 +179,20 @@ void for_each_tile(Queue, Index count, Blocks blocks, const Tiles& tiles, const 
   const Index run = tiles.count / 64 + 1;
   const Index points = blocks.count_in(count) * block_size * Kernel::Shape::points;
   const bool several = points >= worth_threads;
-#pragma omp parallel for schedule(static, run) if (several)
-  for (Index tile = 0; tile < tiles.count; ++tile) {
+  const auto run_tile = [&](Index tile) {
     const Range some = blocks.between(tiles.block_first[tile], tiles.block_first[tile + 1]);
-    if (some.first == some.last) continue;
+    if (some.first == some.last) return;
     alignas(64) Real motion[8 * most_tile_nodes], force[4 * most_tile_nodes];
     const TileNodes nodes{tiles, tiles.node_first[tiles.block_first[tile]], motion, force};
     visit_nodes(tiles, blocks, some, [&](Index k) { nodes.begin(k); });
     run_blocks(count, blocks, some, nodes, in_tile(kernel, nodes));
     visit_nodes(tiles, blocks, some, [&](Index k) { nodes.end(k); });
-  }
+  };
+  on_threads(several, [&](Thread thread) {
+    thread.deal(tiles.count, run, [&](Index first, Index last) {
+      for (Index tile = first; tile < last; ++tile) run_tile(tile);
+    });
+  });
 }
 
 #endif

@@ -10,8 +10,10 @@ template void for_each_item(Queue, Index, const SolveBolt&);
 /// A bolt is as much work as its nodes are: a few are worth threads.
 template <>
 void for_each_item(Queue, Index count, const SolveBolt& kernel) {
-#pragma omp parallel for schedule(static) if (kernel.node_count >= worth_threads)
-  for (Index i = 0; i < count; ++i) kernel(One{i});
+  on_threads(kernel.node_count >= worth_threads, [&](Thread thread) {
+    const Range part = thread.part_of(count);
+    for (Index i = part.first; i < part.last; ++i) kernel(One{i});
+  });
 }
 #endif
 

@@ -150,6 +150,9 @@ class Core:
 
     def energies(self) -> dict[str, float]: ...
 
+    def broken(self) -> tuple[int, int]:
+        """Bond points broken so far, in tension and in shear."""
+
     def seconds(self) -> tuple[float, float, float, float, float]: ...
 
     def fast_weakenings(self) -> list:

@@ -256,18 +256,21 @@ def drawn_over(law, lower, upper):
 
 def contacts_of(sim, law):
     """Rows of the state of all contacts, and what their walls have slipped by a law that keeps it [m]."""
-    state = sim.core.fields()
     rows, slips = [], []
-    for kind, wall in (
-        ("spring", np.flatnonzero(state["spring.target"] >= 0)),
-        ("edge", rows_of(sim.core, "edge.contact").mother_side),
-    ):
+    for kind in ("spring", "edge"):
         of_kind = rows_of(sim.core, f"{kind}.state").numbers
-        rows.append(of_kind[wall] if kind == "spring" else of_kind)
+        if kind == "spring":
+            wall = np.flatnonzero(sim.core.array("spring.target")[0] >= 0)
+            of_kind = of_kind[wall]
+        else:
+            wall = rows_of(sim.core, "edge.contact").mother_side
+        rows.append(of_kind)
         slips.append(np.zeros(len(wall)))
         if law in REMEMBERED and len(wall):
-            width = len(state[f"{kind}.history"]) // len(state[f"{kind}.history_law"])
-            slips[-1] = state[f"{kind}.history"].reshape(-1, width)[wall, REMEMBERED[law]]
+            kept, of_law = (
+                sim.core.array(f"{kind}.{name}")[0] for name in ("history", "history_law")
+            )
+            slips[-1] = kept.reshape(len(of_law), -1)[wall, REMEMBERED[law]]
     return np.concatenate(rows), np.concatenate(slips)
 
 

@@ -14,6 +14,7 @@ from cdem._native import device, digests
 from cdem._native import name as native_name
 from cdem._version import __version__
 from cdem.case.case import Case
+from cdem.case.untouched import Untouched
 from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
@@ -199,6 +200,7 @@ class RunState:
     def keep_case(self) -> None:
         """Store the case as the core has it now."""
         self._case = self.case.model_copy(deep=True)
+        self._untouched = Untouched(self.case)
 
     def check_case(self) -> None:
         """Refuse to continue with a case that was changed after the core was made.
@@ -206,6 +208,8 @@ class RunState:
         Raises:
             CaseError: It was changed; names the place.
         """
+        if self._untouched.holds():
+            return
         if self.case != self._case:
             now, was = (case.model_dump(mode="json") for case in (self.case, self._case))
             raise CaseError(
@@ -245,7 +249,7 @@ class RunState:
             "displacement": motion.position - self.reference,
             "force": rows_of(self.core, "node.force").force,
             "reaction": rows_of(self.core, "node.reaction").force,
-            "mass": self.build.arrays["node.mass"].view(),
+            "mass": self.core.array("node.mass")[0],
         }
         for values in found.values():
             values.flags.writeable = False
@@ -291,7 +295,7 @@ class RunState:
     @property
     def out(self) -> NDArray[np.bool_]:
         """Whether each block was removed or has left the domain."""
-        first, flags = self.build.topology.block_first_node[:-1], self.core.fields()["node.out"]
+        first, flags = self.build.topology.block_first_node[:-1], self.core.array("node.out")[0]
         return flags[first] != 0 if len(flags) else np.zeros(len(first), bool)
 
     @property
@@ -395,15 +399,8 @@ class RunState:
     @property
     def broken(self) -> dict[str, int]:
         """Bond points broken so far, by cause: "tension" and "shear"."""
-        s = self.core.fields()
-        sums = {}
-        for cause in ("tension", "shear"):
-            total = 0.0
-            for kind in ("triangles", "quads", "overlaps"):
-                count = self.build.assembly.counts[f"{kind}.count"]
-                total += float(s[f"{kind}.broken_{cause}"][:count].sum())
-            sums[cause] = int(total)
-        return sums
+        tension, shear = self.core.broken()
+        return {"tension": tension, "shear": shear}
 
     # ------------------------------------------------------------------ keeping
 
