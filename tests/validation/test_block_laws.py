@@ -166,7 +166,7 @@ def test_large_strain_is_told_and_ends_a_run(tmp_path):
     assert strain.place[2] == pytest.approx(0.35, abs=1e-3)
     assert "above elements.strain_limit 0.2" in (tmp_path / "told/run.log").read_text()
     assert "above elements.strain_limit 0.2" in sim.summary("finished")["large_strains"][0]
-    with pytest.raises(cdem.errors.UnstableError, match="above 1 a run ends"):
+    with pytest.raises(cdem.errors.UnstableError, match="a run ends above 1"):
         top["velocity"] = [0, 0, 2]
         press(0.65, "ended").run()
 

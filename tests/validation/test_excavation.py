@@ -144,7 +144,7 @@ def test_what_was_dug_out_is_not_shown_and_is_told(tmp_path):
     faces, _ = visible_faces(sim)
     t = sim.build.topology
     assert set(t.block_group[t.face_block[faces]]) == {sim.build.group_names.index("low")}
-    assert "dug out: 1 blocks of group up" in info(tmp_path / "results")
+    assert "removed: 1 blocks of group up" in info(tmp_path / "results")
 
 
 def test_threads_and_a_stop_in_between_give_identical_results(tmp_path):
