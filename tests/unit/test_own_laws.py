@@ -97,7 +97,7 @@ def test_a_library_that_was_changed_is_refused(library):
 def test_another_version_has_another_library(library, folder, monkeypatch, what):
     monkeypatch.setattr(own_laws, what, "0.0.9")
     assert own_laws.library_of([folder / HEADER], choose()) != library
-    with pytest.raises(BackendError, match=r"has no library .*; make it: cdem law build"):
+    with pytest.raises(BackendError, match=r"has no compiled library .*; make it: cdem law build"):
         own_laws.load_own_laws(HEADER)
 
 

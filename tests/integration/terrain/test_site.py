@@ -36,7 +36,7 @@ def test_two_files_in_degrees_become_a_case_that_runs(maps, run_cli):
     words = ["site", "dem.tif", "outline.kml", "--depth", "40 m", "--size", "60", "--cell", "20"]
     status, out, err = run_cli(*words)
     assert status == 0, err
-    assert "note: outline.kml: brought from EPSG:4326 to EPSG:32632" in out
+    assert "note: outline.kml: transformed from EPSG:4326 to EPSG:32632" in out
     assert (
         "EPSG:32632 (WGS 84 / UTM zone 32N): lengths differ from lengths on the ground by -3.0e-04"
         in out

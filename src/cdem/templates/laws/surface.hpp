@@ -14,15 +14,14 @@ template <class T>
 struct Foundation {
   static constexpr LawText text{.name = "foundation",
                                 .meaning = "Springs to the ground that can break"};
-  static constexpr std::array parameters{Parameter{.name = "modulus",
-                                                   .symbol = "k",
-                                                   .unit = "Pa/m",
-                                                   .meaning = "Traction per displacement"},
-                                         Parameter{.name = "tensile_strength",
-                                                   .symbol = "T",
-                                                   .unit = "Pa",
-                                                   .meaning = "Tensile strength of the ground",
-                                                   .otherwise = unlimited}};
+  static constexpr std::array parameters{
+      Parameter{
+          .name = "modulus", .symbol = "k", .unit = "Pa/m", .meaning = "Traction per displacement"},
+      Parameter{.name = "tensile_strength",
+                .symbol = "T",
+                .unit = "Pa",
+                .meaning = "Tensile strength of the ground",
+                .otherwise = unlimited}};
   static constexpr std::array state{
       StateVariable{.name = "foundation_lost", .unit = "1", .meaning = "1: broken"}};
 
