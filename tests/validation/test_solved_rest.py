@@ -136,6 +136,20 @@ def test_rock_that_breaks_goes_on_as_adaptive():
     assert {**solve.core.scalars()} == {**adaptive.core.scalars()}
 
 
+def test_moving_supports_are_left_to_steps():
+    """A plate that presses for 10 ms: at its start there is a rest, which is not what is asked for."""
+    press = {
+        "surface": {"group": "rock", "normal": [0, 0, 1]},
+        "velocity": [0, 0, -0.01],
+        "history": [[0, 1], [0.01, 1], [0.011, 0]],
+    }
+    make = partial(rests, blocks=[SHAPES["hex8"]], loads={"velocities": [press]})
+    solve, adaptive = make("solve"), make("adaptive")
+    assert "move supports" in solve.ended_stage.solved
+    assert solve.step_count == adaptive.step_count
+    assert np.array_equal(solve.fields["displacement"], adaptive.fields["displacement"])
+
+
 def test_threads_and_a_stop_behind_the_solve_change_no_bit(tmp_path):
     """One thread or two; stopped behind the first stage and resumed."""
     stages = [

@@ -227,6 +227,12 @@ def solve(sim: RunState, stage: StageState) -> None:
     """
     limit = sim.case.stages[sim.stage_index].tolerance
     assert limit is not None  # the case has filled it in
+    if sim.case.loads.velocities:  # it would rest before these have moved anything
+        stage.solved = (
+            "relax: solve has no rest to find where loads.velocities move supports, so the stage goes "
+            "on as adaptive"
+        )
+        return
     fields = {name: np.array(field) for name, field in sim.core.fields().items()}
     numbers = sim.core.scalars()
     rounds, iterations, before, after = sim.core.solve_for_rest(limit)
