@@ -14,6 +14,7 @@ from mutant_list import (
     core_model,
     core_nodes,
     core_records,
+    core_rest,
     core_run,
     core_surface,
     core_water,
@@ -31,6 +32,7 @@ from mutant_list.mutant import Mutant
 PYTHON = [package, case, mesh, joints, model, run, output, study, screening]
 CORE = [
     bindings,
+    core_rest,
     core_surface,
     core_water,
     core_diagnostics,
