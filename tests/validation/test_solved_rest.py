@@ -88,7 +88,7 @@ def test_a_block_that_lies_on_a_bed():
     agree(make("solve", loads=loads), make("adaptive", loads=loads), within=5e-5)
 
 
-def test_excavation_in_parts(tmp_path):
+def test_excavation_in_parts(monkeypatch):
     """Each part that is let go is solved for; the rest is that of relaxation."""
     blocks = [
         {"group": "rock", "box": {"size": [6, 1, 4], "divisions": [6, 1, 4]}},
@@ -106,7 +106,10 @@ def test_excavation_in_parts(tmp_path):
             way, blocks, stages=stages, groups=groups, model={"split": {"dug": "elements"}}
         )
 
+    told = []
+    monkeypatch.setattr(Simulation, "tell", lambda _, text: told.append(text))
     solve, adaptive = dig("solve"), dig("adaptive")
+    assert [text.split(" in ")[0] for text in told] == ["rest: solved", *3 * ["dig: solved"]]
     assert solve.step_count < 100 < adaptive.step_count
     agree(solve, adaptive)
 

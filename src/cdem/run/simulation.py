@@ -254,11 +254,12 @@ class Simulation(RunState):
         self.check_case()
         if self.flow:
             until = min(until, self.flow.due)
-        solved = stage.solved
-        outcome = self._guard(partial(stages.advance, self, stage, steps, until))
-        if stage.solved not in ("", solved) and self.results:
-            self.results.log(f"{stage.name}: {stage.solved}")
-        return outcome
+        return self._guard(partial(stages.advance, self, stage, steps, until))
+
+    def tell(self, text: str) -> None:
+        """Write a line into run.log, if there is a result folder."""
+        if self.results:
+            self.results.log(text)
 
     def summary(self, status: str) -> dict[str, Any]:
         """The content of summary.json."""

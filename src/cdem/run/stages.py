@@ -221,34 +221,39 @@ def release_part(sim: RunState, stage: StageState) -> bool:
 
 
 def solve(sim: RunState, stage: StageState) -> None:
+    """Solve for the rest of a static stage, and say so; see `_solved`."""
+    stage.solved = _solved(sim)
+    sim.tell(f"{stage.name}: {stage.solved}")
+
+
+def _solved(sim: RunState) -> str:
     """Move the rock of a static stage to the equilibrium of elements, bonds and contacts in touch.
 
     Where it does not lie near, as blocks slide or fall on the way, the rock stays as it is.
+
+    Returns:
+        What was reached, for the log.
     """
     limit = sim.case.stages[sim.stage_index].tolerance
     assert limit is not None  # the case has filled it in
     if sim.case.loads.velocities:  # it would rest before these have moved anything
-        stage.solved = (
+        return (
             "relax: solve has no rest to find where loads.velocities move supports, so the stage goes "
             "on as adaptive"
         )
-        return
     fields = {name: np.array(field) for name, field in sim.core.fields().items()}
     numbers = sim.core.scalars()
     rounds, iterations, before, after = sim.core.solve_for_rest(limit)
     if rounds > 0 and after < LEAST_GAIN * before:
-        stage.solved = (
+        return (
             f"solved in {rounds} rounds and {iterations} iterations: unbalance ratio {before:.2g}, "
             f"then {after:.2g}"
         )
-        return
     sim.core.restore(fields, numbers)
     sim.core.prepare()
-    stage.solved = (
-        "begins at rest: nothing to solve"
-        if before <= limit
-        else "relax: solve found no rest nearby, so the stage goes on as adaptive"
-    )
+    if before <= limit:
+        return "begins at rest: nothing to solve"
+    return "relax: solve found no rest nearby, so the stage goes on as adaptive"
 
 
 def change_end(sim: RunState, *, longer: bool) -> None:

@@ -197,6 +197,9 @@ class RunState:
         self.settings: list[Setting] = []
         self.begins: dict[str, float] = {}
 
+    def tell(self, text: str) -> None:
+        """Take a line for the log of a run; here there is none."""
+
     def keep_case(self) -> None:
         """Store the case as the core has it now."""
         self._case = self.case.model_copy(deep=True)
