@@ -46,6 +46,8 @@ loads: {gravity: [0, 0, -10]}
 stages: [{name: fall, mode: dynamic, duration: "5 ms"}]
 output: {every: "1 ms"}
 """
+# It falls for minutes, and stays far below the wave speed of its rock.
+ENDLESS = CUBE.replace("[0, 0, -10]", "[0, 0, -0.001]").replace('"5 ms"', "10000")
 WALL = """\
 model:
   blocks:
